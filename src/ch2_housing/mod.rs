@@ -1,0 +1,2 @@
+//! Chapter 2: the dynamic bearing model and the flexible housing.
+pub mod bearing;
