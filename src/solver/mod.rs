@@ -1,0 +1,2 @@
+//! Solvers: what a scene needs, and equilibrium.
+pub mod statics;
