@@ -74,7 +74,9 @@ pub enum Determinacy {
     Determinate,
     /// The position is one of many: these directions (unit vectors over the five coordinates,
     /// tilts multiplied by the pitch radius) meet no stiffness.
-    Indeterminate { free_directions: Vec<SVector<f64, 5>> },
+    Indeterminate {
+        free_directions: Vec<SVector<f64, 5>>,
+    },
 }
 
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,5 @@
 //! Geometry of a deep-groove or angular-contact ball bearing (Tables 2.2, 3.5, 4.1 and 5.3).
 
-use thiserror::Error;
-
 /// Isotropic linear elastic material of one bearing part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
