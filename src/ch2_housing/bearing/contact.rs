@@ -20,19 +20,20 @@ use nalgebra::Vector3;
 #[doc(alias = "5.1")]
 #[inline]
 pub fn normal_load(stiffness: f64, overlap: f64) -> f64 {
-    if overlap > 0.0 { stiffness * overlap * overlap.sqrt() } else { 0.0 }
+    // Written so that NaN passes through and is caught, not turned into a missing contact.
+    if overlap <= 0.0 { 0.0 } else { stiffness * overlap * overlap.sqrt() }
 }
 
 /// Slope dF_N/dδ = (3/2) K_H δ^{1/2} of (2.1), N/m.
 #[inline]
 pub fn normal_stiffness(stiffness: f64, overlap: f64) -> f64 {
-    if overlap > 0.0 { 1.5 * stiffness * overlap.sqrt() } else { 0.0 }
+    if overlap <= 0.0 { 0.0 } else { 1.5 * stiffness * overlap.sqrt() }
 }
 
 /// Energy (2/5) K_H δ^{5/2} stored in a contact, J.
 #[inline]
 pub fn strain_energy(stiffness: f64, overlap: f64) -> f64 {
-    if overlap > 0.0 { 0.4 * stiffness * overlap * overlap * overlap.sqrt() } else { 0.0 }
+    if overlap <= 0.0 { 0.0 } else { 0.4 * stiffness * overlap * overlap * overlap.sqrt() }
 }
 
 /// A ball in a groove, seen in the meridian plane of the race.
@@ -98,6 +99,7 @@ pub fn groove_force(
     let contact = meridian_contact(axial, radial, raceway, ball_radius);
     let load = normal_load(stiffness, contact.overlap);
     let normal = axis * contact.normal[0] + radial_arm * (contact.normal[1] / radial);
-    let force_on_ball = if load > 0.0 { normal * -load } else { Vector3::zeros() };
+    // A ball on the race's axis has no radial direction, and is far from any groove.
+    let force_on_ball = if load == 0.0 { Vector3::zeros() } else { normal * -load };
     GrooveForce { overlap: contact.overlap, normal_load: load, force_on_ball }
 }
