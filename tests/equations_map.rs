@@ -251,6 +251,12 @@ fn check_citations(file: &str, source: &str, rows: &[Row]) -> Vec<String> {
         .collect()
 }
 
+/// Cases that an erratum says it is "shown by".
+fn shown_by(errata: &str) -> Vec<String> {
+    let after = errata.split("shown by `").skip(1);
+    after.filter_map(|rest| Some(rest.split_once('`')?.0.to_owned())).collect()
+}
+
 fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
@@ -294,6 +300,14 @@ fn restated_equations_share_the_first_ones_item() {
 #[test]
 fn named_items_and_cases_exist() {
     assert_none(check_places(root(), &rows()));
+}
+
+#[test]
+fn errata_are_shown_by_cases_that_exist() {
+    let cases = shown_by(&read(&root().join("docs/errata.md")));
+    assert!(!cases.is_empty(), "no \"shown by\" found: the scanner is blind");
+    let exists = |case: &String| root().join("verification").join(case).join("case.rs").is_file();
+    assert_none(cases.into_iter().filter(|case| !exists(case)).collect());
 }
 
 #[test]
@@ -399,6 +413,12 @@ mod checks_catch {
         ] {
             assert_eq!(problems(bad).len(), 1, "{bad}: {:?}", problems(bad));
         }
+    }
+
+    #[test]
+    fn cases_named_in_errata() {
+        let text = "| shown by `one`; noted | and shown by `two` | not shown |";
+        assert_eq!(shown_by(text), ["one", "two"]);
     }
 
     #[test]
