@@ -256,6 +256,12 @@ fn reaches_files(file: &Path, source: &str) -> Vec<String> {
         .collect()
 }
 
+/// Fused multiply-add rounds once where other processors round twice.
+fn fused(source: &str) -> Vec<String> {
+    let code = code_only(source);
+    words(&code, "mul_add").map(|at| format!("{}: `mul_add`", line_of(&code, at))).collect()
+}
+
 fn unsafe_words(source: &str) -> Vec<usize> {
     let code = code_only(source);
     words(&code, "unsafe").map(|at| line_of(&code, at)).collect()
@@ -366,6 +372,13 @@ fn library_never_prints() {
 #[test]
 fn laws_and_solver_know_no_files() {
     assert_none(in_source(reaches_files));
+}
+
+#[test]
+fn results_do_not_depend_on_the_processor() {
+    assert_none(in_source(|file, source| {
+        fused(source).into_iter().map(|what| format!("{}:{what}", file.display())).collect()
+    }));
 }
 
 #[test]
@@ -482,6 +495,12 @@ mod scanner_catches {
         assert_eq!(found("solver/statics.rs", "fn f() { std::fs::read(\"a\"); }"), 1);
         assert_eq!(found("solver/statics.rs", "use std::fmt; // std::fs\n"), 0);
         assert_eq!(found("output/mod.rs", "use std::fs;"), 0);
+    }
+
+    #[test]
+    fn fused_multiply_add() {
+        assert_eq!(fused("let x = a.mul_add(b, c);").len(), 1);
+        assert!(fused("let x = a * b + c; // not mul_add\n").is_empty());
     }
 
     #[test]

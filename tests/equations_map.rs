@@ -178,7 +178,7 @@ fn check_item(root: &Path, item: &str) -> Result<PathBuf, String> {
     if defines(&source, name) {
         Ok(file)
     } else {
-        Err(format!("`{item}`: {} defines no public `{name}`", file.display()))
+        Err(format!("`{item}`: {} defines no public `{name}`", relative(root, &file)))
     }
 }
 
@@ -192,7 +192,7 @@ fn check_places(root: &Path, rows: &[Row]) -> Vec<String> {
                     let cited = citations(&read(&file));
                     let known = [row.number, row.same_as];
                     if row.number.is_some() && !known.iter().flatten().any(|n| cited.contains(n)) {
-                        let file = file.display();
+                        let file = relative(root, &file);
                         problems.push(format!("{}: no doc comment of {file} cites it", row.label));
                     }
                 }
@@ -261,6 +261,10 @@ fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
+fn relative(root: &Path, file: &Path) -> String {
+    file.strip_prefix(root).unwrap_or(file).display().to_string()
+}
+
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
@@ -316,7 +320,7 @@ fn code_cites_no_equation_called_not_yet() {
     let files = rust_files(&root().join("src"));
     let cited: usize = files.iter().map(|file| citations(&read(file)).len()).sum();
     assert!(cited > 0, "no citation found in {} files: the scanner is blind", files.len());
-    let check = |file: &PathBuf| check_citations(&file.display().to_string(), &read(file), &rows);
+    let check = |file: &PathBuf| check_citations(&relative(root(), file), &read(file), &rows);
     assert_none(files.iter().flat_map(check).collect());
 }
 
