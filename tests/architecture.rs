@@ -106,7 +106,8 @@ fn words<'a>(code: &'a str, word: &'a str) -> impl Iterator<Item = usize> + 'a {
         let before = code[..at].chars().next_back();
         let after = code[at + word.len()..].chars().next();
         let ends_in_word = word.ends_with(is_word);
-        !before.is_some_and(is_word) && !(ends_in_word && after.is_some_and(is_word))
+        let continues = ends_in_word && after.is_some_and(is_word);
+        !(before.is_some_and(is_word) || continues)
     })
 }
 
@@ -284,7 +285,7 @@ fn traces(text: &str) -> Vec<String> {
     let paths = [concat!("/", "work/"), concat!("/", "root/"), concat!("/", "farm/")];
     let marks = [concat!("TO", "DO"), concat!("FIX", "ME"), concat!("unimple", "mented!")];
     let mut found: Vec<(usize, &str)> =
-        paths.iter().flat_map(|p| text.match_indices(p)).map(|(at, p)| (at, p)).collect();
+        paths.iter().flat_map(|path| text.match_indices(path)).collect();
     for mark in marks {
         found.extend(words(text, mark).map(|at| (at, mark)));
     }
