@@ -1,0 +1,3 @@
+//! Benchmarks with independent oracles.
+
+pub mod oracles;
