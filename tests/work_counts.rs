@@ -21,7 +21,7 @@ fn cold_starts_take_a_known_number_of_iterations_and_evaluations() {
             6.0,
             [zero, zero, force(-1500.0), upright, upright],
             4,
-            192,
+            180,
         ),
         ("radial 1500 N, loose", 5.0, 6.0, [zero, zero, force(-1500.0), upright, upright], 3, 112),
         ("tilt of 3.4.5", -5.0, 11.25, [zero, zero, zero, tilt, zero], 2, 144),
