@@ -3,9 +3,9 @@
 //!
 //! Published: 6.423 N·m at 0.15°, and 0.094°, 0.134°, 0.175° at 2.5, 5, 10 N·m. The rows show which
 //! readings reproduce the first three numbers and that the fourth belongs to none of them. The
-//! published numbers alone say why: ln M rises with ln θ at 1.95 between the first two tilts, 2.2
-//! up to 0.15° and then 2.87 up to 0.175°, while for any smooth Hertzian bearing in this range the
-//! slope grows slowly (2.47 in the last interval).
+//! published numbers alone say why: ln M rises with ln θ at 1.95 between the first two tilts, at
+//! 2.2 up to 0.15° and then at 2.87 up to 0.175°; the model's slopes grow smoothly (1.95, 2.26,
+//! 2.47), and at 0.175° it carries 9.37 N·m.
 
 use super::hertz::{RelativeRadii, ball_on_race, exact, hamrock_brewe, in_series};
 use super::statics::{Known, OracleBearing};
