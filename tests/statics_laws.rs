@@ -281,11 +281,11 @@ fn centrifugal_force_loads_the_outer_race_and_opens_its_contact_angle() {
     let slow = solve(&task).unwrap();
     task.orbital_speed = 400.0;
     let fast = solve(&task).unwrap();
-    let force = task.ball_mass * 400.0 * 400.0 * task.geometry.pitch_radius;
     for (a, b) in slow.balls.iter().zip(&fast.balls) {
         assert!((a.inner.contact_angle - a.outer.contact_angle).abs() <= 1e-9);
         assert!(b.outer.contact_angle < b.inner.contact_angle);
         // Balance of the ball along the radius and the axis.
+        let force = task.ball_mass * 400.0 * 400.0 * b.position.yz().norm();
         let radial = b.outer.normal_load * b.outer.contact_angle.cos()
             - b.inner.normal_load * b.inner.contact_angle.cos();
         let axial = b.outer.normal_load * b.outer.contact_angle.sin()

@@ -1,7 +1,8 @@
 //! `bearing compare REFERENCE CANDIDATE`.
 
 use super::{CommandResult, Outcome, say};
-use bearing_dynamics::output::compare::{Options, ToleranceClass, compare, report, to_json};
+use bearing_dynamics::output::compare::tolerance::ToleranceClass;
+use bearing_dynamics::output::compare::{Options, compare, report, to_json};
 use bearing_dynamics::output::results::pretty;
 use std::path::PathBuf;
 

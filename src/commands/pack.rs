@@ -2,7 +2,7 @@
 
 use super::solve::solve_scene;
 use super::{CommandResult, Outcome, say};
-use bearing_dynamics::output::compare::ToleranceClass;
+use bearing_dynamics::output::compare::tolerance::ToleranceClass;
 use bearing_dynamics::output::pack::{PackInput, write_pack};
 use bearing_dynamics::scene::{Document, resolve};
 use std::path::{Path, PathBuf};

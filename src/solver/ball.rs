@@ -19,8 +19,21 @@ pub struct BallPlane {
     pub axial: Vector3<f64>,
     /// Unit vector from that axis towards the ball.
     pub radial: Vector3<f64>,
-    /// Axial and radial part of the force on the ball besides its contacts, N.
-    pub body_force: [f64; 2],
+    /// Axial and radial part of the ball's weight, N.
+    pub weight: [f64; 2],
+    /// mω²: centrifugal force per distance from the axis, N/m.
+    pub centrifugal: f64,
+}
+
+impl BallPlane {
+    /// Axial and radial part of what acts on a ball besides its contacts, N.
+    fn body_force(&self, radial: f64) -> [f64; 2] {
+        [self.weight[0], self.weight[1] + self.centrifugal * radial]
+    }
+
+    fn is_forceless(&self) -> bool {
+        self.weight == [0.0; 2] && self.centrifugal == 0.0
+    }
 }
 
 /// What both contacts of every ball have in common.
@@ -163,8 +176,10 @@ fn plane_energy(
         contacts.ball_radius,
         contacts.inner_stiffness,
     );
-    let mut slope = [outer.slope[0] - plane.body_force[0], outer.slope[1] - plane.body_force[1]];
+    let force = plane.body_force(position[1]);
+    let mut slope = [outer.slope[0] - force[0], outer.slope[1] - force[1]];
     let mut curvature = outer.curvature;
+    curvature[2] -= plane.centrifugal;
     if inner.load > 0.0 {
         // Chain rule from the meridian coordinates (axial h, radial ρ) of the inner race:
         // ρ∇ρ = arm·∇arm − h∇h, and ρ∇²ρ = ∇arm·∇arm − ∇h∇h − ∇ρ∇ρ for a plane of unit vectors.
@@ -186,7 +201,8 @@ fn plane_energy(
                 + bend * unit;
         }
     }
-    let work = plane.body_force[0] * position[0] + plane.body_force[1] * position[1];
+    let work = plane.weight[0] * position[0]
+        + (plane.weight[1] + 0.5 * plane.centrifugal * position[1]) * position[1];
     PlaneEnergy { energy: inner.energy + outer.energy - work, inner, outer, slope, curvature }
 }
 
@@ -202,7 +218,7 @@ pub fn settle(
     let start = starting_point(plane, race, contacts, evaluations)?;
     let ball = minimise(plane, race, contacts, start, evaluations);
     let unloaded = ball.inner_load == 0.0 && ball.outer_load == 0.0;
-    if unloaded && plane.body_force == [0.0; 2] { None } else { Some(ball) }
+    if unloaded && plane.is_forceless() { None } else { Some(ball) }
 }
 
 /// Point from which Newton's method starts, or `None` for a ball with room on both sides.
@@ -245,12 +261,13 @@ fn starting_point(
     if overlap > 16.0 * f64::EPSILON * contacts.outer.centre_radius && line[1] > 0.0 {
         return Some(point);
     }
-    let force = plane.body_force[0].hypot(plane.body_force[1]);
+    let [along, outward] = plane.body_force(contacts.outer.centre_radius);
+    let force = along.hypot(outward);
     if force == 0.0 {
         return None;
     }
     // A free ball goes where the body force takes it: onto the outer race, or onto the inner one.
-    let push = [plane.body_force[0] / force, plane.body_force[1] / force];
+    let push = [along / force, outward / force];
     let sink = |stiffness: f64| (force / stiffness).cbrt().powi(2);
     let reach = outer_room + sink(contacts.outer_stiffness);
     let on_outer = [outer_centre[0] + push[0] * reach, outer_centre[1] + push[1] * reach];
@@ -303,7 +320,8 @@ fn minimise(
     start: [f64; 2],
     evaluations: &mut usize,
 ) -> SettledBall {
-    let body = plane.body_force[0].abs().max(plane.body_force[1].abs());
+    let [along, outward] = plane.body_force(start[1]);
+    let body = along.abs().max(outward.abs());
     let radius = contacts.outer.centre_radius;
     let mut position = start;
     let mut now = plane_energy(plane, race, contacts, position);
@@ -398,7 +416,7 @@ pub fn add_to_race(
     let (uu, uv, vv) = (
         curvature[(5, 5)] + outer.curvature[0],
         curvature[(5, 6)] + outer.curvature[1],
-        curvature[(6, 6)] + outer.curvature[2],
+        curvature[(6, 6)] + outer.curvature[2] - plane.centrifugal,
     );
     let determinant = uu * vv - uv * uv;
     for i in 0..5 {

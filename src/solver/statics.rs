@@ -244,7 +244,7 @@ impl Model {
         let outer = problem.outer_pose.relative_to(&problem.frame);
         let gravity = problem.frame.orientation.inverse_transform_vector(&problem.gravity)
             * problem.ball_mass;
-        let centrifugal = problem.ball_mass * problem.orbital_speed.powi(2) * geometry.pitch_radius;
+        let centrifugal = problem.ball_mass * problem.orbital_speed.powi(2);
         let azimuths: Vec<f64> = (0..geometry.ball_count)
             .map(|j| problem.ball_phase + TAU * j as f64 / geometry.ball_count as f64)
             .collect();
@@ -254,8 +254,8 @@ impl Model {
             .map(|azimuth| {
                 let (sin, cos) = azimuth.sin_cos();
                 let radial = outer.orientation * Vector3::new(0.0, cos, sin);
-                let body_force = [gravity.dot(&axial), gravity.dot(&radial) + centrifugal];
-                BallPlane { origin: outer.position, axial, radial, body_force }
+                let weight = [gravity.dot(&axial), gravity.dot(&radial)];
+                BallPlane { origin: outer.position, axial, radial, weight, centrifugal }
             })
             .collect();
         let pitch = geometry.pitch_radius;

@@ -36,12 +36,8 @@ pub fn pure_rolling(ball_radius: f64, pitch_radius: f64, contact_angle: f64) -> 
         row
     };
     let no_pivot = [-normal[0], normal[0], normal[1], normal[2], 0.0];
-    let [orbit, x, r, t] = solve([
-        row(1.0, tangent, 0.0),
-        row(-1.0, tangent, 1.0),
-        row(1.0, meridian, 0.0),
-        no_pivot,
-    ]);
+    let [orbit, x, r, t] =
+        solve([row(1.0, tangent, 0.0), row(-1.0, tangent, 1.0), row(1.0, meridian, 0.0), no_pivot]);
     let relative = [x - orbit, r, t];
     Rolling { orbit, spin: dot(relative, relative).sqrt() }
 }

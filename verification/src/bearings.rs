@@ -7,9 +7,7 @@ use std::f64::consts::PI;
 use bearing_dynamics::ch2_housing::bearing::geometry::{
     BearingGeometry, ClearanceThrough, Material,
 };
-use bearing_dynamics::ch2_housing::bearing::hertz::{
-    HertzError, HertzModel, RaceSide, contact,
-};
+use bearing_dynamics::ch2_housing::bearing::hertz::{HertzError, HertzModel, RaceSide, contact};
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::solver::statics::{Condition, StaticProblem};
 use nalgebra::Vector3;
@@ -113,16 +111,8 @@ pub fn problem(
 pub fn oracle(lengths: &Lengths, model: Hertz, ball_phase: f64) -> OracleBearing {
     let Lengths { pitch_radius, inner_groove_radius: gi, outer_groove_radius: go, .. } = *lengths;
     let (nominal, angle) = (lengths.ball_radius, lengths.contact_angle);
-    let inner = [
-        pitch_radius + (gi - nominal) * angle.cos(),
-        (gi - nominal) * angle.sin(),
-        gi,
-    ];
-    let outer = [
-        pitch_radius - (go - nominal) * angle.cos(),
-        (nominal - go) * angle.sin(),
-        go,
-    ];
+    let inner = [pitch_radius + (gi - nominal) * angle.cos(), (gi - nominal) * angle.sin(), gi];
+    let outer = [pitch_radius - (go - nominal) * angle.cos(), (nominal - go) * angle.sin(), go];
     // Radial travel by the clearance must stretch the line of groove centres to gi + go − 2 r.
     let line = [inner[0] - outer[0] + lengths.clearance, inner[1] - outer[1]];
     let ball = 0.5 * (gi + go - (line[0] * line[0] + line[1] * line[1]).sqrt());

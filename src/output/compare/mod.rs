@@ -38,15 +38,9 @@ pub struct Options {
 #[derive(Debug, Error)]
 pub enum CompareError {
     #[error("cannot read {}: {source}", path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: std::io::Error },
     #[error("{} is not JSON: {source}", path.display())]
-    Json {
-        path: PathBuf,
-        source: serde_json::Error,
-    },
+    Json { path: PathBuf, source: serde_json::Error },
     #[error(transparent)]
     Series(#[from] SeriesError),
     #[error(transparent)]
@@ -54,10 +48,7 @@ pub enum CompareError {
     #[error("{}: only .csv, .npy, .json files and folders are compared", path.display())]
     UnknownKind { path: PathBuf },
     #[error("{} and {} hold different kinds of results", reference.display(), candidate.display())]
-    KindMismatch {
-        reference: PathBuf,
-        candidate: PathBuf,
-    },
+    KindMismatch { reference: PathBuf, candidate: PathBuf },
     #[error("{} holds nothing to compare", reference.display())]
     NothingToCompare { reference: PathBuf },
 }
@@ -168,21 +159,13 @@ pub fn compare(
     } else if reference.is_dir() != candidate.is_dir() {
         // A path that does not exist is named as such rather than as a file among folders.
         for path in [reference, candidate] {
-            std::fs::metadata(path).map_err(|source| CompareError::Read {
-                path: path.to_path_buf(),
-                source,
-            })?;
+            std::fs::metadata(path)
+                .map_err(|source| CompareError::Read { path: path.to_path_buf(), source })?;
         }
         return Err(mismatch(reference, candidate));
     } else {
-        let name = reference
-            .file_name()
-            .map(|name| name.to_string_lossy().into_owned());
-        vec![(
-            reference.to_path_buf(),
-            candidate.to_path_buf(),
-            name.unwrap_or_default(),
-        )]
+        let name = reference.file_name().map(|name| name.to_string_lossy().into_owned());
+        vec![(reference.to_path_buf(), candidate.to_path_buf(), name.unwrap_or_default())]
     };
     tolerances.check()?;
 
@@ -219,17 +202,10 @@ fn mismatch(reference: &Path, candidate: &Path) -> CompareError {
 
 /// Names of the files of a folder that are compared: tables first, then `summary.json`.
 pub fn known_files(folder: &Path) -> Result<Vec<String>, CompareError> {
-    let failed = |source| CompareError::Read {
-        path: folder.to_path_buf(),
-        source,
-    };
+    let failed = |source| CompareError::Read { path: folder.to_path_buf(), source };
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let name = entry
-            .map_err(failed)?
-            .file_name()
-            .to_string_lossy()
-            .into_owned();
+        let name = entry.map_err(failed)?.file_name().to_string_lossy().into_owned();
         let partial = name.starts_with('.');
         if !partial && (name.ends_with(".csv") || name.ends_with(".npy") || name == "summary.json")
         {
@@ -244,9 +220,7 @@ pub fn known_files(folder: &Path) -> Result<Vec<String>, CompareError> {
 pub fn is_ignored_by_name(channel: &str) -> bool {
     let mut parts = channel.split('.').map(|part| part.trim_end_matches("[]"));
     parts.clone().any(|part| part.starts_with(IGNORED_PREFIX))
-        || parts
-            .next_back()
-            .is_some_and(|last| IGNORED_NAMES.contains(&last))
+        || parts.next_back().is_some_and(|last| IGNORED_NAMES.contains(&last))
 }
 
 /// What the components of one vector have in common: `loads.x` and `loads.y` share `loads.`.
@@ -294,10 +268,7 @@ impl<'a> Judge<'a> {
     }
 
     fn finish_file(&mut self) {
-        let earliest = self
-            .earliest_in_file
-            .take()
-            .map(|(_, divergence)| divergence);
+        let earliest = self.earliest_in_file.take().map(|(_, divergence)| divergence);
         if self.first.is_none() {
             self.first = earliest;
         }
@@ -305,16 +276,11 @@ impl<'a> Judge<'a> {
 
     fn finish(self, reference: &Path) -> Result<Comparison, CompareError> {
         if let Some(channel) = self.unused.first() {
-            return Err(ToleranceError::Unused {
-                channel: channel.to_string(),
-            }
-            .into());
+            return Err(ToleranceError::Unused { channel: channel.to_string() }.into());
         }
         let checked = self.channels.iter().map(|channel| channel.checked).sum();
         if checked == 0 && self.differing == 0 {
-            return Err(CompareError::NothingToCompare {
-                reference: reference.to_path_buf(),
-            });
+            return Err(CompareError::NothingToCompare { reference: reference.to_path_buf() });
         }
         Ok(Comparison {
             equal: self.differing == 0,
@@ -345,9 +311,7 @@ impl<'a> Judge<'a> {
         if let Some((used, _)) = self.tolerances.entry(channel) {
             self.unused.remove(used);
         }
-        let (class, tolerance) = self
-            .tolerances
-            .of_channel(channel, unit, self.default_class);
+        let (class, tolerance) = self.tolerances.of_channel(channel, unit, self.default_class);
         let tolerance = tolerance.filter(|_| !is_ignored_by_name(channel));
         if tolerance.is_none() {
             self.ignored.push(format!("{}: {channel}", self.file));
@@ -374,11 +338,7 @@ impl<'a> Judge<'a> {
         kind: DivergenceKind,
     ) {
         self.differing += 1;
-        if self
-            .earliest_in_file
-            .as_ref()
-            .is_none_or(|(earliest, _)| order < *earliest)
-        {
+        if self.earliest_in_file.as_ref().is_none_or(|(earliest, _)| order < *earliest) {
             let divergence = Divergence {
                 file: self.file.clone(),
                 channel: channel.to_string(),
@@ -415,27 +375,13 @@ impl<'a> Judge<'a> {
         };
         let result = &mut self.channels[index];
         result.checked += 1;
-        if result
-            .worst
-            .as_ref()
-            .is_none_or(|worst| ratio > worst.ratio)
-        {
-            result.worst = Some(Worst {
-                place: place(),
-                difference,
-                allowed,
-                ratio,
-            });
+        if result.worst.as_ref().is_none_or(|worst| ratio > worst.ratio) {
+            result.worst = Some(Worst { place: place(), difference, allowed, ratio });
         }
         if !within {
             result.differing += 1;
             let (channel, unit) = (result.channel.clone(), result.unit.clone());
-            let kind = DivergenceKind::Value {
-                reference,
-                candidate,
-                difference,
-                allowed,
-            };
+            let kind = DivergenceKind::Value { reference, candidate, difference, allowed };
             self.diverge(order, &channel, &unit, place(), kind);
         }
     }
@@ -444,9 +390,7 @@ impl<'a> Judge<'a> {
         let (rows, found_rows) = (reference.data().nrows(), candidate.data().nrows());
         let mut scales: HashMap<(&str, &str), f64> = HashMap::new();
         for (column, values) in reference.columns().iter().zip(reference.data().columns()) {
-            let scale = scales
-                .entry((vector_stem(&column.name), &column.unit))
-                .or_default();
+            let scale = scales.entry((vector_stem(&column.name), &column.unit)).or_default();
             *scale = values.iter().fold(*scale, larger_finite);
         }
         let label = |row: usize| row_label(reference, row);
@@ -456,16 +400,12 @@ impl<'a> Judge<'a> {
                 continue;
             };
             let index = self.channels.len() - 1;
-            let found = candidate
-                .columns()
-                .iter()
-                .position(|other| other.name == name);
+            let found = candidate.columns().iter().position(|other| other.name == name);
             let kind = match found.map(|found| &candidate.columns()[found].unit) {
                 None => Some(DivergenceKind::MissingChannel),
-                Some(other) if other != unit => Some(DivergenceKind::Unit {
-                    reference: unit.into(),
-                    candidate: other.clone(),
-                }),
+                Some(other) if other != unit => {
+                    Some(DivergenceKind::Unit { reference: unit.into(), candidate: other.clone() })
+                }
                 Some(_) => None,
             };
             if let Some(kind) = kind {
@@ -475,29 +415,15 @@ impl<'a> Judge<'a> {
             }
             let scale = scales[&(vector_stem(name), unit)];
             let values = candidate.column(name).expect("the column was found above");
-            for (row, (&expected, &value)) in reference
-                .data()
-                .column(position)
-                .iter()
-                .zip(values)
-                .enumerate()
+            for (row, (&expected, &value)) in
+                reference.data().column(position).iter().zip(values).enumerate()
             {
                 let order = (row + 1, position);
-                self.real(
-                    index,
-                    order,
-                    &|| label(row),
-                    expected,
-                    value,
-                    (tolerance, scale),
-                );
+                self.real(index, order, &|| label(row), expected, value, (tolerance, scale));
             }
             if rows != found_rows {
                 let shorter = rows.min(found_rows);
-                let kind = DivergenceKind::Length {
-                    reference: rows,
-                    candidate: found_rows,
-                };
+                let kind = DivergenceKind::Length { reference: rows, candidate: found_rows };
                 self.channels[index].differing += 1;
                 let place = format!("row {}", shorter + 1);
                 self.diverge((shorter + 1, position), name, unit, place, kind);
@@ -505,23 +431,18 @@ impl<'a> Judge<'a> {
         }
         for column in candidate.columns() {
             if reference.column(&column.name).is_none() {
-                self.only_in_candidate
-                    .push(format!("{}: {}", self.file, column.name));
+                self.only_in_candidate.push(format!("{}: {}", self.file, column.name));
             }
         }
     }
 
     fn trees(&mut self, reference: &[Leaf], candidate: &[Leaf]) {
-        let found: HashMap<&str, &Leaf> = candidate
-            .iter()
-            .map(|leaf| (leaf.path.as_str(), leaf))
-            .collect();
+        let found: HashMap<&str, &Leaf> =
+            candidate.iter().map(|leaf| (leaf.path.as_str(), leaf)).collect();
         let mut scales: HashMap<(&str, &str), f64> = HashMap::new();
         for leaf in reference {
             if let Some(value) = leaf.value.as_real() {
-                let scale = scales
-                    .entry((vector_stem(&leaf.channel), &leaf.unit))
-                    .or_default();
+                let scale = scales.entry((vector_stem(&leaf.channel), &leaf.unit)).or_default();
                 *scale = larger_finite(*scale, &value);
             }
         }
@@ -565,10 +486,7 @@ impl<'a> Judge<'a> {
     fn unlike(&self, reference: &Leaf, candidate: &Leaf) -> Option<DivergenceKind> {
         if reference.unit != candidate.unit {
             let (reference, candidate) = (reference.unit.clone(), candidate.unit.clone());
-            return Some(DivergenceKind::Unit {
-                reference,
-                candidate,
-            });
+            return Some(DivergenceKind::Unit { reference, candidate });
         }
         let same = match (&reference.value, &candidate.value) {
             (LeafValue::Real(_), other) => other.as_real().is_some(),
@@ -590,10 +508,7 @@ impl<'a> Judge<'a> {
     ) {
         let known: HashSet<&str> = reference.iter().map(|leaf| leaf.path.as_str()).collect();
         let mut listed = HashSet::new();
-        for leaf in candidate
-            .iter()
-            .filter(|leaf| !known.contains(leaf.path.as_str()))
-        {
+        for leaf in candidate.iter().filter(|leaf| !known.contains(leaf.path.as_str())) {
             match opened.get(leaf.channel.as_str()) {
                 Some(Some((index, _))) => {
                     self.channels[*index].differing += 1;
@@ -604,8 +519,7 @@ impl<'a> Judge<'a> {
                 }
                 Some(None) => {}
                 None if listed.insert(leaf.channel.as_str()) => {
-                    self.only_in_candidate
-                        .push(format!("{}: {}", self.file, leaf.channel));
+                    self.only_in_candidate.push(format!("{}: {}", self.file, leaf.channel));
                 }
                 None => {}
             }
@@ -624,11 +538,7 @@ fn larger_finite(largest: f64, value: &f64) -> f64 {
 fn row_label(series: &Series, row: usize) -> String {
     let mut known = Vec::new();
     for column in series.columns() {
-        let value = || {
-            series
-                .column(&column.name)
-                .map_or(f64::NAN, |values| values[row])
-        };
+        let value = || series.column(&column.name).map_or(f64::NAN, |values| values[row]);
         match column.name.as_str() {
             "time" => known.push(format!("time = {} {}", value(), column.unit)),
             "ball" | "element" | "node" => known.push(format!("{} {}", column.name, value())),

@@ -175,9 +175,8 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
     }
     if case.golden.status != GoldenStatus::None {
         let reason = case.golden.last_reason.as_ref();
-        let reason = reason.map_or(String::new(), |last| {
-            format!("; accepted {}: {}", last.date, last.reason)
-        });
+        let reason = reason
+            .map_or(String::new(), |last| format!("; accepted {}: {}", last.date, last.reason));
         writeln!(out, "\nOwn past: {} numbers pinned{reason}.", case.golden.values)?;
     }
     Ok(())

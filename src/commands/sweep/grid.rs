@@ -1,0 +1,101 @@
+//! The points of a sweep: a grid over the varied keys, the last one fastest.
+
+use bearing_dynamics::scene::statics::static_problem;
+use bearing_dynamics::scene::{Document, Scene, SceneError, SweepAxis, resolve};
+use sha2::{Digest, Sha256};
+use std::error::Error;
+use std::ops::Range;
+
+pub struct Grid {
+    pub axes: Vec<SweepAxis>,
+}
+
+/// More points than this in one sweep are taken for a mistake.
+const MOST_POINTS: usize = 100_000_000;
+
+impl Grid {
+    /// Axes from `key=values` texts, or from the scene's own table if there are none.
+    pub fn new(document: &Document, vary: &[String]) -> Result<Grid, Box<dyn Error>> {
+        let mut axes: Vec<SweepAxis> = Vec::new();
+        for text in vary {
+            let Some((key, values)) = text.split_once('=') else {
+                return Err(format!(
+                    "--vary {text}: no '='; write --vary \"bearing.clearance.radial=5 um, 0 um\""
+                )
+                .into());
+            };
+            axes.push(document.axis(key.trim(), values.trim())?);
+        }
+        if vary.is_empty() {
+            axes = document.sweep().to_vec();
+        }
+        if axes.is_empty() {
+            return Err(format!(
+                "{}: nothing to vary; give --vary KEY=VALUES or a [sweep] table",
+                document.name()
+            )
+            .into());
+        }
+        for (i, axis) in axes.iter().enumerate() {
+            if axes[..i].iter().any(|other| other.key == axis.key) {
+                return Err(format!("--vary: {} is varied twice", axis.key).into());
+            }
+        }
+        let points = axes.iter().try_fold(1usize, |points, axis| points.checked_mul(axis.len()));
+        match points {
+            Some(points) if points <= MOST_POINTS => Ok(Grid { axes }),
+            _ => {
+                Err(format!("the grid has more than {MOST_POINTS} points; vary fewer values")
+                    .into())
+            }
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.axes.iter().map(SweepAxis::len).product()
+    }
+
+    pub fn chunks(&self, size: usize) -> usize {
+        self.len().div_ceil(size)
+    }
+
+    pub fn chunk_range(&self, index: usize, size: usize) -> Range<usize> {
+        index * size..((index + 1) * size).min(self.len())
+    }
+
+    /// Index on every axis of a point.
+    pub fn indices(&self, point: usize) -> Vec<usize> {
+        let mut rest = point;
+        let mut indices = vec![0; self.axes.len()];
+        for (index, axis) in indices.iter_mut().zip(&self.axes).rev() {
+            *index = rest % axis.len();
+            rest /= axis.len();
+        }
+        indices
+    }
+
+    /// The scene of a point.
+    pub fn scene(&self, document: &Document, point: usize) -> Result<Scene, SceneError> {
+        let mut document = document.clone();
+        for (axis, index) in self.axes.iter().zip(self.indices(point)) {
+            if let Some(value) = axis.value(index) {
+                document.set(axis.key, &value)?;
+            }
+        }
+        resolve(&document)
+    }
+
+    /// Refuses a sweep whose scene does not resolve even at its first point.
+    pub fn check_first_point(&self, document: &Document) -> Result<(), Box<dyn Error>> {
+        static_problem(&self.scene(document, 0)?)?;
+        Ok(())
+    }
+
+    /// Identifies scene, axes, program version and mode; a journal belongs to one of them.
+    pub fn fingerprint(&self, document: &Document, cold: bool) -> String {
+        let mut hash = Sha256::new();
+        hash.update(document.text());
+        hash.update(format!("{:?} {cold} {}", self.axes, env!("CARGO_PKG_VERSION")));
+        hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}

@@ -1,0 +1,129 @@
+//! The journal of an unfinished sweep: a header line, then one line a finished chunk.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::fs::{File, OpenOptions};
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Chunk {
+    pub index: usize,
+    /// Rows of the table, in order of their points.
+    pub rows: Vec<Vec<f64>>,
+    pub failures: Vec<Failure>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Failure {
+    pub point: usize,
+    pub message: String,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Header {
+    sweep: String,
+}
+
+/// Finished chunks in memory and on disk.
+pub struct Journal {
+    path: PathBuf,
+    expected: usize,
+    open: Mutex<Open>,
+}
+
+struct Open {
+    file: File,
+    chunks: BTreeMap<usize, Chunk>,
+}
+
+impl Journal {
+    /// Opens the journal in `folder`, with the chunks an earlier run left there.
+    pub fn open(
+        folder: &Path,
+        fingerprint: &str,
+        expected: usize,
+        fresh: bool,
+    ) -> Result<Journal, Box<dyn Error>> {
+        std::fs::create_dir_all(folder)
+            .map_err(|error| format!("cannot create {}: {error}", folder.display()))?;
+        let path = folder.join("sweep.journal");
+        let chunks = if fresh { BTreeMap::new() } else { read(&path, fingerprint, expected)? };
+        // Written anew, so that a line cut off by the interruption is gone.
+        let mut text = serde_json::to_string(&Header { sweep: fingerprint.into() })? + "\n";
+        for chunk in chunks.values() {
+            text += &(serde_json::to_string(chunk)? + "\n");
+        }
+        bearing_dynamics::output::write_atomic(&path, text.as_bytes())?;
+        let file = OpenOptions::new().append(true).open(&path)?;
+        Ok(Journal { path, expected, open: Mutex::new(Open { file, chunks }) })
+    }
+
+    /// Adds a chunk, on disk before anything else.
+    pub fn append(&self, chunk: Chunk) -> Result<(), Box<dyn Error + Send + Sync>> {
+        let line = serde_json::to_string(&chunk)? + "\n";
+        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        open.file
+            .write_all(line.as_bytes())
+            .map_err(|error| format!("cannot write {}: {error}", self.path.display()))?;
+        open.chunks.insert(chunk.index, chunk);
+        Ok(())
+    }
+
+    /// Number of points already there.
+    pub fn finished(&self) -> usize {
+        self.chunks().iter().map(|chunk| chunk.rows.len() + chunk.failures.len()).sum()
+    }
+
+    /// Chunks still to be solved.
+    pub fn missing(&self) -> Vec<usize> {
+        let open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        (0..self.expected).filter(|index| !open.chunks.contains_key(index)).collect()
+    }
+
+    /// Finished chunks in order.
+    pub fn chunks(&self) -> Vec<Chunk> {
+        let open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        open.chunks.values().cloned().collect()
+    }
+
+    /// Removes the file; the table has everything.
+    pub fn remove(self) -> Result<(), Box<dyn Error>> {
+        std::fs::remove_file(&self.path)?;
+        Ok(())
+    }
+}
+
+fn read(
+    path: &Path,
+    fingerprint: &str,
+    expected: usize,
+) -> Result<BTreeMap<usize, Chunk>, Box<dyn Error>> {
+    let mut chunks = BTreeMap::new();
+    let file = match File::open(path) {
+        Ok(file) => file,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(chunks),
+        Err(error) => return Err(format!("cannot read {}: {error}", path.display()).into()),
+    };
+    let mut lines = BufReader::new(file).lines();
+    let header = lines.next().transpose()?.unwrap_or_default();
+    let same = serde_json::from_str::<Header>(&header).is_ok_and(|h| h.sweep == fingerprint);
+    if !same {
+        return Err(format!(
+            "{} belongs to an unfinished sweep of another scene or of other values; finish that one, \
+             choose another --out, or discard it with --fresh",
+            path.display()
+        )
+        .into());
+    }
+    for line in lines {
+        // A line that does not parse was cut off; its chunk is solved again.
+        let Ok(chunk) = serde_json::from_str::<Chunk>(&line?) else { continue };
+        if chunk.index < expected {
+            chunks.insert(chunk.index, chunk);
+        }
+    }
+    Ok(chunks)
+}

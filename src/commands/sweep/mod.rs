@@ -1,0 +1,151 @@
+//! `bearing sweep SCENE --vary key=values`: one static solution a point, one table out.
+//!
+//! Points are solved in chunks of fixed size. Inside a chunk each solution starts from its
+//! neighbour's, so the chunk is the unit that is repeated, never split: neither the number of
+//! threads nor an interruption changes a bit of the table. A finished chunk is one line of the
+//! journal, from which the same command resumes.
+
+mod grid;
+mod journal;
+mod point;
+mod report;
+
+use super::{CommandResult, Outcome, results_folder, say};
+use bearing_dynamics::scene::Document;
+use grid::Grid;
+use indicatif::{ProgressBar, ProgressStyle};
+use journal::{Chunk, Journal};
+use rayon::prelude::*;
+use std::error::Error;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Points in a chunk: enough for warm starts to pay, few enough to lose little when interrupted.
+const CHUNK: usize = 64;
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scene file (.toml or .json)
+    scene: PathBuf,
+    /// key=a,b,c or "key=low .. high / count"; repeat it for a grid, the last key varies fastest.
+    /// Without it the scene's [sweep] table counts
+    #[arg(long = "vary", value_name = "KEY=VALUES")]
+    vary: Vec<String>,
+    /// Results folder [default: results/<name of the scene>]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Number of threads [default: all cores]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Start every point cold instead of from its neighbour
+    #[arg(long)]
+    cold: bool,
+    /// Discard an unfinished sweep in the results folder
+    #[arg(long)]
+    fresh: bool,
+}
+
+pub fn run(arguments: &Arguments) -> CommandResult {
+    let start = Instant::now();
+    let document = Document::read_file(&arguments.scene)?;
+    let grid = Grid::new(&document, &arguments.vary)?;
+    // A scene that cannot be solved at all is said before anything is written.
+    grid.check_first_point(&document)?;
+    let folder = results_folder(&arguments.scene, &arguments.out);
+    let fingerprint = grid.fingerprint(&document, arguments.cold);
+    let journal = Journal::open(&folder, &fingerprint, grid.chunks(CHUNK), arguments.fresh)?;
+    let resumed = journal.finished();
+
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = interrupted.clone();
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))?;
+    let progress = progress_bar(&grid, resumed);
+    let threads = arguments.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let missing = journal.missing();
+    let failed: Result<(), Box<dyn Error + Send + Sync>> = pool.install(|| {
+        missing.par_iter().try_for_each(|&index| {
+            if interrupted.load(Ordering::Relaxed) {
+                return Ok(());
+            }
+            let chunk = solve_chunk(&document, &grid, index, arguments.cold);
+            progress.inc(grid.chunk_range(index, CHUNK).len() as u64);
+            journal.append(chunk)?;
+            Ok(())
+        })
+    });
+    failed.map_err(|error| error as Box<dyn Error>)?;
+    progress.finish_and_clear();
+
+    let chunks = journal.chunks();
+    let done: usize = chunks.iter().map(|chunk| chunk.rows.len() + chunk.failures.len()).sum();
+    let record = report::Record {
+        threads: pool.current_num_threads(),
+        seconds: start.elapsed().as_secs_f64(),
+        complete: done == grid.len(),
+    };
+    report::write(&folder, &document, &grid, &chunks, &record)?;
+    if !record.complete {
+        return Err(format!(
+            "interrupted after {done} of {} points, kept in {}; the same command resumes",
+            grid.len(),
+            folder.display()
+        )
+        .into());
+    }
+    journal.remove()?;
+    let reused = resumed.min(grid.len());
+    let note = if reused > 0 { format!(" ({reused} resumed)") } else { String::new() };
+    say(&format!(
+        "{} points{note} in {:.2} s on {} threads: {}\n",
+        grid.len(),
+        record.seconds,
+        record.threads,
+        folder.join("sweep.csv").display()
+    ))?;
+    let failures: Vec<_> = chunks.iter().flat_map(|chunk| &chunk.failures).collect();
+    match failures.first() {
+        None => Ok(Outcome::Done),
+        Some(first) => Err(format!(
+            "{} of {} points have no solution (listed in {}), the first is point {}: {}",
+            failures.len(),
+            grid.len(),
+            folder.join("sweep.json").display(),
+            first.point,
+            first.message
+        )
+        .into()),
+    }
+}
+
+fn progress_bar(grid: &Grid, resumed: usize) -> ProgressBar {
+    // Hidden by itself when standard error is not a terminal.
+    let bar = ProgressBar::new(grid.len() as u64);
+    if let Ok(style) =
+        ProgressStyle::with_template("{bar:40} {pos}/{len} points, {per_sec}, {eta} left")
+    {
+        bar.set_style(style);
+    }
+    bar.set_position(resumed as u64);
+    bar
+}
+
+fn solve_chunk(document: &Document, grid: &Grid, index: usize, cold: bool) -> Chunk {
+    let mut chunk = Chunk { index, rows: Vec::new(), failures: Vec::new() };
+    let mut neighbour = None;
+    for point in grid.chunk_range(index, CHUNK) {
+        match point::solve(document, grid, point, neighbour.as_ref()) {
+            Ok(solved) => {
+                chunk.rows.push(solved.row);
+                neighbour = if cold { None } else { solved.start_for_neighbour };
+            }
+            Err(message) => {
+                chunk.failures.push(journal::Failure { point, message });
+                neighbour = None;
+            }
+        }
+    }
+    chunk
+}

@@ -1,0 +1,93 @@
+//! One point of a sweep and its row of the table.
+
+use super::grid::Grid;
+use crate::commands::echo::load_zone_of;
+use bearing_dynamics::output::Column;
+use bearing_dynamics::scene::Document;
+use bearing_dynamics::scene::statics::static_problem;
+use bearing_dynamics::solver::statics::{
+    COORDINATE_NAMES, Determinacy, StaticOptions, StaticSolution, solve_from,
+};
+use nalgebra::SVector;
+
+pub struct Solved {
+    pub row: Vec<f64>,
+    /// `None` where the position is one of many and a neighbour should look for its own.
+    pub start_for_neighbour: Option<SVector<f64, 5>>,
+}
+
+pub fn solve(
+    document: &Document,
+    grid: &Grid,
+    point: usize,
+    neighbour: Option<&SVector<f64, 5>>,
+) -> Result<Solved, String> {
+    let scene = grid.scene(document, point).map_err(|error| error.to_string())?;
+    let problem = static_problem(&scene).map_err(|error| error.to_string())?;
+    let solution = solve_from(&problem, neighbour, &StaticOptions::default())
+        .map_err(|error| error.to_string())?;
+    let determinate = solution.determinacy == Determinacy::Determinate;
+    Ok(Solved {
+        row: row(grid, point, &solution),
+        start_for_neighbour: determinate.then_some(solution.coordinates),
+    })
+}
+
+/// Columns that follow those of the varied keys.
+const RESULTS: [(&str, &str); 17] = [
+    ("load x", "N"),
+    ("load y", "N"),
+    ("load z", "N"),
+    ("moment y", "N m"),
+    ("moment z", "N m"),
+    ("stiffness x", "N/m"),
+    ("stiffness y", "N/m"),
+    ("stiffness z", "N/m"),
+    ("stiffness tilt_y", "N m/rad"),
+    ("stiffness tilt_z", "N m/rad"),
+    ("loaded balls", "1"),
+    ("load zone", "deg"),
+    ("largest inner load", "N"),
+    ("largest outer load", "N"),
+    ("largest inner pressure", "MPa"),
+    ("largest outer pressure", "MPa"),
+    ("free directions", "1"),
+];
+
+/// Header of the table: point, varied keys, position, results.
+pub fn columns(grid: &Grid) -> Vec<Column> {
+    let mut columns = vec![Column::new("point", "1")];
+    for axis in &grid.axes {
+        columns.push(Column::new(axis.key, super::report::unit_of(axis)));
+    }
+    for (i, name) in COORDINATE_NAMES.iter().enumerate() {
+        columns.push(Column::new(*name, if i < 3 { "um" } else { "deg" }));
+    }
+    columns.extend(RESULTS.iter().map(|(name, unit)| Column::new(*name, *unit)));
+    columns
+}
+
+fn row(grid: &Grid, point: usize, solution: &StaticSolution) -> Vec<f64> {
+    let mut row = vec![point as f64];
+    for (axis, index) in grid.axes.iter().zip(grid.indices(point)) {
+        row.push(super::report::number_of(axis, index));
+    }
+    let q = &solution.coordinates;
+    row.extend((0..3).map(|i| 1e6 * q[i]));
+    row.extend((3..5).map(|i| q[i].to_degrees()));
+    row.extend(solution.loads.iter());
+    row.extend((0..5).map(|i| solution.stiffness[(i, i)]));
+    let (loaded, extent) = load_zone_of(solution);
+    row.extend([loaded as f64, extent.to_degrees()]);
+    let largest = |of: &dyn Fn(usize) -> f64| (0..solution.balls.len()).map(of).fold(0.0, f64::max);
+    let balls = &solution.balls;
+    row.push(largest(&|j| balls[j].inner.normal_load));
+    row.push(largest(&|j| balls[j].outer.normal_load));
+    row.push(1e-6 * largest(&|j| balls[j].inner.peak_pressure));
+    row.push(1e-6 * largest(&|j| balls[j].outer.peak_pressure));
+    row.push(match &solution.determinacy {
+        Determinacy::Determinate => 0.0,
+        Determinacy::Indeterminate { free_directions } => free_directions.len() as f64,
+    });
+    row
+}
