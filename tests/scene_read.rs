@@ -263,7 +263,7 @@ fn set_names_the_key_and_what_is_wrong() {
     let bare = document.set("bearing.clearance.radial", "5").unwrap_err().to_string();
     assert!(bare.contains("no unit") && bare.contains("5 um"), "{bare}");
     let word = document.set("bearing.hertz", "exakt").unwrap_err().to_string();
-    assert!(word.contains("did you mean \"exact\""), "{word}");
+    assert!(word.contains("did you mean `exact`"), "{word}");
     let gravity = document.set("ball_forces.gravity", "1 g").unwrap_err().to_string();
     assert!(gravity.contains("cannot be varied"), "{gravity}");
     document.set("bearing.ball.radius", "7 mm").unwrap();
