@@ -58,8 +58,15 @@ pub(crate) fn shortened(text: &str) -> String {
     short
 }
 
-fn did_you_mean(nearest: &Option<String>) -> String {
-    nearest.as_ref().map(|nearest| format!("did you mean `{nearest}`? ")).unwrap_or_default()
+fn meant(nearest: &Option<String>, otherwise: &str) -> String {
+    match nearest {
+        Some(nearest) => format!("did you mean `{nearest}`?"),
+        None => otherwise.to_string(),
+    }
+}
+
+fn or_check(advice: &str) -> &str {
+    if advice.is_empty() { "check the number and its unit" } else { advice }
 }
 
 fn hint(text: &str) -> String {
@@ -71,8 +78,8 @@ fn hint(text: &str) -> String {
 pub enum Problem {
     #[error("there is no such file. Hint: check the path and the folder you are in")]
     NoSuchFile,
-    #[error("this is a folder. Hint: name a scene file inside it, such as {example}")]
-    IsFolder { example: String },
+    #[error("this is a folder. Hint: name a .toml or .json file inside it")]
+    IsFolder,
     #[error("this is not a regular file. Hint: give a .toml or .json file")]
     NotRegularFile,
     #[error("cannot be read: {reason}. Hint: check who may read the file")]
@@ -93,7 +100,7 @@ pub enum Problem {
     #[error("a NUL byte. Hint: this is not a text file, or it was damaged in transfer")]
     NulByte,
     #[error(
-        "nested deeper than {limit} levels. Allowed: up to {limit}. Hint: a scene needs four; look for unclosed brackets"
+        "nested deeper than {limit} levels. Allowed: up to {limit}. Hint: a scene needs four; look for unclosed brackets and long dotted keys"
     )]
     TooDeep { limit: usize },
     #[error("not valid {format}: {message}{}", hint(.advice))]
@@ -102,7 +109,7 @@ pub enum Problem {
         "a scene is a table of keys, found {found}. Hint: start with {{ \"bearing\": {{ ... }} }}"
     )]
     NotATable { found: &'static str },
-    #[error("unknown key. Hint: {}allowed here: {allowed}", did_you_mean(.nearest))]
+    #[error("unknown key. Allowed here: {allowed}. Hint: {}", meant(.nearest, "see docs/scene.md"))]
     UnknownKey { nearest: Option<String>, allowed: String },
     #[error("the key is given twice. Hint: keep one of them")]
     DuplicateKey,
@@ -119,27 +126,27 @@ pub enum Problem {
     )]
     WrongUnit { written: String, unit: String, belongs_to: Dimension, dimension: Dimension },
     #[error(
-        "{written}: unknown unit `{unit}` for {}. Allowed units: {}. Hint: {}units are case-sensitive",
-        .dimension.name(), .dimension.unit_list(), did_you_mean(.nearest)
+        "{written}: unknown unit `{unit}` for {}. Allowed units: {}. Hint: {}",
+        .dimension.name(), .dimension.unit_list(), meant(.nearest, "use one of them; capitals matter")
     )]
     UnknownUnit { written: String, unit: String, dimension: Dimension, nearest: Option<String> },
     #[error(
         "{written} has a unit, but this is a plain number. Allowed: {allowed}. Hint: leave out the unit"
     )]
     UnitOnPlainNumber { written: String, allowed: String },
-    #[error(
-        "{written} is not a number{unit_too}. Allowed: {allowed}. Hint: write for instance {example}"
-    )]
-    NotANumber { written: String, unit_too: &'static str, allowed: String, example: String },
+    #[error("{written} is not {wanted}. Allowed: {allowed}. Hint: write for instance {example}")]
+    NotANumber { written: String, wanted: &'static str, allowed: String, example: String },
     #[error(
         "{written} has a comma. Allowed: {allowed}. Hint: write a decimal point, as in \"20.047 mm\""
     )]
     DecimalComma { written: String, allowed: String },
-    #[error("{written} is not a finite number. Allowed: {allowed}. Hint: write a decimal number")]
+    #[error(
+        "{written} is NaN, infinite or too large. Allowed: {allowed}. Hint: write a decimal number"
+    )]
     NotFinite { written: String, allowed: String },
-    #[error("{written} is outside the allowed range. Allowed: {allowed}{}", hint(.advice))]
+    #[error("{written} is outside the allowed range. Allowed: {allowed}. Hint: {}", or_check(.advice))]
     OutOfRange { written: String, allowed: String, advice: &'static str },
-    #[error("unknown value {written}. Allowed: {}. Hint: {}", quoted_list(.allowed), choose(.nearest))]
+    #[error("unknown value {written}. Allowed: {}. Hint: {}", quoted_list(.allowed), meant(.nearest, "use one of these words"))]
     UnknownChoice { written: String, nearest: Option<String>, allowed: &'static [&'static str] },
     #[error("{written} appears twice in the list. Hint: keep one")]
     RepeatedChoice { written: String },
@@ -167,10 +174,10 @@ pub enum Problem {
     )]
     NoRoomForBall { gap: f64, clearance: f64 },
     #[error(
-        "{what}: radial clearance {clearance}, beyond 5 % of the ball radius ({ball}). Allowed: {} to {}. Hint: {advice}",
+        "{what}radial clearance {clearance} is beyond 5 % of the ball radius ({ball}). Allowed: {} to {}. Hint: {advice}",
         um(-0.05 * *.ball_radius), um(0.05 * *.ball_radius), clearance = um(*.clearance), ball = mm(*.ball_radius)
     )]
-    ClearanceTooLarge { what: String, clearance: f64, ball_radius: f64, advice: &'static str },
+    ClearanceTooLarge { what: &'static str, clearance: f64, ball_radius: f64, advice: &'static str },
     #[error(
         "the nominal size {} differs from the {} that follows from the clearance by more than 5 % of the ball radius. \
          Allowed: {} to {}. Hint: check it, or leave it out so that it follows",
@@ -188,6 +195,12 @@ pub enum Problem {
         mm(*.groove), mm(*.ball), mm(*.ball), mm(10.0 * *.ball)
     )]
     GrooveDoesNotFit { groove: f64, ball: f64 },
+    #[error(
+        "the outer groove radius {} reaches the bearing axis. Allowed: less than the race's own radius, {}. \
+         Hint: was the race radius given as groove radius?",
+        mm(*.groove), mm(*.race)
+    )]
+    GrooveReachesAxis { groove: f64, race: f64 },
     #[error(
         "{count} balls of radius {} do not fit on a pitch radius of {}. Allowed: up to {largest} balls. \
          Hint: fewer or smaller balls",
@@ -233,13 +246,6 @@ fn because(reason: &str) -> String {
 fn article(dimension: &Dimension) -> &'static str {
     let name = dimension.name();
     name.split_once(' ').map_or(name, |(_, noun)| noun)
-}
-
-fn choose(nearest: &Option<String>) -> String {
-    match nearest {
-        Some(nearest) => format!("did you mean \"{nearest}\"?"),
-        None => "use one of these words".to_string(),
-    }
 }
 
 fn quoted_list(words: &[&str]) -> String {

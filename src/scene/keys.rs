@@ -90,11 +90,13 @@ pub struct Key {
     pub doc: &'static str,
     /// What to do about a value outside the range.
     pub hint: &'static str,
+    /// An example of a value, without quotes; empty for the usual one of its kind.
+    example: &'static str,
 }
 
 impl Key {
     const fn new(path: &'static str, kind: Kind, need: Need, doc: &'static str) -> Key {
-        Key { path, kind, need, group: "", doc, hint: "" }
+        Key { path, kind, need, group: "", doc, hint: "", example: "" }
     }
 
     const fn group(mut self, group: &'static str) -> Key {
@@ -104,6 +106,11 @@ impl Key {
 
     const fn hint(mut self, hint: &'static str) -> Key {
         self.hint = hint;
+        self
+    }
+
+    const fn example_of(mut self, example: &'static str) -> Key {
+        self.example = example;
         self
     }
 
@@ -129,18 +136,35 @@ impl Key {
 
     /// An example of a value, as it is written in TOML.
     pub fn example(&self) -> String {
+        let or = |usual: &'static str| if self.example.is_empty() { usual } else { self.example };
         match self.kind {
             Kind::Text => "\"...\"".to_string(),
             Kind::Boolean => "true".to_string(),
             Kind::Integer { .. } => "8".to_string(),
             Kind::Choice(choices) => format!("\"{}\"", choices[0]),
             Kind::Choices(choices) => format!("[\"{}\"]", choices[0]),
-            Kind::Number(_) => "0.3".to_string(),
-            Kind::Quantity(_, range) => format!("\"1.5 {}\"", range.unit),
-            Kind::Vector(_, range) => {
-                format!("[\"0 {unit}\", \"0 {unit}\", \"1.5 {unit}\"]", unit = range.unit)
+            Kind::Number(_) => or("0.3").to_string(),
+            Kind::Quantity(dimension, range) => format!("\"{}\"", or(usual(dimension, range))),
+            Kind::Vector(dimension, range) => {
+                format!("[\"0 {0}\", \"0 {0}\", \"{1}\"]", range.unit, or(usual(dimension, range)))
             }
         }
+    }
+}
+
+/// A usual value of a dimension.
+fn usual(dimension: Dimension, range: Range) -> &'static str {
+    match dimension {
+        Length if range.unit == "um" => "5 um",
+        Length => "6 mm",
+        Mass => "0.1 kg",
+        Force => "250 N",
+        Moment => "2.5 N m",
+        Angle => "0.15 deg",
+        RotationSpeed => "1000 rpm",
+        Stress => "210 GPa",
+        Density => "7850 kg/m^3",
+        Acceleration => "-9.80665 m/s^2",
     }
 }
 
@@ -196,7 +220,9 @@ const COORDINATE_NEED: Need = Depends("neither key: the coordinate is free and u
 
 const TILT_HINT: &str = "bearings run at tilts of minutes of arc; check the unit";
 const LOAD_HINT: &str = "check the unit";
-const RADIUS_HINT: &str = "give a positive radius, measured from the bearing axis";
+const RADIUS_HINT: &str = "a positive radius, measured from the bearing axis; check the unit";
+const MODULUS_HINT: &str = "steel has 210 GPa; check the unit";
+const DENSITY_HINT: &str = "steel has 7850 kg/m^3; check the unit";
 const POISSON_HINT: &str = "steel has 0.3; 0.5 would be incompressible";
 const CONFORMITY_HINT: &str = "conformity is groove radius / ball diameter, usually 0.505 to 0.54";
 const OSCULATION_HINT: &str =
@@ -224,11 +250,11 @@ pub static KEYS: &[Key] = &[
         "Solution of the elliptic contact problem: curve fit, or complete elliptic integrals."),
     quantity("bearing.pitch_radius", RADIUS,
         Depends("angular-contact: required; deep-groove: optional, half way between the races"),
-        "Distance of the ball centres from the axis.").hint(RADIUS_HINT),
+        "Distance of the ball centres from the axis.").hint(RADIUS_HINT).example_of("26 mm"),
     quantity("bearing.contact_angle", Kind::Quantity(Angle, open(0.0, 80.0, "deg")),
         Depends("angular-contact: required; deep-groove: refused, the angle emerges"),
         "Angle of the contact line to the radial plane when the parts just touch.")
-        .hint("a bearing without contact angle is a deep-groove bearing; one near 90 deg carries no radial load"),
+        .hint("a bearing without contact angle is a deep-groove bearing; one near 90 deg carries no radial load").example_of("35 deg"),
     quantity("bearing.length", RADIUS, Optional, "Axial length of the bearing; information only."),
 
     quantity("bearing.clearance.radial", CLEARANCE, CLEARANCE_NEED,
@@ -240,40 +266,40 @@ pub static KEYS: &[Key] = &[
         "Which part's size makes the clearance. Its own given size then is the nominal one."),
 
     quantity("bearing.inner_race.radius", RADIUS, RACE_RADIUS_NEED,
-        "Radius of the groove bottom from the axis.").hint(RADIUS_HINT),
+        "Radius of the groove bottom from the axis.").hint(RADIUS_HINT).example_of("20.047 mm"),
     quantity("bearing.inner_race.groove_radius", RADIUS, ONE_CONFORMITY,
-        "Radius of the groove's cross-section.").group("groove").hint(GROOVE_HINT),
+        "Radius of the groove's cross-section.").group("groove").hint(GROOVE_HINT).example_of("6.2 mm"),
     Key::new("bearing.inner_race.conformity", CONFORMITY, ONE_CONFORMITY,
-        "Groove radius / ball diameter.").group("groove").hint(CONFORMITY_HINT),
+        "Groove radius / ball diameter.").group("groove").hint(CONFORMITY_HINT).example_of("0.515"),
     Key::new("bearing.inner_race.osculation", OSCULATION, ONE_CONFORMITY,
-        "Ball diameter / (2 groove radius).").group("groove").hint(OSCULATION_HINT),
+        "Ball diameter / (2 groove radius).").group("groove").hint(OSCULATION_HINT).example_of("0.97"),
     quantity("bearing.inner_race.bore_radius", RADIUS, Optional,
         "Radius of the bore; smaller than the groove bottom.").hint(RADIUS_HINT),
-    quantity("bearing.inner_race.material.youngs_modulus", MODULUS, STEEL_MODULUS, "Modulus of elasticity."),
+    quantity("bearing.inner_race.material.youngs_modulus", MODULUS, STEEL_MODULUS, "Modulus of elasticity.").hint(MODULUS_HINT),
     Key::new("bearing.inner_race.material.poisson_ratio", POISSON, STEEL_POISSON, "Poisson's ratio.").hint(POISSON_HINT),
-    quantity("bearing.inner_race.material.density", DENSITY, STEEL_DENSITY, "Density."),
+    quantity("bearing.inner_race.material.density", DENSITY, STEEL_DENSITY, "Density.").hint(DENSITY_HINT),
 
     quantity("bearing.outer_race.radius", RADIUS, RACE_RADIUS_NEED,
-        "Radius of the groove bottom from the axis.").hint(RADIUS_HINT),
+        "Radius of the groove bottom from the axis.").hint(RADIUS_HINT).example_of("31.953 mm"),
     quantity("bearing.outer_race.groove_radius", RADIUS, ONE_CONFORMITY,
-        "Radius of the groove's cross-section.").group("groove").hint(GROOVE_HINT),
+        "Radius of the groove's cross-section.").group("groove").hint(GROOVE_HINT).example_of("6.2 mm"),
     Key::new("bearing.outer_race.conformity", CONFORMITY, ONE_CONFORMITY,
-        "Groove radius / ball diameter.").group("groove").hint(CONFORMITY_HINT),
+        "Groove radius / ball diameter.").group("groove").hint(CONFORMITY_HINT).example_of("0.515"),
     Key::new("bearing.outer_race.osculation", OSCULATION, ONE_CONFORMITY,
-        "Ball diameter / (2 groove radius).").group("groove").hint(OSCULATION_HINT),
+        "Ball diameter / (2 groove radius).").group("groove").hint(OSCULATION_HINT).example_of("0.97"),
     quantity("bearing.outer_race.outer_radius", RADIUS, Optional,
         "Outer radius of the race; larger than the groove bottom.").hint(RADIUS_HINT),
-    quantity("bearing.outer_race.material.youngs_modulus", MODULUS, STEEL_MODULUS, "Modulus of elasticity."),
+    quantity("bearing.outer_race.material.youngs_modulus", MODULUS, STEEL_MODULUS, "Modulus of elasticity.").hint(MODULUS_HINT),
     Key::new("bearing.outer_race.material.poisson_ratio", POISSON, STEEL_POISSON, "Poisson's ratio.").hint(POISSON_HINT),
-    quantity("bearing.outer_race.material.density", DENSITY, STEEL_DENSITY, "Density."),
+    quantity("bearing.outer_race.material.density", DENSITY, STEEL_DENSITY, "Density.").hint(DENSITY_HINT),
 
     quantity("bearing.ball.radius", RADIUS, BALL_NEED, "Ball radius.").group("size")
         .hint("give a positive radius"),
     quantity("bearing.ball.diameter", RADIUS, BALL_NEED, "Ball diameter.").group("size")
         .hint("give a positive diameter"),
-    quantity("bearing.ball.material.youngs_modulus", MODULUS, STEEL_MODULUS, "Modulus of elasticity."),
+    quantity("bearing.ball.material.youngs_modulus", MODULUS, STEEL_MODULUS, "Modulus of elasticity.").hint(MODULUS_HINT),
     Key::new("bearing.ball.material.poisson_ratio", POISSON, STEEL_POISSON, "Poisson's ratio.").hint(POISSON_HINT),
-    quantity("bearing.ball.material.density", DENSITY, STEEL_DENSITY, "Density."),
+    quantity("bearing.ball.material.density", DENSITY, STEEL_DENSITY, "Density.").hint(DENSITY_HINT),
 
     quantity("bearing.cage.pocket_radius", RADIUS, Optional, "Radius of the pockets; at least the ball radius."),
     quantity("bearing.cage.inner_radius", RADIUS, Optional, "Inner radius; smaller than the outer one."),
@@ -399,9 +425,13 @@ pub fn nearest_key(path: &str, name: &str) -> Option<String> {
     }
     let last = name.rsplit('.').next().unwrap_or(name);
     let elsewhere = nearest(last, KEYS.iter().map(Key::name), 0.8);
-    let found = elsewhere.and_then(|name| KEYS.iter().find(|key| key.name() == name));
-    let whole = || nearest(&dotted(name), KEYS.iter().map(|key| key.path), 0.6).map(str::to_string);
-    found.map(|key| key.path.to_string()).or_else(whole)
+    // Of several keys with that name, the one whose whole path is most alike.
+    let full = dotted(name);
+    let found = elsewhere.and_then(|name| {
+        let same_name = KEYS.iter().map(|key| key.path).filter(|path| path.ends_with(name));
+        nearest(&full, same_name, 0.0)
+    });
+    found.map(str::to_string)
 }
 
 /// The candidate most like `word` (ignoring case), if at least `similarity` (0 to 1) alike.

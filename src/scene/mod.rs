@@ -23,6 +23,7 @@ pub mod keys;
 mod resolve;
 mod resolve_geometry;
 pub mod resolved;
+pub mod schema;
 mod source;
 pub mod statics;
 pub mod sweep;
@@ -36,6 +37,7 @@ pub use resolve::resolve;
 pub use resolved::{
     Assumption, Cage, CageGuidance, DefaultUsed, Dimensions, Plot, RaceDimensions, Scene,
 };
+pub use schema::json_schema;
 pub use source::{Format, LARGEST_FILE};
 pub use sweep::{SweepAxis, SweepValues};
 

@@ -136,6 +136,13 @@ fn groove(reader: &Reader, race: &str, ball: f64, nominal: f64) -> Result<f64, S
     }
 }
 
+/// The key that states a race's groove.
+fn groove_key(reader: &Reader, race: &str) -> String {
+    let keys = ["conformity", "osculation"].map(|name| format!("{race}.{name}"));
+    let given = keys.into_iter().find(|key| reader.is_given(key));
+    given.unwrap_or_else(|| format!("{race}.groove_radius"))
+}
+
 fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
     if reader.is_given("bearing.contact_angle") {
         let problem = Problem::NotApplicable {
@@ -164,9 +171,9 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
             ball = need_ball(because)?;
             clearance = outer - inner - 2.0 * ball;
             let what = if clearance < 0.0 {
-                "the ball is larger than the gap between the races"
+                "the ball is larger than the gap between the races: "
             } else {
-                "the ball is much smaller than the gap between the races"
+                "the ball is much smaller than the gap between the races: "
             };
             let advice = "was a diameter given as a radius, or a wrong unit?";
             limit_clearance(reader, ball_key(reader), what, clearance, ball, advice)?;
@@ -181,9 +188,6 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
                 let problem = Problem::NoRoomForBall { gap: outer - inner, clearance };
                 return Err(reader.document.error(clearance_key(reader), problem));
             }
-            if let Some(nominal) = ball_given {
-                limit_nominal(reader, ball_key(reader), nominal, ball, ball)?;
-            }
         }
         (Some(given), ClearanceThrough::InnerRace) => {
             let because = " (needed when the clearance sets the inner race)";
@@ -195,9 +199,6 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
                 let problem = Problem::NoRoomForBall { gap: outer, clearance };
                 return Err(reader.document.error(ball_key(reader), problem));
             }
-            if let Some(nominal) = inner_given {
-                limit_nominal(reader, INNER, nominal, inner, ball)?;
-            }
         }
         (Some(given), ClearanceThrough::OuterRace) => {
             let because = " (needed when the clearance sets the outer race)";
@@ -205,16 +206,25 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
             inner = need(INNER, because)?;
             ball = need_ball(because)?;
             outer = inner + 2.0 * ball + clearance;
-            if let Some(nominal) = outer_given {
-                limit_nominal(reader, OUTER, nominal, outer, ball)?;
-            }
         }
     }
     let advice = "check its unit and whether it is radial";
-    limit_clearance(reader, clearance_key(reader), "too large", clearance, ball, advice)?;
+    limit_clearance(reader, clearance_key(reader), "", clearance, ball, advice)?;
+    let nominal_sizes = [
+        (ball_key(reader), ball_given, ball),
+        (INNER, inner_given, inner),
+        (OUTER, outer_given, outer),
+    ];
+    for (key, nominal, derived) in nominal_sizes {
+        limit_nominal(reader, key, nominal.unwrap_or(derived), derived, ball)?;
+    }
     let nominal_ball = ball_given.unwrap_or(ball);
     let inner_groove = groove(reader, "bearing.inner_race", ball, nominal_ball)?;
     let outer_groove = groove(reader, "bearing.outer_race", ball, nominal_ball)?;
+    if outer_groove >= outer {
+        let problem = Problem::GrooveReachesAxis { groove: outer_groove, race: outer };
+        return Err(reader.document.error(&groove_key(reader, "bearing.outer_race"), problem));
+    }
     let pitch = reader.given_number("bearing.pitch_radius").unwrap_or(0.5 * (inner + outer));
     if !(pitch > inner && pitch < outer) {
         let problem = Problem::PitchOutsideGap { pitch, inner, outer };
@@ -293,7 +303,7 @@ fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
         reader.choice(THROUGH).map_or(ClearanceThrough::Ball, through_of)
     };
     let advice = "check its unit and whether it is radial";
-    limit_clearance(reader, clearance_key(reader), "too large", clearance, nominal, advice)?;
+    limit_clearance(reader, clearance_key(reader), "", clearance, nominal, advice)?;
 
     // Grooves first fit the nominal ball; the ball in use is checked below.
     let inner_groove = groove(reader, "bearing.inner_race", nominal, nominal)?;
@@ -357,7 +367,7 @@ fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
 fn limit_clearance(
     reader: &Reader,
     key: &str,
-    what: &str,
+    what: &'static str,
     clearance: f64,
     ball_radius: f64,
     advice: &'static str,
@@ -365,7 +375,6 @@ fn limit_clearance(
     if clearance.abs() <= LARGEST_CLEARANCE * ball_radius {
         return Ok(());
     }
-    let what = what.to_string();
     let problem = Problem::ClearanceTooLarge { what, clearance, ball_radius, advice };
     Err(reader.document.error(key, problem))
 }

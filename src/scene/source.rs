@@ -54,8 +54,7 @@ pub fn read(path: &Path) -> Result<(Source, Format), SceneError> {
     };
     let metadata = std::fs::metadata(path).map_err(unreadable)?;
     if metadata.is_dir() {
-        let example = path.join("scene.toml").display().to_string();
-        return Err(fail(Problem::IsFolder { example }));
+        return Err(fail(Problem::IsFolder));
     }
     if !metadata.is_file() {
         return Err(fail(Problem::NotRegularFile));

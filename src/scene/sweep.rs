@@ -173,11 +173,7 @@ pub(crate) fn unknown_key(path: &str) -> Problem {
     let allowed = if keys::find_table(path).is_some() {
         keys::children(path).iter().map(|name| format!("{path}.{name}")).collect::<Vec<_>>()
     } else {
-        keys::TABLES
-            .iter()
-            .filter(|table| !["assumptions", "sweep"].contains(&table.path))
-            .map(|table| format!("{}.*", table.path))
-            .collect()
+        vec!["a dotted key such as bearing.clearance.radial".to_string()]
     };
     Problem::UnknownKey { nearest, allowed: allowed.join(", ") }
 }

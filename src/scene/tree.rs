@@ -59,15 +59,23 @@ fn parse_toml(source: &Source) -> Result<Vec<Entry>, SceneError> {
         let offset = error.span().map_or(0, |span| span.start);
         let message = error.message().replace('\n', ", ");
         if message == "duplicate key" {
-            return source.error(offset, "", Problem::DuplicateKey);
+            return source.error(offset, key_at(&source.text, offset), Problem::DuplicateKey);
         }
-        let advice = toml_advice(&source.text[..offset.min(source.text.len())], &message);
+        let advice = toml_advice(source.text.get(..offset).unwrap_or_default());
         source.error(offset, "", Problem::Syntax { format: "TOML", message, advice })
     })?;
     Ok(toml_entries(table.into_inner()))
 }
 
-fn toml_advice(before: &str, _message: &str) -> &'static str {
+/// The bare or quoted key that begins at `offset`.
+fn key_at(text: &str, offset: usize) -> &str {
+    let rest = text.get(offset..).unwrap_or_default();
+    let is_key = |c: char| c.is_alphanumeric() || "_-.\"".contains(c);
+    let end = rest.find(|c| !is_key(c)).unwrap_or(rest.len());
+    &rest[..end]
+}
+
+fn toml_advice(before: &str) -> &'static str {
     let line = before.rsplit('\n').next().unwrap_or_default();
     if line.contains('=') {
         "put texts and quantities in quotes, as in radius = \"5.953 mm\", and close every quote and bracket"
@@ -157,8 +165,9 @@ fn json_advice(kind: &jsonc_parser::errors::ParseErrorKind) -> &'static str {
             "JSON has no comments; use \"source\" or \"assumptions\", or TOML"
         }
         Kind::SingleQuotedStringsNotAllowed => "use double quotes",
-        Kind::ExpectedComma => "put a comma between entries",
+        Kind::ExpectedComma => "put a comma between entries; numbers have no leading zero",
         Kind::NonFiniteNumbersNotAllowed => "write a decimal number",
+        Kind::UnexpectedWord => "put texts in double quotes; numbers are decimal and finite",
         Kind::UnterminatedObject | Kind::UnterminatedArray => "close every bracket",
         _ => "put keys and texts in double quotes, commas between entries, and close every bracket",
     }

@@ -335,7 +335,7 @@ fn finite(value: f64) -> Result<f64, QuantityProblem> {
 /// A number as a person would write it: no exponent unless it is very small or large.
 pub fn plain(value: f64) -> String {
     let size = value.abs();
-    if size == 0.0 || (1e-5..1e9).contains(&size) {
+    if size == 0.0 || (1e-5..1e6).contains(&size) {
         format!("{value}")
     } else {
         format!("{value:e}")

@@ -114,7 +114,7 @@ fn integer(key: &Key, text: &str, low: i64, high: i64) -> Result<i64, Problem> {
                 let example = key.example();
                 return Err(Problem::NotANumber {
                     written,
-                    unit_too: ", or not a whole one",
+                    wanted: "a whole number",
                     allowed,
                     example,
                 });
@@ -169,7 +169,7 @@ fn number(key: &Key, text: &str, range: Range) -> Result<f64, Problem> {
         }
         QuantityProblem::NoNumber | QuantityProblem::NoUnit { .. } => Problem::NotANumber {
             written: written.clone(),
-            unit_too: "",
+            wanted: "a number",
             allowed,
             example: key.example(),
         },
@@ -195,7 +195,7 @@ fn quantity(key: &Key, value: &Value, dimension: Dimension, range: Range) -> Res
             },
             QuantityProblem::NoNumber => Problem::NotANumber {
                 written,
-                unit_too: " with a unit",
+                wanted: "a number with a unit",
                 allowed: allowed(),
                 example: key.example(),
             },
