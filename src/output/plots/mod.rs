@@ -42,8 +42,11 @@ pub enum PlotError {
     NoCurve { title: String },
     #[error("curve {curve:?} has no point")]
     NoPoint { curve: String },
-    #[error("point {point} of curve {curve:?} is ({x}, {y}); only finite numbers are drawn")]
-    NotFinite {
+    #[error(
+        "point {point} of curve {curve:?} is ({x:?}, {y:?}); numbers are drawn if they are 0 or \
+         between 1e-200 and 1e200 in size"
+    )]
+    NotDrawable {
         curve: String,
         point: usize,
         x: f64,
@@ -61,7 +64,7 @@ pub enum PlotError {
         point: usize,
         value: f64,
     },
-    #[error("{what} is {value}; allowed is a finite number > 0")]
+    #[error("{what} is {value}; allowed is > 0 and no more than the outer raceway radius")]
     Size { what: &'static str, value: f64 },
     #[error("ball {ball} has {what} = {value}; allowed is a finite number >= 0")]
     Ball {
@@ -88,13 +91,10 @@ fn check_curves(title: &str, curves: &[Curve]) -> Result<(), PlotError> {
             });
         }
         for (point, &[x, y]) in curve.points.iter().enumerate() {
-            if !(x.is_finite() && y.is_finite()) {
-                return Err(PlotError::NotFinite {
-                    curve: curve.name.clone(),
-                    point,
-                    x,
-                    y,
-                });
+            let drawable = |v: f64| v == 0.0 || ticks::MAGNITUDES.contains(&v.abs());
+            if !(drawable(x) && drawable(y)) {
+                let curve = curve.name.clone();
+                return Err(PlotError::NotDrawable { curve, point, x, y });
             }
         }
     }
