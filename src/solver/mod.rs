@@ -1,2 +1,5 @@
 //! Solvers: what a scene needs, and equilibrium.
+pub mod ball;
+pub mod plan;
+mod static_start;
 pub mod statics;

@@ -1,1 +1,172 @@
-fn main() {}
+//! `verify`: runs the benchmarks and writes the report.
+//!
+//! Exit codes: 0 all held, 1 something differs, 2 could not run.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use verification::case::{Case, Tier};
+use verification::machine::{self, Machine};
+use verification::report::{CaseReport, CaseStatus, Report};
+use verification::{cases, golden, pareto, runner};
+
+#[derive(Parser)]
+#[command(name = "verify", about, version, args_conflicts_with_subcommands = true)]
+struct Arguments {
+    #[command(subcommand)]
+    action: Option<Action>,
+    /// Which cases: `smoke` takes seconds, `full` runs all of them.
+    #[arg(long, value_enum, default_value = "smoke")]
+    tier: Tier,
+    /// Only this case, whatever its tier; may be given again.
+    #[arg(long = "case", value_name = "ID")]
+    cases: Vec<String>,
+    /// Folder of the report.
+    #[arg(long, value_name = "DIR", default_value = "target/verify")]
+    out: PathBuf,
+    /// Folder of the golden files.
+    #[arg(long, value_name = "DIR")]
+    golden: Option<PathBuf>,
+}
+
+#[derive(Subcommand)]
+enum Action {
+    /// Accept the present numbers of a case as its past, with the reason.
+    Golden {
+        /// Case id, or `all`.
+        #[arg(long = "case", value_name = "ID")]
+        case: String,
+        /// Why the numbers changed; kept in the file.
+        #[arg(long)]
+        reason: String,
+        /// Folder of the golden files.
+        #[arg(long, value_name = "DIR")]
+        golden: Option<PathBuf>,
+    },
+    /// Run time against error, for each registered study.
+    Pareto {
+        /// Folder of the tables and figures.
+        #[arg(long, value_name = "DIR", default_value = "target/pareto")]
+        out: PathBuf,
+        /// Only this study.
+        #[arg(long, value_name = "ID")]
+        study: Option<String>,
+    },
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let outcome = match arguments.action {
+        None => verify(&arguments),
+        Some(Action::Golden { case, reason, golden }) => {
+            accept(&case, &reason, &golden.unwrap_or_else(golden::default_folder))
+        }
+        Some(Action::Pareto { out, study }) => studies(&out, study.as_deref()),
+    };
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(message) => {
+            eprintln!("verify: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// The cases asked for, in the registry's order.
+fn select(ids: &[String], tier: Tier) -> Result<Vec<Case>, String> {
+    if ids.is_empty() {
+        return Ok(cases::of_tier(tier));
+    }
+    if let Some(unknown) = ids.iter().find(|id| cases::find(id).is_none()) {
+        let known: Vec<&str> = cases::CASES.iter().map(|case| case.id).collect();
+        return Err(format!("no case `{unknown}`; there are: {}", known.join(", ")));
+    }
+    Ok(cases::CASES.iter().copied().filter(|case| ids.iter().any(|id| id == case.id)).collect())
+}
+
+fn verify(arguments: &Arguments) -> Result<bool, String> {
+    let selected = select(&arguments.cases, arguments.tier)?;
+    let golden_folder = arguments.golden.clone().unwrap_or_else(golden::default_folder);
+    let mut report = Report {
+        machine: Machine::facts(),
+        tier: arguments.tier,
+        cases: selected.iter().map(CaseReport::pending).collect(),
+    };
+    let save = |report: &Report| {
+        report.write(&arguments.out).map_err(|error| format!("{}: {error}", arguments.out.display()))
+    };
+    save(&report)?;
+    for (index, case) in selected.iter().enumerate() {
+        eprint!("case {}/{} {} … ", index + 1, selected.len(), case.id);
+        let run = runner::compute(case);
+        let outcome = runner::assess(case, &run, &golden_folder);
+        eprintln!(
+            "{} ({} checks, {:.2} s)",
+            outcome.status.word(),
+            outcome.checks.len(),
+            run.seconds
+        );
+        if outcome.status != CaseStatus::Passed {
+            for failure in outcome.failures().iter().take(8) {
+                eprintln!("    {failure}");
+            }
+        }
+        report.cases[index] = outcome;
+        report.machine.threads = report.machine.threads.max(machine::threads());
+        save(&report)?;
+    }
+    let held = report.cases.iter().filter(|case| case.status == CaseStatus::Passed).count();
+    eprintln!(
+        "{held} of {} cases passed in {:.1} s; report: {}",
+        report.cases.len(),
+        report.seconds(),
+        arguments.out.join("report.html").display()
+    );
+    Ok(report.passed())
+}
+
+/// Write golden files; a case that does not hold against the world is not accepted as a past.
+fn accept(case: &str, reason: &str, folder: &Path) -> Result<bool, String> {
+    if reason.trim().is_empty() {
+        return Err(golden::GoldenError::EmptyReason.to_string());
+    }
+    let all = case == "all";
+    let ids = if all { Vec::new() } else { vec![case.to_string()] };
+    let mut accepted = true;
+    for case in select(&ids, Tier::Full)? {
+        let run = runner::compute(&case);
+        let outcome = runner::assess(&case, &run, folder);
+        if outcome.status == CaseStatus::Failed {
+            eprintln!("{}: not accepted, the case fails:", case.id);
+            outcome.failures().iter().for_each(|failure| eprintln!("    {failure}"));
+            accepted = false;
+            continue;
+        }
+        let values = run.record.golden_values();
+        if values.is_empty() && all {
+            continue;
+        }
+        match golden::write(folder, case.id, values, reason) {
+            Ok(true) => eprintln!("{}: {} numbers accepted", case.id, values.len()),
+            Ok(false) => eprintln!("{}: unchanged, nothing written", case.id),
+            Err(error) => return Err(error.to_string()),
+        }
+    }
+    Ok(accepted)
+}
+
+fn studies(out: &Path, only: Option<&str>) -> Result<bool, String> {
+    let selected: Vec<_> =
+        pareto::STUDIES.iter().filter(|study| only.is_none_or(|id| id == study.id)).collect();
+    if let (Some(id), true) = (only, selected.is_empty()) {
+        return Err(format!("no study `{id}`"));
+    }
+    for (index, study) in selected.iter().enumerate() {
+        eprintln!("study {}/{} {}", index + 1, selected.len(), study.id);
+        pareto::run(study, out).map_err(|error| format!("study {}: {error}", study.id))?;
+    }
+    eprintln!("{} studies; results: {}", selected.len(), out.display());
+    Ok(true)
+}

@@ -1,0 +1,105 @@
+//! Contact of a ball with the groove of a race: overlap and the normal load of (2.1).
+//!
+//! A raceway is a torus. Seen in the meridian plane of the race that holds the ball centre, the
+//! ball touches a circular arc from inside, so the overlap depends on the ball's axial and radial
+//! position alone; the contact angle follows from them.
+
+use super::geometry::Raceway;
+use crate::kinematics::Pose;
+use nalgebra::Vector3;
+
+/// Normal load F_N = K_H δ^{3/2} in N of an overlap δ in m, equations (2.1), (4.1) and (5.1).
+///
+/// ```
+/// use bearing_dynamics::ch2_housing::bearing::contact::normal_load;
+/// assert_eq!(normal_load(4e10, 1e-4), 4e10 * 1e-4 * 1e-4_f64.sqrt());
+/// assert_eq!(normal_load(4e10, -1e-6), 0.0); // a gap carries nothing
+/// ```
+#[doc(alias = "2.1")]
+#[doc(alias = "4.1")]
+#[doc(alias = "5.1")]
+#[inline]
+pub fn normal_load(stiffness: f64, overlap: f64) -> f64 {
+    // Written so that NaN passes through and is caught, not turned into a missing contact.
+    if overlap <= 0.0 { 0.0 } else { stiffness * overlap * overlap.sqrt() }
+}
+
+/// Slope dF_N/dδ = (3/2) K_H δ^{1/2} of (2.1), N/m.
+#[inline]
+pub fn normal_stiffness(stiffness: f64, overlap: f64) -> f64 {
+    if overlap <= 0.0 { 0.0 } else { 1.5 * stiffness * overlap.sqrt() }
+}
+
+/// Energy (2/5) K_H δ^{5/2} stored in a contact, J.
+#[inline]
+pub fn strain_energy(stiffness: f64, overlap: f64) -> f64 {
+    if overlap <= 0.0 { 0.0 } else { 0.4 * stiffness * overlap * overlap * overlap.sqrt() }
+}
+
+/// A ball in a groove, seen in the meridian plane of the race.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeridianContact {
+    /// δ, m; negative is a gap.
+    pub overlap: f64,
+    /// Distance of the ball centre from the groove's centre of curvature, m.
+    pub centre_distance: f64,
+    /// Unit vector from the groove's centre of curvature to the ball centre: axial, radial part.
+    pub normal: [f64; 2],
+}
+
+/// Overlap of a ball whose centre lies at `axial`, `radial` (m) in the race's frame.
+#[inline]
+pub fn meridian_contact(
+    axial: f64,
+    radial: f64,
+    raceway: &Raceway,
+    ball_radius: f64,
+) -> MeridianContact {
+    let from_centre = [axial - raceway.centre_axial, radial - raceway.centre_radius];
+    let centre_distance =
+        (from_centre[0] * from_centre[0] + from_centre[1] * from_centre[1]).sqrt();
+    // On the centre of curvature there is no direction, and no contact either, since a groove is
+    // wider than its ball; any unit vector will do.
+    let normal = if centre_distance > 0.0 {
+        [from_centre[0] / centre_distance, from_centre[1] / centre_distance]
+    } else {
+        [0.0, 1.0]
+    };
+    let overlap = centre_distance - (raceway.groove_radius - ball_radius);
+    MeridianContact { overlap, centre_distance, normal }
+}
+
+/// Force of a race on a ball, both anywhere in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GrooveForce {
+    /// δ, m; negative is a gap.
+    pub overlap: f64,
+    /// N.
+    pub normal_load: f64,
+    /// Force on the ball, N; the race feels the opposite force, on the same line of action
+    /// through the ball centre.
+    pub force_on_ball: Vector3<f64>,
+}
+
+/// Normal force between a ball and a race, in the frame in which both are given.
+///
+/// `stiffness` is K_H in N/m^1.5. The race's rotation about its own axis has no influence.
+pub fn groove_force(
+    ball_centre: &Vector3<f64>,
+    race: &Pose,
+    raceway: &Raceway,
+    ball_radius: f64,
+    stiffness: f64,
+) -> GrooveForce {
+    let axis = race.orientation * Vector3::x();
+    let arm = ball_centre - race.position;
+    let axial = axis.dot(&arm);
+    let radial_arm = arm - axis * axial;
+    let radial = radial_arm.norm();
+    let contact = meridian_contact(axial, radial, raceway, ball_radius);
+    let load = normal_load(stiffness, contact.overlap);
+    let normal = axis * contact.normal[0] + radial_arm * (contact.normal[1] / radial);
+    // A ball on the race's axis has no radial direction, and is far from any groove.
+    let force_on_ball = if load == 0.0 { Vector3::zeros() } else { normal * -load };
+    GrooveForce { overlap: contact.overlap, normal_load: load, force_on_ball }
+}

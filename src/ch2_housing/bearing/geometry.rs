@@ -1,7 +1,5 @@
 //! Geometry of a deep-groove or angular-contact ball bearing (Tables 2.2, 3.5, 4.1 and 5.3).
 
-use thiserror::Error;
-
 /// Isotropic linear elastic material of one bearing part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
@@ -62,4 +60,108 @@ pub struct BearingGeometry {
     /// Radial internal clearance, m: how far the inner race moves radially from its nominal
     /// position until it touches; negative is interference. The diametral clearance is twice it.
     pub radial_clearance: f64,
+}
+
+impl BearingGeometry {
+    /// Deep-groove bearing from the groove-bottom radii of its races (Tables 2.2, 3.5 and 4.1), all
+    /// in m; the radial clearance follows as R_OR − R_IR − 2 r_ball.
+    ///
+    /// ```
+    /// use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
+    /// let table_4_1 = BearingGeometry::deep_groove(
+    ///     8, 20.047e-3, 6.013e-3, 31.953e-3, 6.310e-3, 5.953e-3);
+    /// assert!(table_4_1.radial_clearance.abs() <= 1e-17);
+    /// ```
+    pub fn deep_groove(
+        ball_count: usize,
+        inner_radius: f64,
+        inner_groove_radius: f64,
+        outer_radius: f64,
+        outer_groove_radius: f64,
+        ball_radius: f64,
+    ) -> Self {
+        BearingGeometry {
+            kind: BearingKind::DeepGroove,
+            ball_count,
+            ball_radius,
+            inner: Raceway {
+                centre_radius: inner_radius + inner_groove_radius,
+                centre_axial: 0.0,
+                groove_radius: inner_groove_radius,
+            },
+            outer: Raceway {
+                centre_radius: outer_radius - outer_groove_radius,
+                centre_axial: 0.0,
+                groove_radius: outer_groove_radius,
+            },
+            pitch_radius: 0.5 * (inner_radius + outer_radius),
+            contact_angle: 0.0,
+            radial_clearance: outer_radius - inner_radius - 2.0 * ball_radius,
+        }
+    }
+
+    /// Angular-contact bearing whose balls just touch both races at `pitch_radius` under
+    /// `contact_angle` (Table 5.3); lengths in m, angle in rad. Pushing the inner race towards +X
+    /// loads the balls.
+    pub fn angular_contact(
+        ball_count: usize,
+        pitch_radius: f64,
+        inner_groove_radius: f64,
+        outer_groove_radius: f64,
+        ball_radius: f64,
+        contact_angle: f64,
+    ) -> Self {
+        let (sin, cos) = contact_angle.sin_cos();
+        let inner_room = inner_groove_radius - ball_radius;
+        let outer_room = outer_groove_radius - ball_radius;
+        BearingGeometry {
+            kind: BearingKind::AngularContact,
+            ball_count,
+            ball_radius,
+            inner: Raceway {
+                centre_radius: pitch_radius + inner_room * cos,
+                centre_axial: inner_room * sin,
+                groove_radius: inner_groove_radius,
+            },
+            outer: Raceway {
+                centre_radius: pitch_radius - outer_room * cos,
+                centre_axial: -outer_room * sin,
+                groove_radius: outer_groove_radius,
+            },
+            pitch_radius,
+            contact_angle,
+            radial_clearance: 0.0,
+        }
+    }
+
+    /// The same bearing with another radial clearance (m), obtained through the ball radius as in
+    /// 4.3.1 or by moving one race's groove.
+    ///
+    /// The clearance is how far the inner race moves radially from its nominal position until it
+    /// touches, so for an angular-contact bearing the distance of the groove centres counts along
+    /// the contact line.
+    pub fn with_radial_clearance(&self, clearance: f64, through: ClearanceThrough) -> Self {
+        let mut changed = *self;
+        changed.radial_clearance = clearance;
+        let change = clearance - self.radial_clearance;
+        match through {
+            ClearanceThrough::Ball => {
+                let axial = self.inner.centre_axial - self.outer.centre_axial;
+                let radial = self.inner.centre_radius - self.outer.centre_radius + clearance;
+                let grooves = self.inner.groove_radius + self.outer.groove_radius;
+                changed.ball_radius = 0.5 * (grooves - axial.hypot(radial));
+            }
+            ClearanceThrough::InnerRace => changed.inner.centre_radius -= change,
+            ClearanceThrough::OuterRace => changed.outer.centre_radius += change,
+        }
+        changed
+    }
+
+    /// Groove-bottom radii (m) of the inner and the outer race.
+    pub fn race_radii(&self) -> (f64, f64) {
+        (
+            self.inner.centre_radius - self.inner.groove_radius,
+            self.outer.centre_radius + self.outer.groove_radius,
+        )
+    }
 }

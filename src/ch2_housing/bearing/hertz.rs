@@ -1,9 +1,19 @@
-//! Hertz contact of a ball with a raceway: stiffness coefficient of (2.1), ellipse and pressure.
+//! Hertz contact of a ball with a raceway: the stiffness coefficient K_H of (2.1), the contact
+//! ellipse and the pressure.
+//!
+//! The source takes K_H from Hamrock's curve fit. The fit is offered beside the exact solution by
+//! complete elliptic integrals. K_H is fixed at the nominal contact geometry, so that the contact
+//! force is the gradient of an energy.
+
+use super::elliptic::{first_kind, integral_b, integral_d, second_kind};
+use super::geometry::{BearingGeometry, Material, Raceway};
+use std::f64::consts::PI;
+use thiserror::Error;
 
 /// Which solution of the elliptic contact problem gives K_H.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HertzModel {
-    /// Curve fit of Hamrock and Brewe, the source's choice.
+    /// Curve fit of Hamrock and Brewe (1983), the source's choice.
     HamrockBrewe,
     /// Complete elliptic integrals.
     Exact,
@@ -26,4 +36,197 @@ pub struct HertzContact {
     pub integral_second: f64,
     /// E' = 2/[(1−ν₁²)/E₁ + (1−ν₂²)/E₂], Pa.
     pub effective_modulus: f64,
+}
+
+/// Size and pressure of a loaded contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactEllipse {
+    /// m.
+    pub semi_major: f64,
+    /// m.
+    pub semi_minor: f64,
+    /// Largest pressure, Pa.
+    pub peak_pressure: f64,
+}
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum HertzError {
+    #[error(
+        "relative radii must be positive and finite, but are {rolling} m in the rolling direction \
+         and {transverse} m across the groove: the ball is as large as the surface it lies in"
+    )]
+    NotConvex { rolling: f64, transverse: f64 },
+}
+
+/// Solution of the elliptic problem for the ratio of relative radii (larger over smaller, ≥ 1):
+/// ellipticity k and the complete elliptic integrals of first and second kind.
+///
+/// Hamrock and Brewe's fit: k = 1.0339 a^0.636, E = 1.0003 + 0.5968/a, F = 1.5277 + 0.6023 ln a.
+pub fn hamrock_brewe(radius_ratio: f64) -> (f64, f64, f64) {
+    let ellipticity = 1.0339 * libm::pow(radius_ratio, 0.636);
+    let first = 1.5277 + 0.6023 * libm::log(radius_ratio);
+    let second = 1.0003 + 0.5968 / radius_ratio;
+    (ellipticity, first, second)
+}
+
+/// Exact counterpart of [`hamrock_brewe`]: the root k of k² B(m)/D(m) = radius ratio with
+/// m = 1 − 1/k², which is the classical condition (k²E − K)/(K − E) freed of its cancellations.
+pub fn exact_elliptic(radius_ratio: f64) -> (f64, f64, f64) {
+    let ratio_at = |k: f64| {
+        let complementary = 1.0 / (k * k);
+        k * k * integral_b(complementary) / integral_d(complementary)
+    };
+    // B ≤ D, so that k² ≥ ratio; and B/D falls slower than 1/k, so that k ≤ ratio.
+    let (mut low, mut high) = (radius_ratio.sqrt(), radius_ratio);
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if ratio_at(middle) < radius_ratio {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let complementary = 1.0 / (high * high);
+    (high, first_kind(complementary), second_kind(complementary))
+}
+
+/// Hertz contact from relative radii (m) and effective modulus E' (Pa).
+///
+/// K_H = π k E' √(2 E R/(9 F³)) with 1/R = 1/R_rolling + 1/R_transverse.
+pub fn contact_from_radii(
+    model: HertzModel,
+    radius_rolling: f64,
+    radius_transverse: f64,
+    effective_modulus: f64,
+) -> Result<HertzContact, HertzError> {
+    let positive = |radius: f64| radius > 0.0 && radius.is_finite();
+    if !(positive(radius_rolling) && positive(radius_transverse)) {
+        return Err(HertzError::NotConvex {
+            rolling: radius_rolling,
+            transverse: radius_transverse,
+        });
+    }
+    let ratio = (radius_transverse / radius_rolling).max(radius_rolling / radius_transverse);
+    let (ellipticity, first, second) = match model {
+        HertzModel::HamrockBrewe => hamrock_brewe(ratio),
+        HertzModel::Exact => exact_elliptic(ratio),
+    };
+    let radius = 1.0 / (1.0 / radius_rolling + 1.0 / radius_transverse);
+    let stiffness = PI
+        * ellipticity
+        * effective_modulus
+        * (2.0 * second * radius / (9.0 * first * first * first)).sqrt();
+    Ok(HertzContact {
+        stiffness,
+        radius_rolling,
+        radius_transverse,
+        ellipticity,
+        integral_first: first,
+        integral_second: second,
+        effective_modulus,
+    })
+}
+
+/// E' = 2/[(1−ν₁²)/E₁ + (1−ν₂²)/E₂] in Pa.
+pub fn effective_modulus(one: &Material, other: &Material) -> f64 {
+    let compliance = |m: &Material| (1.0 - m.poisson_ratio * m.poisson_ratio) / m.youngs_modulus;
+    2.0 / (compliance(one) + compliance(other))
+}
+
+/// Whether the race's rolling surface is convex (inner race) or concave (outer race).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RaceSide {
+    Inner,
+    Outer,
+}
+
+/// Contact of the bearing's ball with one raceway at the nominal contact angle:
+/// 1/R_rolling = 1/r_ball ± 1/R_race (+ inner, − outer), 1/R_transverse = 1/r_ball − 1/r_groove.
+///
+/// R_race is the principal radius of the raceway in the rolling direction, measured along the
+/// contact normal: the groove-bottom radius of a deep-groove race, longer by 1/cos α otherwise.
+pub fn contact(
+    model: HertzModel,
+    side: RaceSide,
+    geometry: &BearingGeometry,
+    ball: &Material,
+    race: &Material,
+) -> Result<HertzContact, HertzError> {
+    let cos_angle = geometry.contact_angle.cos();
+    let curvature_race = match side {
+        RaceSide::Inner => 1.0 / principal_radius(&geometry.inner, -1.0, cos_angle),
+        RaceSide::Outer => -1.0 / principal_radius(&geometry.outer, 1.0, cos_angle),
+    };
+    let raceway = match side {
+        RaceSide::Inner => &geometry.inner,
+        RaceSide::Outer => &geometry.outer,
+    };
+    let curvature_ball = 1.0 / geometry.ball_radius;
+    contact_from_radii(
+        model,
+        1.0 / (curvature_ball + curvature_race),
+        1.0 / (curvature_ball - 1.0 / raceway.groove_radius),
+        effective_modulus(ball, race),
+    )
+}
+
+fn principal_radius(raceway: &Raceway, outward: f64, cos_angle: f64) -> f64 {
+    raceway.centre_radius / cos_angle + outward * raceway.groove_radius
+}
+
+/// Contact ellipse and peak pressure under a normal load in N; all zero without load.
+pub fn contact_ellipse(contact: &HertzContact, normal_load: f64) -> ContactEllipse {
+    if normal_load <= 0.0 {
+        return ContactEllipse { semi_major: 0.0, semi_minor: 0.0, peak_pressure: 0.0 };
+    }
+    let k = contact.ellipticity;
+    let radius = 1.0 / (1.0 / contact.radius_rolling + 1.0 / contact.radius_transverse);
+    let semi_major = (6.0 * k * k * contact.integral_second * normal_load * radius
+        / (PI * contact.effective_modulus))
+        .cbrt();
+    let semi_minor = semi_major / k;
+    let peak_pressure = 1.5 * normal_load / (PI * semi_major * semi_minor);
+    ContactEllipse { semi_major, semi_minor, peak_pressure }
+}
+
+/// Stiffness coefficient of two contacts in series, (K₁^{-2/3} + K₂^{-2/3})^{-3/2}, N/m^1.5.
+pub fn series_stiffness(one: f64, other: f64) -> f64 {
+    let compliance = |k: f64| 1.0 / (k.cbrt() * k.cbrt());
+    let sum = compliance(one) + compliance(other);
+    1.0 / (sum * sum.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_radii_give_the_sphere_on_a_plane() {
+        // Closed form for a sphere of radius R on a plane: F = (4/3) E* √R δ^1.5 with E* = E'/2,
+        // here with both relative radii equal to R.
+        let (radius, modulus) = (0.01, 200e9);
+        let contact = contact_from_radii(HertzModel::Exact, radius, radius, modulus).unwrap();
+        let closed_form = 4.0 / 3.0 * (modulus / 2.0) * f64::sqrt(radius);
+        assert!((contact.stiffness / closed_form - 1.0).abs() <= 1e-14);
+        assert!((contact.ellipticity - 1.0).abs() <= 1e-15);
+    }
+
+    #[test]
+    fn exchanging_the_directions_changes_nothing() {
+        for model in [HertzModel::HamrockBrewe, HertzModel::Exact] {
+            let one = contact_from_radii(model, 0.004, 0.3, 2e11).unwrap();
+            let other = contact_from_radii(model, 0.3, 0.004, 2e11).unwrap();
+            assert_eq!(one.stiffness, other.stiffness);
+        }
+    }
+
+    #[test]
+    fn a_ball_as_large_as_its_groove_is_refused() {
+        let error = contact_from_radii(HertzModel::Exact, 0.004, f64::INFINITY, 2e11);
+        assert!(matches!(error, Err(HertzError::NotConvex { .. })));
+        assert!(contact_from_radii(HertzModel::Exact, f64::NAN, 1.0, 2e11).is_err());
+    }
 }

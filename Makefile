@@ -1,0 +1,41 @@
+# Set-up is two commands: `make verify` (the main job) and `make test`.
+# Everything builds with the one release profile, so that nothing compiles twice.
+CARGO ?= cargo
+VERIFY = $(CARGO) run --release --locked -q -p verification --bin verify --
+
+.PHONY: verify verify-full test golden bench pareto doc lint fuzz
+
+## Benchmarks of the source against independent oracles; report in target/verify.
+verify:
+	$(VERIFY) --tier smoke
+
+## The same with the long cases.
+verify-full:
+	$(VERIFY) --tier full
+
+## Laws, command line, scene reader, golden values.
+test:
+	$(CARGO) test --release --locked --workspace
+
+## Record new golden values: make golden CASE=misalignment_moment REASON="why they changed"
+golden:
+	$(VERIFY) golden --case "$(CASE)" --reason "$(REASON)"
+
+## Kernels under criterion.
+bench:
+	$(CARGO) bench --locked --bench statics --profile release
+
+## Run time against error, as CSV and SVG in target/pareto.
+pareto:
+	$(VERIFY) pareto --out target/pareto
+
+## A million mutated scenes through the reader.
+fuzz:
+	SCENE_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test scene_fuzz -- --nocapture
+
+doc:
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --release --locked --no-deps --workspace
+
+lint:
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --release --locked --workspace --all-targets -- -D warnings

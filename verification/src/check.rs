@@ -1,0 +1,189 @@
+//! A check as a case states it: our number, what it is held against, how closely and why.
+
+use serde::Serialize;
+
+use crate::golden::GoldenTolerance;
+
+/// What our number is held against.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reference {
+    /// An entry of the case's `published.toml`, by id; its value is looked up after the run.
+    Published(String),
+    /// Anything the case can compute or cite itself, with a word on where it comes from.
+    Computed { kind: ReferenceKind, value: f64, origin: String },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ReferenceKind {
+    /// Printed in the source.
+    Published,
+    /// A formula evaluated apart from the law it judges.
+    ClosedForm,
+    /// The limit of a refinement, or a solution fine enough to count as one.
+    Converged,
+    /// Another method or another code.
+    Independent,
+}
+
+/// How closely our number must agree. The error is ours − reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tolerance {
+    /// |error| ≤ tolerance · |reference|.
+    Relative(f64),
+    /// |error| ≤ tolerance, in the check's unit.
+    Absolute(f64),
+    /// |error| ≤ half of the last printed place (`rounding` of the published value).
+    Printed,
+    /// ours ≥ reference + margin, in the check's unit.
+    AtLeast { margin: f64 },
+    /// ours ≤ reference − margin, in the check's unit.
+    AtMost { margin: f64 },
+}
+
+/// Why a published number differs from ours, and what shows it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Explanation {
+    /// What the published number is instead.
+    pub text: String,
+    /// The difference as we know it, signed (ours − published): relative to the published value
+    /// where the check's tolerance is relative, else in the check's unit.
+    pub gap: f64,
+    /// How far the difference may stray from `gap` before the explanation counts as stale.
+    pub gap_tolerance: f64,
+    /// Ids of checks, figures, tables and findings of the same case; at least one is a check,
+    /// and all checks among them must hold.
+    pub evidence: Vec<String>,
+}
+
+impl Explanation {
+    pub fn new(text: &str, gap: f64, gap_tolerance: f64, evidence: &[&str]) -> Explanation {
+        Explanation {
+            text: text.to_string(),
+            gap,
+            gap_tolerance,
+            evidence: evidence.iter().map(|id| id.to_string()).collect(),
+        }
+    }
+}
+
+/// A check under construction. It needs an id, a reference and a tolerance with its reason;
+/// anything missing fails the case.
+///
+/// ```
+/// use verification::check::Check;
+/// use verification::golden::GoldenTolerance;
+///
+/// let check = Check::new("moment_0p15", "moment at 0.15° tilt", "N·m", 6.421)
+///     .published("moment_0p15")
+///     .under("radial_clearance")
+///     .relative(0.005, "three printed digits; clearance identified to 0.1 µm")
+///     .golden(GoldenTolerance::REORDERED);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[must_use = "hand it to CaseContext::check"]
+pub struct Check {
+    pub id: String,
+    pub quantity: String,
+    pub unit: String,
+    pub ours: f64,
+    pub reference: Option<Reference>,
+    pub tolerance: Option<Tolerance>,
+    pub reason: String,
+    pub assumption: Option<String>,
+    pub explanation: Option<Explanation>,
+    pub golden: Option<GoldenTolerance>,
+}
+
+impl Check {
+    /// `id` is unique within the case; `unit` is `"1"` for a pure number.
+    pub fn new(id: &str, quantity: &str, unit: &str, ours: f64) -> Check {
+        Check {
+            id: id.to_string(),
+            quantity: quantity.to_string(),
+            unit: unit.to_string(),
+            ours,
+            reference: None,
+            tolerance: None,
+            reason: String::new(),
+            assumption: None,
+            explanation: None,
+            golden: None,
+        }
+    }
+
+    /// Hold it against an entry of the case's `published.toml`.
+    pub fn published(mut self, id: &str) -> Check {
+        self.reference = Some(Reference::Published(id.to_string()));
+        self
+    }
+
+    /// Hold it against a formula; `origin` says which.
+    pub fn closed_form(self, value: f64, origin: &str) -> Check {
+        self.computed(ReferenceKind::ClosedForm, value, origin)
+    }
+
+    /// Hold it against a converged solution; `origin` says of what.
+    pub fn converged(self, value: f64, origin: &str) -> Check {
+        self.computed(ReferenceKind::Converged, value, origin)
+    }
+
+    /// Hold it against another method or code; `origin` says which.
+    pub fn independent(self, value: f64, origin: &str) -> Check {
+        self.computed(ReferenceKind::Independent, value, origin)
+    }
+
+    fn computed(mut self, kind: ReferenceKind, value: f64, origin: &str) -> Check {
+        self.reference = Some(Reference::Computed { kind, value, origin: origin.to_string() });
+        self
+    }
+
+    /// Tolerance relative to the reference, and its reason.
+    pub fn relative(self, tolerance: f64, reason: &str) -> Check {
+        self.within(Tolerance::Relative(tolerance), reason)
+    }
+
+    /// Tolerance in the check's unit, and its reason.
+    pub fn absolute(self, tolerance: f64, reason: &str) -> Check {
+        self.within(Tolerance::Absolute(tolerance), reason)
+    }
+
+    /// Agreement to the last printed place of the published number, and why so close.
+    pub fn printed(self, reason: &str) -> Check {
+        self.within(Tolerance::Printed, reason)
+    }
+
+    /// Ours must exceed the reference by `margin` or more.
+    pub fn at_least(self, margin: f64, reason: &str) -> Check {
+        self.within(Tolerance::AtLeast { margin }, reason)
+    }
+
+    /// Ours must stay below the reference by `margin` or more.
+    pub fn at_most(self, margin: f64, reason: &str) -> Check {
+        self.within(Tolerance::AtMost { margin }, reason)
+    }
+
+    fn within(mut self, tolerance: Tolerance, reason: &str) -> Check {
+        self.tolerance = Some(tolerance);
+        self.reason = reason.to_string();
+        self
+    }
+
+    /// The agreement rests on this assumption of the case.
+    pub fn under(mut self, assumption: &str) -> Check {
+        self.assumption = Some(assumption.to_string());
+        self
+    }
+
+    /// The published number is known to differ; the tolerance is then what agreement *would* be.
+    pub fn explained(mut self, explanation: Explanation) -> Check {
+        self.explanation = Some(explanation);
+        self
+    }
+
+    /// Also pin our number in `golden/<case>.json`.
+    pub fn golden(mut self, tolerance: GoldenTolerance) -> Check {
+        self.golden = Some(tolerance);
+        self
+    }
+}

@@ -1,0 +1,53 @@
+//! Today, in UTC, without a calendar library.
+
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Today as `YYYY-MM-DD`.
+pub fn today() -> String {
+    let (year, month, day) = civil(seconds_since_epoch() / 86_400);
+    format!("{year:04}-{month:02}-{day:02}")
+}
+
+/// Now as `YYYY-MM-DD HH:MM UTC`.
+pub fn now() -> String {
+    let minutes = seconds_since_epoch() / 60;
+    format!("{} {:02}:{:02} UTC", today(), minutes / 60 % 24, minutes % 60)
+}
+
+fn seconds_since_epoch() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |elapsed| elapsed.as_secs())
+}
+
+/// Year, month and day of the Gregorian calendar from days since 1970-01-01.
+fn civil(days: u64) -> (u64, u64, u64) {
+    let leap = |year: u64| year.is_multiple_of(4) && !year.is_multiple_of(100) || year.is_multiple_of(400);
+    let (mut year, mut rest) = (1970, days);
+    while rest >= if leap(year) { 366 } else { 365 } {
+        rest -= if leap(year) { 366 } else { 365 };
+        year += 1;
+    }
+    let february = if leap(year) { 29 } else { 28 };
+    let mut month = 1;
+    for length in [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31] {
+        if rest < length {
+            break;
+        }
+        rest -= length;
+        month += 1;
+    }
+    (year, month, rest + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::civil;
+
+    #[test]
+    fn known_days() {
+        // Unix times of midnight, divided by 86 400.
+        assert_eq!(civil(0), (1970, 1, 1));
+        assert_eq!(civil(951_782_400 / 86_400), (2000, 2, 29));
+        assert_eq!(civil(1_704_067_200 / 86_400), (2024, 1, 1));
+        assert_eq!(civil(4_107_542_400 / 86_400), (2100, 3, 1));
+    }
+}

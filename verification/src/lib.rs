@@ -1,0 +1,23 @@
+//! Benchmarks of the source, each judged against something that is not this program.
+//!
+//! A [`case::Case`] computes numbers and states checks; it never sees a published number. Only
+//! when it has finished does [`judge`] open the case's `published.toml` and compare. The report
+//! shows every number beside its reference, error, tolerance and the tolerance's reason.
+//!
+//! `verification/README.md` tells how a case is written and how the report is read.
+#![forbid(unsafe_code)]
+
+pub mod bearings;
+pub mod case;
+pub mod cases;
+pub mod check;
+pub mod context;
+pub mod date;
+pub mod golden;
+pub mod judge;
+pub mod machine;
+pub mod oracles;
+pub mod pareto;
+pub mod published;
+pub mod report;
+pub mod runner;

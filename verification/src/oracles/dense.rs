@@ -1,0 +1,73 @@
+//! Small dense symmetric systems.
+
+/// Symmetric matrix, row by row.
+pub type Matrix = Vec<Vec<f64>>;
+
+/// Solution of `(matrix + shift·1) x = rhs` by Cholesky, or `None` if the shifted matrix is not
+/// positive definite.
+pub fn solve_positive_definite(matrix: &Matrix, shift: f64, rhs: &[f64]) -> Option<Vec<f64>> {
+    let n = rhs.len();
+    let mut lower = vec![vec![0.0; n]; n];
+    for i in 0..n {
+        for j in 0..=i {
+            let mut sum = matrix[i][j];
+            for l in 0..j {
+                sum -= lower[i][l] * lower[j][l];
+            }
+            if i == j {
+                sum += shift;
+                // A pivot that is only rounding is no pivot.
+                let floor = 1e-15 * (matrix[i][i].abs() + shift);
+                if sum.is_nan() || sum <= floor {
+                    return None;
+                }
+                lower[i][i] = sum.sqrt();
+            } else {
+                lower[i][j] = sum / lower[j][j];
+            }
+        }
+    }
+    let mut x = rhs.to_vec();
+    for i in 0..n {
+        for j in 0..i {
+            x[i] -= lower[i][j] * x[j];
+        }
+        x[i] /= lower[i][i];
+    }
+    for i in (0..n).rev() {
+        for j in i + 1..n {
+            x[i] -= lower[j][i] * x[j];
+        }
+        x[i] /= lower[i][i];
+    }
+    Some(x)
+}
+
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+pub fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solves_a_hilbert_like_system_and_refuses_an_indefinite_one() {
+        let matrix: Matrix = (0..6)
+            .map(|i| (0..6).map(|j| 1.0 / (1.0 + (i + j) as f64)).collect())
+            .collect();
+        let rhs = [1.0, -2.0, 3.0, 0.5, 0.0, 1.0];
+        let x = solve_positive_definite(&matrix, 0.25, &rhs).expect("positive definite");
+        for i in 0..6 {
+            let product = dot(&matrix[i], &x) + 0.25 * x[i];
+            assert!((product - rhs[i]).abs() <= 1e-13, "row {i}: {product}");
+        }
+        let saddle = vec![vec![1.0, 2.0], vec![2.0, 1.0]];
+        assert!(solve_positive_definite(&saddle, 0.0, &[1.0, 1.0]).is_none());
+        assert!(solve_positive_definite(&saddle, 1.5, &[1.0, 1.0]).is_some());
+    }
+}

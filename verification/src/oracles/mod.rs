@@ -1,0 +1,15 @@
+//! Reference solutions that share nothing with the laws they judge.
+//!
+//! Nothing here imports the library: plain arrays, its own quadrature, its own automatic
+//! derivatives and its own linear solver. Where there is a choice the formulation differs from the
+//! usual one on purpose, so that an error would have to be made twice in different ways.
+
+pub mod dense;
+pub mod elliptic;
+pub mod hertz;
+pub mod hyperdual;
+pub mod statics;
+#[cfg(test)]
+mod statics_tests;
+pub mod trust_region;
+pub mod uniform_load;

@@ -1,0 +1,125 @@
+//! Newton's method in a trust region, for energies with exact second derivatives.
+
+use super::dense::{Matrix, dot, norm, solve_positive_definite};
+
+/// The energy and its derivatives at one point.
+pub struct Expansion {
+    pub value: f64,
+    /// Sum of the absolute values of the terms `value` is made of: says what rounding it carries.
+    pub magnitude: f64,
+    pub gradient: Vec<f64>,
+    pub hessian: Matrix,
+}
+
+pub struct Minimum {
+    pub point: Vec<f64>,
+    pub gradient_norm: f64,
+    pub iterations: usize,
+}
+
+const MAX_ITERATIONS: usize = 2000;
+
+/// Descends from `start` until neither the energy nor its gradient can be lowered in f64. The
+/// caller judges `gradient_norm`. All variables must have one unit; `radius` is the first step's
+/// length in it.
+pub fn minimise(
+    start: &[f64],
+    mut radius: f64,
+    expand: impl Fn(&[f64]) -> Expansion,
+) -> Minimum {
+    let mut point = start.to_vec();
+    let mut here = expand(&point);
+    let mut gradient_norm = norm(&here.gradient);
+    let mut iterations = 0;
+    while iterations < MAX_ITERATIONS && gradient_norm > 0.0 {
+        iterations += 1;
+        let step = step_within(&here, radius);
+        let curvature: f64 =
+            step.iter().zip(&here.hessian).map(|(s, row)| s * dot(row, &step)).sum();
+        let predicted = -dot(&here.gradient, &step) - 0.5 * curvature;
+        let candidate: Vec<f64> = point.iter().zip(&step).map(|(x, s)| x + s).collect();
+        let there = expand(&candidate);
+        let norm_there = norm(&there.gradient);
+        // Once the gain drowns in the rounding of the energy the gradient decides alone.
+        let energy_is_blind = predicted <= 1e-12 * here.magnitude;
+        let gain = (here.value - there.value) / predicted;
+        let accepted =
+            if energy_is_blind { norm_there < gradient_norm } else { gain > 1e-4 };
+        if energy_is_blind {
+            if !accepted {
+                break;
+            }
+        } else if gain < 0.25 || gain.is_nan() {
+            radius = 0.25 * norm(&step);
+        } else if gain > 0.75 && norm(&step) > 0.5 * radius {
+            radius *= 3.0;
+        }
+        if accepted {
+            (point, here, gradient_norm) = (candidate, there, norm_there);
+        }
+    }
+    Minimum { point, gradient_norm, iterations }
+}
+
+/// Minimiser of the quadratic model within `radius`, its multiplier found by bisection.
+fn step_within(here: &Expansion, radius: f64) -> Vec<f64> {
+    let downhill: Vec<f64> = here.gradient.iter().map(|g| -g).collect();
+    if let Some(step) = solve_positive_definite(&here.hessian, 0.0, &downhill) {
+        if norm(&step) <= radius {
+            return step;
+        }
+    }
+    let size = here.hessian.iter().map(|row| dot(row, row)).sum::<f64>().sqrt();
+    // This shift outweighs any negative curvature and shortens the step below the radius.
+    let mut high = (size + norm(&downhill) / radius) * 1.01;
+    let mut low = 1e-16 * high;
+    let mut best = solve_positive_definite(&here.hessian, high, &downhill)
+        .unwrap_or_else(|| vec![0.0; downhill.len()]);
+    for _ in 0..50 {
+        if norm(&best) >= 0.8 * radius || high <= 1.1 * low {
+            break;
+        }
+        let middle = (low * high).sqrt();
+        match solve_positive_definite(&here.hessian, middle, &downhill) {
+            Some(step) if norm(&step) <= radius => (best, high) = (step, middle),
+            _ => low = middle,
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_the_bottom_of_rosenbrocks_valley() {
+        let minimum = minimise(&[-1.2, 1.0], 0.1, |p| {
+            let (x, y) = (p[0], p[1]);
+            let bend = y - x * x;
+            Expansion {
+                value: 100.0 * bend * bend + (1.0 - x).powi(2),
+                magnitude: 100.0 * bend * bend + (1.0 - x).powi(2),
+                gradient: vec![-400.0 * x * bend - 2.0 * (1.0 - x), 200.0 * bend],
+                hessian: vec![
+                    vec![1200.0 * x * x - 400.0 * y + 2.0, -400.0 * x],
+                    vec![-400.0 * x, 200.0],
+                ],
+            }
+        });
+        assert!((minimum.point[0] - 1.0).abs() <= 1e-12, "{:?}", minimum.point);
+        assert!((minimum.point[1] - 1.0).abs() <= 1e-12, "{:?}", minimum.point);
+    }
+
+    #[test]
+    fn leaves_a_saddle() {
+        // x⁴/4 − x²/2 + y²/2 from (0, 1) with a nudge: minima at x = ±1.
+        let minimum = minimise(&[1e-3, 1.0], 0.1, |p| Expansion {
+            value: p[0].powi(4) / 4.0 - p[0] * p[0] / 2.0 + p[1] * p[1] / 2.0,
+            magnitude: p[0] * p[0] + p[1] * p[1],
+            gradient: vec![p[0].powi(3) - p[0], p[1]],
+            hessian: vec![vec![3.0 * p[0] * p[0] - 1.0, 0.0], vec![0.0, 1.0]],
+        });
+        assert!((minimum.point[0] - 1.0).abs() <= 1e-12, "{:?}", minimum.point);
+    }
+}

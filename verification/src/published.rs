@@ -1,0 +1,160 @@
+//! Numbers printed in the source, read from a case's `published.toml`.
+
+use std::collections::HashSet;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// A number as the source prints it, in the unit it prints.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct PublishedValue {
+    pub id: String,
+    pub quantity: String,
+    pub value: f64,
+    /// As printed; `"1"` for a pure number.
+    pub unit: String,
+    /// Table, figure or section.
+    pub source: String,
+    pub note: Option<String>,
+    /// One unit of the last printed place (0.001 for 6.423).
+    pub rounding: Option<f64>,
+    /// Set where the source states a limit ("less than 4 %") and not a value.
+    pub bound: Option<Bound>,
+}
+
+/// The kind of limit a source states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Bound {
+    AtMost,
+    AtLeast,
+}
+
+/// All published numbers of one case, in file order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Published {
+    values: Vec<PublishedValue>,
+}
+
+#[derive(Debug, Error, PartialEq)]
+pub enum PublishedError {
+    #[error("published.toml is not what the reader expects: {0}")]
+    Syntax(String),
+    #[error("published.toml: id `{0}` appears twice")]
+    DuplicateId(String),
+    #[error("published.toml: `{field}` of value `{id}` is empty")]
+    Empty { id: String, field: &'static str },
+    #[error("published.toml: value `{id}` is {value}, which is not finite")]
+    NotFinite { id: String, value: f64 },
+    #[error("published.toml: rounding {rounding} of value `{id}` is not a positive number")]
+    Rounding { id: String, rounding: f64 },
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(default)]
+    value: Vec<PublishedValue>,
+}
+
+impl Published {
+    /// Read the text of a `published.toml`.
+    ///
+    /// # Errors
+    /// Text that is not TOML of the expected form, an id used twice, an empty field, a number
+    /// that is not finite.
+    pub fn parse(text: &str) -> Result<Published, PublishedError> {
+        let file: File =
+            toml::from_str(text).map_err(|error| PublishedError::Syntax(error.to_string()))?;
+        let mut seen = HashSet::new();
+        for entry in &file.value {
+            let id = entry.id.clone();
+            for (field, text) in [
+                ("id", &entry.id),
+                ("quantity", &entry.quantity),
+                ("unit", &entry.unit),
+                ("source", &entry.source),
+            ] {
+                if text.trim().is_empty() {
+                    return Err(PublishedError::Empty { id, field });
+                }
+            }
+            if !entry.value.is_finite() {
+                return Err(PublishedError::NotFinite { id, value: entry.value });
+            }
+            if let Some(rounding) = entry.rounding
+                && !(rounding > 0.0 && rounding.is_finite())
+            {
+                return Err(PublishedError::Rounding { id, rounding });
+            }
+            if !seen.insert(id.clone()) {
+                return Err(PublishedError::DuplicateId(id));
+            }
+        }
+        Ok(Published { values: file.value })
+    }
+
+    pub fn values(&self) -> &[PublishedValue] {
+        &self.values
+    }
+
+    pub fn get(&self, id: &str) -> Option<&PublishedValue> {
+        self.values.iter().find(|entry| entry.id == id)
+    }
+
+    /// The same numbers with one of them replaced; used to show that each one matters.
+    pub fn with(&self, id: &str, value: f64) -> Published {
+        let mut altered = self.clone();
+        for entry in &mut altered.values {
+            if entry.id == id {
+                entry.value = value;
+            }
+        }
+        altered
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ENTRY: &str = r#"
+[[value]]
+id = "moment"
+quantity = "moment at 0.15° tilt"
+value = 6.423
+unit = "N·m"
+source = "3.4.5"
+rounding = 0.001
+"#;
+
+    #[test]
+    fn reads_an_entry_and_keeps_its_unit() {
+        let published = Published::parse(ENTRY).unwrap();
+        let entry = published.get("moment").unwrap();
+        assert_eq!((entry.value, entry.unit.as_str()), (6.423, "N·m"));
+        assert_eq!(published.with("moment", 7.0).get("moment").unwrap().value, 7.0);
+    }
+
+    #[test]
+    fn a_file_without_entries_is_allowed() {
+        assert!(Published::parse("# nothing is printed\n").unwrap().values().is_empty());
+    }
+
+    #[test]
+    fn each_defect_has_its_own_error() {
+        let with = |from: &str, to: &str| Published::parse(&ENTRY.replace(from, to));
+        assert!(matches!(
+            with("\"N·m\"", "\" \""),
+            Err(PublishedError::Empty { field: "unit", .. })
+        ));
+        assert!(matches!(with("6.423", "nan"), Err(PublishedError::NotFinite { .. })));
+        assert!(matches!(with("0.001", "-1.0"), Err(PublishedError::Rounding { .. })));
+        assert!(matches!(with("source", "sauce"), Err(PublishedError::Syntax(_))));
+        assert_eq!(
+            Published::parse(&[ENTRY, ENTRY].concat()),
+            Err(PublishedError::DuplicateId("moment".into()))
+        );
+    }
+}

@@ -1,0 +1,118 @@
+//! Numbers and words for people; the JSON keeps full precision.
+
+use crate::check::ReferenceKind;
+use crate::judge::{CheckReport, ToleranceOn};
+
+/// `digits` significant digits, in plain notation where that is short.
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return value.to_string();
+    }
+    if value == 0.0 {
+        return "0".into();
+    }
+    let scientific = format!("{value:.*e}", digits.saturating_sub(1));
+    let Some((mantissa, exponent)) = scientific.split_once('e') else { return scientific };
+    // The exponent after rounding, so that 9.9999 counts as 10.
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    if (-4..6).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        return format!("{value:.decimals$}").replace('-', "−");
+    }
+    let mantissa = if mantissa.contains('.') {
+        mantissa.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        mantissa
+    };
+    format!("{mantissa}e{exponent}").replace('-', "−")
+}
+
+pub fn optional(value: Option<f64>, digits: usize) -> String {
+    value.map_or("–".into(), |value| significant(value, digits))
+}
+
+/// A fraction as a percentage where that reads well, else as a plain number.
+pub fn fraction(value: f64) -> String {
+    if value == 0.0 || value.abs() >= 1e-5 && value.abs() < 10.0 {
+        format!("{} %", significant(100.0 * value, 3))
+    } else {
+        significant(value, 3)
+    }
+}
+
+/// The unit after a number; nothing for a pure number.
+pub fn unit(unit: &str) -> String {
+    if unit == "1" { String::new() } else { format!(" {unit}") }
+}
+
+pub fn kind(kind: Option<ReferenceKind>) -> &'static str {
+    match kind {
+        Some(ReferenceKind::Published) => "published",
+        Some(ReferenceKind::ClosedForm) => "closed form",
+        Some(ReferenceKind::Converged) => "converged",
+        Some(ReferenceKind::Independent) => "independent",
+        None => "none",
+    }
+}
+
+/// The error, in the measure its tolerance applies to.
+pub fn error(check: &CheckReport) -> String {
+    match check.tolerance_on {
+        Some(ToleranceOn::RelativeError) => check.error_relative.map_or("–".into(), fraction),
+        Some(_) => format!("{}{}", optional(check.error_absolute, 3), unit(&check.unit)),
+        None => "–".into(),
+    }
+}
+
+pub fn tolerance(check: &CheckReport) -> String {
+    let Some(limit) = check.tolerance else { return "–".into() };
+    let margin = |sign: &str| match limit == 0.0 {
+        true => format!("{sign} reference"),
+        false => format!("{sign} reference, margin {}{}", significant(limit, 3), unit(&check.unit)),
+    };
+    match check.tolerance_on {
+        Some(ToleranceOn::RelativeError) => format!("± {}", fraction(limit)),
+        Some(ToleranceOn::AtLeast) => margin("≥"),
+        Some(ToleranceOn::AtMost) => margin("≤"),
+        _ => format!("± {}{}", significant(limit, 3), unit(&check.unit)),
+    }
+}
+
+pub fn seconds(value: Option<f64>) -> String {
+    match value {
+        None => "–".into(),
+        Some(value) if value < 0.001 => "< 0.001".into(),
+        Some(value) => significant(value, if value < 10.0 { 2 } else { 3 }),
+    }
+}
+
+/// Gap of an explanation, in the measure of the check's tolerance.
+pub fn gap(check: &CheckReport, value: f64) -> String {
+    match check.tolerance_on {
+        Some(ToleranceOn::RelativeError) => fraction(value),
+        _ => format!("{}{}", significant(value, 3), unit(&check.unit)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn significant_digits() {
+        let cases = [
+            (6.42134, 5, "6.4213"),
+            (-0.00123456, 4, "−0.001235"),
+            (56_951_234_567.0, 5, "5.6951e10"),
+            (3.2e-13, 3, "3.2e−13"),
+            (99_999.96, 6, "100000"),
+            (0.0, 4, "0"),
+            (1234.5678, 5, "1234.6"),
+        ];
+        for (value, digits, text) in cases {
+            assert_eq!(significant(value, digits), text);
+        }
+        assert_eq!(fraction(0.0034), "0.340 %");
+        assert_eq!(fraction(2.1e-14), "2.1e−14");
+    }
+}

@@ -1,0 +1,93 @@
+//! `report.json`: every number in full precision; what is not finite is `null` with a reason.
+
+use std::io;
+
+use serde::Serialize;
+
+use crate::case::Tier;
+use crate::context::{Assumption, Finding, Table, Work};
+use crate::judge::CheckReport;
+use crate::machine::Machine;
+use crate::report::{CaseReport, CaseStatus, GoldenReport, Report, figure_file};
+
+#[derive(Serialize)]
+struct Document<'a> {
+    format: &'static str,
+    passed: bool,
+    complete: bool,
+    tier: Tier,
+    seconds: f64,
+    machine: &'a Machine,
+    cases: Vec<CaseEntry<'a>>,
+}
+
+#[derive(Serialize)]
+struct CaseEntry<'a> {
+    id: &'a str,
+    title: &'a str,
+    section: &'a str,
+    tier: Tier,
+    status: CaseStatus,
+    seconds: Option<f64>,
+    worst_error_over_tolerance: Option<f64>,
+    error: &'a Option<String>,
+    problems: &'a [String],
+    assumptions: &'a [Assumption],
+    checks: &'a [CheckReport],
+    findings: &'a [Finding],
+    tables: &'a [Table],
+    figures: Vec<FigureEntry<'a>>,
+    work: &'a [Work],
+    golden: &'a GoldenReport,
+}
+
+#[derive(Serialize)]
+struct FigureEntry<'a> {
+    name: &'a str,
+    caption: &'a str,
+    file: String,
+}
+
+pub fn render(report: &Report) -> io::Result<String> {
+    let document = Document {
+        format: "bearing-dynamics verification report 1",
+        passed: report.passed(),
+        complete: report.complete(),
+        tier: report.tier,
+        seconds: report.seconds(),
+        machine: &report.machine,
+        cases: report.cases.iter().map(entry).collect(),
+    };
+    let mut text = serde_json::to_string_pretty(&document)?;
+    text.push('\n');
+    Ok(text)
+}
+
+fn entry(case: &CaseReport) -> CaseEntry<'_> {
+    CaseEntry {
+        id: &case.id,
+        title: &case.title,
+        section: &case.section,
+        tier: case.tier,
+        status: case.status,
+        seconds: case.seconds,
+        worst_error_over_tolerance: case.worst_ratio,
+        error: &case.error,
+        problems: &case.problems,
+        assumptions: &case.assumptions,
+        checks: &case.checks,
+        findings: &case.findings,
+        tables: &case.tables,
+        figures: case
+            .figures
+            .iter()
+            .map(|figure| FigureEntry {
+                name: &figure.name,
+                caption: &figure.caption,
+                file: format!("figures/{}", figure_file(case, figure)),
+            })
+            .collect(),
+        work: &case.work,
+        golden: &case.golden,
+    }
+}

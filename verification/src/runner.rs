@@ -1,0 +1,124 @@
+//! Runs cases one after the other, on one thread, and survives whatever they do.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::time::Instant;
+
+use crate::case::Case;
+use crate::context::CaseContext;
+use crate::golden::{self, GoldenValue};
+use crate::judge::{self, Verdict};
+use crate::published::Published;
+use crate::report::{CaseReport, CaseStatus, GoldenReport, GoldenStatus};
+
+/// What a case recorded, how it ended and how long it took.
+#[derive(Clone, Debug)]
+pub struct Run {
+    pub record: CaseContext,
+    /// The error or the panic that ended it early.
+    pub error: Option<String>,
+    pub seconds: f64,
+}
+
+/// Compute a case. No published number is in reach here.
+pub fn compute(case: &Case) -> Run {
+    let mut record = CaseContext::default();
+    let start = Instant::now();
+    let outcome = catch_unwind(AssertUnwindSafe(|| (case.run)(&mut record)));
+    let seconds = start.elapsed().as_secs_f64();
+    let error = match outcome {
+        Ok(Ok(())) => None,
+        Ok(Err(error)) => Some(error.to_string()),
+        Err(payload) => Some(format!("panicked: {}", panic_message(payload.as_ref()))),
+    };
+    Run { record, error, seconds }
+}
+
+fn panic_message(payload: &(dyn Any + Send)) -> &str {
+    let text = payload.downcast_ref::<&str>().copied();
+    text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message")
+}
+
+/// Judge a finished run against its published numbers and its past.
+pub fn assess(case: &Case, run: &Run, golden_folder: &Path) -> CaseReport {
+    let record = &run.record;
+    let (mut problems, verdict) = match Published::parse(case.published) {
+        Ok(published) => {
+            let verdict = judge::judge(record, &published);
+            // Only a run that holds can show that altering a number would break it.
+            let idle = match verdict.holds() && run.error.is_none() {
+                true => judge::entries_without_effect(record, &published),
+                false => Vec::new(),
+            };
+            let idle = idle.iter().map(|id| {
+                format!("published value `{id}` could be altered far beyond its tolerance unnoticed")
+            });
+            (idle.collect(), verdict)
+        }
+        Err(error) => (
+            vec![error.to_string()],
+            judge::judge(record, &Published::default()),
+        ),
+    };
+    let Verdict { checks, problems: misuses } = verdict;
+    problems.extend(misuses);
+    let golden = compare_golden(case.id, &record.golden, golden_folder);
+    let mut report = CaseReport {
+        id: case.id.to_string(),
+        title: case.title.to_string(),
+        section: case.section.to_string(),
+        tier: case.tier,
+        status: CaseStatus::Passed,
+        seconds: Some(run.seconds),
+        error: run.error.clone(),
+        problems,
+        worst_ratio: worst(checks.iter().filter_map(|check| check.ratio)),
+        checks,
+        assumptions: record.assumptions.clone(),
+        figures: record.figures.clone(),
+        findings: record.findings.clone(),
+        tables: record.tables.clone(),
+        work: record.work.clone(),
+        golden,
+    };
+    report.status = report.verdict();
+    report
+}
+
+fn worst(ratios: impl Iterator<Item = f64>) -> Option<f64> {
+    ratios.fold(None, |worst, ratio| Some(worst.map_or(ratio, |other: f64| other.max(ratio))))
+}
+
+fn compare_golden(case: &str, values: &[GoldenValue], folder: &Path) -> GoldenReport {
+    let changed = |differences: Vec<String>| GoldenReport {
+        status: GoldenStatus::GoldenChanged,
+        values: values.len(),
+        differences,
+        last_reason: None,
+    };
+    if let Err(error) = golden::validate(values) {
+        return changed(vec![error.to_string()]);
+    }
+    match golden::read(folder, case) {
+        Err(error) => changed(vec![error.to_string()]),
+        Ok(None) if values.is_empty() => {
+            GoldenReport { status: GoldenStatus::None, ..GoldenReport::default() }
+        }
+        Ok(None) => GoldenReport {
+            status: GoldenStatus::GoldenMissing,
+            values: values.len(),
+            differences: vec![format!("no golden file; make golden CASE={case} REASON=\"…\"")],
+            last_reason: None,
+        },
+        Ok(Some(file)) => {
+            let differences = golden::differences(&file.values, values);
+            let status = match differences.is_empty() {
+                true => GoldenStatus::Unchanged,
+                false => GoldenStatus::GoldenChanged,
+            };
+            let last_reason = file.history.last().cloned();
+            GoldenReport { status, values: values.len(), differences, last_reason }
+        }
+    }
+}
