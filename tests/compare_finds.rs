@@ -30,10 +30,7 @@ fn pair() -> (TempDir, PathBuf, PathBuf) {
 }
 
 fn with_class(class: ToleranceClass) -> Options {
-    Options {
-        default_class: Some(class),
-        tolerances: None,
-    }
+    Options { default_class: Some(class), tolerances: None }
 }
 
 fn compared(reference: &Path, candidate: &Path, class: ToleranceClass) -> Comparison {
@@ -48,8 +45,7 @@ fn read_json(path: &Path) -> Value {
 fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
     match value {
         Value::Object(map) => {
-            map.iter()
-                .for_each(|(key, item)| pointers(item, &format!("{at}/{key}"), found));
+            map.iter().for_each(|(key, item)| pointers(item, &format!("{at}/{key}"), found));
         }
         Value::Array(items) => {
             items
@@ -63,10 +59,8 @@ fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
 
 /// `/balls/2/inner/load/value` → `balls[2].inner.load`.
 fn path_of(pointer: &str) -> String {
-    let pointer = pointer
-        .strip_suffix("/value")
-        .or(pointer.strip_suffix("/unit"))
-        .unwrap_or(pointer);
+    let pointer =
+        pointer.strip_suffix("/value").or(pointer.strip_suffix("/unit")).unwrap_or(pointer);
     let mut path = String::new();
     for part in pointer.split('/').skip(1) {
         match part.parse::<usize>() {
@@ -94,11 +88,7 @@ fn identical_folders_are_equal_in_every_class() {
         assert!(result.equal, "{}", report(&result));
         assert!(result.first_divergence.is_none());
         // 23 columns × 8 balls, twice, and a summary of more than 200 values.
-        assert!(
-            result.checked > 2 * 23 * 8 + 200,
-            "only {} values",
-            result.checked
-        );
+        assert!(result.checked > 2 * 23 * 8 + 200, "only {} values", result.checked);
         assert!(report(&result).starts_with("equal: "));
     }
 }
@@ -125,10 +115,7 @@ fn every_cell_of_the_series_is_watched_in_csv_and_npy() {
                 };
                 let allowed = allowed_at(&check(value + GROSS));
                 let found = check(value + 10.0 * allowed);
-                let first = found
-                    .first_divergence
-                    .as_ref()
-                    .expect("10 × tolerance is found");
+                let first = found.first_divergence.as_ref().expect("10 × tolerance is found");
                 assert!(!found.equal && found.differing == 1);
                 assert_eq!(first.channel, series.columns()[column].name);
                 assert_eq!(first.place, format!("row {0} (ball {0})", row + 1));
@@ -143,10 +130,7 @@ fn every_cell_of_the_series_is_watched_in_csv_and_npy() {
 #[test]
 fn every_leaf_of_the_summary_is_watched() {
     let (_root, reference, candidate) = pair();
-    let (expected, given) = (
-        reference.join("summary.json"),
-        candidate.join("summary.json"),
-    );
+    let (expected, given) = (reference.join("summary.json"), candidate.join("summary.json"));
     let summary = read_json(&expected);
     let mut leaves = Vec::new();
     pointers(&summary, "", &mut leaves);
@@ -185,11 +169,7 @@ fn every_leaf_of_the_summary_is_watched() {
                 continue;
             }
             let first = changed.first_divergence.as_ref().expect(&path);
-            assert!(
-                !changed.equal && changed.differing == 1,
-                "{}",
-                report(&changed)
-            );
+            assert!(!changed.equal && changed.differing == 1, "{}", report(&changed));
             assert!(first.place == path || first.place.starts_with(&format!("{path} (ball ")));
             assert_eq!(first.file, "summary.json");
         }
@@ -212,17 +192,10 @@ fn a_folder_comparison_names_file_row_and_channel_of_the_earliest_difference() {
         .unwrap();
     let result = compared(&reference, &candidate, ToleranceClass::F64Reordered);
     let first = result.first_divergence.clone().unwrap();
-    assert_eq!(
-        (first.file.as_str(), first.place.as_str()),
-        ("series.csv", "row 3 (ball 3)")
-    );
+    assert_eq!((first.file.as_str(), first.place.as_str()), ("series.csv", "row 3 (ball 3)"));
     assert_eq!(first.channel, series.columns()[9].name);
     assert_eq!(result.differing, 3);
-    let worst: Vec<_> = result
-        .channels
-        .iter()
-        .filter(|channel| channel.differing > 0)
-        .collect();
+    let worst: Vec<_> = result.channels.iter().filter(|channel| channel.differing > 0).collect();
     assert_eq!(worst.len(), 3);
     let json = to_json(&result);
     assert_eq!(json["equal"], false);
@@ -257,18 +230,12 @@ fn nan_and_infinity_differ_even_from_themselves() {
 fn nan_in_a_npy_candidate_fails() {
     use ndarray_npy::write_npy;
     let (_root, reference, candidate) = pair();
-    let mut data = Series::read_npy(&reference.join("series.npy"))
-        .unwrap()
-        .data()
-        .clone();
+    let mut data = Series::read_npy(&reference.join("series.npy")).unwrap().data().clone();
     data[(7, 22)] = f64::NAN;
     write_npy(candidate.join("series.npy"), &data).unwrap();
     let result = compared(&reference, &candidate, ToleranceClass::Mixed);
     let first = result.first_divergence.unwrap();
-    assert_eq!(
-        (first.file.as_str(), first.place.as_str()),
-        ("series.npy", "row 8 (ball 8)")
-    );
+    assert_eq!((first.file.as_str(), first.place.as_str()), ("series.npy", "row 8 (ball 8)"));
 }
 
 #[test]
@@ -292,43 +259,18 @@ fn missing_and_further_parts_are_told_apart() {
         fs::write(&a, reference).unwrap();
         fs::write(&b, candidate).unwrap();
         let result = compared(&a, &b, ToleranceClass::Mixed);
-        result
-            .first_divergence
-            .map(|first| (first.kind, first.place))
+        result.first_divergence.map(|first| (first.kind, first.place))
     };
     let two = "x [m],y [m]\n1,2\n3,4\n";
-    assert_eq!(
-        kind(two, "y [m],x [m]\n2,1\n4,3\n"),
-        None,
-        "order of columns does not matter"
-    );
-    assert_eq!(
-        kind(two, "x [m],y [m],z [m]\n1,2,0\n3,4,0\n"),
-        None,
-        "a further column"
-    );
+    assert_eq!(kind(two, "y [m],x [m]\n2,1\n4,3\n"), None, "order of columns does not matter");
+    assert_eq!(kind(two, "x [m],y [m],z [m]\n1,2,0\n3,4,0\n"), None, "a further column");
     let missing = Some((DivergenceKind::MissingChannel, String::new()));
     assert_eq!(kind(two, "x [m]\n1\n3\n"), missing);
-    let length = |candidate| DivergenceKind::Length {
-        reference: 2,
-        candidate,
-    };
-    assert_eq!(
-        kind(two, "x [m],y [m]\n1,2\n"),
-        Some((length(1), "row 2".into()))
-    );
-    assert_eq!(
-        kind(two, &format!("{two}5,6\n")),
-        Some((length(3), "row 3".into()))
-    );
-    let unit = DivergenceKind::Unit {
-        reference: "m".into(),
-        candidate: "mm".into(),
-    };
-    assert_eq!(
-        kind(two, "x [m],y [mm]\n1,2\n3,4\n"),
-        Some((unit, String::new()))
-    );
+    let length = |candidate| DivergenceKind::Length { reference: 2, candidate };
+    assert_eq!(kind(two, "x [m],y [m]\n1,2\n"), Some((length(1), "row 2".into())));
+    assert_eq!(kind(two, &format!("{two}5,6\n")), Some((length(3), "row 3".into())));
+    let unit = DivergenceKind::Unit { reference: "m".into(), candidate: "mm".into() };
+    assert_eq!(kind(two, "x [m],y [mm]\n1,2\n3,4\n"), Some((unit, String::new())));
     // An earlier wrong value goes before the missing row.
     let Some((DivergenceKind::Value { .. }, place)) = kind(two, "x [m],y [m]\n1,3\n") else {
         panic!("a value first");
@@ -344,33 +286,20 @@ fn trees_of_another_shape_differ() {
         fs::write(&a, reference.to_string()).unwrap();
         fs::write(&b, candidate.to_string()).unwrap();
         let result = compared(&a, &b, ToleranceClass::Mixed);
-        result
-            .first_divergence
-            .map(|first| (first.kind, first.place))
+        result.first_divergence.map(|first| (first.kind, first.place))
     };
     let list = |loads: &[f64]| json!({ "loads": loads, "count": 2 });
     let shorter = kind(list(&[1.0, 2.0]), list(&[1.0]));
-    assert_eq!(
-        shorter,
-        Some((DivergenceKind::MissingChannel, "loads[1]".into()))
-    );
+    assert_eq!(shorter, Some((DivergenceKind::MissingChannel, "loads[1]".into())));
     let longer = kind(list(&[1.0]), list(&[1.0, 2.0]));
-    assert_eq!(
-        longer,
-        Some((DivergenceKind::OnlyInCandidate, "loads[1]".into()))
-    );
+    assert_eq!(longer, Some((DivergenceKind::OnlyInCandidate, "loads[1]".into())));
     assert_eq!(
         kind(json!({"a": []}), json!({"a": [1]})).unwrap().0,
         DivergenceKind::MissingChannel
     );
     assert_eq!(kind(json!({"a": 1.5}), json!({"a": 1.5, "b": 2})), None);
     assert_eq!(kind(json!({"a": 2}), json!({"a": 2.0})), None);
-    for other in [
-        json!("2"),
-        json!(2.5),
-        json!(null),
-        json!({"value": 2, "unit": "N"}),
-    ] {
+    for other in [json!("2"), json!(2.5), json!(null), json!({"value": 2, "unit": "N"})] {
         assert!(kind(json!({"a": 2}), json!({ "a": other })).is_some());
     }
     assert!(kind(json!({"a": {"value": 1.0, "unit": "N"}}), json!({"a": 1.0})).is_some());
@@ -386,38 +315,20 @@ fn a_missing_file_is_a_difference_and_a_damaged_one_an_error() {
         fs::remove_file(&path).unwrap();
         let result = compare(&reference, &candidate, &options).unwrap();
         let first = result.first_divergence.as_ref().unwrap();
-        assert_eq!(
-            (&first.kind, first.file.as_str()),
-            (&DivergenceKind::MissingFile, name)
-        );
+        assert_eq!((&first.kind, first.file.as_str()), (&DivergenceKind::MissingFile, name));
         // Half of the file; a CSV is cut inside a row.
         fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
-        assert!(
-            compare(&reference, &candidate, &options).is_err(),
-            "half of {name}"
-        );
+        assert!(compare(&reference, &candidate, &options).is_err(), "half of {name}");
         fs::write(&path, b"\x00\xff\xfe").unwrap();
-        assert!(
-            compare(&reference, &candidate, &options).is_err(),
-            "noise in {name}"
-        );
+        assert!(compare(&reference, &candidate, &options).is_err(), "noise in {name}");
         fs::write(&path, bytes).unwrap();
     }
     let missing = reference.join("nothing.csv");
-    assert!(matches!(
-        compare(&missing, &missing, &options),
-        Err(CompareError::Series(_))
-    ));
+    assert!(matches!(compare(&missing, &missing, &options), Err(CompareError::Series(_))));
     let file = reference.join("series.csv");
-    assert!(matches!(
-        compare(&reference, &file, &options),
-        Err(CompareError::KindMismatch { .. })
-    ));
+    assert!(matches!(compare(&reference, &file, &options), Err(CompareError::KindMismatch { .. })));
     let summary = reference.join("summary.json");
-    assert!(matches!(
-        compare(&file, &summary, &options),
-        Err(CompareError::KindMismatch { .. })
-    ));
+    assert!(matches!(compare(&file, &summary, &options), Err(CompareError::KindMismatch { .. })));
     let empty = tempfile::tempdir().unwrap();
     assert!(matches!(
         compare(empty.path(), &candidate, &options),
@@ -429,11 +340,7 @@ fn a_missing_file_is_a_difference_and_a_damaged_one_an_error() {
 fn a_header_that_promises_too_much_is_refused_without_allocating() {
     let root = tempfile::tempdir().unwrap();
     let path = root.path().join("huge.npy");
-    for shape in [
-        "(1000000000000, 8)",
-        "(18446744073709551615, 8)",
-        "(99999999999999999999, 8)",
-    ] {
+    for shape in ["(1000000000000, 8)", "(18446744073709551615, 8)", "(99999999999999999999, 8)"] {
         let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}");
         while !(header.len() + 11).is_multiple_of(64) {
             header.push(' ');
@@ -451,11 +358,7 @@ fn a_header_that_promises_too_much_is_refused_without_allocating() {
 fn a_tolerance_file_beside_the_reference_decides_per_channel() {
     let (_root, reference, candidate) = pair();
     let series = Series::read_csv(&reference.join("series.csv")).unwrap();
-    let column = series
-        .columns()
-        .iter()
-        .position(|c| c.name == "inner_peak_pressure")
-        .unwrap();
+    let column = series.columns().iter().position(|c| c.name == "inner_peak_pressure").unwrap();
     let mut data = series.data().clone();
     data[(6, column)] *= 1.0 + 1e-6;
     let altered = Series::new(series.columns().to_vec(), data).unwrap();
@@ -471,12 +374,7 @@ fn a_tolerance_file_beside_the_reference_decides_per_channel() {
     assert!(outcome(&named(r#"{"relative": 2e-6}"#)).unwrap().equal);
     assert!(!outcome(&named(r#"{"relative": 5e-7}"#)).unwrap().equal);
     let ignored = outcome(&named(r#"{"class": "ignored"}"#)).unwrap();
-    assert!(
-        ignored.equal
-            && ignored
-                .ignored
-                .contains(&"series.csv: inner_peak_pressure".into())
-    );
+    assert!(ignored.equal && ignored.ignored.contains(&"series.csv: inner_peak_pressure".into()));
     // The user's own choice of a default goes before the file's.
     fs::write(reference.join("tolerances.json"), r#"{"class": "mixed"}"#).unwrap();
     assert!(!compared(&reference, &candidate, ToleranceClass::F64Exact).equal);
@@ -489,10 +387,7 @@ fn a_tolerance_file_beside_the_reference_decides_per_channel() {
         r#"{"channels": {"inner_load": {"relative": -1}}}"#,
         r#"{"channels": {"inner_load": {"relative": 1e-3, "class": "ignored"}}}"#,
     ] {
-        assert!(
-            matches!(outcome(refused), Err(CompareError::Tolerance(_))),
-            "{refused}"
-        );
+        assert!(matches!(outcome(refused), Err(CompareError::Tolerance(_))), "{refused}");
     }
 }
 
@@ -505,10 +400,7 @@ fn npy_without_names_takes_those_of_the_reference() {
     let npy = candidate.join("series.npy");
     assert!(compared(&csv, &npy, ToleranceClass::F64Exact).equal);
     // f32, as a graphics processor would write it.
-    let single = Series::read_npy(&npy)
-        .unwrap()
-        .data()
-        .mapv(|value| value as f32);
+    let single = Series::read_npy(&npy).unwrap().data().mapv(|value| value as f32);
     ndarray_npy::write_npy(&npy, &single).unwrap();
     assert!(compared(&csv, &npy, ToleranceClass::Mixed).equal);
     assert!(!compared(&csv, &npy, ToleranceClass::F64Reordered).equal);

@@ -24,9 +24,7 @@ fn bits(series: &Series) -> Vec<u64> {
 
 /// Any finite number: all magnitudes, subnormals, both zeros.
 fn finite() -> impl Strategy<Value = f64> {
-    any::<u64>()
-        .prop_map(f64::from_bits)
-        .prop_filter("finite", |value| value.is_finite())
+    any::<u64>().prop_map(f64::from_bits).prop_filter("finite", |value| value.is_finite())
 }
 
 proptest! {
@@ -73,23 +71,14 @@ fn names_that_cannot_be_read_back_are_refused() {
     let one = |column: Column| Series::new(vec![column], Array2::zeros((1, 1)));
     for name in ["", " x", "x ", "a[b]", "a]", "a\nb"] {
         assert!(
-            matches!(
-                one(Column::new(name, "m")),
-                Err(SeriesError::ColumnName { .. })
-            ),
+            matches!(one(Column::new(name, "m")), Err(SeriesError::ColumnName { .. })),
             "{name:?}"
         );
     }
     let twice = vec![Column::new("x", "m"), Column::new("x", "N")];
     assert!(Series::new(twice, Array2::zeros((1, 2))).is_err());
     let result = Series::new(vec![], Array2::zeros((1, 2)));
-    assert!(matches!(
-        result,
-        Err(SeriesError::ColumnCount {
-            columns: 0,
-            width: 2
-        })
-    ));
+    assert!(matches!(result, Err(SeriesError::ColumnCount { columns: 0, width: 2 })));
 }
 
 #[test]
@@ -102,22 +91,12 @@ fn values_that_are_not_finite_are_not_written_and_leave_the_old_file() {
     good.write_npy(&npy).unwrap();
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let bad = Series::new(column(), Array2::from_elem((2, 1), value)).unwrap();
-        assert!(matches!(
-            bad.write_csv(&csv),
-            Err(SeriesError::NotFinite { row: 0, .. })
-        ));
-        assert!(matches!(
-            bad.write_npy(&npy),
-            Err(SeriesError::NotFinite { row: 0, .. })
-        ));
+        assert!(matches!(bad.write_csv(&csv), Err(SeriesError::NotFinite { row: 0, .. })));
+        assert!(matches!(bad.write_npy(&npy), Err(SeriesError::NotFinite { row: 0, .. })));
     }
     assert_eq!(Series::read_csv(&csv).unwrap(), good);
     assert_eq!(Series::read_npy(&npy).unwrap(), good);
-    assert_eq!(
-        fs::read_dir(folder.path()).unwrap().count(),
-        3,
-        "no temporary file is left"
-    );
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3, "no temporary file is left");
 }
 
 #[test]
@@ -125,38 +104,18 @@ fn the_summary_holds_the_solution_with_units() {
     let solution = solution();
     let summary = static_summary(&solution, &run()).unwrap();
     let quantity = |pointer: &str| {
-        let found = summary
-            .pointer(pointer)
-            .unwrap_or_else(|| panic!("no {pointer}"));
-        (
-            found["value"].as_f64().unwrap(),
-            found["unit"].as_str().unwrap().to_string(),
-        )
+        let found = summary.pointer(pointer).unwrap_or_else(|| panic!("no {pointer}"));
+        (found["value"].as_f64().unwrap(), found["unit"].as_str().unwrap().to_string())
     };
     assert_eq!(quantity("/inner_race/position/z"), (-8.9e-6, "m".into()));
-    assert_eq!(
-        quantity("/inner_race/position/tilt_y"),
-        (1.1e-4f64.to_degrees(), "deg".into())
-    );
+    assert_eq!(quantity("/inner_race/position/tilt_y"), (1.1e-4f64.to_degrees(), "deg".into()));
     assert_eq!(quantity("/inner_race/loads/tilt_y"), (0.31, "N m".into()));
-    assert_eq!(
-        quantity("/outer_race/contact_force/z"),
-        (-1500.0, "N".into())
-    );
-    assert_eq!(
-        quantity("/stiffness/x/tilt_z"),
-        (solution.stiffness[(0, 4)], "N/rad".into())
-    );
-    assert_eq!(
-        quantity("/stiffness/tilt_z/x"),
-        (solution.stiffness[(4, 0)], "N m/m".into())
-    );
+    assert_eq!(quantity("/outer_race/contact_force/z"), (-1500.0, "N".into()));
+    assert_eq!(quantity("/stiffness/x/tilt_z"), (solution.stiffness[(0, 4)], "N/rad".into()));
+    assert_eq!(quantity("/stiffness/tilt_z/x"), (solution.stiffness[(4, 0)], "N m/m".into()));
     assert_eq!(quantity("/seconds/solve"), (7.3e-5, "s".into()));
     let ball = &solution.balls[5];
-    assert_eq!(
-        quantity("/balls/5/outer/load"),
-        (ball.outer.normal_load, "N".into())
-    );
+    assert_eq!(quantity("/balls/5/outer/load"), (ball.outer.normal_load, "N".into()));
     assert_eq!(
         quantity("/balls/5/inner/force_on_race/y"),
         (ball.inner.force_on_race.y, "N".into())
@@ -164,11 +123,7 @@ fn the_summary_holds_the_solution_with_units() {
     assert_eq!(summary["solver"]["iterations"], 6);
     assert_eq!(summary["program"]["version"], env!("CARGO_PKG_VERSION"));
     assert_eq!(summary["determinacy"]["kind"], "determinate");
-    let loaded = solution
-        .balls
-        .iter()
-        .filter(|ball| ball.inner.normal_load > 0.0)
-        .count();
+    let loaded = solution.balls.iter().filter(|ball| ball.inner.normal_load > 0.0).count();
     assert!(loaded > 0 && loaded < 8);
     assert_eq!(summary["load_zone"]["balls_loaded_inner"], loaded);
     assert_eq!(summary["assumptions"]["ball_phase"], "0 deg: not stated");
@@ -179,15 +134,10 @@ fn the_summary_holds_the_solution_with_units() {
 fn an_indeterminate_solution_says_so() {
     let mut solution = solution();
     let direction = SVector::from([0.0, 1.0, 0.0, 0.0, 0.0]);
-    solution.determinacy = Determinacy::Indeterminate {
-        free_directions: vec![direction],
-    };
+    solution.determinacy = Determinacy::Indeterminate { free_directions: vec![direction] };
     let summary = static_summary(&solution, &run()).unwrap();
     assert_eq!(summary["determinacy"]["kind"], "indeterminate");
-    assert_eq!(
-        summary["determinacy"]["free_directions"][0]["y"]["value"],
-        1.0
-    );
+    assert_eq!(summary["determinacy"]["free_directions"][0]["y"]["value"], 1.0);
 }
 
 #[test]
@@ -201,13 +151,7 @@ fn series_and_summary_agree() {
         serde_json::from_slice(&fs::read(folder.path().join("summary.json")).unwrap()).unwrap();
     for (row, ball) in summary["balls"].as_array().unwrap().iter().enumerate() {
         for race in ["inner", "outer"] {
-            for name in [
-                "load",
-                "approach",
-                "contact_angle",
-                "semi_major",
-                "peak_pressure",
-            ] {
+            for name in ["load", "approach", "contact_angle", "semi_major", "peak_pressure"] {
                 let column = series.column(&format!("{race}_{name}")).unwrap();
                 assert_eq!(ball[race][name]["value"].as_f64().unwrap(), column[row]);
             }
@@ -229,9 +173,7 @@ fn a_solution_that_is_not_finite_writes_nothing() {
     ];
     for index in 0..3 {
         alterations.push(Box::new(move |s| s.balls[4].position[index] = f64::NAN));
-        alterations.push(Box::new(move |s| {
-            s.balls[4].outer.force_on_race[index] = f64::NAN
-        }));
+        alterations.push(Box::new(move |s| s.balls[4].outer.force_on_race[index] = f64::NAN));
     }
     alterations.push(Box::new(|s| s.balls[7].inner.peak_pressure = f64::NAN));
     alterations.push(Box::new(|s| s.balls[7].inner.approach = f64::NEG_INFINITY));
@@ -239,16 +181,12 @@ fn a_solution_that_is_not_finite_writes_nothing() {
         let mut solution = solution();
         alter(&mut solution);
         let result = write_static_results(&target, &solution, &run());
-        assert!(
-            matches!(result, Err(ResultsError::NotFinite { .. })),
-            "{result:?}"
-        );
+        assert!(matches!(result, Err(ResultsError::NotFinite { .. })), "{result:?}");
     }
     let mut record = run();
-    record.sections.push((
-        "frequencies".into(),
-        json!({ "bpfo": { "value": f64::NAN, "unit": "Hz" } }),
-    ));
+    record
+        .sections
+        .push(("frequencies".into(), json!({ "bpfo": { "value": f64::NAN, "unit": "Hz" } })));
     let result = write_static_results(&target, &solution(), &record);
     assert!(matches!(result, Err(ResultsError::Null { .. })));
     record.sections = vec![("balls".into(), json!(1))];
@@ -272,11 +210,7 @@ fn pack(folder: &Path, class: ToleranceClass) {
 fn a_pack_accepts_its_own_results_and_notices_any_change_to_its_files() {
     let root = tempfile::tempdir().unwrap();
     let (folder, candidate) = (root.path().join("pack"), root.path().join("candidate"));
-    for class in [
-        ToleranceClass::F64Exact,
-        ToleranceClass::F64Reordered,
-        ToleranceClass::Mixed,
-    ] {
+    for class in [ToleranceClass::F64Exact, ToleranceClass::F64Reordered, ToleranceClass::Mixed] {
         pack(&folder, class);
         write_static_results(&candidate, &solution(), &run()).unwrap();
         let result = compare(&folder, &candidate, &Options::default()).unwrap();
@@ -306,10 +240,7 @@ fn a_pack_accepts_its_own_results_and_notices_any_change_to_its_files() {
         fs::write(&path, bytes).unwrap();
     }
     fs::write(folder.join("extra.csv"), "x\n1\n").unwrap();
-    assert!(matches!(
-        verify_pack(&folder),
-        Err(PackError::Unlisted { .. })
-    ));
+    assert!(matches!(verify_pack(&folder), Err(PackError::Unlisted { .. })));
 }
 
 #[test]
@@ -332,13 +263,7 @@ fn the_hash_is_sha256() {
 fn a_pack_does_not_mix_with_other_files() {
     let root = tempfile::tempdir().unwrap();
     fs::write(root.path().join("thesis.txt"), "mine").unwrap();
-    for name in [
-        "../scene.toml",
-        "",
-        "summary.json",
-        "manifest.json",
-        "/scene.toml",
-    ] {
+    for name in ["../scene.toml", "", "summary.json", "manifest.json", "/scene.toml"] {
         let resolved = json!({});
         let input = PackInput {
             scene_name: name,
@@ -347,14 +272,8 @@ fn a_pack_does_not_mix_with_other_files() {
             class: ToleranceClass::Mixed,
         };
         let result = write_pack(&root.path().join("new"), &input, &solution(), &run());
-        assert!(
-            matches!(result, Err(PackError::SceneName { .. })),
-            "{name:?}"
-        );
-        let input = PackInput {
-            scene_name: "scene.toml",
-            ..input
-        };
+        assert!(matches!(result, Err(PackError::SceneName { .. })), "{name:?}");
+        let input = PackInput { scene_name: "scene.toml", ..input };
         let result = write_pack(root.path(), &input, &solution(), &run());
         assert!(matches!(result, Err(PackError::Foreign { .. })));
     }

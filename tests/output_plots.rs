@@ -84,51 +84,30 @@ fn xy_names_curves_and_units() {
         "a & b < c",
         "six",
     ];
-    let curves = names
-        .iter()
-        .enumerate()
-        .map(|(i, n)| curve(n, 1.0 + 0.2 * i as f64))
-        .collect();
+    let curves = names.iter().enumerate().map(|(i, n)| curve(n, 1.0 + 0.2 * i as f64)).collect();
     let svg = xy(&xy_plot(curves)).unwrap();
     keep("xy.svg", &svg);
     assert_svg(
         &svg,
-        &[
-            "tilt [deg]",
-            "moment [N m]",
-            "0.20",
-            "exact integrals",
-            "a &amp; b &lt; c",
-        ],
+        &["tilt [deg]", "moment [N m]", "0.20", "exact integrals", "a &amp; b &lt; c"],
     );
 }
 
 #[test]
 fn logarithmic_axes_and_single_points() {
-    let points = (0..8)
-        .map(|i| [10f64.powi(i - 6), 10f64.powi(-2 * i)])
-        .collect();
-    let mut plot = xy_plot(vec![
-        Curve::new("error", points),
-        Curve::new("one", vec![[0.1, 1e-8]]),
-    ]);
+    let points = (0..8).map(|i| [10f64.powi(i - 6), 10f64.powi(-2 * i)]).collect();
+    let mut plot = xy_plot(vec![Curve::new("error", points), Curve::new("one", vec![[0.1, 1e-8]])]);
     plot.x = Axis::log("run time", "s");
     plot.y = Axis::log("relative error", "1");
     plot.title = "Run time against error".into();
     let svg = xy(&plot).unwrap();
     keep("log.svg", &svg);
-    assert_svg(
-        &svg,
-        &["run time [s]", "relative error [1]", "0.1", "1e-14"],
-    );
+    assert_svg(&svg, &["run time [s]", "relative error [1]", "0.1", "1e-14"]);
     plot.style = Style::Markers;
     assert_svg(&xy(&plot).unwrap(), &["one"]);
     for value in [0.0, -1.0] {
         plot.curves[1].points[0][1] = value;
-        assert!(matches!(
-            xy(&plot),
-            Err(PlotError::NotPositive { point: 0, .. })
-        ));
+        assert!(matches!(xy(&plot), Err(PlotError::NotPositive { point: 0, .. })));
     }
     let flat = xy(&xy_plot(vec![Curve::new("flat", vec![[1.0, 2.0]])])).unwrap();
     keep("flat.svg", &flat);
@@ -145,41 +124,18 @@ fn a_point_is_drawn_where_the_axes_say() {
 
 #[test]
 fn polar_curves_over_azimuth() {
-    let curves = vec![
-        ball_curve("clearance 5 µm", 1.0),
-        ball_curve("clearance 0 µm", 0.8),
-    ];
+    let curves = vec![ball_curve("clearance 5 µm", 1.0), ball_curve("clearance 0 µm", 0.8)];
     let svg = polar(&polar_plot(curves)).unwrap();
     keep("polar.svg", &svg);
     assert_svg(
         &svg,
-        &[
-            "90° (+Z)",
-            "0° (+Y)",
-            "radius: force [N]; angle: azimuth [deg]",
-            "clearance 5 µm",
-        ],
+        &["90° (+Z)", "0° (+Y)", "radius: force [N]; angle: azimuth [deg]", "clearance 5 µm"],
     );
     let both = polar(&PolarPlot::ball_loads("Loads", &solution())).unwrap();
-    assert_svg(
-        &both,
-        &[
-            "radius: normal load [N]; angle: azimuth [deg]",
-            "on the inner race",
-        ],
-    );
-    let negative = polar(&polar_plot(vec![Curve::new(
-        "a",
-        vec![[0.0, 1.0], [1.0, -1e-9]],
-    )]));
-    assert!(matches!(
-        negative,
-        Err(PlotError::Negative { point: 1, .. })
-    ));
-    assert_svg(
-        &polar(&polar_plot(vec![ball_curve("none", 0.0)])).unwrap(),
-        &["none"],
-    );
+    assert_svg(&both, &["radius: normal load [N]; angle: azimuth [deg]", "on the inner race"]);
+    let negative = polar(&polar_plot(vec![Curve::new("a", vec![[0.0, 1.0], [1.0, -1e-9]])]));
+    assert!(matches!(negative, Err(PlotError::Negative { point: 1, .. })));
+    assert_svg(&polar(&polar_plot(vec![ball_curve("none", 0.0)])).unwrap(), &["none"]);
 }
 
 #[test]
@@ -187,18 +143,11 @@ fn load_zone_draws_each_ball_and_states_the_scale() {
     let zone = zone();
     let svg = load_zone(&zone).unwrap();
     keep("load_zone.svg", &svg);
-    assert_svg(
-        &svg,
-        &["Y", "Z", "in contact with the inner race", "open", "1", "8"],
-    );
+    assert_svg(&svg, &["Y", "Z", "in contact with the inner race", "open", "1", "8"]);
     assert!(svg.contains("N; at the balls: load on the outer race [N]"));
     let red = "fill=\"#D53C28\"";
     let loaded = zone.balls.iter().filter(|ball| ball.loaded).count();
-    assert_eq!(
-        svg.matches(red).count(),
-        loaded + 1,
-        "every loaded ball and the key"
-    );
+    assert_eq!(svg.matches(red).count(), loaded + 1, "every loaded ball and the key");
 
     let mut unloaded = zone.clone();
     for ball in &mut unloaded.balls {
@@ -211,42 +160,23 @@ fn load_zone_draws_each_ball_and_states_the_scale() {
     many.title = "Preloaded bearing".into();
     many.ball_radius = 0.0025;
     many.balls = (0..30)
-        .map(|i| LoadZoneBall {
-            azimuth: f64::from(i) * 0.2094,
-            loaded: true,
-            outer_load: 4e4,
-        })
+        .map(|i| LoadZoneBall { azimuth: f64::from(i) * 0.2094, loaded: true, outer_load: 4e4 })
         .collect();
     keep("load_zone_many.svg", &load_zone(&many).unwrap());
 }
 
 #[test]
 fn input_that_cannot_be_drawn_is_refused() {
-    assert!(matches!(
-        xy(&xy_plot(vec![])),
-        Err(PlotError::NoCurve { .. })
-    ));
+    assert!(matches!(xy(&xy_plot(vec![])), Err(PlotError::NoCurve { .. })));
     let empty = || vec![Curve::new("empty", vec![])];
-    assert!(matches!(
-        xy(&xy_plot(empty())),
-        Err(PlotError::NoPoint { .. })
-    ));
-    assert!(matches!(
-        polar(&polar_plot(empty())),
-        Err(PlotError::NoPoint { .. })
-    ));
+    assert!(matches!(xy(&xy_plot(empty())), Err(PlotError::NoPoint { .. })));
+    assert!(matches!(polar(&polar_plot(empty())), Err(PlotError::NoPoint { .. })));
     for bad in [f64::NAN, f64::INFINITY, -1e201, 1e-310] {
         for point in [[bad, 1.0], [1.0, bad]] {
             let curves = || vec![Curve::new("bad", vec![[0.0, 0.0], point])];
-            assert!(matches!(
-                xy(&xy_plot(curves())),
-                Err(PlotError::NotDrawable { point: 1, .. })
-            ));
+            assert!(matches!(xy(&xy_plot(curves())), Err(PlotError::NotDrawable { point: 1, .. })));
             let result = polar(&polar_plot(curves()));
-            assert!(matches!(
-                result,
-                Err(PlotError::NotDrawable { point: 1, .. })
-            ));
+            assert!(matches!(result, Err(PlotError::NotDrawable { point: 1, .. })));
         }
     }
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -255,16 +185,10 @@ fn input_that_cannot_be_drawn_is_refused() {
         assert!(matches!(load_zone(&wrong), Err(PlotError::Size { .. })));
         let mut wrong = zone();
         wrong.balls[3].azimuth = bad;
-        assert!(matches!(
-            load_zone(&wrong),
-            Err(PlotError::Ball { ball: 4, .. })
-        ));
+        assert!(matches!(load_zone(&wrong), Err(PlotError::Ball { ball: 4, .. })));
         let mut wrong = zone();
         wrong.balls[3].outer_load = bad;
-        assert!(matches!(
-            load_zone(&wrong),
-            Err(PlotError::Ball { ball: 4, .. })
-        ));
+        assert!(matches!(load_zone(&wrong), Err(PlotError::Ball { ball: 4, .. })));
     }
     let mut wrong = zone();
     wrong.balls.clear();

@@ -59,21 +59,11 @@ pub enum PackError {
     #[error(transparent)]
     Write(#[from] WriteError),
     #[error("cannot read {}: {source}", path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: std::io::Error },
     #[error("{} is not a manifest: {source}", path.display())]
-    Manifest {
-        path: PathBuf,
-        source: serde_json::Error,
-    },
+    Manifest { path: PathBuf, source: serde_json::Error },
     #[error("{name}: sha256 is {found}, the manifest says {expected}")]
-    Hash {
-        name: String,
-        expected: String,
-        found: String,
-    },
+    Hash { name: String, expected: String, found: String },
     #[error("{name} is in the folder but not in the manifest")]
     Unlisted { name: String },
     #[error("the manifest does not list {name}")]
@@ -91,9 +81,7 @@ pub fn write_pack(
     run: &RunRecord,
 ) -> Result<Manifest, PackError> {
     if !is_plain_name(input.scene_name) || EXPECTED.contains(&input.scene_name) {
-        return Err(PackError::SceneName {
-            name: input.scene_name.to_string(),
-        });
+        return Err(PackError::SceneName { name: input.scene_name.to_string() });
     }
     refuse_foreign_files(folder, input.scene_name)?;
     let tolerances = default_tolerances(input.class);
@@ -115,11 +103,7 @@ pub fn write_pack(
         sha256.insert(name.to_string(), hash(&folder.join(name))?);
     }
     let version = env!("CARGO_PKG_VERSION").to_string();
-    let manifest = Manifest {
-        program: "bearing-dynamics".into(),
-        version,
-        sha256,
-    };
+    let manifest = Manifest { program: "bearing-dynamics".into(), version, sha256 };
     let text = pretty(&serde_json::to_value(&manifest).expect("a manifest is plain JSON"));
     write_atomic(&folder.join(MANIFEST), text.as_bytes())?;
     Ok(manifest)
@@ -142,17 +126,13 @@ const EXPECTED: [&str; 7] = [
 /// The first file that is missing, altered, or not listed; a manifest that lacks a part of a pack.
 pub fn verify_pack(folder: &Path) -> Result<Manifest, PackError> {
     let path = folder.join(MANIFEST);
-    let bytes = std::fs::read(&path).map_err(|source| PackError::Read {
-        path: path.clone(),
-        source,
-    })?;
+    let bytes =
+        std::fs::read(&path).map_err(|source| PackError::Read { path: path.clone(), source })?;
     let manifest: Manifest =
         serde_json::from_slice(&bytes).map_err(|source| PackError::Manifest { path, source })?;
     for name in EXPECTED {
         if !manifest.sha256.contains_key(name) {
-            return Err(PackError::Incomplete {
-                name: name.to_string(),
-            });
+            return Err(PackError::Incomplete { name: name.to_string() });
         }
     }
     for (name, expected) in &manifest.sha256 {
@@ -161,11 +141,7 @@ pub fn verify_pack(folder: &Path) -> Result<Manifest, PackError> {
         }
         let found = hash(&folder.join(name))?;
         if found != *expected {
-            return Err(PackError::Hash {
-                name: name.clone(),
-                expected: expected.clone(),
-                found,
-            });
+            return Err(PackError::Hash { name: name.clone(), expected: expected.clone(), found });
         }
     }
     for name in file_names(folder)? {
@@ -178,17 +154,11 @@ pub fn verify_pack(folder: &Path) -> Result<Manifest, PackError> {
 
 /// The class for everything, except what belongs to the solver's way and not to the result.
 pub fn default_tolerances(class: ToleranceClass) -> Tolerances {
-    let mut tolerances = Tolerances {
-        class: Some(class),
-        channels: BTreeMap::new(),
-    };
+    let mut tolerances = Tolerances { class: Some(class), channels: BTreeMap::new() };
     if class != ToleranceClass::F64Exact {
         let reasons = [
             ("plan", "every program words its own plan"),
-            (
-                "solver",
-                "another solver takes other steps and stops at another residual",
-            ),
+            ("solver", "another solver takes other steps and stops at another residual"),
         ];
         for (name, reason) in reasons {
             let ignored = ChannelTolerance {
@@ -227,10 +197,8 @@ threads and versions are not compared. Angles are in degrees, all else in SI uni
 
 fn is_plain_name(name: &str) -> bool {
     let mut components = Path::new(name).components();
-    matches!(
-        (components.next(), components.next()),
-        (Some(Component::Normal(_)), None)
-    ) && name != MANIFEST
+    matches!((components.next(), components.next()), (Some(Component::Normal(_)), None))
+        && name != MANIFEST
 }
 
 /// A pack may be written over an older pack, not into a folder with something else in it.
@@ -240,41 +208,24 @@ fn refuse_foreign_files(folder: &Path, scene_name: &str) -> Result<(), PackError
     }
     for name in file_names(folder)? {
         if name != MANIFEST && name != scene_name && !EXPECTED.contains(&name.as_str()) {
-            return Err(PackError::Foreign {
-                folder: folder.to_path_buf(),
-                found: name,
-            });
+            return Err(PackError::Foreign { folder: folder.to_path_buf(), found: name });
         }
     }
     Ok(())
 }
 
 fn file_names(folder: &Path) -> Result<Vec<String>, PackError> {
-    let failed = |source| PackError::Read {
-        path: folder.to_path_buf(),
-        source,
-    };
+    let failed = |source| PackError::Read { path: folder.to_path_buf(), source };
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
-        names.push(
-            entry
-                .map_err(failed)?
-                .file_name()
-                .to_string_lossy()
-                .into_owned(),
-        );
+        names.push(entry.map_err(failed)?.file_name().to_string_lossy().into_owned());
     }
     names.sort();
     Ok(names)
 }
 
 fn hash(path: &Path) -> Result<String, PackError> {
-    let bytes = std::fs::read(path).map_err(|source| PackError::Read {
-        path: path.to_path_buf(),
-        source,
-    })?;
-    Ok(Sha256::digest(&bytes)
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect())
+    let bytes = std::fs::read(path)
+        .map_err(|source| PackError::Read { path: path.to_path_buf(), source })?;
+    Ok(Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect())
 }

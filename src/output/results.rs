@@ -63,10 +63,7 @@ pub enum ResultsError {
 /// ```
 pub fn quantity(name: &str, value: f64, unit: &str) -> Result<Value, ResultsError> {
     if !value.is_finite() {
-        return Err(ResultsError::NotFinite {
-            name: name.to_string(),
-            value,
-        });
+        return Err(ResultsError::NotFinite { name: name.to_string(), value });
     }
     Ok(json!({ "value": value, "unit": unit }))
 }
@@ -121,10 +118,8 @@ const CONTACT_COLUMNS: [(&str, &str); 9] = [
 /// pressure and force of the inner and of the outer contact (columns `inner_load`, …,
 /// `outer_force_on_race_z`).
 pub fn ball_series(solution: &StaticSolution) -> Result<Series, SeriesError> {
-    let mut columns: Vec<Column> = BALL_COLUMNS
-        .iter()
-        .map(|(name, unit)| Column::new(*name, *unit))
-        .collect();
+    let mut columns: Vec<Column> =
+        BALL_COLUMNS.iter().map(|(name, unit)| Column::new(*name, *unit)).collect();
     for race in ["inner", "outer"] {
         for (name, unit) in CONTACT_COLUMNS {
             columns.push(Column::new(format!("{race}_{name}"), unit));
@@ -166,10 +161,7 @@ pub fn static_summary(solution: &StaticSolution, run: &RunRecord) -> Result<Valu
     let mut summary = Map::new();
     let mut put = |name: &str, value: Value| summary.insert(name.to_string(), value);
     put("kind", json!("static solution"));
-    put(
-        "program",
-        json!({ "name": "bearing-dynamics", "version": env!("CARGO_PKG_VERSION") }),
-    );
+    put("program", json!({ "name": "bearing-dynamics", "version": env!("CARGO_PKG_VERSION") }));
     put("threads", json!(run.threads));
     put("seconds", seconds(&run.seconds)?);
     put("determinacy", determinacy(&solution.determinacy)?);
@@ -178,6 +170,7 @@ pub fn static_summary(solution: &StaticSolution, run: &RunRecord) -> Result<Valu
         json!({
             "iterations": solution.iterations,
             "contact_evaluations": solution.contact_evaluations,
+            "saddles_left": solution.saddles_left,
             "residual": quantity("residual", solution.residual, "N")?,
         }),
     );
@@ -191,12 +184,8 @@ pub fn static_summary(solution: &StaticSolution, run: &RunRecord) -> Result<Valu
     );
     put("stiffness", stiffness(solution)?);
     put("load_zone", load_zone(solution)?);
-    let balls: Result<Vec<Value>, _> = solution
-        .balls
-        .iter()
-        .enumerate()
-        .map(|(index, b)| ball(index + 1, b))
-        .collect();
+    let balls: Result<Vec<Value>, _> =
+        solution.balls.iter().enumerate().map(|(index, b)| ball(index + 1, b)).collect();
     put("balls", json!(balls?));
     put("assumptions", strings(&run.assumptions));
     put("plan", json!(run.plan));
@@ -219,12 +208,7 @@ fn seconds(stages: &[(String, f64)]) -> Result<Value, ResultsError> {
 }
 
 fn strings(pairs: &[(String, String)]) -> Value {
-    Value::Object(
-        pairs
-            .iter()
-            .map(|(name, text)| (name.clone(), json!(text)))
-            .collect(),
-    )
+    Value::Object(pairs.iter().map(|(name, text)| (name.clone(), json!(text))).collect())
 }
 
 fn determinacy(determinacy: &Determinacy) -> Result<Value, ResultsError> {
@@ -235,10 +219,7 @@ fn determinacy(determinacy: &Determinacy) -> Result<Value, ResultsError> {
     for direction in free_directions {
         let mut map = Map::new();
         for (name, &component) in COORDINATE_NAMES.iter().zip(direction.iter()) {
-            map.insert(
-                name.to_string(),
-                quantity("free direction", component, "1")?,
-            );
+            map.insert(name.to_string(), quantity("free direction", component, "1")?);
         }
         directions.push(Value::Object(map));
     }
@@ -259,10 +240,7 @@ fn inner_race(solution: &StaticSolution) -> Result<Value, ResultsError> {
             false => (coordinate.to_degrees(), "deg", "N m"),
         };
         position.insert(name.to_string(), quantity(name, given, unit)?);
-        loads.insert(
-            name.to_string(),
-            quantity(name, solution.loads[index], load_unit)?,
-        );
+        loads.insert(name.to_string(), quantity(name, solution.loads[index], load_unit)?);
     }
     Ok(json!({
         "position": position,
@@ -285,10 +263,7 @@ fn stiffness(solution: &StaticSolution) -> Result<Value, ResultsError> {
                 (false, false) => "N m/rad",
             };
             let name = format!("stiffness {row_name} {column_name}");
-            row.insert(
-                column_name.to_string(),
-                quantity(&name, solution.stiffness[(i, j)], unit)?,
-            );
+            row.insert(column_name.to_string(), quantity(&name, solution.stiffness[(i, j)], unit)?);
         }
         rows.insert(row_name.to_string(), Value::Object(row));
     }
@@ -297,19 +272,10 @@ fn stiffness(solution: &StaticSolution) -> Result<Value, ResultsError> {
 
 fn load_zone(solution: &StaticSolution) -> Result<Value, ResultsError> {
     let largest = |load: fn(&BallState) -> f64| {
-        solution
-            .balls
-            .iter()
-            .map(load)
-            .fold(0.0, |a: f64, b| if b > a { b } else { a })
+        solution.balls.iter().map(load).fold(0.0, |a: f64, b| if b > a { b } else { a })
     };
-    let loaded = |load: fn(&BallState) -> f64| {
-        solution
-            .balls
-            .iter()
-            .filter(|ball| load(ball) > 0.0)
-            .count()
-    };
+    let loaded =
+        |load: fn(&BallState) -> f64| solution.balls.iter().filter(|ball| load(ball) > 0.0).count();
     Ok(json!({
         "balls_loaded_inner": loaded(|ball| ball.inner.normal_load),
         "balls_loaded_outer": loaded(|ball| ball.outer.normal_load),
@@ -338,16 +304,9 @@ fn contact(name: &str, contact: &ContactState) -> Result<Value, ResultsError> {
     let mut map = Map::new();
     let values = contact_values(contact);
     for ((column, unit), value) in CONTACT_COLUMNS.iter().zip(values).take(6) {
-        map.insert(
-            column.to_string(),
-            quantity(&format!("{name} {column}"), value, unit)?,
-        );
+        map.insert(column.to_string(), quantity(&format!("{name} {column}"), value, unit)?);
     }
-    let force = vector(
-        &format!("{name} force_on_race"),
-        &contact.force_on_race,
-        "N",
-    )?;
+    let force = vector(&format!("{name} force_on_race"), &contact.force_on_race, "N")?;
     map.insert("force_on_race".to_string(), force);
     Ok(Value::Object(map))
 }
@@ -362,16 +321,14 @@ fn vector(name: &str, vector: &Vector3<f64>, unit: &str) -> Result<Value, Result
 
 fn refuse_null(path: &str, value: &Value) -> Result<(), ResultsError> {
     match value {
-        Value::Null => Err(ResultsError::Null {
-            path: path.to_string(),
-        }),
+        Value::Null => Err(ResultsError::Null { path: path.to_string() }),
         Value::Array(items) => items
             .iter()
             .enumerate()
             .try_for_each(|(index, item)| refuse_null(&format!("{path}[{index}]"), item)),
-        Value::Object(map) => map
-            .iter()
-            .try_for_each(|(key, item)| refuse_null(&format!("{path}.{key}"), item)),
+        Value::Object(map) => {
+            map.iter().try_for_each(|(key, item)| refuse_null(&format!("{path}.{key}"), item))
+        }
         _ => Ok(()),
     }
 }

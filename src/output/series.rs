@@ -23,10 +23,7 @@ pub struct Column {
 
 impl Column {
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
-        Column {
-            name: name.into(),
-            unit: unit.into(),
-        }
+        Column { name: name.into(), unit: unit.into() }
     }
 
     /// `name [unit]`, or the bare name when the unit is unknown.
@@ -41,10 +38,7 @@ impl Column {
     /// The inverse of [`Column::header`].
     pub fn from_header(header: &str) -> Self {
         let header = header.trim();
-        match header
-            .strip_suffix(']')
-            .and_then(|open| open.rsplit_once('['))
-        {
+        match header.strip_suffix(']').and_then(|open| open.rsplit_once('[')) {
             Some((name, unit)) => Column::new(name.trim_end(), unit.trim()),
             None => Column::new(header, ""),
         }
@@ -65,46 +59,25 @@ pub enum SeriesError {
     #[error("column name {name:?}: {reason}")]
     ColumnName { name: String, reason: &'static str },
     #[error("row {row} of column {column:?} is {value}; only finite numbers are written")]
-    NotFinite {
-        row: usize,
-        column: String,
-        value: f64,
-    },
+    NotFinite { row: usize, column: String, value: f64 },
     #[error(transparent)]
     Write(#[from] WriteError),
     #[error("cannot encode {}: {source}", path.display())]
-    Encode {
-        path: PathBuf,
-        source: WriteNpyError,
-    },
+    Encode { path: PathBuf, source: WriteNpyError },
     #[error("cannot read {}: {source}", path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: std::io::Error },
     #[error("{} is not a CSV table: {source}", path.display())]
     Csv { path: PathBuf, source: csv::Error },
     #[error("{} line {line}, column {column:?}: {text:?} is not a number", path.display())]
-    Number {
-        path: PathBuf,
-        line: u64,
-        column: String,
-        text: String,
-    },
+    Number { path: PathBuf, line: u64, column: String, text: String },
     #[error("{} is not a NumPy file of real numbers: {source}", path.display())]
     Npy { path: PathBuf, source: ReadNpyError },
     #[error("{} has {dimensions} dimensions; a table has one or two", path.display())]
     Dimensions { path: PathBuf, dimensions: usize },
     #[error("{} is not a list of column names and units: {source}", path.display())]
-    ColumnsFile {
-        path: PathBuf,
-        source: serde_json::Error,
-    },
+    ColumnsFile { path: PathBuf, source: serde_json::Error },
     #[error("{}: {reason}", path.display())]
-    Table {
-        path: PathBuf,
-        reason: Box<SeriesError>,
-    },
+    Table { path: PathBuf, reason: Box<SeriesError> },
 }
 
 impl Series {
@@ -113,16 +86,10 @@ impl Series {
     /// unit with brackets, a line break or outer spaces (the CSV header could not be read back).
     pub fn new(columns: Vec<Column>, data: Array2<f64>) -> Result<Self, SeriesError> {
         if columns.len() != data.ncols() {
-            return Err(SeriesError::ColumnCount {
-                columns: columns.len(),
-                width: data.ncols(),
-            });
+            return Err(SeriesError::ColumnCount { columns: columns.len(), width: data.ncols() });
         }
         for (index, column) in columns.iter().enumerate() {
-            let refused = |reason| SeriesError::ColumnName {
-                name: column.name.clone(),
-                reason,
-            };
+            let refused = |reason| SeriesError::ColumnName { name: column.name.clone(), reason };
             if column.name.is_empty() {
                 return Err(refused("a name is required"));
             }
@@ -133,10 +100,7 @@ impl Series {
                     ));
                 }
             }
-            if columns[..index]
-                .iter()
-                .any(|other| other.name == column.name)
-            {
+            if columns[..index].iter().any(|other| other.name == column.name) {
                 return Err(refused("the name is used twice"));
             }
         }
@@ -176,11 +140,7 @@ impl Series {
     /// A value that is not finite.
     pub fn to_csv(&self) -> Result<String, SeriesError> {
         self.check_finite()?;
-        let mut text = csv_line(
-            self.columns
-                .iter()
-                .map(|column| csv_field(&column.header())),
-        );
+        let mut text = csv_line(self.columns.iter().map(|column| csv_field(&column.header())));
         for row in self.data.rows() {
             // {:?} is the shortest decimal that reads back to the same bits, with an exponent
             // where the plain form would be long.
@@ -199,19 +159,10 @@ impl Series {
     /// comparison can point at them.
     pub fn read_csv(path: &Path) -> Result<Self, SeriesError> {
         let bytes = read(path)?;
-        let csv_error = |source| SeriesError::Csv {
-            path: path.to_path_buf(),
-            source,
-        };
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .from_reader(&bytes[..]);
-        let columns: Vec<Column> = reader
-            .headers()
-            .map_err(csv_error)?
-            .iter()
-            .map(Column::from_header)
-            .collect();
+        let csv_error = |source| SeriesError::Csv { path: path.to_path_buf(), source };
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&bytes[..]);
+        let columns: Vec<Column> =
+            reader.headers().map_err(csv_error)?.iter().map(Column::from_header).collect();
         let mut values = Vec::new();
         let mut rows = 0;
         for record in reader.records() {
@@ -241,17 +192,10 @@ impl Series {
         self.data
             .as_standard_layout()
             .write_npy(&mut bytes)
-            .map_err(|source| SeriesError::Encode {
-                path: path.to_path_buf(),
-                source,
-            })?;
+            .map_err(|source| SeriesError::Encode { path: path.to_path_buf(), source })?;
         let columns_path = columns_path(path);
-        let columns = serde_json::to_string_pretty(&self.columns).map_err(|source| {
-            SeriesError::ColumnsFile {
-                path: columns_path.clone(),
-                source,
-            }
-        })?;
+        let columns = serde_json::to_string_pretty(&self.columns)
+            .map_err(|source| SeriesError::ColumnsFile { path: columns_path.clone(), source })?;
         write_atomic(&columns_path, columns.as_bytes())?;
         Ok(write_atomic(path, &bytes)?)
     }
@@ -261,10 +205,7 @@ impl Series {
     /// Values that are not finite are read as they are.
     pub fn read_npy(path: &Path) -> Result<Self, SeriesError> {
         let bytes = read(path)?;
-        let npy_error = |source| SeriesError::Npy {
-            path: path.to_path_buf(),
-            source,
-        };
+        let npy_error = |source| SeriesError::Npy { path: path.to_path_buf(), source };
         let values = match read_array::<f64>(&bytes) {
             Err(ReadNpyError::WrongDescriptor(_)) => {
                 read_array::<f32>(&bytes).map(|single| single.mapv(f64::from))
@@ -279,22 +220,13 @@ impl Series {
         };
         let data = values
             .into_dimensionality::<Ix2>()
-            .map_err(|_| SeriesError::Dimensions {
-                path: path.to_path_buf(),
-                dimensions,
-            })?;
+            .map_err(|_| SeriesError::Dimensions { path: path.to_path_buf(), dimensions })?;
         let columns_path = columns_path(path);
         let columns = if columns_path.exists() {
-            serde_json::from_slice(&read(&columns_path)?).map_err(|source| {
-                SeriesError::ColumnsFile {
-                    path: columns_path.clone(),
-                    source,
-                }
-            })?
+            serde_json::from_slice(&read(&columns_path)?)
+                .map_err(|source| SeriesError::ColumnsFile { path: columns_path.clone(), source })?
         } else {
-            (0..data.ncols())
-                .map(|index| Column::new(format!("column {index}"), ""))
-                .collect()
+            (0..data.ncols()).map(|index| Column::new(format!("column {index}"), "")).collect()
         };
         Series::new(columns, data).map_err(|reason| in_file(path, reason))
     }
@@ -306,27 +238,18 @@ pub fn columns_path(npy: &Path) -> PathBuf {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, SeriesError> {
-    fs::read(path).map_err(|source| SeriesError::Read {
-        path: path.to_path_buf(),
-        source,
-    })
+    fs::read(path).map_err(|source| SeriesError::Read { path: path.to_path_buf(), source })
 }
 
 fn in_file(path: &Path, reason: SeriesError) -> SeriesError {
-    SeriesError::Table {
-        path: path.to_path_buf(),
-        reason: Box::new(reason),
-    }
+    SeriesError::Table { path: path.to_path_buf(), reason: Box::new(reason) }
 }
 
 fn read_array<T: ReadableElement>(bytes: &[u8]) -> Result<ArrayD<T>, ReadNpyError> {
     // The reader allocates what the header promises before it looks at the data, so a damaged
     // header must not promise more than the file holds (every element takes a byte or more).
     let header = Header::from_reader(&mut &bytes[..])?;
-    let promised = header
-        .shape
-        .iter()
-        .try_fold(1usize, |total, &n| total.checked_mul(n));
+    let promised = header.shape.iter().try_fold(1usize, |total, &n| total.checked_mul(n));
     if promised.ok_or(ReadNpyError::LengthOverflow)? > bytes.len() {
         return Err(ReadNpyError::MissingData);
     }

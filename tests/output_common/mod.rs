@@ -12,11 +12,7 @@ pub fn contact(azimuth: f64, load: f64, outward: f64) -> ContactState {
     let half = load.cbrt();
     ContactState {
         normal_load: load,
-        approach: if load > 0.0 {
-            1.3e-7 * half * half
-        } else {
-            -2.1e-6 - 1e-7 * azimuth
-        },
+        approach: if load > 0.0 { 1.3e-7 * half * half } else { -2.1e-6 - 1e-7 * azimuth },
         contact_angle: 0.013 + 1e-3 * azimuth,
         semi_major: 7.1e-5 * half + 1e-9,
         semi_minor: 8.3e-6 * half + 1e-9,
@@ -53,6 +49,7 @@ pub fn solution() -> StaticSolution {
         balls,
         determinacy: Determinacy::Determinate,
         iterations: 6,
+        saddles_left: 0,
         contact_evaluations: 112,
         residual: 3.1e-10,
     }
@@ -68,16 +65,10 @@ pub fn run() -> RunRecord {
             "cage": null,
             "centrifugal": false,
         }),
-        plan: vec![
-            "statics of 8 balls".into(),
-            "no cage: not part of the scene".into(),
-        ],
+        plan: vec!["statics of 8 balls".into(), "no cage: not part of the scene".into()],
         assumptions: vec![("ball_phase".into(), "0 deg: not stated".into())],
         threads: 1,
         seconds: vec![("read".into(), 1.5e-4), ("solve".into(), 7.3e-5)],
-        sections: vec![(
-            "contacts".into(),
-            json!({ "inner": { "stiffness": stiffness } }),
-        )],
+        sections: vec![("contacts".into(), json!({ "inner": { "stiffness": stiffness } }))],
     }
 }

@@ -57,20 +57,13 @@ pub fn read(path: &Path) -> Result<Content, CompareError> {
         Some("csv") => Ok(Content::Table(Series::read_csv(path)?)),
         Some("npy") => Ok(Content::Table(Series::read_npy(path)?)),
         Some("json") => {
-            let bytes = std::fs::read(path).map_err(|source| CompareError::Read {
-                path: path.to_path_buf(),
-                source,
-            })?;
-            let tree: Value =
-                serde_json::from_slice(&bytes).map_err(|source| CompareError::Json {
-                    path: path.to_path_buf(),
-                    source,
-                })?;
+            let bytes = std::fs::read(path)
+                .map_err(|source| CompareError::Read { path: path.to_path_buf(), source })?;
+            let tree: Value = serde_json::from_slice(&bytes)
+                .map_err(|source| CompareError::Json { path: path.to_path_buf(), source })?;
             Ok(Content::Tree(leaves(&tree)))
         }
-        _ => Err(CompareError::UnknownKind {
-            path: path.to_path_buf(),
-        }),
+        _ => Err(CompareError::UnknownKind { path: path.to_path_buf() }),
     }
 }
 
@@ -82,10 +75,7 @@ pub fn name_columns_as(
 ) -> Result<Series, CompareError> {
     let unnamed = path.extension().is_some_and(|e| e == "npy") && !columns_path(path).exists();
     if unnamed && candidate.columns().len() == reference.columns().len() {
-        return Ok(Series::new(
-            reference.columns().to_vec(),
-            candidate.data().clone(),
-        )?);
+        return Ok(Series::new(reference.columns().to_vec(), candidate.data().clone())?);
     }
     Ok(candidate)
 }
@@ -103,12 +93,7 @@ fn collect(value: &Value, path: &str, channel: &str, found: &mut Vec<Leaf>) {
         _ => format!("{parent}.{key}"),
     };
     let mut push = |unit: &str, value: LeafValue| {
-        found.push(Leaf {
-            path: path.into(),
-            channel: channel.into(),
-            unit: unit.into(),
-            value,
-        });
+        found.push(Leaf { path: path.into(), channel: channel.into(), unit: unit.into(), value });
     };
     match value {
         Value::Object(map) if map.is_empty() => push("", LeafValue::Text("{}".into())),
@@ -123,12 +108,7 @@ fn collect(value: &Value, path: &str, channel: &str, found: &mut Vec<Leaf>) {
         }
         Value::Array(items) => {
             for (index, item) in items.iter().enumerate() {
-                collect(
-                    item,
-                    &format!("{path}[{index}]"),
-                    &format!("{channel}[]"),
-                    found,
-                );
+                collect(item, &format!("{path}[{index}]"), &format!("{channel}[]"), found);
             }
         }
         Value::Number(number) => push(

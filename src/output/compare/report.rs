@@ -15,23 +15,13 @@ pub fn report(comparison: &Comparison) -> String {
         Some(first) => different(&mut text, comparison, first),
     }
     list(&mut text, "not compared", &comparison.ignored);
-    list(
-        &mut text,
-        "only in the candidate",
-        &comparison.only_in_candidate,
-    );
+    list(&mut text, "only in the candidate", &comparison.only_in_candidate);
     text
 }
 
 fn equal(text: &mut String, comparison: &Comparison) {
     let channels = comparison.channels.len();
-    line(
-        text,
-        format!(
-            "equal: {} values in {channels} channels",
-            comparison.checked
-        ),
-    );
+    line(text, format!("equal: {} values in {channels} channels", comparison.checked));
     if let Some(channel) = by_ratio(comparison).first()
         && let Some(worst) = &channel.worst
         && worst.ratio > 0.0
@@ -66,10 +56,8 @@ fn different(text: &mut String, comparison: &Comparison, first: &Divergence) {
     }
     line(text, format!("first divergence: {place}"));
     line(text, format!("  {}", kind_text(&first.kind)));
-    let differing: Vec<&ChannelResult> = by_ratio(comparison)
-        .into_iter()
-        .filter(|channel| channel.differing > 0)
-        .collect();
+    let differing: Vec<&ChannelResult> =
+        by_ratio(comparison).into_iter().filter(|channel| channel.differing > 0).collect();
     if !differing.is_empty() {
         line(text, "channels that differ, worst first:".to_string());
     }
@@ -97,30 +85,16 @@ fn different(text: &mut String, comparison: &Comparison, first: &Divergence) {
 
 fn kind_text(kind: &DivergenceKind) -> String {
     match kind {
-        DivergenceKind::Value {
-            reference,
-            candidate,
-            difference,
-            allowed,
-        } => format!(
+        DivergenceKind::Value { reference, candidate, difference, allowed } => format!(
             "reference {reference:?}, candidate {candidate:?}, difference {difference:e}, allowed {allowed:e}"
         ),
-        DivergenceKind::Exact {
-            reference,
-            candidate,
-        } => {
+        DivergenceKind::Exact { reference, candidate } => {
             format!("reference {reference}, candidate {candidate}, must be equal")
         }
-        DivergenceKind::Unit {
-            reference,
-            candidate,
-        } => {
+        DivergenceKind::Unit { reference, candidate } => {
             format!("reference in {reference:?}, candidate in {candidate:?}")
         }
-        DivergenceKind::Length {
-            reference,
-            candidate,
-        } => {
+        DivergenceKind::Length { reference, candidate } => {
             format!("reference has {reference} rows, candidate {candidate}")
         }
         DivergenceKind::MissingFile => "the candidate has no such file".to_string(),
@@ -162,34 +136,20 @@ fn channel_json(channel: &ChannelResult) -> Value {
 
 fn divergence_json(divergence: &Divergence) -> Value {
     let detail = match &divergence.kind {
-        DivergenceKind::Value {
-            reference,
-            candidate,
-            difference,
-            allowed,
-        } => json!({
+        DivergenceKind::Value { reference, candidate, difference, allowed } => json!({
             "kind": "value",
             "reference": number(*reference),
             "candidate": number(*candidate),
             "difference": number(*difference),
             "allowed": number(*allowed),
         }),
-        DivergenceKind::Exact {
-            reference,
-            candidate,
-        } => {
+        DivergenceKind::Exact { reference, candidate } => {
             json!({ "kind": "exact", "reference": reference, "candidate": candidate })
         }
-        DivergenceKind::Unit {
-            reference,
-            candidate,
-        } => {
+        DivergenceKind::Unit { reference, candidate } => {
             json!({ "kind": "unit", "reference": reference, "candidate": candidate })
         }
-        DivergenceKind::Length {
-            reference,
-            candidate,
-        } => {
+        DivergenceKind::Length { reference, candidate } => {
             json!({ "kind": "length", "reference": reference, "candidate": candidate })
         }
         DivergenceKind::MissingFile => json!({ "kind": "missing-file" }),

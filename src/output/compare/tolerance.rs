@@ -41,9 +41,7 @@ impl ToleranceClass {
     }
 
     pub fn from_name(name: &str) -> Option<Self> {
-        ToleranceClass::ALL
-            .into_iter()
-            .find(|class| class.name() == name)
+        ToleranceClass::ALL.into_iter().find(|class| class.name() == name)
     }
 
     /// The class's numbers for a channel of this unit; `None` for [`ToleranceClass::Ignored`].
@@ -155,21 +153,11 @@ pub struct ChannelTolerance {
 #[derive(Debug, Error)]
 pub enum ToleranceError {
     #[error("cannot read {}: {source}", path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: std::io::Error },
     #[error("{} is not a tolerance file: {source}", path.display())]
-    Json {
-        path: PathBuf,
-        source: serde_json::Error,
-    },
+    Json { path: PathBuf, source: serde_json::Error },
     #[error("tolerance of {channel:?}: {number} is {value}; allowed are finite numbers >= 0")]
-    Number {
-        channel: String,
-        number: &'static str,
-        value: f64,
-    },
+    Number { channel: String, number: &'static str, value: f64 },
     #[error("tolerance of {channel:?} says \"ignored\" and gives numbers; only one can hold")]
     IgnoredWithNumbers { channel: String },
     #[error("a default class of \"ignored\" would compare nothing")]
@@ -180,15 +168,10 @@ pub enum ToleranceError {
 
 impl Tolerances {
     pub fn read(path: &Path) -> Result<Self, ToleranceError> {
-        let bytes = std::fs::read(path).map_err(|source| ToleranceError::Read {
-            path: path.to_path_buf(),
-            source,
-        })?;
-        let tolerances: Tolerances =
-            serde_json::from_slice(&bytes).map_err(|source| ToleranceError::Json {
-                path: path.to_path_buf(),
-                source,
-            })?;
+        let bytes = std::fs::read(path)
+            .map_err(|source| ToleranceError::Read { path: path.to_path_buf(), source })?;
+        let tolerances: Tolerances = serde_json::from_slice(&bytes)
+            .map_err(|source| ToleranceError::Json { path: path.to_path_buf(), source })?;
         tolerances.check()?;
         Ok(tolerances)
     }
@@ -208,16 +191,10 @@ impl Tolerances {
             for (number, value) in numbers {
                 let Some(value) = value else { continue };
                 if !(value.is_finite() && value >= 0.0) {
-                    return Err(ToleranceError::Number {
-                        channel: channel.clone(),
-                        number,
-                        value,
-                    });
+                    return Err(ToleranceError::Number { channel: channel.clone(), number, value });
                 }
                 if given.class == Some(ToleranceClass::Ignored) {
-                    return Err(ToleranceError::IgnoredWithNumbers {
-                        channel: channel.clone(),
-                    });
+                    return Err(ToleranceError::IgnoredWithNumbers { channel: channel.clone() });
                 }
             }
         }
@@ -245,9 +222,7 @@ impl Tolerances {
         unit: &str,
         default_class: Option<ToleranceClass>,
     ) -> (ToleranceClass, Option<Tolerance>) {
-        let default = default_class
-            .or(self.class)
-            .unwrap_or(ToleranceClass::F64Reordered);
+        let default = default_class.or(self.class).unwrap_or(ToleranceClass::F64Reordered);
         let Some((_, entry)) = self.entry(channel) else {
             return (default, default.tolerance(unit));
         };

@@ -42,9 +42,7 @@ pub fn draw(
 }
 
 pub fn failed(reason: impl std::fmt::Display) -> PlotError {
-    PlotError::Draw {
-        reason: reason.to_string(),
-    }
+    PlotError::Draw { reason: reason.to_string() }
 }
 
 #[derive(Clone, Copy)]
@@ -76,9 +74,7 @@ pub fn text(
         _ => FontTransform::None,
     };
     let font = FontDesc::from(("sans-serif", size)).transform(turn);
-    let style = TextStyle::from(font)
-        .color(&colour)
-        .pos(Pos::new(horizontal, VPos::Center));
+    let style = TextStyle::from(font).color(&colour).pos(Pos::new(horizontal, VPos::Center));
     area.draw_text(&content, &style, at).map_err(failed)
 }
 
@@ -96,13 +92,11 @@ pub fn line(
     colour: RGBColor,
     width: u32,
 ) -> Result<(), PlotError> {
-    area.draw(&PathElement::new(points, colour.stroke_width(width)))
-        .map_err(failed)
+    area.draw(&PathElement::new(points, colour.stroke_width(width))).map_err(failed)
 }
 
 pub fn polygon(area: &Area, points: Vec<Point>, colour: RGBColor) -> Result<(), PlotError> {
-    area.draw(&Polygon::new(points, colour.filled()))
-        .map_err(failed)
+    area.draw(&Polygon::new(points, colour.filled())).map_err(failed)
 }
 
 pub fn disc(
@@ -112,10 +106,8 @@ pub fn disc(
     fill: RGBColor,
     edge: RGBColor,
 ) -> Result<(), PlotError> {
-    area.draw(&Circle::new(centre, radius, fill.filled()))
-        .map_err(failed)?;
-    area.draw(&Circle::new(centre, radius, edge.stroke_width(2)))
-        .map_err(failed)
+    area.draw(&Circle::new(centre, radius, fill.filled())).map_err(failed)?;
+    area.draw(&Circle::new(centre, radius, edge.stroke_width(2))).map_err(failed)
 }
 
 /// A line with a head at its end; the head is drawn only if the line is long enough to carry it.
@@ -133,11 +125,7 @@ pub fn arrow(area: &Area, from: Point, to: Point, colour: RGBColor) -> Result<()
         (x.round() as i32, y.round() as i32)
     };
     line(area, vec![from, at(0.8 * head, 0.0)], colour, 4)?;
-    polygon(
-        area,
-        vec![to, at(head, 0.45 * head), at(head, -0.45 * head)],
-        colour,
-    )
+    polygon(area, vec![to, at(head, 0.45 * head), at(head, -0.45 * head)], colour)
 }
 
 /// The marker of curve number `index`: shapes differ as well as colours.
@@ -145,31 +133,16 @@ pub fn marker(area: &Area, index: usize, (x, y): Point) -> Result<(), PlotError>
     let colour = COLOURS[index % COLOURS.len()];
     let r = 6;
     match index % 5 {
-        0 => area
-            .draw(&Circle::new((x, y), r, colour.filled()))
-            .map_err(failed),
-        1 => polygon(
-            area,
-            vec![(x, y - r - 1), (x + r + 1, y + r), (x - r - 1, y + r)],
-            colour,
-        ),
+        0 => area.draw(&Circle::new((x, y), r, colour.filled())).map_err(failed),
+        1 => polygon(area, vec![(x, y - r - 1), (x + r + 1, y + r), (x - r - 1, y + r)], colour),
         2 => polygon(
             area,
-            vec![
-                (x - r, y - r),
-                (x + r, y - r),
-                (x + r, y + r),
-                (x - r, y + r),
-            ],
+            vec![(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)],
             colour,
         ),
         3 => {
             let d = r + 2;
-            polygon(
-                area,
-                vec![(x, y - d), (x + d, y), (x, y + d), (x - d, y)],
-                colour,
-            )
+            polygon(area, vec![(x, y - d), (x + d, y), (x, y + d), (x - d, y)], colour)
         }
         _ => {
             line(area, vec![(x - r, y - r), (x + r, y + r)], colour, 3)?;
@@ -183,10 +156,7 @@ const MARKERS: usize = 24;
 
 pub fn markers(area: &Area, index: usize, points: &[Point]) -> Result<(), PlotError> {
     let every = points.len().div_ceil(MARKERS).max(1);
-    points
-        .iter()
-        .step_by(every)
-        .try_for_each(|&point| marker(area, index, point))
+    points.iter().step_by(every).try_for_each(|&point| marker(area, index, point))
 }
 
 /// Entries of a legend set in rows below a plot.
@@ -212,10 +182,7 @@ impl Legend {
             entries.push((index, x, row));
             x += wide;
         }
-        Legend {
-            entries,
-            rows: row + 1,
-        }
+        Legend { entries, rows: row + 1 }
     }
 
     pub fn height(&self) -> i32 {
@@ -240,14 +207,7 @@ impl Legend {
                 marker(area, index, (x + (LEGEND_SAMPLE - 14) / 2, y))?;
             }
             let at = (x + LEGEND_SAMPLE, y);
-            text(
-                area,
-                &curves[index].name,
-                at,
-                TEXT_SIZE,
-                Align::Left,
-                BLACK_TEXT,
-            )?;
+            text(area, &curves[index].name, at, TEXT_SIZE, Align::Left, BLACK_TEXT)?;
         }
         Ok(())
     }

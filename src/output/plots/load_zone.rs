@@ -73,11 +73,7 @@ pub fn load_zone(zone: &LoadZone) -> Result<String, PlotError> {
     check(zone)?;
     let px_per_metre = 0.88 * EDGE / zone.outer_raceway_radius;
     let px = |length: f64| (length * px_per_metre).round() as i32;
-    let largest = zone
-        .balls
-        .iter()
-        .map(|ball| ball.outer_load)
-        .fold(0.0, f64::max);
+    let largest = zone.balls.iter().map(|ball| ball.outer_load).fold(0.0, f64::max);
 
     canvas::draw(HEIGHT, |area| {
         canvas::title(area, &zone.title)?;
@@ -94,13 +90,7 @@ pub fn load_zone(zone: &LoadZone) -> Result<String, PlotError> {
         for (index, ball) in zone.balls.iter().enumerate() {
             let at = place(ball.azimuth, zone.pitch_radius * px_per_metre);
             let radius = px(zone.ball_radius).max(2);
-            canvas::disc(
-                area,
-                at,
-                radius,
-                if ball.loaded { LOADED } else { OPEN },
-                EDGE_COLOUR,
-            )?;
+            canvas::disc(area, at, radius, if ball.loaded { LOADED } else { OPEN }, EDGE_COLOUR)?;
             if radius >= 13 {
                 let colour = if ball.loaded { white } else { BLACK_TEXT };
                 let number = (index + 1).to_string();
@@ -108,12 +98,7 @@ pub fn load_zone(zone: &LoadZone) -> Result<String, PlotError> {
             }
         }
         if largest > 0.0 {
-            arrows(
-                area,
-                zone,
-                largest,
-                zone.outer_raceway_radius * px_per_metre,
-            )?;
+            arrows(area, zone, largest, zone.outer_raceway_radius * px_per_metre)?;
         }
         axes(area)?;
         key(area, largest)
@@ -147,11 +132,7 @@ fn check(zone: &LoadZone) -> Result<(), PlotError> {
         }
         if !(ball.outer_load.is_finite() && ball.outer_load >= 0.0) {
             let value = ball.outer_load;
-            return Err(PlotError::Ball {
-                ball: ball_number,
-                what: "load",
-                value,
-            });
+            return Err(PlotError::Ball { ball: ball_number, what: "load", value });
         }
     }
     Ok(())
@@ -161,12 +142,7 @@ fn check(zone: &LoadZone) -> Result<(), PlotError> {
 fn arrows(area: &Area, zone: &LoadZone, largest: f64, raceway: f64) -> Result<(), PlotError> {
     for ball in zone.balls.iter().filter(|ball| ball.outer_load > 0.0) {
         let tip = raceway + LONGEST * ball.outer_load / largest;
-        canvas::arrow(
-            area,
-            place(ball.azimuth, raceway),
-            place(ball.azimuth, tip),
-            ARROW,
-        )?;
+        canvas::arrow(area, place(ball.azimuth, raceway), place(ball.azimuth, tip), ARROW)?;
         // More labels than this would overlap; the results table has them all.
         if zone.balls.len() <= 24 {
             let at = place(ball.azimuth, tip.max(EDGE) + 20.0);
@@ -188,30 +164,13 @@ fn axes(area: &Area) -> Result<(), PlotError> {
     let size = canvas::TEXT_SIZE;
     canvas::arrow(area, CENTRE, (x + length, y), BLACK_TEXT)?;
     canvas::arrow(area, CENTRE, (x, y - length), BLACK_TEXT)?;
-    canvas::text(
-        area,
-        "Y",
-        (x + length + 12, y),
-        size,
-        Align::Centre,
-        BLACK_TEXT,
-    )?;
-    canvas::text(
-        area,
-        "Z",
-        (x + 14, y - length),
-        size,
-        Align::Centre,
-        BLACK_TEXT,
-    )
+    canvas::text(area, "Y", (x + length + 12, y), size, Align::Centre, BLACK_TEXT)?;
+    canvas::text(area, "Z", (x + 14, y - length), size, Align::Centre, BLACK_TEXT)
 }
 
 fn key(area: &Area, largest: f64) -> Result<(), PlotError> {
     let size = canvas::TEXT_SIZE;
-    let entries = [
-        (60, LOADED, "in contact with the inner race"),
-        (410, OPEN, "open"),
-    ];
+    let entries = [(60, LOADED, "in contact with the inner race"), (410, OPEN, "open")];
     let y = HEIGHT as i32 - 65;
     for (x, colour, label) in entries {
         canvas::disc(area, (x, y), 11, colour, EDGE_COLOUR)?;
@@ -219,23 +178,13 @@ fn key(area: &Area, largest: f64) -> Result<(), PlotError> {
     }
     let y = HEIGHT as i32 - 28;
     if largest == 0.0 {
-        return canvas::text(
-            area,
-            "no ball is loaded",
-            (50, y),
-            size,
-            Align::Left,
-            BLACK_TEXT,
-        );
+        return canvas::text(area, "no ball is loaded", (50, y), size, Align::Left, BLACK_TEXT);
     }
     // A round load of at least a quarter of the largest; its arrow is drawn to scale.
     let round = nice_step(0.25 * largest);
     let end = 50 + (LONGEST * round / largest).round() as i32;
     canvas::arrow(area, (50, y), (end, y), ARROW)?;
-    let label = format!(
-        "{} N; at the balls: load on the outer race [N]",
-        short(round)
-    );
+    let label = format!("{} N; at the balls: load on the outer race [N]", short(round));
     canvas::text(area, &label, (end + 14, y), size, Align::Left, BLACK_TEXT)
 }
 

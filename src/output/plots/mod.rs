@@ -29,10 +29,7 @@ pub struct Curve {
 
 impl Curve {
     pub fn new(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
-        Curve {
-            name: name.into(),
-            points,
-        }
+        Curve { name: name.into(), points }
     }
 }
 
@@ -46,32 +43,15 @@ pub enum PlotError {
         "point {point} of curve {curve:?} is ({x:?}, {y:?}); numbers are drawn if they are 0 or \
          between 1e-200 and 1e200 in size"
     )]
-    NotDrawable {
-        curve: String,
-        point: usize,
-        x: f64,
-        y: f64,
-    },
+    NotDrawable { curve: String, point: usize, x: f64, y: f64 },
     #[error("point {point} of curve {curve:?} is {value} on a logarithmic axis; allowed is > 0")]
-    NotPositive {
-        curve: String,
-        point: usize,
-        value: f64,
-    },
+    NotPositive { curve: String, point: usize, value: f64 },
     #[error("point {point} of curve {curve:?} has the value {value}; a polar plot needs >= 0")]
-    Negative {
-        curve: String,
-        point: usize,
-        value: f64,
-    },
+    Negative { curve: String, point: usize, value: f64 },
     #[error("{what} is {value}; allowed is > 0 and no more than the outer raceway radius")]
     Size { what: &'static str, value: f64 },
     #[error("ball {ball} has {what} = {value}; allowed is a finite number >= 0")]
-    Ball {
-        ball: usize,
-        what: &'static str,
-        value: f64,
-    },
+    Ball { ball: usize, what: &'static str, value: f64 },
     #[error("a load zone needs at least one ball")]
     NoBall,
     #[error("cannot draw: {reason}")]
@@ -80,15 +60,11 @@ pub enum PlotError {
 
 fn check_curves(title: &str, curves: &[Curve]) -> Result<(), PlotError> {
     if curves.is_empty() {
-        return Err(PlotError::NoCurve {
-            title: title.to_string(),
-        });
+        return Err(PlotError::NoCurve { title: title.to_string() });
     }
     for curve in curves {
         if curve.points.is_empty() {
-            return Err(PlotError::NoPoint {
-                curve: curve.name.clone(),
-            });
+            return Err(PlotError::NoPoint { curve: curve.name.clone() });
         }
         for (point, &[x, y]) in curve.points.iter().enumerate() {
             let drawable = |v: f64| v == 0.0 || ticks::MAGNITUDES.contains(&v.abs());

@@ -46,24 +46,13 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
     for curve in &plot.curves {
         for (point, &[_, value]) in curve.points.iter().enumerate() {
             if value < 0.0 {
-                return Err(PlotError::Negative {
-                    curve: curve.name.clone(),
-                    point,
-                    value,
-                });
+                return Err(PlotError::Negative { curve: curve.name.clone(), point, value });
             }
         }
     }
-    let values = plot
-        .curves
-        .iter()
-        .flat_map(|curve| curve.points.iter().map(|point| point[1]));
+    let values = plot.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point[1]));
     let largest = values.fold(0.0, f64::max);
-    let range = if largest > 0.0 {
-        [0.0, largest]
-    } else {
-        [0.0, 1.0]
-    };
+    let range = if largest > 0.0 { [0.0, largest] } else { [0.0, 1.0] };
     let scale = ticks::linear(range.into_iter(), 5);
 
     let legend = Legend::new(&plot.curves);
@@ -72,15 +61,8 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
         let size = canvas::TEXT_SIZE;
         canvas::title(area, &plot.title)?;
         for (position, _) in &scale.ticks {
-            let ring = (0..=180)
-                .map(|i| place(f64::from(i) / 180.0 * TAU, *position))
-                .collect();
-            canvas::line(
-                area,
-                ring,
-                if *position < 1.0 { GRID } else { BLACK_TEXT },
-                1,
-            )?;
+            let ring = (0..=180).map(|i| place(f64::from(i) / 180.0 * TAU, *position)).collect();
+            canvas::line(area, ring, if *position < 1.0 { GRID } else { BLACK_TEXT }, 1)?;
         }
         for degrees in (0..360).step_by(30) {
             let azimuth = f64::from(degrees).to_radians();
@@ -99,14 +81,7 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
             };
             // Text beside the circle needs less distance from it than text above or below.
             let x = x + (dx - CENTRE.0) * 2 / 5;
-            canvas::text(
-                area,
-                &label,
-                (x, y + dy - CENTRE.1),
-                size,
-                align,
-                BLACK_TEXT,
-            )?;
+            canvas::text(area, &label, (x, y + dy - CENTRE.1), size, align, BLACK_TEXT)?;
         }
         for (index, curve) in plot.curves.iter().enumerate() {
             let mut sorted = curve.points.clone();
@@ -119,12 +94,7 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
                 .map(|&[azimuth, value]| place(azimuth, scale.position(value)))
                 .collect();
             let closed = points.iter().copied().chain([points[0]]).collect();
-            canvas::line(
-                area,
-                closed,
-                canvas::COLOURS[index % canvas::COLOURS.len()],
-                3,
-            )?;
+            canvas::line(area, closed, canvas::COLOURS[index % canvas::COLOURS.len()], 3)?;
             canvas::markers(area, index, &points)?;
         }
         // Ring labels over the curves, between two spokes, so that they stay readable.
@@ -132,10 +102,7 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
             let at = place(15f64.to_radians(), *position - 24.0 / RADIUS);
             canvas::text(area, label, at, size, Align::Centre, BLACK_TEXT)?;
         }
-        let caption = format!(
-            "radius: {} [{}]; angle: azimuth [deg]",
-            plot.quantity, plot.unit
-        );
+        let caption = format!("radius: {} [{}]; angle: azimuth [deg]", plot.quantity, plot.unit);
         let at = (canvas::WIDTH as i32 / 2, legend_top - 18);
         canvas::text(area, &caption, at, size, Align::Centre, BLACK_TEXT)?;
         legend.draw(area, &plot.curves, legend_top, true, true)

@@ -37,19 +37,9 @@ pub fn linear(values: impl Iterator<Item = f64>, wanted: usize) -> Scale {
     let largest = first.abs().max(last.abs()) * step;
     let count = (last - first).round() as usize;
     let ticks = (0..=count)
-        .map(|i| {
-            (
-                i as f64 / count as f64,
-                label((first + i as f64) * step, step, largest),
-            )
-        })
+        .map(|i| (i as f64 / count as f64, label((first + i as f64) * step, step, largest)))
         .collect();
-    Scale {
-        low: first * step,
-        high: last * step,
-        ticks,
-        log: false,
-    }
+    Scale { low: first * step, high: last * step, ticks, log: false }
 }
 
 /// A logarithmic axis around positive values within [`MAGNITUDES`]: marks at powers of ten, also
@@ -75,26 +65,17 @@ pub fn logarithmic(values: impl Iterator<Item = f64>) -> Scale {
             }
         }
     }
-    Scale {
-        low: power(decades.0),
-        high: power(decades.1),
-        ticks,
-        log: true,
-    }
+    Scale { low: power(decades.0), high: power(decades.1), ticks, log: true }
 }
 
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-        (low.min(v), high.max(v))
-    })
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }
 
 /// 1, 2 or 5 times a power of ten, not below `step`.
 pub fn nice_step(step: f64) -> f64 {
     let decade = 10f64.powf(step.log10().floor());
-    let factor = [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|f| f * decade >= step * (1.0 - 1e-9));
+    let factor = [1.0, 2.0, 5.0].into_iter().find(|f| f * decade >= step * (1.0 - 1e-9));
     factor.unwrap_or(10.0) * decade
 }
 
@@ -102,11 +83,7 @@ fn label(value: f64, step: f64, largest: f64) -> String {
     if (1e-3..1e5).contains(&largest) {
         let decimals = (-(step.log10() + 1e-9).floor()).max(0.0) as usize;
         let text = format!("{value:.decimals$}");
-        return if value.abs() < 0.5 * step {
-            text.trim_start_matches('-').into()
-        } else {
-            text
-        };
+        return if value.abs() < 0.5 * step { text.trim_start_matches('-').into() } else { text };
     }
     if value.abs() < 0.5 * step {
         return "0".to_string();
@@ -119,11 +96,7 @@ fn label(value: f64, step: f64, largest: f64) -> String {
 
 fn log_label(factor: f64, decade: i32) -> String {
     match decade {
-        -2..=4 => format!(
-            "{:.*}",
-            (-decade).max(0) as usize,
-            factor * 10f64.powi(decade)
-        ),
+        -2..=4 => format!("{:.*}", (-decade).max(0) as usize, factor * 10f64.powi(decade)),
         _ => format!("{factor}e{decade}"),
     }
 }
@@ -133,52 +106,29 @@ mod tests {
     use super::*;
 
     fn labels(scale: &Scale) -> Vec<&str> {
-        scale
-            .ticks
-            .iter()
-            .map(|(_, label)| label.as_str())
-            .collect()
+        scale.ticks.iter().map(|(_, label)| label.as_str()).collect()
     }
 
     #[test]
     fn linear_axes_end_on_round_marks_around_the_values() {
-        assert_eq!(
-            labels(&linear([0.0, 0.15].into_iter(), 4)),
-            ["0.00", "0.05", "0.10", "0.15"]
-        );
-        assert_eq!(
-            labels(&linear([-3.0, 4.0].into_iter(), 4)),
-            ["-4", "-2", "0", "2", "4"]
-        );
+        assert_eq!(labels(&linear([0.0, 0.15].into_iter(), 4)), ["0.00", "0.05", "0.10", "0.15"]);
+        assert_eq!(labels(&linear([-3.0, 4.0].into_iter(), 4)), ["-4", "-2", "0", "2", "4"]);
         let micro = linear([0.0, 2.3e-6].into_iter(), 5);
         assert_eq!(labels(&micro)[..4], ["0", "5e-7", "1.0e-6", "1.5e-6"]);
         for scale in [linear([5.0].into_iter(), 5), linear([0.0].into_iter(), 5)] {
-            assert!(
-                scale.low < scale.high && scale.ticks.len() >= 3,
-                "{scale:?}"
-            );
+            assert!(scale.low < scale.high && scale.ticks.len() >= 3, "{scale:?}");
         }
     }
 
     #[test]
     fn extreme_values_still_make_an_axis() {
-        for values in [
-            [-1e200, 1e200],
-            [1e-200, 2e-200],
-            [1e200, 1.0000001e200],
-            [-1e-200, 1e200],
-        ] {
+        for values in [[-1e200, 1e200], [1e-200, 2e-200], [1e200, 1.0000001e200], [-1e-200, 1e200]]
+        {
             let scale = linear(values.into_iter(), 5);
-            assert!(
-                scale.ticks.len() >= 2 && scale.ticks.len() <= 20,
-                "{scale:?}"
-            );
+            assert!(scale.ticks.len() >= 2 && scale.ticks.len() <= 20, "{scale:?}");
             for value in values {
                 let position = scale.position(value);
-                assert!(
-                    (-1e-6..=1.0 + 1e-6).contains(&position),
-                    "{value} at {position}"
-                );
+                assert!((-1e-6..=1.0 + 1e-6).contains(&position), "{value} at {position}");
             }
         }
     }

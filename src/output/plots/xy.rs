@@ -14,19 +14,11 @@ pub struct Axis {
 
 impl Axis {
     pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Self {
-        Axis {
-            label: label.into(),
-            unit: unit.into(),
-            log: false,
-        }
+        Axis { label: label.into(), unit: unit.into(), log: false }
     }
 
     pub fn log(label: impl Into<String>, unit: impl Into<String>) -> Self {
-        Axis {
-            label: label.into(),
-            unit: unit.into(),
-            log: true,
-        }
+        Axis { label: label.into(), unit: unit.into(), log: true }
     }
 }
 
@@ -83,47 +75,19 @@ pub fn xy(plot: &XyPlot) -> Result<String, PlotError> {
         for (position, label) in &x.ticks {
             let column = across(*position);
             canvas::line(area, vec![(column, TOP), (column, BOTTOM)], GRID, 1)?;
-            canvas::text(
-                area,
-                label,
-                (column, BOTTOM + 18),
-                size,
-                Align::Centre,
-                BLACK_TEXT,
-            )?;
+            canvas::text(area, label, (column, BOTTOM + 18), size, Align::Centre, BLACK_TEXT)?;
         }
         for (position, label) in &y.ticks {
             let row = up(*position);
             canvas::line(area, vec![(LEFT, row), (RIGHT, row)], GRID, 1)?;
-            canvas::text(
-                area,
-                label,
-                (LEFT - 10, row),
-                size,
-                Align::Right,
-                BLACK_TEXT,
-            )?;
+            canvas::text(area, label, (LEFT - 10, row), size, Align::Right, BLACK_TEXT)?;
         }
         let corners = vec![(LEFT, TOP), (LEFT, BOTTOM), (RIGHT, BOTTOM)];
         canvas::line(area, corners, BLACK_TEXT, 2)?;
         let at = (middle, BOTTOM + 50);
-        canvas::text(
-            area,
-            &axis_title(&plot.x),
-            at,
-            size,
-            Align::Centre,
-            BLACK_TEXT,
-        )?;
+        canvas::text(area, &axis_title(&plot.x), at, size, Align::Centre, BLACK_TEXT)?;
         let at = (22, (TOP + BOTTOM) / 2);
-        canvas::text(
-            area,
-            &axis_title(&plot.y),
-            at,
-            size,
-            Align::Upwards,
-            BLACK_TEXT,
-        )?;
+        canvas::text(area, &axis_title(&plot.y), at, size, Align::Upwards, BLACK_TEXT)?;
 
         for (index, curve) in plot.curves.iter().enumerate() {
             let points: Vec<Point> = curve
@@ -139,9 +103,7 @@ pub fn xy(plot: &XyPlot) -> Result<String, PlotError> {
                 Style::Lines => {}
                 Style::LinesAndMarkers => canvas::markers(area, index, &points)?,
                 Style::Markers => {
-                    points
-                        .iter()
-                        .try_for_each(|&point| canvas::marker(area, index, point))?;
+                    points.iter().try_for_each(|&point| canvas::marker(area, index, point))?;
                 }
             }
         }
@@ -156,22 +118,14 @@ fn scale(
     component: usize,
     wanted: usize,
 ) -> Result<Scale, PlotError> {
-    let values = || {
-        curves
-            .iter()
-            .flat_map(|c| c.points.iter().map(move |p| p[component]))
-    };
+    let values = || curves.iter().flat_map(|c| c.points.iter().map(move |p| p[component]));
     if !axis.log {
         return Ok(ticks::linear(values(), wanted));
     }
     for curve in curves {
         for (point, value) in curve.points.iter().map(|p| p[component]).enumerate() {
             if value <= 0.0 {
-                return Err(PlotError::NotPositive {
-                    curve: curve.name.clone(),
-                    point,
-                    value,
-                });
+                return Err(PlotError::NotPositive { curve: curve.name.clone(), point, value });
             }
         }
     }
