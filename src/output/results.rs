@@ -170,6 +170,7 @@ pub fn static_summary(solution: &StaticSolution, run: &RunRecord) -> Result<Valu
         json!({
             "iterations": solution.iterations,
             "contact_evaluations": solution.contact_evaluations,
+            "saddles_left": solution.saddles_left,
             "residual": quantity("residual", solution.residual, "N")?,
         }),
     );

@@ -12,7 +12,7 @@ pub const WIDTH: u32 = 900;
 pub const BLACK_TEXT: RGBColor = RGBColor(30, 30, 30);
 pub const GRID: RGBColor = RGBColor(222, 222, 222);
 /// Sizes at 900 px; at 700 px the smallest text is 13 px high.
-pub const TITLE_SIZE: i32 = 25;
+const TITLE_SIZE: i32 = 25;
 pub const TEXT_SIZE: i32 = 21;
 
 /// Okabe and Ito's colours without yellow, which is hard to see on white.
@@ -76,6 +76,14 @@ pub fn text(
     let font = FontDesc::from(("sans-serif", size)).transform(turn);
     let style = TextStyle::from(font).color(&colour).pos(Pos::new(horizontal, VPos::Center));
     area.draw_text(&content, &style, at).map_err(failed)
+}
+
+/// The title above a plot, smaller if it is long.
+pub fn title(area: &Area, content: &str) -> Result<(), PlotError> {
+    let fitting = (WIDTH as i32 - 40) * 19 / (10 * content.chars().count().max(1) as i32);
+    let size = TITLE_SIZE.min(fitting).max(12);
+    let at = (WIDTH as i32 / 2, 28);
+    text(area, content, at, size, Align::Centre, BLACK_TEXT)
 }
 
 pub fn line(

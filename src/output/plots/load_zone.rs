@@ -4,7 +4,7 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::output::plots::PlotError;
 use crate::output::plots::canvas::{self, Align, Area, BLACK_TEXT, Point};
 use crate::output::plots::ticks::nice_step;
-use crate::solver::statics::StaticSolution;
+use crate::solver::statics::{BallState, StaticSolution};
 use plotters::style::RGBColor;
 
 /// Cross-section of the bearing in its Y–Z plane. Balls are drawn at their azimuth on the pitch
@@ -36,7 +36,7 @@ impl LoadZone {
         geometry: &BearingGeometry,
         solution: &StaticSolution,
     ) -> Self {
-        let ball = |ball: &crate::solver::statics::BallState| LoadZoneBall {
+        let ball = |ball: &BallState| LoadZoneBall {
             azimuth: ball.azimuth,
             loaded: ball.inner.normal_load > 0.0,
             outer_load: ball.outer.normal_load,
@@ -76,8 +76,7 @@ pub fn load_zone(zone: &LoadZone) -> Result<String, PlotError> {
     let largest = zone.balls.iter().map(|ball| ball.outer_load).fold(0.0, f64::max);
 
     canvas::draw(HEIGHT, |area| {
-        let at = (CENTRE.0, 28);
-        canvas::text(area, &zone.title, at, canvas::TITLE_SIZE, Align::Centre, BLACK_TEXT)?;
+        canvas::title(area, &zone.title)?;
         let white = RGBColor(255, 255, 255);
         let rings = [
             (EDGE.round() as i32, RACE),
@@ -114,7 +113,7 @@ fn check(zone: &LoadZone) -> Result<(), PlotError> {
         ("ball radius", zone.ball_radius),
     ];
     for (what, value) in sizes {
-        if !(value.is_finite() && value > 0.0) {
+        if !(value.is_finite() && value > 0.0 && value <= zone.outer_raceway_radius) {
             return Err(PlotError::Size { what, value });
         }
     }
@@ -178,18 +177,15 @@ fn key(area: &Area, largest: f64) -> Result<(), PlotError> {
         canvas::text(area, label, (x + 22, y), size, Align::Left, BLACK_TEXT)?;
     }
     let y = HEIGHT as i32 - 28;
-    let label = if largest > 0.0 {
-        // A round load of at least a quarter of the largest; its arrow is drawn to scale.
-        let round = nice_step(0.25 * largest);
-        let end = 50 + (LONGEST * round / largest).round() as i32;
-        canvas::arrow(area, (50, y), (end, y), ARROW)?;
-        let label = format!("{} N; at the balls: load on the outer race [N]", short(round));
-        canvas::text(area, &label, (end + 14, y), size, Align::Left, BLACK_TEXT)?;
-        return Ok(());
-    } else {
-        "no ball is loaded"
-    };
-    canvas::text(area, label, (50, y), size, Align::Left, BLACK_TEXT)
+    if largest == 0.0 {
+        return canvas::text(area, "no ball is loaded", (50, y), size, Align::Left, BLACK_TEXT);
+    }
+    // A round load of at least a quarter of the largest; its arrow is drawn to scale.
+    let round = nice_step(0.25 * largest);
+    let end = 50 + (LONGEST * round / largest).round() as i32;
+    canvas::arrow(area, (50, y), (end, y), ARROW)?;
+    let label = format!("{} N; at the balls: load on the outer race [N]", short(round));
+    canvas::text(area, &label, (end + 14, y), size, Align::Left, BLACK_TEXT)
 }
 
 fn place(azimuth: f64, radius: f64) -> Point {

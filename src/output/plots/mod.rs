@@ -39,13 +39,16 @@ pub enum PlotError {
     NoCurve { title: String },
     #[error("curve {curve:?} has no point")]
     NoPoint { curve: String },
-    #[error("point {point} of curve {curve:?} is ({x}, {y}); only finite numbers are drawn")]
-    NotFinite { curve: String, point: usize, x: f64, y: f64 },
+    #[error(
+        "point {point} of curve {curve:?} is ({x:?}, {y:?}); numbers are drawn if they are 0 or \
+         between 1e-200 and 1e200 in size"
+    )]
+    NotDrawable { curve: String, point: usize, x: f64, y: f64 },
     #[error("point {point} of curve {curve:?} is {value} on a logarithmic axis; allowed is > 0")]
     NotPositive { curve: String, point: usize, value: f64 },
     #[error("point {point} of curve {curve:?} has the value {value}; a polar plot needs >= 0")]
     Negative { curve: String, point: usize, value: f64 },
-    #[error("{what} is {value}; allowed is a finite number > 0")]
+    #[error("{what} is {value}; allowed is > 0 and no more than the outer raceway radius")]
     Size { what: &'static str, value: f64 },
     #[error("ball {ball} has {what} = {value}; allowed is a finite number >= 0")]
     Ball { ball: usize, what: &'static str, value: f64 },
@@ -64,8 +67,10 @@ fn check_curves(title: &str, curves: &[Curve]) -> Result<(), PlotError> {
             return Err(PlotError::NoPoint { curve: curve.name.clone() });
         }
         for (point, &[x, y]) in curve.points.iter().enumerate() {
-            if !(x.is_finite() && y.is_finite()) {
-                return Err(PlotError::NotFinite { curve: curve.name.clone(), point, x, y });
+            let drawable = |v: f64| v == 0.0 || ticks::MAGNITUDES.contains(&v.abs());
+            if !(drawable(x) && drawable(y)) {
+                let curve = curve.name.clone();
+                return Err(PlotError::NotDrawable { curve, point, x, y });
             }
         }
     }

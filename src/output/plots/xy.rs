@@ -70,14 +70,7 @@ pub fn xy(plot: &XyPlot) -> Result<String, PlotError> {
     let legend_top = BOTTOM + 75;
     canvas::draw((legend_top + legend.height()) as u32, |area| {
         let middle = (LEFT + RIGHT) / 2;
-        canvas::text(
-            area,
-            &plot.title,
-            (canvas::WIDTH as i32 / 2, 28),
-            canvas::TITLE_SIZE,
-            Align::Centre,
-            BLACK_TEXT,
-        )?;
+        canvas::title(area, &plot.title)?;
         let size = canvas::TEXT_SIZE;
         for (position, label) in &x.ticks {
             let column = across(*position);
@@ -131,8 +124,7 @@ fn scale(
     }
     for curve in curves {
         for (point, value) in curve.points.iter().map(|p| p[component]).enumerate() {
-            // A subnormal number has no power of ten below it that f64 can hold.
-            if value < f64::MIN_POSITIVE {
+            if value <= 0.0 {
                 return Err(PlotError::NotPositive { curve: curve.name.clone(), point, value });
             }
         }

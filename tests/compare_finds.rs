@@ -1,0 +1,414 @@
+//! `compare` finds what is different and names it, and passes what is not.
+
+#[allow(dead_code)]
+mod output_common;
+
+use bearing_dynamics::output::compare::tolerance::{ToleranceClass, Tolerances};
+use bearing_dynamics::output::compare::{
+    CompareError, Comparison, DivergenceKind, Options, compare, is_ignored_by_name, report, to_json,
+};
+use bearing_dynamics::output::results::write_static_results;
+use bearing_dynamics::output::series::Series;
+use output_common::{run, solution};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// Beyond any tolerance of any channel here.
+const GROSS: f64 = 1e30;
+const CLASSES: [ToleranceClass; 2] = [ToleranceClass::F64Reordered, ToleranceClass::Mixed];
+
+/// Two identical results folders.
+fn pair() -> (TempDir, PathBuf, PathBuf) {
+    let root = tempfile::tempdir().unwrap();
+    let [reference, candidate] = ["reference", "candidate"].map(|name| root.path().join(name));
+    for folder in [&reference, &candidate] {
+        write_static_results(folder, &solution(), &run()).unwrap();
+    }
+    (root, reference, candidate)
+}
+
+fn with_class(class: ToleranceClass) -> Options {
+    Options { default_class: Some(class), tolerances: None }
+}
+
+fn compared(reference: &Path, candidate: &Path, class: ToleranceClass) -> Comparison {
+    compare(reference, candidate, &with_class(class)).unwrap()
+}
+
+fn read_json(path: &Path) -> Value {
+    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+}
+
+/// JSON pointers of all leaves; a quantity's value is a leaf, its unit another.
+fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
+    match value {
+        Value::Object(map) => {
+            map.iter().for_each(|(key, item)| pointers(item, &format!("{at}/{key}"), found));
+        }
+        Value::Array(items) => {
+            items
+                .iter()
+                .enumerate()
+                .for_each(|(i, item)| pointers(item, &format!("{at}/{i}"), found));
+        }
+        _ => found.push(at.to_string()),
+    }
+}
+
+/// `/balls/2/inner/load/value` → `balls[2].inner.load`.
+fn path_of(pointer: &str) -> String {
+    let pointer =
+        pointer.strip_suffix("/value").or(pointer.strip_suffix("/unit")).unwrap_or(pointer);
+    let mut path = String::new();
+    for part in pointer.split('/').skip(1) {
+        match part.parse::<usize>() {
+            Ok(index) => path += &format!("[{index}]"),
+            Err(_) if path.is_empty() => path += part,
+            Err(_) => path += &format!(".{part}"),
+        }
+    }
+    path
+}
+
+/// What is allowed at a place, as the comparison says when it is handed a gross error there.
+fn allowed_at(comparison: &Comparison) -> f64 {
+    match comparison.first_divergence.as_ref().unwrap().kind {
+        DivergenceKind::Value { allowed, .. } => allowed,
+        ref other => panic!("expected a difference in value, got {other:?}"),
+    }
+}
+
+#[test]
+fn identical_folders_are_equal_in_every_class() {
+    let (_root, reference, candidate) = pair();
+    for class in [CLASSES[0], CLASSES[1], ToleranceClass::F64Exact] {
+        let result = compared(&reference, &candidate, class);
+        assert!(result.equal, "{}", report(&result));
+        assert!(result.first_divergence.is_none());
+        // 23 columns × 8 balls, twice, and a summary of more than 200 values.
+        assert!(result.checked > 2 * 23 * 8 + 200, "only {} values", result.checked);
+        assert!(report(&result).starts_with("equal: "));
+    }
+}
+
+#[test]
+fn every_cell_of_the_series_is_watched_in_csv_and_npy() {
+    let (_root, reference, candidate) = pair();
+    let series = Series::read_csv(&reference.join("series.csv")).unwrap();
+    for class in CLASSES {
+        for name in ["series.csv", "series.npy"] {
+            let (expected, given) = (reference.join(name), candidate.join(name));
+            for ((row, column), &value) in series.data().indexed_iter() {
+                let check = |changed: f64| {
+                    let mut data = series.data().clone();
+                    data[(row, column)] = changed;
+                    match name {
+                        "series.csv" => {
+                            let altered = Series::new(series.columns().to_vec(), data).unwrap();
+                            fs::write(&given, altered.to_csv().unwrap()).unwrap();
+                        }
+                        _ => ndarray_npy::write_npy(&given, &data).unwrap(),
+                    }
+                    compared(&expected, &given, class)
+                };
+                let allowed = allowed_at(&check(value + GROSS));
+                let found = check(value + 10.0 * allowed);
+                let first = found.first_divergence.as_ref().expect("10 × tolerance is found");
+                assert!(!found.equal && found.differing == 1);
+                assert_eq!(first.channel, series.columns()[column].name);
+                assert_eq!(first.place, format!("row {0} (ball {0})", row + 1));
+                assert!(report(&found).contains(&first.channel));
+                let passed = check(value + 0.1 * allowed);
+                assert!(passed.equal, "{}", report(&passed));
+            }
+        }
+    }
+}
+
+#[test]
+fn every_leaf_of_the_summary_is_watched() {
+    let (_root, reference, candidate) = pair();
+    let (expected, given) = (reference.join("summary.json"), candidate.join("summary.json"));
+    let summary = read_json(&expected);
+    let mut leaves = Vec::new();
+    pointers(&summary, "", &mut leaves);
+    assert!(leaves.len() > 400);
+    for class in CLASSES {
+        let mut ignored = 0;
+        for pointer in &leaves {
+            let check = |changed: Value| {
+                let mut altered = summary.clone();
+                *altered.pointer_mut(pointer).unwrap() = changed;
+                fs::write(&given, altered.to_string()).unwrap();
+                compared(&expected, &given, class)
+            };
+            let path = path_of(pointer);
+            let changed = match summary.pointer(pointer).unwrap() {
+                Value::Number(n) if n.is_f64() => {
+                    let value = n.as_f64().unwrap();
+                    let gross = check(json!(value + GROSS));
+                    if is_ignored_by_name(&path) {
+                        gross
+                    } else {
+                        let allowed = allowed_at(&gross);
+                        let passed = check(json!(value + 0.1 * allowed));
+                        assert!(passed.equal, "{}", report(&passed));
+                        check(json!(value + 10.0 * allowed))
+                    }
+                }
+                Value::Number(n) => check(json!(n.as_u64().unwrap() + 1)),
+                Value::String(text) => check(json!(format!("{text}."))),
+                Value::Bool(value) => check(json!(!value)),
+                _ => check(json!("something")),
+            };
+            if is_ignored_by_name(&path) {
+                ignored += 1;
+                assert!(changed.equal, "{path} is ignored by name");
+                continue;
+            }
+            let first = changed.first_divergence.as_ref().expect(&path);
+            assert!(!changed.equal && changed.differing == 1, "{}", report(&changed));
+            assert!(first.place == path || first.place.starts_with(&format!("{path} (ball ")));
+            assert_eq!(first.file, "summary.json");
+        }
+        // version, threads, and value and unit of two times.
+        assert_eq!(ignored, 6);
+    }
+}
+
+#[test]
+fn a_folder_comparison_names_file_row_and_channel_of_the_earliest_difference() {
+    let (_root, reference, candidate) = pair();
+    let series = Series::read_csv(&reference.join("series.csv")).unwrap();
+    let mut data = series.data().clone();
+    data[(5, 3)] += 1.0;
+    data[(2, 9)] += 1.0;
+    data[(2, 14)] += 1.0;
+    Series::new(series.columns().to_vec(), data)
+        .unwrap()
+        .write_csv(&candidate.join("series.csv"))
+        .unwrap();
+    let result = compared(&reference, &candidate, ToleranceClass::F64Reordered);
+    let first = result.first_divergence.clone().unwrap();
+    assert_eq!((first.file.as_str(), first.place.as_str()), ("series.csv", "row 3 (ball 3)"));
+    assert_eq!(first.channel, series.columns()[9].name);
+    assert_eq!(result.differing, 3);
+    let worst: Vec<_> = result.channels.iter().filter(|channel| channel.differing > 0).collect();
+    assert_eq!(worst.len(), 3);
+    let json = to_json(&result);
+    assert_eq!(json["equal"], false);
+    assert_eq!(json["first_divergence"]["place"], "row 3 (ball 3)");
+    assert!(json["first_divergence"]["detail"]["allowed"].is_f64());
+}
+
+#[test]
+fn nan_and_infinity_differ_even_from_themselves() {
+    let root = tempfile::tempdir().unwrap();
+    let [good, bad] = ["good.csv", "bad.csv"].map(|name| root.path().join(name));
+    for text in ["NaN", "inf", "-inf"] {
+        fs::write(&good, "time [s],load [N]\n0.0,1.0\n0.5,2.0\n").unwrap();
+        fs::write(&bad, format!("time [s],load [N]\n0.0,1.0\n0.5,{text}\n")).unwrap();
+        for class in [CLASSES[0], CLASSES[1], ToleranceClass::F64Exact] {
+            for (reference, candidate) in [(&good, &bad), (&bad, &good), (&bad, &bad)] {
+                let result = compared(reference, candidate, class);
+                assert!(!result.equal);
+                let first = result.first_divergence.unwrap();
+                assert_eq!(first.place, "row 2 (time = 0.5 s)");
+                assert_eq!(first.channel, "load");
+            }
+        }
+    }
+    // A quantity of a tree whose number became null.
+    let tree = root.path().join("summary.json");
+    fs::write(&tree, r#"{"load": {"value": null, "unit": "N"}}"#).unwrap();
+    assert!(!compared(&tree, &tree, ToleranceClass::Mixed).equal);
+}
+
+#[test]
+fn nan_in_a_npy_candidate_fails() {
+    use ndarray_npy::write_npy;
+    let (_root, reference, candidate) = pair();
+    let mut data = Series::read_npy(&reference.join("series.npy")).unwrap().data().clone();
+    data[(7, 22)] = f64::NAN;
+    write_npy(candidate.join("series.npy"), &data).unwrap();
+    let result = compared(&reference, &candidate, ToleranceClass::Mixed);
+    let first = result.first_divergence.unwrap();
+    assert_eq!((first.file.as_str(), first.place.as_str()), ("series.npy", "row 8 (ball 8)"));
+}
+
+#[test]
+fn exact_means_the_same_bits() {
+    let root = tempfile::tempdir().unwrap();
+    let [a, b] = ["a.csv", "b.csv"].map(|name| root.path().join(name));
+    for (one, other) in [(0.0, -0.0), (1.0, 1.0 + f64::EPSILON), (5e-324, 0.0)] {
+        fs::write(&a, format!("load [N]\n{one:?}\n")).unwrap();
+        fs::write(&b, format!("load [N]\n{other:?}\n")).unwrap();
+        assert!(!compared(&a, &b, ToleranceClass::F64Exact).equal);
+        assert!(compared(&a, &a, ToleranceClass::F64Exact).equal);
+        assert!(compared(&a, &b, ToleranceClass::F64Reordered).equal);
+    }
+}
+
+#[test]
+fn missing_and_further_parts_are_told_apart() {
+    let root = tempfile::tempdir().unwrap();
+    let [a, b] = ["a.csv", "b.csv"].map(|name| root.path().join(name));
+    let kind = |reference: &str, candidate: &str| {
+        fs::write(&a, reference).unwrap();
+        fs::write(&b, candidate).unwrap();
+        let result = compared(&a, &b, ToleranceClass::Mixed);
+        result.first_divergence.map(|first| (first.kind, first.place))
+    };
+    let two = "x [m],y [m]\n1,2\n3,4\n";
+    assert_eq!(kind(two, "y [m],x [m]\n2,1\n4,3\n"), None, "order of columns does not matter");
+    assert_eq!(kind(two, "x [m],y [m],z [m]\n1,2,0\n3,4,0\n"), None, "a further column");
+    let missing = Some((DivergenceKind::MissingChannel, String::new()));
+    assert_eq!(kind(two, "x [m]\n1\n3\n"), missing);
+    let length = |candidate| DivergenceKind::Length { reference: 2, candidate };
+    assert_eq!(kind(two, "x [m],y [m]\n1,2\n"), Some((length(1), "row 2".into())));
+    assert_eq!(kind(two, &format!("{two}5,6\n")), Some((length(3), "row 3".into())));
+    let unit = DivergenceKind::Unit { reference: "m".into(), candidate: "mm".into() };
+    assert_eq!(kind(two, "x [m],y [mm]\n1,2\n3,4\n"), Some((unit, String::new())));
+    // An earlier wrong value goes before the missing row.
+    let Some((DivergenceKind::Value { .. }, place)) = kind(two, "x [m],y [m]\n1,3\n") else {
+        panic!("a value first");
+    };
+    assert_eq!(place, "row 1");
+}
+
+#[test]
+fn trees_of_another_shape_differ() {
+    let root = tempfile::tempdir().unwrap();
+    let [a, b] = ["a.json", "b.json"].map(|name| root.path().join(name));
+    let kind = |reference: Value, candidate: Value| {
+        fs::write(&a, reference.to_string()).unwrap();
+        fs::write(&b, candidate.to_string()).unwrap();
+        let result = compared(&a, &b, ToleranceClass::Mixed);
+        result.first_divergence.map(|first| (first.kind, first.place))
+    };
+    let list = |loads: &[f64]| json!({ "loads": loads, "count": 2 });
+    let shorter = kind(list(&[1.0, 2.0]), list(&[1.0]));
+    assert_eq!(shorter, Some((DivergenceKind::MissingChannel, "loads[1]".into())));
+    let longer = kind(list(&[1.0]), list(&[1.0, 2.0]));
+    assert_eq!(longer, Some((DivergenceKind::OnlyInCandidate, "loads[1]".into())));
+    assert_eq!(
+        kind(json!({"a": []}), json!({"a": [1]})).unwrap().0,
+        DivergenceKind::MissingChannel
+    );
+    assert_eq!(kind(json!({"a": 1.5}), json!({"a": 1.5, "b": 2})), None);
+    assert_eq!(kind(json!({"a": 2}), json!({"a": 2.0})), None);
+    for other in [json!("2"), json!(2.5), json!(null), json!({"value": 2, "unit": "N"})] {
+        assert!(kind(json!({"a": 2}), json!({ "a": other })).is_some());
+    }
+    assert!(kind(json!({"a": {"value": 1.0, "unit": "N"}}), json!({"a": 1.0})).is_some());
+}
+
+#[test]
+fn a_missing_file_is_a_difference_and_a_damaged_one_an_error() {
+    let (_root, reference, candidate) = pair();
+    let options = Options::default();
+    for name in ["series.csv", "series.npy", "summary.json"] {
+        let path = candidate.join(name);
+        let bytes = fs::read(&path).unwrap();
+        fs::remove_file(&path).unwrap();
+        let result = compare(&reference, &candidate, &options).unwrap();
+        let first = result.first_divergence.as_ref().unwrap();
+        assert_eq!((&first.kind, first.file.as_str()), (&DivergenceKind::MissingFile, name));
+        // Half of the file; a CSV is cut inside a row.
+        fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+        assert!(compare(&reference, &candidate, &options).is_err(), "half of {name}");
+        fs::write(&path, b"\x00\xff\xfe").unwrap();
+        assert!(compare(&reference, &candidate, &options).is_err(), "noise in {name}");
+        fs::write(&path, bytes).unwrap();
+    }
+    let missing = reference.join("nothing.csv");
+    assert!(matches!(compare(&missing, &missing, &options), Err(CompareError::Series(_))));
+    let file = reference.join("series.csv");
+    assert!(matches!(compare(&reference, &file, &options), Err(CompareError::KindMismatch { .. })));
+    let summary = reference.join("summary.json");
+    assert!(matches!(compare(&file, &summary, &options), Err(CompareError::KindMismatch { .. })));
+    let empty = tempfile::tempdir().unwrap();
+    assert!(matches!(
+        compare(empty.path(), &candidate, &options),
+        Err(CompareError::NothingToCompare { .. })
+    ));
+}
+
+#[test]
+fn a_header_that_promises_too_much_is_refused_without_allocating() {
+    let root = tempfile::tempdir().unwrap();
+    let path = root.path().join("huge.npy");
+    for shape in ["(1000000000000, 8)", "(18446744073709551615, 8)", "(99999999999999999999, 8)"] {
+        let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}");
+        while !(header.len() + 11).is_multiple_of(64) {
+            header.push(' ');
+        }
+        header.push('\n');
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend((header.len() as u16).to_le_bytes());
+        bytes.extend(header.as_bytes());
+        fs::write(&path, bytes).unwrap();
+        assert!(compare(&path, &path, &Options::default()).is_err());
+    }
+}
+
+#[test]
+fn a_tolerance_file_beside_the_reference_decides_per_channel() {
+    let (_root, reference, candidate) = pair();
+    let series = Series::read_csv(&reference.join("series.csv")).unwrap();
+    let column = series.columns().iter().position(|c| c.name == "inner_peak_pressure").unwrap();
+    let mut data = series.data().clone();
+    data[(6, column)] *= 1.0 + 1e-6;
+    let altered = Series::new(series.columns().to_vec(), data).unwrap();
+    altered.write_csv(&candidate.join("series.csv")).unwrap();
+    let outcome = |text: &str| {
+        fs::write(reference.join("tolerances.json"), text).unwrap();
+        compare(&reference, &candidate, &Options::default())
+    };
+    assert!(!outcome("{}").unwrap().equal);
+    assert!(outcome(r#"{"class": "mixed"}"#).unwrap().equal);
+    let named = |entry: &str| format!(r#"{{"channels": {{"inner_peak_pressure": {entry}}}}}"#);
+    assert!(outcome(&named(r#"{"class": "mixed"}"#)).unwrap().equal);
+    assert!(outcome(&named(r#"{"relative": 2e-6}"#)).unwrap().equal);
+    assert!(!outcome(&named(r#"{"relative": 5e-7}"#)).unwrap().equal);
+    let ignored = outcome(&named(r#"{"class": "ignored"}"#)).unwrap();
+    assert!(ignored.equal && ignored.ignored.contains(&"series.csv: inner_peak_pressure".into()));
+    // The user's own choice of a default goes before the file's.
+    fs::write(reference.join("tolerances.json"), r#"{"class": "mixed"}"#).unwrap();
+    assert!(!compared(&reference, &candidate, ToleranceClass::F64Exact).equal);
+
+    for refused in [
+        r#"{"class": "loose"}"#,
+        r#"{"class": "ignored"}"#,
+        r#"{"tolerance": 1}"#,
+        r#"{"channels": {"inner_peak_presure": {"class": "mixed"}}}"#,
+        r#"{"channels": {"inner_load": {"relative": -1}}}"#,
+        r#"{"channels": {"inner_load": {"relative": 1e-3, "class": "ignored"}}}"#,
+    ] {
+        assert!(matches!(outcome(refused), Err(CompareError::Tolerance(_))), "{refused}");
+    }
+}
+
+#[test]
+fn npy_without_names_takes_those_of_the_reference() {
+    let (_root, reference, candidate) = pair();
+    fs::remove_file(candidate.join("series.columns.json")).unwrap();
+    assert!(compared(&reference, &candidate, ToleranceClass::F64Exact).equal);
+    let csv = reference.join("series.csv");
+    let npy = candidate.join("series.npy");
+    assert!(compared(&csv, &npy, ToleranceClass::F64Exact).equal);
+    // f32, as a graphics processor would write it.
+    let single = Series::read_npy(&npy).unwrap().data().mapv(|value| value as f32);
+    ndarray_npy::write_npy(&npy, &single).unwrap();
+    assert!(compared(&csv, &npy, ToleranceClass::Mixed).equal);
+    assert!(!compared(&csv, &npy, ToleranceClass::F64Reordered).equal);
+}
+
+#[test]
+fn tolerances_read_back_as_written() {
+    let text = r#"{"class":"mixed","channels":{"a":{"class":"ignored","reason":"why"}}}"#;
+    let tolerances: Tolerances = serde_json::from_str(text).unwrap();
+    assert_eq!(serde_json::to_string(&tolerances).unwrap(), text);
+}
