@@ -175,13 +175,8 @@ fn conditions(scene: &Scene) -> Echo {
 pub fn sections(
     scene: &Scene,
     problem: &StaticProblem,
-    solution: &StaticSolution,
 ) -> Result<Vec<(String, Value)>, ResultsError> {
-    Ok(vec![
-        ("hertz".into(), hertz(problem)?),
-        ("frequencies".into(), frequencies(scene)?),
-        ("load_zone".into(), load_zone(solution)?),
-    ])
+    Ok(vec![("hertz".into(), hertz(problem)?), ("frequencies".into(), frequencies(scene)?)])
 }
 
 fn hertz(problem: &StaticProblem) -> Echo {
@@ -217,26 +212,6 @@ fn frequencies(scene: &Scene) -> Echo {
         echo.insert(name.into(), entry);
     }
     Ok(Value::Object(echo))
-}
-
-/// Which balls carry, and over how wide an arc.
-pub fn load_zone(solution: &StaticSolution) -> Echo {
-    let (loaded, extent) = load_zone_of(solution);
-    let largest = solution
-        .balls
-        .iter()
-        .enumerate()
-        .max_by(|a, b| a.1.inner.normal_load.total_cmp(&b.1.inner.normal_load))
-        .filter(|(_, ball)| ball.inner.normal_load > 0.0);
-    let mut echo = json!({
-        "loaded_balls": loaded,
-        "extent": quantity("extent", extent.to_degrees(), "deg")?,
-    });
-    if let Some((index, ball)) = largest {
-        echo["most_loaded_ball"] = json!(index + 1);
-        echo["largest_inner_load"] = quantity("load", ball.inner.normal_load, "N")?;
-    }
-    Ok(echo)
 }
 
 /// Number of balls that carry the inner race, and the arc from the first to the last of them in

@@ -33,7 +33,7 @@ pub fn solve_scene(scene: &Scene, read_seconds: f64) -> Result<Solved, Box<dyn E
         assumptions: assumptions.chain(defaults).collect(),
         threads: 1,
         seconds: vec![("read".into(), read_seconds), ("solve".into(), solve_seconds)],
-        sections: echo::sections(scene, &problem, &solution)?,
+        sections: echo::sections(scene, &problem)?,
     };
     Ok(Solved { problem, solution, record })
 }

@@ -13,6 +13,8 @@ pub fn render(solution: &StaticSolution) -> String {
         let (value, unit, load_unit) =
             if i < 3 { (1e6 * q[i], "um ", "N") } else { (q[i].to_degrees(), "deg", "N m") };
         let load = without_noise(loads[i], solution, i);
+        // Adding zero turns a negative zero into a positive one.
+        let value = (value * 1e6).round() / 1e6 + 0.0;
         let _ = writeln!(text, "  {name:<10} {value:>16.6} {unit} {load:>18.6} {load_unit}");
     }
     let _ = writeln!(
