@@ -67,13 +67,8 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
 }
 
 fn cage_ratio(bearing: &Bearing) -> f64 {
-    ratios(
-        bearing.ball_count,
-        bearing.ball_radius,
-        bearing.pitch_radius,
-        bearing.contact_angle,
-    )
-    .cage
+    ratios(bearing.ball_count, bearing.ball_radius, bearing.pitch_radius, bearing.contact_angle)
+        .cage
 }
 
 fn ratios_against_pure_rolling(context: &mut CaseContext) {
@@ -90,10 +85,15 @@ fn ratios_against_pure_rolling(context: &mut CaseContext) {
         ];
         for (part, quantity, ours, theirs) in quantities {
             context.check(
-                Check::new(&format!("{key}_{part}"), &format!("{name}, {quantity} over shaft"), "1", ours)
-                    .independent(theirs, "contact velocities of pure rolling, 4 × 4 system")
-                    .relative(1e-13, "same kinematics; rounding of a 4 × 4 elimination")
-                    .golden(GoldenTolerance { relative: 1e-13, absolute: 0.0 }),
+                Check::new(
+                    &format!("{key}_{part}"),
+                    &format!("{name}, {quantity} over shaft"),
+                    "1",
+                    ours,
+                )
+                .independent(theirs, "contact velocities of pure rolling, 4 × 4 system")
+                .relative(1e-13, "same kinematics; rounding of a 4 × 4 elimination")
+                .golden(GoldenTolerance { relative: 1e-13, absolute: 0.0 }),
             );
         }
     }
@@ -180,11 +180,8 @@ fn detected_cage(context: &mut CaseContext) {
             cage_ratio(&Bearing { contact_angle: degrees.to_radians(), ..ANGULAR_CONTACT })
         })
         .fold(f64::INFINITY, f64::min);
-    let radial = oracle::pure_rolling(
-        ANGULAR_CONTACT.ball_radius,
-        ANGULAR_CONTACT.pitch_radius,
-        0.0,
-    );
+    let radial =
+        oracle::pure_rolling(ANGULAR_CONTACT.ball_radius, ANGULAR_CONTACT.pitch_radius, 0.0);
     context.check(
         Check::new(
             "slowest_cage_ratio",
@@ -204,7 +201,10 @@ fn detected_cage(context: &mut CaseContext) {
             slowest * detected_shaft,
         )
         .published("detected_cage_30")
-        .at_least(0.3, "one and a half spacings of 0.2034 Hz, the telemeter's line spacing in Table 5.1"),
+        .at_least(
+            0.3,
+            "one and a half spacings of 0.2034 Hz, the telemeter's line spacing in Table 5.1",
+        ),
     );
 }
 

@@ -36,12 +36,8 @@ pub fn pure_rolling(ball_radius: f64, pitch_radius: f64, contact_angle: f64) -> 
         row
     };
     let no_pivot = [-normal[0], normal[0], normal[1], normal[2], 0.0];
-    let [orbit, x, r, t] = solve([
-        row(1.0, tangent, 0.0),
-        row(-1.0, tangent, 1.0),
-        row(1.0, meridian, 0.0),
-        no_pivot,
-    ]);
+    let [orbit, x, r, t] =
+        solve([row(1.0, tangent, 0.0), row(-1.0, tangent, 1.0), row(1.0, meridian, 0.0), no_pivot]);
     let relative = [x - orbit, r, t];
     Rolling { orbit, spin: dot(relative, relative).sqrt() }
 }
@@ -55,8 +51,9 @@ fn solve(mut rows: [[f64; 5]; 4]) -> [f64; 4] {
         rows.swap(column, pivot);
         for below in column + 1..4 {
             let factor = rows[below][column] / rows[column][column];
-            for entry in column..5 {
-                rows[below][entry] -= factor * rows[column][entry];
+            let upper = rows[column];
+            for (entry, above) in rows[below].iter_mut().zip(upper) {
+                *entry -= factor * above;
             }
         }
     }

@@ -20,7 +20,8 @@ fn seconds_since_epoch() -> u64 {
 
 /// Year, month and day of the Gregorian calendar from days since 1970-01-01.
 fn civil(days: u64) -> (u64, u64, u64) {
-    let leap = |year: u64| year.is_multiple_of(4) && !year.is_multiple_of(100) || year.is_multiple_of(400);
+    let leap =
+        |year: u64| year.is_multiple_of(4) && !year.is_multiple_of(100) || year.is_multiple_of(400);
     let (mut year, mut rest) = (1970, days);
     while rest >= if leap(year) { 366 } else { 365 } {
         rest -= if leap(year) { 366 } else { 365 };

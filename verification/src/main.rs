@@ -95,7 +95,9 @@ fn verify(arguments: &Arguments) -> Result<bool, String> {
         cases: selected.iter().map(CaseReport::pending).collect(),
     };
     let save = |report: &Report| {
-        report.write(&arguments.out).map_err(|error| format!("{}: {error}", arguments.out.display()))
+        report
+            .write(&arguments.out)
+            .map_err(|error| format!("{}: {error}", arguments.out.display()))
     };
     save(&report)?;
     for (index, case) in selected.iter().enumerate() {

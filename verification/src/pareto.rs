@@ -141,9 +141,7 @@ pub fn run(study: &Study, folder: &Path) -> Result<(), ParetoError> {
 /// For each point, whether no other point is at least as good in both and better in one.
 pub fn on_front(points: &[Point]) -> Vec<bool> {
     let beats = |a: &Point, b: &Point| {
-        a.seconds <= b.seconds
-            && a.error <= b.error
-            && (a.seconds < b.seconds || a.error < b.error)
+        a.seconds <= b.seconds && a.error <= b.error && (a.seconds < b.seconds || a.error < b.error)
     };
     points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect()
 }
@@ -167,9 +165,7 @@ fn table(study: &Study, points: &[Point]) -> String {
 const SMALLEST_DRAWN_ERROR: f64 = 1e-17;
 
 fn draw(study: &Study, points: &[Point]) -> Result<String, ParetoError> {
-    let place = |point: &Point| {
-        (point.seconds.max(1e-9), point.error.max(SMALLEST_DRAWN_ERROR))
-    };
+    let place = |point: &Point| (point.seconds.max(1e-9), point.error.max(SMALLEST_DRAWN_ERROR));
     let span = |values: Vec<f64>| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(0.0, f64::max);

@@ -52,14 +52,13 @@ pub fn assess(case: &Case, run: &Run, golden_folder: &Path) -> CaseReport {
                 false => Vec::new(),
             };
             let idle = idle.iter().map(|id| {
-                format!("published value `{id}` could be altered far beyond its tolerance unnoticed")
+                format!(
+                    "published value `{id}` could be altered far beyond its tolerance unnoticed"
+                )
             });
             (idle.collect(), verdict)
         }
-        Err(error) => (
-            vec![error.to_string()],
-            judge::judge(record, &Published::default()),
-        ),
+        Err(error) => (vec![error.to_string()], judge::judge(record, &Published::default())),
     };
     let Verdict { checks, problems: misuses } = verdict;
     problems.extend(misuses);

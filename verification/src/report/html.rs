@@ -56,8 +56,9 @@ fn write_machine(out: &mut String, report: &Report) -> std::fmt::Result {
         (
             "Extent",
             format!(
-                "{} cases, {checks} checks, {} s",
-                report.cases.len(),
+                "{}, {}, {} s",
+                format::counted(report.cases.len(), "case"),
+                format::counted(checks, "check"),
                 format::seconds(Some(report.seconds()))
             ),
         ),
@@ -147,8 +148,8 @@ fn write_explained(out: &mut String, report: &Report) -> std::fmt::Result {
                 check_anchor(case, check),
                 escape(&check.quantity),
                 escape(&check.reference_source),
-                number(check.reference, &check.unit),
-                number(check.value, &check.unit),
+                number(&format::reference(check), &check.unit),
+                number(&optional(check.value, 6), &check.unit),
                 nowrap(&format::error(check)),
                 explanation(case, check),
             )?;
@@ -241,12 +242,12 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
     }
     if case.golden.status != GoldenStatus::None {
         let accepted = case.golden.last_reason.as_ref().map_or(String::new(), |last| {
-            format!(", last accepted {} because: {}", escape(&last.date), escape(&last.reason))
+            format!("; last accepted {}: {}", escape(&last.date), escape(&last.reason))
         });
         writeln!(
             out,
-            "<p class=\"meta\">Own past: {} numbers pinned{accepted}.</p>",
-            case.golden.values
+            "<p class=\"meta\">Own past: {} pinned{accepted}.</p>",
+            format::counted(case.golden.values, "number")
         )?;
     }
     writeln!(out, "</section>")
@@ -282,8 +283,8 @@ fn write_checks(out: &mut String, case: &CaseReport) -> std::fmt::Result {
             check_anchor(case, check),
             escape(&check.quantity),
             escape(&check.id),
-            number(check.value, &check.unit),
-            number(check.reference, &check.unit),
+            number(&optional(check.value, 6), &check.unit),
+            number(&format::reference(check), &check.unit),
             format::kind(check.reference_kind),
             escape(&check.reference_source),
             nowrap(&format::error(check)),
@@ -320,8 +321,7 @@ fn check_anchor(case: &CaseReport, check: &CheckReport) -> String {
     anchor(case, &check.id)
 }
 
-fn number(value: Option<f64>, unit: &str) -> String {
-    let text = value.map_or("not finite".into(), |value| significant(value, 6));
+fn number(text: &str, unit: &str) -> String {
     format!("<span class=\"value\">{text}</span><small>{}</small>", escape(&format::unit(unit)))
 }
 

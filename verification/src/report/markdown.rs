@@ -88,7 +88,7 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
                 case.id,
                 cell(&check.quantity),
                 cell(&check.reference_source),
-                optional(check.reference, 6),
+                format::reference(check),
                 optional(check.value, 6),
                 format::error(check),
                 cell(&explanation.text),
@@ -139,7 +139,7 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
             cell(&check.quantity),
             optional(check.value, 6),
             format::unit(&check.unit),
-            optional(check.reference, 6),
+            format::reference(check),
             format::kind(check.reference_kind),
             cell(&check.reference_source),
             format::error(check),
@@ -175,10 +175,13 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
     }
     if case.golden.status != GoldenStatus::None {
         let reason = case.golden.last_reason.as_ref();
-        let reason = reason.map_or(String::new(), |last| {
-            format!("; accepted {}: {}", last.date, last.reason)
-        });
-        writeln!(out, "\nOwn past: {} numbers pinned{reason}.", case.golden.values)?;
+        let reason = reason
+            .map_or(String::new(), |last| format!("; accepted {}: {}", last.date, last.reason));
+        writeln!(
+            out,
+            "\nOwn past: {} pinned{reason}.",
+            format::counted(case.golden.values, "number")
+        )?;
     }
     Ok(())
 }

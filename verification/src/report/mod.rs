@@ -110,8 +110,7 @@ impl CaseReport {
         let holds = self.error.is_none()
             && self.problems.is_empty()
             && self.checks.iter().all(|check| check.status != Status::Failed);
-        let as_before =
-            matches!(self.golden.status, GoldenStatus::Unchanged | GoldenStatus::None);
+        let as_before = matches!(self.golden.status, GoldenStatus::Unchanged | GoldenStatus::None);
         match (holds, as_before) {
             (false, _) => CaseStatus::Failed,
             (true, false) => CaseStatus::GoldenChanged,
@@ -184,7 +183,9 @@ impl Report {
 /// File name of a figure within the report's `figures` folder.
 fn figure_file(case: &CaseReport, figure: &Figure) -> String {
     let safe = |text: &str| -> String {
-        text.chars().map(|c| if c.is_ascii_alphanumeric() || "_-.".contains(c) { c } else { '_' }).collect()
+        text.chars()
+            .map(|c| if c.is_ascii_alphanumeric() || "_-.".contains(c) { c } else { '_' })
+            .collect()
     };
     format!("{}-{}.svg", safe(&case.id), safe(&figure.name))
 }
