@@ -1,1 +1,57 @@
+//! Scenes: what a person describes in TOML or JSON, and what the program makes of it.
+//!
+//! text → [`tree`] (values with their places) → [`Document`] (given keys, checked one by one
+//! against the key table in [`keys`]) → [`Scene`] (SI, validated as a whole, every default named).
+//!
+//! ```
+//! use bearing_dynamics::scene::{self, Format};
+//! let text = r#"
+//!     [bearing]
+//!     kind = "deep-groove"
+//!     balls = 8
+//!     clearance = { radial = "-5 um" }
+//!     inner_race = { radius = "20.047 mm", groove_radius = "6.013 mm" }
+//!     outer_race = { radius = "31.953 mm", groove_radius = "6.310 mm" }
+//! "#;
+//! let scene = scene::read_str(text, Format::Toml, "example.toml")?;
+//! assert!((scene.geometry.ball_radius - 5.9555e-3).abs() <= 1e-15);
+//! # Ok::<(), scene::SceneError>(())
+//! ```
+pub mod document;
+pub mod error;
+pub mod keys;
+mod resolve;
+mod resolve_geometry;
+pub mod resolved;
+mod source;
+pub mod sweep;
+mod tree;
+pub mod units;
+mod value;
 
+pub use document::Document;
+pub use error::{Place, Problem, SceneError};
+pub use resolve::resolve;
+pub use resolved::{
+    Assumption, Cage, CageGuidance, DefaultUsed, Dimensions, Plot, RaceDimensions, Scene,
+};
+pub use source::{Format, LARGEST_FILE};
+pub use sweep::{SweepAxis, SweepValues};
+
+use std::path::Path;
+
+/// Reads a scene file; the name's ending (`.toml`, `.json`) tells the format.
+///
+/// # Errors
+/// The first thing wrong with the file or its contents, with its place.
+pub fn read_file(path: &Path) -> Result<Scene, SceneError> {
+    resolve(&Document::read_file(path)?)
+}
+
+/// Reads a scene from text; `name` stands for the file in messages.
+///
+/// # Errors
+/// The first thing wrong with the text, with its place.
+pub fn read_str(text: &str, format: Format, name: &str) -> Result<Scene, SceneError> {
+    resolve(&Document::read_str(text, format, name)?)
+}

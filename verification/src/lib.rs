@@ -7,6 +7,7 @@
 //! `verification/README.md` tells how a case is written and how the report is read.
 #![forbid(unsafe_code)]
 
+pub mod bearings;
 pub mod case;
 pub mod cases;
 pub mod check;

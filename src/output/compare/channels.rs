@@ -1,0 +1,156 @@
+//! The two forms in which results are compared: tables of numbers, and trees of named values.
+
+use crate::output::compare::CompareError;
+use crate::output::series::{Series, columns_path};
+use serde_json::Value;
+use std::path::Path;
+
+/// One file's content.
+pub enum Content {
+    Table(Series),
+    Tree(Vec<Leaf>),
+}
+
+/// One value of a JSON tree.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Leaf {
+    /// With indices counted from 0: `balls[2].inner.load`.
+    pub path: String,
+    /// Without them: `balls[].inner.load`.
+    pub channel: String,
+    /// Empty if the value has none.
+    pub unit: String,
+    pub value: LeafValue,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum LeafValue {
+    Real(f64),
+    Integer(i128),
+    /// A string, bool, null, empty list or empty table, as JSON text.
+    Text(String),
+}
+
+impl LeafValue {
+    pub fn as_real(&self) -> Option<f64> {
+        match self {
+            LeafValue::Real(value) => Some(*value),
+            LeafValue::Integer(value) => Some(*value as f64),
+            LeafValue::Text(_) => None,
+        }
+    }
+}
+
+impl std::fmt::Display for LeafValue {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            LeafValue::Real(value) => write!(f, "{value:?}"),
+            LeafValue::Integer(value) => write!(f, "{value}"),
+            LeafValue::Text(text) => f.write_str(text),
+        }
+    }
+}
+
+/// Reads `.csv`, `.npy` or `.json`.
+pub fn read(path: &Path) -> Result<Content, CompareError> {
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some("csv") => Ok(Content::Table(Series::read_csv(path)?)),
+        Some("npy") => Ok(Content::Table(Series::read_npy(path)?)),
+        Some("json") => {
+            let bytes = std::fs::read(path).map_err(|source| CompareError::Read {
+                path: path.to_path_buf(),
+                source,
+            })?;
+            let tree: Value =
+                serde_json::from_slice(&bytes).map_err(|source| CompareError::Json {
+                    path: path.to_path_buf(),
+                    source,
+                })?;
+            Ok(Content::Tree(leaves(&tree)))
+        }
+        _ => Err(CompareError::UnknownKind {
+            path: path.to_path_buf(),
+        }),
+    }
+}
+
+/// A `.npy` file without column names beside it takes those of the reference, by position.
+pub fn name_columns_as(
+    candidate: Series,
+    path: &Path,
+    reference: &Series,
+) -> Result<Series, CompareError> {
+    let unnamed = path.extension().is_some_and(|e| e == "npy") && !columns_path(path).exists();
+    if unnamed && candidate.columns().len() == reference.columns().len() {
+        return Ok(Series::new(
+            reference.columns().to_vec(),
+            candidate.data().clone(),
+        )?);
+    }
+    Ok(candidate)
+}
+
+/// The values of a tree in the order in which they are written.
+pub fn leaves(tree: &Value) -> Vec<Leaf> {
+    let mut found = Vec::new();
+    collect(tree, "", "", &mut found);
+    found
+}
+
+fn collect(value: &Value, path: &str, channel: &str, found: &mut Vec<Leaf>) {
+    let below = |parent: &str, key: &str| match parent {
+        "" => key.to_string(),
+        _ => format!("{parent}.{key}"),
+    };
+    let mut push = |unit: &str, value: LeafValue| {
+        found.push(Leaf {
+            path: path.into(),
+            channel: channel.into(),
+            unit: unit.into(),
+            value,
+        });
+    };
+    match value {
+        Value::Object(map) if map.is_empty() => push("", LeafValue::Text("{}".into())),
+        Value::Array(items) if items.is_empty() => push("", LeafValue::Text("[]".into())),
+        Value::Object(map) => {
+            if let Some((real, unit)) = quantity(value) {
+                return push(unit, LeafValue::Real(real));
+            }
+            for (key, item) in map {
+                collect(item, &below(path, key), &below(channel, key), found);
+            }
+        }
+        Value::Array(items) => {
+            for (index, item) in items.iter().enumerate() {
+                collect(
+                    item,
+                    &format!("{path}[{index}]"),
+                    &format!("{channel}[]"),
+                    found,
+                );
+            }
+        }
+        Value::Number(number) => push(
+            "",
+            match number.as_i128() {
+                Some(integer) => LeafValue::Integer(integer),
+                None => LeafValue::Real(number.as_f64().unwrap_or(f64::NAN)),
+            },
+        ),
+        Value::String(_) | Value::Bool(_) | Value::Null => {
+            push("", LeafValue::Text(value.to_string()));
+        }
+    }
+}
+
+/// `{"value", "unit"}`. A `null` value is a number that JSON could not hold.
+fn quantity(value: &Value) -> Option<(f64, &str)> {
+    let map = value.as_object().filter(|map| map.len() == 2)?;
+    let unit = map.get("unit")?.as_str()?;
+    match map.get("value")? {
+        Value::Number(number) => Some((number.as_f64().unwrap_or(f64::NAN), unit)),
+        Value::Null => Some((f64::NAN, unit)),
+        _ => None,
+    }
+}

@@ -1,0 +1,262 @@
+//! How far a candidate may be from the reference.
+//!
+//! allowed = absolute floor + relative · |reference| + scale relative · (largest |reference| of
+//! the channel; the components of one vector share theirs).
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// A named set of tolerance numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ToleranceClass {
+    /// Same bits: the same program on the same path (any thread count, resumed runs).
+    F64Exact,
+    /// f64 arithmetic in another order: another compiler, processor, solver or summation order.
+    F64Reordered,
+    /// f32 somewhere on the path, f64 where it matters.
+    Mixed,
+    /// Not compared, and listed as such in the report.
+    Ignored,
+}
+
+impl ToleranceClass {
+    pub const ALL: [ToleranceClass; 4] = [
+        ToleranceClass::F64Exact,
+        ToleranceClass::F64Reordered,
+        ToleranceClass::Mixed,
+        ToleranceClass::Ignored,
+    ];
+
+    /// As written in `tolerances.json` and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            ToleranceClass::F64Exact => "f64-exact",
+            ToleranceClass::F64Reordered => "f64-reordered",
+            ToleranceClass::Mixed => "mixed",
+            ToleranceClass::Ignored => "ignored",
+        }
+    }
+
+    pub fn from_name(name: &str) -> Option<Self> {
+        ToleranceClass::ALL
+            .into_iter()
+            .find(|class| class.name() == name)
+    }
+
+    /// The class's numbers for a channel of this unit; `None` for [`ToleranceClass::Ignored`].
+    pub fn tolerance(self, unit: &str) -> Option<Tolerance> {
+        let (relative, share) = match self {
+            ToleranceClass::F64Exact => (0.0, 0.0),
+            // A sum of n terms taken in another order moves by up to n ε of the largest term: 1e-10
+            // for the 1e6 terms of a large mesh. A quantity that follows from it through a stiff
+            // contact law moves ten times as much; hence 1e-9.
+            ToleranceClass::F64Reordered => (1e-9, 1e-10),
+            // f32 carries 6e-8; some hundred operations without cancellation stay within 1e-5 of
+            // the channel's scale, and the load's exponent 3/2 with ten for safety gives 1e-4.
+            ToleranceClass::Mixed => (1e-4, 1e-5),
+            ToleranceClass::Ignored => return None,
+        };
+        // The scale term is for values that cancel (the small component of a large vector); the
+        // floor is for channels that are zero but for rounding, where nothing else is above zero.
+        Some(Tolerance {
+            absolute_floor: share * ordinary_magnitude(unit),
+            relative,
+            scale_relative: share,
+        })
+    }
+}
+
+/// A small but ordinary value of a quantity in a bearing; the absolute floor is a fraction of it.
+/// Zero for dimensionless and unknown units: no floor unless `tolerances.json` gives one.
+fn ordinary_magnitude(unit: &str) -> f64 {
+    match unit {
+        "m" => 1e-6,              // a micrometre of approach or clearance
+        "N" => 1.0,               // a light ball load
+        "N m" => 1e-3,            // that load on a millimetre
+        "deg" => 1e-3,            // a small tilt
+        "rad" => 1e-5,            // about the same
+        "Pa" => 1e6,              // a thousandth of a Hertz pressure
+        "N/m" => 1e6,             // one newton per micrometre
+        "N/rad" | "N m/m" => 1e3, // one newton per milliradian
+        "N m/rad" => 1.0,         // a millinewton-metre per milliradian
+        "N/m^1.5" => 1e9,         // one newton for a micrometre of approach
+        "s" => 1e-6,              // about a time step
+        "Hz" | "rad/s" => 1e-3,   // far below any bearing frequency
+        "m/s" | "m/s^2" => 1e-3,  // a slow vibration
+        "kg" | "J" => 1e-6,       // far below a ball's mass and energy
+        _ => 0.0,
+    }
+}
+
+/// The three numbers; the floor is in the channel's own unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    pub absolute_floor: f64,
+    pub relative: f64,
+    pub scale_relative: f64,
+}
+
+impl Tolerance {
+    /// Largest difference that passes, given the largest |reference| of the channel.
+    pub fn allowed(&self, reference: f64, scale: f64) -> f64 {
+        self.absolute_floor + self.relative * reference.abs() + self.scale_relative * scale
+    }
+
+    /// All three are zero: bits are compared, so that −0 and 0 differ.
+    pub fn is_exact(&self) -> bool {
+        self.absolute_floor == 0.0 && self.relative == 0.0 && self.scale_relative == 0.0
+    }
+}
+
+/// `tolerances.json`, as a case pack ships it.
+///
+/// ```json
+/// {
+///   "class": "f64-reordered",
+///   "channels": {
+///     "inner_load": { "class": "mixed" },
+///     "stiffness": { "relative": 1e-6 },
+///     "plan": { "class": "ignored", "reason": "worded by each program" }
+///   }
+/// }
+/// ```
+/// A name stands for the channel and everything below it (`stiffness` for `stiffness.x.y`); the
+/// longest name that fits decides. Array indices are left out: `balls[].inner.load`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tolerances {
+    /// For channels not named; `f64-reordered` if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub class: Option<ToleranceClass>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub channels: BTreeMap<String, ChannelTolerance>,
+}
+
+/// A class, or numbers, or a class with some of its numbers replaced.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ChannelTolerance {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub class: Option<ToleranceClass>,
+    /// In the channel's unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub absolute_floor: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relative: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale_relative: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+#[derive(Debug, Error)]
+pub enum ToleranceError {
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error("{} is not a tolerance file: {source}", path.display())]
+    Json {
+        path: PathBuf,
+        source: serde_json::Error,
+    },
+    #[error("tolerance of {channel:?}: {number} is {value}; allowed are finite numbers >= 0")]
+    Number {
+        channel: String,
+        number: &'static str,
+        value: f64,
+    },
+    #[error("tolerance of {channel:?} says \"ignored\" and gives numbers; only one can hold")]
+    IgnoredWithNumbers { channel: String },
+    #[error("a default class of \"ignored\" would compare nothing")]
+    IgnoredByDefault,
+    #[error("tolerances name {channel:?}, which is no channel of the reference")]
+    Unused { channel: String },
+}
+
+impl Tolerances {
+    pub fn read(path: &Path) -> Result<Self, ToleranceError> {
+        let bytes = std::fs::read(path).map_err(|source| ToleranceError::Read {
+            path: path.to_path_buf(),
+            source,
+        })?;
+        let tolerances: Tolerances =
+            serde_json::from_slice(&bytes).map_err(|source| ToleranceError::Json {
+                path: path.to_path_buf(),
+                source,
+            })?;
+        tolerances.check()?;
+        Ok(tolerances)
+    }
+
+    /// # Errors
+    /// A negative or non-finite number, or a combination that makes no sense.
+    pub fn check(&self) -> Result<(), ToleranceError> {
+        if self.class == Some(ToleranceClass::Ignored) {
+            return Err(ToleranceError::IgnoredByDefault);
+        }
+        for (channel, given) in &self.channels {
+            let numbers = [
+                ("absolute_floor", given.absolute_floor),
+                ("relative", given.relative),
+                ("scale_relative", given.scale_relative),
+            ];
+            for (number, value) in numbers {
+                let Some(value) = value else { continue };
+                if !(value.is_finite() && value >= 0.0) {
+                    return Err(ToleranceError::Number {
+                        channel: channel.clone(),
+                        number,
+                        value,
+                    });
+                }
+                if given.class == Some(ToleranceClass::Ignored) {
+                    return Err(ToleranceError::IgnoredWithNumbers {
+                        channel: channel.clone(),
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The entry for a channel: the longest name that is the channel or a part above it.
+    pub fn entry(&self, channel: &str) -> Option<(&str, &ChannelTolerance)> {
+        self.channels
+            .iter()
+            .filter(|(name, _)| {
+                channel.strip_prefix(name.as_str()).is_some_and(|rest| {
+                    rest.is_empty() || rest.starts_with('.') || rest.starts_with('[')
+                })
+            })
+            .max_by_key(|(name, _)| name.len())
+            .map(|(name, entry)| (name.as_str(), entry))
+    }
+
+    /// Class name and numbers for a channel; `None` numbers if the channel is not compared.
+    /// `default_class` (given by the user) goes before the file's own default.
+    pub fn of_channel(
+        &self,
+        channel: &str,
+        unit: &str,
+        default_class: Option<ToleranceClass>,
+    ) -> (ToleranceClass, Option<Tolerance>) {
+        let default = default_class
+            .or(self.class)
+            .unwrap_or(ToleranceClass::F64Reordered);
+        let Some((_, entry)) = self.entry(channel) else {
+            return (default, default.tolerance(unit));
+        };
+        let class = entry.class.unwrap_or(default);
+        let tolerance = class.tolerance(unit).map(|numbers| Tolerance {
+            absolute_floor: entry.absolute_floor.unwrap_or(numbers.absolute_floor),
+            relative: entry.relative.unwrap_or(numbers.relative),
+            scale_relative: entry.scale_relative.unwrap_or(numbers.scale_relative),
+        });
+        (class, tolerance)
+    }
+}

@@ -1,0 +1,280 @@
+//! `bearing pack`: what a developer of another implementation needs to check it against this one.
+//!
+//! | file | content |
+//! |---|---|
+//! | `scene.toml` or `scene.json` | the scene as it was given |
+//! | `resolved.json` | the same in SI units with every default filled in |
+//! | `summary.json`, `series.csv`, `series.npy`, `series.columns.json` | the expected results |
+//! | `tolerances.json` | how far a candidate may be from them |
+//! | `README.txt` | how to use the pack |
+//! | `manifest.json` | sha256 of all of them, and the version that wrote them |
+
+use crate::output::atomic::{WriteError, write_atomic};
+use crate::output::compare::tolerance::{
+    ChannelTolerance, ToleranceClass, ToleranceError, Tolerances,
+};
+use crate::output::results::{ResultsError, RunRecord, pretty, write_static_results};
+use crate::solver::statics::StaticSolution;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::path::{Component, Path, PathBuf};
+use thiserror::Error;
+
+pub const MANIFEST: &str = "manifest.json";
+
+/// `manifest.json`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    pub program: String,
+    pub version: String,
+    /// File name → sha256 of its bytes, as 64 lower-case hexadecimal digits.
+    pub sha256: BTreeMap<String, String>,
+}
+
+/// What goes into a pack besides the solution.
+#[derive(Clone, Debug)]
+pub struct PackInput<'a> {
+    /// `scene.toml` or `scene.json`.
+    pub scene_name: &'a str,
+    /// As the user wrote it, to the byte.
+    pub scene_text: &'a str,
+    /// The scene in SI units; `null` stands for a part left out.
+    pub resolved: &'a Value,
+    pub class: ToleranceClass,
+}
+
+#[derive(Debug, Error)]
+pub enum PackError {
+    #[error("{name:?} is no plain file name")]
+    SceneName { name: String },
+    #[error("{} exists and holds {found:?}, which is not part of a case pack", folder.display())]
+    Foreign { folder: PathBuf, found: String },
+    #[error(transparent)]
+    Results(#[from] ResultsError),
+    #[error(transparent)]
+    Tolerance(#[from] ToleranceError),
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error("{} is not a manifest: {source}", path.display())]
+    Manifest {
+        path: PathBuf,
+        source: serde_json::Error,
+    },
+    #[error("{name}: sha256 is {found}, the manifest says {expected}")]
+    Hash {
+        name: String,
+        expected: String,
+        found: String,
+    },
+    #[error("{name} is in the folder but not in the manifest")]
+    Unlisted { name: String },
+    #[error("the manifest does not list {name}")]
+    Incomplete { name: String },
+}
+
+/// Writes the pack and returns its manifest.
+///
+/// # Errors
+/// A folder that holds other files, a non-finite number, a file that cannot be written.
+pub fn write_pack(
+    folder: &Path,
+    input: &PackInput,
+    solution: &StaticSolution,
+    run: &RunRecord,
+) -> Result<Manifest, PackError> {
+    if !is_plain_name(input.scene_name) || EXPECTED.contains(&input.scene_name) {
+        return Err(PackError::SceneName {
+            name: input.scene_name.to_string(),
+        });
+    }
+    refuse_foreign_files(folder, input.scene_name)?;
+    let tolerances = default_tolerances(input.class);
+    tolerances.check()?;
+    // The manifest goes last: a pack without one is incomplete.
+    write_static_results(folder, solution, run)?;
+    let tolerances = serde_json::to_value(&tolerances).expect("tolerances are plain JSON");
+    let texts = [
+        (input.scene_name, input.scene_text.to_string()),
+        ("resolved.json", pretty(input.resolved)),
+        ("tolerances.json", pretty(&tolerances)),
+        ("README.txt", readme(input)),
+    ];
+    for (name, text) in &texts {
+        write_atomic(&folder.join(name), text.as_bytes())?;
+    }
+    let mut sha256 = BTreeMap::new();
+    for name in EXPECTED.into_iter().chain([input.scene_name]) {
+        sha256.insert(name.to_string(), hash(&folder.join(name))?);
+    }
+    let version = env!("CARGO_PKG_VERSION").to_string();
+    let manifest = Manifest {
+        program: "bearing-dynamics".into(),
+        version,
+        sha256,
+    };
+    let text = pretty(&serde_json::to_value(&manifest).expect("a manifest is plain JSON"));
+    write_atomic(&folder.join(MANIFEST), text.as_bytes())?;
+    Ok(manifest)
+}
+
+/// Every file of a pack but the scene and the manifest.
+const EXPECTED: [&str; 7] = [
+    "README.txt",
+    "resolved.json",
+    "series.columns.json",
+    "series.csv",
+    "series.npy",
+    "summary.json",
+    "tolerances.json",
+];
+
+/// Checks every file of a pack against its manifest.
+///
+/// # Errors
+/// The first file that is missing, altered, or not listed; a manifest that lacks a part of a pack.
+pub fn verify_pack(folder: &Path) -> Result<Manifest, PackError> {
+    let path = folder.join(MANIFEST);
+    let bytes = std::fs::read(&path).map_err(|source| PackError::Read {
+        path: path.clone(),
+        source,
+    })?;
+    let manifest: Manifest =
+        serde_json::from_slice(&bytes).map_err(|source| PackError::Manifest { path, source })?;
+    for name in EXPECTED {
+        if !manifest.sha256.contains_key(name) {
+            return Err(PackError::Incomplete {
+                name: name.to_string(),
+            });
+        }
+    }
+    for (name, expected) in &manifest.sha256 {
+        if !is_plain_name(name) {
+            return Err(PackError::SceneName { name: name.clone() });
+        }
+        let found = hash(&folder.join(name))?;
+        if found != *expected {
+            return Err(PackError::Hash {
+                name: name.clone(),
+                expected: expected.clone(),
+                found,
+            });
+        }
+    }
+    for name in file_names(folder)? {
+        if name != MANIFEST && !manifest.sha256.contains_key(&name) {
+            return Err(PackError::Unlisted { name });
+        }
+    }
+    Ok(manifest)
+}
+
+/// The class for everything, except what belongs to the solver's way and not to the result.
+pub fn default_tolerances(class: ToleranceClass) -> Tolerances {
+    let mut tolerances = Tolerances {
+        class: Some(class),
+        channels: BTreeMap::new(),
+    };
+    if class != ToleranceClass::F64Exact {
+        let reasons = [
+            ("plan", "every program words its own plan"),
+            (
+                "solver",
+                "another solver takes other steps and stops at another residual",
+            ),
+        ];
+        for (name, reason) in reasons {
+            let ignored = ChannelTolerance {
+                class: Some(ToleranceClass::Ignored),
+                reason: Some(reason.to_string()),
+                ..ChannelTolerance::default()
+            };
+            tolerances.channels.insert(name.to_string(), ignored);
+        }
+    }
+    tolerances
+}
+
+fn readme(input: &PackInput) -> String {
+    format!(
+        "Case pack: a bearing, and the results to hold another implementation against.
+
+1. Solve {scene} with your program (resolved.json has the same in SI units, defaults filled in).
+2. Write summary.json, series.csv and series.npy of the same form into a folder, say candidate.
+   Copy the parts of summary.json that only repeat the input (scene, assumptions).
+3. Run, from the folder that holds this one:
+
+       bearing compare pack/ candidate/
+
+   (with the name of this folder for pack/). Exit code 0: equal within tolerance; 1: different,
+   with the first place where it departs; 2: a file could not be read.
+
+The tolerance class is {class}; tolerances.json says where another one holds, and may be edited
+per channel. manifest.json has the sha256 of every file as it was written. Wall time, number of
+threads and versions are not compared. Angles are in degrees, all else in SI units, as the headers say.
+",
+        scene = input.scene_name,
+        class = input.class.name(),
+    )
+}
+
+fn is_plain_name(name: &str) -> bool {
+    let mut components = Path::new(name).components();
+    matches!(
+        (components.next(), components.next()),
+        (Some(Component::Normal(_)), None)
+    ) && name != MANIFEST
+}
+
+/// A pack may be written over an older pack, not into a folder with something else in it.
+fn refuse_foreign_files(folder: &Path, scene_name: &str) -> Result<(), PackError> {
+    if !folder.exists() {
+        return Ok(());
+    }
+    for name in file_names(folder)? {
+        if name != MANIFEST && name != scene_name && !EXPECTED.contains(&name.as_str()) {
+            return Err(PackError::Foreign {
+                folder: folder.to_path_buf(),
+                found: name,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn file_names(folder: &Path) -> Result<Vec<String>, PackError> {
+    let failed = |source| PackError::Read {
+        path: folder.to_path_buf(),
+        source,
+    };
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        names.push(
+            entry
+                .map_err(failed)?
+                .file_name()
+                .to_string_lossy()
+                .into_owned(),
+        );
+    }
+    names.sort();
+    Ok(names)
+}
+
+fn hash(path: &Path) -> Result<String, PackError> {
+    let bytes = std::fs::read(path).map_err(|source| PackError::Read {
+        path: path.to_path_buf(),
+        source,
+    })?;
+    Ok(Sha256::digest(&bytes)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect())
+}

@@ -1,0 +1,102 @@
+//! SVG pictures from plain data; every function returns the SVG as text.
+//!
+//! - [`load_zone()`]: balls between the races with an arrow for each load, as in Fig. 4.8
+//! - [`polar()`]: values over azimuth
+//! - [`xy()`]: curves over linear or logarithmic axes
+//!
+//! Drawn for a width of 700 px and more, in the colours of Okabe and Ito that colour-blind readers
+//! can tell apart, with another marker for every curve.
+mod canvas;
+pub mod load_zone;
+pub mod polar;
+mod ticks;
+pub mod xy;
+
+pub use load_zone::{LoadZone, load_zone};
+pub use polar::{PolarPlot, polar};
+pub use xy::{Axis, Style, XyPlot, xy};
+
+use thiserror::Error;
+
+/// A named sequence of points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// As in the legend.
+    pub name: String,
+    /// `[x, y]` in the units of the axes; for a polar plot azimuth in rad and value.
+    pub points: Vec<[f64; 2]>,
+}
+
+impl Curve {
+    pub fn new(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
+        Curve {
+            name: name.into(),
+            points,
+        }
+    }
+}
+
+#[derive(Debug, Error)]
+pub enum PlotError {
+    #[error("plot {title:?} has no curve")]
+    NoCurve { title: String },
+    #[error("curve {curve:?} has no point")]
+    NoPoint { curve: String },
+    #[error("point {point} of curve {curve:?} is ({x}, {y}); only finite numbers are drawn")]
+    NotFinite {
+        curve: String,
+        point: usize,
+        x: f64,
+        y: f64,
+    },
+    #[error("point {point} of curve {curve:?} is {value} on a logarithmic axis; allowed is > 0")]
+    NotPositive {
+        curve: String,
+        point: usize,
+        value: f64,
+    },
+    #[error("point {point} of curve {curve:?} has the value {value}; a polar plot needs >= 0")]
+    Negative {
+        curve: String,
+        point: usize,
+        value: f64,
+    },
+    #[error("{what} is {value}; allowed is a finite number > 0")]
+    Size { what: &'static str, value: f64 },
+    #[error("ball {ball} has {what} = {value}; allowed is a finite number >= 0")]
+    Ball {
+        ball: usize,
+        what: &'static str,
+        value: f64,
+    },
+    #[error("a load zone needs at least one ball")]
+    NoBall,
+    #[error("cannot draw: {reason}")]
+    Draw { reason: String },
+}
+
+fn check_curves(title: &str, curves: &[Curve]) -> Result<(), PlotError> {
+    if curves.is_empty() {
+        return Err(PlotError::NoCurve {
+            title: title.to_string(),
+        });
+    }
+    for curve in curves {
+        if curve.points.is_empty() {
+            return Err(PlotError::NoPoint {
+                curve: curve.name.clone(),
+            });
+        }
+        for (point, &[x, y]) in curve.points.iter().enumerate() {
+            if !(x.is_finite() && y.is_finite()) {
+                return Err(PlotError::NotFinite {
+                    curve: curve.name.clone(),
+                    point,
+                    x,
+                    y,
+                });
+            }
+        }
+    }
+    Ok(())
+}

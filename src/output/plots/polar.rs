@@ -1,0 +1,138 @@
+//! Values over azimuth, seen against the axial direction: +Y to the right, +Z up.
+
+use crate::output::plots::canvas::{self, Align, BLACK_TEXT, GRID, Legend, Point};
+use crate::output::plots::{Curve, PlotError, check_curves, ticks};
+use std::f64::consts::TAU;
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct PolarPlot {
+    pub title: String,
+    /// Quantity and unit along the radius, drawn as `quantity [unit]`.
+    pub quantity: String,
+    pub unit: String,
+    /// Azimuth from +Y towards +Z in rad, value >= 0. Joined in order of azimuth and closed.
+    pub curves: Vec<Curve>,
+}
+
+const CENTRE: Point = (450, 375);
+const RADIUS: f64 = 265.0;
+
+/// Draws the curves around a circle; the legend stands below it.
+///
+/// # Errors
+/// No curve, a curve without points, a value that is negative or not finite.
+pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
+    check_curves(&plot.title, &plot.curves)?;
+    for curve in &plot.curves {
+        for (point, &[_, value]) in curve.points.iter().enumerate() {
+            if value < 0.0 {
+                return Err(PlotError::Negative {
+                    curve: curve.name.clone(),
+                    point,
+                    value,
+                });
+            }
+        }
+    }
+    let values = plot
+        .curves
+        .iter()
+        .flat_map(|curve| curve.points.iter().map(|point| point[1]));
+    let largest = values.fold(0.0, f64::max);
+    let range = if largest > 0.0 {
+        [0.0, largest]
+    } else {
+        [0.0, 1.0]
+    };
+    let scale = ticks::linear(range.into_iter(), 4);
+
+    let legend = Legend::new(&plot.curves);
+    let legend_top = CENTRE.1 + RADIUS as i32 + 90;
+    canvas::draw((legend_top + legend.height()) as u32, |area| {
+        let size = canvas::TEXT_SIZE;
+        let at = (canvas::WIDTH as i32 / 2, 28);
+        canvas::text(
+            area,
+            &plot.title,
+            at,
+            canvas::TITLE_SIZE,
+            Align::Centre,
+            BLACK_TEXT,
+        )?;
+        for (position, _) in &scale.ticks {
+            let ring = (0..=180)
+                .map(|i| place(f64::from(i) / 180.0 * TAU, *position))
+                .collect();
+            canvas::line(
+                area,
+                ring,
+                if *position < 1.0 { GRID } else { BLACK_TEXT },
+                1,
+            )?;
+        }
+        for degrees in (0..360).step_by(30) {
+            let azimuth = f64::from(degrees).to_radians();
+            canvas::line(area, vec![CENTRE, place(azimuth, 1.0)], GRID, 1)?;
+            let label = match degrees {
+                0 => "0° (+Y)".to_string(),
+                90 => "90° (+Z)".to_string(),
+                _ => format!("{degrees}°"),
+            };
+            let (x, y) = place(azimuth, 1.0);
+            let (dx, dy) = place(azimuth, 26.0 / RADIUS);
+            let align = match dx - CENTRE.0 {
+                12.. => Align::Left,
+                ..=-12 => Align::Right,
+                _ => Align::Centre,
+            };
+            // Text beside the circle needs less distance from it than text above or below.
+            let x = x + (dx - CENTRE.0) * 2 / 5;
+            canvas::text(
+                area,
+                &label,
+                (x, y + dy - CENTRE.1),
+                size,
+                align,
+                BLACK_TEXT,
+            )?;
+        }
+        for (index, curve) in plot.curves.iter().enumerate() {
+            let mut sorted = curve.points.clone();
+            for point in &mut sorted {
+                point[0] = point[0].rem_euclid(TAU);
+            }
+            sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            let points: Vec<Point> = sorted
+                .iter()
+                .map(|&[azimuth, value]| place(azimuth, scale.position(value)))
+                .collect();
+            let closed = points.iter().copied().chain([points[0]]).collect();
+            canvas::line(
+                area,
+                closed,
+                canvas::COLOURS[index % canvas::COLOURS.len()],
+                3,
+            )?;
+            canvas::markers(area, index, &points)?;
+        }
+        // Ring labels over the curves, between two spokes, so that they stay readable.
+        for (position, label) in scale.ticks.iter().skip(1) {
+            let at = place(15f64.to_radians(), *position);
+            canvas::text(area, label, at, size, Align::Centre, BLACK_TEXT)?;
+        }
+        let caption = format!(
+            "radius: {} [{}]; angle: azimuth [deg]",
+            plot.quantity, plot.unit
+        );
+        let at = (canvas::WIDTH as i32 / 2, legend_top - 18);
+        canvas::text(area, &caption, at, size, Align::Centre, BLACK_TEXT)?;
+        legend.draw(area, &plot.curves, legend_top, true, true)
+    })
+}
+
+fn place(azimuth: f64, fraction: f64) -> Point {
+    let radius = fraction * RADIUS;
+    let x = f64::from(CENTRE.0) + radius * azimuth.cos();
+    let y = f64::from(CENTRE.1) - radius * azimuth.sin();
+    (x.round() as i32, y.round() as i32)
+}

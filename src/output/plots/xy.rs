@@ -1,0 +1,199 @@
+//! Curves over two axes.
+
+use crate::output::plots::canvas::{self, Align, BLACK_TEXT, GRID, Legend, Point};
+use crate::output::plots::ticks::{self, Scale};
+use crate::output::plots::{Curve, PlotError, check_curves};
+
+/// What an axis shows; drawn as `label [unit]`, `unit` `1` for a dimensionless quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    pub label: String,
+    pub unit: String,
+    pub log: bool,
+}
+
+impl Axis {
+    pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Self {
+        Axis {
+            label: label.into(),
+            unit: unit.into(),
+            log: false,
+        }
+    }
+
+    pub fn log(label: impl Into<String>, unit: impl Into<String>) -> Self {
+        Axis {
+            label: label.into(),
+            unit: unit.into(),
+            log: true,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    Lines,
+    /// Curves of many points carry a marker on some of them.
+    LinesAndMarkers,
+    /// Every point, not joined.
+    Markers,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct XyPlot {
+    pub title: String,
+    pub x: Axis,
+    pub y: Axis,
+    pub style: Style,
+    pub curves: Vec<Curve>,
+}
+
+const LEFT: i32 = 115;
+const RIGHT: i32 = 870;
+const TOP: i32 = 60;
+const BOTTOM: i32 = 500;
+
+/// Draws the curves; the legend stands below the axes.
+///
+/// # Errors
+/// No curve, a curve without points, a value that is not finite, or not positive on a logarithmic
+/// axis.
+///
+/// ```
+/// use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
+/// let svg = xy(&XyPlot {
+///     title: "Moment over tilt".into(),
+///     x: Axis::linear("tilt", "deg"),
+///     y: Axis::linear("moment", "N m"),
+///     style: Style::LinesAndMarkers,
+///     curves: vec![Curve::new("computed", vec![[0.0, 0.0], [0.1, 3.2]])],
+/// });
+/// assert!(svg.unwrap().contains("moment [N m]"));
+/// ```
+pub fn xy(plot: &XyPlot) -> Result<String, PlotError> {
+    check_curves(&plot.title, &plot.curves)?;
+    let x = scale(&plot.x, &plot.curves, 0, 7)?;
+    let y = scale(&plot.y, &plot.curves, 1, 6)?;
+    let legend = Legend::new(&plot.curves);
+    let legend_top = BOTTOM + 75;
+    canvas::draw((legend_top + legend.height()) as u32, |area| {
+        let middle = (LEFT + RIGHT) / 2;
+        canvas::text(
+            area,
+            &plot.title,
+            (canvas::WIDTH as i32 / 2, 28),
+            canvas::TITLE_SIZE,
+            Align::Centre,
+            BLACK_TEXT,
+        )?;
+        let size = canvas::TEXT_SIZE;
+        for (position, label) in &x.ticks {
+            let column = across(*position);
+            canvas::line(area, vec![(column, TOP), (column, BOTTOM)], GRID, 1)?;
+            canvas::text(
+                area,
+                label,
+                (column, BOTTOM + 18),
+                size,
+                Align::Centre,
+                BLACK_TEXT,
+            )?;
+        }
+        for (position, label) in &y.ticks {
+            let row = up(*position);
+            canvas::line(area, vec![(LEFT, row), (RIGHT, row)], GRID, 1)?;
+            canvas::text(
+                area,
+                label,
+                (LEFT - 10, row),
+                size,
+                Align::Right,
+                BLACK_TEXT,
+            )?;
+        }
+        let corners = vec![(LEFT, TOP), (LEFT, BOTTOM), (RIGHT, BOTTOM)];
+        canvas::line(area, corners, BLACK_TEXT, 2)?;
+        let at = (middle, BOTTOM + 50);
+        canvas::text(
+            area,
+            &axis_title(&plot.x),
+            at,
+            size,
+            Align::Centre,
+            BLACK_TEXT,
+        )?;
+        let at = (22, (TOP + BOTTOM) / 2);
+        canvas::text(
+            area,
+            &axis_title(&plot.y),
+            at,
+            size,
+            Align::Upwards,
+            BLACK_TEXT,
+        )?;
+
+        for (index, curve) in plot.curves.iter().enumerate() {
+            let points: Vec<Point> = curve
+                .points
+                .iter()
+                .map(|&[a, b]| (across(x.position(a)), up(y.position(b))))
+                .collect();
+            if plot.style != Style::Markers {
+                let colour = canvas::COLOURS[index % canvas::COLOURS.len()];
+                canvas::line(area, points.clone(), colour, 3)?;
+            }
+            match plot.style {
+                Style::Lines => {}
+                Style::LinesAndMarkers => canvas::markers(area, index, &points)?,
+                Style::Markers => {
+                    points
+                        .iter()
+                        .try_for_each(|&point| canvas::marker(area, index, point))?;
+                }
+            }
+        }
+        let (lines, markers) = (plot.style != Style::Markers, plot.style != Style::Lines);
+        legend.draw(area, &plot.curves, legend_top, lines, markers)
+    })
+}
+
+fn scale(
+    axis: &Axis,
+    curves: &[Curve],
+    component: usize,
+    wanted: usize,
+) -> Result<Scale, PlotError> {
+    let values = || {
+        curves
+            .iter()
+            .flat_map(|c| c.points.iter().map(move |p| p[component]))
+    };
+    if !axis.log {
+        return Ok(ticks::linear(values(), wanted));
+    }
+    for curve in curves {
+        for (point, value) in curve.points.iter().map(|p| p[component]).enumerate() {
+            // A subnormal number has no power of ten below it that f64 can hold.
+            if value < f64::MIN_POSITIVE {
+                return Err(PlotError::NotPositive {
+                    curve: curve.name.clone(),
+                    point,
+                    value,
+                });
+            }
+        }
+    }
+    Ok(ticks::logarithmic(values()))
+}
+
+fn across(position: f64) -> i32 {
+    LEFT + (position * f64::from(RIGHT - LEFT)).round() as i32
+}
+
+fn up(position: f64) -> i32 {
+    BOTTOM - (position * f64::from(BOTTOM - TOP)).round() as i32
+}
+
+fn axis_title(axis: &Axis) -> String {
+    format!("{} [{}]", axis.label, axis.unit)
+}

@@ -1,0 +1,377 @@
+//! The results folder of one static solution.
+//!
+//! | file | content |
+//! |---|---|
+//! | `summary.json` | every scalar as `{"value", "unit"}`, the scene, the plan, the assumptions |
+//! | `series.csv` | one row per ball, units in the header |
+//! | `series.npy`, `series.columns.json` | the same numbers for NumPy, and their columns |
+//!
+//! Lengths in m, loads in N and N m, angles in degrees. `summary.json` is written last: a folder
+//! that has it is complete.
+
+use crate::output::atomic::{WriteError, write_atomic};
+use crate::output::series::{Column, Series, SeriesError};
+use crate::solver::statics::{
+    BallState, COORDINATE_NAMES, ContactState, Determinacy, StaticSolution,
+};
+use nalgebra::Vector3;
+use ndarray::Array2;
+use serde_json::{Map, Value, json};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// What the caller knows about the run.
+#[derive(Clone, Debug, Default)]
+pub struct RunRecord {
+    /// The scene as resolved, echoed under `scene`; `null` stands for a part left out.
+    pub scene: Value,
+    /// What the run consisted of, and what was left out and why.
+    pub plan: Vec<String>,
+    /// Name and text of each assumption that fills a hole in the source.
+    pub assumptions: Vec<(String, String)>,
+    pub threads: usize,
+    /// Stage and the wall time it took, s.
+    pub seconds: Vec<(String, f64)>,
+    /// Further named parts of the summary (frequencies, contact stiffness, …); build their
+    /// numbers with [`quantity`].
+    pub sections: Vec<(String, Value)>,
+}
+
+#[derive(Debug, Error)]
+pub enum ResultsError {
+    #[error("{name} is {value}; only finite numbers are written")]
+    NotFinite { name: String, value: f64 },
+    #[error("{path} is null: a number that is not finite, or a part that should be left out")]
+    Null { path: String },
+    #[error("the summary already has a part called {name:?}")]
+    SectionName { name: String },
+    #[error(transparent)]
+    Series(#[from] SeriesError),
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// `{"value": …, "unit": …}`.
+///
+/// # Errors
+/// A value that is not finite: JSON would turn it into `null`.
+///
+/// ```
+/// use bearing_dynamics::output::results::quantity;
+/// assert_eq!(quantity("load", 2.5, "N").unwrap()["unit"], "N");
+/// assert!(quantity("load", f64::NAN, "N").is_err());
+/// ```
+pub fn quantity(name: &str, value: f64, unit: &str) -> Result<Value, ResultsError> {
+    if !value.is_finite() {
+        return Err(ResultsError::NotFinite {
+            name: name.to_string(),
+            value,
+        });
+    }
+    Ok(json!({ "value": value, "unit": unit }))
+}
+
+/// Writes the results folder and returns the files in it.
+///
+/// # Errors
+/// A value that is not finite (nothing is written then), a name used twice, a file that cannot
+/// be written.
+pub fn write_static_results(
+    folder: &Path,
+    solution: &StaticSolution,
+    run: &RunRecord,
+) -> Result<Vec<PathBuf>, ResultsError> {
+    let summary = static_summary(solution, run)?;
+    let series = ball_series(solution)?;
+    series.check_finite()?;
+    let [csv, npy, json] = ["series.csv", "series.npy", "summary.json"].map(|n| folder.join(n));
+    series.write_csv(&csv)?;
+    series.write_npy(&npy)?;
+    write_atomic(&json, pretty(&summary).as_bytes())?;
+    let columns = crate::output::series::columns_path(&npy);
+    Ok(vec![csv, npy, columns, json])
+}
+
+/// Indented JSON with a final line break.
+pub fn pretty(value: &Value) -> String {
+    format!("{value:#}\n")
+}
+
+const BALL_COLUMNS: [(&str, &str); 5] = [
+    ("ball", "1"),
+    ("azimuth", "deg"),
+    ("position_x", "m"),
+    ("position_y", "m"),
+    ("position_z", "m"),
+];
+
+const CONTACT_COLUMNS: [(&str, &str); 9] = [
+    ("load", "N"),
+    ("approach", "m"),
+    ("contact_angle", "deg"),
+    ("semi_major", "m"),
+    ("semi_minor", "m"),
+    ("peak_pressure", "Pa"),
+    ("force_on_race_x", "N"),
+    ("force_on_race_y", "N"),
+    ("force_on_race_z", "N"),
+];
+
+/// One row per ball: number, azimuth, position, then load, approach, contact angle, ellipse,
+/// pressure and force of the inner and of the outer contact (columns `inner_load`, …,
+/// `outer_force_on_race_z`).
+pub fn ball_series(solution: &StaticSolution) -> Result<Series, SeriesError> {
+    let mut columns: Vec<Column> = BALL_COLUMNS
+        .iter()
+        .map(|(name, unit)| Column::new(*name, *unit))
+        .collect();
+    for race in ["inner", "outer"] {
+        for (name, unit) in CONTACT_COLUMNS {
+            columns.push(Column::new(format!("{race}_{name}"), unit));
+        }
+    }
+    let mut values = Vec::with_capacity(columns.len() * solution.balls.len());
+    for (index, ball) in solution.balls.iter().enumerate() {
+        values.extend([(index + 1) as f64, ball.azimuth.to_degrees()]);
+        values.extend(ball.position.iter());
+        for contact in [&ball.inner, &ball.outer] {
+            values.extend(contact_values(contact));
+        }
+    }
+    let data = Array2::from_shape_vec((solution.balls.len(), columns.len()), values)
+        .expect("every ball gives one value per column");
+    Series::new(columns, data)
+}
+
+/// In the order of `CONTACT_COLUMNS`.
+fn contact_values(contact: &ContactState) -> [f64; 9] {
+    [
+        contact.normal_load,
+        contact.approach,
+        contact.contact_angle.to_degrees(),
+        contact.semi_major,
+        contact.semi_minor,
+        contact.peak_pressure,
+        contact.force_on_race.x,
+        contact.force_on_race.y,
+        contact.force_on_race.z,
+    ]
+}
+
+/// The content of `summary.json`.
+///
+/// # Errors
+/// A value that is not finite, a `null` in a further section, a section name used twice.
+pub fn static_summary(solution: &StaticSolution, run: &RunRecord) -> Result<Value, ResultsError> {
+    let mut summary = Map::new();
+    let mut put = |name: &str, value: Value| summary.insert(name.to_string(), value);
+    put("kind", json!("static solution"));
+    put(
+        "program",
+        json!({ "name": "bearing-dynamics", "version": env!("CARGO_PKG_VERSION") }),
+    );
+    put("threads", json!(run.threads));
+    put("seconds", seconds(&run.seconds)?);
+    put("determinacy", determinacy(&solution.determinacy)?);
+    put(
+        "solver",
+        json!({
+            "iterations": solution.iterations,
+            "contact_evaluations": solution.contact_evaluations,
+            "residual": quantity("residual", solution.residual, "N")?,
+        }),
+    );
+    put("inner_race", inner_race(solution)?);
+    put(
+        "outer_race",
+        json!({
+            "contact_force": vector("contact_force", &solution.force_on_outer, "N")?,
+            "contact_moment": vector("contact_moment", &solution.moment_on_outer, "N m")?,
+        }),
+    );
+    put("stiffness", stiffness(solution)?);
+    put("load_zone", load_zone(solution)?);
+    let balls: Result<Vec<Value>, _> = solution
+        .balls
+        .iter()
+        .enumerate()
+        .map(|(index, b)| ball(index + 1, b))
+        .collect();
+    put("balls", json!(balls?));
+    put("assumptions", strings(&run.assumptions));
+    put("plan", json!(run.plan));
+    put("scene", run.scene.clone());
+    for (name, section) in &run.sections {
+        refuse_null(name, section)?;
+        if summary.insert(name.clone(), section.clone()).is_some() {
+            return Err(ResultsError::SectionName { name: name.clone() });
+        }
+    }
+    Ok(Value::Object(summary))
+}
+
+fn seconds(stages: &[(String, f64)]) -> Result<Value, ResultsError> {
+    let mut map = Map::new();
+    for (stage, seconds) in stages {
+        map.insert(stage.clone(), quantity(stage, *seconds, "s")?);
+    }
+    Ok(Value::Object(map))
+}
+
+fn strings(pairs: &[(String, String)]) -> Value {
+    Value::Object(
+        pairs
+            .iter()
+            .map(|(name, text)| (name.clone(), json!(text)))
+            .collect(),
+    )
+}
+
+fn determinacy(determinacy: &Determinacy) -> Result<Value, ResultsError> {
+    let Determinacy::Indeterminate { free_directions } = determinacy else {
+        return Ok(json!({ "kind": "determinate" }));
+    };
+    let mut directions = Vec::new();
+    for direction in free_directions {
+        let mut map = Map::new();
+        for (name, &component) in COORDINATE_NAMES.iter().zip(direction.iter()) {
+            map.insert(
+                name.to_string(),
+                quantity("free direction", component, "1")?,
+            );
+        }
+        directions.push(Value::Object(map));
+    }
+    Ok(json!({
+        "kind": "indeterminate",
+        "free_directions": directions,
+        "note": "unit vectors; tilts are multiplied by the pitch radius",
+    }))
+}
+
+fn inner_race(solution: &StaticSolution) -> Result<Value, ResultsError> {
+    let mut position = Map::new();
+    let mut loads = Map::new();
+    for (index, name) in COORDINATE_NAMES.iter().enumerate() {
+        let coordinate = solution.coordinates[index];
+        let (given, unit, load_unit) = match index < 3 {
+            true => (coordinate, "m", "N"),
+            false => (coordinate.to_degrees(), "deg", "N m"),
+        };
+        position.insert(name.to_string(), quantity(name, given, unit)?);
+        loads.insert(
+            name.to_string(),
+            quantity(name, solution.loads[index], load_unit)?,
+        );
+    }
+    Ok(json!({
+        "position": position,
+        "loads": loads,
+        "contact_force": vector("contact_force", &solution.force_on_inner, "N")?,
+        "contact_moment": vector("contact_moment", &solution.moment_on_inner, "N m")?,
+    }))
+}
+
+/// Row: the load, column: the coordinate it is differentiated by.
+fn stiffness(solution: &StaticSolution) -> Result<Value, ResultsError> {
+    let mut rows = Map::new();
+    for (i, row_name) in COORDINATE_NAMES.iter().enumerate() {
+        let mut row = Map::new();
+        for (j, column_name) in COORDINATE_NAMES.iter().enumerate() {
+            let unit = match (i < 3, j < 3) {
+                (true, true) => "N/m",
+                (true, false) => "N/rad",
+                (false, true) => "N m/m",
+                (false, false) => "N m/rad",
+            };
+            let name = format!("stiffness {row_name} {column_name}");
+            row.insert(
+                column_name.to_string(),
+                quantity(&name, solution.stiffness[(i, j)], unit)?,
+            );
+        }
+        rows.insert(row_name.to_string(), Value::Object(row));
+    }
+    Ok(Value::Object(rows))
+}
+
+fn load_zone(solution: &StaticSolution) -> Result<Value, ResultsError> {
+    let largest = |load: fn(&BallState) -> f64| {
+        solution
+            .balls
+            .iter()
+            .map(load)
+            .fold(0.0, |a: f64, b| if b > a { b } else { a })
+    };
+    let loaded = |load: fn(&BallState) -> f64| {
+        solution
+            .balls
+            .iter()
+            .filter(|ball| load(ball) > 0.0)
+            .count()
+    };
+    Ok(json!({
+        "balls_loaded_inner": loaded(|ball| ball.inner.normal_load),
+        "balls_loaded_outer": loaded(|ball| ball.outer.normal_load),
+        "largest_inner_load": quantity("load", largest(|ball| ball.inner.normal_load), "N")?,
+        "largest_outer_load": quantity("load", largest(|ball| ball.outer.normal_load), "N")?,
+        "largest_pressure": quantity(
+            "pressure",
+            largest(|ball| ball.inner.peak_pressure.max(ball.outer.peak_pressure)),
+            "Pa",
+        )?,
+    }))
+}
+
+fn ball(number: usize, ball: &BallState) -> Result<Value, ResultsError> {
+    let named = |name: &str| format!("ball {number} {name}");
+    Ok(json!({
+        "ball": number,
+        "azimuth": quantity(&named("azimuth"), ball.azimuth.to_degrees(), "deg")?,
+        "position": vector(&named("position"), &ball.position, "m")?,
+        "inner": contact(&named("inner"), &ball.inner)?,
+        "outer": contact(&named("outer"), &ball.outer)?,
+    }))
+}
+
+fn contact(name: &str, contact: &ContactState) -> Result<Value, ResultsError> {
+    let mut map = Map::new();
+    let values = contact_values(contact);
+    for ((column, unit), value) in CONTACT_COLUMNS.iter().zip(values).take(6) {
+        map.insert(
+            column.to_string(),
+            quantity(&format!("{name} {column}"), value, unit)?,
+        );
+    }
+    let force = vector(
+        &format!("{name} force_on_race"),
+        &contact.force_on_race,
+        "N",
+    )?;
+    map.insert("force_on_race".to_string(), force);
+    Ok(Value::Object(map))
+}
+
+fn vector(name: &str, vector: &Vector3<f64>, unit: &str) -> Result<Value, ResultsError> {
+    Ok(json!({
+        "x": quantity(&format!("{name} x"), vector.x, unit)?,
+        "y": quantity(&format!("{name} y"), vector.y, unit)?,
+        "z": quantity(&format!("{name} z"), vector.z, unit)?,
+    }))
+}
+
+fn refuse_null(path: &str, value: &Value) -> Result<(), ResultsError> {
+    match value {
+        Value::Null => Err(ResultsError::Null {
+            path: path.to_string(),
+        }),
+        Value::Array(items) => items
+            .iter()
+            .enumerate()
+            .try_for_each(|(index, item)| refuse_null(&format!("{path}[{index}]"), item)),
+        Value::Object(map) => map
+            .iter()
+            .try_for_each(|(key, item)| refuse_null(&format!("{path}.{key}"), item)),
+        _ => Ok(()),
+    }
+}

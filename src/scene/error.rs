@@ -1,0 +1,262 @@
+//! What can be wrong with a scene. Every error says what, where, what is allowed and what to do.
+
+use crate::scene::units::Dimension;
+use std::fmt;
+use thiserror::Error;
+
+/// Where in the input: file name, and line and column where they exist, counted from 1.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    pub file: String,
+    pub line_and_column: Option<(usize, usize)>,
+}
+
+impl Place {
+    /// The file as a whole.
+    pub fn file(name: &str) -> Place {
+        Place { file: name.to_string(), line_and_column: None }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line_and_column {
+            Some((line, column)) => write!(f, "{}:{line}:{column}", self.file),
+            None => write!(f, "{}", self.file),
+        }
+    }
+}
+
+/// The first thing wrong with a scene.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{place}: {}{problem}", prefix(key))]
+pub struct SceneError {
+    pub place: Place,
+    /// Dotted key, empty if the file as a whole is meant.
+    pub key: String,
+    pub problem: Box<Problem>,
+}
+
+fn prefix(key: &str) -> String {
+    if key.is_empty() { String::new() } else { format!("{}: ", shortened(key)) }
+}
+
+impl SceneError {
+    pub(crate) fn new(place: Place, key: &str, problem: Problem) -> SceneError {
+        SceneError { place, key: key.to_string(), problem: Box::new(problem) }
+    }
+}
+
+/// A text from the user's file, cut to a length that fits a message, without control characters.
+pub(crate) fn shortened(text: &str) -> String {
+    const LONGEST: usize = 60;
+    let mut short: String =
+        text.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        short.push('…');
+    }
+    short
+}
+
+fn did_you_mean(nearest: &Option<String>) -> String {
+    nearest.as_ref().map(|nearest| format!("did you mean `{nearest}`? ")).unwrap_or_default()
+}
+
+fn hint(text: &str) -> String {
+    if text.is_empty() { String::new() } else { format!(". Hint: {text}") }
+}
+
+/// What is wrong. Lengths in m; `written` is the value as it stands in the file.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Problem {
+    #[error("there is no such file. Hint: check the path and the folder you are in")]
+    NoSuchFile,
+    #[error("this is a folder. Hint: name a scene file inside it, such as {example}")]
+    IsFolder { example: String },
+    #[error("this is not a regular file. Hint: give a .toml or .json file")]
+    NotRegularFile,
+    #[error("cannot be read: {reason}. Hint: check who may read the file")]
+    Unreadable { reason: String },
+    #[error(
+        "has {bytes} bytes. Allowed: up to {limit} bytes. Hint: a scene is a few kilobytes; \
+         is this the right file?"
+    )]
+    TooLarge { bytes: u64, limit: u64 },
+    #[error(
+        "unknown kind of scene file. Allowed: a name that ends in .toml or .json. Hint: rename it"
+    )]
+    UnknownFormat,
+    #[error("the file is empty. Hint: the smallest scene has a [bearing] table, see docs/scene.md")]
+    Empty,
+    #[error("not UTF-8 text from here on. Hint: save the file as UTF-8{0}", if *.utf16 { " (it looks like UTF-16)" } else { "" })]
+    NotUtf8 { utf16: bool },
+    #[error("a NUL byte. Hint: this is not a text file, or it was damaged in transfer")]
+    NulByte,
+    #[error(
+        "nested deeper than {limit} levels. Allowed: up to {limit}. Hint: a scene needs four; look for unclosed brackets"
+    )]
+    TooDeep { limit: usize },
+    #[error("not valid {format}: {message}{}", hint(.advice))]
+    Syntax { format: &'static str, message: String, advice: &'static str },
+    #[error(
+        "a scene is a table of keys, found {found}. Hint: start with {{ \"bearing\": {{ ... }} }}"
+    )]
+    NotATable { found: &'static str },
+    #[error("unknown key. Hint: {}allowed here: {allowed}", did_you_mean(.nearest))]
+    UnknownKey { nearest: Option<String>, allowed: String },
+    #[error("the key is given twice. Hint: keep one of them")]
+    DuplicateKey,
+    #[error("expected {expected}, found {found}{}", hint(.advice))]
+    WrongKind { expected: String, found: String, advice: String },
+    #[error(
+        "{written} has no unit, and this is {}. Allowed units: {}. Hint: write \"{number} {suggested}\" if that is what you mean",
+        .dimension.name(), .dimension.unit_list()
+    )]
+    MissingUnit { written: String, number: String, dimension: Dimension, suggested: &'static str },
+    #[error(
+        "{written}: `{unit}` is a unit of {}, but this is {}. Allowed units: {}. Hint: use one of them",
+        article(.belongs_to), .dimension.name(), .dimension.unit_list()
+    )]
+    WrongUnit { written: String, unit: String, belongs_to: Dimension, dimension: Dimension },
+    #[error(
+        "{written}: unknown unit `{unit}` for {}. Allowed units: {}. Hint: {}units are case-sensitive",
+        .dimension.name(), .dimension.unit_list(), did_you_mean(.nearest)
+    )]
+    UnknownUnit { written: String, unit: String, dimension: Dimension, nearest: Option<String> },
+    #[error(
+        "{written} has a unit, but this is a plain number. Allowed: {allowed}. Hint: leave out the unit"
+    )]
+    UnitOnPlainNumber { written: String, allowed: String },
+    #[error(
+        "{written} is not a number{unit_too}. Allowed: {allowed}. Hint: write for instance {example}"
+    )]
+    NotANumber { written: String, unit_too: &'static str, allowed: String, example: String },
+    #[error(
+        "{written} has a comma. Allowed: {allowed}. Hint: write a decimal point, as in \"20.047 mm\""
+    )]
+    DecimalComma { written: String, allowed: String },
+    #[error("{written} is not a finite number. Allowed: {allowed}. Hint: write a decimal number")]
+    NotFinite { written: String, allowed: String },
+    #[error("{written} is outside the allowed range. Allowed: {allowed}{}", hint(.advice))]
+    OutOfRange { written: String, allowed: String, advice: &'static str },
+    #[error("unknown value {written}. Allowed: {}. Hint: {}", quoted_list(.allowed), choose(.nearest))]
+    UnknownChoice { written: String, nearest: Option<String>, allowed: &'static [&'static str] },
+    #[error("{written} appears twice in the list. Hint: keep one")]
+    RepeatedChoice { written: String },
+    #[error(
+        "expected a list of three values along X, Y and Z, found {found}. Hint: write for instance {example}"
+    )]
+    NotThreeValues { found: usize, example: String },
+
+    #[error("missing{because}. Hint: add {example}")]
+    Missing { because: String, example: String },
+    #[error("given together with `{rival}`. Allowed: exactly one of the two. Hint: {advice}")]
+    Exclusive { rival: String, advice: String },
+    #[error("refused: {reason}. Hint: {advice}")]
+    NotApplicable { reason: &'static str, advice: String },
+
+    #[error(
+        "the outer race's groove bottom ({outer}) is not outside the inner race's ({inner}). \
+         Allowed: outer radius more than {inner}. Hint: the radii are measured from the bearing axis; were they exchanged?",
+        outer = mm(*.outer), inner = mm(*.inner)
+    )]
+    RacesOverlap { inner: f64, outer: f64 },
+    #[error(
+        "the gap between the races ({}) leaves no room for a ball at a radial clearance of {}. \
+         Allowed: clearance less than the gap. Hint: check the unit of the clearance", mm(*.gap), um(*.clearance)
+    )]
+    NoRoomForBall { gap: f64, clearance: f64 },
+    #[error(
+        "{what}: radial clearance {clearance}, beyond 5 % of the ball radius ({ball}). Allowed: {} to {}. Hint: {advice}",
+        um(-0.05 * *.ball_radius), um(0.05 * *.ball_radius), clearance = um(*.clearance), ball = mm(*.ball_radius)
+    )]
+    ClearanceTooLarge { what: String, clearance: f64, ball_radius: f64, advice: &'static str },
+    #[error(
+        "the nominal size {} differs from the {} that follows from the clearance by more than 5 % of the ball radius. \
+         Allowed: {} to {}. Hint: check it, or leave it out so that it follows",
+        mm(*.nominal), mm(*.derived), mm(*.derived - *.allowed), mm(*.derived + *.allowed)
+    )]
+    NominalFarOff { nominal: f64, derived: f64, allowed: f64 },
+    #[error(
+        "the clearance {} closes more than the contact angle leaves. Allowed: more than {}. Hint: check its unit and sign",
+        um(*.clearance), um(*.least)
+    )]
+    InterferenceTooLarge { clearance: f64, least: f64 },
+    #[error(
+        "the groove radius {} does not fit a ball radius of {}. Allowed: more than {} to less than {}. \
+         Hint: the groove must be a little wider than the ball; was a diameter given?",
+        mm(*.groove), mm(*.ball), mm(*.ball), mm(10.0 * *.ball)
+    )]
+    GrooveDoesNotFit { groove: f64, ball: f64 },
+    #[error(
+        "{count} balls of radius {} do not fit on a pitch radius of {}. Allowed: up to {largest} balls. \
+         Hint: fewer or smaller balls",
+        mm(*.ball), mm(*.pitch)
+    )]
+    BallsDoNotFit { count: usize, largest: usize, ball: f64, pitch: f64 },
+    #[error(
+        "the pocket radius {} is smaller than the ball radius {}. Allowed: at least {}. Hint: a ball must fit its pocket",
+        mm(*.pocket), mm(*.ball), mm(*.ball)
+    )]
+    BallExceedsPocket { pocket: f64, ball: f64 },
+    #[error("{} is not {relation} {other_name}, {}. Allowed: {relation} {}. Hint: {advice}", mm(*.value), mm(*.other), mm(*.other))]
+    WrongOrder {
+        value: f64,
+        relation: &'static str,
+        other_name: &'static str,
+        other: f64,
+        advice: &'static str,
+    },
+    #[error(
+        "the pitch radius {} is not between the races. Allowed: more than {} to less than {}. Hint: leave it out, it then lies half way",
+        mm(*.pitch), mm(*.inner), mm(*.outer)
+    )]
+    PitchOutsideGap { pitch: f64, inner: f64, outer: f64 },
+    #[error(
+        "the displacement {} is more than a ball radius. Allowed: {} to {}. Hint: check the unit; bearings deflect by micrometres",
+        mm(*.displacement), mm(-*.ball), mm(*.ball)
+    )]
+    DisplacementTooLarge { displacement: f64, ball: f64 },
+
+    #[error("not a list or range of values: {written}{}. Hint: write \"5 um, 0 um\" or \"0 deg .. 45 deg / 91\"", because(.reason))]
+    BadSweep { written: String, reason: String },
+    #[error(
+        "this key cannot be varied. Hint: vary a number, a quantity or a choice, such as bearing.clearance.radial"
+    )]
+    NotSweepable,
+}
+
+fn because(reason: &str) -> String {
+    if reason.is_empty() { String::new() } else { format!(" ({reason})") }
+}
+
+fn article(dimension: &Dimension) -> &'static str {
+    let name = dimension.name();
+    name.split_once(' ').map_or(name, |(_, noun)| noun)
+}
+
+fn choose(nearest: &Option<String>) -> String {
+    match nearest {
+        Some(nearest) => format!("did you mean \"{nearest}\"?"),
+        None => "use one of these words".to_string(),
+    }
+}
+
+fn quoted_list(words: &[&str]) -> String {
+    let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+    quoted.join(", ")
+}
+
+/// A length in mm to nine digits, enough to show what was written.
+fn mm(metres: f64) -> String {
+    format!("{} mm", nine_digits(metres * 1e3))
+}
+
+fn um(metres: f64) -> String {
+    format!("{} um", nine_digits(metres * 1e6))
+}
+
+fn nine_digits(value: f64) -> String {
+    let rounded: f64 = format!("{value:.8e}").parse().unwrap_or(value);
+    crate::scene::units::plain(rounded)
+}

@@ -1,0 +1,107 @@
+//! A scene as the program uses it: SI units, validated, every default named.
+
+use crate::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough, Material};
+use crate::ch2_housing::bearing::hertz::HertzModel;
+pub use crate::scene::document::Assumption;
+use crate::scene::sweep::SweepAxis;
+use crate::solver::statics::Condition;
+
+/// A default that fills a hole of the scene: shown with the results as an assumption.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DefaultUsed {
+    /// Dotted key that was not given.
+    pub key: String,
+    /// Value used, as it would be written.
+    pub value: String,
+    pub reason: String,
+}
+
+/// Size of one raceway, in m, with the three ways to state its groove.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RaceDimensions {
+    /// Groove-bottom radius from the axis, after the clearance has been applied.
+    pub radius: f64,
+    /// The groove-bottom radius as given, if it was.
+    pub nominal_radius: Option<f64>,
+    pub groove_radius: f64,
+    /// Groove radius / nominal ball diameter.
+    pub conformity: f64,
+    /// Nominal ball diameter / (2 groove radius).
+    pub osculation: f64,
+}
+
+/// Sizes as a person states them, in m. What the solver needs is in [`BearingGeometry`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dimensions {
+    /// Ball radius as given, or the one in use if none was. Conformity and osculation refer to it.
+    pub nominal_ball_radius: f64,
+    pub clearance_through: ClearanceThrough,
+    pub radial_clearance: f64,
+    pub diametral_clearance: f64,
+    pub inner_race: RaceDimensions,
+    pub outer_race: RaceDimensions,
+    pub bore_radius: Option<f64>,
+    pub outer_radius: Option<f64>,
+    pub length: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CageGuidance {
+    OuterRace,
+    InnerRace,
+    Balls,
+}
+
+/// Cage, SI units; what was not given is `None`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cage {
+    pub pocket_radius: Option<f64>,
+    pub inner_radius: Option<f64>,
+    pub outer_radius: Option<f64>,
+    /// Radial gap to the guiding race.
+    pub race_clearance: Option<f64>,
+    pub mass: Option<f64>,
+    pub guidance: Option<CageGuidance>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plot {
+    LoadZone,
+    Polar,
+    MomentTilt,
+}
+
+/// A resolved scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    pub title: Option<String>,
+    pub source: Option<String>,
+    /// Holes in the source that the scene fills, as its author named them.
+    pub assumptions: Vec<Assumption>,
+    /// Defaults in use for keys that were not given.
+    pub defaults_used: Vec<DefaultUsed>,
+
+    pub geometry: BearingGeometry,
+    pub dimensions: Dimensions,
+    pub inner_material: Material,
+    pub outer_material: Material,
+    pub ball_material: Material,
+    pub hertz: HertzModel,
+    pub cage: Option<Cage>,
+    /// Azimuth of ball 1 from +Y towards +Z, rad.
+    pub ball_phase: f64,
+
+    /// Conditions on x, y, z, tilt_y, tilt_z of the inner race.
+    pub conditions: [Condition; 5],
+    /// Position x, y, z (m) and tilt_y, tilt_z (rad) of the outer race.
+    pub outer_race: [f64; 5],
+    /// Rotation of the inner race about X, rad/s.
+    pub inner_speed: Option<f64>,
+    /// World axes, m/s²; zero leaves the balls' weight out.
+    pub gravity: [f64; 3],
+    pub centrifugal: bool,
+
+    pub plots: Vec<Plot>,
+    /// What a sweep varies unless it is told otherwise.
+    pub sweep: Vec<SweepAxis>,
+}
