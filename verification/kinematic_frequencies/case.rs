@@ -208,7 +208,7 @@ fn detected_cage(context: &mut CaseContext) {
     );
 }
 
-/// Cage over shaft against contact angle, with the three detected ratios' inputs marked.
+/// Cage over shaft against contact angle, by the law and by the oracle.
 fn figure(context: &mut CaseContext) -> Result<(), CaseError> {
     let mut svg = String::new();
     draw(&mut svg).map_err(|error| CaseError::message(format!("drawing failed: {error}")))?;
@@ -236,6 +236,7 @@ fn draw(svg: &mut String) -> Result<(), Box<dyn std::error::Error>> {
         .bold_line_style(RGBColor(225, 229, 234))
         .x_desc("contact angle, °")
         .y_desc("cage over shaft frequency")
+        .x_label_formatter(&|value| format!("{value:.0}"))
         .y_label_formatter(&|value| format!("{value:.2}"))
         .label_style(("sans-serif", 14))
         .draw()?;

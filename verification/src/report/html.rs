@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::judge::{CheckReport, Status};
-use crate::report::format::{self, optional, significant};
+use crate::report::format::{self, optional};
 use crate::report::{CaseReport, CaseStatus, GoldenStatus, Report};
 
 pub fn render(report: &Report) -> String {
@@ -233,16 +233,17 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
         writeln!(out, "</dl>")?;
     }
     if !case.work.is_empty() {
-        let counts: Vec<String> = case
-            .work
-            .iter()
-            .map(|work| format!("{} {}", significant(work.count as f64, 12), escape(&work.name)))
-            .collect();
+        let counts: Vec<String> =
+            case.work.iter().map(|work| format!("{} {}", work.count, escape(&work.name))).collect();
         writeln!(out, "<p class=\"meta\">Work: {}</p>", counts.join(" · "))?;
     }
     if case.golden.status != GoldenStatus::None {
         let accepted = case.golden.last_reason.as_ref().map_or(String::new(), |last| {
-            format!("; last accepted {}: {}", escape(&last.date), escape(&last.reason))
+            format!(
+                "; last accepted {}: {}",
+                escape(&last.date),
+                escape(last.reason.trim_end_matches('.'))
+            )
         });
         writeln!(
             out,
