@@ -1,1 +1,64 @@
-fn main() {}
+//! The `bearing` command: arguments in, exit code out.
+//!
+//! Exit codes: 0 done, 1 compared and different, 2 could not (one clear message on stderr).
+#![forbid(unsafe_code)]
+
+mod commands;
+
+use clap::{Parser, Subcommand};
+use commands::{Outcome, check, compare, pack, plan, schema, statics, sweep};
+use std::process::ExitCode;
+
+/// Rolling bearings on flexible supports: describe one in a text file, solve it, trust it.
+#[derive(Parser)]
+#[command(name = "bearing", version, about, after_help = "Scenes are described in docs/scene.md.")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Read a scene and say what was understood; solve nothing
+    Check(check::Arguments),
+    /// List what a solution of the scene computes, what it leaves out, and why
+    Plan(plan::Arguments),
+    /// Equilibrium, ball loads and stiffness of a bearing
+    Statics(statics::Arguments),
+    /// Solve a scene for many values of some keys, on all cores; the same command resumes it
+    Sweep(sweep::Arguments),
+    /// Write a case pack for other programs: scene, expected results, tolerances, hashes
+    Pack(pack::Arguments),
+    /// Compare two results folders or files and name the first difference
+    Compare(compare::Arguments),
+    /// Print the JSON Schema of scenes
+    Schema,
+}
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are answers, everything else is a mistake; clap knows which.
+            let _ = error.print();
+            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
+        }
+    };
+    let outcome = match arguments.command {
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Plan(arguments) => plan::run(&arguments),
+        Command::Statics(arguments) => statics::run(&arguments),
+        Command::Sweep(arguments) => sweep::run(&arguments),
+        Command::Pack(arguments) => pack::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
+        Command::Schema => schema::run(),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::Different) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("bearing: {error}");
+            ExitCode::from(2)
+        }
+    }
+}

@@ -24,6 +24,7 @@ mod resolve;
 mod resolve_geometry;
 pub mod resolved;
 mod source;
+pub mod statics;
 pub mod sweep;
 mod tree;
 pub mod units;

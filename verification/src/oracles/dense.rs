@@ -11,9 +11,7 @@ pub fn solve_positive_definite(matrix: &Matrix, shift: f64, rhs: &[f64]) -> Opti
     for i in 0..n {
         for j in 0..=i {
             let mut sum = matrix[i][j];
-            for l in 0..j {
-                sum -= lower[i][l] * lower[j][l];
-            }
+            sum -= dot(&lower[i][..j], &lower[j][..j]);
             if i == j {
                 sum += shift;
                 // A pivot that is only rounding is no pivot.
@@ -57,9 +55,8 @@ mod tests {
 
     #[test]
     fn solves_a_hilbert_like_system_and_refuses_an_indefinite_one() {
-        let matrix: Matrix = (0..6)
-            .map(|i| (0..6).map(|j| 1.0 / (1.0 + (i + j) as f64)).collect())
-            .collect();
+        let matrix: Matrix =
+            (0..6).map(|i| (0..6).map(|j| 1.0 / (1.0 + (i + j) as f64)).collect()).collect();
         let rhs = [1.0, -2.0, 3.0, 0.5, 0.0, 1.0];
         let x = solve_positive_definite(&matrix, 0.25, &rhs).expect("positive definite");
         for i in 0..6 {

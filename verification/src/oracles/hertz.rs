@@ -97,8 +97,7 @@ pub fn exact(radii: RelativeRadii, load: f64, effective_modulus: f64) -> HertzSo
         semi_axis_rolling: a,
         semi_axis_transverse: b,
         peak_pressure: 1.5 * load / (PI * a * b),
-        stiffness: (2.0 * radii.rolling * rolling / approach).sqrt() / approach * 2.0 * PI
-            / 3.0
+        stiffness: (2.0 * radii.rolling * rolling / approach).sqrt() / approach * 2.0 * PI / 3.0
             * effective_modulus,
     }
 }
@@ -109,8 +108,7 @@ pub fn hamrock_brewe(radii: RelativeRadii, load: f64, effective_modulus: f64) ->
     let ellipticity = 1.0339 * ratio.powf(0.636);
     let second = 1.0003 + 0.5968 / ratio;
     let first = 1.5277 + 0.6023 * ratio.ln();
-    let curvature_radius =
-        radii.rolling * radii.transverse / (radii.rolling + radii.transverse);
+    let curvature_radius = radii.rolling * radii.transverse / (radii.rolling + radii.transverse);
     let stiffness = PI
         * ellipticity
         * effective_modulus
@@ -132,6 +130,56 @@ pub fn hamrock_brewe(radii: RelativeRadii, load: f64, effective_modulus: f64) ->
 pub fn in_series(inner: f64, outer: f64) -> f64 {
     (inner.powf(-2.0 / 3.0) + outer.powf(-2.0 / 3.0)).powf(-1.5)
 }
+
+/// Exact solution for one curvature ratio: rolling radius 5 mm, 100 N, E′ = 210 GPa/0.91.
+pub struct PrecisionRow {
+    /// Ry/Rx.
+    pub ratio: f64,
+    pub stiffness: f64,
+    pub semi_axis_transverse: f64,
+    pub semi_axis_rolling: f64,
+    pub peak_pressure: f64,
+}
+
+/// 40-digit arithmetic in mpmath 1.3, by the formulas in K and E: [E/(1−m) − K]/(K − E) = Ry/Rx,
+/// K_H = πkE′√(2ER/9F³).
+pub const PRECISION: [PrecisionRow; 5] = [
+    PrecisionRow {
+        ratio: 1.25,
+        stiffness: 11514613243.44383,
+        semi_axis_transverse: 0.00016549140061789485,
+        semi_axis_rolling: 0.00014262104648443403,
+        peak_pressure: 2022936898.4439943,
+    },
+    PrecisionRow {
+        ratio: 2.0,
+        stiffness: 13066149873.327772,
+        semi_axis_transverse: 0.00020800017971092544,
+        semi_axis_rolling: 0.00013116401922198183,
+        peak_pressure: 1750100383.6391747,
+    },
+    PrecisionRow {
+        ratio: 10.0,
+        stiffness: 21454527496.867786,
+        semi_axis_transverse: 0.00043217456515288143,
+        semi_axis_rolling: 9.605058933567267e-05,
+        peak_pressure: 1150223268.082917,
+    },
+    PrecisionRow {
+        ratio: 130.0,
+        stiffness: 54627407629.89494,
+        semi_axis_transverse: 0.0012283623301977181,
+        semi_axis_rolling: 5.7945552539978054e-05,
+        peak_pressure: 670802678.8967452,
+    },
+    PrecisionRow {
+        ratio: 1000.0,
+        stiffness: 123604967267.4867,
+        semi_axis_transverse: 0.0026709295705863844,
+        semi_axis_rolling: 3.935217596417068e-05,
+        peak_pressure: 454265964.13727516,
+    },
+];
 
 #[cfg(test)]
 mod tests {
@@ -171,6 +219,23 @@ mod tests {
             let major = 2.0 * (k - e) / (ratio.powi(3) * (1.0 - m1));
             let conditioning = k / (k - e);
             assert!((transverse / major - 1.0).abs() <= 4e-15 * conditioning, "{ratio}");
+        }
+    }
+
+    #[test]
+    fn agrees_with_forty_digit_arithmetic() {
+        for row in &PRECISION {
+            let radii = RelativeRadii { rolling: 5e-3, transverse: 5e-3 * row.ratio };
+            let found = exact(radii, 100.0, STEEL);
+            for (value, reference) in [
+                (found.stiffness, row.stiffness),
+                (found.semi_axis_transverse, row.semi_axis_transverse),
+                (found.semi_axis_rolling, row.semi_axis_rolling),
+                (found.peak_pressure, row.peak_pressure),
+            ] {
+                let error = (value / reference - 1.0).abs();
+                assert!(error <= 2e-14, "ratio {}: {value}, error {error:e}", row.ratio);
+            }
         }
     }
 

@@ -28,8 +28,8 @@ impl<const N: usize> Jet<N> {
         for i in 0..N {
             out.gradient[i] = first * self.gradient[i];
             for j in 0..N {
-                out.hessian[i][j] = first * self.hessian[i][j]
-                    + second * (self.gradient[i] * self.gradient[j]);
+                out.hessian[i][j] =
+                    first * self.hessian[i][j] + second * (self.gradient[i] * self.gradient[j]);
             }
         }
         out
@@ -97,8 +97,7 @@ impl<const N: usize> Mul for Jet<N> {
             for j in 0..N {
                 out.hessian[i][j] = self.value * other.hessian[i][j]
                     + other.value * self.hessian[i][j]
-                    + (self.gradient[i] * other.gradient[j]
-                        + self.gradient[j] * other.gradient[i]);
+                    + (self.gradient[i] * other.gradient[j] + self.gradient[j] * other.gradient[i]);
             }
         }
         out
@@ -123,9 +122,7 @@ mod tests {
         let jet = sample(x, y);
         let along_x = y * cos * root + sin * x / root - x.sin();
         let along_y = x * cos * root + sin * 0.5 / root;
-        let mixed = (cos - x * y * sin) * root
-            + y * cos * 0.5 / root
-            + x * cos * x / root
+        let mixed = (cos - x * y * sin) * root + y * cos * 0.5 / root + x * cos * x / root
             - sin * 0.5 * x / root.powi(3);
         assert!((jet.gradient[0] - along_x).abs() <= 1e-14);
         assert!((jet.gradient[1] - along_y).abs() <= 1e-14);

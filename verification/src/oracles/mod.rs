@@ -8,6 +8,7 @@ pub mod dense;
 pub mod elliptic;
 pub mod hertz;
 pub mod hyperdual;
+pub mod misalignment;
 pub mod statics;
 #[cfg(test)]
 mod statics_tests;

@@ -126,13 +126,13 @@ impl OracleBearing {
 
     /// The same coordinates with the position counted from the outer race's. Everything private
     /// here takes them so: a bearing a metre from the origin would lose four digits otherwise.
-    fn from_outer(&self, coordinates: &Coordinates) -> Coordinates {
+    fn relative_to_outer(&self, coordinates: &Coordinates) -> Coordinates {
         let [x, y, z] = self.outer_position;
         let offset = [x, y, z, 0.0, 0.0];
         std::array::from_fn(|i| coordinates[i] - offset[i])
     }
 
-    fn into_outer(&self, v: Vec3) -> Vec3 {
+    fn outer_components(&self, v: Vec3) -> Vec3 {
         let r = &self.outer_rotation;
         std::array::from_fn(|i| r[0][i] * v[0] + r[1][i] * v[1] + r[2][i] * v[2])
     }
@@ -142,8 +142,8 @@ impl OracleBearing {
     fn seen_from_inner(&self, race: &Coordinates, azimuth: f64, ball: [f64; 2]) -> [f64; 2] {
         let (sin_xi, cos_xi) = race[3].sin_cos();
         let (sin_lambda, cos_lambda) = race[4].sin_cos();
-        let axis = self.into_outer([cos_xi * cos_lambda, sin_lambda, -sin_xi * cos_lambda]);
-        let centre = self.into_outer([race[0], race[1], race[2]]);
+        let axis = self.outer_components([cos_xi * cos_lambda, sin_lambda, -sin_xi * cos_lambda]);
+        let centre = self.outer_components([race[0], race[1], race[2]]);
         let point = [ball[0], ball[1] * azimuth.cos(), ball[1] * azimuth.sin()];
         let arm: Vec3 = std::array::from_fn(|i| point[i] - centre[i]);
         let axial = axis[0] * arm[0] + axis[1] * arm[1] + axis[2] * arm[2];
@@ -170,16 +170,11 @@ impl OracleBearing {
         let (xi, lambda) = (Term::variable(race[3], 3), Term::variable(race[4], 4));
         let to_outer = |v: [Term; 3]| -> [Term; 3] {
             let r = &self.outer_rotation;
-            std::array::from_fn(|i| {
-                v[0].scale(r[0][i]) + v[1].scale(r[1][i]) + v[2].scale(r[2][i])
-            })
+            std::array::from_fn(|i| v[0].scale(r[0][i]) + v[1].scale(r[1][i]) + v[2].scale(r[2][i]))
         };
         let cos_lambda = lambda.cos();
-        let axis = to_outer([
-            xi.cos() * cos_lambda,
-            lambda.sin(),
-            (xi.sin() * cos_lambda).scale(-1.0),
-        ]);
+        let axis =
+            to_outer([xi.cos() * cos_lambda, lambda.sin(), (xi.sin() * cos_lambda).scale(-1.0)]);
         let centre = to_outer(std::array::from_fn(|i| Term::variable(race[i], i)));
         let (along, out) = (Term::variable(ball[0], 5), Term::variable(ball[1], 6));
         let point = [along, out.scale(azimuth.cos()), out.scale(azimuth.sin())];
@@ -187,8 +182,7 @@ impl OracleBearing {
         let axial = axis[0] * arm[0] + axis[1] * arm[1] + axis[2] * arm[2];
         let across: [Term; 3] = std::array::from_fn(|i| arm[i] - axial * axis[i]);
         let radial = (across[0].square() + across[1].square() + across[2].square()).sqrt();
-        let distance =
-            axial.shift(-self.inner[1]).square() + radial.shift(-self.inner[0]).square();
+        let distance = axial.shift(-self.inner[1]).square() + radial.shift(-self.inner[0]).square();
         Some(hertz_energy(
             distance.sqrt().shift(self.ball_radius - self.inner[2]),
             self.stiffness_inner,
@@ -203,19 +197,15 @@ impl OracleBearing {
         let axial = Term::variable(ball[0], 5).shift(-self.outer[1]);
         let radial = Term::variable(ball[1], 6).shift(-self.outer[0]);
         let distance = (axial.square() + radial.square()).sqrt();
-        Some(hertz_energy(
-            distance.shift(self.ball_radius - self.outer[2]),
-            self.stiffness_outer,
-        ))
+        Some(hertz_energy(distance.shift(self.ball_radius - self.outer[2]), self.stiffness_outer))
     }
 
     /// Energy of the forces on a ball.
     fn ball_force_term(&self, azimuth: f64, ball: [f64; 2]) -> Option<Term> {
-        if self.ball_force == [0.0; 3] && self.ball_radial_force == 0.0 && self.centrifugal == 0.0
-        {
+        if self.ball_force == [0.0; 3] && self.ball_radial_force == 0.0 && self.centrifugal == 0.0 {
             return None;
         }
-        let force = self.into_outer(self.ball_force);
+        let force = self.outer_components(self.ball_force);
         let radial = force[1] * azimuth.cos() + force[2] * azimuth.sin() + self.ball_radial_force;
         let (along, out) = (Term::variable(ball[0], 5), Term::variable(ball[1], 6));
         // Heights count from the pitch circle, so that the energy stays small.
@@ -224,6 +214,13 @@ impl OracleBearing {
                 + out.shift(-self.lever()).scale(-radial)
                 + out.square().scale(-0.5 * self.centrifugal),
         )
+    }
+
+    /// Rounding of a term's energy: that of the approach, found from positions a pitch radius
+    /// from the axis, times the load.
+    fn noise(&self, term: &Term) -> f64 {
+        let load = term.gradient[5].hypot(term.gradient[6]);
+        f64::EPSILON * (term.value.abs() + 4.0 * load * self.lever())
     }
 
     fn ball_terms(&self, race: &Coordinates, azimuth: f64, ball: [f64; 2]) -> Vec<Term> {
@@ -268,13 +265,13 @@ impl OracleBearing {
         let minimum = minimise(&start, 1e-6, |p| {
             let mut all = Expansion {
                 value: 0.0,
-                magnitude: 0.0,
+                noise: 0.0,
                 gradient: vec![0.0; 2],
                 hessian: vec![vec![0.0; 2]; 2],
             };
             for term in self.ball_terms(race, azimuth, [p[0], p[1]]) {
                 all.value += term.value;
-                all.magnitude += term.value.abs();
+                all.noise += self.noise(&term);
                 for i in 0..2 {
                     all.gradient[i] += term.gradient[5 + i];
                     for j in 0..2 {
@@ -290,7 +287,7 @@ impl OracleBearing {
     /// Energy of the bearing and the loads that hold the inner race at given coordinates: the
     /// gradient of the energy with the balls where they come to rest.
     pub fn evaluate(&self, coordinates: &Coordinates) -> (f64, Coordinates, Vec<OracleBall>) {
-        let race = self.from_outer(coordinates);
+        let race = self.relative_to_outer(coordinates);
         let positions: Vec<[f64; 2]> =
             (0..self.balls).map(|ball| self.relax_ball(&race, ball)).collect();
         let (energy, loads) = self.energy_and_loads(&race, &positions);
@@ -339,7 +336,8 @@ impl OracleBearing {
 
     /// Coordinates at which the races are concentric and parallel.
     pub fn aligned(&self) -> Coordinates {
-        let axis = [self.outer_rotation[0][0], self.outer_rotation[1][0], self.outer_rotation[2][0]];
+        let axis =
+            [self.outer_rotation[0][0], self.outer_rotation[1][0], self.outer_rotation[2][0]];
         let [x, y, z] = self.outer_position;
         [x, y, z, (-axis[2]).atan2(axis[0]), axis[1].asin()]
     }
@@ -357,10 +355,9 @@ impl OracleBearing {
                 *coordinate = *value;
             }
         }
-        let race = self.from_outer(&coordinates);
-        let origin = self.from_outer(&origin);
-        let free: Vec<usize> =
-            (0..5).filter(|&i| matches!(known[i], Known::Load(_))).collect();
+        let race = self.relative_to_outer(&coordinates);
+        let origin = self.relative_to_outer(&origin);
+        let free: Vec<usize> = (0..5).filter(|&i| matches!(known[i], Known::Load(_))).collect();
         let size = free.len() + 2 * self.balls;
 
         // Unknowns are lengths, counted from the start, so that they keep their digits.
@@ -374,10 +371,7 @@ impl OracleBearing {
             let balls: Vec<[f64; 2]> = (0..self.balls)
                 .map(|ball| {
                     let at = free.len() + 2 * ball;
-                    [
-                        ball_starts[ball][0] + unknowns[at],
-                        ball_starts[ball][1] + unknowns[at + 1],
-                    ]
+                    [ball_starts[ball][0] + unknowns[at], ball_starts[ball][1] + unknowns[at + 1]]
                 })
                 .collect();
             (moved, balls)
@@ -386,12 +380,12 @@ impl OracleBearing {
             let (moved, balls) = unpack(unknowns);
             let mut hessian: Matrix = vec![vec![0.0; size]; size];
             let mut gradient = vec![0.0; size];
-            let (mut value, mut magnitude) = (0.0_f64, 0.0_f64);
+            let (mut value, mut noise) = (0.0_f64, 0.0_f64);
             for (slot, &i) in free.iter().enumerate() {
                 if let Known::Load(load) = known[i] {
                     let work = load * (moved[i] - origin[i]);
                     value -= work;
-                    magnitude += work.abs();
+                    noise += f64::EPSILON * work.abs();
                     gradient[slot] -= load / unit(i);
                 }
             }
@@ -409,7 +403,7 @@ impl OracleBearing {
                 places.extend([(5, own, 1.0), (6, own + 1, 1.0)]);
                 for term in &terms {
                     value += term.value;
-                    magnitude += term.value.abs();
+                    noise += self.noise(term);
                     for &(i, row, unit_i) in &places {
                         gradient[row] += term.gradient[i] / unit_i;
                         for &(j, column, unit_j) in &places {
@@ -418,7 +412,7 @@ impl OracleBearing {
                     }
                 }
             }
-            Expansion { value, magnitude, gradient, hessian }
+            Expansion { value, noise, gradient, hessian }
         };
 
         let minimum = minimise(&vec![0.0; size], 1e-5, expand);
@@ -446,4 +440,92 @@ fn hertz_energy(approach: Term, stiffness: f64) -> Term {
         stiffness * delta * root,
         1.5 * stiffness * root,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Axis and centre far from the trivial, both contacts loaded.
+    fn sample() -> (OracleBearing, Coordinates, f64, [f64; 2]) {
+        let (sin, cos) = 0.3_f64.sin_cos();
+        let mut bearing = OracleBearing::at_origin(
+            9,
+            6.0e-3,
+            [26.05e-3, 2e-4, 6.1e-3],
+            [25.6e-3, -2e-4, 6.3e-3],
+            [5e10, 3e10],
+            0.2,
+        );
+        bearing.outer_rotation = [[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]];
+        (bearing, [6e-5, -3e-5, 4e-5, 0.303, 0.004], 1.1, [5e-5, 25.93e-3])
+    }
+
+    #[test]
+    fn terms_have_the_derivatives_of_their_values() {
+        let (bearing, race, azimuth, ball) = sample();
+        let terms = |shift: [f64; 7]| {
+            let race: Coordinates = std::array::from_fn(|i| race[i] + shift[i]);
+            let ball = [ball[0] + shift[5], ball[1] + shift[6]];
+            let inner = bearing.inner_term(&race, azimuth, ball).expect("inner contact");
+            let outer = bearing.outer_term(ball).expect("outer contact");
+            [inner, outer]
+        };
+        let here = terms([0.0; 7]);
+        for i in 0..7 {
+            let (step, unit) = if i == 3 || i == 4 { (4e-7, 0.026) } else { (1e-8, 1.0) };
+            let shifted = |amount: f64| {
+                let mut shift = [0.0; 7];
+                shift[i] = amount;
+                terms(shift)
+            };
+            let (ahead, behind) = (shifted(step), shifted(-step));
+            for contact in 0..2 {
+                let load = here[contact].gradient[5].hypot(here[contact].gradient[6]);
+                let slope = (ahead[contact].value - behind[contact].value) / (2.0 * step);
+                let error = (slope - here[contact].gradient[i]).abs() / (unit * load);
+                assert!(error <= 1e-6, "gradient {i} of contact {contact}: {error:e}");
+                for j in 0..7 {
+                    let unit_j = if j == 3 || j == 4 { 0.026 } else { 1.0 };
+                    let slope =
+                        (ahead[contact].gradient[j] - behind[contact].gradient[j]) / (2.0 * step);
+                    let stiffness = here[contact].hessian[i][j];
+                    // Contact stiffness: load over approach, at most 50 µm.
+                    let size = unit * unit_j * load / 5e-5;
+                    let error = (slope - stiffness).abs() / size;
+                    assert!(error <= 1e-5, "Hessian {i}, {j} of contact {contact}: {error:e}");
+                    assert!(stiffness == here[contact].hessian[j][i], "symmetry {i}, {j}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn values_are_those_of_the_plain_approach() {
+        let (bearing, race, azimuth, ball) = sample();
+        let energy = |k: f64, approach: f64| 0.4 * k * approach.powf(2.5);
+        let inner = bearing.inner_term(&race, azimuth, ball).expect("inner contact").value;
+        let outer = bearing.outer_term(ball).expect("outer contact").value;
+        let plain_inner = energy(5e10, bearing.approach_inner(&race, azimuth, ball));
+        let plain_outer = energy(3e10, bearing.approach_outer(ball));
+        assert!((inner / plain_inner - 1.0).abs() <= 1e-11);
+        assert!((outer / plain_outer - 1.0).abs() <= 1e-11);
+    }
+
+    #[test]
+    fn azimuth_runs_from_y_towards_z_and_the_race_pushes_the_ball_ahead() {
+        let bearing = OracleBearing::at_origin(
+            4,
+            5.953e-3,
+            [26.06e-3, 0.0, 6.013e-3],
+            [25.643e-3, 0.0, 6.31e-3],
+            [5e10, 3e10],
+            0.0,
+        );
+        let (_, loads, balls) = bearing.evaluate(&[0.0, 0.0, 8e-6, 0.0, 0.0]);
+        assert!(loads[2] > 0.0 && balls[1].inner.load > 0.0, "{balls:?}");
+        assert!([0, 2, 3].iter().all(|&ball: &usize| balls[ball].inner.load <= 1.0), "{balls:?}");
+        let (_, loads, balls) = bearing.evaluate(&[5e-5, 0.0, 0.0, 0.0, 0.0]);
+        assert!(loads[0] > 0.0 && balls[0].inner.angle > 0.0 && balls[0].outer.angle > 0.0);
+    }
 }

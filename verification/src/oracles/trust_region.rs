@@ -5,8 +5,8 @@ use super::dense::{Matrix, dot, norm, solve_positive_definite};
 /// The energy and its derivatives at one point.
 pub struct Expansion {
     pub value: f64,
-    /// Sum of the absolute values of the terms `value` is made of: says what rounding it carries.
-    pub magnitude: f64,
+    /// Rounding that `value` may carry.
+    pub noise: f64,
     pub gradient: Vec<f64>,
     pub hessian: Matrix,
 }
@@ -22,15 +22,11 @@ const MAX_ITERATIONS: usize = 2000;
 /// Descends from `start` until neither the energy nor its gradient can be lowered in f64. The
 /// caller judges `gradient_norm`. All variables must have one unit; `radius` is the first step's
 /// length in it.
-pub fn minimise(
-    start: &[f64],
-    mut radius: f64,
-    expand: impl Fn(&[f64]) -> Expansion,
-) -> Minimum {
+pub fn minimise(start: &[f64], mut radius: f64, expand: impl Fn(&[f64]) -> Expansion) -> Minimum {
     let mut point = start.to_vec();
     let mut here = expand(&point);
     let mut gradient_norm = norm(&here.gradient);
-    let mut iterations = 0;
+    let (mut iterations, mut refusals) = (0, 0);
     while iterations < MAX_ITERATIONS && gradient_norm > 0.0 {
         iterations += 1;
         let step = step_within(&here, radius);
@@ -41,13 +37,17 @@ pub fn minimise(
         let there = expand(&candidate);
         let norm_there = norm(&there.gradient);
         // Once the gain drowns in the rounding of the energy the gradient decides alone.
-        let energy_is_blind = predicted <= 1e-12 * here.magnitude;
+        let energy_is_blind = predicted <= 4.0 * here.noise;
         let gain = (here.value - there.value) / predicted;
-        let accepted =
-            if energy_is_blind { norm_there < gradient_norm } else { gain > 1e-4 };
+        let accepted = if energy_is_blind { norm_there < gradient_norm } else { gain > 1e-4 };
         if energy_is_blind {
-            if !accepted {
+            // A contact about to open can overshoot: shorter steps before giving up.
+            refusals = if accepted { 0 } else { refusals + 1 };
+            if refusals > 8 {
                 break;
+            }
+            if !accepted {
+                radius = 0.25 * norm(&step);
             }
         } else if gain < 0.25 || gain.is_nan() {
             radius = 0.25 * norm(&step);
@@ -64,10 +64,10 @@ pub fn minimise(
 /// Minimiser of the quadratic model within `radius`, its multiplier found by bisection.
 fn step_within(here: &Expansion, radius: f64) -> Vec<f64> {
     let downhill: Vec<f64> = here.gradient.iter().map(|g| -g).collect();
-    if let Some(step) = solve_positive_definite(&here.hessian, 0.0, &downhill) {
-        if norm(&step) <= radius {
-            return step;
-        }
+    if let Some(step) = solve_positive_definite(&here.hessian, 0.0, &downhill)
+        && norm(&step) <= radius
+    {
+        return step;
     }
     let size = here.hessian.iter().map(|row| dot(row, row)).sum::<f64>().sqrt();
     // This shift outweighs any negative curvature and shortens the step below the radius.
@@ -99,7 +99,7 @@ mod tests {
             let bend = y - x * x;
             Expansion {
                 value: 100.0 * bend * bend + (1.0 - x).powi(2),
-                magnitude: 100.0 * bend * bend + (1.0 - x).powi(2),
+                noise: f64::EPSILON * (100.0 * bend * bend + (1.0 - x).powi(2)),
                 gradient: vec![-400.0 * x * bend - 2.0 * (1.0 - x), 200.0 * bend],
                 hessian: vec![
                     vec![1200.0 * x * x - 400.0 * y + 2.0, -400.0 * x],
@@ -116,7 +116,7 @@ mod tests {
         // x⁴/4 − x²/2 + y²/2 from (0, 1) with a nudge: minima at x = ±1.
         let minimum = minimise(&[1e-3, 1.0], 0.1, |p| Expansion {
             value: p[0].powi(4) / 4.0 - p[0] * p[0] / 2.0 + p[1] * p[1] / 2.0,
-            magnitude: p[0] * p[0] + p[1] * p[1],
+            noise: f64::EPSILON * (p[0] * p[0] + p[1] * p[1]),
             gradient: vec![p[0].powi(3) - p[0], p[1]],
             hessian: vec![vec![3.0 * p[0] * p[0] - 1.0, 0.0], vec![0.0, 1.0]],
         });

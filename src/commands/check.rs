@@ -1,0 +1,76 @@
+//! `bearing check SCENE`.
+
+use super::{CommandResult, Outcome, echo, say};
+use bearing_dynamics::output::results::pretty;
+use bearing_dynamics::scene::{self, Scene, statics::static_problem};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scene file (.toml or .json)
+    scene: PathBuf,
+    /// Print everything that was understood, in SI-based units, as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(arguments: &Arguments) -> CommandResult {
+    let scene = scene::read_file(&arguments.scene)?;
+    static_problem(&scene)?;
+    if arguments.json {
+        say(&pretty(&echo::scene(&scene)?))?;
+    } else {
+        say(&summary(&arguments.scene.display().to_string(), &scene))?;
+    }
+    Ok(Outcome::Done)
+}
+
+fn summary(name: &str, scene: &Scene) -> String {
+    let (geometry, sizes) = (&scene.geometry, &scene.dimensions);
+    let mut text = format!("{name}: a valid scene\n");
+    let mut line = |label: &str, value: String| {
+        let _ = writeln!(text, "  {label:<22} {value}");
+    };
+    if let Some(title) = &scene.title {
+        line("title", title.clone());
+    }
+    line("bearing", format!("{:?}, {} balls", geometry.kind, geometry.ball_count));
+    line(
+        "ball radius",
+        format!(
+            "{:.6} mm in use, {:.6} mm nominal",
+            1e3 * geometry.ball_radius,
+            1e3 * sizes.nominal_ball_radius
+        ),
+    );
+    line(
+        "clearance",
+        format!(
+            "{:+.4} um radial = {:+.4} um diametral",
+            1e6 * sizes.radial_clearance,
+            1e6 * sizes.diametral_clearance
+        ),
+    );
+    for (label, race) in [("inner race", &sizes.inner_race), ("outer race", &sizes.outer_race)] {
+        line(
+            label,
+            format!(
+                "radius {:.4} mm, groove {:.4} mm = {:.5} of the ball diameter = osculation {:.5}",
+                1e3 * race.radius,
+                1e3 * race.groove_radius,
+                race.conformity,
+                race.osculation
+            ),
+        );
+    }
+    line("pitch radius", format!("{:.4} mm", 1e3 * geometry.pitch_radius));
+    line("contact angle", format!("{:.4} deg (nominal)", geometry.contact_angle.to_degrees()));
+    for used in &scene.defaults_used {
+        line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
+    }
+    for assumption in &scene.assumptions {
+        line("assumption", format!("{}: {}", assumption.name, assumption.text));
+    }
+    text
+}

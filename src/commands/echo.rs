@@ -1,0 +1,260 @@
+//! What was understood of a scene, as JSON with units, and what follows from it.
+
+use bearing_dynamics::ch2_housing::bearing::geometry::{
+    BearingKind, ClearanceThrough, Material, Raceway,
+};
+use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, HertzModel};
+use bearing_dynamics::output::results::{ResultsError, quantity};
+use bearing_dynamics::scene::resolved::RaceDimensions;
+use bearing_dynamics::scene::statics::kinematic_ratios;
+use bearing_dynamics::scene::{Cage, CageGuidance, Scene};
+use bearing_dynamics::solver::statics::{
+    COORDINATE_NAMES, Condition, StaticProblem, StaticSolution,
+};
+use serde_json::{Map, Value, json};
+
+type Echo = Result<Value, ResultsError>;
+
+/// The resolved scene, every dimensional value with its unit.
+pub fn scene(scene: &Scene) -> Echo {
+    let mut echo = Map::new();
+    for (name, text) in [("title", &scene.title), ("source", &scene.source)] {
+        if let Some(text) = text {
+            echo.insert(name.into(), json!(text));
+        }
+    }
+    echo.insert("bearing".into(), bearing(scene)?);
+    echo.insert("inner_race".into(), conditions(scene)?);
+    let mut outer = Map::new();
+    for (i, name) in COORDINATE_NAMES.iter().enumerate() {
+        outer.insert((*name).into(), coordinate(name, scene.outer_race[i], i)?);
+    }
+    echo.insert("outer_race".into(), Value::Object(outer));
+    let gravity: Result<Vec<_>, _> =
+        scene.gravity.iter().map(|g| quantity("gravity", *g, "m/s^2")).collect();
+    echo.insert(
+        "ball_forces".into(),
+        json!({ "gravity": gravity?, "centrifugal": scene.centrifugal }),
+    );
+    Ok(Value::Object(echo))
+}
+
+fn bearing(scene: &Scene) -> Echo {
+    let (geometry, sizes) = (&scene.geometry, &scene.dimensions);
+    let through = match sizes.clearance_through {
+        ClearanceThrough::Ball => "ball",
+        ClearanceThrough::InnerRace => "inner-race",
+        ClearanceThrough::OuterRace => "outer-race",
+    };
+    let mut echo = json!({
+        "kind": match geometry.kind {
+            BearingKind::DeepGroove => "deep-groove",
+            BearingKind::AngularContact => "angular-contact",
+        },
+        "balls": geometry.ball_count,
+        "ball_phase": quantity("ball_phase", scene.ball_phase.to_degrees(), "deg")?,
+        "hertz": match scene.hertz {
+            HertzModel::HamrockBrewe => "hamrock-brewe",
+            HertzModel::Exact => "exact",
+        },
+        "clearance": {
+            "radial": length(sizes.radial_clearance)?,
+            "diametral": length(sizes.diametral_clearance)?,
+            "through": through,
+        },
+        "pitch_radius": length(geometry.pitch_radius)?,
+        "contact_angle":
+            quantity("contact_angle", geometry.contact_angle.to_degrees(), "deg")?,
+        "ball": {
+            "radius": length(geometry.ball_radius)?,
+            "nominal_radius": length(sizes.nominal_ball_radius)?,
+            "material": material(&scene.ball_material)?,
+        },
+        "inner_race": race(&sizes.inner_race, &geometry.inner, &scene.inner_material)?,
+        "outer_race": race(&sizes.outer_race, &geometry.outer, &scene.outer_material)?,
+    });
+    for (part, name, value) in [
+        ("inner_race", "bore_radius", sizes.bore_radius),
+        ("outer_race", "outer_radius", sizes.outer_radius),
+    ] {
+        if let Some(value) = value {
+            echo[part][name] = length(value)?;
+        }
+    }
+    if let Some(value) = sizes.length {
+        echo["length"] = length(value)?;
+    }
+    if let Some(given) = &scene.cage {
+        echo["cage"] = cage(given)?;
+    }
+    Ok(echo)
+}
+
+fn length(value: f64) -> Echo {
+    quantity("length", value * 1e3, "mm")
+}
+
+fn material(material: &Material) -> Echo {
+    Ok(json!({
+        "youngs_modulus": quantity("youngs_modulus", material.youngs_modulus / 1e9, "GPa")?,
+        "poisson_ratio": quantity("poisson_ratio", material.poisson_ratio, "1")?,
+        "density": quantity("density", material.density, "kg/m^3")?,
+    }))
+}
+
+fn race(sizes: &RaceDimensions, raceway: &Raceway, steel: &Material) -> Echo {
+    Ok(json!({
+        "radius": length(sizes.radius)?,
+        "groove_radius": length(sizes.groove_radius)?,
+        "conformity": quantity("conformity", sizes.conformity, "1")?,
+        "osculation": quantity("osculation", sizes.osculation, "1")?,
+        "groove_centre_radius": length(raceway.centre_radius)?,
+        "groove_centre_axial": length(raceway.centre_axial)?,
+        "material": material(steel)?,
+    }))
+}
+
+fn cage(cage: &Cage) -> Echo {
+    let mut echo = Map::new();
+    for (name, value) in [
+        ("pocket_radius", cage.pocket_radius),
+        ("inner_radius", cage.inner_radius),
+        ("outer_radius", cage.outer_radius),
+        ("race_clearance", cage.race_clearance),
+    ] {
+        if let Some(value) = value {
+            echo.insert(name.into(), length(value)?);
+        }
+    }
+    if let Some(mass) = cage.mass {
+        echo.insert("mass".into(), quantity("mass", mass, "kg")?);
+    }
+    if let Some(guidance) = cage.guidance {
+        let name = match guidance {
+            CageGuidance::OuterRace => "outer-race",
+            CageGuidance::InnerRace => "inner-race",
+            CageGuidance::Balls => "balls",
+        };
+        echo.insert("guidance".into(), json!(name));
+    }
+    Ok(Value::Object(echo))
+}
+
+/// A coordinate in the unit an engineer reads it in.
+fn coordinate(name: &str, value: f64, index: usize) -> Echo {
+    if index < 3 {
+        quantity(name, value * 1e6, "um")
+    } else {
+        quantity(name, value.to_degrees(), "deg")
+    }
+}
+
+fn conditions(scene: &Scene) -> Echo {
+    let mut echo = Map::new();
+    for (i, condition) in scene.conditions.iter().enumerate() {
+        let name = COORDINATE_NAMES[i];
+        let entry = match (condition, i < 3) {
+            (Condition::Load(load), true) => json!({ "load": quantity(name, *load, "N")? }),
+            (Condition::Load(load), false) => json!({ "moment": quantity(name, *load, "N m")? }),
+            (Condition::Displacement(value), true) => {
+                json!({ "displacement": coordinate(name, *value, i)? })
+            }
+            (Condition::Displacement(value), false) => {
+                json!({ "tilt": coordinate(name, *value, i)? })
+            }
+        };
+        echo.insert(name.into(), entry);
+    }
+    if let Some(speed) = scene.inner_speed {
+        echo.insert("speed".into(), quantity("speed", speed * 30.0 / std::f64::consts::PI, "rpm")?);
+    }
+    Ok(Value::Object(echo))
+}
+
+/// Parts of the summary beside the solution itself.
+pub fn sections(
+    scene: &Scene,
+    problem: &StaticProblem,
+    solution: &StaticSolution,
+) -> Result<Vec<(String, Value)>, ResultsError> {
+    Ok(vec![
+        ("hertz".into(), hertz(problem)?),
+        ("frequencies".into(), frequencies(scene)?),
+        ("load_zone".into(), load_zone(solution)?),
+    ])
+}
+
+fn hertz(problem: &StaticProblem) -> Echo {
+    let contact = |contact: &HertzContact| -> Echo {
+        Ok(json!({
+            "stiffness": quantity("stiffness", contact.stiffness, "N/m^1.5")?,
+            "ellipticity": quantity("ellipticity", contact.ellipticity, "1")?,
+            "radius_rolling": length(contact.radius_rolling)?,
+            "radius_transverse": length(contact.radius_transverse)?,
+        }))
+    };
+    Ok(json!({
+        "inner_race": contact(&problem.inner_contact)?,
+        "outer_race": contact(&problem.outer_contact)?,
+    }))
+}
+
+/// Kinematic frequencies over shaft frequency, and in Hz where a speed is given.
+fn frequencies(scene: &Scene) -> Echo {
+    let ratios = kinematic_ratios(scene);
+    let shaft = scene.inner_speed.map(|speed| speed / std::f64::consts::TAU);
+    let mut echo = Map::new();
+    for (name, ratio) in [
+        ("cage", ratios.cage),
+        ("ball_pass_outer", ratios.ball_pass_outer),
+        ("ball_pass_inner", ratios.ball_pass_inner),
+        ("ball_spin", ratios.ball_spin),
+    ] {
+        let mut entry = json!({ "over_shaft": quantity(name, ratio, "1")? });
+        if let Some(shaft) = shaft {
+            entry["frequency"] = quantity(name, ratio * shaft, "Hz")?;
+        }
+        echo.insert(name.into(), entry);
+    }
+    Ok(Value::Object(echo))
+}
+
+/// Which balls carry, and over how wide an arc.
+pub fn load_zone(solution: &StaticSolution) -> Echo {
+    let (loaded, extent) = load_zone_of(solution);
+    let largest = solution
+        .balls
+        .iter()
+        .enumerate()
+        .max_by(|a, b| a.1.inner.normal_load.total_cmp(&b.1.inner.normal_load))
+        .filter(|(_, ball)| ball.inner.normal_load > 0.0);
+    let mut echo = json!({
+        "loaded_balls": loaded,
+        "extent": quantity("extent", extent.to_degrees(), "deg")?,
+    });
+    if let Some((index, ball)) = largest {
+        echo["most_loaded_ball"] = json!(index + 1);
+        echo["largest_inner_load"] = quantity("load", ball.inner.normal_load, "N")?;
+    }
+    Ok(echo)
+}
+
+/// Number of balls that carry the inner race, and the arc from the first to the last of them in
+/// rad: the full circle less the widest gap between neighbouring loaded balls.
+pub fn load_zone_of(solution: &StaticSolution) -> (usize, f64) {
+    let tau = std::f64::consts::TAU;
+    let mut azimuths: Vec<f64> = solution
+        .balls
+        .iter()
+        .filter(|ball| ball.inner.normal_load > 0.0)
+        .map(|ball| ball.azimuth.rem_euclid(tau))
+        .collect();
+    azimuths.sort_by(f64::total_cmp);
+    if azimuths.len() == solution.balls.len() {
+        return (azimuths.len(), tau);
+    }
+    let Some((&first, &last)) = azimuths.first().zip(azimuths.last()) else { return (0, 0.0) };
+    let widest =
+        azimuths.windows(2).map(|pair| pair[1] - pair[0]).fold(first + tau - last, f64::max);
+    (azimuths.len(), tau - widest)
+}

@@ -1,0 +1,43 @@
+//! One file a subcommand; here what they share.
+
+pub mod check;
+pub mod compare;
+pub mod echo;
+pub mod pack;
+pub mod plan;
+pub mod pictures;
+pub mod schema;
+pub mod solve;
+pub mod statics;
+pub mod sweep;
+pub mod table;
+
+use std::error::Error;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// What a command came to when nothing stood in its way.
+pub enum Outcome {
+    Done,
+    /// `compare` found a difference.
+    Different,
+}
+
+/// Any error that ends a command: it is shown as one message, with exit code 2.
+pub type CommandResult = Result<Outcome, Box<dyn Error>>;
+
+/// Writes to standard output; a reader that went away (`bearing … | head`) is no error.
+pub fn say(text: &str) -> Result<(), Box<dyn Error>> {
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
+}
+
+/// `results/<name of the scene>` unless a folder was given.
+pub fn results_folder(scene: &Path, given: &Option<PathBuf>) -> PathBuf {
+    given.clone().unwrap_or_else(|| {
+        let name = scene.file_stem().unwrap_or(scene.as_os_str());
+        Path::new("results").join(name)
+    })
+}

@@ -1,0 +1,51 @@
+//! `bearing pack CASE`.
+
+use super::solve::solve_scene;
+use super::{CommandResult, Outcome, say};
+use bearing_dynamics::output::compare::ToleranceClass;
+use bearing_dynamics::output::pack::{PackInput, write_pack};
+use bearing_dynamics::scene::{Document, resolve};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scene file, or the name of one in scenes/
+    case: PathBuf,
+    /// Folder of the pack [default: packs/<name of the scene>]
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+pub fn run(arguments: &Arguments) -> CommandResult {
+    let path = find(&arguments.case);
+    let start = Instant::now();
+    let document = Document::read_file(&path)?;
+    let scene = resolve(&document)?;
+    let solved = solve_scene(&scene, start.elapsed().as_secs_f64())?;
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("toml");
+    let name = format!("scene.{extension}");
+    let input = PackInput {
+        scene_name: &name,
+        scene_text: document.text(),
+        resolved: &solved.record.scene,
+        class: ToleranceClass::F64Reordered,
+    };
+    let stem = path.file_stem().unwrap_or(path.as_os_str());
+    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("packs").join(stem));
+    let manifest = write_pack(&folder, &input, &solved.solution, &solved.record)?;
+    say(&format!("wrote {} files to {}\n", manifest.sha256.len() + 1, folder.display()))?;
+    Ok(Outcome::Done)
+}
+
+/// The path itself if there is such a file, otherwise a scene of that name in `scenes/`.
+fn find(case: &Path) -> PathBuf {
+    if case.exists() {
+        return case.to_path_buf();
+    }
+    ["toml", "json"]
+        .iter()
+        .map(|ending| Path::new("scenes").join(case).with_extension(ending))
+        .find(|path| path.exists())
+        .unwrap_or_else(|| case.to_path_buf())
+}

@@ -1,0 +1,106 @@
+//! Plots of a static solution: load zone, ball force over azimuth, moment over tilt.
+
+use bearing_dynamics::output::atomic::write_atomic;
+use bearing_dynamics::output::plots::{
+    Axis, Curve, LoadZone, PolarPlot, Style, XyPlot, load_zone, polar, xy,
+};
+use bearing_dynamics::scene::{Plot, Scene};
+use bearing_dynamics::solver::statics::{
+    Condition, StaticOptions, StaticProblem, StaticSolution, solve_from,
+};
+use nalgebra::SVector;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+/// Positions of the ball set over one ball pitch for the polar plot: 16 make a smooth curve.
+const PHASES: usize = 16;
+/// Tilts on the moment curve, and its end where the scene gives none (twice that of 3.4.5).
+const TILTS: usize = 25;
+const LARGEST_TILT_DEGREES: f64 = 0.3;
+
+/// Writes the plots that the scene asks for and returns their paths.
+pub fn write(
+    folder: &Path,
+    scene: &Scene,
+    problem: &StaticProblem,
+    solution: &StaticSolution,
+) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+    let title = scene.title.clone().unwrap_or_else(|| "Bearing".into());
+    let mut written = Vec::new();
+    for plot in &scene.plots {
+        let (name, svg) = match plot {
+            Plot::LoadZone => (
+                "load_zone.svg",
+                load_zone(&LoadZone::new(title.clone(), &problem.geometry, solution))?,
+            ),
+            Plot::Polar => ("polar.svg", force_over_azimuth(&title, problem, solution)?),
+            Plot::MomentTilt => ("moment_tilt.svg", moment_over_tilt(&title, problem)?),
+        };
+        let path = folder.join(name);
+        write_atomic(&path, svg.as_bytes())?;
+        written.push(path);
+    }
+    Ok(written)
+}
+
+/// Normal load between ball and race as a ball travels round the bearing.
+fn force_over_azimuth(
+    title: &str,
+    problem: &StaticProblem,
+    solution: &StaticSolution,
+) -> Result<String, Box<dyn Error>> {
+    let pitch = std::f64::consts::TAU / problem.geometry.ball_count as f64;
+    let mut turned = problem.clone();
+    let mut start = solution.coordinates;
+    let mut curves = [Vec::new(), Vec::new()];
+    for step in 0..PHASES {
+        turned.ball_phase = problem.ball_phase + pitch * step as f64 / PHASES as f64;
+        let here = solve_from(&turned, Some(&start), &StaticOptions::default())?;
+        start = here.coordinates;
+        for ball in &here.balls {
+            curves[0].push([ball.azimuth, ball.outer.normal_load]);
+            curves[1].push([ball.azimuth, ball.inner.normal_load]);
+        }
+    }
+    let [outer, inner] = curves;
+    let mut shown = vec![Curve::new("ball on outer race", outer)];
+    // Without forces on the balls both curves are one.
+    let differ = solution
+        .balls
+        .iter()
+        .any(|b| (b.inner.normal_load - b.outer.normal_load).abs() > 1e-3 * b.outer.normal_load);
+    if differ {
+        shown.push(Curve::new("ball on inner race", inner));
+    }
+    Ok(polar(&PolarPlot {
+        title: format!("{title}: normal load over ball azimuth"),
+        quantity: "normal load".into(),
+        unit: "N".into(),
+        curves: shown,
+    })?)
+}
+
+/// Reaction moment against a prescribed tilt about Y; the other conditions are the scene's.
+fn moment_over_tilt(title: &str, problem: &StaticProblem) -> Result<String, Box<dyn Error>> {
+    let largest = match problem.conditions[3] {
+        Condition::Displacement(tilt) if tilt != 0.0 => tilt.abs(),
+        _ => LARGEST_TILT_DEGREES.to_radians(),
+    };
+    let mut tilted = problem.clone();
+    let mut start: Option<SVector<f64, 5>> = None;
+    let mut points = Vec::with_capacity(TILTS);
+    for step in 0..TILTS {
+        let tilt = largest * step as f64 / (TILTS - 1) as f64;
+        tilted.conditions[3] = Condition::Displacement(tilt);
+        let here = solve_from(&tilted, start.as_ref(), &StaticOptions::default())?;
+        start = Some(here.coordinates);
+        points.push([tilt.to_degrees(), here.loads[3]]);
+    }
+    Ok(xy(&XyPlot {
+        title: format!("{title}: moment over tilt"),
+        x: Axis::linear("tilt about Y", "deg"),
+        y: Axis::linear("moment about Y", "N m"),
+        style: Style::LinesAndMarkers,
+        curves: vec![Curve::new("moment that holds the tilt", points)],
+    })?)
+}

@@ -1,0 +1,50 @@
+//! From a scene to its static solution and the record of how it was obtained.
+
+use super::echo;
+use bearing_dynamics::output::results::RunRecord;
+use bearing_dynamics::scene::Scene;
+use bearing_dynamics::scene::statics::static_problem;
+use bearing_dynamics::solver::plan;
+use bearing_dynamics::solver::statics::{StaticProblem, StaticSolution, solve};
+use std::error::Error;
+use std::time::Instant;
+
+/// A solved scene and everything its results folder records.
+pub struct Solved {
+    pub problem: StaticProblem,
+    pub solution: StaticSolution,
+    pub record: RunRecord,
+}
+
+/// Solves a scene; `read_seconds` is the time that reading it took.
+pub fn solve_scene(scene: &Scene, read_seconds: f64) -> Result<Solved, Box<dyn Error>> {
+    let problem = static_problem(scene)?;
+    let start = Instant::now();
+    let solution = solve(&problem)?;
+    let solve_seconds = start.elapsed().as_secs_f64();
+    let assumptions = scene.assumptions.iter().map(|a| (a.name.clone(), a.text.clone()));
+    let defaults = scene
+        .defaults_used
+        .iter()
+        .map(|used| (used.key.clone(), format!("{} ({})", used.value, used.reason)));
+    let record = RunRecord {
+        scene: echo::scene(scene)?,
+        plan: plan_lines(&problem),
+        assumptions: assumptions.chain(defaults).collect(),
+        threads: 1,
+        seconds: vec![("read".into(), read_seconds), ("solve".into(), solve_seconds)],
+        sections: echo::sections(scene, &problem, &solution)?,
+    };
+    Ok(Solved { problem, solution, record })
+}
+
+/// The plan as text, one line a stage.
+pub fn plan_lines(problem: &StaticProblem) -> Vec<String> {
+    plan::statics(problem)
+        .into_iter()
+        .map(|stage| {
+            let mark = if stage.included { "does " } else { "skips" };
+            format!("{mark} {:<28} {}", stage.name, stage.reason)
+        })
+        .collect()
+}

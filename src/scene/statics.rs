@@ -1,0 +1,51 @@
+//! From a resolved scene to the static problem it describes.
+
+use crate::ch2_housing::bearing::frequencies;
+use crate::ch2_housing::bearing::hertz::{HertzError, RaceSide, contact};
+use crate::kinematics::{Pose, euler};
+use crate::scene::resolved::Scene;
+use crate::solver::statics::StaticProblem;
+use nalgebra::Vector3;
+use std::f64::consts::PI;
+
+/// The static problem of a scene.
+///
+/// # Errors
+/// Radii from which no contact can be built (a ball as large as its groove or race).
+pub fn static_problem(scene: &Scene) -> Result<StaticProblem, HertzError> {
+    let geometry = scene.geometry;
+    let side = |side, race| contact(scene.hertz, side, &geometry, &scene.ball_material, race);
+    let [x, y, z, tilt_y, tilt_z] = scene.outer_race;
+    let volume = 4.0 / 3.0 * PI * geometry.ball_radius.powi(3);
+    Ok(StaticProblem {
+        geometry,
+        inner_contact: side(RaceSide::Inner, &scene.inner_material)?,
+        outer_contact: side(RaceSide::Outer, &scene.outer_material)?,
+        ball_phase: scene.ball_phase,
+        ball_mass: scene.ball_material.density * volume,
+        gravity: Vector3::from(scene.gravity),
+        orbital_speed: if scene.centrifugal { orbital_speed(scene) } else { 0.0 },
+        frame: Pose::identity(),
+        outer_pose: Pose {
+            position: Vector3::new(x, y, z),
+            orientation: euler::quaternion(0.0, tilt_y, tilt_z),
+        },
+        conditions: scene.conditions,
+    })
+}
+
+/// Speed of the ball set by pure rolling at the nominal contact angle, rad/s; 0 at standstill.
+fn orbital_speed(scene: &Scene) -> f64 {
+    kinematic_ratios(scene).cage * scene.inner_speed.unwrap_or(0.0)
+}
+
+/// Kinematic frequencies of the scene's bearing as ratios to the shaft frequency.
+pub fn kinematic_ratios(scene: &Scene) -> frequencies::Frequencies {
+    let geometry = &scene.geometry;
+    frequencies::ratios(
+        geometry.ball_count,
+        geometry.ball_radius,
+        geometry.pitch_radius,
+        geometry.contact_angle,
+    )
+}
