@@ -163,8 +163,9 @@ fn detected_cage(context: &mut CaseContext) {
         .golden(GoldenTolerance::REORDERED);
         context.check(match label {
             30 => check.explained(Explanation::new(
-                "A measurement with sliding balls or a slipping cage, which pure rolling leaves \
-                 out: the detected cage is slower than pure rolling allows at any contact angle.",
+                "The detected cage is slower than pure rolling allows at any contact angle, so \
+                 balls or cage slipped in this measurement, or the line read is not the cage's; \
+                 the text does not say which.",
                 0.087,
                 0.003,
                 &["slowest_cage_30", "slowest_cage_ratio", "cage_over_contact_angle"],
