@@ -163,8 +163,9 @@ fn detected_cage(context: &mut CaseContext) {
         .golden(GoldenTolerance::REORDERED);
         context.check(match label {
             30 => check.explained(Explanation::new(
-                "A measurement with sliding balls or a slipping cage, which pure rolling leaves \
-                 out: the detected cage is slower than pure rolling allows at any contact angle.",
+                "The detected cage is slower than pure rolling allows at any contact angle, so \
+                 balls or cage slipped in this measurement, or the line read is not the cage's; \
+                 the text does not say which.",
                 0.087,
                 0.003,
                 &["slowest_cage_30", "slowest_cage_ratio", "cage_over_contact_angle"],
@@ -208,7 +209,7 @@ fn detected_cage(context: &mut CaseContext) {
     );
 }
 
-/// Cage over shaft against contact angle, with the three detected ratios' inputs marked.
+/// Cage over shaft against contact angle, by the law and by the oracle.
 fn figure(context: &mut CaseContext) -> Result<(), CaseError> {
     let mut svg = String::new();
     draw(&mut svg).map_err(|error| CaseError::message(format!("drawing failed: {error}")))?;
@@ -236,6 +237,7 @@ fn draw(svg: &mut String) -> Result<(), Box<dyn std::error::Error>> {
         .bold_line_style(RGBColor(225, 229, 234))
         .x_desc("contact angle, °")
         .y_desc("cage over shaft frequency")
+        .x_label_formatter(&|value| format!("{value:.0}"))
         .y_label_formatter(&|value| format!("{value:.2}"))
         .label_style(("sans-serif", 14))
         .draw()?;

@@ -51,8 +51,9 @@ fn solve(mut rows: [[f64; 5]; 4]) -> [f64; 4] {
         rows.swap(column, pivot);
         for below in column + 1..4 {
             let factor = rows[below][column] / rows[column][column];
-            for entry in column..5 {
-                rows[below][entry] -= factor * rows[column][entry];
+            let upper = rows[column];
+            for (entry, above) in rows[below].iter_mut().zip(upper) {
+                *entry -= factor * above;
             }
         }
     }

@@ -33,10 +33,37 @@ pub fn optional(value: Option<f64>, digits: usize) -> String {
 
 /// A fraction as a percentage where that reads well, else as a plain number.
 pub fn fraction(value: f64) -> String {
-    if value == 0.0 || value.abs() >= 1e-5 && value.abs() < 10.0 {
+    if value.abs() >= 1e-5 && value.abs() < 10.0 {
         format!("{} %", significant(100.0 * value, 3))
     } else {
         significant(value, 3)
+    }
+}
+
+/// A limit that a person chose: no zeros to pad it.
+fn limit_text(value: f64) -> String {
+    let text = significant(value, 3);
+    match text.contains('.') && !text.contains('e') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
+        false => text,
+    }
+}
+
+/// [`fraction`] for a limit.
+fn limit_fraction(value: f64) -> String {
+    match (1e-5..10.0).contains(&value) {
+        true => format!("{} %", limit_text(100.0 * value)),
+        false => limit_text(value),
+    }
+}
+
+/// The reference: a published number with the digits it is written with, any other with six.
+pub fn reference(check: &CheckReport) -> String {
+    match (check.reference, check.reference_kind) {
+        (Some(value), Some(ReferenceKind::Published)) if (1e-4..1e6).contains(&value.abs()) => {
+            value.to_string().replace('-', "−")
+        }
+        (value, _) => optional(value, 6),
     }
 }
 
@@ -68,13 +95,13 @@ pub fn tolerance(check: &CheckReport) -> String {
     let Some(limit) = check.tolerance else { return "–".into() };
     let margin = |sign: &str| match limit == 0.0 {
         true => format!("{sign} reference"),
-        false => format!("{sign} reference, margin {}{}", significant(limit, 3), unit(&check.unit)),
+        false => format!("{sign} reference, margin {}{}", limit_text(limit), unit(&check.unit)),
     };
     match check.tolerance_on {
-        Some(ToleranceOn::RelativeError) => format!("± {}", fraction(limit)),
+        Some(ToleranceOn::RelativeError) => format!("± {}", limit_fraction(limit)),
         Some(ToleranceOn::AtLeast) => margin("≥"),
         Some(ToleranceOn::AtMost) => margin("≤"),
-        _ => format!("± {}{}", significant(limit, 3), unit(&check.unit)),
+        _ => format!("± {}{}", limit_text(limit), unit(&check.unit)),
     }
 }
 
@@ -88,10 +115,16 @@ pub fn seconds(value: Option<f64>) -> String {
 
 /// Gap of an explanation, in the measure of the check's tolerance.
 pub fn gap(check: &CheckReport, value: f64) -> String {
+    let sign = if value < 0.0 { "−" } else { "" };
     match check.tolerance_on {
-        Some(ToleranceOn::RelativeError) => fraction(value),
-        _ => format!("{}{}", significant(value, 3), unit(&check.unit)),
+        Some(ToleranceOn::RelativeError) => format!("{sign}{}", limit_fraction(value.abs())),
+        _ => format!("{sign}{}{}", limit_text(value.abs()), unit(&check.unit)),
     }
+}
+
+/// A count with its noun.
+pub fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
 #[cfg(test)]
@@ -112,6 +145,10 @@ mod tests {
         for (value, digits, text) in cases {
             assert_eq!(significant(value, digits), text);
         }
+        assert_eq!(limit_fraction(0.05), "5 %");
+        assert_eq!(limit_fraction(0.001), "0.1 %");
+        assert_eq!(limit_text(1e-13), "1e−13");
+        assert_eq!(limit_text(200.0), "200");
         assert_eq!(fraction(0.0034), "0.340 %");
         assert_eq!(fraction(2.1e-14), "2.1e−14");
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::judge::{CheckReport, Status};
-use crate::report::format::{self, optional, significant};
+use crate::report::format::{self, optional};
 use crate::report::{CaseReport, CaseStatus, GoldenStatus, Report};
 
 pub fn render(report: &Report) -> String {
@@ -56,8 +56,9 @@ fn write_machine(out: &mut String, report: &Report) -> std::fmt::Result {
         (
             "Extent",
             format!(
-                "{} cases, {checks} checks, {} s",
-                report.cases.len(),
+                "{}, {}, {} s",
+                format::counted(report.cases.len(), "case"),
+                format::counted(checks, "check"),
                 format::seconds(Some(report.seconds()))
             ),
         ),
@@ -147,8 +148,8 @@ fn write_explained(out: &mut String, report: &Report) -> std::fmt::Result {
                 check_anchor(case, check),
                 escape(&check.quantity),
                 escape(&check.reference_source),
-                number(check.reference, &check.unit),
-                number(check.value, &check.unit),
+                number(&format::reference(check), &check.unit),
+                number(&optional(check.value, 6), &check.unit),
                 nowrap(&format::error(check)),
                 explanation(case, check),
             )?;
@@ -232,21 +233,22 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
         writeln!(out, "</dl>")?;
     }
     if !case.work.is_empty() {
-        let counts: Vec<String> = case
-            .work
-            .iter()
-            .map(|work| format!("{} {}", significant(work.count as f64, 12), escape(&work.name)))
-            .collect();
+        let counts: Vec<String> =
+            case.work.iter().map(|work| format!("{} {}", work.count, escape(&work.name))).collect();
         writeln!(out, "<p class=\"meta\">Work: {}</p>", counts.join(" · "))?;
     }
     if case.golden.status != GoldenStatus::None {
         let accepted = case.golden.last_reason.as_ref().map_or(String::new(), |last| {
-            format!(", last accepted {} because: {}", escape(&last.date), escape(&last.reason))
+            format!(
+                "; last accepted {}: {}",
+                escape(&last.date),
+                escape(last.reason.trim_end_matches('.'))
+            )
         });
         writeln!(
             out,
-            "<p class=\"meta\">Own past: {} numbers pinned{accepted}.</p>",
-            case.golden.values
+            "<p class=\"meta\">Own past: {} pinned{accepted}.</p>",
+            format::counted(case.golden.values, "number")
         )?;
     }
     writeln!(out, "</section>")
@@ -282,8 +284,8 @@ fn write_checks(out: &mut String, case: &CaseReport) -> std::fmt::Result {
             check_anchor(case, check),
             escape(&check.quantity),
             escape(&check.id),
-            number(check.value, &check.unit),
-            number(check.reference, &check.unit),
+            number(&optional(check.value, 6), &check.unit),
+            number(&format::reference(check), &check.unit),
             format::kind(check.reference_kind),
             escape(&check.reference_source),
             nowrap(&format::error(check)),
@@ -320,8 +322,7 @@ fn check_anchor(case: &CaseReport, check: &CheckReport) -> String {
     anchor(case, &check.id)
 }
 
-fn number(value: Option<f64>, unit: &str) -> String {
-    let text = value.map_or("not finite".into(), |value| significant(value, 6));
+fn number(text: &str, unit: &str) -> String {
     format!("<span class=\"value\">{text}</span><small>{}</small>", escape(&format::unit(unit)))
 }
 

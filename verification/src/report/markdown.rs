@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::judge::Status;
-use crate::report::format::{self, optional, significant};
+use crate::report::format::{self, optional};
 use crate::report::{CaseReport, GoldenStatus, Report, figure_file};
 
 pub fn render(report: &Report) -> String {
@@ -58,7 +58,19 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
         )?;
     }
 
+    write_assumptions(out, report)?;
+    write_explained(out, report)?;
+    for case in &report.cases {
+        write_case(out, case)?;
+    }
+    Ok(())
+}
+
+fn write_assumptions(out: &mut String, report: &Report) -> std::fmt::Result {
     writeln!(out, "\n## Assumptions\n")?;
+    if report.cases.iter().all(|case| case.assumptions.is_empty()) {
+        return writeln!(out, "No case needs one.");
+    }
     writeln!(out, "| case | assumption | value | what it fills |\n|---|---|---|---|")?;
     for case in &report.cases {
         for assumption in &case.assumptions {
@@ -72,8 +84,14 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
             )?;
         }
     }
+    Ok(())
+}
 
+fn write_explained(out: &mut String, report: &Report) -> std::fmt::Result {
     writeln!(out, "\n## Published numbers that are explained, not reproduced\n")?;
+    if report.cases.iter().all(|case| case.count(Status::Explained) == 0) {
+        return writeln!(out, "None.");
+    }
     writeln!(
         out,
         "| case | quantity | source | published | ours | difference | explanation | evidence |\n\
@@ -88,16 +106,13 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
                 case.id,
                 cell(&check.quantity),
                 cell(&check.reference_source),
-                optional(check.reference, 6),
+                format::reference(check),
                 optional(check.value, 6),
                 format::error(check),
                 cell(&explanation.text),
                 explanation.evidence.join(", "),
             )?;
         }
-    }
-    for case in &report.cases {
-        write_case(out, case)?;
     }
     Ok(())
 }
@@ -139,7 +154,7 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
             cell(&check.quantity),
             optional(check.value, 6),
             format::unit(&check.unit),
-            optional(check.reference, 6),
+            format::reference(check),
             format::kind(check.reference_kind),
             cell(&check.reference_source),
             format::error(check),
@@ -171,13 +186,18 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
         writeln!(out)?;
     }
     for work in &case.work {
-        writeln!(out, "- {}: {}", work.name, significant(work.count as f64, 12))?;
+        writeln!(out, "- {}: {}", work.name, work.count)?;
     }
     if case.golden.status != GoldenStatus::None {
         let reason = case.golden.last_reason.as_ref();
-        let reason = reason
-            .map_or(String::new(), |last| format!("; accepted {}: {}", last.date, last.reason));
-        writeln!(out, "\nOwn past: {} numbers pinned{reason}.", case.golden.values)?;
+        let reason = reason.map_or(String::new(), |last| {
+            format!("; accepted {}: {}", last.date, last.reason.trim_end_matches('.'))
+        });
+        writeln!(
+            out,
+            "\nOwn past: {} pinned{reason}.",
+            format::counted(case.golden.values, "number")
+        )?;
     }
     Ok(())
 }

@@ -1,0 +1,119 @@
+//! Golden files hold today, and notice any change.
+
+use std::fs;
+
+use verification::case::Tier;
+use verification::golden::{self, GoldenError, GoldenTolerance, GoldenValue, differences};
+use verification::runner::compute;
+use verification::{cases, golden::GoldenFile};
+
+#[test]
+fn smoke_cases_agree_with_their_past() {
+    for case in cases::of_tier(Tier::Smoke) {
+        let run = compute(&case);
+        assert_eq!(run.error, None, "{}", case.id);
+        let values = run.record.golden_values();
+        match golden::read(&golden::default_folder(), case.id).unwrap() {
+            Some(file) => assert_eq!(differences(&file.values, values), [""; 0], "{}", case.id),
+            None => assert!(values.is_empty(), "{} has no golden file", case.id),
+        }
+    }
+}
+
+/// All files, whatever their tier: the recorded numbers stand in for a run.
+#[test]
+fn every_golden_value_perturbed_by_ten_tolerances_is_noticed() {
+    let mut perturbed = 0;
+    for file in all_files() {
+        assert_eq!(differences(&file.values, &file.values), [""; 0], "{}", file.case);
+        for (index, accepted) in file.values.iter().enumerate() {
+            let allowed = accepted.tolerance.allowed(accepted.value);
+            for sign in [1.0, -1.0] {
+                let mut now = file.values.clone();
+                now[index].value = match allowed > 0.0 {
+                    true => accepted.value + sign * 10.0 * allowed,
+                    false if sign > 0.0 => accepted.value.next_up(),
+                    false => accepted.value.next_down(),
+                };
+                let found = differences(&file.values, &now);
+                assert_eq!(found.len(), 1, "{}: {}", file.case, accepted.name);
+                assert!(found[0].starts_with(&accepted.name));
+                perturbed += 1;
+            }
+        }
+    }
+    assert!(perturbed > 0, "there is no golden file");
+}
+
+#[test]
+fn every_golden_file_has_a_case_a_reason_and_sound_values() {
+    for file in all_files() {
+        assert!(cases::find(&file.case).is_some(), "no case `{}`", file.case);
+        assert!(!file.values.is_empty());
+        assert!(!file.history.is_empty());
+        assert!(file.history.iter().all(|entry| !entry.reason.trim().is_empty()));
+        golden::validate(&file.values).unwrap();
+    }
+}
+
+fn all_files() -> Vec<GoldenFile> {
+    let folder = golden::default_folder();
+    let names = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
+    names
+        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+        .map(|path| {
+            let case = path.file_stem().unwrap().to_string_lossy().into_owned();
+            golden::read(&folder, &case).unwrap().unwrap()
+        })
+        .collect()
+}
+
+fn value(name: &str, value: f64) -> GoldenValue {
+    GoldenValue {
+        name: name.into(),
+        value,
+        unit: "N".into(),
+        tolerance: GoldenTolerance::REORDERED,
+    }
+}
+
+#[test]
+fn differences_name_what_moved_went_or_came() {
+    let past = [value("a", 1.0), value("b", 2.0)];
+    assert_eq!(differences(&past, &past), [""; 0]);
+    // Within 1e-9, and beyond it.
+    assert_eq!(differences(&past, &[value("a", 1.0 + 5e-10), value("b", 2.0)]), [""; 0]);
+    assert_eq!(differences(&past, &[value("a", 1.0 + 5e-9), value("b", 2.0)]).len(), 1);
+    assert_eq!(differences(&past, &[value("a", f64::NAN), value("b", 2.0)]).len(), 1);
+    assert_eq!(differences(&past, &[value("a", 1.0)]), ["b: no longer computed"]);
+    let more = [value("a", 1.0), value("b", 2.0), value("c", 3.0)];
+    assert_eq!(differences(&past, &more), ["c: not in the golden file"]);
+    let looser = GoldenValue { tolerance: GoldenTolerance::MIXED, ..value("a", 1.0) };
+    assert_eq!(differences(&past, &[looser, value("b", 2.0)]), ["a: its tolerance changed"]);
+    let other_unit = GoldenValue { unit: "kN".into(), ..value("a", 1.0) };
+    assert_eq!(differences(&past, &[other_unit, value("b", 2.0)]), ["a: unit kN instead of N"]);
+}
+
+#[test]
+fn files_survive_a_round_trip_and_keep_every_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let write =
+        |values: &[GoldenValue], reason: &str| golden::write(folder.path(), "case", values, reason);
+    let first = [value("third", 1.0 / 3.0), value("tiny", -4.9e-324)];
+    assert!(matches!(write(&first, " \n"), Err(GoldenError::EmptyReason)));
+    assert!(golden::read(folder.path(), "case").unwrap().is_none());
+    assert!(write(&first, "first").unwrap());
+    assert!(!write(&first, "nothing changed").unwrap());
+    let second = [value("third", 0.1 + 0.2), value("tiny", 0.0)];
+    assert!(write(&second, "second").unwrap());
+    let file = golden::read(folder.path(), "case").unwrap().unwrap();
+    for (read, written) in file.values.iter().zip(&second) {
+        assert_eq!(read.value.to_bits(), written.value.to_bits());
+    }
+    let reasons: Vec<&str> = file.history.iter().map(|entry| entry.reason.as_str()).collect();
+    assert_eq!(reasons, ["first", "second"]);
+    let nan = [value("nan", f64::NAN)];
+    assert!(matches!(write(&nan, "no"), Err(GoldenError::NotFinite { .. })));
+    let twice = [value("a", 1.0), value("a", 1.0)];
+    assert!(matches!(write(&twice, "no"), Err(GoldenError::Duplicate { .. })));
+}

@@ -1,0 +1,220 @@
+//! Each rule of the judge, and that breaking it is noticed.
+
+use verification::case::{Case, Tier};
+use verification::check::{Check, Explanation};
+use verification::context::CaseContext;
+use verification::golden::GoldenTolerance;
+use verification::judge::{CheckReport, Status, entries_without_effect, judge};
+use verification::published::Published;
+use verification::report::{CaseReport, CaseStatus, GoldenStatus};
+use verification::runner;
+
+const PUBLISHED: &str = r#"
+[[value]]
+id = "force"
+quantity = "force"
+value = 100.0
+unit = "N"
+source = "Table 1"
+rounding = 0.2
+"#;
+
+const LIMIT: &str = r#"
+[[value]]
+id = "limit"
+quantity = "largest error"
+value = 4.0
+unit = "%"
+source = "2.3.2"
+bound = "at-most"
+"#;
+
+fn force(ours: f64) -> Check {
+    Check::new("force", "force", "N", ours).published("force")
+}
+
+/// The one check of a case with it.
+fn verdict(check: Check) -> CheckReport {
+    with_evidence(check, &[])
+}
+
+fn with_evidence(check: Check, more: &[Check]) -> CheckReport {
+    let mut context = CaseContext::default();
+    context.assumption("stated", "a hole", "1 mm");
+    context.finding("seen", "something");
+    context.check(check);
+    more.iter().for_each(|check| context.check(check.clone()));
+    judge(&context, &Published::parse(PUBLISHED).unwrap()).checks.remove(0)
+}
+
+fn failure(check: Check) -> String {
+    let report = verdict(check);
+    assert_eq!(report.status, Status::Failed);
+    report.failure.unwrap()
+}
+
+#[test]
+fn statuses_of_checks_that_hold() {
+    assert_eq!(verdict(force(100.9).relative(0.01, "why")).status, Status::Reproduced);
+    assert_eq!(verdict(force(100.1).printed("why")).status, Status::Reproduced);
+    let assumed = verdict(force(99.1).relative(0.01, "why").under("stated"));
+    assert_eq!(assumed.status, Status::ReproducedUnderAssumption);
+    let closed = Check::new("x", "x", "N", 1.0).closed_form(1.0, "πr²").absolute(0.0, "exact");
+    assert_eq!(verdict(closed).status, Status::Pass);
+    // A one-sided check against a plain value is evidence, not reproduction.
+    assert_eq!(verdict(force(101.0).at_least(0.5, "why")).status, Status::Pass);
+    let report = verdict(force(101.0).relative(0.02, "why"));
+    assert_eq!((report.error_absolute, report.error_relative), (Some(1.0), Some(0.01)));
+    assert_eq!(report.ratio, Some(0.5));
+}
+
+#[test]
+fn disagreement_and_misuse_fail() {
+    assert!(failure(force(101.1).relative(0.01, "why")).contains("exceeds"));
+    assert!(failure(force(98.9).absolute(1.0, "why")).contains("exceeds"));
+    assert!(failure(force(100.2).printed("why")).contains("exceeds"));
+    assert!(failure(force(100.4).at_least(0.5, "why")).contains("not above"));
+    assert!(failure(force(99.6).at_most(0.5, "why")).contains("not below"));
+    assert!(failure(force(100.0).relative(0.01, " ")).contains("no reason"));
+    assert!(failure(force(100.0)).contains("no tolerance"));
+    assert!(failure(force(100.0).relative(-1.0, "why")).contains("tolerance is"));
+    assert!(failure(force(100.0).relative(0.1, "why").under("unstated")).contains("no assumption"));
+    let milli = Check::new("a", "a", "mN", 1e5).published("force").relative(0.1, "why");
+    assert!(failure(milli).contains("published in N"));
+    let absent = Check::new("a", "a", "N", 1.0).published("absent").relative(0.1, "why");
+    assert!(failure(absent).contains("no value with id"));
+    let adrift = Check::new("a", "a", "N", 1.0).relative(0.1, "why");
+    assert!(failure(adrift).contains("no reference"));
+    let zero = Check::new("a", "a", "N", 1.0).closed_form(0.0, "zero").relative(0.1, "why");
+    assert!(failure(zero).contains("other than zero"));
+    let nameless = Check::new("a", "a", "N", 1.0).closed_form(1.0, "").relative(0.1, "why");
+    assert!(failure(nameless).contains("where it comes from"));
+}
+
+#[test]
+fn nan_and_infinity_fail_everywhere() {
+    for bad in [f64::NAN, f64::INFINITY] {
+        failure(force(bad).relative(0.1, "why"));
+        failure(force(bad).absolute(f64::INFINITY, "why"));
+        failure(force(bad).at_least(0.0, "why"));
+        failure(force(100.0).relative(bad, "why"));
+        failure(Check::new("a", "a", "N", 1.0).independent(bad, "code").absolute(0.1, "why"));
+        let explained = Explanation::new("text", bad, 0.1, &["pass"]);
+        failure(force(120.0).relative(0.01, "why").explained(explained));
+        let explained = Explanation::new("text", 0.2, bad, &["pass"]);
+        failure(force(120.0).relative(0.01, "why").explained(explained));
+    }
+}
+
+#[test]
+fn an_explanation_needs_its_difference_and_its_evidence() {
+    let pass = Check::new("pass", "p", "1", 1.0).closed_form(1.0, "one").absolute(0.0, "exact");
+    let fail = Check::new("fail", "f", "1", 2.0).closed_form(1.0, "one").absolute(0.0, "exact");
+    let explained = |ours: f64, evidence: &[&str]| {
+        let text = Explanation::new("clearance rounded", 0.2, 0.01, evidence);
+        let check = force(ours).relative(0.01, "would-be agreement").explained(text);
+        with_evidence(check, &[pass.clone(), fail.clone()])
+    };
+    assert_eq!(explained(120.0, &["pass", "seen"]).status, Status::Explained);
+    let failing = |ours: f64, evidence: &[&str]| {
+        let report = explained(ours, evidence);
+        assert_eq!(report.status, Status::Failed);
+        report.failure.unwrap()
+    };
+    assert!(failing(100.5, &["pass"]).contains("vanished"));
+    assert!(failing(123.0, &["pass"]).contains("stale"));
+    assert!(failing(80.0, &["pass"]).contains("stale"));
+    assert!(failing(120.0, &["seen"]).contains("no check of its own"));
+    assert!(failing(120.0, &[]).contains("no check of its own"));
+    assert!(failing(120.0, &["pass", "fail"]).contains("failed"));
+    assert!(failing(120.0, &["pass", "ghost"]).contains("does not exist"));
+    // It cannot vouch for itself.
+    assert!(failing(120.0, &["force"]).contains("only explained"));
+}
+
+#[test]
+fn published_numbers_are_never_dropped() {
+    let published = Published::parse(PUBLISHED).unwrap();
+    let mut context = CaseContext::default();
+    context.check(Check::new("x", "x", "1", 1.0).closed_form(1.0, "one").absolute(0.0, "exact"));
+    let problems = judge(&context, &published).problems;
+    assert_eq!(problems, ["unused published value `force` (Table 1)"]);
+    // A one-sided check does not settle it…
+    context.check(force(101.0).at_least(0.0, "why"));
+    assert_eq!(judge(&context, &published).problems.len(), 1);
+    context.check(Check { id: "again".into(), ..force(101.0).relative(0.1, "why") });
+    assert!(judge(&context, &published).holds());
+    assert_eq!(entries_without_effect(&context, &published), [""; 0]);
+    // …unless the source states a limit.
+    let limit = Published::parse(LIMIT).unwrap();
+    let mut context = CaseContext::default();
+    context.check(Check::new("e", "e", "%", 2.5).published("limit").at_most(0.0, "stated limit"));
+    let verdict = judge(&context, &limit);
+    assert_eq!((verdict.holds(), verdict.checks[0].status), (true, Status::Reproduced));
+    assert_eq!(entries_without_effect(&context, &limit), [""; 0]);
+}
+
+#[test]
+fn a_number_that_could_be_anything_is_noticed() {
+    let mut context = CaseContext::default();
+    // A tolerance so wide that the published number decides nothing.
+    context.check(force(100.0).relative(10.0, "generous"));
+    let published = Published::parse(PUBLISHED).unwrap();
+    assert!(judge(&context, &published).holds());
+    assert_eq!(entries_without_effect(&context, &published), ["force"]);
+}
+
+#[test]
+fn misuses_of_the_context_fail_the_case() {
+    let none = Published::default();
+    let sound = |id: &str| Check::new(id, "x", "1", 1.0).closed_form(1.0, "one").absolute(0.0, "e");
+    let problems = |build: fn(&mut CaseContext)| {
+        let mut context = CaseContext::default();
+        context.check(sound("x"));
+        build(&mut context);
+        judge(&context, &none).problems.len()
+    };
+    assert_eq!(problems(|_| ()), 0);
+    assert_eq!(problems(|context| context.finding("x", "same id as the check")), 1);
+    assert_eq!(problems(|context| context.figure("fig", "<svg>".into(), "cut off")), 1);
+    assert_eq!(problems(|context| context.figure("../up", "<svg></svg>".into(), "path")), 1);
+    assert_eq!(problems(|context| context.table("t", "T", &["a"], vec![vec![]])), 1);
+    assert_eq!(problems(|context| context.assumption("a", "", "1")), 1);
+    assert_eq!(judge(&CaseContext::default(), &none).problems, ["the case states no check"]);
+}
+
+fn assess(run: fn(&mut CaseContext) -> Result<(), verification::case::CaseError>) -> CaseReport {
+    let case =
+        Case { id: "made_up", title: "", section: "", tier: Tier::Smoke, published: "", run };
+    let folder = tempfile::tempdir().unwrap();
+    runner::assess(&case, &runner::compute(&case), folder.path())
+}
+
+#[test]
+fn panics_and_errors_are_reported_and_keep_what_was_recorded() {
+    let panicked = assess(|context| {
+        context.finding("before", "recorded");
+        let values: [f64; 0] = [];
+        panic!("index {} of {values:?}", 3);
+    });
+    assert_eq!(panicked.status, CaseStatus::Failed);
+    assert_eq!(panicked.error.as_deref(), Some("panicked: index 3 of []"));
+    assert_eq!(panicked.findings.len(), 1);
+    let erred = assess(|_| {
+        let _: f64 = "twelve".parse()?;
+        Ok(())
+    });
+    assert_eq!(erred.error.as_deref(), Some("invalid float literal"));
+}
+
+#[test]
+fn numbers_to_pin_without_a_golden_file_fail() {
+    let report = assess(|context| {
+        let check = Check::new("x", "x", "1", 1.0).closed_form(1.0, "one").absolute(0.0, "exact");
+        context.check(check.golden(GoldenTolerance::EXACT));
+        context.work("iterations", 7);
+        Ok(())
+    });
+    assert_eq!(report.status, CaseStatus::GoldenChanged);
+    assert_eq!((report.golden.status, report.golden.values), (GoldenStatus::GoldenMissing, 2));
+}
