@@ -168,14 +168,17 @@ fn load_zone_draws_each_ball_and_states_the_scale() {
 
 #[test]
 fn a_load_zone_takes_its_sizes_from_the_geometry() {
-    // The bearing of Table 3.5: radii of the groove bottoms and of the grooves in m.
-    let (inner, outer, groove, ball) = (0.020047, 0.031953, 0.006013, 0.005953);
+    // Races of Table 3.5: radii of the groove bottoms and of the grooves in m.
+    let (inner, outer, ball) = (0.020047, 0.031953, 0.005953);
+    let (inner_groove, outer_groove) = (0.006013, 0.006310);
+    let raceway =
+        |centre_radius, groove_radius| Raceway { centre_radius, centre_axial: 0.0, groove_radius };
     let geometry = BearingGeometry {
         kind: BearingKind::DeepGroove,
         ball_count: 8,
         ball_radius: ball,
-        inner: Raceway { centre_radius: inner + groove, centre_axial: 0.0, groove_radius: groove },
-        outer: Raceway { centre_radius: outer - groove, centre_axial: 0.0, groove_radius: groove },
+        inner: raceway(inner + inner_groove, inner_groove),
+        outer: raceway(outer - outer_groove, outer_groove),
         pitch_radius: 0.026,
         contact_angle: 0.0,
         radial_clearance: 0.0,
