@@ -252,6 +252,29 @@ fn exact_means_the_same_bits() {
 }
 
 #[test]
+fn the_allowed_difference_is_the_documented_sum() {
+    let root = tempfile::tempdir().unwrap();
+    let [a, b] = ["a.csv", "b.csv"].map(|name| root.path().join(name));
+    // Row 2 of a channel in N: value, largest of the channel, and what may differ.
+    let check = |header: &str, rows: [&str; 2], class: ToleranceClass, expected: f64| {
+        fs::write(&a, format!("{header}\n{}\n{}\n", rows[0], rows[1])).unwrap();
+        let changed = rows[1].replacen("2.0", "1e30", 1);
+        fs::write(&b, format!("{header}\n{}\n{changed}\n", rows[0])).unwrap();
+        let allowed = allowed_at(&compared(&a, &b, class));
+        assert!((allowed / expected - 1.0).abs() <= 1e-12, "{allowed:e} against {expected:e}");
+    };
+    let [reordered, mixed] = CLASSES;
+    // floor share · 1 N + relative · 2 N + share · 500 N
+    check("load [N]", ["-500.0", "2.0"], reordered, 1e-10 + 2e-9 + 500e-10);
+    check("load [N]", ["-500.0", "2.0"], mixed, 1e-5 + 2e-4 + 500e-5);
+    // The components of a vector share the largest; other units and other names do not.
+    let row = ["3.0,7.0,9.0,8.0", "2.0,-700.0,9e9,9e9"];
+    check("f_x [N],f_z [N],f_y [N m],load [N]", row, mixed, 1e-5 + 2e-4 + 700e-5);
+    // No floor where the unit tells nothing.
+    check("ratio [1]", ["0.0", "2.0"], mixed, 2e-4 + 2e-5);
+}
+
+#[test]
 fn missing_and_further_parts_are_told_apart() {
     let root = tempfile::tempdir().unwrap();
     let [a, b] = ["a.csv", "b.csv"].map(|name| root.path().join(name));

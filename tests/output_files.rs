@@ -9,7 +9,7 @@ use bearing_dynamics::output::compare::{Options, compare, report};
 use bearing_dynamics::output::pack::{PackError, PackInput, verify_pack, write_pack};
 use bearing_dynamics::output::results::{ResultsError, static_summary, write_static_results};
 use bearing_dynamics::output::series::{Column, Series, SeriesError};
-use bearing_dynamics::solver::statics::Determinacy;
+use bearing_dynamics::solver::statics::{Determinacy, StaticSolution};
 use nalgebra::SVector;
 use ndarray::Array2;
 use output_common::{run, solution};
@@ -165,7 +165,8 @@ fn series_and_summary_agree() {
 fn a_solution_that_is_not_finite_writes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("results");
-    let mut alterations: Vec<Box<dyn Fn(&mut bearing_dynamics::solver::statics::StaticSolution)>> = vec![
+    type Alter = Box<dyn Fn(&mut StaticSolution)>;
+    let mut alterations: Vec<Alter> = vec![
         Box::new(|s| s.coordinates[3] = f64::NAN),
         Box::new(|s| s.stiffness[(2, 1)] = f64::INFINITY),
         Box::new(|s| s.moment_on_outer.y = f64::NAN),

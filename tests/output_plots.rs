@@ -3,6 +3,7 @@
 #[allow(dead_code)]
 mod output_common;
 
+use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, BearingKind, Raceway};
 use bearing_dynamics::output::plots::load_zone::LoadZoneBall;
 use bearing_dynamics::output::plots::{
     Axis, Curve, LoadZone, PlotError, PolarPlot, Style, XyPlot, load_zone, polar, xy,
@@ -163,6 +164,30 @@ fn load_zone_draws_each_ball_and_states_the_scale() {
         .map(|i| LoadZoneBall { azimuth: f64::from(i) * 0.2094, loaded: true, outer_load: 4e4 })
         .collect();
     keep("load_zone_many.svg", &load_zone(&many).unwrap());
+}
+
+#[test]
+fn a_load_zone_takes_its_sizes_from_the_geometry() {
+    // Races of Table 3.5: radii of the groove bottoms and of the grooves in m.
+    let (inner, outer, ball) = (0.020047, 0.031953, 0.005953);
+    let (inner_groove, outer_groove) = (0.006013, 0.006310);
+    let raceway =
+        |centre_radius, groove_radius| Raceway { centre_radius, centre_axial: 0.0, groove_radius };
+    let geometry = BearingGeometry {
+        kind: BearingKind::DeepGroove,
+        ball_count: 8,
+        ball_radius: ball,
+        inner: raceway(inner + inner_groove, inner_groove),
+        outer: raceway(outer - outer_groove, outer_groove),
+        pitch_radius: 0.026,
+        contact_angle: 0.0,
+        radial_clearance: 0.0,
+    };
+    let drawn = LoadZone::new(zone().title, &geometry, &solution());
+    assert!((drawn.inner_raceway_radius - inner).abs() <= 1e-15);
+    assert!((drawn.outer_raceway_radius - outer).abs() <= 1e-15);
+    assert_eq!(drawn.balls, zone().balls);
+    assert_eq!(load_zone(&drawn).unwrap(), load_zone(&zone()).unwrap());
 }
 
 #[test]
