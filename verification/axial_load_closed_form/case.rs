@@ -96,15 +96,16 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 Check::new(&format!("{id}_{tag}"), &format!("{quantity}, {label}"), unit, ours)
                     .closed_form(reference, "F = Z Q sin α, bisection to the last bit")
                     .under("steel")
-                    .relative(1e-8, "asked for; rounding of a 4 µm overlap at a radius of 30 mm leaves 1e-12")
+                    .relative(
+                        1e-8,
+                        "asked for; rounding of a 4 µm overlap at a radius of 30 mm leaves 1e-12",
+                    )
                     .golden(GoldenTolerance::REORDERED),
             );
         }
         context.work(&format!("Newton iterations, {label}"), solution.iterations as u64);
-        context.work(
-            &format!("ball–race evaluations, {label}"),
-            solution.contact_evaluations as u64,
-        );
+        context
+            .work(&format!("ball–race evaluations, {label}"), solution.contact_evaluations as u64);
     }
     Ok(())
 }

@@ -80,8 +80,7 @@ fn exact_contact(context: &mut CaseContext) -> Result<(), CaseError> {
     for step in 0..=60 {
         let ratio = libm_pow10(step as f64 / 20.0);
         let radii = RelativeRadii { rolling: 5e-3, transverse: 5e-3 * ratio };
-        let ours =
-            contact_from_radii(HertzModel::Exact, radii.rolling, radii.transverse, MODULUS)?;
+        let ours = contact_from_radii(HertzModel::Exact, radii.rolling, radii.transverse, MODULUS)?;
         let ellipse = contact_ellipse(&ours, load);
         let theirs = hertz::exact(radii, load, MODULUS);
         let pairs = [
@@ -99,12 +98,18 @@ fn exact_contact(context: &mut CaseContext) -> Result<(), CaseError> {
         context.check(
             Check::new(
                 &format!("exact_{name}"),
-                &format!("largest relative error of the {}, radius ratios 1 to 1000", name.replace('_', " ")),
+                &format!(
+                    "largest relative error of the {}, radius ratios 1 to 1000",
+                    name.replace('_', " ")
+                ),
                 "1",
                 worst,
             )
             .independent(0.0, "quadrature of the Hertz potential at 61 radius ratios")
-            .absolute(1e-12, "both sides solve for the ellipticity to the last bit; asked for is 1e-12"),
+            .absolute(
+                1e-12,
+                "both sides solve for the ellipticity to the last bit; asked for is 1e-12",
+            ),
         );
     }
     Ok(())
@@ -130,7 +135,10 @@ fn contacts_of_table_2_2(context: &mut CaseContext) -> Result<(), CaseError> {
                     ours,
                 )
                 .independent(theirs, "the oracle's own formulas from the printed lengths")
-                .relative(1e-12, "rounding; the ball's curvature cancels against the groove's to 1 in 100")
+                .relative(
+                    1e-12,
+                    "rounding; the ball's curvature cancels against the groove's to 1 in 100",
+                )
                 .golden(GoldenTolerance::REORDERED),
             );
         }

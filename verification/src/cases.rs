@@ -4,10 +4,27 @@
 
 use crate::case::{Case, Tier};
 
+#[path = "../axial_load_closed_form/case.rs"]
+mod axial_load_closed_form;
+#[path = "../hertz_elliptic/case.rs"]
+mod hertz_elliptic;
 #[path = "../kinematic_frequencies/case.rs"]
 mod kinematic_frequencies;
+#[path = "../misalignment_moment/case.rs"]
+mod misalignment_moment;
+#[path = "../statics_independent/case.rs"]
+pub mod statics_independent;
+#[path = "../varying_compliance_statics/case.rs"]
+mod varying_compliance_statics;
 
-pub const CASES: &[Case] = &[kinematic_frequencies::CASE];
+pub const CASES: &[Case] = &[
+    hertz_elliptic::CASE,
+    statics_independent::CASE,
+    misalignment_moment::CASE,
+    varying_compliance_statics::CASE,
+    axial_load_closed_form::CASE,
+    kinematic_frequencies::CASE,
+];
 
 /// Cases of a tier (the full tier contains the smoke tier).
 pub fn of_tier(tier: Tier) -> Vec<Case> {

@@ -31,12 +31,15 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     while solved < SAMPLES {
         seed += 1;
         let sample = Sample::seeded(seed);
-        let problem = bearings::problem(&sample.lengths, Hertz::Fit, sample.phase, sample.conditions)?;
+        let problem =
+            bearings::problem(&sample.lengths, Hertz::Fit, sample.phase, sample.conditions)?;
         // Some random loads pull an angular-contact bearing apart: both sides then say so.
         let Ok(solution) = solve(&problem) else {
             without_equilibrium += 1;
             if without_equilibrium > SAMPLES {
-                return Err(CaseError::message("more than half of the samples have no equilibrium"));
+                return Err(CaseError::message(
+                    "more than half of the samples have no equilibrium",
+                ));
             }
             continue;
         };
@@ -49,7 +52,11 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     let quantities = [
         ("ball_loads", "ball load, over the largest ball load", worst.ball_loads),
         ("loads_at_ours", "load at our position, over the largest ball load", worst.loads_at_ours),
-        ("unbalanced", "unbalanced load at our position, over the largest ball load", worst.unbalanced),
+        (
+            "unbalanced",
+            "unbalanced load at our position, over the largest ball load",
+            worst.unbalanced,
+        ),
         ("position", "position, over the largest overlap", worst.position),
     ];
     for (id, quantity, worst) in quantities {

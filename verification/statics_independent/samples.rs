@@ -119,10 +119,9 @@ pub fn disagreement(sample: &Sample, ours: &StaticSolution) -> Disagreement {
 
     let mut worst = Disagreement::default();
     for (ours, theirs) in ours.balls.iter().zip(&theirs.balls) {
-        for difference in [
-            ours.inner.normal_load - theirs.inner.load,
-            ours.outer.normal_load - theirs.outer.load,
-        ] {
+        for difference in
+            [ours.inner.normal_load - theirs.inner.load, ours.outer.normal_load - theirs.outer.load]
+        {
             let ball_loads = difference.abs() / largest;
             worst = worst.max(Disagreement { ball_loads, ..Default::default() });
         }

@@ -201,7 +201,9 @@ fn figures(context: &mut CaseContext, motions: &[Motion]) -> Result<(), CaseErro
         context.figure(
             &format!("varying_compliance_{axis}"),
             svg,
-            &format!("{name} motion of the inner race over one ball pitch at four radial clearances."),
+            &format!(
+                "{name} motion of the inner race over one ball pitch at four radial clearances."
+            ),
         );
     }
     Ok(())
