@@ -737,8 +737,9 @@ fn the_same_text_gives_the_same_message() {
 }
 
 #[test]
-fn columns_count_characters() {
-    let text = "title = \"\u{e4}\u{f6}\u{fc}\"\n[bearing] # \u{20ac}\nclearance = { through = \"\u{e4}\", radial = 5 }\n";
-    let error = Document::read_str(text, Format::Toml, "a.toml").unwrap_err();
-    assert_eq!(error.place.line_and_column, Some((3, 25)));
+fn columns_count_characters_and_lines_end_at_newlines() {
+    let text = "{\r\n\"title\": \"\u{e4}\u{20ac}\u{1F980}\", \"bearing\": 3}";
+    let error = Document::read_str(text, Format::Json, "a.json").unwrap_err();
+    let before = "\"title\": \"xxx\", \"bearing\": ";
+    assert_eq!(error.place.line_and_column, Some((2, before.len() + 1)));
 }
