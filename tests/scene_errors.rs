@@ -722,10 +722,15 @@ fn braces(folder: &Path) -> PathBuf {
 fn a_huge_file_is_refused_unread() {
     let folder = tempfile::tempdir().unwrap();
     let path = braces(folder.path());
-    let start = std::time::Instant::now();
-    assert!(scene::read_file(&path).is_err());
-    // Reading 100 MB takes tens of milliseconds; reading its size takes microseconds.
-    assert!(start.elapsed().as_millis() <= 5, "{:?}", start.elapsed());
+    let time = || {
+        let start = std::time::Instant::now();
+        assert!(scene::read_file(&path).is_err());
+        start.elapsed()
+    };
+    // Reading 100 MB takes tens of milliseconds, its size microseconds; the best of ten tries does
+    // not depend on what else the machine does.
+    let best = (0..10).map(|_| time()).min();
+    assert!(best.is_some_and(|best| best.as_millis() <= 5), "{best:?}");
 }
 
 #[test]
