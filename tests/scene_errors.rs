@@ -722,10 +722,15 @@ fn braces(folder: &Path) -> PathBuf {
 fn a_huge_file_is_refused_unread() {
     let folder = tempfile::tempdir().unwrap();
     let path = braces(folder.path());
-    let start = std::time::Instant::now();
-    assert!(scene::read_file(&path).is_err());
-    // Reading 100 MB takes tens of milliseconds; reading its size takes microseconds.
-    assert!(start.elapsed().as_millis() <= 5, "{:?}", start.elapsed());
+    let time = || {
+        let start = std::time::Instant::now();
+        assert!(scene::read_file(&path).is_err());
+        start.elapsed()
+    };
+    // Reading 100 MB takes tens of milliseconds, its size microseconds; the best of ten tries does
+    // not depend on what else the machine does.
+    let best = (0..10).map(|_| time()).min();
+    assert!(best.is_some_and(|best| best.as_millis() <= 5), "{best:?}");
 }
 
 #[test]
@@ -737,8 +742,9 @@ fn the_same_text_gives_the_same_message() {
 }
 
 #[test]
-fn columns_count_characters() {
-    let text = "title = \"\u{e4}\u{f6}\u{fc}\"\n[bearing] # \u{20ac}\nclearance = { through = \"\u{e4}\", radial = 5 }\n";
-    let error = Document::read_str(text, Format::Toml, "a.toml").unwrap_err();
-    assert_eq!(error.place.line_and_column, Some((3, 25)));
+fn columns_count_characters_and_lines_end_at_newlines() {
+    let text = "{\r\n\"title\": \"\u{e4}\u{20ac}\u{1F980}\", \"bearing\": 3}";
+    let error = Document::read_str(text, Format::Json, "a.json").unwrap_err();
+    let before = "\"title\": \"xxx\", \"bearing\": ";
+    assert_eq!(error.place.line_and_column, Some((2, before.len() + 1)));
 }

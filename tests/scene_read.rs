@@ -2,6 +2,7 @@
 
 use bearing_dynamics::ch2_housing::bearing::geometry::{BearingKind, ClearanceThrough, Material};
 use bearing_dynamics::ch2_housing::bearing::hertz::HertzModel;
+use bearing_dynamics::scene::keys::{self, Kind, Need};
 use bearing_dynamics::scene::{self, Document, Format, Plot, Scene};
 use bearing_dynamics::solver::statics::Condition;
 use std::path::{Path, PathBuf};
@@ -22,8 +23,8 @@ fn deep_groove(lines: &str) -> String {
     )
 }
 
-/// Relative difference of two lengths that follow from each other by a few additions: their
-/// rounding is a few units in the last place of the largest radius.
+/// Lengths that follow from each other by a few additions differ by a few roundings of the largest
+/// radius, 32 mm, whose last place is 7e-18 m.
 fn assert_close(ours: f64, expected: f64) {
     assert!((ours - expected).abs() <= 1e-16, "{ours:e} is not {expected:e}");
 }
@@ -316,4 +317,46 @@ fn sweep_keys_may_be_quoted_or_dotted() {
     let quoted = read(&format!("{base}[sweep]\n\"bearing.balls\" = [7, 8]\n"));
     let dotted = read(&format!("{base}[sweep]\nbearing.balls = \"7, 8\"\n"));
     assert_eq!(quoted.sweep, dotted.sweep);
+}
+
+/// A document in which any key may be set: both kinds' keys are checked only by `resolve`.
+fn any_document() -> Document {
+    Document::read_str("title = \"empty\"", Format::Toml, "test").unwrap()
+}
+
+#[test]
+fn ranges_end_exactly_where_the_table_says() {
+    let mut checked = 0;
+    for key in keys::KEYS {
+        let (low, high, low_included, high_included, unit) = match key.kind {
+            Kind::Integer { low, high } => (low as f64, high as f64, true, true, ""),
+            Kind::Number(r) | Kind::Quantity(_, r) => {
+                (r.low, r.high, r.low_included, r.high_included, r.unit)
+            }
+            _ => continue,
+        };
+        let accepted =
+            |number: f64| any_document().set(key.path, &format!("{number} {unit}")).is_ok();
+        let step = if unit.is_empty() && high > 100.0 { 1.0 } else { 1e-9 * (high - low) };
+        assert_eq!(accepted(low), low_included, "{} at {low}", key.path);
+        assert_eq!(accepted(high), high_included, "{} at {high}", key.path);
+        assert!(!accepted(low - step) && !accepted(high + step), "{} outside", key.path);
+        assert!(accepted(low + step) && accepted(high - step), "{} inside", key.path);
+        checked += 1;
+    }
+    assert!(checked > 40);
+}
+
+#[test]
+fn every_default_and_every_example_is_a_value_its_key_takes() {
+    for key in keys::KEYS {
+        if matches!(key.kind, Kind::Vector(..) | Kind::Choices(_)) {
+            continue;
+        }
+        let mut document = any_document();
+        document.set(key.path, key.example().trim_matches('"')).unwrap_or_else(|e| panic!("{e}"));
+        if let Need::Default { value, .. } = key.need {
+            document.set(key.path, value).unwrap_or_else(|error| panic!("{error}"));
+        }
+    }
 }

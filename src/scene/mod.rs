@@ -1,6 +1,6 @@
 //! Scenes: what a person describes in TOML or JSON, and what the program makes of it.
 //!
-//! text → [`tree`] (values with their places) → [`Document`] (given keys, checked one by one
+//! text → tree of values with their places → [`Document`] (given keys, checked one by one
 //! against the key table in [`keys`]) → [`Scene`] (SI, validated as a whole, every default named).
 //!
 //! ```

@@ -184,7 +184,7 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
             inner = need(INNER, because)?;
             outer = need(OUTER, because)?;
             ball = 0.5 * (outer - inner - clearance);
-            if !(ball > 0.0) {
+            if ball <= 0.0 {
                 let problem = Problem::NoRoomForBall { gap: outer - inner, clearance };
                 return Err(reader.document.error(clearance_key(reader), problem));
             }
@@ -195,7 +195,7 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
             outer = need(OUTER, because)?;
             ball = need_ball(because)?;
             inner = outer - 2.0 * ball - clearance;
-            if !(inner > 0.0) {
+            if inner <= 0.0 {
                 let problem = Problem::NoRoomForBall { gap: outer, clearance };
                 return Err(reader.document.error(ball_key(reader), problem));
             }
@@ -316,7 +316,7 @@ fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
     let mut ball = nominal;
     // Beyond this the groove centres pass each other and the gap opens again.
     let least = -centre_distance * cosine;
-    if !(clearance > least) {
+    if clearance <= least {
         let problem = Problem::InterferenceTooLarge { clearance, least };
         return Err(reader.document.error(clearance_key(reader), problem));
     }

@@ -105,7 +105,10 @@ fn row(path: &str) -> Option<usize> {
 fn kinds_schema() -> Value {
     let no_radius = json!({ "properties": { "radius": false } });
     json!({
-        "if": { "properties": { "kind": { "const": "angular-contact" } } },
+        "if": {
+            "required": ["kind"],
+            "properties": { "kind": { "const": "angular-contact" } },
+        },
         "then": {
             "required": ["pitch_radius", "contact_angle", "ball"],
             "properties": { "inner_race": no_radius, "outer_race": no_radius },
