@@ -2,16 +2,16 @@
 //!
 //! The state of a body is a unit quaternion; Euler angles are for input and output.
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 /// Transformation matrix of equation (2.16): takes the components of a vector in the inertial
 /// frame to its components in the body-fixed frame.
 ///
 /// `eta` (about X), `xi` (about the once-turned Y) and `lambda` (about the twice-turned Z) in rad.
 pub fn inertial_to_body(eta: f64, xi: f64, lambda: f64) -> Matrix3<f64> {
-    let (sin_eta, cos_eta) = eta.sin_cos();
-    let (sin_xi, cos_xi) = xi.sin_cos();
-    let (sin_lambda, cos_lambda) = lambda.sin_cos();
+    let (sin_eta, cos_eta) = libm::sincos(eta);
+    let (sin_xi, cos_xi) = libm::sincos(xi);
+    let (sin_lambda, cos_lambda) = libm::sincos(lambda);
     Matrix3::new(
         cos_xi * cos_lambda,
         cos_eta * sin_lambda + sin_eta * sin_xi * cos_lambda,
@@ -27,9 +27,15 @@ pub fn inertial_to_body(eta: f64, xi: f64, lambda: f64) -> Matrix3<f64> {
 
 /// Orientation (body to inertial) whose transformation matrix is (2.16).
 pub fn quaternion(eta: f64, xi: f64, lambda: f64) -> UnitQuaternion<f64> {
-    UnitQuaternion::from_axis_angle(&Vector3::x_axis(), eta)
-        * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), xi)
-        * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), lambda)
+    about(Vector3::x(), eta) * about(Vector3::y(), xi) * about(Vector3::z(), lambda)
+}
+
+/// Rotation by an angle (rad) about a unit vector.
+///
+/// Sine and cosine are `libm`'s: the system's differ between processors.
+pub fn about(axis: Vector3<f64>, angle: f64) -> UnitQuaternion<f64> {
+    let (sin, cos) = libm::sincos(0.5 * angle);
+    UnitQuaternion::new_unchecked(Quaternion::from_parts(cos, axis * sin))
 }
 
 /// Euler angles `(eta, xi, lambda)` in rad of an orientation; `xi` lies in [-π/2, π/2].
@@ -38,12 +44,12 @@ pub fn quaternion(eta: f64, xi: f64, lambda: f64) -> UnitQuaternion<f64> {
 pub fn angles(orientation: &UnitQuaternion<f64>) -> (f64, f64, f64) {
     let rotation = orientation.to_rotation_matrix();
     let m = rotation.matrix();
-    let xi = m[(0, 2)].clamp(-1.0, 1.0).asin();
-    if m[(0, 0)].hypot(m[(0, 1)]) < 1e-12 {
-        return (0.0, xi, m[(1, 0)].atan2(m[(1, 1)]));
+    let xi = libm::asin(m[(0, 2)].clamp(-1.0, 1.0));
+    if libm::hypot(m[(0, 0)], m[(0, 1)]) < 1e-12 {
+        return (0.0, xi, libm::atan2(m[(1, 0)], m[(1, 1)]));
     }
-    let eta = (-m[(1, 2)]).atan2(m[(2, 2)]);
-    let lambda = (-m[(0, 1)]).atan2(m[(0, 0)]);
+    let eta = libm::atan2(-m[(1, 2)], m[(2, 2)]);
+    let lambda = libm::atan2(-m[(0, 1)], m[(0, 0)]);
     (eta, xi, lambda)
 }
 

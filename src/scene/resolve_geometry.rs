@@ -308,7 +308,7 @@ fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
     // Grooves first fit the nominal ball; the ball in use is checked below.
     let inner_groove = groove(reader, "bearing.inner_race", nominal, nominal)?;
     let outer_groove = groove(reader, "bearing.outer_race", nominal, nominal)?;
-    let (sine, cosine) = angle.sin_cos();
+    let (sine, cosine) = libm::sincos(angle);
     // Distance of the groove centres when the nominal ball touches both races.
     let centre_distance = inner_groove + outer_groove - 2.0 * nominal;
     let mut inner_centre = pitch + (inner_groove - nominal) * cosine;
@@ -322,7 +322,8 @@ fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
     }
     match through {
         ClearanceThrough::Ball if clearance != 0.0 => {
-            let touching = (centre_distance * cosine + clearance).hypot(centre_distance * sine);
+            let touching =
+                libm::hypot(centre_distance * cosine + clearance, centre_distance * sine);
             ball = 0.5 * (inner_groove + outer_groove - touching);
         }
         ClearanceThrough::Ball => {}
@@ -397,7 +398,7 @@ fn limit_nominal(
 /// Neighbouring ball centres are 2 R_pitch sin(π/Z) apart, which must exceed a ball diameter.
 fn check_ball_count(reader: &Reader, count: usize, sizes: &Sizes) -> Result<(), SceneError> {
     let fits =
-        |count: usize| sizes.ball < sizes.pitch * (std::f64::consts::PI / count as f64).sin();
+        |count: usize| sizes.ball < sizes.pitch * libm::sin(std::f64::consts::PI / count as f64);
     if fits(count) {
         return Ok(());
     }

@@ -64,8 +64,8 @@ pub struct InnerRacePosition {
 impl InnerRacePosition {
     /// From x, y, z (m), tilt_y = ξ, tilt_z = λ (rad), the Euler angles of (2.16) with η = 0.
     pub fn new(coordinates: &SVector<f64, 5>) -> Self {
-        let (sin_xi, cos_xi) = coordinates[3].sin_cos();
-        let (sin_lambda, cos_lambda) = coordinates[4].sin_cos();
+        let (sin_xi, cos_xi) = libm::sincos(coordinates[3]);
+        let (sin_lambda, cos_lambda) = libm::sincos(coordinates[4]);
         InnerRacePosition {
             centre: Vector3::new(coordinates[0], coordinates[1], coordinates[2]),
             axis: Vector3::new(cos_lambda * cos_xi, sin_lambda, -cos_lambda * sin_xi),
@@ -243,7 +243,7 @@ fn starting_point(
         *evaluations += 1;
         let centre = inner_centre_in_plane(plane, race, &contacts.inner, point);
         let between = [centre[0] - outer_centre[0], centre[1] - outer_centre[1]];
-        let distance = between[0].hypot(between[1]);
+        let distance = libm::hypot(between[0], between[1]);
         if distance > 0.0 {
             line = [between[0] / distance, between[1] / distance];
         }
@@ -262,13 +262,13 @@ fn starting_point(
         return Some(point);
     }
     let [along, outward] = plane.body_force(contacts.outer.centre_radius);
-    let force = along.hypot(outward);
+    let force = libm::hypot(along, outward);
     if force == 0.0 {
         return None;
     }
     // A free ball goes where the body force takes it: onto the outer race, or onto the inner one.
     let push = [along / force, outward / force];
-    let sink = |stiffness: f64| (force / stiffness).cbrt().powi(2);
+    let sink = |stiffness: f64| libm::cbrt(force / stiffness).powi(2);
     let reach = outer_room + sink(contacts.outer_stiffness);
     let on_outer = [outer_centre[0] + push[0] * reach, outer_centre[1] + push[1] * reach];
     *evaluations += 1;
@@ -388,7 +388,7 @@ fn newton_step(slope: &[f64; 2], curvature: &[f64; 3]) -> [f64; 2] {
             -(curvature[0] * slope[1] - curvature[1] * slope[0]) / determinant,
         ];
     }
-    let size = slope[0].hypot(slope[1]);
+    let size = libm::hypot(slope[0], slope[1]);
     [-1e-4 * slope[0] / size, -1e-4 * slope[1] / size]
 }
 

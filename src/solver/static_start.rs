@@ -8,7 +8,7 @@ use nalgebra::SVector;
 pub(super) fn ball_contacts(problem: &StaticProblem) -> BallContacts {
     let (inner, outer) = (problem.inner_contact.stiffness, problem.outer_contact.stiffness);
     // Equal loads: δ_outer/δ_inner = (K_inner/K_outer)^{2/3}.
-    let ratio = (inner / outer).cbrt().powi(2);
+    let ratio = libm::cbrt(inner / outer).powi(2);
     BallContacts {
         ball_radius: problem.geometry.ball_radius,
         inner: problem.geometry.inner,
@@ -32,7 +32,7 @@ pub(super) fn step_scale(problem: &StaticProblem, contacts: &BallContacts) -> f6
     let moment = (3..5).map(|i| load(&problem.conditions[i]).abs()).fold(0.0, f64::max);
     let total = force + moment / problem.geometry.pitch_radius;
     let stiffness = series_stiffness(contacts.inner_stiffness, contacts.outer_stiffness);
-    let overlap = (total / stiffness).cbrt().powi(2);
+    let overlap = libm::cbrt(total / stiffness).powi(2);
     let room = problem.geometry.radial_clearance.abs();
     // A preloaded or unloaded bearing still needs a step of visible size: 1e-4 ball radii.
     4.0 * (overlap + room).max(1e-4 * contacts.ball_radius)
@@ -51,13 +51,14 @@ pub(super) fn guess(problem: &StaticProblem, contacts: &BallContacts) -> SVector
     for i in 0..3 {
         start[i] = origin[i];
     }
-    let radial = loads[1].hypot(loads[2]);
+    let radial = libm::hypot(loads[1], loads[2]);
     if loads[0].abs() > 0.1 * radial {
         start[0] += axial_position(contacts, loads[0] / balls, stiffness);
     }
     if radial > 0.0 {
-        let cos_angle = geometry.contact_angle.cos();
-        let overlap = (5.0 * radial / (balls * cos_angle * stiffness)).cbrt().powi(2) / cos_angle;
+        let cos_angle = libm::cos(geometry.contact_angle);
+        let overlap =
+            libm::cbrt(5.0 * radial / (balls * cos_angle * stiffness)).powi(2) / cos_angle;
         let shift = geometry.radial_clearance.max(0.0) + overlap;
         start[1] += shift * loads[1] / radial;
         start[2] += shift * loads[2] / radial;
@@ -72,7 +73,7 @@ fn axial_position(contacts: &BallContacts, force: f64, stiffness: f64) -> f64 {
     let axial = contacts.inner.centre_axial - contacts.outer.centre_axial;
     let radial = contacts.inner.centre_radius - contacts.outer.centre_radius;
     let force_at = |x: f64| {
-        let distance = (axial + x).hypot(radial);
+        let distance = libm::hypot(axial + x, radial);
         let overlap = (distance - room).max(0.0);
         stiffness * overlap * overlap.sqrt() * (axial + x) / distance
     };

@@ -252,7 +252,7 @@ impl Model {
         let planes = azimuths
             .iter()
             .map(|azimuth| {
-                let (sin, cos) = azimuth.sin_cos();
+                let (sin, cos) = libm::sincos(*azimuth);
                 let radial = outer.orientation * Vector3::new(0.0, cos, sin);
                 let weight = [gravity.dot(&axial), gravity.dot(&radial)];
                 BallPlane { origin: outer.position, axial, radial, weight, centrifugal }

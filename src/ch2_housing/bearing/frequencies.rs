@@ -41,7 +41,7 @@ pub fn ratios(
     pitch_radius: f64,
     contact_angle: f64,
 ) -> Frequencies {
-    let gamma = ball_radius / pitch_radius * contact_angle.cos();
+    let gamma = ball_radius / pitch_radius * libm::cos(contact_angle);
     let count = ball_count as f64;
     Frequencies {
         cage: 0.5 * (1.0 - gamma),

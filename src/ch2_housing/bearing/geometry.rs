@@ -111,7 +111,7 @@ impl BearingGeometry {
         ball_radius: f64,
         contact_angle: f64,
     ) -> Self {
-        let (sin, cos) = contact_angle.sin_cos();
+        let (sin, cos) = libm::sincos(contact_angle);
         let inner_room = inner_groove_radius - ball_radius;
         let outer_room = outer_groove_radius - ball_radius;
         BearingGeometry {
@@ -149,7 +149,7 @@ impl BearingGeometry {
                 let axial = self.inner.centre_axial - self.outer.centre_axial;
                 let radial = self.inner.centre_radius - self.outer.centre_radius + clearance;
                 let grooves = self.inner.groove_radius + self.outer.groove_radius;
-                changed.ball_radius = 0.5 * (grooves - axial.hypot(radial));
+                changed.ball_radius = 0.5 * (grooves - libm::hypot(axial, radial));
             }
             ClearanceThrough::InnerRace => changed.inner.centre_radius -= change,
             ClearanceThrough::OuterRace => changed.outer.centre_radius += change,

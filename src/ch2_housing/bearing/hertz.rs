@@ -155,7 +155,7 @@ pub fn contact(
     ball: &Material,
     race: &Material,
 ) -> Result<HertzContact, HertzError> {
-    let cos_angle = geometry.contact_angle.cos();
+    let cos_angle = libm::cos(geometry.contact_angle);
     let curvature_race = match side {
         RaceSide::Inner => 1.0 / principal_radius(&geometry.inner, -1.0, cos_angle),
         RaceSide::Outer => -1.0 / principal_radius(&geometry.outer, 1.0, cos_angle),
@@ -184,9 +184,10 @@ pub fn contact_ellipse(contact: &HertzContact, normal_load: f64) -> ContactEllip
     }
     let k = contact.ellipticity;
     let radius = 1.0 / (1.0 / contact.radius_rolling + 1.0 / contact.radius_transverse);
-    let semi_major = (6.0 * k * k * contact.integral_second * normal_load * radius
-        / (PI * contact.effective_modulus))
-        .cbrt();
+    let semi_major = libm::cbrt(
+        6.0 * k * k * contact.integral_second * normal_load * radius
+            / (PI * contact.effective_modulus),
+    );
     let semi_minor = semi_major / k;
     let peak_pressure = 1.5 * normal_load / (PI * semi_major * semi_minor);
     ContactEllipse { semi_major, semi_minor, peak_pressure }
@@ -194,7 +195,7 @@ pub fn contact_ellipse(contact: &HertzContact, normal_load: f64) -> ContactEllip
 
 /// Stiffness coefficient of two contacts in series, (K₁^{-2/3} + K₂^{-2/3})^{-3/2}, N/m^1.5.
 pub fn series_stiffness(one: f64, other: f64) -> f64 {
-    let compliance = |k: f64| 1.0 / (k.cbrt() * k.cbrt());
+    let compliance = |k: f64| 1.0 / (libm::cbrt(k) * libm::cbrt(k));
     let sum = compliance(one) + compliance(other);
     1.0 / (sum * sum.sqrt())
 }
