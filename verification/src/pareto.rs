@@ -25,9 +25,6 @@ pub struct Study {
     pub run: fn(&mut ParetoContext) -> Result<(), CaseError>,
 }
 
-/// Every study.
-pub const STUDIES: &[Study] = &[];
-
 /// One variant: how long it took and how far off it was.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
