@@ -7,3 +7,5 @@ pub mod elliptic;
 pub mod frequencies;
 pub mod geometry;
 pub mod hertz;
+pub mod inertia;
+pub mod traction;

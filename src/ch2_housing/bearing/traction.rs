@@ -1,0 +1,363 @@
+//! Traction between ball and race: the friction coefficient, and its integral over the contact
+//! ellipse.
+//!
+//! The source varies the sliding speed along the major axis only (2.2.1): the ellipse is cut into
+//! slices across it, each with the share of the normal load that Hertz's pressure gives it,
+//! q(y) = (3W/4a)(1 − y²/a²), and with the slip at its own y.
+//!
+//! The pieces are scalar functions without branches: one contact calls them in turn, the fast path
+//! calls them over lanes of contacts, and both get the same bits.
+
+use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
+
+/// How the friction coefficient follows from the sliding.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TractionLaw {
+    /// No traction: no slices either.
+    None,
+    /// Coulomb's law, rounded off below a sliding speed (m/s): κ u/√(u² + u₀²).
+    Constant { coefficient: f64, regularisation_speed: f64 },
+    /// Exponential in the slide-to-roll ratio s = u/U: κ = (a + b s) e^(−c s) + d. The entrainment
+    /// speed U has a floor (m/s), since s is singular at rest.
+    SlideToRoll { curve: ExponentialCurve, entrainment_floor: f64 },
+    /// Exponential in the sliding speed u: κ = (a + b u) e^(−c u) + d.
+    SlipSpeed { curve: ExponentialCurve },
+    /// Straight lines between (sliding speed in m/s, κ), constant beyond the last.
+    Table { points: Vec<[f64; 2]> },
+}
+
+/// κ(x) = (a + b x) e^(−c x) + d with a = −d, so that κ(0) = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExponentialCurve {
+    pub b: f64,
+    pub c: f64,
+    pub d: f64,
+}
+
+impl ExponentialCurve {
+    /// Common boundary-lubrication set over the slide-to-roll ratio: κ = (−0.1 + 22.28 s)
+    /// e^(−181.46 s) + 0.1, with its peak of 0.12 at s = 0.010. The source's own curve is not
+    /// printed; this one is an assumption.
+    pub const BOUNDARY: ExponentialCurve = ExponentialCurve { b: 22.28, c: 181.46, d: 0.1 };
+
+    #[inline(always)]
+    pub fn coefficient(&self, x: f64) -> f64 {
+        (self.b * x - self.d) * exp_of_negative(-self.c * x) + self.d
+    }
+
+    /// dκ/dx at x = 0, the slope that limits the time step.
+    pub fn slope_at_rest(&self) -> f64 {
+        self.b + self.c * self.d
+    }
+}
+
+/// e^x for x ≤ 0, to 2 ulp, without branches; below −708 it stays at e^−708.
+///
+/// The system's exponential is a call for each number and picks its code by processor; this one
+/// runs over lanes and has the same bits everywhere.
+#[inline(always)]
+pub fn exp_of_negative(x: f64) -> f64 {
+    const LOG2_E: f64 = std::f64::consts::LOG2_E;
+    // ln 2 in two parts: the first has trailing zeros, so that k·ln2 is exact.
+    const LN2_HIGH: f64 = 6.931_471_803_691_238_2e-1;
+    const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+    // 1.5·2⁵²: adding it leaves the nearest integer in the low bits.
+    const MAGIC: f64 = 6_755_399_441_055_744.0;
+    let x = if x < -708.0 { -708.0 } else { x };
+    let shifted = x * LOG2_E + MAGIC;
+    let k = shifted - MAGIC;
+    let r = (x - k * LN2_HIGH) - k * LN2_LOW;
+    // |r| ≤ 0.347: the Taylor series to r¹³ is off by 4e-18.
+    let mut p = 1.0 / 6_227_020_800.0;
+    p = p * r + 1.0 / 479_001_600.0;
+    p = p * r + 1.0 / 39_916_800.0;
+    p = p * r + 1.0 / 3_628_800.0;
+    p = p * r + 1.0 / 362_880.0;
+    p = p * r + 1.0 / 40_320.0;
+    p = p * r + 1.0 / 5_040.0;
+    p = p * r + 1.0 / 720.0;
+    p = p * r + 1.0 / 120.0;
+    p = p * r + 1.0 / 24.0;
+    p = p * r + 1.0 / 6.0;
+    p = p * r + 0.5;
+    p = p * r + 1.0;
+    p = p * r + 1.0;
+    let power_of_two = f64::from_bits((shifted.to_bits() << 52).wrapping_add(1023 << 52));
+    p * power_of_two
+}
+
+/// Friction coefficient at a sliding speed and an entrainment speed (m/s, both ≥ 0).
+#[inline(always)]
+pub fn coefficient(law: &TractionLaw, slip: f64, entrainment: f64) -> f64 {
+    match law {
+        TractionLaw::None => 0.0,
+        TractionLaw::Constant { coefficient, regularisation_speed } => {
+            let u0 = *regularisation_speed;
+            coefficient * slip / (slip * slip + u0 * u0).sqrt()
+        }
+        TractionLaw::SlideToRoll { curve, entrainment_floor } => {
+            let floor = *entrainment_floor;
+            let rolling = if entrainment > floor { entrainment } else { floor };
+            curve.coefficient(slip / rolling)
+        }
+        TractionLaw::SlipSpeed { curve } => curve.coefficient(slip),
+        TractionLaw::Table { points } => interpolate(points, slip),
+    }
+}
+
+fn interpolate(points: &[[f64; 2]], slip: f64) -> f64 {
+    let after = points.partition_point(|point| point[0] <= slip);
+    match (after.checked_sub(1).and_then(|i| points.get(i)), points.get(after)) {
+        (Some(a), Some(b)) => a[1] + (b[1] - a[1]) * (slip - a[0]) / (b[0] - a[0]),
+        (Some(last), None) => last[1],
+        // Below the first point: in proportion, since there is no friction at rest.
+        (None, Some(first)) => first[1] * slip / first[0],
+        (None, None) => 0.0,
+    }
+}
+
+/// Slices across the major axis: middle of each (y/a) and its share of the normal load.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slices {
+    pub middle: Vec<f64>,
+    pub share: Vec<f64>,
+}
+
+impl Slices {
+    /// `count` slices of equal width; each share is the exact integral of Hertz's pressure over
+    /// the slice, so that the shares add up to one.
+    pub fn new(count: usize) -> Slices {
+        let width = 2.0 / count as f64;
+        // ∫ (3/4)(1 − η²) dη.
+        let integral = |eta: f64| 0.75 * (eta - eta * eta * eta / 3.0);
+        let edge = |i: usize| -1.0 + width * i as f64;
+        Slices {
+            middle: (0..count).map(|i| -1.0 + width * (i as f64 + 0.5)).collect(),
+            share: (0..count).map(|i| integral(edge(i + 1)) - integral(edge(i))).collect(),
+        }
+    }
+}
+
+/// Motion of a rigid body, inertial axes: m, m/s, rad/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    pub position: Vec3,
+    pub velocity: Vec3,
+    pub spin: Vec3,
+}
+
+/// Sliding of a ball on a race at the middle of the contact and how it changes across it.
+///
+/// t is the rolling direction (about the race's axis), n the outward normal of the ball, s = n × t.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sliding {
+    pub rolling_direction: Vec3,
+    pub transverse_direction: Vec3,
+    /// From the ball centre to the contact point.
+    pub arm_on_ball: Vec3,
+    /// From the race's centre to the contact point.
+    pub arm_on_race: Vec3,
+    /// Slip of the ball's surface over the race's at the middle: t and s part, m/s.
+    pub slip: [f64; 2],
+    /// Relative spin about t, s and n, rad/s.
+    pub relative_spin: Vec3,
+    /// Mean speed of both surfaces through the contact, m/s, ≥ 0.
+    pub entrainment: f64,
+}
+
+/// Sliding at a contact with outward ball normal `normal` and overlap `overlap`; `axis` is the
+/// race's axis and `outward` the unit vector from it to the ball.
+#[inline(always)]
+pub fn sliding(
+    ball: &Motion,
+    race: &Motion,
+    axis: Vec3,
+    outward: Vec3,
+    normal: Vec3,
+    reach: f64,
+) -> Sliding {
+    let rolling_direction = cross(axis, outward);
+    let transverse_direction = cross(normal, rolling_direction);
+    let arm_on_ball = scale(normal, reach);
+    let between = sub(ball.position, race.position);
+    let arm_on_race = add(between, arm_on_ball);
+    let ball_surface = add(ball.velocity, cross(ball.spin, arm_on_ball));
+    let race_surface = add(race.velocity, cross(race.spin, arm_on_race));
+    let slip = sub(ball_surface, race_surface);
+    let relative = sub(ball.spin, race.spin);
+    // The contact travels round the race with the ball.
+    let travel = dot(sub(ball.velocity, race.velocity), rolling_direction)
+        * (dot(arm_on_race, outward) / dot(between, outward))
+        + dot(race.velocity, rolling_direction);
+    let through = dot(add(ball_surface, race_surface), rolling_direction) - 2.0 * travel;
+    Sliding {
+        rolling_direction,
+        transverse_direction,
+        arm_on_ball,
+        arm_on_race,
+        slip: [dot(slip, rolling_direction), dot(slip, transverse_direction)],
+        relative_spin: [
+            dot(relative, rolling_direction),
+            dot(relative, transverse_direction),
+            dot(relative, normal),
+        ],
+        entrainment: 0.5 * through.abs(),
+    }
+}
+
+/// What the slices add up to, per unit of normal load: traction on the ball along t and s, moment
+/// about n (m), and power lost (m/s).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SliceSum {
+    pub rolling: f64,
+    pub transverse: f64,
+    pub moment: f64,
+    pub power: f64,
+}
+
+/// Adds one slice at `y` (m from the middle) with a `share` of the load. `sagitta` is how far the
+/// curved contact surface lies towards the ball there (Heathcote), zero for a plane one.
+#[inline(always)]
+pub fn add_slice(
+    sum: &SliceSum,
+    slip: [f64; 2],
+    relative_spin: Vec3,
+    y: f64,
+    sagitta: f64,
+    share: f64,
+    friction: impl Fn(f64) -> f64,
+) -> SliceSum {
+    let [spin_t, spin_s, spin_n] = relative_spin;
+    let slip_t = slip[0] - spin_n * y - spin_s * sagitta;
+    let slip_s = slip[1] + spin_t * sagitta;
+    let speed = (slip_t * slip_t + slip_s * slip_s).sqrt();
+    // Where nothing slides nothing is divided by zero: friction is zero there.
+    let divisor = if speed > 1e-300 { speed } else { 1e-300 };
+    let per_speed = share * friction(speed) / divisor;
+    let along = -per_speed * slip_t;
+    let across = -per_speed * slip_s;
+    SliceSum {
+        rolling: sum.rolling + along,
+        transverse: sum.transverse + across,
+        // y s × (along t + across s) = −y along n.
+        moment: sum.moment - y * along,
+        power: sum.power - per_speed * speed * speed,
+    }
+}
+
+/// Force and moment of the traction on the ball, in inertial axes; the race feels the opposite
+/// force at the same point and the opposite moment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TractionForce {
+    pub force: Vec3,
+    /// Moment about the contact point (about the normal), N·m.
+    pub moment: Vec3,
+    /// Power taken from the bodies, W, ≤ 0.
+    pub power: f64,
+}
+
+#[inline(always)]
+pub fn traction_force(
+    sum: &SliceSum,
+    sliding: &Sliding,
+    normal: Vec3,
+    normal_load: f64,
+) -> TractionForce {
+    let rolling = scale(sliding.rolling_direction, sum.rolling * normal_load);
+    TractionForce {
+        force: add_scaled(rolling, sum.transverse * normal_load, sliding.transverse_direction),
+        moment: scale(normal, sum.moment * normal_load),
+        power: sum.power * normal_load,
+    }
+}
+
+/// All slices of one contact, in order. `semi_major` in m; `curvature` is 1/(2R) of the deformed
+/// surface across the groove (1/m), zero leaves the Heathcote term out.
+pub fn integrate(
+    law: &TractionLaw,
+    slices: &Slices,
+    sliding: &Sliding,
+    semi_major: f64,
+    curvature: f64,
+) -> SliceSum {
+    let mut sum = SliceSum::default();
+    for (middle, share) in slices.middle.iter().zip(&slices.share) {
+        let y = middle * semi_major;
+        let sagitta = y * y * curvature;
+        let friction = |speed: f64| coefficient(law, speed, sliding.entrainment);
+        sum = add_slice(&sum, sliding.slip, sliding.relative_spin, y, sagitta, *share, friction);
+    }
+    sum
+}
+
+/// Speed of the slip at the middle of the contact, m/s.
+pub fn slip_speed(sliding: &Sliding) -> f64 {
+    norm([sliding.slip[0], sliding.slip[1], 0.0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exponential_is_good_to_two_ulp() {
+        let mut worst = 0.0_f64;
+        for step in 0..200_000 {
+            let x = -700.0 * (step as f64 / 200_000.0).powi(3);
+            worst = worst.max((exp_of_negative(x) / libm::exp(x) - 1.0).abs());
+        }
+        assert!(worst <= 2.0 * f64::EPSILON, "off by {worst:e}");
+        assert_eq!(exp_of_negative(0.0), 1.0);
+        assert!(exp_of_negative(-1e6) >= 0.0 && exp_of_negative(-1e6) < 1e-300);
+        assert!(exp_of_negative(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn boundary_curve_peaks_where_its_derivative_says() {
+        let curve = ExponentialCurve::BOUNDARY;
+        // dκ/ds = 0 at s = (1 + c d/b)/c.
+        let peak = (1.0 + curve.c * curve.d / curve.b) / curve.c;
+        let at = curve.coefficient(peak);
+        assert!((at - 0.12).abs() <= 5e-4, "peak {at} at {peak}");
+        assert!(curve.coefficient(peak * 0.99) < at && curve.coefficient(peak * 1.01) < at);
+        assert_eq!(curve.coefficient(0.0), 0.0);
+    }
+
+    #[test]
+    fn pure_spin_gives_three_eighths_of_the_moment() {
+        // ∫ κ q(y) |y| dy = 3κWa/8 for constant κ, any slip direction the same size.
+        let law = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 1e-12 };
+        let sliding = Sliding { relative_spin: [0.0, 0.0, 30.0], ..Sliding::default() };
+        let semi_major = 1.5e-3;
+        let mut errors = Vec::new();
+        for count in [15, 45, 135] {
+            let sum = integrate(&law, &Slices::new(count), &sliding, semi_major, 0.0);
+            let exact = -3.0 * 0.07 * semi_major / 8.0;
+            errors.push((sum.moment / exact - 1.0).abs());
+            assert!(sum.rolling.abs() <= 1e-15 && sum.transverse.abs() <= 1e-15);
+        }
+        // Slices of equal width: second order.
+        assert!(errors[0] <= 6e-3, "{errors:?}");
+        for pair in errors.windows(2) {
+            let order = (pair[0] / pair[1]).ln() / 3f64.ln();
+            assert!((order - 2.0).abs() <= 0.15, "{errors:?}");
+        }
+    }
+
+    #[test]
+    fn shares_add_up_to_the_load() {
+        for count in [1, 2, 15, 101] {
+            let sum: f64 = Slices::new(count).share.iter().sum();
+            assert!((sum - 1.0).abs() <= 1e-14);
+        }
+    }
+
+    #[test]
+    fn table_interpolates_and_starts_at_zero() {
+        let law = TractionLaw::Table { points: vec![[0.1, 0.05], [0.2, 0.07]] };
+        assert_eq!(coefficient(&law, 0.0, 1.0), 0.0);
+        assert!((coefficient(&law, 0.05, 1.0) - 0.025).abs() <= 1e-17);
+        assert!((coefficient(&law, 0.15, 1.0) - 0.06).abs() <= 1e-16);
+        assert_eq!(coefficient(&law, 9.0, 1.0), 0.07);
+    }
+}
