@@ -1,5 +1,7 @@
 //! Solvers: what a scene needs, and equilibrium.
 pub mod ball;
+pub mod dynamics;
 pub mod plan;
+pub mod profile;
 mod static_start;
 pub mod statics;

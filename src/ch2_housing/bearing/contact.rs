@@ -103,3 +103,86 @@ pub fn groove_force(
     let force_on_ball = if load == 0.0 { Vector3::zeros() } else { normal * -load };
     GrooveForce { overlap: contact.overlap, normal_load: load, force_on_ball }
 }
+
+/// Loss in a normal contact. The source states none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ContactDamping {
+    None,
+    /// Hunt and Crossley (1975): F = K δ^{3/2}(1 + (3/2) α δ̇) with α in s/m.
+    HuntCrossley {
+        alpha: f64,
+    },
+    /// Lankarani and Nikravesh (1990): F = K δ^{3/2}(1 + 3(1 − e²)/(4 v₀) δ̇), v₀ the speed of
+    /// approach when the contact began and e the coefficient of restitution. A contact that begins
+    /// at rest takes `slowest` (m/s) as its v₀.
+    LankaraniNikravesh {
+        restitution: f64,
+        slowest: f64,
+    },
+}
+
+/// What a contact between a ball and one race needs to know.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RaceLaw {
+    /// Circle of the groove's centres of curvature in the race's frame, m.
+    pub centre_axial: f64,
+    pub centre_radius: f64,
+    /// Groove radius less ball radius, m.
+    pub room: f64,
+    /// K_H, N/m^1.5.
+    pub stiffness: f64,
+    /// Semi-major axis of the contact ellipse over √δ, m^0.5.
+    pub semi_major_factor: f64,
+}
+
+/// Normal contact of one ball with one race, in inertial axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RaceContact {
+    /// δ, m; negative is a gap.
+    pub overlap: f64,
+    /// Unit vector from the groove's centre of curvature through the ball centre.
+    pub normal: [f64; 3],
+    /// Unit vector from the race's axis to the ball.
+    pub outward: [f64; 3],
+    /// dδ/dt, m/s.
+    pub closing_speed: f64,
+}
+
+/// Overlap and its rate; costs the distance test and is all that an idle pair costs.
+///
+/// `arm` and `velocity` are the ball centre's position and velocity relative to the race's centre.
+#[inline(always)]
+pub fn race_contact(
+    arm: [f64; 3],
+    velocity: [f64; 3],
+    axis: [f64; 3],
+    spin: [f64; 3],
+    law: &RaceLaw,
+) -> RaceContact {
+    use crate::kinematics::vec3::{add_scaled, cross, dot, scale, sub};
+    let axial = dot(axis, arm);
+    let across = add_scaled(arm, -axial, axis);
+    let radial = dot(across, across).sqrt();
+    let outward = scale(across, 1.0 / radial);
+    let from_axial = axial - law.centre_axial;
+    let from_radial = radial - law.centre_radius;
+    let distance = (from_axial * from_axial + from_radial * from_radial).sqrt();
+    let per_distance = 1.0 / if distance > 0.0 { distance } else { 1.0 };
+    let normal =
+        add_scaled(scale(axis, from_axial * per_distance), from_radial * per_distance, outward);
+    let relative = sub(velocity, cross(spin, arm));
+    RaceContact {
+        overlap: distance - law.room,
+        normal,
+        outward,
+        closing_speed: dot(normal, relative),
+    }
+}
+
+/// Normal load with damping: K δ^{3/2} (1 + `factor` δ̇), never a pull.
+#[inline(always)]
+pub fn damped_load(stiffness: f64, overlap: f64, closing_speed: f64, factor: f64) -> f64 {
+    let elastic = normal_load(stiffness, overlap);
+    let share = 1.0 + factor * closing_speed;
+    elastic * if share < 0.0 { 0.0 } else { share }
+}

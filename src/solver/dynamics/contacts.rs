@@ -1,0 +1,375 @@
+//! Ball–race contacts of one evaluation: detection for every pair, then traction for the loaded
+//! ones only.
+//!
+//! Two drivers call the same scalar laws: [`plain`] contact by contact, [`lanes`] over blocks of
+//! [`LANES`] contacts. The order of operations within a contact is the same, so the bits are too.
+
+use super::race::RaceNow;
+use super::state::{LANES, Layout, POSITION, SPIN, VELOCITY};
+use crate::ch2_housing::bearing::contact::{RaceContact, RaceLaw, damped_load, race_contact};
+use crate::ch2_housing::bearing::traction::{
+    Motion, SliceSum, Slices, Sliding, TractionForce, TractionLaw, add_slice, coefficient,
+    integrate, sliding, traction_force,
+};
+use crate::kinematics::vec3::{Vec3, sub};
+
+/// Laws that all contacts share.
+#[derive(Clone, Debug)]
+pub struct ContactLaws {
+    /// Inner, outer.
+    pub races: [RaceLaw; 2],
+    pub ball_radius: f64,
+    pub traction: TractionLaw,
+    pub slices: Slices,
+    /// 1/(2R) of the contact surface across each groove, 1/m; zero leaves the Heathcote term out.
+    pub curvature: [f64; 2],
+}
+
+/// Result of one evaluation, pair by pair: index = race · padded + ball.
+#[derive(Clone, Debug, Default)]
+pub struct ContactTable {
+    pub contact: Vec<RaceContact>,
+    /// N.
+    pub load: Vec<f64>,
+    /// Traction on the ball.
+    pub traction: Vec<TractionForce>,
+    pub sliding: Vec<Sliding>,
+    /// Loaded pairs, in order.
+    pub active: Vec<usize>,
+}
+
+impl ContactTable {
+    pub fn new(layout: &Layout) -> ContactTable {
+        let pairs = 2 * layout.padded;
+        ContactTable {
+            contact: vec![RaceContact::default(); pairs],
+            load: vec![0.0; pairs],
+            traction: vec![TractionForce::default(); pairs],
+            sliding: vec![Sliding::default(); pairs],
+            active: Vec::with_capacity(pairs),
+        }
+    }
+}
+
+/// Work done, for tests that pin it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    pub evaluations: u64,
+    pub distance_tests: u64,
+    pub loaded_contacts: u64,
+    pub slices: u64,
+    pub pocket_tests: u64,
+    pub guide_tests: u64,
+}
+
+/// Which driver runs the contacts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Driver {
+    Plain,
+    Lanes,
+}
+
+/// Contacts of all balls with both races.
+pub fn evaluate(
+    driver: Driver,
+    laws: &ContactLaws,
+    layout: &Layout,
+    state: &[f64],
+    races: [&RaceNow; 2],
+    damping: &[f64],
+    table: &mut ContactTable,
+    work: &mut Work,
+) {
+    match driver {
+        Driver::Plain => detect_plain(laws, layout, state, races, damping, table),
+        Driver::Lanes => detect_lanes(laws, layout, state, races, damping, table),
+    }
+    table.active.clear();
+    for race in 0..2 {
+        for ball in 0..layout.balls {
+            let pair = race * layout.padded + ball;
+            if table.load[pair] > 0.0 || table.load[pair].is_nan() {
+                table.active.push(pair);
+            }
+        }
+    }
+    work.distance_tests += 2 * layout.balls as u64;
+    work.loaded_contacts += table.active.len() as u64;
+    if laws.traction == TractionLaw::None {
+        return;
+    }
+    work.slices += (table.active.len() * laws.slices.middle.len()) as u64;
+    match driver {
+        Driver::Plain => traction_plain(laws, layout, state, races, table),
+        Driver::Lanes => traction_lanes(laws, layout, state, races, table),
+    }
+}
+
+fn detect_plain(
+    laws: &ContactLaws,
+    layout: &Layout,
+    state: &[f64],
+    races: [&RaceNow; 2],
+    damping: &[f64],
+    table: &mut ContactTable,
+) {
+    for (race, now) in races.into_iter().enumerate() {
+        let motion = &now.motion;
+        for ball in 0..layout.balls {
+            let pair = race * layout.padded + ball;
+            let contact = race_contact(
+                sub(layout.ball_vector(state, POSITION, ball), motion.position),
+                sub(layout.ball_vector(state, VELOCITY, ball), motion.velocity),
+                motion.axis,
+                motion.spin,
+                &laws.races[race],
+            );
+            table.contact[pair] = contact;
+            table.load[pair] = damped_load(
+                laws.races[race].stiffness,
+                contact.overlap,
+                contact.closing_speed,
+                damping[pair],
+            );
+        }
+    }
+}
+
+/// [`LANES`] values of one component, from ball `first` on.
+#[inline(always)]
+fn lane(layout: &Layout, state: &[f64], component: usize, first: usize) -> [f64; LANES] {
+    let at = layout.ball(component) + first;
+    let mut values = [0.0; LANES];
+    values.copy_from_slice(&state[at..at + LANES]);
+    values
+}
+
+fn detect_lanes(
+    laws: &ContactLaws,
+    layout: &Layout,
+    state: &[f64],
+    races: [&RaceNow; 2],
+    damping: &[f64],
+    table: &mut ContactTable,
+) {
+    for first in (0..layout.padded).step_by(LANES) {
+        let component = |c: usize| lane(layout, state, c, first);
+        let position = [0, 1, 2].map(|i| component(POSITION + i));
+        let velocity = [0, 1, 2].map(|i| component(VELOCITY + i));
+        for (race, now) in races.into_iter().enumerate() {
+            let motion = &now.motion;
+            let law = &laws.races[race];
+            let pair = race * layout.padded + first;
+            let factor: &[f64] = &damping[pair..pair + LANES];
+            let mut contacts = [RaceContact::default(); LANES];
+            let mut loads = [0.0; LANES];
+            for l in 0..LANES {
+                let at = |v: &[[f64; LANES]; 3]| [v[0][l], v[1][l], v[2][l]];
+                let contact = race_contact(
+                    sub(at(&position), motion.position),
+                    sub(at(&velocity), motion.velocity),
+                    motion.axis,
+                    motion.spin,
+                    law,
+                );
+                contacts[l] = contact;
+                loads[l] =
+                    damped_load(law.stiffness, contact.overlap, contact.closing_speed, factor[l]);
+            }
+            table.contact[pair..pair + LANES].copy_from_slice(&contacts);
+            table.load[pair..pair + LANES].copy_from_slice(&loads);
+        }
+    }
+}
+
+/// Motion of ball and race at a pair.
+#[inline(always)]
+fn ball_motion(layout: &Layout, state: &[f64], ball: usize) -> Motion {
+    Motion {
+        position: layout.ball_vector(state, POSITION, ball),
+        velocity: layout.ball_vector(state, VELOCITY, ball),
+        spin: layout.ball_vector(state, SPIN, ball),
+    }
+}
+
+fn race_motion(now: &RaceNow) -> Motion {
+    Motion { position: now.motion.position, velocity: now.motion.velocity, spin: now.motion.spin }
+}
+
+/// Distance from the ball centre to the contact point: the overlap is shared in halves.
+#[inline(always)]
+fn reach(laws: &ContactLaws, overlap: f64) -> f64 {
+    laws.ball_radius - 0.5 * overlap
+}
+
+#[inline(always)]
+fn semi_major(laws: &ContactLaws, race: usize, overlap: f64) -> f64 {
+    laws.races[race].semi_major_factor * overlap.sqrt()
+}
+
+fn sliding_of(
+    laws: &ContactLaws,
+    layout: &Layout,
+    state: &[f64],
+    races: &[Motion; 2],
+    axes: &[Vec3; 2],
+    pair: usize,
+    contact: &RaceContact,
+) -> Sliding {
+    let (race, ball) = (pair / layout.padded, pair % layout.padded);
+    sliding(
+        &ball_motion(layout, state, ball),
+        &races[race],
+        axes[race],
+        contact.outward,
+        contact.normal,
+        reach(laws, contact.overlap),
+    )
+}
+
+fn traction_plain(
+    laws: &ContactLaws,
+    layout: &Layout,
+    state: &[f64],
+    races: [&RaceNow; 2],
+    table: &mut ContactTable,
+) {
+    let motions = races.map(race_motion);
+    let axes = races.map(|now| now.motion.axis);
+    for &pair in &table.active {
+        let race = pair / layout.padded;
+        let contact = &table.contact[pair];
+        let sliding = sliding_of(laws, layout, state, &motions, &axes, pair, contact);
+        let width = semi_major(laws, race, contact.overlap);
+        let sum = integrate(&laws.traction, &laws.slices, &sliding, width, laws.curvature[race]);
+        table.traction[pair] = traction_force(&sum, &sliding, contact.normal, table.load[pair]);
+        table.sliding[pair] = sliding;
+    }
+}
+
+fn traction_lanes(
+    laws: &ContactLaws,
+    layout: &Layout,
+    state: &[f64],
+    races: [&RaceNow; 2],
+    table: &mut ContactTable,
+) {
+    // One instance of the loop for each law, so that nothing is decided inside it.
+    match &laws.traction {
+        TractionLaw::None => {}
+        TractionLaw::SlideToRoll { curve, entrainment_floor } => {
+            let (curve, floor) = (*curve, *entrainment_floor);
+            lanes_of(laws, layout, state, races, table, |slip, entrainment| {
+                let rolling = if entrainment > floor { entrainment } else { floor };
+                curve.coefficient(slip / rolling)
+            });
+        }
+        TractionLaw::SlipSpeed { curve } => {
+            let curve = *curve;
+            lanes_of(laws, layout, state, races, table, |slip, _| curve.coefficient(slip));
+        }
+        TractionLaw::Constant { coefficient, regularisation_speed } => {
+            let (coefficient, u0) = (*coefficient, *regularisation_speed);
+            lanes_of(laws, layout, state, races, table, |slip, _| {
+                coefficient * slip / (slip * slip + u0 * u0).sqrt()
+            });
+        }
+        law @ TractionLaw::Table { .. } => {
+            lanes_of(laws, layout, state, races, table, |slip, entrainment| {
+                coefficient(law, slip, entrainment)
+            });
+        }
+    }
+}
+
+#[inline(always)]
+fn lanes_of(
+    laws: &ContactLaws,
+    layout: &Layout,
+    state: &[f64],
+    races: [&RaceNow; 2],
+    table: &mut ContactTable,
+    friction: impl Fn(f64, f64) -> f64 + Copy,
+) {
+    let motions = races.map(race_motion);
+    let axes = races.map(|now| now.motion.axis);
+    let ContactTable { contact, load, traction, sliding, active } = table;
+    for block in active.chunks(LANES) {
+        let mut slip = [[0.0; LANES]; 2];
+        let mut spin = [[0.0; LANES]; 3];
+        let mut width = [0.0; LANES];
+        let mut curvature = [0.0; LANES];
+        // Lanes without a pair slide nowhere.
+        let mut entrainment = [1.0; LANES];
+        for (l, &pair) in block.iter().enumerate() {
+            let race = pair / layout.padded;
+            let here = sliding_of(laws, layout, state, &motions, &axes, pair, &contact[pair]);
+            slip[0][l] = here.slip[0];
+            slip[1][l] = here.slip[1];
+            for i in 0..3 {
+                spin[i][l] = here.relative_spin[i];
+            }
+            entrainment[l] = here.entrainment;
+            width[l] = semi_major(laws, race, contact[pair].overlap);
+            curvature[l] = laws.curvature[race];
+            sliding[pair] = here;
+        }
+        let sums = slice_lanes(laws, &slip, &spin, &width, &curvature, &entrainment, friction);
+        for (l, &pair) in block.iter().enumerate() {
+            traction[pair] =
+                traction_force(&sums[l], &sliding[pair], contact[pair].normal, load[pair]);
+        }
+    }
+}
+
+/// All slices of a block of contacts.
+#[inline(always)]
+fn slice_lanes(
+    laws: &ContactLaws,
+    slip: &[[f64; LANES]; 2],
+    spin: &[[f64; LANES]; 3],
+    width: &[f64; LANES],
+    curvature: &[f64; LANES],
+    entrainment: &[f64; LANES],
+    friction: impl Fn(f64, f64) -> f64 + Copy,
+) -> [SliceSum; LANES] {
+    let mut rolling = [0.0; LANES];
+    let mut transverse = [0.0; LANES];
+    let mut moment = [0.0; LANES];
+    let mut power = [0.0; LANES];
+    for (middle, share) in laws.slices.middle.iter().zip(&laws.slices.share) {
+        for l in 0..LANES {
+            let y = middle * width[l];
+            let sagitta = y * y * curvature[l];
+            let before = SliceSum {
+                rolling: rolling[l],
+                transverse: transverse[l],
+                moment: moment[l],
+                power: power[l],
+            };
+            let after = add_slice(
+                &before,
+                [slip[0][l], slip[1][l]],
+                [spin[0][l], spin[1][l], spin[2][l]],
+                y,
+                sagitta,
+                *share,
+                |speed| friction(speed, entrainment[l]),
+            );
+            rolling[l] = after.rolling;
+            transverse[l] = after.transverse;
+            moment[l] = after.moment;
+            power[l] = after.power;
+        }
+    }
+    let mut sums = [SliceSum::default(); LANES];
+    for (l, sum) in sums.iter_mut().enumerate() {
+        *sum = SliceSum {
+            rolling: rolling[l],
+            transverse: transverse[l],
+            moment: moment[l],
+            power: power[l],
+        };
+    }
+    sums
+}

@@ -1,0 +1,238 @@
+//! Motion of a race: what is prescribed is imposed, the rest follows from loads.
+
+use super::model::{Drive, RaceBody, Rotation};
+use super::state::BodyState;
+use crate::ch2_housing::bearing::cage::AxisMotion;
+use crate::ch2_housing::bearing::inertia::Inertia;
+use crate::kinematics::euler::about;
+use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+/// A race at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct RaceNow {
+    pub state: BodyState,
+    pub motion: AxisMotion,
+    /// Directions about which tilt_y and tilt_z turn the axis: body-near e₂ and e₃, which do not
+    /// spin with the race.
+    pub tilt_directions: [Vec3; 2],
+    /// tilt_y = ξ and tilt_z = λ, rad.
+    pub tilts: [f64; 2],
+}
+
+/// Tilts ξ, λ of an axis (cos λ cos ξ, sin λ, −cos λ sin ξ).
+pub fn tilts_of(axis: Vec3) -> [f64; 2] {
+    [libm::atan2(-axis[2], axis[0]), libm::asin(axis[1].clamp(-1.0, 1.0))]
+}
+
+fn motion_of(state: &BodyState) -> AxisMotion {
+    AxisMotion {
+        position: state.position,
+        velocity: state.velocity,
+        spin: state.spin,
+        axis: state.axis(),
+    }
+}
+
+fn directions(tilts: [f64; 2]) -> [Vec3; 2] {
+    let (sin_xi, cos_xi) = libm::sincos(tilts[0]);
+    let (sin_lambda, cos_lambda) = libm::sincos(tilts[1]);
+    // Ry(ξ) Rz(λ) applied to Y and Z.
+    [[-sin_lambda * cos_xi, cos_lambda, sin_lambda * sin_xi], [sin_xi, 0.0, cos_xi]]
+}
+
+/// The race as its state has it, with every prescribed coordinate and rate at its given value.
+pub fn now(body: &RaceBody, t: f64, mut state: BodyState) -> RaceNow {
+    for i in 0..3 {
+        if let Drive::Motion(profile) = &body.drives[i] {
+            state.position[i] = profile.value(t);
+            state.velocity[i] = profile.rate(t);
+        }
+    }
+    let mut tilts = tilts_of(state.axis());
+    let mut moved = false;
+    for (k, tilt) in tilts.iter_mut().enumerate() {
+        if let Drive::Motion(profile) = &body.drives[3 + k] {
+            *tilt = profile.value(t);
+            moved = true;
+        }
+    }
+    if moved {
+        state.orientation = with_tilts(&state.orientation, tilts);
+    }
+    let axis = state.axis();
+    let tilt_directions = directions(tilts);
+    let [e2, e3] = tilt_directions;
+    let mut parts = [dot(state.spin, axis), dot(state.spin, e2), dot(state.spin, e3)];
+    if let Drive::Motion(profile) = &body.drives[3] {
+        parts[1] = profile.rate(t) * libm::cos(tilts[1]);
+    }
+    if let Drive::Motion(profile) = &body.drives[4] {
+        parts[2] = profile.rate(t);
+    }
+    let speed_given = match &body.rotation {
+        Rotation::Speed(profile) => {
+            parts[0] = profile.value(t);
+            true
+        }
+        Rotation::Torque(_) => false,
+    };
+    if moved || speed_given {
+        state.spin = add_scaled(add_scaled(scale(axis, parts[0]), parts[1], e2), parts[2], e3);
+    }
+    RaceNow { state, motion: motion_of(&state), tilt_directions, tilts }
+}
+
+/// The same spin angle under new tilts.
+fn with_tilts(orientation: &UnitQuaternion<f64>, tilts: [f64; 2]) -> UnitQuaternion<f64> {
+    let turn = |[xi, lambda]: [f64; 2]| about(Vector3::y(), xi) * about(Vector3::z(), lambda);
+    let axis: Vec3 = (orientation * Vector3::x()).into();
+    let spin = turn(tilts_of(axis)).inverse() * orientation;
+    let about_x = UnitQuaternion::from_quaternion(Quaternion::new(spin.w, spin.i, 0.0, 0.0));
+    turn(tilts) * about_x
+}
+
+/// A fixed race at x, y, z, tilt_y, tilt_z.
+pub fn fixed(at: &[f64; 5]) -> RaceNow {
+    let mut state = BodyState::at_rest([at[0], at[1], at[2]]);
+    state.orientation = about(Vector3::y(), at[3]) * about(Vector3::z(), at[4]);
+    let tilts = [at[3], at[4]];
+    RaceNow { state, motion: motion_of(&state), tilt_directions: directions(tilts), tilts }
+}
+
+/// Forces on a race: what acts besides the contacts, and what results.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RaceLoads {
+    /// Contacts, gravity, rotating load, unbalance; N, inertial axes.
+    pub force: Vec3,
+    /// About the race's centre, N·m.
+    pub moment: Vec3,
+}
+
+/// Acceleration of a race and the powers that go into the ledger.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RaceRates {
+    pub acceleration: Vec3,
+    /// dω/dt in inertial axes.
+    pub spin_rate: Vec3,
+    /// Work done on the race by drives (loads and prescribed motions), W.
+    pub drive_power: f64,
+    /// Power of the dashpots of the foundation, W, ≤ 0.
+    pub foundation_power: f64,
+}
+
+/// Newton and Euler for a body with an axis of symmetry.
+pub fn rates(
+    body: &RaceBody,
+    t: f64,
+    race: &RaceNow,
+    start: &[f64; 5],
+    loads: &RaceLoads,
+) -> RaceRates {
+    let mut force = loads.force;
+    let mut moment = loads.moment;
+    let state = &race.state;
+    let [e2, e3] = race.tilt_directions;
+    let cos_lambda = libm::cos(race.tilts[1]);
+    // Rates of the five coordinates.
+    let tilt_rates = [dot(state.spin, e2) / cos_lambda, dot(state.spin, e3)];
+    let mut rates = RaceRates::default();
+    // ξ turns about Y, λ about e₃: the moments conjugate to them, as in statics. A moment about e₂
+    // of Q/cos λ does the work Q dξ.
+    let conjugate = [scale(e2, 1.0 / cos_lambda), e3];
+    for i in 0..5 {
+        let (value, rate) = if i < 3 {
+            (state.position[i], state.velocity[i])
+        } else {
+            (race.tilts[i - 3], tilt_rates[i - 3])
+        };
+        let spring = -body.foundation_stiffness[i] * (value - start[i]);
+        let dashpot = -body.foundation_damping[i] * rate;
+        let drive = match &body.drives[i] {
+            Drive::Load(profile) => profile.value(t),
+            Drive::Motion(_) => 0.0,
+        };
+        rates.drive_power += drive * rate;
+        rates.foundation_power += dashpot * rate;
+        let total = spring + dashpot + drive;
+        if i < 3 {
+            force[i] += total;
+        } else {
+            moment = add_scaled(moment, total, conjugate[i - 3]);
+        }
+    }
+    let axis = race.motion.axis;
+    let about_axis = dot(moment, axis);
+    let mut axial_rate = about_axis / body.inertia.axial;
+    match &body.rotation {
+        Rotation::Torque(profile) => {
+            let torque = profile.value(t);
+            axial_rate += torque / body.inertia.axial;
+            rates.drive_power += torque * dot(state.spin, axis);
+        }
+        Rotation::Speed(profile) => {
+            let rate = profile.rate(t);
+            rates.drive_power += (body.inertia.axial * rate - about_axis) * dot(state.spin, axis);
+            axial_rate = rate;
+        }
+    }
+    let across = sub(moment, scale(axis, about_axis));
+    let transverse = gyroscopic(&body.inertia, axis, state.spin, across);
+    rates.spin_rate =
+        add(scale(transverse, 1.0 / body.inertia.transverse), scale(axis, axial_rate));
+    rates.acceleration = scale(force, 1.0 / body.inertia.mass);
+    impose(body, t, race, force, transverse, &mut rates);
+    rates
+}
+
+/// M⊥ − (Ia − It)(a·ω) ω × a, which is It dω/dt across the axis.
+fn gyroscopic(inertia: &Inertia, axis: Vec3, spin: Vec3, across: Vec3) -> Vec3 {
+    let momentum = (inertia.axial - inertia.transverse) * dot(axis, spin);
+    add_scaled(across, -momentum, cross(spin, axis))
+}
+
+/// Acceleration and dω/dt of a free body with an axis of symmetry, inertial axes.
+pub fn free_rates(
+    inertia: &Inertia,
+    axis: Vec3,
+    spin: Vec3,
+    force: Vec3,
+    moment: Vec3,
+) -> (Vec3, Vec3) {
+    let about_axis = dot(moment, axis);
+    let across = sub(moment, scale(axis, about_axis));
+    let transverse = gyroscopic(inertia, axis, spin, across);
+    let spin_rate =
+        add(scale(transverse, 1.0 / inertia.transverse), scale(axis, about_axis / inertia.axial));
+    (scale(force, 1.0 / inertia.mass), spin_rate)
+}
+
+/// Prescribed coordinates: their acceleration is given, and the drive does the work it takes.
+fn impose(
+    body: &RaceBody,
+    t: f64,
+    race: &RaceNow,
+    force: Vec3,
+    transverse: Vec3,
+    rates: &mut RaceRates,
+) {
+    let state = &race.state;
+    for i in 0..3 {
+        if let Drive::Motion(profile) = &body.drives[i] {
+            let acceleration = profile.acceleration(t);
+            rates.acceleration[i] = acceleration;
+            rates.drive_power += (body.inertia.mass * acceleration - force[i]) * state.velocity[i];
+        }
+    }
+    for k in 0..2 {
+        if let Drive::Motion(profile) = &body.drives[3 + k] {
+            // The part of the tilt's own rate; coupling of both tilts is of second order in them
+            // and moves no stage, since the rate itself is imposed.
+            let direction = race.tilt_directions[k];
+            let acceleration = profile.acceleration(t);
+            let inertia = body.inertia.transverse;
+            rates.drive_power +=
+                (inertia * acceleration - dot(transverse, direction)) * dot(state.spin, direction);
+        }
+    }
+}

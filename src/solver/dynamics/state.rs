@@ -1,0 +1,162 @@
+//! Layout of the state vector: one flat array, so that integrators, error control and restart see
+//! plain numbers.
+//!
+//! Balls lie component by component (all x, all y, …), padded to whole lanes; each race and the
+//! cage follow body by body; the energy ledger comes last.
+
+use crate::kinematics::vec3::Vec3;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+/// Lanes that the contact loops run over.
+pub const LANES: usize = 8;
+
+/// Position 3, quaternion 4 (scalar first), velocity 3, spin 3 (inertial axes).
+pub const BODY: usize = 13;
+pub const POSITION: usize = 0;
+pub const ORIENTATION: usize = 3;
+pub const VELOCITY: usize = 7;
+pub const SPIN: usize = 10;
+
+/// Energy taken out of or put into the bodies since the start, J.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ledger {
+    Traction,
+    ContactDamping,
+    CageFriction,
+    Foundation,
+    Drives,
+}
+
+pub const LEDGER: usize = 5;
+
+/// Where everything is in the state vector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    pub balls: usize,
+    /// Balls rounded up to whole lanes; the extra ones stand still and touch nothing.
+    pub padded: usize,
+    pub has_cage: bool,
+}
+
+impl Layout {
+    pub fn new(balls: usize, has_cage: bool) -> Layout {
+        Layout { balls, padded: balls.next_multiple_of(LANES), has_cage }
+    }
+
+    pub fn len(&self) -> usize {
+        self.ledger() + LEDGER
+    }
+
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// First entry of component `component` (0 … 12) of the balls.
+    pub fn ball(&self, component: usize) -> usize {
+        component * self.padded
+    }
+
+    pub fn inner(&self) -> usize {
+        BODY * self.padded
+    }
+
+    pub fn outer(&self) -> usize {
+        self.inner() + BODY
+    }
+
+    /// The cage's 13 entries, if there is one.
+    pub fn cage(&self) -> usize {
+        self.outer() + BODY
+    }
+
+    pub fn ledger(&self) -> usize {
+        self.cage() + if self.has_cage { BODY } else { 0 }
+    }
+
+    pub fn ledger_entry(&self, entry: Ledger) -> usize {
+        self.ledger() + entry as usize
+    }
+
+    /// Three components of a ball from `component` on.
+    pub fn ball_vector(&self, state: &[f64], component: usize, ball: usize) -> Vec3 {
+        [0, 1, 2].map(|i| state[self.ball(component + i) + ball])
+    }
+
+    pub fn ball_orientation(&self, state: &[f64], ball: usize) -> UnitQuaternion<f64> {
+        let part = |i: usize| state[self.ball(ORIENTATION + i) + ball];
+        UnitQuaternion::new_unchecked(Quaternion::new(part(0), part(1), part(2), part(3)))
+    }
+
+    pub fn set_ball(&self, state: &mut [f64], ball: usize, body: &BodyState) {
+        for (component, value) in body.to_array().into_iter().enumerate() {
+            state[self.ball(component) + ball] = value;
+        }
+    }
+
+    pub fn ball_state(&self, state: &[f64], ball: usize) -> BodyState {
+        let mut entries = [0.0; BODY];
+        for (component, entry) in entries.iter_mut().enumerate() {
+            *entry = state[self.ball(component) + ball];
+        }
+        BodyState::from_slice(&entries)
+    }
+}
+
+/// One body out of the state vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyState {
+    /// m.
+    pub position: Vec3,
+    /// Body to inertial.
+    pub orientation: UnitQuaternion<f64>,
+    /// m/s.
+    pub velocity: Vec3,
+    /// Angular velocity in inertial axes, rad/s.
+    pub spin: Vec3,
+}
+
+impl BodyState {
+    pub fn at_rest(position: Vec3) -> BodyState {
+        BodyState {
+            position,
+            orientation: UnitQuaternion::identity(),
+            velocity: [0.0; 3],
+            spin: [0.0; 3],
+        }
+    }
+
+    pub fn from_slice(entries: &[f64]) -> BodyState {
+        let vector = |at: usize| [entries[at], entries[at + 1], entries[at + 2]];
+        let q = &entries[ORIENTATION..];
+        BodyState {
+            position: vector(POSITION),
+            orientation: UnitQuaternion::new_unchecked(Quaternion::new(q[0], q[1], q[2], q[3])),
+            velocity: vector(VELOCITY),
+            spin: vector(SPIN),
+        }
+    }
+
+    pub fn to_array(self) -> [f64; BODY] {
+        let q = self.orientation;
+        let ([x, y, z], [u, v, w], [a, b, c]) = (self.position, self.velocity, self.spin);
+        [x, y, z, q.w, q.i, q.j, q.k, u, v, w, a, b, c]
+    }
+
+    /// Unit vector along the body's X axis, inertial axes.
+    pub fn axis(&self) -> Vec3 {
+        (self.orientation * Vector3::x()).into()
+    }
+}
+
+/// dq/dt = ½ ω q for an angular velocity in inertial axes.
+#[inline(always)]
+pub fn quaternion_rate(q: [f64; 4], spin: Vec3) -> [f64; 4] {
+    let [w, i, j, k] = q;
+    let [x, y, z] = spin;
+    [
+        -0.5 * (x * i + y * j + z * k),
+        0.5 * (x * w + y * k - z * j),
+        0.5 * (y * w + z * i - x * k),
+        0.5 * (z * w + x * j - y * i),
+    ]
+}

@@ -1,0 +1,500 @@
+//! The equations of motion: state in, rates out.
+
+use super::contacts::{self, ContactLaws, ContactTable, Driver, Work};
+use super::model::{DynamicProblem, RaceBody};
+use super::race::{self, RaceLoads, RaceNow};
+use super::state::{
+    BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
+};
+use crate::ch2_housing::bearing::cage::{
+    AxisMotion, CageContact, Guidance, cage_energy, guide_contact, pocket_contact,
+};
+use crate::ch2_housing::bearing::contact::{ContactDamping, RaceLaw, strain_energy};
+use crate::ch2_housing::bearing::geometry::Raceway;
+use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
+use crate::ch2_housing::bearing::traction::{Slices, TractionLaw};
+use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+
+/// A problem with everything precomputed and room to work in.
+pub struct System {
+    pub problem: DynamicProblem,
+    pub layout: Layout,
+    pub laws: ContactLaws,
+    pub driver: Driver,
+    pub table: ContactTable,
+    pub work: Work,
+    /// Damping factor of each pair in s/m; zero without damping.
+    pub damping: Vec<f64>,
+    /// Contacts of the cage with each ball, then with the guiding race at both ends.
+    pub pockets: Vec<CageContact>,
+    pub guides: [CageContact; 2],
+    ball_force: Vec<Vec3>,
+    ball_moment: Vec<Vec3>,
+}
+
+/// Everything at one instant that outputs are made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Instant {
+    pub inner: RaceNow,
+    pub outer: RaceNow,
+    pub cage: Option<AxisMotion>,
+    /// Sum of contact forces on each race and moment about its centre.
+    pub on_inner: RaceLoads,
+    pub on_outer: RaceLoads,
+}
+
+fn race_law(raceway: &Raceway, hertz: &HertzContact, ball_radius: f64) -> RaceLaw {
+    // a ∝ W^(1/3) and W = K δ^(3/2), so a = a(K)·√δ.
+    RaceLaw {
+        centre_axial: raceway.centre_axial,
+        centre_radius: raceway.centre_radius,
+        room: raceway.groove_radius - ball_radius,
+        stiffness: hertz.stiffness,
+        semi_major_factor: contact_ellipse(hertz, hertz.stiffness).semi_major,
+    }
+}
+
+impl System {
+    pub fn new(problem: DynamicProblem, driver: Driver) -> System {
+        let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
+        let radius = problem.geometry.ball_radius;
+        // The deformed surface lies between ball and groove: R = 2 r_g r_b/(r_g + r_b).
+        let curvature = |groove: f64| {
+            if problem.heathcote { 0.25 * (groove + radius) / (groove * radius) } else { 0.0 }
+        };
+        let laws = ContactLaws {
+            races: [
+                race_law(&problem.geometry.inner, &problem.inner_contact, radius),
+                race_law(&problem.geometry.outer, &problem.outer_contact, radius),
+            ],
+            ball_radius: radius,
+            traction: problem.traction.clone(),
+            slices: Slices::new(if problem.traction == TractionLaw::None {
+                1
+            } else {
+                problem.slices
+            }),
+            curvature: [
+                curvature(problem.geometry.inner.groove_radius),
+                curvature(problem.geometry.outer.groove_radius),
+            ],
+        };
+        let alpha = match problem.damping {
+            ContactDamping::HuntCrossley { alpha } => 1.5 * alpha,
+            ContactDamping::None | ContactDamping::LankaraniNikravesh { .. } => 0.0,
+        };
+        System {
+            table: ContactTable::new(&layout),
+            damping: vec![alpha; 2 * layout.padded],
+            pockets: vec![CageContact::default(); layout.balls],
+            guides: [CageContact::default(); 2],
+            ball_force: vec![[0.0; 3]; layout.balls],
+            ball_moment: vec![[0.0; 3]; layout.balls],
+            work: Work::default(),
+            problem,
+            layout,
+            laws,
+            driver,
+        }
+    }
+
+    fn race_state(&self, state: &[f64], at: usize) -> BodyState {
+        BodyState::from_slice(&state[at..at + BODY])
+    }
+
+    /// Both races at time `t`, prescribed motions imposed.
+    pub fn races(&self, t: f64, state: &[f64]) -> (RaceNow, RaceNow) {
+        let inner = race::now(&self.problem.inner, t, self.race_state(state, self.layout.inner()));
+        let outer = match &self.problem.outer {
+            Some(body) => race::now(body, t, self.race_state(state, self.layout.outer())),
+            None => race::fixed(&self.problem.outer_start),
+        };
+        (inner, outer)
+    }
+
+    fn cage_motion(&self, state: &[f64]) -> Option<AxisMotion> {
+        self.problem.cage.as_ref()?;
+        let body = self.race_state(state, self.layout.cage());
+        Some(AxisMotion {
+            position: body.position,
+            velocity: body.velocity,
+            spin: body.spin,
+            axis: body.axis(),
+        })
+    }
+
+    /// Rates of the whole state vector at time `t`.
+    pub fn evaluate(&mut self, t: f64, state: &[f64], rates: &mut [f64]) -> Instant {
+        self.work.evaluations += 1;
+        let (inner, outer) = self.races(t, state);
+        contacts::evaluate(
+            self.driver,
+            &self.laws,
+            &self.layout,
+            state,
+            [&inner, &outer],
+            &self.damping,
+            &mut self.table,
+            &mut self.work,
+        );
+        let layout = self.layout;
+        let mass = self.problem.ball.mass;
+        let weight = scale(self.problem.gravity, mass);
+        self.ball_force.fill(weight);
+        self.ball_moment.fill([0.0; 3]);
+        let mut ledger = [0.0; LEDGER];
+        let mut on_races = [RaceLoads::default(); 2];
+        self.add_race_contacts(state, [&inner, &outer], &mut on_races, &mut ledger);
+        let [mut on_inner, mut on_outer] = on_races;
+        let cage = self.cage_motion(state);
+        let mut on_cage = RaceLoads::default();
+        if let Some(motion) = &cage {
+            self.add_cage_contacts(state, motion, &inner, &outer, &mut on_cage, &mut ledger);
+            let guiding = match self.guidance() {
+                Guidance::InnerRace => Some((&mut on_inner, &inner)),
+                Guidance::OuterRace => Some((&mut on_outer, &outer)),
+                Guidance::Balls => None,
+            };
+            if let Some((loads, race)) = guiding {
+                for contact in &self.guides {
+                    add_load(loads, race.motion.position, contact.point, contact.force);
+                }
+            }
+        }
+        let instant = Instant { inner, outer, cage, on_inner, on_outer };
+
+        for ball in 0..layout.balls {
+            let force = self.ball_force[ball];
+            let moment = self.ball_moment[ball];
+            for i in 0..3 {
+                rates[layout.ball(POSITION + i) + ball] = state[layout.ball(VELOCITY + i) + ball];
+                rates[layout.ball(VELOCITY + i) + ball] = force[i] / mass;
+                rates[layout.ball(SPIN + i) + ball] = moment[i] / self.problem.ball.axial;
+            }
+            let q = [0, 1, 2, 3].map(|i| state[layout.ball(ORIENTATION + i) + ball]);
+            let turning = quaternion_rate(q, layout.ball_vector(state, SPIN, ball));
+            for (i, value) in turning.into_iter().enumerate() {
+                rates[layout.ball(ORIENTATION + i) + ball] = value;
+            }
+        }
+        self.race_rates(t, &instant, rates, &mut ledger);
+        if let (Some(body), Some(motion)) = (&self.problem.cage, &cage) {
+            let force = add_scaled(on_cage.force, body.inertia.mass, self.problem.gravity);
+            let (acceleration, spin_rate) =
+                race::free_rates(&body.inertia, motion.axis, motion.spin, force, on_cage.moment);
+            let at = layout.cage();
+            write_body(rates, at, &self.race_state(state, at), acceleration, spin_rate);
+        }
+        let at = layout.ledger();
+        rates[at..at + LEDGER].copy_from_slice(&ledger);
+        instant
+    }
+
+    fn guidance(&self) -> Guidance {
+        self.problem.cage.as_ref().map_or(Guidance::Balls, |cage| cage.contacts.guidance)
+    }
+
+    /// Normal and tangential contact forces on balls and races, in the order of the pairs.
+    fn add_race_contacts(
+        &mut self,
+        state: &[f64],
+        races: [&RaceNow; 2],
+        on_races: &mut [RaceLoads; 2],
+        ledger: &mut [f64; LEDGER],
+    ) {
+        let has_traction = self.laws.traction != TractionLaw::None;
+        for &pair in &self.table.active {
+            let (side, ball) = (pair / self.layout.padded, pair % self.layout.padded);
+            let contact = &self.table.contact[pair];
+            let load = self.table.load[pair];
+            let mut force = scale(contact.normal, -load);
+            let arm = scale(contact.normal, self.laws.ball_radius - 0.5 * contact.overlap);
+            let mut moment = [0.0; 3];
+            if has_traction {
+                let traction = &self.table.traction[pair];
+                force = add(force, traction.force);
+                moment = traction.moment;
+                ledger[Ledger::Traction as usize] += traction.power;
+            }
+            let elastic = load_without_damping(&self.laws.races[side], contact.overlap);
+            ledger[Ledger::ContactDamping as usize] -= (load - elastic) * contact.closing_speed;
+            self.ball_force[ball] = add(self.ball_force[ball], force);
+            let about_ball = add(cross(arm, force), moment);
+            self.ball_moment[ball] = add(self.ball_moment[ball], about_ball);
+            // The race feels the opposite force at the same point.
+            let position = self.layout.ball_vector(state, POSITION, ball);
+            let from_race = sub(position, races[side].motion.position);
+            let race_arm = add(from_race, arm);
+            let loads = &mut on_races[side];
+            loads.force = sub(loads.force, force);
+            loads.moment = sub(loads.moment, add(cross(race_arm, force), moment));
+        }
+    }
+
+    /// Pocket and guide contacts of the cage.
+    fn add_cage_contacts(
+        &mut self,
+        state: &[f64],
+        cage: &AxisMotion,
+        inner: &RaceNow,
+        outer: &RaceNow,
+        on_cage: &mut RaceLoads,
+        ledger: &mut [f64; LEDGER],
+    ) {
+        let Some(body) = &self.problem.cage else { return };
+        let law = &body.contacts;
+        let orientation = self.race_state(state, self.layout.cage()).orientation;
+        let [e2, e3]: [Vec3; 2] =
+            [(orientation * Vector3::y()).into(), (orientation * Vector3::z()).into()];
+        for ball in 0..self.layout.balls {
+            // Pocket directions turn with the cage from where the balls started.
+            let angle = self.problem.ball_phase + TAU * ball as f64 / self.layout.balls as f64;
+            let (sin, cos) = libm::sincos(angle);
+            let towards = add(scale(e2, cos), scale(e3, sin));
+            let motion = AxisMotion {
+                position: self.layout.ball_vector(state, POSITION, ball),
+                velocity: self.layout.ball_vector(state, VELOCITY, ball),
+                spin: self.layout.ball_vector(state, SPIN, ball),
+                axis: [1.0, 0.0, 0.0],
+            };
+            let contact = pocket_contact(law, cage, towards, &motion, self.laws.ball_radius);
+            self.pockets[ball] = contact;
+            if contact.normal_load == 0.0 {
+                continue;
+            }
+            self.ball_force[ball] = add(self.ball_force[ball], contact.force);
+            let arm = sub(contact.point, motion.position);
+            self.ball_moment[ball] = add(self.ball_moment[ball], cross(arm, contact.force));
+            add_load(on_cage, cage.position, contact.point, scale(contact.force, -1.0));
+            ledger[Ledger::CageFriction as usize] += contact.power;
+        }
+        self.work.pocket_tests += self.layout.balls as u64;
+        let race = match law.guidance {
+            Guidance::Balls => return,
+            Guidance::InnerRace => inner,
+            Guidance::OuterRace => outer,
+        };
+        self.work.guide_tests += 2;
+        for (contact, side) in self.guides.iter_mut().zip([-1.0, 1.0]) {
+            *contact = guide_contact(law, cage, &race.motion, side);
+            add_load(on_cage, cage.position, contact.point, scale(contact.force, -1.0));
+            ledger[Ledger::CageFriction as usize] += contact.power;
+        }
+    }
+
+    /// Rates of both races.
+    fn race_rates(&self, t: f64, instant: &Instant, rates: &mut [f64], ledger: &mut [f64; LEDGER]) {
+        let problem = &self.problem;
+        let mut loads = instant.on_inner;
+        loads.force = add_scaled(loads.force, problem.inner.inertia.mass, problem.gravity);
+        let mut turning = [0.0; 3];
+        if let Some(load) = &problem.rotating_load {
+            let (sin, cos) = libm::sincos(load.phase + load.speed * t);
+            let force = load.force.value(t);
+            turning = [0.0, force * cos, force * sin];
+        }
+        if problem.unbalance != 0.0 {
+            // m e Ω² along the race's own Y, which turns with it.
+            let state = &instant.inner.state;
+            let direction: Vec3 = (state.orientation * Vector3::y()).into();
+            let speed = dot(state.spin, instant.inner.motion.axis);
+            turning = add_scaled(turning, problem.unbalance * speed * speed, direction);
+        }
+        loads.force = add(loads.force, turning);
+        ledger[Ledger::Drives as usize] += dot(turning, instant.inner.state.velocity);
+        self.body_rates(
+            t,
+            &problem.inner,
+            &instant.inner,
+            &[0.0; 5],
+            &loads,
+            self.layout.inner(),
+            rates,
+            ledger,
+        );
+        if let Some(body) = &problem.outer {
+            let mut loads = instant.on_outer;
+            loads.force = add_scaled(loads.force, body.inertia.mass, problem.gravity);
+            self.body_rates(
+                t,
+                body,
+                &instant.outer,
+                &problem.outer_start,
+                &loads,
+                self.layout.outer(),
+                rates,
+                ledger,
+            );
+        }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn body_rates(
+        &self,
+        t: f64,
+        body: &RaceBody,
+        now: &RaceNow,
+        start: &[f64; 5],
+        loads: &RaceLoads,
+        at: usize,
+        rates: &mut [f64],
+        ledger: &mut [f64; LEDGER],
+    ) {
+        let result = race::rates(body, t, now, start, loads);
+        write_body(rates, at, &now.state, result.acceleration, result.spin_rate);
+        ledger[Ledger::Drives as usize] += result.drive_power;
+        ledger[Ledger::Foundation as usize] += result.foundation_power;
+    }
+
+    /// Writes prescribed positions and rates into the state, and makes quaternions unit again.
+    pub fn tidy(&self, t: f64, state: &mut [f64]) {
+        let (inner, outer) = self.races(t, state);
+        let write = |state: &mut [f64], at: usize, body: BodyState| {
+            let mut body = body;
+            body.orientation.renormalize();
+            state[at..at + BODY].copy_from_slice(&body.to_array());
+        };
+        write(state, self.layout.inner(), inner.state);
+        if self.problem.outer.is_some() {
+            write(state, self.layout.outer(), outer.state);
+        }
+        if self.layout.has_cage {
+            let at = self.layout.cage();
+            write(state, at, self.race_state(state, at));
+        }
+        for ball in 0..self.layout.balls {
+            let parts = [0, 1, 2, 3].map(|i| self.layout.ball(ORIENTATION + i) + ball);
+            let square: f64 = parts.iter().map(|&at| state[at] * state[at]).sum();
+            let per_length = 1.0 / square.sqrt();
+            for at in parts {
+                state[at] *= per_length;
+            }
+        }
+    }
+}
+
+fn load_without_damping(law: &RaceLaw, overlap: f64) -> f64 {
+    crate::ch2_housing::bearing::contact::normal_load(law.stiffness, overlap)
+}
+
+fn add_load(loads: &mut RaceLoads, centre: Vec3, point: Vec3, force: Vec3) {
+    loads.force = add(loads.force, force);
+    loads.moment = add(loads.moment, cross(sub(point, centre), force));
+}
+
+fn write_body(
+    rates: &mut [f64],
+    at: usize,
+    state: &BodyState,
+    acceleration: Vec3,
+    spin_rate: Vec3,
+) {
+    let q = state.orientation;
+    rates[at + POSITION..at + POSITION + 3].copy_from_slice(&state.velocity);
+    rates[at + ORIENTATION..at + ORIENTATION + 4]
+        .copy_from_slice(&quaternion_rate([q.w, q.i, q.j, q.k], state.spin));
+    rates[at + VELOCITY..at + VELOCITY + 3].copy_from_slice(&acceleration);
+    rates[at + SPIN..at + SPIN + 3].copy_from_slice(&spin_rate);
+}
+
+/// Energy at one instant, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    pub kinetic: f64,
+    /// Stored in ball–race contacts.
+    pub contact: f64,
+    /// Stored in cage contacts.
+    pub cage_contact: f64,
+    /// −m g·r of all bodies.
+    pub gravity: f64,
+    /// Stored in the foundation's springs.
+    pub foundation: f64,
+}
+
+impl Energy {
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.contact + self.cage_contact + self.gravity + self.foundation
+    }
+}
+
+impl System {
+    /// Energies of a state; call after [`System::evaluate`] at the same state.
+    pub fn energy(&self, state: &[f64], instant: &Instant) -> Energy {
+        let problem = &self.problem;
+        let layout = &self.layout;
+        let mut energy = Energy::default();
+        let mut add_body =
+            |mass: f64, axial: f64, transverse: f64, axis: Vec3, body: &[Vec3; 3]| {
+                let [position, velocity, spin] = *body;
+                let about_axis = dot(spin, axis);
+                energy.kinetic += 0.5 * mass * dot(velocity, velocity)
+                    + 0.5 * transverse * dot(spin, spin)
+                    + 0.5 * (axial - transverse) * about_axis * about_axis;
+                energy.gravity -= mass * dot(problem.gravity, position);
+            };
+        let ball = &problem.ball;
+        for i in 0..layout.balls {
+            let vector = |component| layout.ball_vector(state, component, i);
+            let body = [vector(POSITION), vector(VELOCITY), vector(SPIN)];
+            add_body(ball.mass, ball.axial, ball.transverse, [1.0, 0.0, 0.0], &body);
+        }
+        let races =
+            [(Some(&problem.inner), &instant.inner), (problem.outer.as_ref(), &instant.outer)];
+        for (body, now) in races {
+            if let Some(RaceBody { inertia, .. }) = body {
+                let parts = [now.state.position, now.state.velocity, now.state.spin];
+                add_body(inertia.mass, inertia.axial, inertia.transverse, now.motion.axis, &parts);
+            }
+        }
+        if let (Some(body), Some(cage)) = (&problem.cage, &instant.cage) {
+            let parts = [cage.position, cage.velocity, cage.spin];
+            let inertia = &body.inertia;
+            add_body(inertia.mass, inertia.axial, inertia.transverse, cage.axis, &parts);
+            for contact in self.pockets.iter().chain(&self.guides) {
+                energy.cage_contact += cage_energy(&body.contacts.force, contact.penetration);
+            }
+        }
+        for (race, law) in self.laws.races.iter().enumerate() {
+            for i in 0..layout.balls {
+                let overlap = self.table.contact[race * layout.padded + i].overlap;
+                energy.contact += strain_energy(law.stiffness, overlap);
+            }
+        }
+        for (body, now) in races {
+            let Some(body) = body else { continue };
+            let start =
+                if std::ptr::eq(body, &problem.inner) { [0.0; 5] } else { problem.outer_start };
+            for i in 0..5 {
+                let value = if i < 3 { now.state.position[i] } else { now.tilts[i - 3] };
+                let stretch = value - start[i];
+                energy.foundation += 0.5 * body.foundation_stiffness[i] * stretch * stretch;
+            }
+        }
+        energy
+    }
+
+    /// Lankarani and Nikravesh: a contact that has just begun takes its speed of approach as v₀.
+    /// History changes here and nowhere else, once a step; call after [`System::evaluate`].
+    pub fn commit_damping(&mut self, was_loaded: &mut [bool]) {
+        let ContactDamping::LankaraniNikravesh { restitution, slowest } = self.problem.damping
+        else {
+            return;
+        };
+        for race in 0..2 {
+            for ball in 0..self.layout.balls {
+                let pair = race * self.layout.padded + ball;
+                let contact = &self.table.contact[pair];
+                let loaded = contact.overlap > 0.0;
+                if loaded && !was_loaded[pair] {
+                    let approach = contact.closing_speed.abs().max(slowest);
+                    self.damping[pair] = 0.75 * (1.0 - restitution * restitution) / approach;
+                } else if !loaded {
+                    self.damping[pair] = 0.0;
+                }
+                was_loaded[pair] = loaded;
+            }
+        }
+    }
+}

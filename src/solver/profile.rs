@@ -1,0 +1,204 @@
+//! Loads, speeds and displacements over time.
+
+use std::f64::consts::{PI, TAU};
+
+/// A quantity over time, SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Profile {
+    Constant(f64),
+    /// Straight line from `from` to `to` between `start` and `start + duration`.
+    Ramp {
+        from: f64,
+        to: f64,
+        start: f64,
+        duration: f64,
+    },
+    /// As `Ramp`, but with zero slope and curvature at both ends: 10τ³ − 15τ⁴ + 6τ⁵.
+    SmoothRamp {
+        from: f64,
+        to: f64,
+        start: f64,
+        duration: f64,
+    },
+    /// Straight lines between (time, value), constant before the first and after the last.
+    Table {
+        points: Vec<[f64; 2]>,
+    },
+    /// mean + amplitude · sin(2π frequency · t + phase); phase in rad.
+    Harmonic {
+        mean: f64,
+        amplitude: f64,
+        frequency: f64,
+        phase: f64,
+    },
+    /// Half a sine wave of height `peak` on top of `base`, from `start` for `duration`.
+    HalfSine {
+        base: f64,
+        peak: f64,
+        start: f64,
+        duration: f64,
+    },
+}
+
+impl Profile {
+    pub const ZERO: Profile = Profile::Constant(0.0);
+
+    /// Whether it is zero at all times, so that it may be left out.
+    pub fn is_zero(&self) -> bool {
+        match self {
+            Profile::Constant(value) => *value == 0.0,
+            Profile::Ramp { from, to, .. } | Profile::SmoothRamp { from, to, .. } => {
+                *from == 0.0 && *to == 0.0
+            }
+            Profile::Table { points } => points.iter().all(|point| point[1] == 0.0),
+            Profile::Harmonic { mean, amplitude, .. } => *mean == 0.0 && *amplitude == 0.0,
+            Profile::HalfSine { base, peak, .. } => *base == 0.0 && *peak == 0.0,
+        }
+    }
+
+    /// Value at time `t` (s).
+    pub fn value(&self, t: f64) -> f64 {
+        match self {
+            Profile::Constant(value) => *value,
+            Profile::Ramp { from, to, start, duration } => {
+                from + (to - from) * fraction(t, *start, *duration)
+            }
+            Profile::SmoothRamp { from, to, start, duration } => {
+                let f = fraction(t, *start, *duration);
+                from + (to - from) * f * f * f * (10.0 + f * (6.0 * f - 15.0))
+            }
+            Profile::Table { points } => table(points, t).0,
+            Profile::Harmonic { mean, amplitude, frequency, phase } => {
+                mean + amplitude * libm::sin(TAU * frequency * t + phase)
+            }
+            Profile::HalfSine { base, peak, start, duration } => {
+                let f = (t - start) / duration;
+                if (0.0..=1.0).contains(&f) { base + peak * libm::sin(PI * f) } else { *base }
+            }
+        }
+    }
+
+    /// Rate of change at time `t`, per second.
+    pub fn rate(&self, t: f64) -> f64 {
+        match self {
+            Profile::Constant(_) => 0.0,
+            Profile::Ramp { from, to, start, duration } => {
+                let inside = t >= *start && t < start + duration;
+                if inside { (to - from) / duration } else { 0.0 }
+            }
+            Profile::SmoothRamp { from, to, start, duration } => {
+                let f = fraction(t, *start, *duration);
+                let rise = 30.0 * f * f * (1.0 - f) * (1.0 - f);
+                if rise == 0.0 { 0.0 } else { (to - from) * rise / duration }
+            }
+            Profile::Table { points } => table(points, t).1,
+            Profile::Harmonic { amplitude, frequency, phase, .. } => {
+                let pulsation = TAU * frequency;
+                amplitude * pulsation * libm::cos(pulsation * t + phase)
+            }
+            Profile::HalfSine { peak, start, duration, .. } => {
+                let f = (t - start) / duration;
+                let inside = (0.0..=1.0).contains(&f);
+                if inside { peak * PI / duration * libm::cos(PI * f) } else { 0.0 }
+            }
+        }
+    }
+
+    /// Second derivative at time `t`, per second²; jumps of the slope are not in it.
+    pub fn acceleration(&self, t: f64) -> f64 {
+        match self {
+            Profile::Constant(_) | Profile::Ramp { .. } | Profile::Table { .. } => 0.0,
+            Profile::SmoothRamp { from, to, start, duration } => {
+                let f = fraction(t, *start, *duration);
+                let bend = 60.0 * f * (1.0 - f) * (1.0 - 2.0 * f);
+                if bend == 0.0 { 0.0 } else { (to - from) * bend / (duration * duration) }
+            }
+            Profile::Harmonic { amplitude, frequency, phase, .. } => {
+                let pulsation = TAU * frequency;
+                -amplitude * pulsation * pulsation * libm::sin(pulsation * t + phase)
+            }
+            Profile::HalfSine { peak, start, duration, .. } => {
+                let f = (t - start) / duration;
+                let inside = (0.0..=1.0).contains(&f);
+                let pulsation = PI / duration;
+                if inside { -peak * pulsation * pulsation * libm::sin(PI * f) } else { 0.0 }
+            }
+        }
+    }
+
+    /// Times at which value or slope jumps; a step should end there.
+    pub fn corners(&self) -> Vec<f64> {
+        match self {
+            Profile::Constant(_) | Profile::Harmonic { .. } => Vec::new(),
+            Profile::Ramp { start, duration, .. }
+            | Profile::SmoothRamp { start, duration, .. }
+            | Profile::HalfSine { start, duration, .. } => vec![*start, start + duration],
+            Profile::Table { points } => points.iter().map(|point| point[0]).collect(),
+        }
+    }
+}
+
+/// How much of a ramp lies behind, 0 to 1; a ramp of no duration is a step.
+fn fraction(t: f64, start: f64, duration: f64) -> f64 {
+    if duration > 0.0 {
+        ((t - start) / duration).clamp(0.0, 1.0)
+    } else if t >= start {
+        1.0
+    } else {
+        0.0
+    }
+}
+
+/// Value and slope of a table.
+fn table(points: &[[f64; 2]], t: f64) -> (f64, f64) {
+    let after = points.partition_point(|point| point[0] <= t);
+    match (after.checked_sub(1).and_then(|i| points.get(i)), points.get(after)) {
+        (Some(a), Some(b)) => {
+            let slope = (b[1] - a[1]) / (b[0] - a[0]);
+            (a[1] + slope * (t - a[0]), slope)
+        }
+        (Some(end), None) | (None, Some(end)) => (end[1], 0.0),
+        (None, None) => (0.0, 0.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_are_the_derivatives_of_the_values() {
+        let profiles = [
+            Profile::Ramp { from: 1.0, to: 3.0, start: 0.2, duration: 0.5 },
+            Profile::SmoothRamp { from: 1.0, to: -3.0, start: 0.2, duration: 0.5 },
+            Profile::Table { points: vec![[0.0, 1.0], [0.3, 2.0], [0.9, -1.0]] },
+            Profile::Harmonic { mean: 2.0, amplitude: 0.5, frequency: 3.0, phase: 0.4 },
+            Profile::HalfSine { base: 1.0, peak: 5.0, start: 0.3, duration: 0.4 },
+        ];
+        let step = 1e-5;
+        for profile in profiles {
+            for k in 0..97 {
+                let t = 0.0101 * k as f64;
+                if profile.corners().iter().any(|corner| (t - corner).abs() < 2.0 * step) {
+                    continue;
+                }
+                let slope = (profile.value(t + step) - profile.value(t - step)) / (2.0 * step);
+                let error = (slope - profile.rate(t)).abs();
+                // Third derivative · step²/6, at most 3350·1e-10/6 for the harmonic.
+                assert!(error <= 1e-6, "{profile:?} at {t}: {error}");
+                let bend = (profile.rate(t + step) - profile.rate(t - step)) / (2.0 * step);
+                let error = (bend - profile.acceleration(t)).abs();
+                // The same for the fourth derivative: 63000·1e-10/6.
+                assert!(error <= 1e-5, "{profile:?} at {t}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn ramps_meet_their_ends() {
+        let ramp = Profile::SmoothRamp { from: 1.0, to: 4.0, start: 1.0, duration: 2.0 };
+        assert_eq!((ramp.value(0.0), ramp.value(3.0), ramp.value(9.0)), (1.0, 4.0, 4.0));
+        let step = Profile::Ramp { from: 0.0, to: 2.0, start: 1.0, duration: 0.0 };
+        assert_eq!((step.value(0.999), step.value(1.0), step.rate(1.0)), (0.0, 2.0, 0.0));
+    }
+}
