@@ -6,6 +6,8 @@ pub mod contacts;
 pub mod model;
 pub mod race;
 pub mod rk4;
+pub mod run;
+pub mod stability;
 pub mod start;
 pub mod state;
 pub mod system;

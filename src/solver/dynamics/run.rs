@@ -1,0 +1,251 @@
+//! A simulation: state, time, step after step, watched.
+
+use super::contacts::Driver;
+use super::model::DynamicProblem;
+use super::rk4::RungeKutta;
+use super::stability::{StepLimit, step_limit};
+use super::start;
+use super::state::{BODY, LEDGER, Layout, POSITION};
+use super::system::{Energy, Instant, System};
+use crate::kinematics::vec3::{add_scaled, dot, norm, sub};
+use crate::solver::statics::StaticsError;
+use thiserror::Error;
+
+/// Where a simulation starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// Static equilibrium under the loads at t = 0, balls and cage rolling.
+    Equilibrium,
+    /// Nominal positions, balls and cage rolling at the prescribed speed.
+    Nominal,
+}
+
+/// How a step is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stepping {
+    /// As given, s.
+    Fixed(f64),
+    /// This fraction of the stability limit at the start.
+    FractionOfLimit(f64),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunOptions {
+    pub start: Start,
+    pub stepping: Stepping,
+    pub driver: Driver,
+    /// Energy that may go missing, as a fraction of the energy that has been turned over (largest
+    /// contact energy plus all work and losses).
+    pub energy_limit: f64,
+}
+
+impl Default for RunOptions {
+    fn default() -> Self {
+        RunOptions {
+            start: Start::Equilibrium,
+            stepping: Stepping::FractionOfLimit(0.5),
+            driver: Driver::Lanes,
+            energy_limit: 0.01,
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SimulationError {
+    #[error(transparent)]
+    Start(#[from] StaticsError),
+    #[error("the step is {0} s; it must be positive and finite")]
+    Step(f64),
+    #[error(
+        "no contact is stiff at the start, so no step follows from it; give a step \
+         (numerics.step)"
+    )]
+    NoStep,
+    #[error("{body} has a value that is not finite at t = {time} s, step {step}")]
+    NotFinite { body: String, time: f64, step: u64 },
+    #[error(
+        "ball {ball} has left its races at t = {time} s, step {step}: it is {distance:.3e} m from \
+         the pitch circle, farther than its radius of {ball_radius:.3e} m"
+    )]
+    BallOutside { ball: usize, time: f64, step: u64, distance: f64, ball_radius: f64 },
+    #[error(
+        "energy is lost or made: {residual:.3e} J of {turned_over:.3e} J are unaccounted for at \
+         t = {time} s, step {step} (limit {limit}); take a smaller step"
+    )]
+    Energy { residual: f64, turned_over: f64, time: f64, step: u64, limit: f64 },
+}
+
+/// A simulation under way.
+pub struct Simulation {
+    pub system: System,
+    pub state: Vec<f64>,
+    pub time: f64,
+    /// s.
+    pub step_size: f64,
+    pub steps: u64,
+    /// What limits the step, where it was asked for.
+    pub limit: Option<StepLimit>,
+    options: RunOptions,
+    integrator: RungeKutta,
+    was_loaded: Vec<bool>,
+    first_energy: Energy,
+    largest_contact_energy: f64,
+    rates: Vec<f64>,
+}
+
+/// Everything that outputs are made of, at the present time.
+#[derive(Clone, Copy, Debug)]
+pub struct Snapshot {
+    pub time: f64,
+    pub instant: Instant,
+    pub energy: Energy,
+    /// Work and losses since the start, J, in the order of [`super::state::Ledger`].
+    pub ledger: [f64; LEDGER],
+    /// Energy unaccounted for, J.
+    pub residual: f64,
+}
+
+impl Simulation {
+    /// # Errors
+    /// No equilibrium to start from, or no step.
+    pub fn new(
+        problem: DynamicProblem,
+        options: RunOptions,
+    ) -> Result<Simulation, SimulationError> {
+        let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
+        let state = match options.start {
+            Start::Equilibrium => start::at_equilibrium(&problem, &layout)?.0,
+            Start::Nominal => start::nominal(&problem, &layout),
+        };
+        Simulation::from_state(problem, options, state, 0.0)
+    }
+
+    /// Goes on from a state vector at a time.
+    ///
+    /// # Errors
+    /// No step.
+    pub fn from_state(
+        problem: DynamicProblem,
+        options: RunOptions,
+        mut state: Vec<f64>,
+        time: f64,
+    ) -> Result<Simulation, SimulationError> {
+        let mut system = System::new(problem, options.driver);
+        system.tidy(time, &mut state);
+        let (step_size, limit) = match options.stepping {
+            Stepping::Fixed(step) => (step, None),
+            Stepping::FractionOfLimit(fraction) => {
+                let limit = step_limit(&mut system, time, &state).ok_or(SimulationError::NoStep)?;
+                (fraction * limit.step, Some(limit))
+            }
+        };
+        if !(step_size > 0.0 && step_size.is_finite()) {
+            return Err(SimulationError::Step(step_size));
+        }
+        let mut rates = vec![0.0; state.len()];
+        system.work = Default::default();
+        let instant = system.evaluate(time, &state, &mut rates);
+        let first_energy = system.energy(&state, &instant);
+        let mut was_loaded = vec![false; system.damping.len()];
+        system.commit_damping(&mut was_loaded);
+        Ok(Simulation {
+            integrator: RungeKutta::new(state.len()),
+            largest_contact_energy: first_energy.contact,
+            first_energy,
+            was_loaded,
+            rates,
+            system,
+            state,
+            time,
+            step_size,
+            steps: 0,
+            limit,
+            options,
+        })
+    }
+
+    /// One step; checks what can be checked cheaply.
+    ///
+    /// # Errors
+    /// A value that is not finite, or a ball outside its races; the state is that after the step.
+    pub fn step(&mut self) -> Result<(), SimulationError> {
+        self.step_by(self.step_size)
+    }
+
+    /// One step of a given size, as for the last one before an output.
+    ///
+    /// # Errors
+    /// As [`Simulation::step`].
+    pub fn step_by(&mut self, step: f64) -> Result<(), SimulationError> {
+        self.integrator.step(&mut self.system, self.time, step, &mut self.state);
+        self.steps += 1;
+        self.time += step;
+        self.system.commit_damping(&mut self.was_loaded);
+        self.watch()
+    }
+
+    /// Non-finite values spread within a step from any body to the races' velocities, so that a
+    /// look at the balls' and races' positions finds them all.
+    fn watch(&self) -> Result<(), SimulationError> {
+        let layout = self.system.layout;
+        let (time, step) = (self.time, self.steps);
+        let not_finite = |body: String| SimulationError::NotFinite { body, time, step };
+        let geometry = &self.system.problem.geometry;
+        let outer = &self.state[layout.outer()..layout.outer() + BODY];
+        let outer = super::state::BodyState::from_slice(outer);
+        let axis = outer.axis();
+        for ball in 0..layout.balls {
+            let position = layout.ball_vector(&self.state, POSITION, ball);
+            let arm = sub(position, outer.position);
+            let axial = dot(arm, axis);
+            let radial = norm(add_scaled(arm, -axial, axis));
+            let distance = libm::hypot(axial, radial - geometry.pitch_radius);
+            if !distance.is_finite() {
+                return Err(not_finite(format!("ball {}", ball + 1)));
+            }
+            if distance > geometry.ball_radius {
+                return Err(SimulationError::BallOutside {
+                    ball: ball + 1,
+                    time,
+                    step,
+                    distance,
+                    ball_radius: geometry.ball_radius,
+                });
+            }
+        }
+        let named = [
+            ("the inner race", layout.inner(), true),
+            ("the outer race", layout.outer(), self.system.problem.outer.is_some()),
+            ("the cage", layout.cage(), layout.has_cage),
+        ];
+        for (name, at, present) in named {
+            let finite = !present || self.state[at..at + BODY].iter().all(|v| v.is_finite());
+            if !finite {
+                return Err(not_finite(name.into()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Loads, energies and ledger at the present state.
+    ///
+    /// # Errors
+    /// More energy unaccounted for than the options allow.
+    pub fn snapshot(&mut self) -> Result<Snapshot, SimulationError> {
+        let instant = self.system.evaluate(self.time, &self.state, &mut self.rates);
+        let energy = self.system.energy(&self.state, &instant);
+        let at = self.system.layout.ledger();
+        let mut ledger = [0.0; LEDGER];
+        ledger.copy_from_slice(&self.state[at..at + LEDGER]);
+        let residual = energy.total() - self.first_energy.total() - ledger.iter().sum::<f64>();
+        self.largest_contact_energy = self.largest_contact_energy.max(energy.contact);
+        let turned_over: f64 =
+            self.largest_contact_energy + ledger.iter().map(|entry| entry.abs()).sum::<f64>();
+        let limit = self.options.energy_limit;
+        if residual.abs() <= limit * turned_over || turned_over == 0.0 {
+            return Ok(Snapshot { time: self.time, instant, energy, ledger, residual });
+        }
+        let (time, step) = (self.time, self.steps);
+        Err(SimulationError::Energy { residual, turned_over, time, step, limit })
+    }
+}
