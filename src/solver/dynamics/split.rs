@@ -364,36 +364,67 @@ fn over_lanes(
             prepared[l] = prepare(here.entrainment);
             table.sliding[pair] = here;
         }
-        let mut sums = [[0.0; LANES]; 9];
-        for (middle, share) in slices.middle.iter().zip(&slices.share) {
-            for l in 0..LANES {
-                let y = middle * width[l];
-                let before = TractionTangent {
-                    force: [sums[0][l], sums[1][l], sums[2][l]],
-                    slope: [3, 4, 5, 6, 7, 8].map(|i: usize| sums[i][l]),
-                };
-                let after = add_slice_tangent(
-                    &before,
-                    [slip[0][l], slip[1][l]],
-                    [spin[0][l], spin[1][l], spin[2][l]],
-                    y,
-                    y * y * curvature[l],
-                    *share,
-                    |speed| friction(speed, prepared[l]),
-                );
-                for i in 0..3 {
-                    sums[i][l] = after.force[i];
-                }
-                for i in 0..6 {
-                    sums[3 + i][l] = after.slope[i];
-                }
-            }
-        }
+        let sums = tangent_lanes(slices, &slip, &spin, &width, &curvature, &prepared, friction);
         for (l, &pair) in block.iter().enumerate() {
-            tangents[pair] = TractionTangent {
-                force: [sums[0][l], sums[1][l], sums[2][l]],
-                slope: [3, 4, 5, 6, 7, 8].map(|i: usize| sums[i][l]),
-            };
+            tangents[pair] = sums[l];
         }
     }
+}
+
+/// All slices of a block of contacts. One array for each sum: an array of arrays would keep the
+/// loop over lanes from becoming vector code.
+#[inline(always)]
+fn tangent_lanes(
+    slices: &Slices,
+    slip: &[[f64; LANES]; 2],
+    spin: &[[f64; LANES]; 3],
+    width: &[f64; LANES],
+    curvature: &[f64; LANES],
+    prepared: &[f64; LANES],
+    friction: impl Fn(f64, f64) -> (f64, f64) + Copy,
+) -> [TractionTangent; LANES] {
+    let mut force_t = [0.0; LANES];
+    let mut force_s = [0.0; LANES];
+    let mut moment = [0.0; LANES];
+    let mut tt = [0.0; LANES];
+    let mut ts = [0.0; LANES];
+    let mut tn = [0.0; LANES];
+    let mut ss = [0.0; LANES];
+    let mut sn = [0.0; LANES];
+    let mut nn = [0.0; LANES];
+    for (middle, share) in slices.middle.iter().zip(&slices.share) {
+        for l in 0..LANES {
+            let y = middle * width[l];
+            let before = TractionTangent {
+                force: [force_t[l], force_s[l], moment[l]],
+                slope: [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]],
+            };
+            let after = add_slice_tangent(
+                &before,
+                [slip[0][l], slip[1][l]],
+                [spin[0][l], spin[1][l], spin[2][l]],
+                y,
+                y * y * curvature[l],
+                *share,
+                |speed| friction(speed, prepared[l]),
+            );
+            force_t[l] = after.force[0];
+            force_s[l] = after.force[1];
+            moment[l] = after.force[2];
+            tt[l] = after.slope[0];
+            ts[l] = after.slope[1];
+            tn[l] = after.slope[2];
+            ss[l] = after.slope[3];
+            sn[l] = after.slope[4];
+            nn[l] = after.slope[5];
+        }
+    }
+    let mut sums = [TractionTangent::default(); LANES];
+    for (l, sum) in sums.iter_mut().enumerate() {
+        *sum = TractionTangent {
+            force: [force_t[l], force_s[l], moment[l]],
+            slope: [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]],
+        };
+    }
+    sums
 }
