@@ -20,6 +20,14 @@ pub struct RaceNow {
     pub tilts: [f64; 2],
 }
 
+impl RaceNow {
+    /// dξ/dt and dλ/dt, rad/s.
+    fn tilt_rates(&self) -> [f64; 2] {
+        let [e2, e3] = self.tilt_directions;
+        [dot(self.state.spin, e2) / libm::cos(self.tilts[1]), dot(self.state.spin, e3)]
+    }
+}
+
 /// Tilts ξ, λ of an axis (cos λ cos ξ, sin λ, −cos λ sin ξ).
 pub fn tilts_of(axis: Vec3) -> [f64; 2] {
     [libm::atan2(-axis[2], axis[0]), libm::asin(axis[1].clamp(-1.0, 1.0))]
@@ -134,8 +142,7 @@ pub fn rates(
     let state = &race.state;
     let [e2, e3] = race.tilt_directions;
     let cos_lambda = libm::cos(race.tilts[1]);
-    // Rates of the five coordinates.
-    let tilt_rates = [dot(state.spin, e2) / cos_lambda, dot(state.spin, e3)];
+    let tilt_rates = race.tilt_rates();
     let mut rates = RaceRates::default();
     // ξ turns about Y, λ about e₃: the moments conjugate to them, as in statics. A moment about e₂
     // of Q/cos λ does the work Q dξ.
@@ -224,15 +231,24 @@ fn impose(
             rates.drive_power += (body.inertia.mass * acceleration - force[i]) * state.velocity[i];
         }
     }
-    for k in 0..2 {
+    let [e2, e3] = race.tilt_directions;
+    let [xi_rate, lambda_rate] = race.tilt_rates();
+    let spin_about_axis = dot(state.spin, race.motion.axis);
+    let (sin, cos) = libm::sincos(race.tilts[1]);
+    // ω·e₂ = ξ̇ cos λ and ω·e₃ = λ̇, in directions that turn with the tilts (not with the race):
+    // ω̇·e = d(ω·e)/dt − ω·ė. The product of spin and the other tilt's rate is the gyroscopic one.
+    let turning = [
+        lambda_rate * spin_about_axis - 2.0 * xi_rate * lambda_rate * sin,
+        xi_rate * (xi_rate * sin * cos - cos * spin_about_axis),
+    ];
+    for (k, direction) in [e2, e3].into_iter().enumerate() {
         if let Drive::Motion(profile) = &body.drives[3 + k] {
-            // The part of the tilt's own rate; coupling of both tilts is of second order in them
-            // and moves no stage, since the rate itself is imposed.
-            let direction = race.tilt_directions[k];
-            let acceleration = profile.acceleration(t);
-            let inertia = body.inertia.transverse;
-            rates.drive_power +=
-                (inertia * acceleration - dot(transverse, direction)) * dot(state.spin, direction);
+            let own = profile.acceleration(t) * if k == 0 { cos } else { 1.0 };
+            let rate = own + turning[k];
+            rates.spin_rate =
+                add_scaled(rates.spin_rate, rate - dot(rates.spin_rate, direction), direction);
+            let moment = body.inertia.transverse * rate - dot(transverse, direction);
+            rates.drive_power += moment * dot(state.spin, direction);
         }
     }
 }
