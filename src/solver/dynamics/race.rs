@@ -20,14 +20,6 @@ pub struct RaceNow {
     pub tilts: [f64; 2],
 }
 
-impl RaceNow {
-    /// dξ/dt and dλ/dt, rad/s.
-    fn tilt_rates(&self) -> [f64; 2] {
-        let [e2, e3] = self.tilt_directions;
-        [dot(self.state.spin, e2) / libm::cos(self.tilts[1]), dot(self.state.spin, e3)]
-    }
-}
-
 /// Tilts ξ, λ of an axis (cos λ cos ξ, sin λ, −cos λ sin ξ).
 pub fn tilts_of(axis: Vec3) -> [f64; 2] {
     [libm::atan2(-axis[2], axis[0]), libm::asin(axis[1].clamp(-1.0, 1.0))]
@@ -142,7 +134,8 @@ pub fn rates(
     let state = &race.state;
     let [e2, e3] = race.tilt_directions;
     let cos_lambda = libm::cos(race.tilts[1]);
-    let tilt_rates = race.tilt_rates();
+    // Rates of the five coordinates.
+    let tilt_rates = [dot(state.spin, e2) / cos_lambda, dot(state.spin, e3)];
     let mut rates = RaceRates::default();
     // ξ turns about Y, λ about e₃: the moments conjugate to them, as in statics. A moment about e₂
     // of Q/cos λ does the work Q dξ.
@@ -232,9 +225,11 @@ fn impose(
         }
     }
     let [e2, e3] = race.tilt_directions;
-    let [xi_rate, lambda_rate] = race.tilt_rates();
-    let spin_about_axis = dot(state.spin, race.motion.axis);
-    let (sin, cos) = libm::sincos(race.tilts[1]);
+    let axis = race.motion.axis;
+    // sin λ and cos λ.
+    let (sin, cos) = (axis[1], libm::hypot(axis[0], axis[2]));
+    let (xi_rate, lambda_rate) = (dot(state.spin, e2) / cos, dot(state.spin, e3));
+    let spin_about_axis = dot(state.spin, axis);
     // ω·e₂ = ξ̇ cos λ and ω·e₃ = λ̇, in directions that turn with the tilts (not with the race):
     // ω̇·e = d(ω·e)/dt − ω·ė. The product of spin and the other tilt's rate is the gyroscopic one.
     let turning = [
