@@ -292,12 +292,13 @@ pub fn sliding(
 }
 
 /// What the slices add up to, per unit of normal load: traction on the ball along t and s, moment
-/// about n (m), and power lost (m/s).
+/// about n and, from the curvature of the contact, about t and s (m), and power lost (m/s).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SliceSum {
     pub rolling: f64,
     pub transverse: f64,
     pub moment: f64,
+    pub curvature_moment: [f64; 2],
     pub power: f64,
 }
 
@@ -327,6 +328,11 @@ pub fn add_slice(
         transverse: sum.transverse + across,
         // y s × (along t + across s) = −y along n.
         moment: sum.moment - y * along,
+        // −sagitta n × (along t + across s), the moment that brakes the ball (Heathcote).
+        curvature_moment: [
+            sum.curvature_moment[0] + sagitta * across,
+            sum.curvature_moment[1] - sagitta * along,
+        ],
         power: sum.power - per_speed * speed * speed,
     }
 }
@@ -336,7 +342,7 @@ pub fn add_slice(
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TractionForce {
     pub force: Vec3,
-    /// Moment about the contact point (about the normal), N·m.
+    /// Moment about the contact point, N·m: about the normal, if the contact is plane.
     pub moment: Vec3,
     /// Power taken from the bodies, W, ≤ 0.
     pub power: f64,
@@ -350,9 +356,12 @@ pub fn traction_force(
     normal_load: f64,
 ) -> TractionForce {
     let rolling = scale(sliding.rolling_direction, sum.rolling * normal_load);
+    let [about_t, about_s] = sum.curvature_moment;
+    let about_normal = scale(normal, sum.moment * normal_load);
+    let braking = add_scaled(about_normal, about_t * normal_load, sliding.rolling_direction);
     TractionForce {
         force: add_scaled(rolling, sum.transverse * normal_load, sliding.transverse_direction),
-        moment: scale(normal, sum.moment * normal_load),
+        moment: add_scaled(braking, about_s * normal_load, sliding.transverse_direction),
         power: sum.power * normal_load,
     }
 }

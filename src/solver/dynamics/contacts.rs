@@ -335,6 +335,8 @@ fn slice_lanes(
     let mut rolling = [0.0; LANES];
     let mut transverse = [0.0; LANES];
     let mut moment = [0.0; LANES];
+    let mut about_t = [0.0; LANES];
+    let mut about_s = [0.0; LANES];
     let mut power = [0.0; LANES];
     for (middle, share) in laws.slices.middle.iter().zip(&laws.slices.share) {
         for l in 0..LANES {
@@ -344,6 +346,7 @@ fn slice_lanes(
                 rolling: rolling[l],
                 transverse: transverse[l],
                 moment: moment[l],
+                curvature_moment: [about_t[l], about_s[l]],
                 power: power[l],
             };
             let after = add_slice(
@@ -358,6 +361,7 @@ fn slice_lanes(
             rolling[l] = after.rolling;
             transverse[l] = after.transverse;
             moment[l] = after.moment;
+            [about_t[l], about_s[l]] = after.curvature_moment;
             power[l] = after.power;
         }
     }
@@ -367,6 +371,7 @@ fn slice_lanes(
             rolling: rolling[l],
             transverse: transverse[l],
             moment: moment[l],
+            curvature_moment: [about_t[l], about_s[l]],
             power: power[l],
         };
     }

@@ -243,15 +243,26 @@ fn impose(
             rates.drive_power += (body.inertia.mass * acceleration - force[i]) * state.velocity[i];
         }
     }
-    for k in 0..2 {
+    let [e2, e3] = race.tilt_directions;
+    let axis = race.motion.axis;
+    // sin λ and cos λ.
+    let (sin, cos) = (axis[1], libm::hypot(axis[0], axis[2]));
+    let (xi_rate, lambda_rate) = (dot(state.spin, e2) / cos, dot(state.spin, e3));
+    let spin_about_axis = dot(state.spin, axis);
+    // ω·e₂ = ξ̇ cos λ and ω·e₃ = λ̇, in directions that turn with the tilts (not with the race):
+    // ω̇·e = d(ω·e)/dt − ω·ė. The product of spin and the other tilt's rate is the gyroscopic one.
+    let turning = [
+        lambda_rate * spin_about_axis - 2.0 * xi_rate * lambda_rate * sin,
+        xi_rate * (xi_rate * sin * cos - cos * spin_about_axis),
+    ];
+    for (k, direction) in [e2, e3].into_iter().enumerate() {
         if let Drive::Motion(profile) = &body.drives[3 + k] {
-            // The part of the tilt's own rate; coupling of both tilts is of second order in them
-            // and moves no stage, since the rate itself is imposed.
-            let direction = race.tilt_directions[k];
-            let acceleration = profile.acceleration(t);
-            let inertia = body.inertia.transverse;
-            rates.drive_power +=
-                (inertia * acceleration - dot(transverse, direction)) * dot(state.spin, direction);
+            let own = profile.acceleration(t) * if k == 0 { cos } else { 1.0 };
+            let rate = own + turning[k];
+            rates.spin_rate =
+                add_scaled(rates.spin_rate, rate - dot(rates.spin_rate, direction), direction);
+            let moment = body.inertia.transverse * rate - dot(transverse, direction);
+            rates.drive_power += moment * dot(state.spin, direction);
         }
     }
 }

@@ -101,7 +101,8 @@ pub struct Simulation {
     options: RunOptions,
     integrator: Stepper,
     was_loaded: Vec<bool>,
-    first_energy: Energy,
+    /// Energy at the start less what the ledger already held, J.
+    energy_before: f64,
     largest_contact_energy: f64,
     rates: Vec<f64>,
 }
@@ -135,21 +136,23 @@ impl Simulation {
             Start::Equilibrium => start::at_equilibrium(&problem, &layout)?.0,
             Start::Nominal => start::nominal(&problem, &layout),
         };
-        Simulation::from_state(problem, options, state, 0.0)
+        let mut simulation = Simulation::from_state(problem, options, state, 0.0)?;
+        simulation.system.tidy(0.0, &mut simulation.state);
+        Ok(simulation)
     }
 
-    /// Goes on from a state vector at a time.
+    /// Goes on from a state vector at a time, without a change to any bit of it; the energy is
+    /// balanced from here on.
     ///
     /// # Errors
     /// No step.
     pub fn from_state(
         problem: DynamicProblem,
         options: RunOptions,
-        mut state: Vec<f64>,
+        state: Vec<f64>,
         time: f64,
     ) -> Result<Simulation, SimulationError> {
         let mut system = System::new(problem, options.driver);
-        system.tidy(time, &mut state);
         let integrator = match options.integrator {
             Integrator::Split if system.laws.traction != TractionLaw::None => {
                 Stepper::Split(Split::new(&mut system))
@@ -170,12 +173,14 @@ impl Simulation {
         system.work = Default::default();
         let instant = system.evaluate(time, &state, &mut rates);
         let first_energy = system.energy(&state, &instant);
+        let at = system.layout.ledger();
+        let energy_before = first_energy.total() - state[at..at + LEDGER].iter().sum::<f64>();
         let mut was_loaded = vec![false; system.damping.len()];
         system.commit_damping(&mut was_loaded);
         Ok(Simulation {
             integrator,
             largest_contact_energy: first_energy.contact,
-            first_energy,
+            energy_before,
             was_loaded,
             rates,
             system,
@@ -268,7 +273,7 @@ impl Simulation {
         let at = self.system.layout.ledger();
         let mut ledger = [0.0; LEDGER];
         ledger.copy_from_slice(&self.state[at..at + LEDGER]);
-        let residual = energy.total() - self.first_energy.total() - ledger.iter().sum::<f64>();
+        let residual = energy.total() - self.energy_before - ledger.iter().sum::<f64>();
         self.largest_contact_energy = self.largest_contact_energy.max(energy.contact);
         let turned_over: f64 =
             self.largest_contact_energy + ledger.iter().map(|entry| entry.abs()).sum::<f64>();

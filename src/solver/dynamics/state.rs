@@ -125,9 +125,14 @@ impl BodyState {
         }
     }
 
+    /// The body whose 13 entries these are. Stages of Runge–Kutta leave the unit quaternions by the
+    /// square of the angle turned; the axis of a race must not get longer by that, since it carries
+    /// overlaps of micrometres.
     pub fn from_slice(entries: &[f64]) -> BodyState {
         let vector = |at: usize| [entries[at], entries[at + 1], entries[at + 2]];
-        let q = &entries[ORIENTATION..];
+        let q = &entries[ORIENTATION..ORIENTATION + 4];
+        let square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        let q = [0, 1, 2, 3].map(|i| q[i] / square.sqrt());
         BodyState {
             position: vector(POSITION),
             orientation: UnitQuaternion::new_unchecked(Quaternion::new(q[0], q[1], q[2], q[3])),

@@ -9,7 +9,9 @@ use super::state::{
 use crate::ch2_housing::bearing::cage::{
     AxisMotion, CageContact, Guidance, cage_energy, guide_contact, pocket_contact,
 };
-use crate::ch2_housing::bearing::contact::{ContactDamping, RaceLaw, strain_energy};
+use crate::ch2_housing::bearing::contact::{
+    ContactDamping, RaceLaw, normal_load, strain_energy,
+};
 use crate::ch2_housing::bearing::geometry::Raceway;
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use crate::ch2_housing::bearing::traction::{Slices, TractionLaw};
@@ -206,6 +208,9 @@ impl System {
         on_races: &mut [RaceLoads; 2],
         ledger: &mut [f64; LEDGER],
     ) {
+        if self.problem.damping != ContactDamping::None {
+            ledger[Ledger::ContactDamping as usize] += self.damping_power();
+        }
         let has_traction = self.laws.traction != TractionLaw::None;
         for &pair in &self.table.active {
             let (side, ball) = (pair / self.layout.padded, pair % self.layout.padded);
@@ -220,8 +225,6 @@ impl System {
                 moment = traction.moment;
                 ledger[Ledger::Traction as usize] += traction.power;
             }
-            let elastic = load_without_damping(&self.laws.races[side], contact.overlap);
-            ledger[Ledger::ContactDamping as usize] -= (load - elastic) * contact.closing_speed;
             self.ball_force[ball] = add(self.ball_force[ball], force);
             let about_ball = add(cross(arm, force), moment);
             self.ball_moment[ball] = add(self.ball_moment[ball], about_ball);
@@ -233,6 +236,21 @@ impl System {
             loads.force = sub(loads.force, force);
             loads.moment = sub(loads.moment, add(cross(race_arm, force), moment));
         }
+    }
+
+    /// Power of contact damping, W, ≤ 0. A contact that opens faster than its damping allows
+    /// carries no load, so that it is not an active one, but loses what it has stored.
+    fn damping_power(&self) -> f64 {
+        let mut power = 0.0;
+        for (side, law) in self.laws.races.iter().enumerate() {
+            for ball in 0..self.layout.balls {
+                let pair = side * self.layout.padded + ball;
+                let contact = &self.table.contact[pair];
+                let elastic = normal_load(law.stiffness, contact.overlap);
+                power -= (self.table.load[pair] - elastic) * contact.closing_speed;
+            }
+        }
+        power
     }
 
     /// Pocket and guide contacts of the cage.
@@ -375,10 +393,6 @@ impl System {
             }
         }
     }
-}
-
-fn load_without_damping(law: &RaceLaw, overlap: f64) -> f64 {
-    crate::ch2_housing::bearing::contact::normal_load(law.stiffness, overlap)
 }
 
 fn add_load(loads: &mut RaceLoads, centre: Vec3, point: Vec3, force: Vec3) {
