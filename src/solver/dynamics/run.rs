@@ -85,11 +85,11 @@ pub struct Simulation {
     pub steps: u64,
     /// What limits the step, where it was asked for.
     pub limit: Option<StepLimit>,
-    options: RunOptions,
+    pub(super) options: RunOptions,
     integrator: RungeKutta,
-    was_loaded: Vec<bool>,
-    first_energy: Energy,
-    largest_contact_energy: f64,
+    pub(super) was_loaded: Vec<bool>,
+    pub(super) first_energy: Energy,
+    pub(super) largest_contact_energy: f64,
     rates: Vec<f64>,
 }
 
