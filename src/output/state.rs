@@ -52,9 +52,9 @@ pub struct StateFile {
     pub step_size: f64,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub limit: Option<LimitEntry>,
-    /// The interval that the scene asked for, if it did, s.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub output_interval: Option<f64>,
+    /// When the run was to end, and the time between rows that it was asked for, s.
+    pub end: f64,
+    pub output_interval: f64,
     pub steps_per_row: u64,
     pub rows: usize,
     /// Wall time so far, s.
@@ -94,6 +94,8 @@ pub enum StateError {
         path.display()
     )]
     Scene { path: PathBuf },
+    #[error("the rows beside {} are {kept} s apart, the scene now asks for {asked} s", path.display())]
+    Interval { path: PathBuf, kept: f64, asked: f64 },
     #[error("{} holds a damaged state: {what}", path.display())]
     Damaged { path: PathBuf, what: &'static str },
     #[error("{} has no rows that fit the state beside it", path.display())]
@@ -110,17 +112,15 @@ pub enum StateError {
     Write(#[from] WriteError),
 }
 
-/// Sha256 of what decides every bit of a run: the problem, how it is stepped and sampled, what is
-/// recorded, and the version. The end is not in it, so that a run can be extended.
+/// Sha256 of what decides every bit of a run but its length: the problem, how it is stepped, what
+/// is recorded, and the version. The end is not in it, so that a run can be extended, nor the
+/// output interval, which is compared by itself.
 pub fn fingerprint(problem: &DynamicProblem, request: &RunRequest) -> String {
     // Debug text has every field, and the shortest decimals that tell two numbers apart.
-    let RunRequest { options, output_interval, channels, end: _ } = request;
+    let RunRequest { options, channels, end: _, output_interval: _ } = request;
     let groups: Vec<&str> =
         ChannelGroup::ALL.into_iter().filter(|g| channels.contains(g)).map(|g| g.name()).collect();
-    let text = format!(
-        "{} {problem:?} {options:?} {output_interval:?} {groups:?}",
-        env!("CARGO_PKG_VERSION")
-    );
+    let text = format!("{} {problem:?} {options:?} {groups:?}", env!("CARGO_PKG_VERSION"));
     Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
@@ -130,7 +130,8 @@ pub struct StateRecord {
     pub fingerprint: String,
     pub stopped: Stopped,
     pub error: Option<String>,
-    pub output_interval: Option<f64>,
+    /// As asked for, s.
+    pub output_interval: f64,
     pub seconds: f64,
 }
 
@@ -140,7 +141,7 @@ pub struct StateRecord {
 /// A number that is not finite (the state there stays), a file that cannot be written.
 pub fn save(folder: &Path, session: &Session, record: &StateRecord) -> Result<(), StateError> {
     let (checkpoint, rows) = session.resumable();
-    let file = state_file(&checkpoint, rows, session.steps_per_row, record);
+    let file = state_file(&checkpoint, rows, session, record);
     check_finite(&file)?;
     session.recorder.series(session.recorder.rows())?.write_npy(&folder.join(SERIES))?;
     let value = serde_json::to_value(&file).expect("a state is plain JSON");
@@ -180,6 +181,10 @@ pub fn resume(
     if file.fingerprint != fingerprint(&problem, request) {
         return Err(StateError::Scene { path });
     }
+    if !request.accepts_interval(file.output_interval, file.end) {
+        let (kept, asked) = (file.output_interval, request.output_interval);
+        return Err(StateError::Interval { path, kept, asked });
+    }
     check_finite(file)?;
     let checkpoint = checkpoint(file);
     let damaged = |what| StateError::Damaged { path: path.clone(), what };
@@ -206,7 +211,7 @@ pub fn resume(
 fn state_file(
     checkpoint: &Checkpoint,
     rows: usize,
-    steps_per_row: u64,
+    session: &Session,
     record: &StateRecord,
 ) -> StateFile {
     let energy = &checkpoint.first_energy;
@@ -224,8 +229,9 @@ fn state_file(
             step: limit.step,
             eigenvalue: [limit.eigenvalue.re, limit.eigenvalue.im],
         }),
+        end: session.end,
         output_interval: record.output_interval,
-        steps_per_row,
+        steps_per_row: session.steps_per_row,
         rows,
         seconds: record.seconds,
         state: checkpoint.state.clone(),
@@ -281,10 +287,17 @@ fn checkpoint(file: &StateFile) -> Checkpoint {
 /// JSON has no way to write NaN and infinity.
 fn check_finite(file: &StateFile) -> Result<(), StateError> {
     let limit = file.limit.iter().flat_map(|l| [l.step, l.eigenvalue[0], l.eigenvalue[1]]);
-    let single = [file.time, file.step_size, file.seconds, file.largest_contact_energy];
+    let single = [file.time, file.step_size, file.seconds, file.end, file.output_interval];
     let parts: [(&'static str, Vec<f64>); 4] = [
-        ("time, step or energy", single.into_iter().chain(file.first_energy).collect()),
-        ("a step limit", limit.chain(file.output_interval).collect()),
+        (
+            "time, step or energy",
+            single
+                .into_iter()
+                .chain(file.first_energy)
+                .chain([file.largest_contact_energy])
+                .collect(),
+        ),
+        ("a step limit", limit.collect()),
         ("an entry of the state", file.state.clone()),
         ("a damping factor", file.damping.clone()),
     ];

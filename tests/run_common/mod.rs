@@ -101,7 +101,7 @@ pub fn request(step: f64, rows: usize) -> RunRequest {
     RunRequest {
         options: RunOptions { stepping: Stepping::Fixed(step), ..RunOptions::default() },
         end: step * (10.0 * rows as f64 + 3.4),
-        output_interval: Some(10.0 * step),
+        output_interval: 10.0 * step,
         channels: ChannelGroup::ALL.to_vec(),
     }
 }

@@ -16,9 +16,8 @@ pub struct RunRequest {
     pub options: RunOptions,
     /// s.
     pub end: f64,
-    /// Wanted time between rows, s; `None`: a thousandth of the run, and whatever it was before
-    /// where a run is extended.
-    pub output_interval: Option<f64>,
+    /// Wanted time between rows, s.
+    pub output_interval: f64,
     pub channels: Vec<ChannelGroup>,
 }
 
@@ -26,8 +25,12 @@ impl RunRequest {
     /// Rows a run has unless its scene says otherwise.
     const DEFAULT_ROWS: f64 = 1000.0;
 
-    pub fn interval(&self) -> f64 {
-        self.output_interval.unwrap_or(self.end / Self::DEFAULT_ROWS)
+    /// Whether `interval` may take the place of the wanted one: it is the same, or both follow
+    /// from the end of their run (at `end`).
+    pub fn accepts_interval(&self, interval: f64, end: f64) -> bool {
+        let follows = |interval: f64, end: f64| interval == end / Self::DEFAULT_ROWS;
+        interval == self.output_interval
+            || (follows(interval, end) && follows(self.output_interval, self.end))
     }
 }
 
@@ -75,7 +78,7 @@ impl Session {
         if !(request.end > 0.0 && request.end.is_finite()) {
             return Err(SessionError::End(request.end));
         }
-        let interval = request.interval();
+        let interval = request.output_interval;
         if !(interval > 0.0 && interval.is_finite()) {
             return Err(SessionError::Interval(interval));
         }
