@@ -174,9 +174,17 @@ fn azimuths(table: &RunTable, ball: usize) -> Option<Vec<f64>> {
     Some(angles.into_iter().map(|angle| angle.rem_euclid(360.0)).collect())
 }
 
-/// Ball 1 stands for all: each passes every azimuth.
+/// Ball 1 stands for all: each passes every azimuth. Its last turn is drawn, or what there is.
 fn slip_spin(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
-    let Some(azimuth) = azimuths(table, 1) else { return Ok(Vec::new()) };
+    let Some(angle) = table.windowed("ball_1_angle") else { return Ok(Vec::new()) };
+    let Some(last) = angle.last() else { return Ok(Vec::new()) };
+    let over_last_turn = |values: Vec<f64>| {
+        let turn = angle.iter().zip(values).filter(|(angle, _)| (**angle - last).abs() < 360.0);
+        let mut points: Vec<[f64; 2]> =
+            turn.map(|(angle, value)| point(angle.rem_euclid(360.0), value)).collect();
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        thin(points, POINTS)
+    };
     let mut slip = Vec::new();
     let mut spin = Vec::new();
     for race in ["inner", "outer"] {
@@ -186,17 +194,10 @@ fn slip_spin(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, Plo
         else {
             return Ok(Vec::new());
         };
-        if azimuth.is_empty() {
-            return Ok(Vec::new());
-        }
-        let size = rolling.iter().zip(&transverse).map(|(a, b)| libm::hypot(*a, *b));
+        let size = rolling.iter().zip(&transverse).map(|(a, b)| libm::hypot(*a, *b)).collect();
         let name = format!("ball 1 on {race} race");
-        let every = azimuth.len().div_ceil(2 * POINTS).max(1);
-        let points = |values: Vec<f64>| -> Vec<[f64; 2]> {
-            azimuth.iter().zip(values).map(|(a, v)| point(*a, v)).step_by(every).collect()
-        };
-        slip.push(Curve::new(name.clone(), points(size.collect())));
-        spin.push(Curve::new(name, points(about_normal)));
+        slip.push(Curve::new(name.clone(), over_last_turn(size)));
+        spin.push(Curve::new(name, over_last_turn(about_normal)));
     }
     let mut drawn = Vec::new();
     for (file, what, axis, curves) in [
@@ -207,7 +208,7 @@ fn slip_spin(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, Plo
             title: format!("{title}: {what} over azimuth"),
             x: Axis::linear("azimuth", "deg"),
             y: axis,
-            style: Style::Markers,
+            style: Style::Lines,
             curves,
         })?;
         drawn.push((file.into(), svg));
