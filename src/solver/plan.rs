@@ -153,7 +153,7 @@ fn traction(problem: &DynamicProblem) -> Stage {
 
 fn heathcote(problem: &DynamicProblem) -> Stage {
     match (problem.heathcote, &problem.traction) {
-        (true, TractionLaw::None) => stage("curved contact surface", false, "no traction"),
+        (_, TractionLaw::None) => stage("curved contact surface", false, "no slices"),
         (true, _) => stage("curved contact surface", true, "asked for (Heathcote slip)"),
         (false, _) => {
             stage("curved contact surface", false, "not asked for: slices lie in a plane")
@@ -205,7 +205,10 @@ fn free_coordinates(body: &RaceBody) -> usize {
 }
 
 fn race_freedom(body: &RaceBody) -> String {
-    format!("{} of 6 coordinates follow from loads, the others are given", free_coordinates(body))
+    match free_coordinates(body) {
+        6 => "all six coordinates follow from loads".into(),
+        free => format!("{free} of 6 coordinates follow from loads, the others are given"),
+    }
 }
 
 fn inner_race(body: &RaceBody) -> Stage {
