@@ -9,7 +9,7 @@ use bearing_dynamics::output::state::{
     self, StateError, StateRecord, Stopped, fingerprint, read, resume, save,
 };
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
-use bearing_dynamics::solver::dynamics::run::SimulationError;
+use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError};
 use run_common::{complete, frictionless, request};
 use std::fs;
 use std::path::Path;
@@ -64,8 +64,13 @@ fn assert_same_files(expected: &Path, found: &Path) {
 #[test]
 fn interrupted_anywhere_the_files_are_the_same() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, problem) in [("complete", complete()), ("frictionless", frictionless())] {
-        let request = request(STEP, 40);
+    for (name, problem, integrator) in [
+        ("complete", complete(), Integrator::RungeKutta),
+        ("split", complete(), Integrator::Split),
+        ("frictionless", frictionless(), Integrator::RungeKutta),
+    ] {
+        let mut request = request(STEP, 40);
+        request.options.integrator = integrator;
         let whole = folder.path().join(name);
         let started = Session::start(problem.clone(), &request).unwrap();
         finish(&whole, &problem, &request, started);

@@ -8,6 +8,7 @@ pub mod model;
 pub mod race;
 pub mod rk4;
 pub mod run;
+pub mod split;
 pub mod stability;
 pub mod start;
 pub mod state;
