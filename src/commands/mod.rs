@@ -3,9 +3,11 @@
 pub mod check;
 pub mod compare;
 pub mod echo;
+pub mod echo_run;
 pub mod pack;
 pub mod pictures;
 pub mod plan;
+pub mod run;
 pub mod schema;
 pub mod solve;
 pub mod statics;

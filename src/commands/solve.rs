@@ -40,7 +40,12 @@ pub fn solve_scene(scene: &Scene, read_seconds: f64) -> Result<Solved, Box<dyn E
 
 /// The plan as text, one line a stage.
 pub fn plan_lines(problem: &StaticProblem) -> Vec<String> {
-    plan::statics(problem)
+    lines(plan::statics(problem))
+}
+
+/// Stages as text, one line each.
+pub fn lines(stages: Vec<plan::Stage>) -> Vec<String> {
+    stages
         .into_iter()
         .map(|stage| {
             let mark = if stage.included { "does " } else { "skips" };

@@ -161,7 +161,7 @@ pub fn static_summary(solution: &StaticSolution, run: &RunRecord) -> Result<Valu
     let mut summary = Map::new();
     let mut put = |name: &str, value: Value| summary.insert(name.to_string(), value);
     put("kind", json!("static solution"));
-    put("program", json!({ "name": "bearing-dynamics", "version": env!("CARGO_PKG_VERSION") }));
+    put("program", program());
     put("threads", json!(run.threads));
     put("seconds", seconds(&run.seconds)?);
     put("determinacy", determinacy(&solution.determinacy)?);
@@ -187,15 +187,7 @@ pub fn static_summary(solution: &StaticSolution, run: &RunRecord) -> Result<Valu
     let balls: Result<Vec<Value>, _> =
         solution.balls.iter().enumerate().map(|(index, b)| ball(index + 1, b)).collect();
     put("balls", json!(balls?));
-    put("assumptions", strings(&run.assumptions));
-    put("plan", json!(run.plan));
-    put("scene", run.scene.clone());
-    for (name, section) in &run.sections {
-        refuse_null(name, section)?;
-        if summary.insert(name.clone(), section.clone()).is_some() {
-            return Err(ResultsError::SectionName { name: name.clone() });
-        }
-    }
+    insert_echo(&mut summary, run)?;
     Ok(Value::Object(summary))
 }
 
@@ -317,6 +309,38 @@ fn vector(name: &str, vector: &Vector3<f64>, unit: &str) -> Result<Value, Result
         "y": quantity(&format!("{name} y"), vector.y, unit)?,
         "z": quantity(&format!("{name} z"), vector.z, unit)?,
     }))
+}
+
+fn program() -> Value {
+    json!({ "name": "bearing-dynamics", "version": env!("CARGO_PKG_VERSION") })
+}
+
+/// Program, threads, seconds, and all that a record echoes: what every kind of summary has.
+///
+/// # Errors
+/// A time that is not finite, a `null` in a further section, a section name used twice.
+pub fn insert_record(
+    summary: &mut Map<String, Value>,
+    run: &RunRecord,
+) -> Result<(), ResultsError> {
+    summary.insert("program".into(), program());
+    summary.insert("threads".into(), json!(run.threads));
+    summary.insert("seconds".into(), seconds(&run.seconds)?);
+    insert_echo(summary, run)
+}
+
+/// Assumptions, plan, scene and further sections of a record.
+fn insert_echo(summary: &mut Map<String, Value>, run: &RunRecord) -> Result<(), ResultsError> {
+    summary.insert("assumptions".into(), strings(&run.assumptions));
+    summary.insert("plan".into(), json!(run.plan));
+    summary.insert("scene".into(), run.scene.clone());
+    for (name, section) in &run.sections {
+        refuse_null(name, section)?;
+        if summary.insert(name.clone(), section.clone()).is_some() {
+            return Err(ResultsError::SectionName { name: name.clone() });
+        }
+    }
+    Ok(())
 }
 
 fn refuse_null(path: &str, value: &Value) -> Result<(), ResultsError> {

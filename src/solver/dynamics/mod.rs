@@ -2,6 +2,7 @@
 //!
 //! `model` says what is simulated, `state` where it lies, `contacts` and `race` turn states into
 //! loads, `system` into rates; `rk4` integrates, `run` drives a simulation from start to end.
+pub mod checkpoint;
 pub mod contacts;
 pub mod model;
 pub mod race;

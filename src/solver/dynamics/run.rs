@@ -98,12 +98,12 @@ pub struct Simulation {
     pub steps: u64,
     /// What limits the step, where it was asked for.
     pub limit: Option<StepLimit>,
-    options: RunOptions,
+    pub(super) options: RunOptions,
     integrator: Stepper,
-    was_loaded: Vec<bool>,
+    pub(super) was_loaded: Vec<bool>,
     /// Energy at the start less what the ledger already held, J.
-    energy_before: f64,
-    largest_contact_energy: f64,
+    pub(super) energy_before: f64,
+    pub(super) largest_contact_energy: f64,
     rates: Vec<f64>,
 }
 
