@@ -41,11 +41,6 @@ pub fn scene(scene: &Scene) -> Echo {
 
 fn bearing(scene: &Scene) -> Echo {
     let (geometry, sizes) = (&scene.geometry, &scene.dimensions);
-    let through = match sizes.clearance_through {
-        ClearanceThrough::Ball => "ball",
-        ClearanceThrough::InnerRace => "inner-race",
-        ClearanceThrough::OuterRace => "outer-race",
-    };
     let mut echo = json!({
         "kind": match geometry.kind {
             BearingKind::DeepGroove => "deep-groove",
@@ -60,7 +55,7 @@ fn bearing(scene: &Scene) -> Echo {
         "clearance": {
             "radial": length(sizes.radial_clearance)?,
             "diametral": length(sizes.diametral_clearance)?,
-            "through": through,
+            "through": through(sizes.clearance_through),
         },
         "pitch_radius": length(geometry.pitch_radius)?,
         "contact_angle":
@@ -88,6 +83,15 @@ fn bearing(scene: &Scene) -> Echo {
         echo["cage"] = cage(given)?;
     }
     Ok(echo)
+}
+
+/// As written in a scene.
+pub fn through(part: ClearanceThrough) -> &'static str {
+    match part {
+        ClearanceThrough::Ball => "ball",
+        ClearanceThrough::InnerRace => "inner-race",
+        ClearanceThrough::OuterRace => "outer-race",
+    }
 }
 
 fn length(value: f64) -> Echo {

@@ -52,11 +52,12 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let document = Document::read_file(&arguments.scene)?;
     let grid = Grid::new(&document, &arguments.vary)?;
     // A scene that cannot be solved at all is said before anything is written.
-    grid.check_first_point(&document)?;
+    grid.check(&document)?;
     let folder = results_folder(&arguments.scene, &arguments.out);
     let fingerprint = grid.fingerprint(&document, arguments.cold);
     let journal = Journal::open(&folder, &fingerprint, grid.chunks(CHUNK), arguments.fresh)?;
     let resumed = journal.finished();
+    report::remove_earlier(&folder)?;
 
     let interrupted = Arc::new(AtomicBool::new(false));
     let flag = interrupted.clone();
@@ -99,10 +100,11 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let reused = resumed.min(grid.len());
     let note = if reused > 0 { format!(" ({reused} resumed)") } else { String::new() };
     say(&format!(
-        "{} points{note} in {:.2} s on {} threads: {}\n",
+        "{} points{note} in {:.2} s on {} thread{}: {}\n",
         grid.len(),
         record.seconds,
         record.threads,
+        if record.threads == 1 { "" } else { "s" },
         folder.join("sweep.csv").display()
     ))?;
     let failures: Vec<_> = chunks.iter().flat_map(|chunk| &chunk.failures).collect();
