@@ -131,7 +131,7 @@ fn an_interrupted_sweep_keeps_its_points_and_resumes_to_the_same_bytes() {
             .unwrap_or_else(|| panic!("{message}"))
             .parse()
             .unwrap();
-        assert!(kept >= 3 * CHUNK && kept < POINTS && kept % CHUNK == 0, "{kept}");
+        assert!((3 * CHUNK..POINTS).contains(&kept) && kept.is_multiple_of(CHUNK), "{kept}");
         let partial = table(&sweep.out);
         assert_eq!(partial.data().nrows(), kept);
         let summary = json(&sweep.out.join("sweep.json"));
