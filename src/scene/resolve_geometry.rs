@@ -308,45 +308,29 @@ fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
     // Grooves first fit the nominal ball; the ball in use is checked below.
     let inner_groove = groove(reader, "bearing.inner_race", nominal, nominal)?;
     let outer_groove = groove(reader, "bearing.outer_race", nominal, nominal)?;
-    let (sine, cosine) = libm::sincos(angle);
     // Distance of the groove centres when the nominal ball touches both races.
     let centre_distance = inner_groove + outer_groove - 2.0 * nominal;
-    let mut inner_centre = pitch + (inner_groove - nominal) * cosine;
-    let mut outer_centre = pitch - (outer_groove - nominal) * cosine;
-    let mut ball = nominal;
     // Beyond this the groove centres pass each other and the gap opens again.
-    let least = -centre_distance * cosine;
+    let least = -centre_distance * libm::cos(angle);
     if clearance <= least {
         let problem = Problem::InterferenceTooLarge { clearance, least };
         return Err(reader.document.error(clearance_key(reader), problem));
     }
-    match through {
-        ClearanceThrough::Ball if clearance != 0.0 => {
-            let touching =
-                libm::hypot(centre_distance * cosine + clearance, centre_distance * sine);
-            ball = 0.5 * (inner_groove + outer_groove - touching);
-        }
-        ClearanceThrough::Ball => {}
-        ClearanceThrough::InnerRace => inner_centre -= clearance,
-        ClearanceThrough::OuterRace => outer_centre += clearance,
-    }
+    // The number of balls plays no part in the sizes; it is checked against them later.
+    let touching =
+        BearingGeometry::angular_contact(1, pitch, inner_groove, outer_groove, nominal, angle);
+    let bearing = touching.with_radial_clearance(clearance, through);
+    let ball = bearing.ball_radius;
+    let (inner_radius, outer_radius) = bearing.race_radii();
     groove(reader, "bearing.inner_race", ball, nominal)?;
     groove(reader, "bearing.outer_race", ball, nominal)?;
     let sizes = Sizes {
         ball,
         nominal_ball: nominal,
-        inner: Raceway {
-            centre_radius: inner_centre,
-            centre_axial: (inner_groove - nominal) * sine,
-            groove_radius: inner_groove,
-        },
-        outer: Raceway {
-            centre_radius: outer_centre,
-            centre_axial: -(outer_groove - nominal) * sine,
-            groove_radius: outer_groove,
-        },
-        inner_radius: inner_centre - inner_groove,
-        outer_radius: outer_centre + outer_groove,
+        inner: bearing.inner,
+        outer: bearing.outer,
+        inner_radius,
+        outer_radius,
         pitch,
         contact_angle: angle,
         clearance,

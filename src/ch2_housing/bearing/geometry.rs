@@ -142,6 +142,9 @@ impl BearingGeometry {
     /// the contact line.
     pub fn with_radial_clearance(&self, clearance: f64, through: ClearanceThrough) -> Self {
         let mut changed = *self;
+        if clearance == self.radial_clearance {
+            return changed;
+        }
         changed.radial_clearance = clearance;
         let change = clearance - self.radial_clearance;
         match through {
