@@ -99,6 +99,13 @@ pub fn polygon(area: &Area, points: Vec<Point>, colour: RGBColor) -> Result<(), 
     area.draw(&Polygon::new(points, colour.filled())).map_err(failed)
 }
 
+/// Clears the ground under a centred text of `TEXT_SIZE`, so that no line runs through it.
+pub fn blank(area: &Area, content: &str, (x, y): Point) -> Result<(), PlotError> {
+    let (half, high) = (text_width(content) / 2, TEXT_SIZE / 2);
+    let corners = [(x - half, y - high), (x + half, y + high)];
+    area.draw(&Rectangle::new(corners, WHITE.filled())).map_err(failed)
+}
+
 pub fn disc(
     area: &Area,
     centre: Point,
@@ -194,10 +201,10 @@ impl Legend {
         area: &Area,
         curves: &[Curve],
         top: i32,
-        with_line: bool,
-        with_marker: bool,
+        line_and_marker: impl Fn(&Curve) -> (bool, bool),
     ) -> Result<(), PlotError> {
         for &(index, x, row) in &self.entries {
+            let (with_line, with_marker) = line_and_marker(&curves[index]);
             let y = top + row * LEGEND_ROW + LEGEND_ROW / 2;
             let colour = COLOURS[index % COLOURS.len()];
             if with_line {
