@@ -15,12 +15,8 @@ struct Documented {
 }
 
 #[test]
-fn commands_of_the_readme_run() {
+fn documented_commands_run() {
     run_all("README.md", &["check", "plan", "statics", "sweep", "pack", "compare", "schema"]);
-}
-
-#[test]
-fn commands_of_the_scene_reference_run() {
     run_all("docs/scene.md", &[]);
 }
 
