@@ -405,8 +405,8 @@ impl<'a> Search<'a> {
         let ball_radius = self.model.contacts.ball_radius;
         for i in (0..5).filter(|&i| self.free[i]) {
             let travel = here.at[i] * self.model.scale[i];
-            // Written so that NaN leaves here too.
-            if !(travel.abs() <= ball_radius) {
+            // NaN leaves here too.
+            if travel.is_nan() || travel.abs() > ball_radius {
                 let coordinate = COORDINATE_NAMES[i];
                 return Err(StaticsError::NoEquilibrium { coordinate, travel, ball_radius });
             }

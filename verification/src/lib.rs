@@ -21,3 +21,4 @@ pub mod pareto;
 pub mod published;
 pub mod report;
 pub mod runner;
+pub mod studies;

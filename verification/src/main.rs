@@ -160,8 +160,10 @@ fn accept(case: &str, reason: &str, folder: &Path) -> Result<bool, String> {
 }
 
 fn studies(out: &Path, only: Option<&str>) -> Result<bool, String> {
-    let selected: Vec<_> =
-        pareto::STUDIES.iter().filter(|study| only.is_none_or(|id| id == study.id)).collect();
+    let selected: Vec<_> = verification::studies::STUDIES
+        .iter()
+        .filter(|study| only.is_none_or(|id| id == study.id))
+        .collect();
     if let (Some(id), true) = (only, selected.is_empty()) {
         return Err(format!("no study `{id}`"));
     }

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use plotters::prelude::*;
+use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use thiserror::Error;
 
 use crate::case::CaseError;
@@ -24,9 +24,6 @@ pub struct Study {
     pub error_label: &'static str,
     pub run: fn(&mut ParetoContext) -> Result<(), CaseError>,
 }
-
-/// Every study.
-pub const STUDIES: &[Study] = &[];
 
 /// One variant: how long it took and how far off it was.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,104 +161,33 @@ fn table(study: &Study, points: &[Point]) -> String {
 /// Errors below this are drawn there: a logarithmic axis has no zero.
 const SMALLEST_DRAWN_ERROR: f64 = 1e-17;
 
+/// One curve a series, in the order of its variants, and the front through all of them.
 fn draw(study: &Study, points: &[Point]) -> Result<String, ParetoError> {
-    let place = |point: &Point| (point.seconds.max(1e-9), point.error.max(SMALLEST_DRAWN_ERROR));
-    let span = |values: Vec<f64>| {
-        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = values.iter().copied().fold(0.0, f64::max);
-        // Whole decades around the points.
-        10f64.powf((low / 1.5).log10().floor())..10f64.powf((high * 1.5).log10().ceil())
-    };
-    let seconds = span(points.iter().map(|point| place(point).0).collect());
-    let errors = span(points.iter().map(|point| place(point).1).collect());
-    let mut svg = String::new();
-    {
-        let root = SVGBackend::with_string(&mut svg, (860, 520)).into_drawing_area();
-        draw_chart(study, points, &root, seconds, errors, place)
-            .map_err(|error| ParetoError::Drawing(error.to_string()))?;
-    }
-    Ok(svg)
-}
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
-
-fn draw_chart(
-    study: &Study,
-    points: &[Point],
-    root: &Area<'_>,
-    seconds: std::ops::Range<f64>,
-    errors: std::ops::Range<f64>,
-    place: impl Fn(&Point) -> (f64, f64),
-) -> Result<(), Box<dyn std::error::Error>> {
-    root.fill(&WHITE)?;
-    let mut chart = ChartBuilder::on(root)
-        .caption(study.title, ("sans-serif", 20))
-        .margin(14)
-        .x_label_area_size(48)
-        .y_label_area_size(76)
-        .build_cartesian_2d(seconds.log_scale(), errors.log_scale())?;
-    chart
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .bold_line_style(RGBColor(225, 229, 234))
-        .x_desc("seconds for one evaluation")
-        .y_desc(study.error_label)
-        .x_label_formatter(&|value| format!("{value:e}"))
-        .y_label_formatter(&|value| format!("{value:e}"))
-        .label_style(("sans-serif", 14))
-        .draw()?;
-    let front = on_front(points);
-    let mut line: Vec<(f64, f64)> = points
-        .iter()
-        .zip(&front)
-        .filter(|(_, front)| **front)
-        .map(|(point, _)| place(point))
-        .collect();
-    line.sort_by(|a, b| a.0.total_cmp(&b.0));
-    chart.draw_series(LineSeries::new(line, RGBColor(120, 130, 145).stroke_width(1)))?;
-    let mut names: Vec<&str> = Vec::new();
+    let place = |point: &Point| [point.seconds.max(1e-9), point.error.max(SMALLEST_DRAWN_ERROR)];
+    let mut curves: Vec<Curve> = Vec::new();
     for point in points {
-        if !names.contains(&point.series.as_str()) {
-            names.push(&point.series);
+        match curves.iter_mut().find(|curve| curve.name == point.series) {
+            Some(curve) => curve.points.push(place(point)),
+            None => curves.push(Curve::new(point.series.clone(), vec![place(point)])),
         }
     }
-    for (index, name) in names.iter().enumerate() {
-        let colour = SERIES_COLOURS[index % SERIES_COLOURS.len()];
-        let own = points.iter().zip(&front).filter(|(point, _)| point.series == *name);
-        chart
-            .draw_series(own.clone().map(|(point, front)| {
-                let style = if *front { colour.filled() } else { colour.stroke_width(1) };
-                Circle::new(place(point), 5, style)
-            }))?
-            .label(*name)
-            .legend(move |(x, y)| Circle::new((x + 8, y), 5, colour.filled()));
-        chart.draw_series(own.map(|(point, _)| {
-            Text::new(
-                format!("  {}", point.variant),
-                place(point),
-                ("sans-serif", 12).into_font().color(&RGBColor(70, 80, 95)),
-            )
-        }))?;
-    }
-    chart
-        .configure_series_labels()
-        .background_style(WHITE)
-        .border_style(RGBColor(217, 222, 229))
-        .label_font(("sans-serif", 14))
-        .draw()?;
-    root.present()?;
-    Ok(())
+    let mut front: Vec<[f64; 2]> = points
+        .iter()
+        .zip(on_front(points))
+        .filter(|(_, front)| *front)
+        .map(|(point, _)| place(point))
+        .collect();
+    front.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    curves.push(Curve::new("not beaten in both by any variant", front));
+    xy(&XyPlot {
+        title: study.title.into(),
+        x: Axis::log("time of one evaluation", "s"),
+        y: Axis::log(study.error_label, "1"),
+        style: Style::LinesAndMarkers,
+        curves,
+    })
+    .map_err(|error| ParetoError::Drawing(error.to_string()))
 }
-
-/// Distinct for the common kinds of colour blindness (Okabe and Ito).
-const SERIES_COLOURS: [RGBColor; 6] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(86, 180, 233),
-    RGBColor(230, 159, 0),
-];
 
 #[cfg(test)]
 mod tests {
