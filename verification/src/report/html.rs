@@ -367,7 +367,7 @@ fn inline_svg(svg: &str) -> &str {
 /// Escaped text in which what stands between backticks is code.
 fn prose(text: &str) -> String {
     let mut parts: Vec<String> = escape(text).split('`').map(String::from).collect();
-    if parts.len() % 2 == 0 {
+    if parts.len().is_multiple_of(2) {
         return escape(text);
     }
     for code in parts.iter_mut().skip(1).step_by(2) {
