@@ -99,13 +99,6 @@ pub fn polygon(area: &Area, points: Vec<Point>, colour: RGBColor) -> Result<(), 
     area.draw(&Polygon::new(points, colour.filled())).map_err(failed)
 }
 
-/// Clears the ground under a centred text of `TEXT_SIZE`, so that no line runs through it.
-pub fn blank(area: &Area, content: &str, (x, y): Point) -> Result<(), PlotError> {
-    let (half, high) = (text_width(content) / 2, TEXT_SIZE / 2);
-    let corners = [(x - half, y - high), (x + half, y + high)];
-    area.draw(&Rectangle::new(corners, WHITE.filled())).map_err(failed)
-}
-
 pub fn disc(
     area: &Area,
     centre: Point,

@@ -104,7 +104,6 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
         // Ring labels over the curves, between two spokes, so that they stay readable.
         for (position, label) in scale.ticks.iter().skip(1) {
             let at = place(15f64.to_radians(), *position - 24.0 / RADIUS);
-            canvas::blank(area, label, at)?;
             canvas::text(area, label, at, size, Align::Centre, BLACK_TEXT)?;
         }
         let caption = format!("radius: {} [{}]; angle: azimuth [deg]", plot.quantity, plot.unit);
