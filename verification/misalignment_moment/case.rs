@@ -74,7 +74,7 @@ fn against_the_source(context: &mut CaseContext) -> Result<(), CaseError> {
         Check::new("moment_0p15", "moment at 0.15° tilt", "N·m", moment)
             .published("moment_0p15")
             .under("ball_radius_of_5_um_interference")
-            .relative(0.005, "asked for; the unstated ball phase alone is 0.06 %")
+            .relative(0.005, "0.03 µm of the interference, which is stated to one digit; the unstated ball phase is 0.06 %")
             .golden(GoldenTolerance::REORDERED),
     );
     for (label, moment) in MOMENTS {
@@ -104,7 +104,7 @@ fn against_the_source(context: &mut CaseContext) -> Result<(), CaseError> {
 
 fn against_the_oracle(context: &mut CaseContext) -> Result<(), CaseError> {
     let reference = baseline(PHASE);
-    let reason = "both solvers end at rounding level; asked for is 1e-8";
+    let reason = "both solvers stop where rounding takes over, about 1e-12; no physics is decided below 1e-8";
     context.check(
         Check::new(
             "moment_0p15_independent",
@@ -186,7 +186,7 @@ fn last_row(context: &mut CaseContext) {
     ];
     context.table(
         "readings",
-        "Readings tried on Table 3.7 (published 0.094, 0.134, 0.175)",
+        "Readings tried on Table 3.7 (published 0.094°, 0.134°, 0.175°)",
         &columns,
         rows,
     );
@@ -236,7 +236,7 @@ fn figures(context: &mut CaseContext) -> Result<(), CaseError> {
         curves: vec![
             Curve::new("hamrock-brewe", curve(Hertz::Fit)?),
             Curve::new("exact", curve(Hertz::Exact)?),
-            Curve::new("published (Table 3.7 and 3.4.5)", published),
+            Curve::separate("published (Table 3.7 and 3.4.5)", published),
         ],
     })?;
     context.figure(
