@@ -29,6 +29,8 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         say(&table)?;
         return Ok(Outcome::Done);
     }
+    // Nothing computed is lost if the folder cannot be written.
+    say(&table)?;
     let folder = results_folder(&arguments.scene, &arguments.out);
     let mut record = solved.record;
     remove_earlier(&folder)?;
@@ -36,7 +38,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let mut written = pictures::write(&folder, &scene, &solved.problem, &solved.solution)?;
     record.seconds.push(("plots".into(), start.elapsed().as_secs_f64()));
     written.extend(write_static_results(&folder, &solved.solution, &record)?);
-    say(&format!("{table}wrote {} files to {}\n", written.len(), folder.display()))?;
+    say(&format!("wrote {} files to {}\n", written.len(), folder.display()))?;
     Ok(Outcome::Done)
 }
 

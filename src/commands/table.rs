@@ -1,6 +1,6 @@
 //! A static solution as a person reads it on a terminal.
 
-use super::echo::load_zone_of;
+use bearing_dynamics::output::results::load_zone_of;
 use bearing_dynamics::solver::statics::{
     COORDINATE_NAMES, ContactState, Determinacy, StaticProblem, StaticSolution,
 };
@@ -126,7 +126,23 @@ pub fn remarks(problem: &StaticProblem, solution: &StaticSolution) -> Vec<String
         );
     }
     remarks.extend(without_shoulder(problem, solution));
+    remarks.extend(overloaded(solution));
     remarks
+}
+
+/// Pressure above which ISO 76 counts on lasting dents in ball bearings.
+fn overloaded(solution: &StaticSolution) -> Option<String> {
+    const STATIC_RATING: f64 = 4200e6;
+    let pressures =
+        solution.balls.iter().flat_map(|b| [b.inner.peak_pressure, b.outer.peak_pressure]);
+    let largest = pressures.fold(0.0, f64::max);
+    (largest > STATIC_RATING).then(|| {
+        format!(
+            "a contact pressure of {:.0} MPa is above the 4200 MPa at which ISO 76 counts on lasting \
+             dents; the model is elastic: check loads, clearance and their units",
+            1e-6 * largest
+        )
+    })
 }
 
 /// An angular-contact bearing has a shoulder on one side of each groove only; the model's groove is

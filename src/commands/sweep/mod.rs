@@ -33,7 +33,7 @@ pub struct Arguments {
     /// Without it the scene's [sweep] table counts
     #[arg(long = "vary", value_name = "KEY=VALUES")]
     vary: Vec<String>,
-    /// Results folder [default: results/<name of the scene>]
+    /// Results folder [default: results/<name of the scene>-sweep]
     #[arg(long)]
     out: Option<PathBuf>,
     /// Number of threads [default: all cores]
@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let grid = Grid::new(&document, &arguments.vary)?;
     // A scene that cannot be solved at all is said before anything is written.
     grid.check(&document)?;
-    let folder = results_folder(&arguments.scene, &arguments.out);
+    let folder = sweep_folder(arguments);
     let fingerprint = grid.fingerprint(&document, arguments.cold);
     let journal = Journal::open(&folder, &fingerprint, grid.chunks(CHUNK), arguments.fresh)?;
     let resumed = journal.finished();
@@ -120,6 +120,15 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         )
         .into()),
     }
+}
+
+/// Apart from the folder of a single solution, so that each holds one kind of results.
+fn sweep_folder(arguments: &Arguments) -> PathBuf {
+    arguments.out.clone().unwrap_or_else(|| {
+        let mut folder = results_folder(&arguments.scene, &None).into_os_string();
+        folder.push("-sweep");
+        folder.into()
+    })
 }
 
 fn progress_bar(grid: &Grid, resumed: usize) -> ProgressBar {

@@ -1,8 +1,8 @@
 //! One point of a sweep and its row of the table.
 
 use super::grid::Grid;
-use crate::commands::echo::load_zone_of;
 use bearing_dynamics::output::Column;
+use bearing_dynamics::output::results::load_zone_of;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::solver::statics::{

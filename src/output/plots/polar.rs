@@ -99,7 +99,10 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
             }
             let closed = points.iter().copied().chain([points[0]]).collect();
             canvas::line(area, closed, canvas::COLOURS[index % canvas::COLOURS.len()], 3)?;
-            canvas::markers(area, index, &points)?;
+            // Markers on a dense curve would be taken for balls.
+            if points.len() <= 40 {
+                canvas::markers(area, index, &points)?;
+            }
         }
         // Ring labels over the curves, between two spokes, so that they stay readable.
         for (position, label) in scale.ticks.iter().skip(1) {
