@@ -11,7 +11,7 @@ use std::process::ExitCode;
 
 /// Rolling bearings on flexible supports: describe one in a text file, solve it, trust it.
 #[derive(Parser)]
-#[command(name = "bearing", version, about, after_help = "Scenes are described in docs/scene.md.")]
+#[command(name = "bearing", version, after_help = "Scenes are described in docs/scene.md.")]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

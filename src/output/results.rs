@@ -94,12 +94,13 @@ pub fn pretty(value: &Value) -> String {
     format!("{value:#}\n")
 }
 
-const BALL_COLUMNS: [(&str, &str); 5] = [
+const BALL_COLUMNS: [(&str, &str); 6] = [
     ("ball", "1"),
     ("azimuth", "deg"),
     ("position_x", "m"),
     ("position_y", "m"),
     ("position_z", "m"),
+    ("cage_force", "N"),
 ];
 
 const CONTACT_COLUMNS: [(&str, &str); 9] = [
@@ -114,7 +115,7 @@ const CONTACT_COLUMNS: [(&str, &str); 9] = [
     ("force_on_race_z", "N"),
 ];
 
-/// One row per ball: number, azimuth, position, then load, approach, contact angle, ellipse,
+/// One row per ball: number, azimuth, position, force of the cage, then load, approach, contact angle, ellipse,
 /// pressure and force of the inner and of the outer contact (columns `inner_load`, …,
 /// `outer_force_on_race_z`).
 pub fn ball_series(solution: &StaticSolution) -> Result<Series, SeriesError> {
@@ -129,6 +130,7 @@ pub fn ball_series(solution: &StaticSolution) -> Result<Series, SeriesError> {
     for (index, ball) in solution.balls.iter().enumerate() {
         values.extend([(index + 1) as f64, ball.azimuth.to_degrees()]);
         values.extend(ball.position.iter());
+        values.push(ball.cage_force);
         for contact in [&ball.inner, &ball.outer] {
             values.extend(contact_values(contact));
         }
@@ -262,13 +264,35 @@ fn stiffness(solution: &StaticSolution) -> Result<Value, ResultsError> {
     Ok(Value::Object(rows))
 }
 
+/// Number of balls that carry the inner race, and the arc from the first to the last of them in
+/// rad: the full circle less the widest gap between neighbouring loaded balls.
+pub fn load_zone_of(solution: &StaticSolution) -> (usize, f64) {
+    let tau = std::f64::consts::TAU;
+    let mut azimuths: Vec<f64> = solution
+        .balls
+        .iter()
+        .filter(|ball| ball.inner.normal_load > 0.0)
+        .map(|ball| ball.azimuth.rem_euclid(tau))
+        .collect();
+    azimuths.sort_by(f64::total_cmp);
+    if azimuths.len() == solution.balls.len() {
+        return (azimuths.len(), tau);
+    }
+    let Some((&first, &last)) = azimuths.first().zip(azimuths.last()) else { return (0, 0.0) };
+    let widest =
+        azimuths.windows(2).map(|pair| pair[1] - pair[0]).fold(first + tau - last, f64::max);
+    (azimuths.len(), tau - widest)
+}
+
 fn load_zone(solution: &StaticSolution) -> Result<Value, ResultsError> {
     let largest = |load: fn(&BallState) -> f64| {
         solution.balls.iter().map(load).fold(0.0, |a: f64, b| if b > a { b } else { a })
     };
     let loaded =
         |load: fn(&BallState) -> f64| solution.balls.iter().filter(|ball| load(ball) > 0.0).count();
+    let (_, extent) = load_zone_of(solution);
     Ok(json!({
+        "extent": quantity("load zone", extent.to_degrees(), "deg")?,
         "balls_loaded_inner": loaded(|ball| ball.inner.normal_load),
         "balls_loaded_outer": loaded(|ball| ball.outer.normal_load),
         "largest_inner_load": quantity("load", largest(|ball| ball.inner.normal_load), "N")?,
@@ -287,6 +311,7 @@ fn ball(number: usize, ball: &BallState) -> Result<Value, ResultsError> {
         "ball": number,
         "azimuth": quantity(&named("azimuth"), ball.azimuth.to_degrees(), "deg")?,
         "position": vector(&named("position"), &ball.position, "m")?,
+        "cage_force": quantity(&named("cage_force"), ball.cage_force, "N")?,
         "inner": contact(&named("inner"), &ball.inner)?,
         "outer": contact(&named("outer"), &ball.outer)?,
     }))

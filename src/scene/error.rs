@@ -226,7 +226,7 @@ pub enum Problem {
         advice: &'static str,
     },
     #[error(
-        "the pitch radius {} is not between the races. Allowed: more than {} to less than {}. Hint: leave it out, it then lies half way",
+        "the pitch radius {} is not half way between the races. Allowed: {} to {}. Hint: leave it out, it then lies half way",
         mm(*.pitch), mm(*.inner), mm(*.outer)
     )]
     PitchOutsideGap { pitch: f64, inner: f64, outer: f64 },

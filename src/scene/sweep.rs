@@ -57,7 +57,9 @@ fn range_value(low: f64, high: f64, index: usize, count: usize) -> f64 {
     if index + 1 == count {
         return high;
     }
-    low + (high - low) * index as f64 / (count - 1) as f64
+    let value = low + (high - low) * index as f64 / (count - 1) as f64;
+    // To 15 digits, as a person would have written it: 0.05, not 0.049999999999999996.
+    format!("{value:.14e}").parse().unwrap_or(value)
 }
 
 /// Axis from an entry of the `[sweep]` table.

@@ -49,7 +49,12 @@ pub fn statics(problem: &StaticProblem) -> Vec<Stage> {
         if gravity {
             stage("gravity on balls", true, "gravity is given")
         } else {
-            stage("gravity on balls", false, "no gravity: an unloaded ball is left out")
+            let reason = if centrifugal {
+                "no gravity is given"
+            } else {
+                "no gravity: a ball with room is left out"
+            };
+            stage("gravity on balls", false, reason)
         },
         if centrifugal {
             stage("centrifugal force on balls", true, "asked for, with a speed of the inner race")

@@ -28,11 +28,18 @@ pub struct Curve {
     pub name: String,
     /// `[x, y]` in the units of the axes; for a polar plot azimuth in rad and value.
     pub points: Vec<[f64; 2]>,
+    /// Single values that no line may join, whatever the style of the plot.
+    pub separate: bool,
 }
 
 impl Curve {
     pub fn new(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
-        Curve { name: name.into(), points }
+        Curve { name: name.into(), points, separate: false }
+    }
+
+    /// Single values, such as printed ones: every one marked, none joined.
+    pub fn separate(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
+        Curve { separate: true, ..Curve::new(name, points) }
     }
 }
 
