@@ -14,8 +14,8 @@ use std::f64::consts::TAU;
 /// What every axis and summary says about the window.
 pub const WINDOW: &str = "Hann";
 pub const LEAKAGE: &str = "mean removed, Hann window: main lobe 4 bins wide, side lobes from -31 dB \
-                           falling 18 dB an octave, a sine between two bins up to 15 % low (peaks \
-                           are interpolated)";
+                           falling 18 dB an octave, a sine between two bins up to 15 % low in its \
+                           bin and up to 4 % high as an interpolated peak";
 
 /// Amplitude of the bins from 0 to half the sampling rate.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,7 +130,9 @@ mod tests {
 
     #[test]
     fn interpolation_finds_sines_between_bins() {
-        // Known bias of the parabola under this window: at most 0.02 bins and 2 % in between.
+        // Bias of the parabola under this window, largest between two bins: with W(1/2) = 0.8488
+        // and W(3/2) = 0.1698 of the window's transform its top lies at
+        // 0.8488 (0.8488/0.1698)^(1/8) = 1.038.
         for count in [999, 1000, 1024] {
             for part in [0.1, 0.25, 0.5, 0.8] {
                 let frequency = (40.0 + part) / count as f64;
@@ -139,9 +141,10 @@ mod tests {
                 let bins = (peak.frequency - frequency).abs() * count as f64;
                 assert!(bins <= 0.02, "{count} {part}: {bins} bins");
                 let error = (peak.amplitude / 0.3 - 1.0).abs();
-                assert!(error <= 0.02, "{count} {part}: {error}");
+                assert!(error <= 0.0385, "{count} {part}: {error}");
                 assert!((peak.bin_frequency - frequency).abs() * count as f64 <= 0.500_001);
-                assert!(peak.bin_amplitude >= 0.3 * 0.849, "{peak:?}");
+                // W(1/2) = 8/(3π), less what leaks from the negative frequency.
+                assert!(peak.bin_amplitude >= 0.3 * 0.8487, "{peak:?}");
             }
         }
     }
