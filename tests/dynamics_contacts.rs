@@ -10,7 +10,9 @@ use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, Tractio
 use bearing_dynamics::solver::dynamics::contacts::Driver;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad, Rotation};
 use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{BodyState, LEDGER, Layout, Ledger, SPIN, VELOCITY};
+use bearing_dynamics::solver::dynamics::state::{
+    BodyState, LEDGER, Layout, Ledger, SPIN, VELOCITY,
+};
 use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::profile::Profile;
 use common::{table_4_1, table_5_3};
