@@ -72,7 +72,7 @@ fn observed_over_predicted(problem: &DynamicProblem) -> f64 {
     let limit = step_limit(&mut system, 0.0, &state).unwrap();
     let (mut low, mut high) = (0.6, 1.7);
     for _ in 0..7 {
-        let middle: f64 = (low * high as f64).sqrt();
+        let middle = f64::sqrt(low * high);
         // Above the limit by 1 % a mode grows by some 3 % a step: e⁶ in 200 steps. Below it the
         // nudge stays about what it was.
         if nudged_apart(problem, &state, middle * limit.step, 200) <= 10.0 {
