@@ -145,6 +145,7 @@ proptest! {
     fn the_ledger_balances_the_energy(choice in any_choice(), drives in any_drives(), seed: u64) {
         let mut problem = choice.problem();
         problem.gravity = GRAVITY;
+        problem.outer_start = [1e-6, -2e-6, 1e-6, 1e-4, -2e-4];
         drives.apply(&mut problem);
         let t = 0.013;
         let mut system = System::new(problem.clone(), Driver::Lanes);

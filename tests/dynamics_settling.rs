@@ -180,7 +180,7 @@ fn rotating(loads: [f64; 5]) -> DynamicProblem {
 #[test]
 fn the_mean_of_a_turning_bearing_is_static() {
     for load in [250.0, 1500.0] {
-        let means = means(&rotating([0.0, 0.0, -load, 0.0, 0.0]), 4e-6, 1, 2);
+        let means = means(&rotating([0.0, 0.0, -load, 0.0, 0.0]), 2.5e-6, 1, 2);
         let error = means.dynamic[2] / means.fixed[2] - 1.0;
         println!("{load} N: {:?} {:?} {error:e}, {} s", means.dynamic, means.fixed, means.seconds);
         assert!(error.abs() <= 1e-3, "{load} N: {error}");
@@ -194,7 +194,7 @@ fn the_mean_moment_of_a_tilted_turning_bearing_is_static() {
     for (i, value) in [0.0, 0.0, 0.0, tilt, 0.0].into_iter().enumerate() {
         problem.inner.drives[i] = Drive::Motion(Profile::Constant(value));
     }
-    let means = means(&problem, 4e-6, 1, 2);
+    let means = means(&problem, 2.5e-6, 1, 2);
     let error = means.dynamic[1] / means.fixed[1] - 1.0;
     println!("tilt: {:?} {:?} {error:e}, {} s", means.dynamic, means.fixed, means.seconds);
     assert!(error.abs() <= 1e-3, "{error}");
