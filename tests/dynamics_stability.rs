@@ -267,6 +267,24 @@ fn a_step_far_beyond_the_limit_is_a_typed_error() {
 }
 
 #[test]
+fn energy_that_goes_missing_is_a_typed_error() {
+    // Below the limit but coarse (ω h = 1.4): Runge–Kutta damps what the loads set swinging.
+    let problem = bearing(table_4_1(-5e-6), [0.0, 0.0, -500.0, 0.0, 0.0], 1000.0 * RPM);
+    let options = RunOptions { energy_limit: 0.01, ..fixed_step(6e-6, Start::Nominal) };
+    let mut simulation = Simulation::new(problem, options).unwrap();
+    let error = (0..500).find_map(|_| {
+        simulation.step().unwrap();
+        simulation.snapshot().err()
+    });
+    match error {
+        Some(SimulationError::Energy { residual, turned_over, limit, .. }) => {
+            assert!(residual < 0.0 && -residual > limit * turned_over);
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
 fn a_value_that_is_not_finite_is_named() {
     let problem = bearing(table_4_1(-5e-6), [0.0, 0.0, -500.0, 0.0, 0.0], 1000.0 * RPM);
     let mut simulation = simulation(&problem, 1e-6, Start::Equilibrium);
