@@ -6,12 +6,12 @@
 mod commands;
 
 use clap::{Parser, Subcommand};
-use commands::{Outcome, check, compare, pack, plan, schema, statics, sweep};
+use commands::{Outcome, check, compare, pack, plan, run, schema, statics, sweep};
 use std::process::ExitCode;
 
 /// Rolling bearings on flexible supports: describe one in a text file, solve it, trust it.
 #[derive(Parser)]
-#[command(name = "bearing", version, about, after_help = "Scenes are described in docs/scene.md.")]
+#[command(name = "bearing", version, after_help = "Scenes are described in docs/scene.md.")]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -23,6 +23,8 @@ enum Command {
     Check(check::Arguments),
     /// List what a solution of the scene computes, what it leaves out, and why
     Plan(plan::Arguments),
+    /// The bearing in motion: step through time and write a results folder
+    Run(run::Arguments),
     /// Equilibrium, ball loads and stiffness of a bearing
     Statics(statics::Arguments),
     /// Solve a scene for many values of some keys, on all cores; the same command resumes it
@@ -47,6 +49,7 @@ fn main() -> ExitCode {
     let outcome = match arguments.command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
+        Command::Run(arguments) => run::run(&arguments),
         Command::Statics(arguments) => statics::run(&arguments),
         Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Pack(arguments) => pack::run(&arguments),

@@ -264,12 +264,12 @@ fn the_allowed_difference_is_the_documented_sum() {
         assert!((allowed / expected - 1.0).abs() <= 1e-12, "{allowed:e} against {expected:e}");
     };
     let [reordered, mixed] = CLASSES;
-    // floor share · 1 N + relative · 2 N + share · 500 N
-    check("load [N]", ["-500.0", "2.0"], reordered, 1e-10 + 2e-9 + 500e-10);
-    check("load [N]", ["-500.0", "2.0"], mixed, 1e-5 + 2e-4 + 500e-5);
+    // floor share · 100 N + relative · 2 N + share · 500 N
+    check("load [N]", ["-500.0", "2.0"], reordered, 100e-10 + 2e-9 + 500e-10);
+    check("load [N]", ["-500.0", "2.0"], mixed, 100e-5 + 2e-4 + 500e-5);
     // The components of a vector share the largest; other units and other names do not.
     let row = ["3.0,7.0,9.0,8.0", "2.0,-700.0,9e9,9e9"];
-    check("f_x [N],f_z [N],f_y [N m],load [N]", row, mixed, 1e-5 + 2e-4 + 700e-5);
+    check("f_x [N],f_z [N],f_y [N m],load [N]", row, mixed, 100e-5 + 2e-4 + 700e-5);
     // No floor where the unit tells nothing.
     check("ratio [1]", ["0.0", "2.0"], mixed, 2e-4 + 2e-5);
 }

@@ -55,6 +55,21 @@ fn ball_curve(name: &str, factor: f64) -> Curve {
     Curve::new(name, solution().balls.iter().map(point).collect())
 }
 
+#[test]
+fn separate_values_are_marked_and_not_joined() {
+    let line = Curve::new("computed", vec![[0.0, 0.0], [0.1, 3.2]]);
+    let values = vec![[0.02, 0.5], [0.05, 1.4], [0.09, 2.9]];
+    let lines = |curves| xy(&xy_plot(curves)).unwrap().matches("<polyline").count();
+    let alone = lines(vec![line.clone()]);
+    assert_eq!(lines(vec![line.clone(), Curve::separate("printed", values.clone())]), alone);
+    // Joined, the curve and its sample in the legend are one more line each.
+    assert_eq!(lines(vec![line, Curve::new("printed", values)]), alone + 2);
+    // In a plot of lines alone they still are marked.
+    let mut plot = xy_plot(vec![Curve::separate("printed", vec![[0.0, 1.0], [0.1, 2.0]])]);
+    plot.style = Style::Lines;
+    assert_eq!(xy(&plot).unwrap().matches("<circle").count(), 3);
+}
+
 /// Set BEARING_PLOTS=FOLDER to look at the pictures.
 fn keep(name: &str, svg: &str) {
     if let Some(folder) = std::env::var_os("BEARING_PLOTS") {

@@ -435,7 +435,7 @@ fn cases() -> Vec<Case> {
             "balls = 8",
             "balls = 8\npitch_radius = \"52 mm\"",
             5,
-            &["between the races", "more than 20.047 mm"],
+            &["between the races", "25.702225 mm to 26.297775 mm"],
         ),
         toml("duplicate key", "balls = 8", "balls = 8\nballs = 9", 5, &["twice"]),
         toml("duplicate table", "[output]", "[bearing]", 22, &["twice"]),

@@ -4,7 +4,8 @@
 //! names the file. `SCENE_FUZZ_INPUTS=1000000 cargo test --release --test scene_fuzz` runs a million.
 
 use bearing_dynamics::scene::units::Dimension;
-use bearing_dynamics::scene::{self, Document, Format, Scene, SceneError, keys};
+use bearing_dynamics::scene::keys::{self, Kind};
+use bearing_dynamics::scene::{self, Document, Format, Scene, SceneError};
 use bearing_dynamics::solver::statics::Condition;
 use std::collections::HashSet;
 use std::panic::catch_unwind;
@@ -115,6 +116,26 @@ const FRAGMENTS: &[&str] = &[
     "= []",
 ];
 
+/// Profiles, whole and in pieces, in both formats.
+const PROFILES: &[&str] = &[
+    "{ ramp = [\"0 N\", \"250 N\"], start = \"0 s\", duration = \"0.1 s\" }",
+    "{ smooth_ramp = [\"0 rpm\", \"1000 rpm\"], duration = \"0.1 s\" }",
+    "{ table = [[\"0 s\", \"0 N\"], [\"0.1 s\", \"250 N\"]] }",
+    "{ mean = \"0 N\", amplitude = \"10 N\", frequency = \"50 Hz\", phase = \"0 deg\" }",
+    "{ half_sine = \"500 N\", base = \"0 N\", start = \"0.01 s\", duration = \"5 ms\" }",
+    "{ \"ramp\": [\"0 N\", \"250 N\"], \"duration\": \"1 ms\" }",
+    "{ \"table\": [[\"0 s\", \"0 m/s\"], [\"1 s\", \"1 deg\"]] }",
+    "[[\"0 m/s\", 0.0], [\"0.1 m/s\", 0.05]]",
+    "ramp",
+    "smooth_ramp",
+    "table",
+    "amplitude",
+    "half_sine",
+    "duration",
+    "start",
+    "frequency",
+];
+
 /// Pieces a mutation may put in: keys, words and units the reader knows.
 fn vocabulary() -> Vec<String> {
     let mut words = HashSet::new();
@@ -124,8 +145,13 @@ fn vocabulary() -> Vec<String> {
         words.insert(format!("\n{} = {}\n", key.path, key.example()));
     }
     words.extend(keys::TABLES.iter().map(|table| format!("\n[{}]\n", table.path)));
-    for list in [keys::KINDS, keys::HERTZ_MODELS, keys::THROUGH, keys::GUIDANCE, keys::PLOTS] {
-        words.extend(list.iter().map(|word| format!("\"{word}\"")));
+    for key in keys::KEYS {
+        if let Kind::Choice(list) | Kind::Choices(list) = key.kind {
+            words.extend(list.iter().map(|word| format!("\"{word}\"")));
+        }
+    }
+    for profile in PROFILES {
+        words.insert(profile.to_string());
     }
     for dimension in Dimension::ALL {
         for unit in dimension.units() {

@@ -1,6 +1,7 @@
 //! `bearing check SCENE`.
 
 use super::{CommandResult, Outcome, echo, say};
+use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::scene::{self, Scene, statics::static_problem};
 use std::fmt::Write;
@@ -35,7 +36,11 @@ fn summary(name: &str, scene: &Scene) -> String {
     if let Some(title) = &scene.title {
         line("title", title.clone());
     }
-    line("bearing", format!("{:?}, {} balls", geometry.kind, geometry.ball_count));
+    let kind = match geometry.kind {
+        BearingKind::DeepGroove => "deep-groove",
+        BearingKind::AngularContact => "angular-contact",
+    };
+    line("bearing", format!("{kind}, {} balls", geometry.ball_count));
     line(
         "ball radius",
         format!(
@@ -47,9 +52,10 @@ fn summary(name: &str, scene: &Scene) -> String {
     line(
         "clearance",
         format!(
-            "{:+.4} um radial = {:+.4} um diametral",
+            "{:+.4} um radial = {:+.4} um diametral, made through the {}",
             1e6 * sizes.radial_clearance,
-            1e6 * sizes.diametral_clearance
+            1e6 * sizes.diametral_clearance,
+            echo::through(sizes.clearance_through).replace('-', " ")
         ),
     );
     for (label, race) in [("inner race", &sizes.inner_race), ("outer race", &sizes.outer_race)] {

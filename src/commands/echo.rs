@@ -8,9 +8,7 @@ use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::resolved::RaceDimensions;
 use bearing_dynamics::scene::statics::kinematic_ratios;
 use bearing_dynamics::scene::{Cage, CageGuidance, Scene};
-use bearing_dynamics::solver::statics::{
-    COORDINATE_NAMES, Condition, StaticProblem, StaticSolution,
-};
+use bearing_dynamics::solver::statics::{COORDINATE_NAMES, Condition, StaticProblem};
 use serde_json::{Map, Value, json};
 
 type Echo = Result<Value, ResultsError>;
@@ -41,11 +39,6 @@ pub fn scene(scene: &Scene) -> Echo {
 
 fn bearing(scene: &Scene) -> Echo {
     let (geometry, sizes) = (&scene.geometry, &scene.dimensions);
-    let through = match sizes.clearance_through {
-        ClearanceThrough::Ball => "ball",
-        ClearanceThrough::InnerRace => "inner-race",
-        ClearanceThrough::OuterRace => "outer-race",
-    };
     let mut echo = json!({
         "kind": match geometry.kind {
             BearingKind::DeepGroove => "deep-groove",
@@ -60,7 +53,7 @@ fn bearing(scene: &Scene) -> Echo {
         "clearance": {
             "radial": length(sizes.radial_clearance)?,
             "diametral": length(sizes.diametral_clearance)?,
-            "through": through,
+            "through": through(sizes.clearance_through),
         },
         "pitch_radius": length(geometry.pitch_radius)?,
         "contact_angle":
@@ -88,6 +81,15 @@ fn bearing(scene: &Scene) -> Echo {
         echo["cage"] = cage(given)?;
     }
     Ok(echo)
+}
+
+/// As written in a scene.
+pub fn through(part: ClearanceThrough) -> &'static str {
+    match part {
+        ClearanceThrough::Ball => "ball",
+        ClearanceThrough::InnerRace => "inner-race",
+        ClearanceThrough::OuterRace => "outer-race",
+    }
 }
 
 fn length(value: f64) -> Echo {
@@ -212,24 +214,4 @@ fn frequencies(scene: &Scene) -> Echo {
         echo.insert(name.into(), entry);
     }
     Ok(Value::Object(echo))
-}
-
-/// Number of balls that carry the inner race, and the arc from the first to the last of them in
-/// rad: the full circle less the widest gap between neighbouring loaded balls.
-pub fn load_zone_of(solution: &StaticSolution) -> (usize, f64) {
-    let tau = std::f64::consts::TAU;
-    let mut azimuths: Vec<f64> = solution
-        .balls
-        .iter()
-        .filter(|ball| ball.inner.normal_load > 0.0)
-        .map(|ball| ball.azimuth.rem_euclid(tau))
-        .collect();
-    azimuths.sort_by(f64::total_cmp);
-    if azimuths.len() == solution.balls.len() {
-        return (azimuths.len(), tau);
-    }
-    let Some((&first, &last)) = azimuths.first().zip(azimuths.last()) else { return (0, 0.0) };
-    let widest =
-        azimuths.windows(2).map(|pair| pair[1] - pair[0]).fold(first + tau - last, f64::max);
-    (azimuths.len(), tau - widest)
 }

@@ -3,9 +3,11 @@
 pub mod check;
 pub mod compare;
 pub mod echo;
+pub mod echo_run;
 pub mod pack;
 pub mod pictures;
 pub mod plan;
+pub mod run;
 pub mod schema;
 pub mod solve;
 pub mod statics;
@@ -29,7 +31,9 @@ pub type CommandResult = Result<Outcome, Box<dyn Error>>;
 /// Writes to standard output; a reader that went away (`bearing … | head`) is no error.
 pub fn say(text: &str) -> Result<(), Box<dyn Error>> {
     match std::io::stdout().lock().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.into()),
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(format!("cannot write to standard output: {error}").into())
+        }
         _ => Ok(()),
     }
 }

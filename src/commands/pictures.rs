@@ -18,6 +18,9 @@ const PHASES: usize = 16;
 const TILTS: usize = 25;
 const LARGEST_TILT_DEGREES: f64 = 0.3;
 
+/// File names of the plots, in the order of [`Plot`].
+pub const NAMES: [&str; 3] = ["load_zone.svg", "polar.svg", "moment_tilt.svg"];
+
 /// Writes the plots that the scene asks for and returns their paths.
 pub fn write(
     folder: &Path,
@@ -29,12 +32,11 @@ pub fn write(
     let mut written = Vec::new();
     for plot in &scene.plots {
         let (name, svg) = match plot {
-            Plot::LoadZone => (
-                "load_zone.svg",
-                load_zone(&LoadZone::new(title.clone(), &problem.geometry, solution))?,
-            ),
-            Plot::Polar => ("polar.svg", force_over_azimuth(&title, problem, solution)?),
-            Plot::MomentTilt => ("moment_tilt.svg", moment_over_tilt(&title, problem)?),
+            Plot::LoadZone => {
+                (NAMES[0], load_zone(&LoadZone::new(title.clone(), &problem.geometry, solution))?)
+            }
+            Plot::Polar => (NAMES[1], force_over_azimuth(&title, problem, solution)?),
+            Plot::MomentTilt => (NAMES[2], moment_over_tilt(&title, problem)?),
         };
         let path = folder.join(name);
         write_atomic(&path, svg.as_bytes())?;

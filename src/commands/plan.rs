@@ -1,19 +1,43 @@
 //! `bearing plan SCENE`.
 
-use super::solve::plan_lines;
+use super::run::request;
+use super::solve::{lines, plan_lines};
 use super::{CommandResult, Outcome, say};
-use bearing_dynamics::scene::{self, statics::static_problem};
+use bearing_dynamics::output::dynamics::session::RunRequest;
+use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
+use bearing_dynamics::scene::{self, CageInRun, Scene, statics::static_problem};
+use bearing_dynamics::solver::dynamics::model::DynamicProblem;
+use bearing_dynamics::solver::plan;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Scene file (.toml or .json)
+    /// Scene file (.toml or .json); with a [numerics] table the plan is that of a run
     scene: PathBuf,
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
     let scene = scene::read_file(&arguments.scene)?;
-    let problem = static_problem(&scene)?;
-    say(&plan_lines(&problem).iter().map(|line| format!("{line}\n")).collect::<String>())?;
+    let planned = match run_options(&scene) {
+        Ok(settings) => {
+            let problem = dynamic_problem(&scene)?;
+            dynamic_plan_lines(&scene, &problem, &request(&scene, &settings)?)
+        }
+        Err(_) => plan_lines(&static_problem(&scene)?),
+    };
+    say(&planned.iter().map(|line| format!("{line}\n")).collect::<String>())?;
     Ok(Outcome::Done)
+}
+
+/// The plan of a run as text, one line a stage.
+pub fn dynamic_plan_lines(
+    scene: &Scene,
+    problem: &DynamicProblem,
+    request: &RunRequest,
+) -> Vec<String> {
+    let cage_left_out = match &scene.dynamics.cage {
+        CageInRun::Body(_) => None,
+        CageInRun::LeftOut(reason) => Some(reason.as_str()),
+    };
+    lines(plan::dynamics(problem, &request.options, &request.channels, cage_left_out))
 }

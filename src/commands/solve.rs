@@ -1,11 +1,12 @@
 //! From a scene to its static solution and the record of how it was obtained.
 
-use super::echo;
+use super::{echo, table};
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::scene::Scene;
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::solver::plan;
 use bearing_dynamics::solver::statics::{StaticProblem, StaticSolution, solve};
+use serde_json::json;
 use std::error::Error;
 use std::time::Instant;
 
@@ -27,20 +28,27 @@ pub fn solve_scene(scene: &Scene, read_seconds: f64) -> Result<Solved, Box<dyn E
         .defaults_used
         .iter()
         .map(|used| (used.key.clone(), format!("{} ({})", used.value, used.reason)));
+    let mut sections = echo::sections(scene, &problem)?;
+    sections.push(("remarks".into(), json!(table::remarks(&problem, &solution))));
     let record = RunRecord {
         scene: echo::scene(scene)?,
         plan: plan_lines(&problem),
         assumptions: assumptions.chain(defaults).collect(),
         threads: 1,
         seconds: vec![("read".into(), read_seconds), ("solve".into(), solve_seconds)],
-        sections: echo::sections(scene, &problem)?,
+        sections,
     };
     Ok(Solved { problem, solution, record })
 }
 
 /// The plan as text, one line a stage.
 pub fn plan_lines(problem: &StaticProblem) -> Vec<String> {
-    plan::statics(problem)
+    lines(plan::statics(problem))
+}
+
+/// Stages as text, one line each.
+pub fn lines(stages: Vec<plan::Stage>) -> Vec<String> {
+    stages
         .into_iter()
         .map(|stage| {
             let mark = if stage.included { "does " } else { "skips" };

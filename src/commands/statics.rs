@@ -4,7 +4,8 @@ use super::solve::solve_scene;
 use super::{CommandResult, Outcome, pictures, results_folder, say, table};
 use bearing_dynamics::output::results::write_static_results;
 use bearing_dynamics::scene;
-use std::path::PathBuf;
+use std::error::Error;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 #[derive(clap::Args)]
@@ -23,16 +24,33 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
     let scene = scene::read_file(&arguments.scene)?;
     let solved = solve_scene(&scene, start.elapsed().as_secs_f64())?;
-    say(&table::render(&solved.solution))?;
+    let table = table::render(&solved.problem, &solved.solution);
     if arguments.dry {
+        say(&table)?;
         return Ok(Outcome::Done);
     }
+    // Nothing computed is lost if the folder cannot be written.
+    say(&table)?;
     let folder = results_folder(&arguments.scene, &arguments.out);
     let mut record = solved.record;
+    remove_earlier(&folder)?;
     let start = Instant::now();
     let mut written = pictures::write(&folder, &scene, &solved.problem, &solved.solution)?;
     record.seconds.push(("plots".into(), start.elapsed().as_secs_f64()));
     written.extend(write_static_results(&folder, &solved.solution, &record)?);
     say(&format!("wrote {} files to {}\n", written.len(), folder.display()))?;
     Ok(Outcome::Done)
+}
+
+/// What an earlier run left and this one may not write again: the plots, and the summary, whose
+/// presence says that the folder is complete.
+fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
+    for name in pictures::NAMES.into_iter().chain(["summary.json"]) {
+        let path = folder.join(name);
+        if path.is_file() {
+            std::fs::remove_file(&path)
+                .map_err(|error| format!("cannot replace {}: {error}", path.display()))?;
+        }
+    }
+    Ok(())
 }

@@ -1,37 +1,84 @@
 //! A static solution as a person reads it on a terminal.
 
-use bearing_dynamics::solver::statics::{Determinacy, StaticSolution};
+use bearing_dynamics::output::results::load_zone_of;
+use bearing_dynamics::solver::statics::{
+    COORDINATE_NAMES, ContactState, Determinacy, StaticProblem, StaticSolution,
+};
 use std::fmt::Write;
 
-/// Position, reactions, balls and what to beware of.
-pub fn render(solution: &StaticSolution) -> String {
+/// Position, reactions, stiffness, balls and what to beware of.
+pub fn render(problem: &StaticProblem, solution: &StaticSolution) -> String {
     let mut text = String::new();
+    race(&mut text, solution);
+    stiffness(&mut text, solution);
+    balls(&mut text, solution);
+    let (loaded, extent) = load_zone_of(solution);
+    let _ = writeln!(
+        text,
+        "\n{loaded} of {} balls loaded, load zone {} deg",
+        solution.balls.len(),
+        fixed(extent.to_degrees(), 3)
+    );
+    let _ = writeln!(
+        text,
+        "{} iterations, {} ball-race evaluations, unbalanced load {:.1e} N",
+        solution.iterations, solution.contact_evaluations, solution.residual
+    );
+    for remark in remarks(problem, solution) {
+        let _ = writeln!(text, "note: {remark}");
+    }
+    text
+}
+
+fn race(text: &mut String, solution: &StaticSolution) {
     let q = &solution.coordinates;
-    let loads = &solution.loads;
     let _ = writeln!(text, "inner race      displacement, tilt      load, moment");
-    for (i, name) in ["x", "y", "z", "tilt_y", "tilt_z"].into_iter().enumerate() {
+    for (i, name) in COORDINATE_NAMES.iter().enumerate() {
         let (value, unit, load_unit) =
             if i < 3 { (1e6 * q[i], "um ", "N") } else { (q[i].to_degrees(), "deg", "N m") };
-        let load = without_noise(loads[i], solution, i);
-        // Adding zero turns a negative zero into a positive one.
-        let value = (value * 1e6).round() / 1e6 + 0.0;
-        let _ = writeln!(text, "  {name:<10} {value:>16.6} {unit} {load:>18.6} {load_unit}");
+        let load = without_noise(solution.loads[i], solution, i);
+        let (value, load) = (fixed(value, 6), fixed(load, 6));
+        let _ = writeln!(text, "  {name:<10} {value:>16} {unit} {load:>18} {load_unit}");
     }
+}
+
+/// In N and N mm over um and mrad, in which the matrix is symmetric and its numbers are of one
+/// size: N um and N mm mrad are the same work.
+fn stiffness(text: &mut String, solution: &StaticSolution) {
+    let _ = write!(text, "\nstiffness  ");
+    for (i, name) in COORDINATE_NAMES.iter().enumerate() {
+        let _ = write!(text, "{:>14}", format!("{name}, {}", if i < 3 { "um" } else { "mrad" }));
+    }
+    let _ = writeln!(text);
+    let size = |i: usize| if i < 3 { 1e-6 } else { 1e-3 };
+    let matrix = &solution.stiffness;
+    for (i, name) in COORDINATE_NAMES.iter().enumerate() {
+        let _ = write!(text, "  {:<9}", format!("{name}, {}", if i < 3 { "N" } else { "N mm" }));
+        for j in 0..5 {
+            // One joule is 1e6 N um.
+            let value = matrix[(i, j)] * size(i) * size(j) * 1e6;
+            let _ = write!(text, "{:>14}", fixed(value, 4));
+        }
+        let _ = writeln!(text);
+    }
+}
+
+fn balls(text: &mut String, solution: &StaticSolution) {
     let _ = writeln!(
         text,
         "\nball  azimuth      inner load      outer load  inner angle  outer angle  inner pressure  \
-         outer pressure\n         deg               N               N          deg          deg    \
-                  MPa             MPa"
+         outer pressure\n          deg               N               N          deg          deg    \
+         \x20        MPa             MPa"
     );
+    let angle = |contact: &ContactState| {
+        if contact.normal_load > 0.0 {
+            fixed(contact.contact_angle.to_degrees(), 4)
+        } else {
+            "open".into()
+        }
+    };
     for (index, ball) in solution.balls.iter().enumerate() {
         let degrees = ball.azimuth.to_degrees().rem_euclid(360.0);
-        let angle = |contact: &bearing_dynamics::solver::statics::ContactState| {
-            if contact.normal_load > 0.0 {
-                format!("{:.4}", contact.contact_angle.to_degrees())
-            } else {
-                "open".into()
-            }
-        };
         let _ = writeln!(
             text,
             "{:>4} {degrees:>8.3} {:>15.6} {:>15.6} {:>12} {:>12} {:>15.2} {:>15.2}",
@@ -44,15 +91,15 @@ pub fn render(solution: &StaticSolution) -> String {
             1e-6 * ball.outer.peak_pressure,
         );
     }
-    let _ = writeln!(
-        text,
-        "\n{} iterations, {} ball-race evaluations, unbalanced load {:.1e} N",
-        solution.iterations, solution.contact_evaluations, solution.residual
-    );
-    for remark in remarks(solution) {
-        let _ = writeln!(text, "note: {remark}");
+}
+
+/// `value` with `digits` decimals; what rounds to zero has no sign.
+fn fixed(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|byte| matches!(byte, b'0' | b'.')) => rest.to_string(),
+        _ => text,
     }
-    text
 }
 
 /// A load that only rounding keeps from zero is shown as zero.
@@ -63,7 +110,7 @@ fn without_noise(load: f64, solution: &StaticSolution, index: usize) -> f64 {
 }
 
 /// What a reader of the numbers should know.
-pub fn remarks(solution: &StaticSolution) -> Vec<String> {
+pub fn remarks(problem: &StaticProblem, solution: &StaticSolution) -> Vec<String> {
     let mut remarks = Vec::new();
     if let Determinacy::Indeterminate { free_directions } = &solution.determinacy {
         remarks.push(format!(
@@ -78,5 +125,50 @@ pub fn remarks(solution: &StaticSolution) -> Vec<String> {
                 .into(),
         );
     }
+    remarks.extend(without_shoulder(problem, solution));
+    remarks.extend(overloaded(solution));
     remarks
+}
+
+/// Pressure above which ISO 76 counts on lasting dents in ball bearings.
+fn overloaded(solution: &StaticSolution) -> Option<String> {
+    const STATIC_RATING: f64 = 4200e6;
+    let pressures =
+        solution.balls.iter().flat_map(|b| [b.inner.peak_pressure, b.outer.peak_pressure]);
+    let largest = pressures.fold(0.0, f64::max);
+    (largest > STATIC_RATING).then(|| {
+        format!(
+            "a contact pressure of {:.0} MPa is above the 4200 MPa at which ISO 76 counts on lasting \
+             dents; the model is elastic: check loads, clearance and their units",
+            1e-6 * largest
+        )
+    })
+}
+
+/// An angular-contact bearing has a shoulder on one side of each groove only; the model's groove is
+/// a whole torus and carries on either side.
+fn without_shoulder(problem: &StaticProblem, solution: &StaticSolution) -> Option<String> {
+    /// A ball this close to the bottom of the groove, in rad, needs no shoulder.
+    const BOTTOM: f64 = 1e-6;
+    if problem.geometry.contact_angle <= 0.0 {
+        return None;
+    }
+    let unsupported =
+        |contact: &ContactState| contact.normal_load > 0.0 && contact.contact_angle < -BOTTOM;
+    let numbers: Vec<String> = solution
+        .balls
+        .iter()
+        .enumerate()
+        .filter(|(_, ball)| unsupported(&ball.inner) || unsupported(&ball.outer))
+        .map(|(index, _)| (index + 1).to_string())
+        .collect();
+    (!numbers.is_empty()).then(|| {
+        format!(
+            "ball{} {} loaded at a negative contact angle, on the side of the groove where an \
+             angular-contact bearing has no shoulder; the real bearing would come apart or a ball \
+             ride the edge: preload it along +x",
+            if numbers.len() == 1 { "" } else { "s" },
+            numbers.join(", ")
+        )
+    })
 }

@@ -2,15 +2,20 @@
 //!
 //! - [`series`]: tables of numbers with named columns and units, as `.csv` and `.npy`
 //! - [`results`]: the results folder of one static solution
+//! - [`dynamics`]: a run, its time series, its results folder, and [`mod@state`] to resume it from
+//! - [`mod@spectrum`]: amplitude spectra of time series
 //! - [`plots`]: SVG pictures from plain data
 //! - [`compare`]: where does a candidate depart from a reference, and by how much
 //! - [`pack`]: a scene with its expected results, tolerances and hashes
 pub mod atomic;
 pub mod compare;
+pub mod dynamics;
 pub mod pack;
 pub mod plots;
 pub mod results;
 pub mod series;
+pub mod spectrum;
+pub mod state;
 
 pub use atomic::{WriteError, write_atomic};
 pub use series::{Column, Series, SeriesError};

@@ -84,7 +84,14 @@ pub fn write_pack(
         return Err(PackError::SceneName { name: input.scene_name.to_string() });
     }
     refuse_foreign_files(folder, input.scene_name)?;
-    let tolerances = default_tolerances(input.class);
+    let mut tolerances = default_tolerances(input.class);
+    // A tolerance may only name what the summary has.
+    if input.class != ToleranceClass::F64Exact
+        && run.sections.iter().any(|(name, _)| name == "remarks")
+    {
+        let ignored = ignored("every program words its own remarks");
+        tolerances.channels.insert("remarks".into(), ignored);
+    }
     tolerances.check()?;
     // The manifest goes last: a pack without one is incomplete.
     write_static_results(folder, solution, run)?;
@@ -161,15 +168,18 @@ pub fn default_tolerances(class: ToleranceClass) -> Tolerances {
             ("solver", "another solver takes other steps and stops at another residual"),
         ];
         for (name, reason) in reasons {
-            let ignored = ChannelTolerance {
-                class: Some(ToleranceClass::Ignored),
-                reason: Some(reason.to_string()),
-                ..ChannelTolerance::default()
-            };
-            tolerances.channels.insert(name.to_string(), ignored);
+            tolerances.channels.insert(name.to_string(), ignored(reason));
         }
     }
     tolerances
+}
+
+fn ignored(reason: &str) -> ChannelTolerance {
+    ChannelTolerance {
+        class: Some(ToleranceClass::Ignored),
+        reason: Some(reason.to_string()),
+        ..ChannelTolerance::default()
+    }
 }
 
 fn readme(input: &PackInput) -> String {

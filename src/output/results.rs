@@ -94,12 +94,13 @@ pub fn pretty(value: &Value) -> String {
     format!("{value:#}\n")
 }
 
-const BALL_COLUMNS: [(&str, &str); 5] = [
+const BALL_COLUMNS: [(&str, &str); 6] = [
     ("ball", "1"),
     ("azimuth", "deg"),
     ("position_x", "m"),
     ("position_y", "m"),
     ("position_z", "m"),
+    ("cage_force", "N"),
 ];
 
 const CONTACT_COLUMNS: [(&str, &str); 9] = [
@@ -114,7 +115,7 @@ const CONTACT_COLUMNS: [(&str, &str); 9] = [
     ("force_on_race_z", "N"),
 ];
 
-/// One row per ball: number, azimuth, position, then load, approach, contact angle, ellipse,
+/// One row per ball: number, azimuth, position, force of the cage, then load, approach, contact angle, ellipse,
 /// pressure and force of the inner and of the outer contact (columns `inner_load`, …,
 /// `outer_force_on_race_z`).
 pub fn ball_series(solution: &StaticSolution) -> Result<Series, SeriesError> {
@@ -129,6 +130,7 @@ pub fn ball_series(solution: &StaticSolution) -> Result<Series, SeriesError> {
     for (index, ball) in solution.balls.iter().enumerate() {
         values.extend([(index + 1) as f64, ball.azimuth.to_degrees()]);
         values.extend(ball.position.iter());
+        values.push(ball.cage_force);
         for contact in [&ball.inner, &ball.outer] {
             values.extend(contact_values(contact));
         }
@@ -161,7 +163,7 @@ pub fn static_summary(solution: &StaticSolution, run: &RunRecord) -> Result<Valu
     let mut summary = Map::new();
     let mut put = |name: &str, value: Value| summary.insert(name.to_string(), value);
     put("kind", json!("static solution"));
-    put("program", json!({ "name": "bearing-dynamics", "version": env!("CARGO_PKG_VERSION") }));
+    put("program", program());
     put("threads", json!(run.threads));
     put("seconds", seconds(&run.seconds)?);
     put("determinacy", determinacy(&solution.determinacy)?);
@@ -187,15 +189,7 @@ pub fn static_summary(solution: &StaticSolution, run: &RunRecord) -> Result<Valu
     let balls: Result<Vec<Value>, _> =
         solution.balls.iter().enumerate().map(|(index, b)| ball(index + 1, b)).collect();
     put("balls", json!(balls?));
-    put("assumptions", strings(&run.assumptions));
-    put("plan", json!(run.plan));
-    put("scene", run.scene.clone());
-    for (name, section) in &run.sections {
-        refuse_null(name, section)?;
-        if summary.insert(name.clone(), section.clone()).is_some() {
-            return Err(ResultsError::SectionName { name: name.clone() });
-        }
-    }
+    insert_echo(&mut summary, run)?;
     Ok(Value::Object(summary))
 }
 
@@ -270,13 +264,35 @@ fn stiffness(solution: &StaticSolution) -> Result<Value, ResultsError> {
     Ok(Value::Object(rows))
 }
 
+/// Number of balls that carry the inner race, and the arc from the first to the last of them in
+/// rad: the full circle less the widest gap between neighbouring loaded balls.
+pub fn load_zone_of(solution: &StaticSolution) -> (usize, f64) {
+    let tau = std::f64::consts::TAU;
+    let mut azimuths: Vec<f64> = solution
+        .balls
+        .iter()
+        .filter(|ball| ball.inner.normal_load > 0.0)
+        .map(|ball| ball.azimuth.rem_euclid(tau))
+        .collect();
+    azimuths.sort_by(f64::total_cmp);
+    if azimuths.len() == solution.balls.len() {
+        return (azimuths.len(), tau);
+    }
+    let Some((&first, &last)) = azimuths.first().zip(azimuths.last()) else { return (0, 0.0) };
+    let widest =
+        azimuths.windows(2).map(|pair| pair[1] - pair[0]).fold(first + tau - last, f64::max);
+    (azimuths.len(), tau - widest)
+}
+
 fn load_zone(solution: &StaticSolution) -> Result<Value, ResultsError> {
     let largest = |load: fn(&BallState) -> f64| {
         solution.balls.iter().map(load).fold(0.0, |a: f64, b| if b > a { b } else { a })
     };
     let loaded =
         |load: fn(&BallState) -> f64| solution.balls.iter().filter(|ball| load(ball) > 0.0).count();
+    let (_, extent) = load_zone_of(solution);
     Ok(json!({
+        "extent": quantity("load zone", extent.to_degrees(), "deg")?,
         "balls_loaded_inner": loaded(|ball| ball.inner.normal_load),
         "balls_loaded_outer": loaded(|ball| ball.outer.normal_load),
         "largest_inner_load": quantity("load", largest(|ball| ball.inner.normal_load), "N")?,
@@ -295,6 +311,7 @@ fn ball(number: usize, ball: &BallState) -> Result<Value, ResultsError> {
         "ball": number,
         "azimuth": quantity(&named("azimuth"), ball.azimuth.to_degrees(), "deg")?,
         "position": vector(&named("position"), &ball.position, "m")?,
+        "cage_force": quantity(&named("cage_force"), ball.cage_force, "N")?,
         "inner": contact(&named("inner"), &ball.inner)?,
         "outer": contact(&named("outer"), &ball.outer)?,
     }))
@@ -317,6 +334,38 @@ fn vector(name: &str, vector: &Vector3<f64>, unit: &str) -> Result<Value, Result
         "y": quantity(&format!("{name} y"), vector.y, unit)?,
         "z": quantity(&format!("{name} z"), vector.z, unit)?,
     }))
+}
+
+fn program() -> Value {
+    json!({ "name": "bearing-dynamics", "version": env!("CARGO_PKG_VERSION") })
+}
+
+/// Program, threads, seconds, and all that a record echoes: what every kind of summary has.
+///
+/// # Errors
+/// A time that is not finite, a `null` in a further section, a section name used twice.
+pub fn insert_record(
+    summary: &mut Map<String, Value>,
+    run: &RunRecord,
+) -> Result<(), ResultsError> {
+    summary.insert("program".into(), program());
+    summary.insert("threads".into(), json!(run.threads));
+    summary.insert("seconds".into(), seconds(&run.seconds)?);
+    insert_echo(summary, run)
+}
+
+/// Assumptions, plan, scene and further sections of a record.
+fn insert_echo(summary: &mut Map<String, Value>, run: &RunRecord) -> Result<(), ResultsError> {
+    summary.insert("assumptions".into(), strings(&run.assumptions));
+    summary.insert("plan".into(), json!(run.plan));
+    summary.insert("scene".into(), run.scene.clone());
+    for (name, section) in &run.sections {
+        refuse_null(name, section)?;
+        if summary.insert(name.clone(), section.clone()).is_some() {
+            return Err(ResultsError::SectionName { name: name.clone() });
+        }
+    }
+    Ok(())
 }
 
 fn refuse_null(path: &str, value: &Value) -> Result<(), ResultsError> {

@@ -5,7 +5,7 @@ use crate::scene::keys::{self, KEYS, Key};
 use crate::scene::source::{self, Format, Source};
 use crate::scene::sweep::{self, SweepAxis};
 use crate::scene::tree::{self, Entry, Node, Value};
-use crate::scene::value::{self, Checked};
+use crate::scene::value::{self, Checked, ValueError};
 use std::sync::Arc;
 
 /// A named hole in the source that the scene fills.
@@ -74,9 +74,16 @@ impl Document {
                 if path.is_empty() { entry.name.clone() } else { format!("{path}.{}", entry.name) };
             // A name with a dot inside is one quoted key, not a path.
             let known = if entry.name.contains('.') { None } else { keys::find(&full) };
+            // `outer_race.x` is a key and a table as well: what stands there tells which is meant.
+            let known = known.filter(|_| {
+                !matches!(entry.node.value, Value::Table(_)) || keys::find_table(&full).is_none()
+            });
             if let Some((row, key)) = known {
-                let value = value::check(key, &entry.node)
-                    .map_err(|(offset, problem)| self.source.error(offset, &full, problem))?;
+                let value = value::check(key, &entry.node).map_err(|error| {
+                    let dot = if error.within.is_empty() { "" } else { "." };
+                    let place = format!("{full}{dot}{}", error.within);
+                    self.source.error(error.offset, &place, error.problem)
+                })?;
                 self.given[row] = Some(Given { value, offset: Some(entry.node.offset) });
                 continue;
             }
@@ -133,12 +140,12 @@ impl Document {
                 self.fill_sweep(&path, inner)?;
                 continue;
             }
-            let error = |(offset, problem)| {
-                self.source.error(offset, &format!("sweep.\"{path}\""), problem)
+            let error = |error: ValueError| {
+                self.source.error(error.offset, &format!("sweep.\"{path}\""), error.problem)
             };
             let axis = sweep::axis_of_node(&path, offset, &node).map_err(error)?;
             if self.sweep.iter().any(|other| other.key == axis.key) {
-                return Err(error((offset, Problem::DuplicateKey)));
+                return Err(error((offset, Problem::DuplicateKey).into()));
             }
             self.sweep.push(axis);
         }

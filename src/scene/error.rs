@@ -155,6 +155,11 @@ pub enum Problem {
     )]
     NotThreeValues { found: usize, example: String },
 
+    #[error(
+        "{written} does not come after the entry before it. Allowed: strictly increasing. Hint: put the entries in order"
+    )]
+    NotIncreasing { written: String },
+
     #[error("missing{because}. Hint: add {example}")]
     Missing { because: String, example: String },
     #[error("given together with `{rival}`. Allowed: exactly one of the two. Hint: {advice}")]
@@ -221,7 +226,7 @@ pub enum Problem {
         advice: &'static str,
     },
     #[error(
-        "the pitch radius {} is not between the races. Allowed: more than {} to less than {}. Hint: leave it out, it then lies half way",
+        "the pitch radius {} is not half way between the races. Allowed: {} to {}. Hint: leave it out, it then lies half way",
         mm(*.pitch), mm(*.inner), mm(*.outer)
     )]
     PitchOutsideGap { pitch: f64, inner: f64, outer: f64 },
@@ -230,6 +235,28 @@ pub enum Problem {
         mm(*.displacement), mm(-*.ball), mm(*.ball)
     )]
     DisplacementTooLarge { displacement: f64, ball: f64 },
+
+    #[error(
+        "a moment of inertia of {axial} kg m^2 about the axis is more than twice that across it ({transverse} kg m^2), \
+         which no body has. Allowed: up to {} kg m^2. Hint: were the two exchanged?", 2.0 * *.transverse
+    )]
+    ImpossibleInertia { axial: f64, transverse: f64 },
+    #[error(
+        "the friction curve rises to {peak:.3}. Allowed: up to 2. Hint: the rise `b` is too large for the decay `c`"
+    )]
+    FrictionTooLarge { peak: f64 },
+    #[error(
+        "a time of {} s is {relation} {other_name}, {} s. Allowed: {allowed} {} s. Hint: {advice}",
+        nine_digits(*.value), nine_digits(*.other), nine_digits(*.other)
+    )]
+    WrongTime {
+        value: f64,
+        relation: &'static str,
+        other_name: &'static str,
+        other: f64,
+        allowed: &'static str,
+        advice: &'static str,
+    },
 
     #[error("not a list or range of values: {written}{}. Hint: write \"5 um, 0 um\" or \"0 deg .. 45 deg / 91\"", because(.reason))]
     BadSweep { written: String, reason: String },

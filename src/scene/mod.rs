@@ -18,9 +18,16 @@
 //! # Ok::<(), scene::SceneError>(())
 //! ```
 pub mod document;
+pub mod dynamics;
 pub mod error;
+mod key_table;
+mod key_table_dynamics;
 pub mod keys;
+mod profile;
 mod resolve;
+mod resolve_cage;
+mod resolve_contact;
+mod resolve_dynamics;
 mod resolve_geometry;
 pub mod resolved;
 pub mod schema;
@@ -35,7 +42,8 @@ pub use document::Document;
 pub use error::{Place, Problem, SceneError};
 pub use resolve::resolve;
 pub use resolved::{
-    Assumption, Cage, CageGuidance, DefaultUsed, Dimensions, Plot, RaceDimensions, Scene,
+    Assumption, Cage, CageGuidance, CageInRun, DefaultUsed, Dimensions, Dynamics, Plot,
+    RaceDimensions, RunPlot, RunSettings, Scene,
 };
 pub use schema::json_schema;
 pub use source::{Format, LARGEST_FILE};

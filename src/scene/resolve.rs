@@ -5,10 +5,13 @@ use crate::ch2_housing::bearing::hertz::HertzModel;
 use crate::scene::document::Document;
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::keys::{self, Kind, Need};
-use crate::scene::resolve_geometry;
-use crate::scene::resolved::{Cage, CageGuidance, DefaultUsed, Plot, Scene};
+use crate::scene::profile;
+use crate::scene::resolved::{DefaultUsed, Plot, RunPlot, Scene};
 use crate::scene::units::{parse_number, parse_quantity};
 use crate::scene::value::Checked;
+use crate::scene::{resolve_cage, resolve_dynamics, resolve_geometry};
+use crate::solver::dynamics::model::Drive;
+use crate::solver::profile::Profile;
 use crate::solver::statics::{COORDINATE_NAMES, Condition};
 
 /// Validates the document as a whole and turns it into SI.
@@ -22,7 +25,7 @@ pub fn resolve(document: &Document) -> Result<Scene, SceneError> {
         _ => BearingKind::DeepGroove,
     };
     let (geometry, dimensions) = resolve_geometry::geometry(&mut reader, kind)?;
-    let cage = cage(&reader, geometry.ball_radius)?;
+    let cage = resolve_cage::cage(&reader, geometry.ball_radius)?;
     let hertz = match reader.choice("bearing.hertz") {
         Some("exact") => HertzModel::Exact,
         _ => HertzModel::HamrockBrewe,
@@ -31,9 +34,13 @@ pub fn resolve(document: &Document) -> Result<Scene, SceneError> {
     let inner_material = reader.material("bearing.inner_race.material");
     let outer_material = reader.material("bearing.outer_race.material");
     let ball_material = reader.material("bearing.ball.material");
-    let conditions = reader.conditions(geometry.ball_radius)?;
+    let inner_drives = reader.drives("inner_race", geometry.ball_radius)?;
+    let conditions = inner_drives.each_ref().map(|drive| match drive {
+        Drive::Load(profile) => Condition::Load(profile.value(0.0)),
+        Drive::Motion(profile) => Condition::Displacement(profile.value(0.0)),
+    });
     let outer_race = reader.outer_race(geometry.ball_radius)?;
-    let inner_speed = reader.given_number("inner_race.speed");
+    let inner_speed = reader.profile("inner_race.speed").map(|speed| speed.value(0.0));
     let gravity = match document.value("ball_forces.gravity") {
         Some(Checked::Vector(gravity)) => *gravity,
         _ => {
@@ -51,9 +58,21 @@ pub fn resolve(document: &Document) -> Result<Scene, SceneError> {
     if centrifugal && inner_speed.is_none() {
         return Err(reader.missing("inner_race.speed", " with `ball_forces.centrifugal = true`"));
     }
+    let (plots, run_plots) = reader.plots();
+    let defaults_used = std::mem::take(&mut reader.defaults_used);
+    let parts = resolve_dynamics::Parts {
+        geometry: &geometry,
+        dimensions: &dimensions,
+        inner_material: &inner_material,
+        outer_material: &outer_material,
+        cage: cage.as_ref(),
+    };
+    let mut dynamics = resolve_dynamics::dynamics(&mut reader, &parts, inner_drives)?;
+    dynamics.plots = run_plots;
+    dynamics.defaults_used = reader.defaults_used;
     Ok(Scene {
-        title: reader.text("title"),
-        source: reader.text("source"),
+        title: text(document, "title"),
+        source: text(document, "source"),
         assumptions: document.assumptions().to_vec(),
         geometry,
         dimensions,
@@ -68,9 +87,10 @@ pub fn resolve(document: &Document) -> Result<Scene, SceneError> {
         inner_speed,
         gravity,
         centrifugal,
-        plots: reader.plots(),
+        dynamics,
+        plots,
         sweep: document.sweep().to_vec(),
-        defaults_used: reader.defaults_used,
+        defaults_used,
     })
 }
 
@@ -93,8 +113,17 @@ impl Reader<'_> {
         self.document.value(path).is_some()
     }
 
+    /// The given profile; a plain quantity is a constant one.
+    pub fn profile(&self, path: &str) -> Option<Profile> {
+        match self.document.value(path)? {
+            Checked::Number(value) => Some(Profile::Constant(*value)),
+            Checked::Profile(profile) => Some(profile.clone()),
+            _ => None,
+        }
+    }
+
     /// The given number, else the default of the key table.
-    fn number(&mut self, path: &str) -> Option<f64> {
+    pub fn number(&mut self, path: &str) -> Option<f64> {
         self.given_number(path).or_else(|| {
             self.note_default(path);
             default_number(path)
@@ -132,15 +161,8 @@ impl Reader<'_> {
         self.given_choice(path).ok_or_else(|| self.missing(path, ""))
     }
 
-    fn text(&self, path: &str) -> Option<String> {
-        match self.document.value(path)? {
-            Checked::Text(text) => Some(text.clone()),
-            _ => None,
-        }
-    }
-
     /// Notes that the key table's default of `path` is in use.
-    fn note_default(&mut self, path: &str) {
+    pub fn note_default(&mut self, path: &str) {
         if let Some((_, key)) = keys::find(path)
             && let Need::Default { value, reason } = key.need
         {
@@ -182,34 +204,41 @@ impl Reader<'_> {
         Material::STEEL
     }
 
-    fn conditions(&mut self, ball_radius: f64) -> Result<[Condition; 5], SceneError> {
-        let mut conditions = [Condition::Load(0.0); 5];
-        for (condition, name) in conditions.iter_mut().zip(COORDINATE_NAMES) {
-            let table = format!("inner_race.{name}");
+    /// Load or given motion of the five coordinates of a race.
+    pub fn drives(&mut self, race: &str, ball_radius: f64) -> Result<[Drive; 5], SceneError> {
+        let mut drives = [const { Drive::Load(Profile::ZERO) }; 5];
+        for (drive, name) in drives.iter_mut().zip(COORDINATE_NAMES) {
+            let table = format!("{race}.{name}");
             let (load, held, zero) = if name.starts_with("tilt") {
                 ("moment", "tilt", "{ moment = \"0 N m\" }")
             } else {
                 ("load", "displacement", "{ load = \"0 N\" }")
             };
             let held = format!("{table}.{held}");
-            if let Some(load) = self.given_number(&format!("{table}.{load}")) {
-                *condition = Condition::Load(load);
-            } else if let Some(value) = self.given_number(&held) {
-                self.limit_displacement(&held, value, ball_radius)?;
-                *condition = Condition::Displacement(value);
+            if let Some(load) = self.profile(&format!("{table}.{load}")) {
+                *drive = Drive::Load(load);
+            } else if let Some(motion) = self.profile(&held) {
+                self.limit_displacement(&held, profile::largest(&motion), ball_radius)?;
+                *drive = Drive::Motion(motion);
             } else {
                 self.note(&table, zero, "the coordinate is free and unloaded");
             }
         }
-        Ok(conditions)
+        Ok(drives)
     }
 
+    /// Where the outer race is, or starts.
     fn outer_race(&mut self, ball_radius: f64) -> Result<[f64; 5], SceneError> {
         let mut position = [0.0; 5];
         for (value, name) in position.iter_mut().zip(COORDINATE_NAMES) {
             let path = format!("outer_race.{name}");
-            *value = self.number(&path).unwrap_or(0.0);
-            self.limit_displacement(&path, *value, ball_radius)?;
+            let held = if name.starts_with("tilt") { "tilt" } else { "displacement" };
+            if let Some(motion) = self.profile(&format!("{path}.{held}")) {
+                *value = motion.value(0.0);
+            } else {
+                *value = self.number(&path).unwrap_or(0.0);
+                self.limit_displacement(&path, *value, ball_radius)?;
+            }
         }
         Ok(position)
     }
@@ -222,18 +251,31 @@ impl Reader<'_> {
         Err(self.document.error(path, Problem::DisplacementTooLarge { displacement: value, ball }))
     }
 
-    fn plots(&self) -> Vec<Plot> {
-        match self.document.value("output.plots") {
-            Some(Checked::Choices(names)) => names
-                .iter()
-                .map(|name| match *name {
-                    "load-zone" => Plot::LoadZone,
-                    "polar" => Plot::Polar,
-                    _ => Plot::MomentTilt,
-                })
-                .collect(),
-            _ => vec![Plot::LoadZone, Plot::Polar],
+    /// Plots of statics and of a run.
+    fn plots(&self) -> (Vec<Plot>, Vec<RunPlot>) {
+        let Some(Checked::Choices(names)) = self.document.value("output.plots") else {
+            return (vec![Plot::LoadZone, Plot::Polar], vec![RunPlot::Orbit, RunPlot::Series]);
+        };
+        let (mut plots, mut run_plots) = (Vec::new(), Vec::new());
+        for name in names {
+            match *name {
+                "load-zone" => plots.push(Plot::LoadZone),
+                "polar" => plots.push(Plot::Polar),
+                "moment-tilt" => plots.push(Plot::MomentTilt),
+                "orbit" => run_plots.push(RunPlot::Orbit),
+                "spectrum" => run_plots.push(RunPlot::Spectrum),
+                "series" => run_plots.push(RunPlot::Series),
+                _ => run_plots.push(RunPlot::SlipSpin),
+            }
         }
+        (plots, run_plots)
+    }
+}
+
+fn text(document: &Document, path: &str) -> Option<String> {
+    match document.value(path)? {
+        Checked::Text(text) => Some(text.clone()),
+        _ => None,
     }
 }
 
@@ -245,47 +287,9 @@ fn default_number(path: &str) -> Option<f64> {
     let (_, key) = keys::find(path)?;
     let Need::Default { value, .. } = key.need else { return None };
     match key.kind {
-        Kind::Quantity(dimension, _) => {
+        Kind::Quantity(dimension, _) | Kind::Profile(dimension, _) => {
             parse_quantity(value, dimension).ok().map(|quantity| quantity.si)
         }
         _ => parse_number(value).ok(),
     }
-}
-
-fn cage(reader: &Reader, ball_radius: f64) -> Result<Option<Cage>, SceneError> {
-    let guidance = reader.choice_if_given("bearing.cage.guidance").map(|word| match word {
-        "outer-race" => CageGuidance::OuterRace,
-        "inner-race" => CageGuidance::InnerRace,
-        _ => CageGuidance::Balls,
-    });
-    let cage = Cage {
-        pocket_radius: reader.given_number("bearing.cage.pocket_radius"),
-        inner_radius: reader.given_number("bearing.cage.inner_radius"),
-        outer_radius: reader.given_number("bearing.cage.outer_radius"),
-        race_clearance: reader.given_number("bearing.cage.race_clearance"),
-        mass: reader.given_number("bearing.cage.mass"),
-        guidance,
-    };
-    if cage == Cage::default() {
-        return Ok(None);
-    }
-    if let Some(pocket) = cage.pocket_radius
-        && pocket < ball_radius
-    {
-        let problem = Problem::BallExceedsPocket { pocket, ball: ball_radius };
-        return Err(reader.document.error("bearing.cage.pocket_radius", problem));
-    }
-    if let (Some(inner), Some(outer)) = (cage.inner_radius, cage.outer_radius)
-        && inner >= outer
-    {
-        let problem = Problem::WrongOrder {
-            value: inner,
-            relation: "less than",
-            other_name: "the cage's outer radius",
-            other: outer,
-            advice: "were the two exchanged?",
-        };
-        return Err(reader.document.error("bearing.cage.inner_radius", problem));
-    }
-    Ok(Some(cage))
 }

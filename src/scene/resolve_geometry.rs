@@ -152,14 +152,27 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
         return Err(reader.document.error("bearing.contact_angle", problem));
     }
     let through = deep_groove_through(reader)?;
-    let (inner_given, outer_given) = (reader.given_number(INNER), reader.given_number(OUTER));
     let (ball_given, clearance_given) = (given_ball(reader), given_clearance(reader));
+    let (mut inner_given, mut outer_given) =
+        (reader.given_number(INNER), reader.given_number(OUTER));
+    // A catalogue gives pitch and ball: races that the ball just touches, then the clearance.
+    let pitch_given = reader.given_number("bearing.pitch_radius");
+    if let (None, None, Some(pitch), Some(ball)) =
+        (inner_given, outer_given, pitch_given, ball_given)
+    {
+        inner_given = Some(pitch - ball);
+        outer_given = Some(pitch + ball);
+    }
     if let (Some(inner), Some(outer)) = (inner_given, outer_given)
         && outer <= inner
     {
         return Err(reader.document.error(OUTER, Problem::RacesOverlap { inner, outer }));
     }
-    let need = |path: &str, because: &str| reader.required_number(path, because);
+    let need = |path: &str, because: &str| match path {
+        INNER if inner_given.is_some() => Ok(inner_given.unwrap_or_default()),
+        OUTER if outer_given.is_some() => Ok(outer_given.unwrap_or_default()),
+        _ => reader.required_number(path, because),
+    };
     let need_ball =
         |because: &str| ball_given.ok_or_else(|| reader.missing("bearing.ball.radius", because));
     let (inner, outer, ball, clearance);
@@ -226,8 +239,11 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
         return Err(reader.document.error(&groove_key(reader, "bearing.outer_race"), problem));
     }
     let pitch = reader.given_number("bearing.pitch_radius").unwrap_or(0.5 * (inner + outer));
-    if !(pitch > inner && pitch < outer) {
-        let problem = Problem::PitchOutsideGap { pitch, inner, outer };
+    // A twentieth of the ball's radius is far more than any clearance or rounding of a catalogue.
+    let (half_way, slack) = (0.5 * (inner + outer), 0.05 * ball);
+    let (least, most) = (half_way - slack, half_way + slack);
+    if !(least..=most).contains(&pitch) {
+        let problem = Problem::PitchOutsideGap { pitch, inner: least, outer: most };
         return Err(reader.document.error("bearing.pitch_radius", problem));
     }
     let raceway = |centre_radius: f64, groove_radius: f64| Raceway {

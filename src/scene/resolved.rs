@@ -1,9 +1,13 @@
 //! A scene as the program uses it: SI units, validated, every default named.
 
+use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough, Material};
 use crate::ch2_housing::bearing::hertz::HertzModel;
+use crate::ch2_housing::bearing::traction::TractionLaw;
 pub use crate::scene::document::Assumption;
 use crate::scene::sweep::SweepAxis;
+use crate::solver::dynamics::model::{CageBody, RaceBody, RotatingLoad};
+use crate::solver::dynamics::run::RunOptions;
 use crate::solver::statics::Condition;
 
 /// A default that fills a hole of the scene: shown with the results as an assumption.
@@ -64,11 +68,64 @@ pub struct Cage {
     pub guidance: Option<CageGuidance>,
 }
 
+/// Plots of a static solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plot {
     LoadZone,
     Polar,
     MomentTilt,
+}
+
+/// Plots of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RunPlot {
+    Orbit,
+    Spectrum,
+    Series,
+    SlipSpin,
+}
+
+/// The cage in a run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CageInRun {
+    Body(CageBody),
+    /// Why the run has no cage.
+    LeftOut(String),
+}
+
+/// How long a run is, how it steps, and what it writes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunSettings {
+    pub options: RunOptions,
+    /// s.
+    pub end: f64,
+    /// Time from one written row to the next, s.
+    pub output_interval: f64,
+    /// Time from which means and spectra are taken, s.
+    pub window_start: f64,
+    /// Columns to write; `None` for all.
+    pub channels: Option<Vec<String>>,
+}
+
+/// What only a run needs, SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dynamics {
+    pub inner: RaceBody,
+    /// `None`: the outer race is fixed.
+    pub outer: Option<RaceBody>,
+    pub cage: CageInRun,
+    pub rotating_load: Option<RotatingLoad>,
+    /// kg·m.
+    pub unbalance: f64,
+    pub traction: TractionLaw,
+    pub slices: usize,
+    pub heathcote: bool,
+    pub damping: ContactDamping,
+    /// `None` where the scene gives no end.
+    pub run: Option<RunSettings>,
+    pub plots: Vec<RunPlot>,
+    /// Defaults in use besides those of [`Scene::defaults_used`].
+    pub defaults_used: Vec<DefaultUsed>,
 }
 
 /// A resolved scene.
@@ -91,15 +148,18 @@ pub struct Scene {
     /// Azimuth of ball 1 from +Y towards +Z, rad.
     pub ball_phase: f64,
 
-    /// Conditions on x, y, z, tilt_y, tilt_z of the inner race.
+    /// Conditions on x, y, z, tilt_y, tilt_z of the inner race, at t = 0.
     pub conditions: [Condition; 5],
-    /// Position x, y, z (m) and tilt_y, tilt_z (rad) of the outer race.
+    /// Position x, y, z (m) and tilt_y, tilt_z (rad) of the outer race, at t = 0.
     pub outer_race: [f64; 5],
-    /// Rotation of the inner race about X, rad/s.
+    /// Rotation of the inner race about X at t = 0, rad/s.
     pub inner_speed: Option<f64>,
-    /// World axes, m/s²; zero leaves the balls' weight out.
+    /// World axes, m/s²; zero leaves the weight out.
     pub gravity: [f64; 3],
     pub centrifugal: bool,
+
+    /// What a run needs besides.
+    pub dynamics: Dynamics,
 
     pub plots: Vec<Plot>,
     /// What a sweep varies unless it is told otherwise.

@@ -1,6 +1,7 @@
 //! The key table as JSON Schema (for editors) and as the reference `docs/scene.md`.
 
 use crate::scene::keys::{self, KEYS, Key, Kind, Need, Range, TABLES};
+use crate::scene::profile::{FORMS, Member};
 use crate::scene::units::{Dimension, plain};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -17,6 +18,11 @@ pub fn json_schema() -> Value {
         .into_iter()
         .map(|dimension| (definition_name(dimension), quantity_schema(dimension)))
         .collect();
+    let profiles = Dimension::ALL
+        .into_iter()
+        .filter(|dimension| profile_dimensions().any(|used| used == *dimension))
+        .map(|dimension| (profile_name(dimension), profile_schema(dimension)));
+    let definitions: Map<String, Value> = definitions.into_iter().chain(profiles).collect();
     schema.insert("$defs".into(), Value::Object(definitions));
     Value::Object(schema)
 }
@@ -56,12 +62,17 @@ fn table_schema(path: &str) -> Map<String, Value> {
                 if key.need == Need::Required {
                     required.push(json!(name));
                 }
-                let later_rivals =
-                    key.rivals().filter(|rival| row(rival.path) > row(key.path)).map(Key::name);
+                let later_rivals = key
+                    .rivals()
+                    .filter(|rival| rival.table() == key.table() && row(rival.path) > row(key.path))
+                    .map(Key::name);
                 exclusive.extend(
                     later_rivals.map(|rival| json!({ "not": { "required": [name, rival] } })),
                 );
-                key_schema(key)
+                match keys::find_table(&full) {
+                    Some(_) => key_or_table_schema(key, &full),
+                    None => key_schema(key),
+                }
             }
             None => match full.as_str() {
                 "assumptions" => free_table(&full, json!({ "type": "string" })),
@@ -134,6 +145,76 @@ fn sweep_schema() -> Value {
     })
 }
 
+/// A quantity as text, or a table of keys.
+fn key_or_table_schema(key: &'static Key, path: &str) -> Value {
+    let mut schema = table_schema(path);
+    let quantity = key_schema(key);
+    schema.insert("type".into(), json!(["string", "object"]));
+    schema.insert("description".into(), quantity["description"].clone());
+    schema.insert("if".into(), json!({ "type": "string" }));
+    schema.insert("then".into(), json!({ "$ref": quantity["$ref"] }));
+    Value::Object(schema)
+}
+
+fn profile_dimensions() -> impl Iterator<Item = Dimension> {
+    KEYS.iter().filter_map(|key| match key.kind {
+        Kind::Profile(dimension, _) => Some(dimension),
+        _ => None,
+    })
+}
+
+fn profile_name(dimension: Dimension) -> String {
+    format!("{}_profile", definition_name(dimension))
+}
+
+/// A quantity, or one of the tables of [`FORMS`].
+fn profile_schema(dimension: Dimension) -> Value {
+    let own = reference(dimension);
+    let forms = FORMS.iter().map(|form| {
+        let mut properties = Map::new();
+        let mut required = Vec::new();
+        for (index, member) in form.members.iter().enumerate() {
+            let (value, needed) = match member {
+                Member::Own(_) => (own.clone(), false),
+                Member::Pair(_) => (list(&own, 2, Some(2)), false),
+                Member::Points(_) => {
+                    let pair = json!({ "type": "array", "minItems": 2, "maxItems": 2,
+                        "prefixItems": [reference(Dimension::Time), own] });
+                    (list(&pair, 2, None), false)
+                }
+                Member::Other(key) => (key_schema(key), key.need == Need::Required),
+            };
+            properties.insert(member.name().into(), value);
+            if index == 0 || needed {
+                required.push(member.name());
+            }
+        }
+        json!({
+            "type": "object",
+            "description": form.doc,
+            "properties": properties,
+            "required": required,
+            "additionalProperties": false,
+        })
+    });
+    let any: Vec<Value> = std::iter::once(own.clone()).chain(forms).collect();
+    json!({ "anyOf": any })
+}
+
+fn list(items: &Value, least: usize, most: Option<usize>) -> Value {
+    let mut schema = json!({ "type": "array", "items": items, "minItems": least });
+    if let Some(most) = most {
+        schema["maxItems"] = json!(most);
+    }
+    schema
+}
+
+fn number_schema(range: Range) -> Value {
+    let low = if range.low_included { "minimum" } else { "exclusiveMinimum" };
+    let high = if range.high_included { "maximum" } else { "exclusiveMaximum" };
+    json!({ "type": "number", low: range.low, high: range.high })
+}
+
 fn key_schema(key: &'static Key) -> Value {
     let mut schema = match key.kind {
         Kind::Text => json!({ "type": "string" }),
@@ -145,11 +226,27 @@ fn key_schema(key: &'static Key) -> Value {
         Kind::Choices(choices) => {
             json!({ "type": "array", "uniqueItems": true, "items": { "enum": choices } })
         }
-        Kind::Number(range) => {
-            let low = if range.low_included { "minimum" } else { "exclusiveMinimum" };
-            let high = if range.high_included { "maximum" } else { "exclusiveMaximum" };
-            json!({ "type": "number", low: range.low, high: range.high })
+        Kind::Number(range) => number_schema(range),
+        Kind::Profile(dimension, _) => {
+            json!({ "$ref": format!("#/$defs/{}", profile_name(dimension)) })
         }
+        Kind::Either(kinds) => {
+            let any: Vec<Value> = kinds
+                .iter()
+                .filter_map(|kind| match kind {
+                    Kind::Number(range) => Some(number_schema(*range)),
+                    Kind::Quantity(dimension, _) => Some(reference(*dimension)),
+                    _ => None,
+                })
+                .collect();
+            json!({ "anyOf": any })
+        }
+        Kind::Curve(dimension, _, numbers) => {
+            let pair = json!({ "type": "array", "minItems": 2, "maxItems": 2,
+                "prefixItems": [reference(dimension), number_schema(numbers)] });
+            list(&pair, 1, None)
+        }
+        Kind::Texts => json!({ "type": "array", "items": { "type": "string" } }),
         Kind::Quantity(dimension, _) => reference(dimension),
         Kind::Vector(dimension, _) => {
             json!({ "type": "array", "minItems": 3, "maxItems": 3, "items": reference(dimension) })
@@ -175,9 +272,21 @@ fn reference(dimension: Dimension) -> Value {
 fn range_text(key: &Key) -> Option<String> {
     match key.kind {
         Kind::Integer { low, high } => Some(format!("from {low} to {high}")),
-        Kind::Number(range) | Kind::Quantity(_, range) | Kind::Vector(_, range) => {
-            Some(Range::to_string(&range))
+        Kind::Number(range)
+        | Kind::Quantity(_, range)
+        | Kind::Vector(_, range)
+        | Kind::Profile(_, range) => Some(Range::to_string(&range)),
+        Kind::Either(kinds) => {
+            let ranges: Vec<String> = kinds
+                .iter()
+                .filter_map(|kind| match kind {
+                    Kind::Number(range) | Kind::Quantity(_, range) => Some(range.to_string()),
+                    _ => None,
+                })
+                .collect();
+            Some(ranges.join(", or "))
         }
+        Kind::Curve(_, range, numbers) => Some(format!("{range}, increasing; {numbers}")),
         _ => None,
     }
 }
@@ -254,6 +363,21 @@ fn kind_and_range(key: &Key) -> (String, String) {
         Kind::Choices(choices) => ("list of words".to_string(), words(choices)),
         Kind::Number(_) => ("number".to_string(), range),
         Kind::Quantity(dimension, _) => (noun(dimension).to_string(), range),
+        Kind::Profile(dimension, _) => (format!("{} or profile", noun(dimension)), range),
+        Kind::Either(kinds) => {
+            let nouns: Vec<&str> = kinds
+                .iter()
+                .map(|kind| match kind {
+                    Kind::Quantity(dimension, _) => noun(*dimension),
+                    _ => "number",
+                })
+                .collect();
+            (nouns.join(" or "), range)
+        }
+        Kind::Curve(dimension, ..) => {
+            (format!("list of pairs: {}, number", noun(dimension)), range)
+        }
+        Kind::Texts => ("list of texts".to_string(), "any".to_string()),
         Kind::Vector(dimension, _) => {
             (format!("list of three: {}", noun(dimension)), format!("each {range}"))
         }

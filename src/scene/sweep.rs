@@ -57,7 +57,9 @@ fn range_value(low: f64, high: f64, index: usize, count: usize) -> f64 {
     if index + 1 == count {
         return high;
     }
-    low + (high - low) * index as f64 / (count - 1) as f64
+    let value = low + (high - low) * index as f64 / (count - 1) as f64;
+    // To 15 digits, as a person would have written it: 0.05, not 0.049999999999999996.
+    format!("{value:.14e}").parse().unwrap_or(value)
 }
 
 /// Axis from an entry of the `[sweep]` table.
@@ -69,7 +71,7 @@ pub(crate) fn axis_of_node(
     let (_, key) = keys::find(path).ok_or_else(|| (key_offset, unknown_key(path)))?;
     let items = match &node.value {
         Value::Text(text) => {
-            return axis_of_text(key, text).map_err(|problem| (node.offset, problem));
+            return axis_of_text(key, text).map_err(|problem| (node.offset, problem).into());
         }
         Value::List(items) => items,
         other => {
@@ -78,12 +80,12 @@ pub(crate) fn axis_of_node(
                 found: other.description().to_string(),
                 advice: format!("write \"{path}\" = [{}]", key.example()),
             };
-            return Err((node.offset, problem));
+            return Err((node.offset, problem).into());
         }
     };
     refuse_unsweepable(key).map_err(|problem| (key_offset, problem))?;
     if items.is_empty() {
-        return Err((node.offset, bad(&"[]", "the list is empty")));
+        return Err((node.offset, bad(&"[]", "the list is empty")).into());
     }
     let mut values = Vec::new();
     for item in items {
@@ -91,7 +93,9 @@ pub(crate) fn axis_of_node(
             Value::Text(text) => text.trim().to_string(),
             Value::Number(text) => text.clone(),
             Value::Boolean(value) => value.to_string(),
-            other => return Err((item.offset, bad(&other.description(), "not a single value"))),
+            other => {
+                return Err((item.offset, bad(&other.description(), "not a single value")).into());
+            }
         };
         check_bare(key, &text).map_err(|problem| (item.offset, problem))?;
         values.push(text);
@@ -132,8 +136,18 @@ fn range(key: &'static Key, text: &str, low: &str, rest: &str) -> Result<SweepVa
     check_bare(key, low)?;
     check_bare(key, high)?;
     let unusable = |_| bad(&text, "the ends are not numbers");
-    match key.kind {
-        Kind::Quantity(dimension, _) => {
+    let dimension = match key.kind {
+        Kind::Quantity(dimension, _) | Kind::Profile(dimension, _) => Some(dimension),
+        Kind::Either(kinds) => kinds.iter().find_map(|kind| match kind {
+            Kind::Quantity(dimension, _) => {
+                parse_quantity(low, *dimension).is_ok().then_some(*dimension)
+            }
+            _ => None,
+        }),
+        _ => None,
+    };
+    match (key.kind, dimension) {
+        (_, Some(dimension)) => {
             let low = parse_quantity(low, dimension).map_err(unusable)?;
             let high = parse_quantity(high, dimension).map_err(unusable)?;
             let unit = low.unit.to_string();
@@ -141,7 +155,7 @@ fn range(key: &'static Key, text: &str, low: &str, rest: &str) -> Result<SweepVa
                 if high.scale == low.scale { high.number } else { high.si / low.scale.factor() };
             Ok(SweepValues::Range { low: low.number, high, unit, count })
         }
-        Kind::Number(_) | Kind::Integer { .. } => {
+        (Kind::Number(_) | Kind::Integer { .. } | Kind::Either(_), None) => {
             let low = parse_number(low).map_err(unusable)?;
             let high = parse_number(high).map_err(unusable)?;
             let whole = |index| range_value(low, high, index, count).fract() == 0.0;
@@ -156,7 +170,9 @@ fn range(key: &'static Key, text: &str, low: &str, rest: &str) -> Result<SweepVa
 
 fn refuse_unsweepable(key: &Key) -> Result<(), Problem> {
     match key.kind {
-        Kind::Text | Kind::Choices(_) | Kind::Vector(..) => Err(Problem::NotSweepable),
+        Kind::Text | Kind::Choices(_) | Kind::Vector(..) | Kind::Curve(..) | Kind::Texts => {
+            Err(Problem::NotSweepable)
+        }
         _ => Ok(()),
     }
 }

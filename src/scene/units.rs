@@ -15,6 +15,17 @@ pub enum Dimension {
     Stress,
     Density,
     Acceleration,
+    Time,
+    Frequency,
+    Speed,
+    InverseSpeed,
+    Stiffness,
+    HertzStiffness,
+    TiltStiffness,
+    Damping,
+    TiltDamping,
+    Inertia,
+    Unbalance,
 }
 
 /// How a unit converts to SI.
@@ -97,9 +108,47 @@ const STRESS: &[Unit] = &[
 const DENSITY: &[Unit] =
     &[decimal(&["kg/m^3", "kg/m\u{b3}"], 0), decimal(&["g/cm^3", "g/cm\u{b3}"], 3)];
 const ACCELERATION: &[Unit] = &[decimal(&["m/s^2", "m/s\u{b2}"], 0), factor(&["g"], 9.806_65)];
+const TIME: &[Unit] = &[
+    decimal(&["s"], 0),
+    decimal(&["ms"], -3),
+    decimal(&["us", "\u{b5}s", "\u{3bc}s"], -6),
+    decimal(&["ns"], -9),
+    factor(&["min"], 60.0),
+];
+const FREQUENCY: &[Unit] = &[decimal(&["Hz"], 0), decimal(&["kHz"], 3)];
+const SPEED: &[Unit] = &[decimal(&["m/s"], 0), decimal(&["mm/s"], -3), decimal(&["um/s"], -6)];
+const INVERSE_SPEED: &[Unit] = &[decimal(&["s/m"], 0), decimal(&["s/mm"], 3)];
+const STIFFNESS: &[Unit] = &[
+    decimal(&["N/m"], 0),
+    decimal(&["N/mm"], 3),
+    decimal(&["kN/mm", "N/um", "N/\u{b5}m", "N/\u{3bc}m"], 6),
+];
+const HERTZ_STIFFNESS: &[Unit] = &[
+    decimal(&["N/m^1.5", "N/m^(3/2)"], 0),
+    // 1000^1.5.
+    factor(&["N/mm^1.5", "N/mm^(3/2)"], 31_622.776_601_683_792),
+];
+const TILT_STIFFNESS: &[Unit] = &[
+    decimal(&["N m/rad", "Nm/rad", "N*m/rad", "N\u{b7}m/rad"], 0),
+    decimal(&["kN m/rad", "kNm/rad"], 3),
+    factor(&["N m/deg", "Nm/deg"], 180.0 / PI),
+];
+const DAMPING: &[Unit] =
+    &[decimal(&["N s/m", "Ns/m", "N*s/m"], 0), decimal(&["N s/mm", "Ns/mm"], 3)];
+const TILT_DAMPING: &[Unit] = &[decimal(&["N m s/rad", "Nms/rad", "N*m*s/rad"], 0)];
+const INERTIA: &[Unit] = &[
+    decimal(&["kg m^2", "kg m\u{b2}", "kg*m^2"], 0),
+    decimal(&["kg mm^2", "kg mm\u{b2}", "kg*mm^2"], -6),
+    decimal(&["g mm^2", "g mm\u{b2}", "g*mm^2"], -9),
+];
+const UNBALANCE: &[Unit] = &[
+    decimal(&["kg m", "kg*m"], 0),
+    decimal(&["kg mm", "kg*mm"], -3),
+    decimal(&["g mm", "g*mm"], -6),
+];
 
 impl Dimension {
-    pub const ALL: [Dimension; 9] = [
+    pub const ALL: [Dimension; 20] = [
         Dimension::Length,
         Dimension::Mass,
         Dimension::Force,
@@ -109,6 +158,17 @@ impl Dimension {
         Dimension::Stress,
         Dimension::Density,
         Dimension::Acceleration,
+        Dimension::Time,
+        Dimension::Frequency,
+        Dimension::Speed,
+        Dimension::InverseSpeed,
+        Dimension::Stiffness,
+        Dimension::HertzStiffness,
+        Dimension::TiltStiffness,
+        Dimension::Damping,
+        Dimension::TiltDamping,
+        Dimension::Inertia,
+        Dimension::Unbalance,
     ];
 
     /// Name with its article, as used in a sentence: "a length".
@@ -123,6 +183,17 @@ impl Dimension {
             Dimension::Stress => "a stress or modulus",
             Dimension::Density => "a density",
             Dimension::Acceleration => "an acceleration",
+            Dimension::Time => "a time",
+            Dimension::Frequency => "a frequency",
+            Dimension::Speed => "a speed",
+            Dimension::InverseSpeed => "an inverse speed",
+            Dimension::Stiffness => "a stiffness",
+            Dimension::HertzStiffness => "a Hertz stiffness",
+            Dimension::TiltStiffness => "a tilting stiffness",
+            Dimension::Damping => "a damping coefficient",
+            Dimension::TiltDamping => "a tilting damping coefficient",
+            Dimension::Inertia => "a moment of inertia",
+            Dimension::Unbalance => "an unbalance",
         }
     }
 
@@ -138,6 +209,17 @@ impl Dimension {
             Dimension::Stress => "Pa",
             Dimension::Density => "kg/m^3",
             Dimension::Acceleration => "m/s^2",
+            Dimension::Time => "s",
+            Dimension::Frequency => "Hz",
+            Dimension::Speed => "m/s",
+            Dimension::InverseSpeed => "s/m",
+            Dimension::Stiffness => "N/m",
+            Dimension::HertzStiffness => "N/m^1.5",
+            Dimension::TiltStiffness => "N m/rad",
+            Dimension::Damping => "N s/m",
+            Dimension::TiltDamping => "N m s/rad",
+            Dimension::Inertia => "kg m^2",
+            Dimension::Unbalance => "kg m",
         }
     }
 
@@ -152,6 +234,17 @@ impl Dimension {
             Dimension::Stress => STRESS,
             Dimension::Density => DENSITY,
             Dimension::Acceleration => ACCELERATION,
+            Dimension::Time => TIME,
+            Dimension::Frequency => FREQUENCY,
+            Dimension::Speed => SPEED,
+            Dimension::InverseSpeed => INVERSE_SPEED,
+            Dimension::Stiffness => STIFFNESS,
+            Dimension::HertzStiffness => HERTZ_STIFFNESS,
+            Dimension::TiltStiffness => TILT_STIFFNESS,
+            Dimension::Damping => DAMPING,
+            Dimension::TiltDamping => TILT_DAMPING,
+            Dimension::Inertia => INERTIA,
+            Dimension::Unbalance => UNBALANCE,
         }
     }
 

@@ -2,8 +2,10 @@
 
 use crate::scene::error::{Problem, shortened};
 use crate::scene::keys::{Key, Kind, Range, nearest};
+use crate::scene::profile;
 use crate::scene::tree::{Node, Value};
 use crate::scene::units::{Dimension, QuantityProblem, parse_number, parse_quantity};
+use crate::solver::profile::Profile;
 
 /// A value that its key accepts; quantities in SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,14 +17,33 @@ pub enum Checked {
     Vector([f64; 3]),
     Choice(&'static str),
     Choices(Vec<&'static str>),
+    /// A profile that is written as a table; a constant one is a `Number`.
+    Profile(Profile),
+    /// Which of the kinds of [`Kind::Either`], and the value.
+    Either(usize, f64),
+    /// Pairs of [`Kind::Curve`].
+    Curve(Vec<[f64; 2]>),
+    Texts(Vec<String>),
 }
 
-/// A problem and, inside a list, the offset of the element that has it.
-pub type ValueError = (usize, Problem);
+/// A problem and where it is: the offset of the element of a list or profile that has it.
+#[derive(Debug)]
+pub struct ValueError {
+    pub offset: usize,
+    /// Key inside the profile, empty elsewhere.
+    pub within: String,
+    pub problem: Problem,
+}
+
+impl From<(usize, Problem)> for ValueError {
+    fn from((offset, problem): (usize, Problem)) -> ValueError {
+        ValueError { offset, within: String::new(), problem }
+    }
+}
 
 /// Checks `node` against `key`.
 pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
-    let here = |problem| (node.offset, problem);
+    let here = |problem| ValueError::from((node.offset, problem));
     match (key.kind, &node.value) {
         (Kind::Text, Value::Text(text)) => Ok(Checked::Text(text.clone())),
         (Kind::Boolean, Value::Boolean(value)) => Ok(Checked::Boolean(*value)),
@@ -53,6 +74,25 @@ pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
             };
             Ok(Checked::Vector([component(x)?, component(y)?, component(z)?]))
         }
+        (Kind::Profile(dimension, range), Value::Text(_) | Value::Number(_)) => {
+            quantity(key, &node.value, dimension, range).map(Checked::Number).map_err(here)
+        }
+        (Kind::Profile(dimension, range), Value::Table(entries)) => {
+            profile::read(key, dimension, range, entries, node.offset).map(Checked::Profile)
+        }
+        (Kind::Either(kinds), Value::Text(_) | Value::Number(_)) => {
+            either(key, kinds, &node.value).map_err(here)
+        }
+        (Kind::Curve(dimension, range, numbers), Value::List(items)) => {
+            curve(key, items, node.offset, dimension, range, numbers)
+        }
+        (Kind::Texts, Value::List(items)) => {
+            let text = |item: &Node| match &item.value {
+                Value::Text(text) => Ok(text.clone()),
+                other => Err((item.offset, wrong_kind(key, other))),
+            };
+            Ok(Checked::Texts(items.iter().map(text).collect::<Result<_, _>>()?))
+        }
         (_, other) => Err(here(wrong_kind(key, other))),
     }
 }
@@ -67,14 +107,71 @@ pub fn check_bare(key: &'static Key, text: &str) -> Result<Checked, Problem> {
             "false" => Value::Boolean(false),
             _ => Value::Text(text.to_string()),
         },
-        Kind::Vector(..) | Kind::Choices(_) => return Err(Problem::NotSweepable),
-        Kind::Text | Kind::Choice(_) | Kind::Quantity(..) => Value::Text(text.to_string()),
+        Kind::Either(_) if parse_number(text).is_ok() => Value::Number(text.to_string()),
+        Kind::Vector(..) | Kind::Choices(_) | Kind::Curve(..) | Kind::Texts => {
+            return Err(Problem::NotSweepable);
+        }
+        Kind::Text | Kind::Choice(_) | Kind::Quantity(..) | Kind::Profile(..) | Kind::Either(_) => {
+            Value::Text(text.to_string())
+        }
     };
-    check(key, &Node { value, offset: 0 }).map_err(|(_, problem)| problem)
+    check(key, &Node { value, offset: 0 }).map_err(|error| error.problem)
 }
 
-fn wrong_kind(key: &Key, found: &Value) -> Problem {
-    let expected = match key.kind {
+/// A value of the first kind that takes it.
+fn either(key: &Key, kinds: &'static [Kind], value: &Value) -> Result<Checked, Problem> {
+    let mut first_problem = None;
+    for (index, kind) in kinds.iter().enumerate() {
+        let taken = match (kind, value) {
+            (Kind::Number(range), Value::Number(text)) => number(key, text, *range),
+            (Kind::Quantity(dimension, range), Value::Text(_)) => {
+                quantity(key, value, *dimension, *range)
+            }
+            _ => continue,
+        };
+        match taken {
+            Ok(value) => return Ok(Checked::Either(index, value)),
+            // With a unit of another of the kinds, that kind's answer counts.
+            Err(Problem::WrongUnit { .. } | Problem::UnknownUnit { .. }) => {}
+            Err(problem) => first_problem = first_problem.or(Some(problem)),
+        }
+    }
+    Err(first_problem.unwrap_or_else(|| wrong_kind(key, value)))
+}
+
+/// Pairs of a quantity and a number, `[["0.1 m/s", 0.05], ...]`.
+fn curve(
+    key: &Key,
+    items: &[Node],
+    offset: usize,
+    dimension: Dimension,
+    range: Range,
+    numbers: Range,
+) -> Result<Checked, ValueError> {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for item in items {
+        let wrong = || ValueError::from((item.offset, wrong_kind(key, &item.value)));
+        let Value::List(pair) = &item.value else { return Err(wrong()) };
+        let [x, y] = pair.as_slice() else { return Err(wrong()) };
+        let at = quantity(key, &x.value, dimension, range).map_err(|p| (x.offset, p))?;
+        let Value::Number(text) = &y.value else {
+            return Err((y.offset, wrong_kind(key, &y.value)).into());
+        };
+        let value = number(key, text, numbers).map_err(|p| (y.offset, p))?;
+        if points.last().is_some_and(|last| at <= last[0]) {
+            return Err((x.offset, Problem::NotIncreasing { written: shown(&x.value) }).into());
+        }
+        points.push([at, value]);
+    }
+    if points.is_empty() {
+        return Err((offset, wrong_kind(key, &Value::Other("an empty list"))).into());
+    }
+    Ok(Checked::Curve(points))
+}
+
+/// A kind in words.
+fn expected(kind: Kind) -> String {
+    match kind {
         Kind::Text => "a text in quotes".to_string(),
         Kind::Boolean => "true or false".to_string(),
         Kind::Integer { low, high } => format!("a whole number from {low} to {high}"),
@@ -85,15 +182,44 @@ fn wrong_kind(key: &Key, found: &Value) -> Problem {
         Kind::Vector(dimension, _) => {
             format!("a list of three values with units, each {}", dimension.name())
         }
-    };
-    let found = match found {
-        Value::Text(text) => format!("the text \"{}\"", shortened(text)),
-        Value::Number(text) => format!("the number {}", shortened(text)),
+        Kind::Profile(dimension, range) => {
+            format!("{} with its unit, {range}, or a profile of it over time", dimension.name())
+        }
+        Kind::Either(kinds) => {
+            kinds.iter().map(|kind| expected(*kind)).collect::<Vec<_>>().join(", or ")
+        }
+        Kind::Curve(dimension, ..) => {
+            format!("a list of pairs, each {} with its unit and a plain number", dimension.name())
+        }
+        Kind::Texts => "a list of texts in quotes".to_string(),
+    }
+}
+
+fn wrong_kind(key: &Key, found: &Value) -> Problem {
+    Problem::WrongKind {
+        expected: expected(key.kind),
+        found: described(found),
+        advice: format!("write {} = {}", key.name(), key.example()),
+    }
+}
+
+/// What was found, for a sentence.
+pub(crate) fn described(found: &Value) -> String {
+    match found {
+        Value::Text(_) => format!("the text {}", shown(found)),
+        Value::Number(_) => format!("the number {}", shown(found)),
+        other => shown(other),
+    }
+}
+
+/// A value as it stands in the file.
+pub(crate) fn shown(value: &Value) -> String {
+    match value {
+        Value::Text(text) => format!("\"{}\"", shortened(text)),
+        Value::Number(text) => shortened(text),
         Value::Boolean(value) => value.to_string(),
         other => other.description().to_string(),
-    };
-    let advice = format!("write {} = {}", key.name(), key.example());
-    Problem::WrongKind { expected, found, advice }
+    }
 }
 
 pub(crate) fn quoted(words: &[&str]) -> String {
@@ -144,12 +270,12 @@ fn choice_list(
     let mut chosen = Vec::new();
     for item in items {
         let Value::Text(text) = &item.value else {
-            return Err((item.offset, wrong_kind(key, &item.value)));
+            return Err((item.offset, wrong_kind(key, &item.value)).into());
         };
         let word = choice(text, choices).map_err(|problem| (item.offset, problem))?;
         if chosen.contains(&word) {
             let written = format!("\"{word}\"");
-            return Err((item.offset, Problem::RepeatedChoice { written }));
+            return Err((item.offset, Problem::RepeatedChoice { written }).into());
         }
         chosen.push(word);
     }
@@ -177,12 +303,16 @@ fn number(key: &Key, text: &str, range: Range) -> Result<f64, Problem> {
     in_range(key, value, &written, range, None)
 }
 
-fn quantity(key: &Key, value: &Value, dimension: Dimension, range: Range) -> Result<f64, Problem> {
-    let (text, written) = match value {
-        Value::Text(text) => (text, format!("\"{}\"", shortened(text))),
-        Value::Number(text) => (text, shortened(text)),
-        other => return Err(wrong_kind(key, other)),
+pub(crate) fn quantity(
+    key: &Key,
+    value: &Value,
+    dimension: Dimension,
+    range: Range,
+) -> Result<f64, Problem> {
+    let (Value::Text(text) | Value::Number(text)) = value else {
+        return Err(wrong_kind(key, value));
     };
+    let written = shown(value);
     let allowed = || range.to_string();
     match parse_quantity(text, dimension) {
         Ok(quantity) => in_range(key, quantity.si, &written, range, Some(dimension)),

@@ -21,6 +21,8 @@ pub struct BallPlane {
     pub radial: Vector3<f64>,
     /// Axial and radial part of the ball's weight, N.
     pub weight: [f64; 2],
+    /// Its part along the circumference, which the cage takes, N.
+    pub weight_around: f64,
     /// mω²: centrifugal force per distance from the axis, N/m.
     pub centrifugal: f64,
 }

@@ -1,5 +1,6 @@
 //! Solvers: what a scene needs, and equilibrium.
 pub mod ball;
+pub mod channels;
 pub mod dynamics;
 pub mod plan;
 pub mod profile;

@@ -1,8 +1,14 @@
 //! What a problem needs, decided once before anything is computed: a scene pays only for what it
 //! has, and can be asked why.
 
+use super::channels::ChannelGroup;
+use super::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
+use super::dynamics::run::{RunOptions, Start, Stepping};
 use super::statics::{Condition, StaticProblem};
+use crate::ch2_housing::bearing::cage::Guidance;
+use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::geometry::BearingKind;
+use crate::ch2_housing::bearing::traction::TractionLaw;
 
 /// One thing the solver could do, whether it does it, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,7 +49,12 @@ pub fn statics(problem: &StaticProblem) -> Vec<Stage> {
         if gravity {
             stage("gravity on balls", true, "gravity is given")
         } else {
-            stage("gravity on balls", false, "no gravity: an unloaded ball is left out")
+            let reason = if centrifugal {
+                "no gravity is given"
+            } else {
+                "no gravity: a ball with room is left out"
+            };
+            stage("gravity on balls", false, reason)
         },
         if centrifugal {
             stage("centrifugal force on balls", true, "asked for, with a speed of the inner race")
@@ -55,4 +66,194 @@ pub fn statics(problem: &StaticProblem) -> Vec<Stage> {
         stage("outer race motion", false, "its position is given: no equations for it"),
         stage("flexible bodies", false, "the scene has none: no mesh, no element stage"),
     ]
+}
+
+/// Stages of one evaluation of a run, four a step, and of what is recorded.
+///
+/// `cage_left_out` is why the problem has no cage, where the scene has one.
+pub fn dynamics(
+    problem: &DynamicProblem,
+    options: &RunOptions,
+    channels: &[ChannelGroup],
+    cage_left_out: Option<&str>,
+) -> Vec<Stage> {
+    let balls = problem.geometry.ball_count;
+    let mut stages = vec![
+        start(options.start),
+        step_size(options.stepping),
+        stage(
+            "distance test",
+            true,
+            format!("{balls} balls, two races each; a pair with room costs nothing more"),
+        ),
+        traction(problem),
+        heathcote(problem),
+        contact_damping(&problem.damping),
+    ];
+    stages.extend(cage(problem, cage_left_out));
+    stages.push(if problem.gravity != [0.0; 3] {
+        stage("gravity", true, "given; it acts on every body that moves")
+    } else {
+        stage("gravity", false, "none is given")
+    });
+    stages.push(inner_race(&problem.inner));
+    stages.push(match &problem.outer {
+        Some(body) => stage("outer race motion", true, race_freedom(body)),
+        None => stage("outer race motion", false, "fixed in space: no equations for it"),
+    });
+    stages.push(foundation(problem));
+    stages.push(match &problem.rotating_load {
+        Some(_) => stage("rotating load", true, "given"),
+        None => stage("rotating load", false, "none is given"),
+    });
+    stages.push(if problem.unbalance != 0.0 {
+        stage("unbalance", true, "given")
+    } else {
+        stage("unbalance", false, "none is given")
+    });
+    stages.push(stage("flexible bodies", false, "the scene has none: no mesh, no element stage"));
+    stages.extend(ChannelGroup::ALL.map(|group| channel_group(problem, channels, group)));
+    stages
+}
+
+fn start(start: Start) -> Stage {
+    match start {
+        Start::Equilibrium => {
+            stage("equilibrium at the start", true, "asked for; balls and cage start rolling")
+        }
+        Start::Nominal => stage(
+            "equilibrium at the start",
+            false,
+            "starts in nominal positions, balls and cage rolling",
+        ),
+    }
+}
+
+fn step_size(stepping: Stepping) -> Stage {
+    match stepping {
+        Stepping::Fixed(step) => {
+            stage("stability limit", false, format!("the step is given: {step} s"))
+        }
+        Stepping::FractionOfLimit(fraction) => stage(
+            "stability limit",
+            true,
+            format!("the step is {fraction} of it, from the Jacobian at the start"),
+        ),
+    }
+}
+
+fn traction(problem: &DynamicProblem) -> Stage {
+    let law = match problem.traction {
+        TractionLaw::None => {
+            return stage("traction", false, "law none: no slices, no spin moment");
+        }
+        TractionLaw::Constant { .. } => "constant coefficient",
+        TractionLaw::SlideToRoll { .. } => "exponential in the slide-to-roll ratio",
+        TractionLaw::SlipSpeed { .. } => "exponential in the sliding speed",
+        TractionLaw::Table { .. } => "tabulated over the sliding speed",
+    };
+    let slices = problem.slices;
+    stage("traction", true, format!("{law}; {slices} slices on each loaded contact"))
+}
+
+fn heathcote(problem: &DynamicProblem) -> Stage {
+    match (problem.heathcote, &problem.traction) {
+        (_, TractionLaw::None) => stage("curved contact surface", false, "no slices"),
+        (true, _) => stage("curved contact surface", true, "asked for (Heathcote slip)"),
+        (false, _) => {
+            stage("curved contact surface", false, "not asked for: slices lie in a plane")
+        }
+    }
+}
+
+fn contact_damping(damping: &ContactDamping) -> Stage {
+    match damping {
+        ContactDamping::None => {
+            stage("contact damping", false, "law none: no damping force, no contact history")
+        }
+        ContactDamping::HuntCrossley { .. } => stage(
+            "contact damping",
+            true,
+            "Hunt-Crossley, of the present speed: no contact history",
+        ),
+        ContactDamping::LankaraniNikravesh { .. } => stage(
+            "contact damping",
+            true,
+            "Lankarani-Nikravesh; the speed of approach is kept, once a step",
+        ),
+    }
+}
+
+fn cage(problem: &DynamicProblem, left_out: Option<&str>) -> Vec<Stage> {
+    let Some(cage) = &problem.cage else {
+        let reason = left_out.unwrap_or("the scene has none");
+        return vec![stage("cage", false, format!("{reason}: no equations, no pocket tests"))];
+    };
+    let balls = problem.geometry.ball_count;
+    let guide = |race: &str| stage("cage guide", true, format!("{race}, at both ends of the cage"));
+    vec![
+        stage("cage", true, format!("{balls} pocket tests; six equations of motion")),
+        match cage.contacts.guidance {
+            Guidance::OuterRace => guide("on the outer race"),
+            Guidance::InnerRace => guide("on the inner race"),
+            Guidance::Balls => {
+                stage("cage guide", false, "the balls guide it: no test with a race")
+            }
+        },
+    ]
+}
+
+/// How many of its six coordinates follow from loads.
+fn free_coordinates(body: &RaceBody) -> usize {
+    let loads = body.drives.iter().filter(|drive| matches!(drive, Drive::Load(_))).count();
+    loads + usize::from(matches!(body.rotation, Rotation::Torque(_)))
+}
+
+fn race_freedom(body: &RaceBody) -> String {
+    match free_coordinates(body) {
+        6 => "all six coordinates follow from loads".into(),
+        free => format!("{free} of 6 coordinates follow from loads, the others are given"),
+    }
+}
+
+fn inner_race(body: &RaceBody) -> Stage {
+    match free_coordinates(body) {
+        0 => stage("inner race motion", false, "all six coordinates are given and imposed"),
+        _ => stage("inner race motion", true, race_freedom(body)),
+    }
+}
+
+fn foundation(problem: &DynamicProblem) -> Stage {
+    let stands = |body: &RaceBody| {
+        body.foundation_stiffness.iter().chain(&body.foundation_damping).any(|value| *value != 0.0)
+    };
+    match (stands(&problem.inner), problem.outer.as_ref().is_some_and(stands)) {
+        (false, false) => stage("foundation", false, "no spring or dashpot to the ground"),
+        (true, false) => stage("foundation", true, "under the inner race"),
+        (false, true) => stage("foundation", true, "under the outer race"),
+        (true, true) => stage("foundation", true, "under both races"),
+    }
+}
+
+fn channel_group(problem: &DynamicProblem, asked: &[ChannelGroup], group: ChannelGroup) -> Stage {
+    let name = match group {
+        ChannelGroup::Races => "channels: races",
+        ChannelGroup::Cage => "channels: cage",
+        ChannelGroup::Orbits => "channels: orbits",
+        ChannelGroup::Loads => "channels: loads",
+        ChannelGroup::Pockets => "channels: pockets",
+        ChannelGroup::Slip => "channels: slip",
+        ChannelGroup::Forces => "channels: forces",
+        ChannelGroup::Energy => "channels: energy",
+    };
+    let needs_cage = matches!(group, ChannelGroup::Cage | ChannelGroup::Pockets);
+    if group == ChannelGroup::Energy {
+        stage(name, true, "the ledger is always kept")
+    } else if !asked.contains(&group) {
+        stage(name, false, "not asked for: not computed")
+    } else if needs_cage && problem.cage.is_none() {
+        stage(name, false, "no cage takes part")
+    } else {
+        stage(name, true, "recorded at every output")
+    }
 }

@@ -95,6 +95,9 @@ pub struct BallState {
     pub position: Vector3<f64>,
     pub inner: ContactState,
     pub outer: ContactState,
+    /// Force along the circumference (towards larger azimuth) with which the cage keeps the ball at
+    /// its azimuth, N: what the contacts and the weight leave over in that direction.
+    pub cage_force: f64,
 }
 
 /// Whether the loads determine the position.
@@ -255,7 +258,9 @@ impl Model {
                 let (sin, cos) = libm::sincos(*azimuth);
                 let radial = outer.orientation * Vector3::new(0.0, cos, sin);
                 let weight = [gravity.dot(&axial), gravity.dot(&radial)];
-                BallPlane { origin: outer.position, axial, radial, weight, centrifugal }
+                let weight_around = gravity.dot(&axial.cross(&radial));
+                let origin = outer.position;
+                BallPlane { origin, axial, radial, weight, weight_around, centrifugal }
             })
             .collect();
         let pitch = geometry.pitch_radius;
@@ -561,24 +566,24 @@ impl<'a> Search<'a> {
         let inner_angle = libm::atan2(-inner_contact.normal[0], -inner_contact.normal[1]);
         let outer_angle = libm::atan2(outer_contact.normal[0], outer_contact.normal[1]);
         let problem = self.problem;
-        BallState {
-            azimuth,
-            position,
-            inner: contact_state(
-                &problem.inner_contact,
-                &inner_contact,
-                inner_load,
-                inner_angle,
-                inner_normal,
-            ),
-            outer: contact_state(
-                &problem.outer_contact,
-                &outer_contact,
-                outer_load,
-                outer_angle,
-                outer_normal,
-            ),
-        }
+        let inner = contact_state(
+            &problem.inner_contact,
+            &inner_contact,
+            inner_load,
+            inner_angle,
+            inner_normal,
+        );
+        let outer = contact_state(
+            &problem.outer_contact,
+            &outer_contact,
+            outer_load,
+            outer_angle,
+            outer_normal,
+        );
+        let around = plane.axial.cross(&plane.radial);
+        let contact_force = (inner.force_on_race + outer.force_on_race).dot(&around);
+        let cage_force = contact_force - plane.weight_around;
+        BallState { azimuth, position, inner, outer, cage_force }
     }
 }
 

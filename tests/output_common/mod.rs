@@ -31,6 +31,7 @@ pub fn solution() -> StaticSolution {
                 position: Vector3::new(1e-6, 0.0315 * azimuth.cos(), 0.0315 * azimuth.sin()),
                 inner: contact(azimuth, load, -1.0),
                 outer: contact(azimuth, load * 1.0001, 1.0),
+                cage_force: 0.01 * load,
             }
         })
         .collect();

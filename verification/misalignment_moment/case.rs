@@ -8,7 +8,7 @@ use crate::case::{Case, CaseError, Tier};
 use crate::check::{Check, Explanation};
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::oracles::misalignment::{baseline, readings};
+use crate::oracles::misalignment::{Reading, baseline, readings};
 
 pub const CASE: Case = Case {
     id: "misalignment_moment",
@@ -74,7 +74,7 @@ fn against_the_source(context: &mut CaseContext) -> Result<(), CaseError> {
         Check::new("moment_0p15", "moment at 0.15° tilt", "N·m", moment)
             .published("moment_0p15")
             .under("ball_radius_of_5_um_interference")
-            .relative(0.005, "asked for; the unstated ball phase alone is 0.06 %")
+            .relative(0.005, "0.03 µm of the interference, which is stated to one digit; the unstated ball phase is 0.06 %")
             .golden(GoldenTolerance::REORDERED),
     );
     for (label, moment) in MOMENTS {
@@ -104,7 +104,7 @@ fn against_the_source(context: &mut CaseContext) -> Result<(), CaseError> {
 
 fn against_the_oracle(context: &mut CaseContext) -> Result<(), CaseError> {
     let reference = baseline(PHASE);
-    let reason = "both solvers end at rounding level; asked for is 1e-8";
+    let reason = "both solvers stop where rounding takes over, about 1e-12; no physics is decided below 1e-8";
     context.check(
         Check::new(
             "moment_0p15_independent",
@@ -145,20 +145,23 @@ fn against_the_oracle(context: &mut CaseContext) -> Result<(), CaseError> {
 /// Every reading of the text that was tried, and that none meets all rows.
 fn last_row(context: &mut CaseContext) {
     let tried = readings();
-    // How far a reading is from the published rows: its worst row, in units of the printed digit.
-    let published = [0.094, 0.134, 0.175];
-    let miss = |tilts: &[f64; 3]| {
-        tilts.iter().zip(published).map(|(tilt, row)| (tilt - row).abs()).fold(0.0, f64::max)
+    // A reading that keeps the first two rows, which the stated bearing reproduces, cannot spoil
+    // them: of those, the one that comes lowest in the last row.
+    let Some(stated) = tried.first() else { return };
+    let keeps = |row: &&Reading| {
+        let moved = |i: usize| (row.tilt_degrees[i] - stated.tilt_degrees[i]).abs();
+        moved(0) <= 0.0015 && moved(1) <= 0.0015
     };
-    let best = tried.iter().map(|row| miss(&row.tilt_degrees)).fold(f64::INFINITY, f64::min);
+    let lowest =
+        tried.iter().filter(keeps).map(|row| row.tilt_degrees[2]).fold(f64::INFINITY, f64::min);
     context.check(
         Check::new(
             "no_reading_meets_all_rows",
-            "worst row of the best reading, distance from the published tilt",
+            "lowest tilt at 10 N·m of the readings that keep the first two rows",
             "°",
-            best,
+            lowest,
         )
-        .independent(0.0, "readings solved by the independent solver")
+        .published("tilt_10")
         .at_least(0.0015, "one and a half printed digits: beyond rounding of the published tilts"),
     );
     let rows = tried
@@ -166,27 +169,14 @@ fn last_row(context: &mut CaseContext) {
         .map(|row| {
             let [low, middle, high] = row.tilt_degrees.map(|tilt| format!("{tilt:.4}"));
             let moment = format!("{:.3}", row.moment_at_0_15_degrees);
-            vec![
-                row.name.clone(),
-                moment,
-                low,
-                middle,
-                high,
-                format!("{:.4}", miss(&row.tilt_degrees)),
-            ]
+            vec![row.name.clone(), moment, low, middle, high]
         })
         .collect();
-    let columns = [
-        "reading",
-        "moment at 0.15°, N·m",
-        "tilt at 2.5 N·m, °",
-        "at 5 N·m, °",
-        "at 10 N·m, °",
-        "worst row off by, °",
-    ];
+    let columns =
+        ["reading", "moment at 0.15°, N·m", "tilt at 2.5 N·m, °", "at 5 N·m, °", "at 10 N·m, °"];
     context.table(
         "readings",
-        "Readings tried on Table 3.7 (published 0.094, 0.134, 0.175)",
+        "Readings tried on Table 3.7 (published 0.094°, 0.134°, 0.175°)",
         &columns,
         rows,
     );
@@ -236,7 +226,7 @@ fn figures(context: &mut CaseContext) -> Result<(), CaseError> {
         curves: vec![
             Curve::new("hamrock-brewe", curve(Hertz::Fit)?),
             Curve::new("exact", curve(Hertz::Exact)?),
-            Curve::new("published (Table 3.7 and 3.4.5)", published),
+            Curve::separate("published (Table 3.7 and 3.4.5)", published),
         ],
     })?;
     context.figure(

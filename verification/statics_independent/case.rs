@@ -65,7 +65,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             "the softest directions (swivel of a few balls) are 1e-3 as stiff as a contact: 1e-8 of load \
              is 1e-6 of overlap at most"
         } else {
-            "asked for; rounding of a 1 µm overlap at a 30 mm radius leaves 1e-11"
+            "a 1 µm overlap at a 30 mm radius is known to 1e-11; the rest is room for soft directions"
         };
         context.check(
             Check::new(id, &format!("largest difference in {quantity}, 200 bearings"), "1", worst)

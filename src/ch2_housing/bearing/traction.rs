@@ -45,6 +45,14 @@ impl ExponentialCurve {
         (self.b * x - self.d) * exp_of_negative(-self.c * x) + self.d
     }
 
+    /// κ and dκ/dx.
+    #[inline(always)]
+    pub fn coefficient_and_slope(&self, x: f64) -> (f64, f64) {
+        let decay = exp_of_negative(-self.c * x);
+        let linear = self.b * x - self.d;
+        (linear * decay + self.d, (self.b - self.c * linear) * decay)
+    }
+
     /// dκ/dx at x = 0, the slope that limits the time step.
     pub fn slope_at_rest(&self) -> f64 {
         self.b + self.c * self.d
@@ -96,13 +104,91 @@ pub fn coefficient(law: &TractionLaw, slip: f64, entrainment: f64) -> f64 {
             coefficient * slip / (slip * slip + u0 * u0).sqrt()
         }
         TractionLaw::SlideToRoll { curve, entrainment_floor } => {
-            let floor = *entrainment_floor;
-            let rolling = if entrainment > floor { entrainment } else { floor };
-            curve.coefficient(slip / rolling)
+            curve.coefficient(slip * per_entrainment(entrainment, *entrainment_floor))
         }
         TractionLaw::SlipSpeed { curve } => curve.coefficient(slip),
         TractionLaw::Table { points } => interpolate(points, slip),
     }
+}
+
+/// Friction coefficient and its derivative by the sliding speed (s/m).
+pub fn coefficient_and_slope(law: &TractionLaw, slip: f64, entrainment: f64) -> (f64, f64) {
+    match law {
+        TractionLaw::None => (0.0, 0.0),
+        TractionLaw::Constant { coefficient, regularisation_speed } => {
+            regularised(*coefficient, *regularisation_speed, slip)
+        }
+        TractionLaw::SlideToRoll { curve, entrainment_floor } => {
+            let per_rolling = per_entrainment(entrainment, *entrainment_floor);
+            let (value, slope) = curve.coefficient_and_slope(slip * per_rolling);
+            (value, slope * per_rolling)
+        }
+        TractionLaw::SlipSpeed { curve } => curve.coefficient_and_slope(slip),
+        TractionLaw::Table { points } => {
+            let value = interpolate(points, slip);
+            // Forward, so that the first piece counts at rest.
+            let step = 1e-6 * (slip + 1e-3);
+            (value, (interpolate(points, slip + step) - value) / step)
+        }
+    }
+}
+
+/// Coulomb's law rounded off, and its slope.
+#[inline(always)]
+pub fn regularised(coefficient: f64, speed: f64, slip: f64) -> (f64, f64) {
+    let square = slip * slip + speed * speed;
+    let root = square.sqrt();
+    (coefficient * slip / root, coefficient * speed * speed / (square * root))
+}
+
+/// Traction of slices and how it falls with more sliding: force along t and s and moment about n,
+/// and their negated derivatives by both slips and the relative spin (upper triangle: tt, ts, tn,
+/// ss, sn, nn); all over the normal load.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TractionTangent {
+    pub force: [f64; 3],
+    pub slope: [f64; 6],
+}
+
+/// Adds one slice as [`add_slice`] does, with its derivatives. Beyond the peak of the friction
+/// curve its slope counts as zero, so that the derivatives only ever dissipate.
+#[inline(always)]
+pub fn add_slice_tangent(
+    sum: &TractionTangent,
+    slip: [f64; 2],
+    relative_spin: Vec3,
+    y: f64,
+    sagitta: f64,
+    share: f64,
+    friction: impl Fn(f64) -> (f64, f64),
+) -> TractionTangent {
+    let [spin_t, spin_s, spin_n] = relative_spin;
+    let slip_t = slip[0] - spin_n * y - spin_s * sagitta;
+    let slip_s = slip[1] + spin_t * sagitta;
+    let speed = (slip_t * slip_t + slip_s * slip_s).sqrt();
+    // At rest the secant κ/u is the tangent; 1e-12 m/s is far below any creep.
+    let speed = if speed > 1e-12 { speed } else { 1e-12 };
+    let (coefficient, rise) = friction(speed);
+    let per = 1.0 / speed;
+    let secant = share * coefficient * per;
+    let rise = if rise > 0.0 { rise } else { 0.0 };
+    let steep = (share * rise - secant) * per * per;
+    let tt = secant + steep * slip_t * slip_t;
+    let ts = steep * slip_t * slip_s;
+    let ss = secant + steep * slip_s * slip_s;
+    let along = secant * slip_t;
+    let [f, g, h] = sum.force;
+    let [a, b, c, d, e, k] = sum.slope;
+    TractionTangent {
+        force: [f - along, g - secant * slip_s, h + y * along],
+        slope: [a + tt, b + ts, c - y * tt, d + ss, e - y * ts, k + y * y * tt],
+    }
+}
+
+/// 1/U with the floor under U, s/m; one division a contact serves all its slices.
+#[inline(always)]
+pub fn per_entrainment(entrainment: f64, floor: f64) -> f64 {
+    1.0 / if entrainment > floor { entrainment } else { floor }
 }
 
 fn interpolate(points: &[[f64; 2]], slip: f64) -> f64 {

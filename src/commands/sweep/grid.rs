@@ -1,7 +1,7 @@
 //! The points of a sweep: a grid over the varied keys, the last one fastest.
 
 use bearing_dynamics::scene::statics::static_problem;
-use bearing_dynamics::scene::{Document, Scene, SceneError, SweepAxis, resolve};
+use bearing_dynamics::scene::{Document, Scene, SceneError, SweepAxis, keys, resolve};
 use sha2::{Digest, Sha256};
 use std::error::Error;
 use std::ops::Range;
@@ -37,8 +37,18 @@ impl Grid {
             .into());
         }
         for (i, axis) in axes.iter().enumerate() {
-            if axes[..i].iter().any(|other| other.key == axis.key) {
-                return Err(format!("--vary: {} is varied twice", axis.key).into());
+            let Some((_, key)) = keys::find(axis.key) else { continue };
+            for other in &axes[..i] {
+                if other.key == axis.key {
+                    return Err(format!("{} is varied twice", axis.key).into());
+                }
+                if key.rivals().any(|rival| rival.path == other.key) {
+                    return Err(format!(
+                        "{} and {} exclude each other; vary one of them",
+                        other.key, axis.key
+                    )
+                    .into());
+                }
             }
         }
         let points = axes.iter().try_fold(1usize, |points, axis| points.checked_mul(axis.len()));
@@ -85,10 +95,17 @@ impl Grid {
         resolve(&document)
     }
 
-    /// Refuses a sweep whose scene does not resolve even at its first point.
-    pub fn check_first_point(&self, document: &Document) -> Result<(), Box<dyn Error>> {
-        static_problem(&self.scene(document, 0)?)?;
-        Ok(())
+    /// Refuses a sweep none of whose points describes a bearing, with what is wrong at the first.
+    /// Looks at up to `LOOKS` points, evenly spread over the grid.
+    pub fn check(&self, document: &Document) -> Result<(), Box<dyn Error>> {
+        const LOOKS: usize = 1000;
+        let problem = |point| -> Result<(), Box<dyn Error>> {
+            static_problem(&self.scene(document, point)?)?;
+            Ok(())
+        };
+        let Err(first) = problem(0) else { return Ok(()) };
+        let mut others = (0..self.len()).step_by(self.len().div_ceil(LOOKS)).skip(1);
+        if others.any(|point| problem(point).is_ok()) { Ok(()) } else { Err(first) }
     }
 
     /// Identifies scene, axes, program version and mode; a journal belongs to one of them.

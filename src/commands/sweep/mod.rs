@@ -33,7 +33,7 @@ pub struct Arguments {
     /// Without it the scene's [sweep] table counts
     #[arg(long = "vary", value_name = "KEY=VALUES")]
     vary: Vec<String>,
-    /// Results folder [default: results/<name of the scene>]
+    /// Results folder [default: results/<name of the scene>-sweep]
     #[arg(long)]
     out: Option<PathBuf>,
     /// Number of threads [default: all cores]
@@ -52,11 +52,12 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let document = Document::read_file(&arguments.scene)?;
     let grid = Grid::new(&document, &arguments.vary)?;
     // A scene that cannot be solved at all is said before anything is written.
-    grid.check_first_point(&document)?;
-    let folder = results_folder(&arguments.scene, &arguments.out);
+    grid.check(&document)?;
+    let folder = sweep_folder(arguments);
     let fingerprint = grid.fingerprint(&document, arguments.cold);
     let journal = Journal::open(&folder, &fingerprint, grid.chunks(CHUNK), arguments.fresh)?;
     let resumed = journal.finished();
+    report::remove_earlier(&folder)?;
 
     let interrupted = Arc::new(AtomicBool::new(false));
     let flag = interrupted.clone();
@@ -99,10 +100,11 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let reused = resumed.min(grid.len());
     let note = if reused > 0 { format!(" ({reused} resumed)") } else { String::new() };
     say(&format!(
-        "{} points{note} in {:.2} s on {} threads: {}\n",
+        "{} points{note} in {:.2} s on {} thread{}: {}\n",
         grid.len(),
         record.seconds,
         record.threads,
+        if record.threads == 1 { "" } else { "s" },
         folder.join("sweep.csv").display()
     ))?;
     let failures: Vec<_> = chunks.iter().flat_map(|chunk| &chunk.failures).collect();
@@ -118,6 +120,15 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         )
         .into()),
     }
+}
+
+/// Apart from the folder of a single solution, so that each holds one kind of results.
+fn sweep_folder(arguments: &Arguments) -> PathBuf {
+    arguments.out.clone().unwrap_or_else(|| {
+        let mut folder = results_folder(&arguments.scene, &None).into_os_string();
+        folder.push("-sweep");
+        folder.into()
+    })
 }
 
 fn progress_bar(grid: &Grid, resumed: usize) -> ProgressBar {

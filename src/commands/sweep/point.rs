@@ -1,8 +1,8 @@
 //! One point of a sweep and its row of the table.
 
 use super::grid::Grid;
-use crate::commands::echo::load_zone_of;
 use bearing_dynamics::output::Column;
+use bearing_dynamics::output::results::load_zone_of;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::solver::statics::{
@@ -35,23 +35,23 @@ pub fn solve(
 
 /// Columns that follow those of the varied keys.
 const RESULTS: [(&str, &str); 17] = [
-    ("load x", "N"),
-    ("load y", "N"),
-    ("load z", "N"),
-    ("moment y", "N m"),
-    ("moment z", "N m"),
-    ("stiffness x", "N/m"),
-    ("stiffness y", "N/m"),
-    ("stiffness z", "N/m"),
-    ("stiffness tilt_y", "N m/rad"),
-    ("stiffness tilt_z", "N m/rad"),
-    ("loaded balls", "1"),
-    ("load zone", "deg"),
-    ("largest inner load", "N"),
-    ("largest outer load", "N"),
-    ("largest inner pressure", "MPa"),
-    ("largest outer pressure", "MPa"),
-    ("free directions", "1"),
+    ("load_x", "N"),
+    ("load_y", "N"),
+    ("load_z", "N"),
+    ("moment_y", "N m"),
+    ("moment_z", "N m"),
+    ("stiffness_x", "N/m"),
+    ("stiffness_y", "N/m"),
+    ("stiffness_z", "N/m"),
+    ("stiffness_tilt_y", "N m/rad"),
+    ("stiffness_tilt_z", "N m/rad"),
+    ("loaded_balls", "1"),
+    ("load_zone", "deg"),
+    ("largest_inner_load", "N"),
+    ("largest_outer_load", "N"),
+    ("largest_inner_pressure", "MPa"),
+    ("largest_outer_pressure", "MPa"),
+    ("free_directions", "1"),
 ];
 
 /// Header of the table: point, varied keys, position, results.

@@ -5,6 +5,8 @@ use super::journal::Chunk;
 use super::point::columns;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::{Series, write_atomic};
+use bearing_dynamics::scene::keys::{self, Kind};
+use bearing_dynamics::scene::units::{parse_number, parse_quantity};
 use bearing_dynamics::scene::{Document, SweepAxis};
 use ndarray::Array2;
 use serde_json::json;
@@ -19,31 +21,48 @@ pub struct Record {
 
 /// The unit in which an axis is written: that of its first value, or `choice` for words.
 pub fn unit_of(axis: &SweepAxis) -> String {
-    match axis.value(0).as_deref().map(split) {
-        Some(Some((_, unit))) if unit.is_empty() => "1".into(),
-        Some(Some((_, unit))) => unit.into(),
+    let text = axis.value(0).unwrap_or_default();
+    match kind_of(axis) {
+        Some(Kind::Quantity(dimension, _)) => {
+            parse_quantity(&text, dimension).map_or(String::new(), |first| first.unit.into())
+        }
+        Some(Kind::Integer { .. } | Kind::Number(_)) => "1".into(),
         _ => "choice".into(),
     }
 }
 
 /// Number of an axis's value in [`unit_of`] the axis; words are numbered from 0 in `sweep.json`.
 pub fn number_of(axis: &SweepAxis, index: usize) -> f64 {
-    let unit = unit_of(axis);
-    let plain = if unit == "1" { "" } else { unit.as_str() };
-    match axis.value(index).as_deref().and_then(split) {
-        Some((number, own)) if own == plain => number,
+    let text = axis.value(index).unwrap_or_default();
+    match kind_of(axis) {
+        Some(Kind::Quantity(dimension, _)) => {
+            let first = axis.value(0).unwrap_or_default();
+            match (parse_quantity(&text, dimension), parse_quantity(&first, dimension)) {
+                (Ok(value), Ok(first)) if value.scale == first.scale => value.number,
+                (Ok(value), Ok(first)) => value.si / first.scale.factor(),
+                // Values are checked when the axis is read.
+                _ => f64::NAN,
+            }
+        }
+        Some(Kind::Integer { .. } | Kind::Number(_)) => parse_number(&text).unwrap_or(f64::NAN),
         _ => index as f64,
     }
 }
 
-/// Number and unit of a quantity as written.
-fn split(text: &str) -> Option<(f64, &str)> {
-    let text = text.trim();
-    let end = (0..=text.len())
-        .rev()
-        .filter(|&end| text.is_char_boundary(end))
-        .find(|&end| text[..end].trim_end().parse::<f64>().is_ok_and(f64::is_finite))?;
-    Some((text[..end].trim_end().parse().ok()?, text[end..].trim()))
+fn kind_of(axis: &SweepAxis) -> Option<Kind> {
+    keys::find(axis.key).map(|(_, key)| key.kind)
+}
+
+/// Removes the table of an earlier sweep, which would pass for this one's until that is written.
+pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
+    for name in ["sweep.json", "sweep.csv", "sweep.npy", "sweep.columns.json"] {
+        let path = folder.join(name);
+        if path.is_file() {
+            std::fs::remove_file(&path)
+                .map_err(|error| format!("cannot replace {}: {error}", path.display()))?;
+        }
+    }
+    Ok(())
 }
 
 pub fn write(

@@ -6,7 +6,7 @@
 //! differences. What only the candidate has is listed and does no harm, except further rows.
 //!
 //! Strings, booleans and bare integers must be equal; numbers may differ by their
-//! [tolerance](tolerance). Never compared, because they say how and not what: names in
+//! [`tolerance`]. Never compared, because they say how and not what: names in
 //! [`IGNORED_NAMES`] and those that start with [`IGNORED_PREFIX`].
 pub mod channels;
 mod judge;

@@ -72,11 +72,14 @@ impl ToleranceClass {
 fn ordinary_magnitude(unit: &str) -> f64 {
     match unit {
         "m" => 1e-6,              // a micrometre of approach or clearance
-        "N" => 1.0,               // a light ball load
-        "N m" => 1e-3,            // that load on a millimetre
+        "mm" => 1e-3,             // the same
+        "um" => 1.0,              // the same
+        "N" => 100.0,             // a ball load: a load that balances to zero keeps 1e-11 of it
+        "N m" => 1.0,             // that load on a centimetre
         "deg" => 1e-3,            // a small tilt
         "rad" => 1e-5,            // about the same
         "Pa" => 1e6,              // a thousandth of a Hertz pressure
+        "MPa" => 1.0,             // the same
         "N/m" => 1e6,             // one newton per micrometre
         "N/rad" | "N m/m" => 1e3, // one newton per milliradian
         "N m/rad" => 1.0,         // a millinewton-metre per milliradian

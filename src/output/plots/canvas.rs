@@ -194,10 +194,10 @@ impl Legend {
         area: &Area,
         curves: &[Curve],
         top: i32,
-        with_line: bool,
-        with_marker: bool,
+        line_and_marker: impl Fn(&Curve) -> (bool, bool),
     ) -> Result<(), PlotError> {
         for &(index, x, row) in &self.entries {
+            let (with_line, with_marker) = line_and_marker(&curves[index]);
             let y = top + row * LEGEND_ROW + LEGEND_ROW / 2;
             let colour = COLOURS[index % COLOURS.len()];
             if with_line {

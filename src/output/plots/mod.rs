@@ -1,6 +1,7 @@
 //! SVG pictures from plain data; every function returns the SVG as text.
 //!
 //! - [`load_zone()`]: balls between the races with an arrow for each load, as in Fig. 4.8
+//! - [`orbit()`]: paths in the Y–Z plane, both axes to the same scale
 //! - [`polar()`]: values over azimuth
 //! - [`xy()`]: curves over linear or logarithmic axes
 //!
@@ -8,11 +9,13 @@
 //! can tell apart, with another marker for every curve.
 mod canvas;
 pub mod load_zone;
+pub mod orbit;
 pub mod polar;
 mod ticks;
 pub mod xy;
 
 pub use load_zone::{LoadZone, load_zone};
+pub use orbit::{OrbitPlot, orbit};
 pub use polar::{PolarPlot, polar};
 pub use xy::{Axis, Style, XyPlot, xy};
 
@@ -25,11 +28,18 @@ pub struct Curve {
     pub name: String,
     /// `[x, y]` in the units of the axes; for a polar plot azimuth in rad and value.
     pub points: Vec<[f64; 2]>,
+    /// Single values that no line may join, whatever the style of the plot.
+    pub separate: bool,
 }
 
 impl Curve {
     pub fn new(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
-        Curve { name: name.into(), points }
+        Curve { name: name.into(), points, separate: false }
+    }
+
+    /// Single values, such as printed ones: every one marked, none joined.
+    pub fn separate(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
+        Curve { separate: true, ..Curve::new(name, points) }
     }
 }
 

@@ -93,9 +93,16 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
                 .iter()
                 .map(|&[azimuth, value]| place(azimuth, scale.position(value)))
                 .collect();
+            if curve.separate {
+                points.iter().try_for_each(|&point| canvas::marker(area, index, point))?;
+                continue;
+            }
             let closed = points.iter().copied().chain([points[0]]).collect();
             canvas::line(area, closed, canvas::COLOURS[index % canvas::COLOURS.len()], 3)?;
-            canvas::markers(area, index, &points)?;
+            // Markers on a dense curve would be taken for balls.
+            if points.len() <= 40 {
+                canvas::markers(area, index, &points)?;
+            }
         }
         // Ring labels over the curves, between two spokes, so that they stay readable.
         for (position, label) in scale.ticks.iter().skip(1) {
@@ -105,7 +112,7 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
         let caption = format!("radius: {} [{}]; angle: azimuth [deg]", plot.quantity, plot.unit);
         let at = (canvas::WIDTH as i32 / 2, legend_top - 18);
         canvas::text(area, &caption, at, size, Align::Centre, BLACK_TEXT)?;
-        legend.draw(area, &plot.curves, legend_top, true, true)
+        legend.draw(area, &plot.curves, legend_top, |curve| (!curve.separate, true))
     })
 }
 

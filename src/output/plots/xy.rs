@@ -31,6 +31,13 @@ pub enum Style {
     Markers,
 }
 
+impl Style {
+    /// How a curve is drawn in a plot of this style.
+    fn of(self, curve: &Curve) -> Style {
+        if curve.separate { Style::Markers } else { self }
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct XyPlot {
     pub title: String,
@@ -95,11 +102,12 @@ pub fn xy(plot: &XyPlot) -> Result<String, PlotError> {
                 .iter()
                 .map(|&[a, b]| (across(x.position(a)), up(y.position(b))))
                 .collect();
-            if plot.style != Style::Markers {
+            let style = plot.style.of(curve);
+            if style != Style::Markers {
                 let colour = canvas::COLOURS[index % canvas::COLOURS.len()];
                 canvas::line(area, points.clone(), colour, 3)?;
             }
-            match plot.style {
+            match style {
                 Style::Lines => {}
                 Style::LinesAndMarkers => canvas::markers(area, index, &points)?,
                 Style::Markers => {
@@ -107,8 +115,10 @@ pub fn xy(plot: &XyPlot) -> Result<String, PlotError> {
                 }
             }
         }
-        let (lines, markers) = (plot.style != Style::Markers, plot.style != Style::Lines);
-        legend.draw(area, &plot.curves, legend_top, lines, markers)
+        legend.draw(area, &plot.curves, legend_top, |curve| {
+            let style = plot.style.of(curve);
+            (style != Style::Markers, style != Style::Lines)
+        })
     })
 }
 

@@ -9,7 +9,7 @@ use super::state::{LANES, Layout, POSITION, SPIN, VELOCITY};
 use crate::ch2_housing::bearing::contact::{RaceContact, RaceLaw, damped_load, race_contact};
 use crate::ch2_housing::bearing::traction::{
     Motion, SliceSum, Slices, Sliding, TractionForce, TractionLaw, add_slice, coefficient,
-    integrate, sliding, traction_force,
+    integrate, per_entrainment, sliding, traction_force,
 };
 use crate::kinematics::vec3::{Vec3, sub};
 
@@ -259,25 +259,23 @@ fn traction_lanes(
         TractionLaw::None => {}
         TractionLaw::SlideToRoll { curve, entrainment_floor } => {
             let (curve, floor) = (*curve, *entrainment_floor);
-            lanes_of(laws, layout, state, races, table, |slip, entrainment| {
-                let rolling = if entrainment > floor { entrainment } else { floor };
-                curve.coefficient(slip / rolling)
-            });
+            let prepare = |entrainment| per_entrainment(entrainment, floor);
+            let friction = |slip, per_entrainment| curve.coefficient(slip * per_entrainment);
+            lanes_of(laws, layout, state, races, table, prepare, friction);
         }
         TractionLaw::SlipSpeed { curve } => {
             let curve = *curve;
-            lanes_of(laws, layout, state, races, table, |slip, _| curve.coefficient(slip));
+            let friction = |slip, _| curve.coefficient(slip);
+            lanes_of(laws, layout, state, races, table, |_| 0.0, friction);
         }
         TractionLaw::Constant { coefficient, regularisation_speed } => {
             let (coefficient, u0) = (*coefficient, *regularisation_speed);
-            lanes_of(laws, layout, state, races, table, |slip, _| {
-                coefficient * slip / (slip * slip + u0 * u0).sqrt()
-            });
+            let friction = |slip: f64, _| coefficient * slip / (slip * slip + u0 * u0).sqrt();
+            lanes_of(laws, layout, state, races, table, |_| 0.0, friction);
         }
         law @ TractionLaw::Table { .. } => {
-            lanes_of(laws, layout, state, races, table, |slip, entrainment| {
-                coefficient(law, slip, entrainment)
-            });
+            let friction = |slip, entrainment| coefficient(law, slip, entrainment);
+            lanes_of(laws, layout, state, races, table, |entrainment| entrainment, friction);
         }
     }
 }
@@ -289,6 +287,7 @@ fn lanes_of(
     state: &[f64],
     races: [&RaceNow; 2],
     table: &mut ContactTable,
+    prepare: impl Fn(f64) -> f64,
     friction: impl Fn(f64, f64) -> f64 + Copy,
 ) {
     let motions = races.map(race_motion);
@@ -299,8 +298,8 @@ fn lanes_of(
         let mut spin = [[0.0; LANES]; 3];
         let mut width = [0.0; LANES];
         let mut curvature = [0.0; LANES];
-        // Lanes without a pair slide nowhere.
-        let mut entrainment = [1.0; LANES];
+        // What the law needs of the entrainment speed; lanes without a pair slide nowhere.
+        let mut rolling = [1.0; LANES];
         for (l, &pair) in block.iter().enumerate() {
             let race = pair / layout.padded;
             let here = sliding_of(laws, layout, state, &motions, &axes, pair, &contact[pair]);
@@ -309,12 +308,12 @@ fn lanes_of(
             for i in 0..3 {
                 spin[i][l] = here.relative_spin[i];
             }
-            entrainment[l] = here.entrainment;
+            rolling[l] = prepare(here.entrainment);
             width[l] = semi_major(laws, race, contact[pair].overlap);
             curvature[l] = laws.curvature[race];
             sliding[pair] = here;
         }
-        let sums = slice_lanes(laws, &slip, &spin, &width, &curvature, &entrainment, friction);
+        let sums = slice_lanes(laws, &slip, &spin, &width, &curvature, &rolling, friction);
         for (l, &pair) in block.iter().enumerate() {
             traction[pair] =
                 traction_force(&sums[l], &sliding[pair], contact[pair].normal, load[pair]);
@@ -330,7 +329,7 @@ fn slice_lanes(
     spin: &[[f64; LANES]; 3],
     width: &[f64; LANES],
     curvature: &[f64; LANES],
-    entrainment: &[f64; LANES],
+    prepared: &[f64; LANES],
     friction: impl Fn(f64, f64) -> f64 + Copy,
 ) -> [SliceSum; LANES] {
     let mut rolling = [0.0; LANES];
@@ -357,7 +356,7 @@ fn slice_lanes(
                 y,
                 sagitta,
                 *share,
-                |speed| friction(speed, entrainment[l]),
+                |speed| friction(speed, prepared[l]),
             );
             rolling[l] = after.rolling;
             transverse[l] = after.transverse;

@@ -2,11 +2,13 @@
 //!
 //! `model` says what is simulated, `state` where it lies, `contacts` and `race` turn states into
 //! loads, `system` into rates; `rk4` integrates, `run` drives a simulation from start to end.
+pub mod checkpoint;
 pub mod contacts;
 pub mod model;
 pub mod race;
 pub mod rk4;
 pub mod run;
+pub mod split;
 pub mod stability;
 pub mod start;
 pub mod state;

@@ -16,8 +16,21 @@ pub struct RaceNow {
     /// Directions about which tilt_y and tilt_z turn the axis: body-near e₂ and e₃, which do not
     /// spin with the race.
     pub tilt_directions: [Vec3; 2],
+    /// cos λ.
+    pub cos_lambda: f64,
+}
+
+impl RaceNow {
+    fn new(state: BodyState) -> RaceNow {
+        let motion = motion_of(&state);
+        let (tilt_directions, cos_lambda) = directions(motion.axis);
+        RaceNow { state, motion, tilt_directions, cos_lambda }
+    }
+
     /// tilt_y = ξ and tilt_z = λ, rad.
-    pub tilts: [f64; 2],
+    pub fn tilts(&self) -> [f64; 2] {
+        tilts_of(self.motion.axis)
+    }
 }
 
 /// Tilts ξ, λ of an axis (cos λ cos ξ, sin λ, −cos λ sin ξ).
@@ -34,11 +47,13 @@ fn motion_of(state: &BodyState) -> AxisMotion {
     }
 }
 
-fn directions(tilts: [f64; 2]) -> [Vec3; 2] {
-    let (sin_xi, cos_xi) = libm::sincos(tilts[0]);
-    let (sin_lambda, cos_lambda) = libm::sincos(tilts[1]);
-    // Ry(ξ) Rz(λ) applied to Y and Z.
-    [[-sin_lambda * cos_xi, cos_lambda, sin_lambda * sin_xi], [sin_xi, 0.0, cos_xi]]
+/// Ry(ξ) Rz(λ) applied to Y and Z, from the axis alone and without an angle, and cos λ.
+fn directions(axis: Vec3) -> ([Vec3; 2], f64) {
+    let cos_lambda = (axis[0] * axis[0] + axis[2] * axis[2]).sqrt();
+    let per_cos = 1.0 / cos_lambda;
+    let (cos_xi, sin_xi, sin_lambda) = (axis[0] * per_cos, -axis[2] * per_cos, axis[1]);
+    let e2 = [-sin_lambda * cos_xi, cos_lambda, sin_lambda * sin_xi];
+    ([e2, [sin_xi, 0.0, cos_xi]], cos_lambda)
 }
 
 /// The race as its state has it, with every prescribed coordinate and rate at its given value.
@@ -49,25 +64,27 @@ pub fn now(body: &RaceBody, t: f64, mut state: BodyState) -> RaceNow {
             state.velocity[i] = profile.rate(t);
         }
     }
-    let mut tilts = tilts_of(state.axis());
-    let mut moved = false;
-    for (k, tilt) in tilts.iter_mut().enumerate() {
-        if let Drive::Motion(profile) = &body.drives[3 + k] {
-            *tilt = profile.value(t);
-            moved = true;
-        }
-    }
+    let given = |k: usize| match &body.drives[3 + k] {
+        Drive::Motion(profile) => Some(profile),
+        Drive::Load(_) => None,
+    };
+    let moved = given(0).is_some() || given(1).is_some();
     if moved {
+        let mut tilts = tilts_of(state.axis());
+        for (k, tilt) in tilts.iter_mut().enumerate() {
+            if let Some(profile) = given(k) {
+                *tilt = profile.value(t);
+            }
+        }
         state.orientation = with_tilts(&state.orientation, tilts);
     }
     let axis = state.axis();
-    let tilt_directions = directions(tilts);
-    let [e2, e3] = tilt_directions;
+    let ([e2, e3], cos_lambda) = directions(axis);
     let mut parts = [dot(state.spin, axis), dot(state.spin, e2), dot(state.spin, e3)];
-    if let Drive::Motion(profile) = &body.drives[3] {
-        parts[1] = profile.rate(t) * libm::cos(tilts[1]);
+    if let Some(profile) = given(0) {
+        parts[1] = profile.rate(t) * cos_lambda;
     }
-    if let Drive::Motion(profile) = &body.drives[4] {
+    if let Some(profile) = given(1) {
         parts[2] = profile.rate(t);
     }
     let speed_given = match &body.rotation {
@@ -80,7 +97,7 @@ pub fn now(body: &RaceBody, t: f64, mut state: BodyState) -> RaceNow {
     if moved || speed_given {
         state.spin = add_scaled(add_scaled(scale(axis, parts[0]), parts[1], e2), parts[2], e3);
     }
-    RaceNow { state, motion: motion_of(&state), tilt_directions, tilts }
+    RaceNow::new(state)
 }
 
 /// The same spin angle under new tilts.
@@ -96,8 +113,7 @@ fn with_tilts(orientation: &UnitQuaternion<f64>, tilts: [f64; 2]) -> UnitQuatern
 pub fn fixed(at: &[f64; 5]) -> RaceNow {
     let mut state = BodyState::at_rest([at[0], at[1], at[2]]);
     state.orientation = about(Vector3::y(), at[3]) * about(Vector3::z(), at[4]);
-    let tilts = [at[3], at[4]];
-    RaceNow { state, motion: motion_of(&state), tilt_directions: directions(tilts), tilts }
+    RaceNow::new(state)
 }
 
 /// Forces on a race: what acts besides the contacts, and what results.
@@ -133,18 +149,21 @@ pub fn rates(
     let mut moment = loads.moment;
     let state = &race.state;
     let [e2, e3] = race.tilt_directions;
-    let cos_lambda = libm::cos(race.tilts[1]);
+    let cos_lambda = race.cos_lambda;
     // Rates of the five coordinates.
     let tilt_rates = [dot(state.spin, e2) / cos_lambda, dot(state.spin, e3)];
     let mut rates = RaceRates::default();
     // ξ turns about Y, λ about e₃: the moments conjugate to them, as in statics. A moment about e₂
     // of Q/cos λ does the work Q dξ.
     let conjugate = [scale(e2, 1.0 / cos_lambda), e3];
+    // Angles are wanted by springs alone.
+    let sprung = body.foundation_stiffness[3] != 0.0 || body.foundation_stiffness[4] != 0.0;
+    let tilts = if sprung { race.tilts() } else { [start[3], start[4]] };
     for i in 0..5 {
         let (value, rate) = if i < 3 {
             (state.position[i], state.velocity[i])
         } else {
-            (race.tilts[i - 3], tilt_rates[i - 3])
+            (tilts[i - 3], tilt_rates[i - 3])
         };
         let spring = -body.foundation_stiffness[i] * (value - start[i]);
         let dashpot = -body.foundation_damping[i] * rate;

@@ -3,10 +3,12 @@
 use super::contacts::Driver;
 use super::model::DynamicProblem;
 use super::rk4::RungeKutta;
+use super::split::Split;
 use super::stability::{StepLimit, step_limit};
 use super::start;
 use super::state::{BODY, LEDGER, Layout, POSITION};
 use super::system::{Energy, Instant, System};
+use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::kinematics::vec3::{add_scaled, dot, norm, sub};
 use crate::solver::statics::StaticsError;
 use thiserror::Error;
@@ -29,9 +31,19 @@ pub enum Stepping {
     FractionOfLimit(f64),
 }
 
+/// What moves the state on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrator {
+    /// Classical fourth-order Runge–Kutta for everything, as in the source.
+    RungeKutta,
+    /// Runge–Kutta with linearly implicit traction: steps as long as the contacts allow.
+    Split,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunOptions {
     pub start: Start,
+    pub integrator: Integrator,
     pub stepping: Stepping,
     pub driver: Driver,
     /// Energy that may go missing, as a fraction of the energy that has been turned over (largest
@@ -43,6 +55,7 @@ impl Default for RunOptions {
     fn default() -> Self {
         RunOptions {
             start: Start::Equilibrium,
+            integrator: Integrator::RungeKutta,
             stepping: Stepping::FractionOfLimit(0.5),
             driver: Driver::Lanes,
             energy_limit: 0.01,
@@ -85,13 +98,18 @@ pub struct Simulation {
     pub steps: u64,
     /// What limits the step, where it was asked for.
     pub limit: Option<StepLimit>,
-    options: RunOptions,
-    integrator: RungeKutta,
-    was_loaded: Vec<bool>,
+    pub(super) options: RunOptions,
+    integrator: Stepper,
+    pub(super) was_loaded: Vec<bool>,
     /// Energy at the start less what the ledger already held, J.
-    energy_before: f64,
-    largest_contact_energy: f64,
+    pub(super) energy_before: f64,
+    pub(super) largest_contact_energy: f64,
     rates: Vec<f64>,
+}
+
+enum Stepper {
+    RungeKutta(RungeKutta),
+    Split(Split),
 }
 
 /// Everything that outputs are made of, at the present time.
@@ -135,6 +153,12 @@ impl Simulation {
         time: f64,
     ) -> Result<Simulation, SimulationError> {
         let mut system = System::new(problem, options.driver);
+        let integrator = match options.integrator {
+            Integrator::Split if system.laws.traction != TractionLaw::None => {
+                Stepper::Split(Split::new(&mut system))
+            }
+            _ => Stepper::RungeKutta(RungeKutta::new(state.len())),
+        };
         let (step_size, limit) = match options.stepping {
             Stepping::Fixed(step) => (step, None),
             Stepping::FractionOfLimit(fraction) => {
@@ -154,7 +178,7 @@ impl Simulation {
         let mut was_loaded = vec![false; system.damping.len()];
         system.commit_damping(&mut was_loaded);
         Ok(Simulation {
-            integrator: RungeKutta::new(state.len()),
+            integrator,
             largest_contact_energy: first_energy.contact,
             energy_before,
             was_loaded,
@@ -182,7 +206,14 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::step`].
     pub fn step_by(&mut self, step: f64) -> Result<(), SimulationError> {
-        self.integrator.step(&mut self.system, self.time, step, &mut self.state);
+        match &mut self.integrator {
+            Stepper::RungeKutta(integrator) => {
+                integrator.step(&mut self.system, self.time, step, &mut self.state);
+            }
+            Stepper::Split(split) => {
+                split.step(&mut self.system, self.time, step, &mut self.state);
+            }
+        }
         self.steps += 1;
         self.time += step;
         self.system.commit_damping(&mut self.was_loaded);

@@ -30,6 +30,7 @@ pub struct System {
     /// Contacts of the cage with each ball, then with the guiding race at both ends.
     pub pockets: Vec<CageContact>,
     pub guides: [CageContact; 2],
+    fixed_outer: RaceNow,
     ball_force: Vec<Vec3>,
     ball_moment: Vec<Vec3>,
 }
@@ -93,6 +94,7 @@ impl System {
             ball_force: vec![[0.0; 3]; layout.balls],
             ball_moment: vec![[0.0; 3]; layout.balls],
             work: Work::default(),
+            fixed_outer: race::fixed(&problem.outer_start),
             problem,
             layout,
             laws,
@@ -109,7 +111,7 @@ impl System {
         let inner = race::now(&self.problem.inner, t, self.race_state(state, self.layout.inner()));
         let outer = match &self.problem.outer {
             Some(body) => race::now(body, t, self.race_state(state, self.layout.outer())),
-            None => race::fixed(&self.problem.outer_start),
+            None => self.fixed_outer,
         };
         (inner, outer)
     }
@@ -479,7 +481,7 @@ impl System {
             let start =
                 if std::ptr::eq(body, &problem.inner) { [0.0; 5] } else { problem.outer_start };
             for i in 0..5 {
-                let value = if i < 3 { now.state.position[i] } else { now.tilts[i - 3] };
+                let value = if i < 3 { now.state.position[i] } else { now.tilts()[i - 3] };
                 let stretch = value - start[i];
                 energy.foundation += 0.5 * body.foundation_stiffness[i] * stretch * stretch;
             }

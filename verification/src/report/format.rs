@@ -63,13 +63,32 @@ pub fn reference(check: &CheckReport) -> String {
         (Some(value), Some(ReferenceKind::Published)) if (1e-4..1e6).contains(&value.abs()) => {
             value.to_string().replace('-', "−")
         }
-        (value, _) => optional(value, 6),
+        (value, _) => six_digits(value, &check.unit),
     }
 }
 
-/// The unit after a number; nothing for a pure number.
+/// Our value.
+pub fn ours(check: &CheckReport) -> String {
+    six_digits(check.value, &check.unit)
+}
+
+/// A count as the integer it is, any other number with six digits.
+fn six_digits(value: Option<f64>, unit: &str) -> String {
+    match value {
+        Some(count) if unit == "1" && count.fract() == 0.0 && count.abs() < 1e6 => {
+            count.to_string().replace('-', "−")
+        }
+        value => optional(value, 6),
+    }
+}
+
+/// The unit after a number; nothing for a pure number, no space before a sign of degrees.
 pub fn unit(unit: &str) -> String {
-    if unit == "1" { String::new() } else { format!(" {unit}") }
+    match unit {
+        "1" => String::new(),
+        "°" => "°".into(),
+        _ => format!(" {unit}"),
+    }
 }
 
 pub fn kind(kind: Option<ReferenceKind>) -> &'static str {
@@ -145,6 +164,9 @@ mod tests {
         for (value, digits, text) in cases {
             assert_eq!(significant(value, digits), text);
         }
+        assert_eq!(six_digits(Some(8.0), "1"), "8");
+        assert_eq!(six_digits(Some(8.0), "N"), "8.00000");
+        assert_eq!(six_digits(Some(f64::NAN), "1"), "NaN");
         assert_eq!(limit_fraction(0.05), "5 %");
         assert_eq!(limit_fraction(0.001), "0.1 %");
         assert_eq!(limit_text(1e-13), "1e−13");

@@ -149,7 +149,7 @@ fn write_explained(out: &mut String, report: &Report) -> std::fmt::Result {
                 escape(&check.quantity),
                 escape(&check.reference_source),
                 number(&format::reference(check), &check.unit),
-                number(&optional(check.value, 6), &check.unit),
+                number(&format::ours(check), &check.unit),
                 nowrap(&format::error(check)),
                 explanation(case, check),
             )?;
@@ -183,10 +183,10 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
         for assumption in &case.assumptions {
             writeln!(
                 out,
-                "<dt><code>{}</code> = {}</dt><dd>{}</dd>",
+                "<dt><code>{}</code>: {}</dt><dd>{}</dd>",
                 escape(&assumption.name),
                 escape(&assumption.default),
-                escape(&assumption.text)
+                prose(&assumption.text)
             )?;
         }
         writeln!(out, "</dl>")?;
@@ -198,7 +198,7 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
             "<figure id=\"{}\">{}<figcaption>{}</figcaption></figure>",
             anchor(case, &figure.name),
             inline_svg(&figure.svg),
-            escape(&figure.caption)
+            prose(&figure.caption)
         )?;
     }
     for table in &case.tables {
@@ -227,7 +227,7 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
                 "<dt id=\"{}\"><code>{}</code></dt><dd>{}</dd>",
                 anchor(case, &finding.id),
                 escape(&finding.id),
-                escape(&finding.text)
+                prose(&finding.text)
             )?;
         }
         writeln!(out, "</dl>")?;
@@ -270,21 +270,19 @@ fn write_checks(out: &mut String, case: &CaseReport) -> std::fmt::Result {
         if let Some(name) = &check.assumption {
             write!(note, "<small><code>{}</code></small>", escape(name))?;
         }
-        if check.explanation.is_some() {
-            write!(note, "<small>{}</small>", explanation(case, check))?;
-        }
         if let Some(failure) = &check.failure {
             write!(note, "<small class=\"bad\">{}</small>", escape(failure))?;
         }
         writeln!(
             out,
-            "<tr id=\"{}\"><td>{}<small><code>{}</code></small></td><td class=\"number\">{}</td>\
+            "<tr{} id=\"{}\"><td>{}<small><code>{}</code></small></td><td class=\"number\">{}</td>\
              <td class=\"number\">{}</td><td>{}<small>{}</small></td><td class=\"number\">{}</td>\
              <td>{}<small>{}</small></td><td>{}{note}</td></tr>",
+            if check.explanation.is_some() { " class=\"continued\"" } else { "" },
             check_anchor(case, check),
             escape(&check.quantity),
             escape(&check.id),
-            number(&optional(check.value, 6), &check.unit),
+            number(&format::ours(check), &check.unit),
             number(&format::reference(check), &check.unit),
             format::kind(check.reference_kind),
             escape(&check.reference_source),
@@ -293,6 +291,13 @@ fn write_checks(out: &mut String, case: &CaseReport) -> std::fmt::Result {
             escape(&check.tolerance_reason),
             chip(check.status),
         )?;
+        if check.explanation.is_some() {
+            writeln!(
+                out,
+                "<tr class=\"continuation\"><td></td><td colspan=\"6\">{}</td></tr>",
+                explanation(case, check)
+            )?;
+        }
     }
     writeln!(out, "</tbody></table>")
 }
@@ -306,7 +311,7 @@ fn explanation(case: &CaseReport, check: &CheckReport) -> String {
         .collect();
     format!(
         "{} Known difference {} ± {}. Shown by {}.",
-        escape(&explanation.text),
+        prose(&explanation.text),
         nowrap(&format::gap(check, explanation.gap)),
         nowrap(&format::gap(check, explanation.gap_tolerance)),
         evidence.join(", ")
@@ -322,8 +327,13 @@ fn check_anchor(case: &CaseReport, check: &CheckReport) -> String {
     anchor(case, &check.id)
 }
 
+/// A number with its unit below it; the signs of degrees and percent stay beside it.
 fn number(text: &str, unit: &str) -> String {
-    format!("<span class=\"value\">{text}</span><small>{}</small>", escape(&format::unit(unit)))
+    let shown = escape(&format::unit(unit));
+    if ["°", "%"].contains(&unit) {
+        return format!("<span class=\"value\">{text}{shown}</span>");
+    }
+    format!("<span class=\"value\">{text}</span><small>{shown}</small>")
 }
 
 fn nowrap(text: &str) -> String {
@@ -352,6 +362,18 @@ fn case_chip(status: CaseStatus) -> String {
 /// The SVG element without the prolog that only a file needs.
 fn inline_svg(svg: &str) -> &str {
     svg.find("<svg").map_or("", |start| &svg[start..])
+}
+
+/// Escaped text in which what stands between backticks is code.
+fn prose(text: &str) -> String {
+    let mut parts: Vec<String> = escape(text).split('`').map(String::from).collect();
+    if parts.len().is_multiple_of(2) {
+        return escape(text);
+    }
+    for code in parts.iter_mut().skip(1).step_by(2) {
+        *code = format!("<code>{code}</code>");
+    }
+    parts.concat()
 }
 
 fn escape(text: &str) -> String {

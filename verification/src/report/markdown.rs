@@ -23,7 +23,7 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
     let machine = &report.machine;
     writeln!(
         out,
-        "{} · {} · {} cores · {} · version {} · commit {} · {} threads · {} s in all\n",
+        "{} · {} · {} cores · {} · version {} · commit {} · threads used: {} · {} s in all\n",
         machine.date,
         machine.cpu,
         machine.cores,
@@ -107,7 +107,7 @@ fn write_explained(out: &mut String, report: &Report) -> std::fmt::Result {
                 cell(&check.quantity),
                 cell(&check.reference_source),
                 format::reference(check),
-                optional(check.value, 6),
+                format::ours(check),
                 format::error(check),
                 cell(&explanation.text),
                 explanation.evidence.join(", "),
@@ -134,7 +134,7 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
     for assumption in &case.assumptions {
         writeln!(
             out,
-            "- assumption `{}` = {}: {}",
+            "- assumption `{}`: {}. {}",
             assumption.name, assumption.default, assumption.text
         )?;
     }
@@ -152,7 +152,7 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
             out,
             "| {} | {}{} | {} | {} | {} | {} | {} | {} | {}{} |",
             cell(&check.quantity),
-            optional(check.value, 6),
+            format::ours(check),
             format::unit(&check.unit),
             format::reference(check),
             format::kind(check.reference_kind),

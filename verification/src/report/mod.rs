@@ -1,6 +1,6 @@
 //! The report as data, and its three forms.
 
-mod format;
+pub(crate) mod format;
 mod html;
 mod json;
 mod markdown;

@@ -1,0 +1,197 @@
+//! What was understood of the bearing in motion, as JSON with units.
+
+use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Guidance, Pocket};
+use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
+use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
+use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
+use bearing_dynamics::output::results::{ResultsError, quantity};
+use bearing_dynamics::solver::dynamics::model::{
+    CageBody, Drive, DynamicProblem, RaceBody, Rotation,
+};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::statics::COORDINATE_NAMES;
+use serde_json::{Map, Value, json};
+
+type Echo = Result<Value, ResultsError>;
+
+/// Bodies, their loads and motions, and the laws between them.
+pub fn motion(problem: &DynamicProblem) -> Echo {
+    let mut echo = Map::new();
+    echo.insert("ball".into(), json!({ "inertia": inertia(&problem.ball)? }));
+    echo.insert("inner_race".into(), race(&problem.inner)?);
+    if let Some(outer) = &problem.outer {
+        echo.insert("outer_race".into(), race(outer)?);
+    }
+    if let Some(given) = &problem.cage {
+        echo.insert("cage".into(), cage(given)?);
+    }
+    echo.insert("traction".into(), traction(problem)?);
+    echo.insert("contact_damping".into(), damping(&problem.damping)?);
+    if let Some(load) = &problem.rotating_load {
+        let load = json!({
+            "force": profile(&load.force, "N")?,
+            "speed": quantity("speed", load.speed, "rad/s")?,
+            "phase": quantity("phase", load.phase.to_degrees(), "deg")?,
+        });
+        echo.insert("rotating_load".into(), load);
+    }
+    if problem.unbalance != 0.0 {
+        echo.insert("unbalance".into(), quantity("unbalance", problem.unbalance, "kg m")?);
+    }
+    Ok(Value::Object(echo))
+}
+
+fn inertia(inertia: &Inertia) -> Echo {
+    Ok(json!({
+        "mass": quantity("mass", inertia.mass, "kg")?,
+        "axial": quantity("axial", inertia.axial, "kg m^2")?,
+        "transverse": quantity("transverse", inertia.transverse, "kg m^2")?,
+    }))
+}
+
+fn race(body: &RaceBody) -> Echo {
+    let mut echo = Map::new();
+    echo.insert("inertia".into(), inertia(&body.inertia)?);
+    for (i, name) in COORDINATE_NAMES.iter().enumerate() {
+        let (motion_unit, load_unit) = if i < 3 { ("m", "N") } else { ("rad", "N m") };
+        let entry = match &body.drives[i] {
+            Drive::Load(given) => json!({ "load": profile(given, load_unit)? }),
+            Drive::Motion(given) => json!({ "displacement": profile(given, motion_unit)? }),
+        };
+        echo.insert((*name).into(), entry);
+    }
+    let (name, entry) = match &body.rotation {
+        Rotation::Speed(given) => ("speed", profile(given, "rad/s")?),
+        Rotation::Torque(given) => ("torque", profile(given, "N m")?),
+    };
+    echo.insert(name.into(), entry);
+    let (stiffness, damping) = (&body.foundation_stiffness, &body.foundation_damping);
+    if stiffness.iter().chain(damping).any(|value| *value != 0.0) {
+        let mut foundation = [Map::new(), Map::new()];
+        for (i, name) in COORDINATE_NAMES.iter().enumerate() {
+            let units = if i < 3 { ["N/m", "N s/m"] } else { ["N m/rad", "N m s/rad"] };
+            for ((part, value), unit) in
+                foundation.iter_mut().zip([stiffness[i], damping[i]]).zip(units)
+            {
+                part.insert((*name).into(), quantity(name, value, unit)?);
+            }
+        }
+        let [stiffness, damping] = foundation;
+        echo.insert("foundation".into(), json!({ "stiffness": stiffness, "damping": damping }));
+    }
+    Ok(Value::Object(echo))
+}
+
+fn cage(body: &CageBody) -> Echo {
+    let contacts = &body.contacts;
+    let (law, stiffness, unit) = match contacts.force {
+        CageForce::Penalty { stiffness } => ("penalty", stiffness, "N/m"),
+        CageForce::Hertz { stiffness } => ("hertz", stiffness, "N/m^1.5"),
+    };
+    Ok(json!({
+        "inertia": inertia(&body.inertia)?,
+        "pocket": match contacts.pocket {
+            Pocket::Cylindrical => "cylindrical",
+            Pocket::Spherical => "spherical",
+        },
+        "guidance": match contacts.guidance {
+            Guidance::OuterRace => "outer-race",
+            Guidance::InnerRace => "inner-race",
+            Guidance::Balls => "balls",
+        },
+        "pocket_radius": quantity("pocket_radius", contacts.pocket_radius, "m")?,
+        "pocket_pitch_radius":
+            quantity("pocket_pitch_radius", contacts.pocket_pitch_radius, "m")?,
+        "guide_radius": quantity("guide_radius", contacts.guide_radius, "m")?,
+        "race_clearance": quantity("race_clearance", contacts.race_clearance, "m")?,
+        "length": quantity("length", contacts.length, "m")?,
+        "contact_law": law,
+        "contact_stiffness": quantity("contact_stiffness", stiffness, unit)?,
+        "friction": quantity("friction", contacts.friction, "1")?,
+        "regularisation_speed":
+            quantity("regularisation_speed", contacts.regularisation_speed, "m/s")?,
+    }))
+}
+
+fn traction(problem: &DynamicProblem) -> Echo {
+    let curve = |curve: &ExponentialCurve, unit: &str| -> Echo {
+        Ok(json!({
+            "b": quantity("b", curve.b, unit)?,
+            "c": quantity("c", curve.c, unit)?,
+            "d": quantity("d", curve.d, "1")?,
+        }))
+    };
+    let law = match &problem.traction {
+        TractionLaw::None => return Ok(json!({ "law": "none" })),
+        TractionLaw::Constant { coefficient, regularisation_speed } => json!({
+            "law": "constant",
+            "coefficient": quantity("coefficient", *coefficient, "1")?,
+            "regularisation_speed":
+                quantity("regularisation_speed", *regularisation_speed, "m/s")?,
+        }),
+        TractionLaw::SlideToRoll { curve: given, entrainment_floor } => json!({
+            "law": "slide-to-roll",
+            "curve": curve(given, "1")?,
+            "entrainment_floor": quantity("entrainment_floor", *entrainment_floor, "m/s")?,
+        }),
+        TractionLaw::SlipSpeed { curve: given } => {
+            json!({ "law": "slip-speed", "curve": curve(given, "s/m")? })
+        }
+        TractionLaw::Table { points } => {
+            json!({ "law": "table", "points": pairs(points, "m/s", "1")? })
+        }
+    };
+    Ok(json!({ "law": law, "slices": problem.slices, "heathcote": problem.heathcote }))
+}
+
+fn damping(damping: &ContactDamping) -> Echo {
+    Ok(match damping {
+        ContactDamping::None => json!({ "law": "none" }),
+        ContactDamping::HuntCrossley { alpha } => {
+            json!({ "law": "hunt-crossley", "alpha": quantity("alpha", *alpha, "s/m")? })
+        }
+        ContactDamping::LankaraniNikravesh { restitution, slowest } => json!({
+            "law": "lankarani-nikravesh",
+            "restitution": quantity("restitution", *restitution, "1")?,
+            "slowest": quantity("slowest", *slowest, "m/s")?,
+        }),
+    })
+}
+
+fn pairs(points: &[[f64; 2]], x_unit: &str, y_unit: &str) -> Echo {
+    let pair =
+        |[x, y]: &[f64; 2]| Ok(json!([quantity("x", *x, x_unit)?, quantity("y", *y, y_unit)?]));
+    Ok(json!(points.iter().map(pair).collect::<Result<Vec<Value>, ResultsError>>()?))
+}
+
+/// A quantity over time; a constant is a plain quantity.
+fn profile(profile: &Profile, unit: &str) -> Echo {
+    let value = |name: &str, value: f64| quantity(name, value, unit);
+    let second = |name: &str, value: f64| quantity(name, value, "s");
+    Ok(match profile {
+        Profile::Constant(constant) => value("constant", *constant)?,
+        Profile::Ramp { from, to, start, duration } => json!({
+            "ramp": [value("from", *from)?, value("to", *to)?],
+            "start": second("start", *start)?,
+            "duration": second("duration", *duration)?,
+        }),
+        Profile::SmoothRamp { from, to, start, duration } => json!({
+            "smooth_ramp": [value("from", *from)?, value("to", *to)?],
+            "start": second("start", *start)?,
+            "duration": second("duration", *duration)?,
+        }),
+        Profile::Table { points } => json!({ "table": pairs(points, "s", unit)? }),
+        Profile::Harmonic { mean, amplitude, frequency, phase } => json!({
+            "mean": value("mean", *mean)?,
+            "amplitude": value("amplitude", *amplitude)?,
+            "frequency": quantity("frequency", *frequency, "Hz")?,
+            "phase": quantity("phase", phase.to_degrees(), "deg")?,
+        }),
+        Profile::HalfSine { base, peak, start, duration } => json!({
+            "half_sine": value("peak", *peak)?,
+            "base": value("base", *base)?,
+            "start": second("start", *start)?,
+            "duration": second("duration", *duration)?,
+        }),
+    })
+}

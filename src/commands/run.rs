@@ -1,0 +1,337 @@
+//! `bearing run SCENE`: the bearing in motion, step after step, and the folder it leaves.
+
+use super::plan::dynamic_plan_lines;
+use super::{CommandResult, Outcome, echo, echo_run, results_folder, say};
+use bearing_dynamics::output::atomic::write_atomic;
+use bearing_dynamics::output::dynamics::pictures::{Picture, draw};
+use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status};
+use bearing_dynamics::output::dynamics::summary::{RunReport, write_run_results};
+use bearing_dynamics::output::dynamics::table::RunTable;
+use bearing_dynamics::output::results::RunRecord;
+use bearing_dynamics::output::state::{self, StateFile, StateRecord, Stopped};
+use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
+use bearing_dynamics::scene::{self, Plot, RunPlot, RunSettings, Scene};
+use bearing_dynamics::solver::channels::ChannelGroup;
+use bearing_dynamics::solver::dynamics::model::DynamicProblem;
+use bearing_dynamics::solver::dynamics::run::SimulationError;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Steps between two looks at signals and clock: under a millisecond.
+const STEPS_AT_ONCE: u64 = 50;
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scene file (.toml or .json) with a [numerics] table
+    scene: PathBuf,
+    /// Results folder [default: results/<name of the scene>]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Go on from the state in the results folder; the scene's end may be later than it was
+    #[arg(long)]
+    resume: bool,
+    /// Discard an unfinished run in the results folder
+    #[arg(long, conflicts_with = "resume")]
+    fresh: bool,
+    /// Threads the run may use; a bearing of rigid parts uses one
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: u16,
+    /// Wall time between two states kept on the way, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 30,
+          value_parser = clap::value_parser!(u64).range(1..))]
+    save_every: u64,
+}
+
+/// How the stepping ended.
+enum End {
+    Complete,
+    Interrupted,
+    Failed(SimulationError),
+}
+
+pub fn run(arguments: &Arguments) -> CommandResult {
+    let start = Instant::now();
+    let scene = scene::read_file(&arguments.scene)?;
+    let settings = run_options(&scene)?;
+    let problem = dynamic_problem(&scene)?;
+    let request = request(&scene, &settings)?;
+    let folder = results_folder(&arguments.scene, &arguments.out);
+    let kept = kept_state(arguments, &folder)?;
+    let read_seconds = start.elapsed().as_secs_f64();
+
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = interrupted.clone();
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))?;
+
+    let start = Instant::now();
+    let mut session = open(&folder, &problem, &request, kept.as_ref())?;
+    let start_seconds = start.elapsed().as_secs_f64();
+    let state = StateRecord {
+        fingerprint: state::fingerprint(&problem, &request),
+        stopped: Stopped::Running,
+        error: None,
+        output_interval: kept.as_ref().map_or(request.output_interval, |file| file.output_interval),
+        seconds: kept.as_ref().map_or(0.0, |file| file.seconds),
+    };
+    say(&announcement(&session, &request, kept.as_ref()))?;
+
+    let start = Instant::now();
+    let every = Duration::from_secs(arguments.save_every);
+    let end = simulate(&mut session, &folder, &state, &interrupted, every)?;
+    let seconds = state.seconds + start.elapsed().as_secs_f64();
+    let (stopped, stopped_by) = match &end {
+        End::Complete => (Stopped::Complete, None),
+        End::Interrupted => (Stopped::Interrupted, Some("interrupted".to_string())),
+        End::Failed(error) => (Stopped::Failed, Some(error.to_string())),
+    };
+    let error = stopped_by.clone().filter(|_| stopped == Stopped::Failed);
+    // The state first: whatever goes wrong with plots and tables, the run is not lost.
+    state::save(&folder, &session, &StateRecord { stopped, error, seconds, ..state })?;
+
+    let start = Instant::now();
+    let table = RunTable::new(&session, settings.window_start)?;
+    let mut written = pictures(&folder, &scene, &table)?;
+    let mut record = record(&scene, &problem, &request)?;
+    record.seconds = vec![
+        ("read".into(), read_seconds),
+        ("start".into(), start_seconds),
+        ("simulate".into(), seconds),
+        ("plots".into(), start.elapsed().as_secs_f64()),
+    ];
+    let report = RunReport {
+        record,
+        stopped_by,
+        stepping: Some(settings.options.stepping),
+        spectra: scene.dynamics.plots.contains(&RunPlot::Spectrum),
+    };
+    written.extend(write_run_results(&folder, &session, &table, &report)?);
+    // State beside them.
+    say(&format!("wrote {} files to {}\n", written.len() + 1, folder.display()))?;
+    outcome(arguments, &folder, &session, end)
+}
+
+fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) -> CommandResult {
+    let simulation = &session.simulation;
+    match end {
+        End::Complete => Ok(Outcome::Done),
+        End::Interrupted => Err(format!(
+            "interrupted at t = {:.6} s of {} s, after {} steps; what there is so far is in {}. To \
+             go on: bearing run {} --out {} --resume",
+            simulation.time,
+            session.end,
+            simulation.steps,
+            folder.display(),
+            arguments.scene.display(),
+            folder.display(),
+        )
+        .into()),
+        End::Failed(error) => Err(format!(
+            "{error}; the rows so far and the state before that step are in {}",
+            folder.display()
+        )
+        .into()),
+    }
+}
+
+/// What the scene asks of a run.
+pub fn request(scene: &Scene, settings: &RunSettings) -> Result<RunRequest, Box<dyn Error>> {
+    let mut channels = match &settings.channels {
+        None => ChannelGroup::DEFAULT.to_vec(),
+        Some(names) => {
+            let group = |name: &String| {
+                ChannelGroup::from_name(name).ok_or_else(|| {
+                    let known = ChannelGroup::ALL.map(ChannelGroup::name).join(", ");
+                    format!("output.channels: {name:?} is no group of channels; there are {known}")
+                })
+            };
+            names.iter().map(group).collect::<Result<_, _>>()?
+        }
+    };
+    let plots = &scene.dynamics.plots;
+    let mut needs = |groups: &[ChannelGroup]| channels.extend_from_slice(groups);
+    if plots.contains(&RunPlot::SlipSpin) {
+        needs(&[ChannelGroup::Slip, ChannelGroup::Orbits]);
+    }
+    channels.sort();
+    channels.dedup();
+    Ok(RunRequest {
+        options: settings.options,
+        end: settings.end,
+        output_interval: settings.output_interval,
+        channels,
+    })
+}
+
+/// The state to go on from, if that was asked for; what an earlier run left is removed otherwise.
+fn kept_state(arguments: &Arguments, folder: &Path) -> Result<Option<StateFile>, Box<dyn Error>> {
+    if arguments.resume {
+        return Ok(state::read(folder)?);
+    }
+    if !arguments.fresh
+        && let Some(file) = state::read(folder)?
+        && matches!(file.stopped, Stopped::Interrupted | Stopped::Running)
+    {
+        return Err(format!(
+            "{} holds a run that stands at t = {:.6} s of {} s; go on with it (--resume), discard it \
+             (--fresh), or choose another --out",
+            folder.display(),
+            file.time,
+            file.end
+        )
+        .into());
+    }
+    for name in ["summary.json", state::STATE, state::SERIES, "series.csv", "spectrum.csv"] {
+        match std::fs::remove_file(folder.join(name)) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(
+                    format!("cannot remove {}: {error}", folder.join(name).display()).into()
+                );
+            }
+            _ => {}
+        }
+    }
+    Ok(None)
+}
+
+fn open(
+    folder: &Path,
+    problem: &DynamicProblem,
+    request: &RunRequest,
+    kept: Option<&StateFile>,
+) -> Result<Session, Box<dyn Error>> {
+    match kept {
+        Some(file) => Ok(state::resume(folder, file, problem.clone(), request)?),
+        None => Ok(Session::start(problem.clone(), request)?),
+    }
+}
+
+fn announcement(session: &Session, request: &RunRequest, kept: Option<&StateFile>) -> String {
+    let simulation = &session.simulation;
+    let reason = match &simulation.limit {
+        Some(limit) => format!("{} (stable up to {:.4e} s)", limit.reason(), limit.step),
+        None => "given".into(),
+    };
+    let mut text = format!("step {:.4e} s: {reason}\n", simulation.step_size);
+    let (interval, asked) = (session.interval(), request.output_interval);
+    let rounded = if (interval / asked - 1.0).abs() > 1e-9 {
+        format!(" ({asked} s asked for, rounded to whole steps)")
+    } else {
+        String::new()
+    };
+    let steps = (session.end / simulation.step_size).ceil();
+    text += &format!(
+        "{steps} steps to t = {} s, a row every {} steps = {interval:.4e} s{rounded}\n",
+        session.end, session.steps_per_row
+    );
+    if let Some(file) = kept {
+        text += &format!("resumed at t = {:.6} s, step {}\n", file.time, file.steps);
+    }
+    text
+}
+
+/// Steps until the end, a signal or an error; keeps a state every now and then.
+fn simulate(
+    session: &mut Session,
+    folder: &Path,
+    state: &StateRecord,
+    interrupted: &AtomicBool,
+    save_every: Duration,
+) -> Result<End, Box<dyn Error>> {
+    let bar = progress_bar(session);
+    let start = Instant::now();
+    let mut saved = start;
+    let end = loop {
+        match session.advance(STEPS_AT_ONCE) {
+            Ok(Status::Complete) => break End::Complete,
+            Ok(Status::Running) => {}
+            Err(error) => break End::Failed(error),
+        }
+        if interrupted.load(Ordering::Relaxed) {
+            break End::Interrupted;
+        }
+        if saved.elapsed() >= save_every {
+            let seconds = state.seconds + start.elapsed().as_secs_f64();
+            state::save(folder, session, &StateRecord { seconds, ..state.clone() })?;
+            saved = Instant::now();
+        }
+        if !bar.is_hidden() {
+            let simulation = &session.simulation;
+            bar.set_position(simulation.steps);
+            bar.set_message(format!(
+                "t = {:.5} of {} s, step {:.2e} s",
+                simulation.time, session.end, simulation.step_size
+            ));
+        }
+    };
+    bar.finish_and_clear();
+    Ok(end)
+}
+
+fn progress_bar(session: &Session) -> ProgressBar {
+    // Hidden by itself when standard error is not a terminal.
+    let simulation = &session.simulation;
+    let bar = ProgressBar::new((session.end / simulation.step_size).ceil() as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {msg}, {eta} left") {
+        bar.set_style(style);
+    }
+    bar.set_position(simulation.steps);
+    bar.reset_eta();
+    bar
+}
+
+fn pictures(
+    folder: &Path,
+    scene: &Scene,
+    table: &RunTable,
+) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+    let title = scene.title.clone().unwrap_or_else(|| "Bearing".into());
+    let mut asked: Vec<Picture> = scene
+        .dynamics
+        .plots
+        .iter()
+        .map(|plot| match plot {
+            RunPlot::Orbit => Picture::Orbit,
+            RunPlot::Spectrum => Picture::Spectrum,
+            RunPlot::Series => Picture::Series,
+            RunPlot::SlipSpin => Picture::SlipSpin,
+        })
+        .collect();
+    if scene.plots.contains(&Plot::Polar) {
+        asked.push(Picture::Polar);
+    }
+    let mut written = Vec::new();
+    for picture in asked {
+        for (name, svg) in draw(picture, &title, table)? {
+            let path = folder.join(name);
+            write_atomic(&path, svg.as_bytes())?;
+            written.push(path);
+        }
+    }
+    Ok(written)
+}
+
+fn record(
+    scene: &Scene,
+    problem: &DynamicProblem,
+    request: &RunRequest,
+) -> Result<RunRecord, Box<dyn Error>> {
+    let assumptions = scene.assumptions.iter().map(|a| (a.name.clone(), a.text.clone()));
+    let defaults = scene
+        .defaults_used
+        .iter()
+        .chain(&scene.dynamics.defaults_used)
+        .map(|used| (used.key.clone(), format!("{} ({})", used.value, used.reason)));
+    Ok(RunRecord {
+        scene: echo::scene(scene)?,
+        plan: dynamic_plan_lines(scene, problem, request),
+        assumptions: assumptions.chain(defaults).collect(),
+        // All of a rigid bearing's work is done by one.
+        threads: 1,
+        seconds: Vec::new(),
+        sections: vec![("motion".into(), echo_run::motion(problem)?)],
+    })
+}

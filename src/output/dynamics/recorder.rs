@@ -1,0 +1,405 @@
+//! The time series of a run: which columns it has, and one row of them at a time.
+
+use crate::ch2_housing::bearing::cage::Guidance;
+use crate::ch2_housing::bearing::contact::ContactDamping;
+use crate::ch2_housing::bearing::traction::{Motion, Sliding, TractionLaw, sliding};
+use crate::kinematics::vec3::{dot, sub};
+use crate::output::series::{Column, Series, SeriesError};
+use crate::solver::channels::ChannelGroup;
+use crate::solver::dynamics::model::DynamicProblem;
+use crate::solver::dynamics::race::{RaceNow, tilts_of};
+use crate::solver::dynamics::run::{Simulation, Snapshot};
+use crate::solver::dynamics::state::{BODY, BodyState, Ledger, POSITION, SPIN, VELOCITY};
+use crate::solver::dynamics::system::System;
+use nalgebra::Vector3;
+use ndarray::Array2;
+use std::f64::consts::TAU;
+use thiserror::Error;
+
+/// Parts of the energy and of the ledger that a problem can have any of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Term {
+    Kinetic,
+    Contact,
+    CageContact,
+    Gravity,
+    Foundation,
+    Work(Ledger),
+    Residual,
+}
+
+/// Rows of the time series, in memory; room for all of them is made at the start.
+pub struct Recorder {
+    groups: Vec<ChannelGroup>,
+    terms: Vec<Term>,
+    columns: Vec<Column>,
+    values: Vec<f64>,
+}
+
+#[derive(Debug, Error)]
+pub enum RecorderError {
+    #[error(
+        "{rows} rows of {columns} channels do not fit in memory; take a longer output interval or \
+         fewer channels"
+    )]
+    Memory { rows: usize, columns: usize },
+    #[error(transparent)]
+    Series(#[from] SeriesError),
+}
+
+impl Recorder {
+    /// Room for `rows` rows of the groups that are asked for and that the problem has something
+    /// for; the energy ledger is always among them.
+    ///
+    /// # Errors
+    /// When that does not fit in memory.
+    pub fn new(
+        problem: &DynamicProblem,
+        asked: &[ChannelGroup],
+        rows: usize,
+    ) -> Result<Recorder, RecorderError> {
+        let needs_cage =
+            |group: &ChannelGroup| matches!(group, ChannelGroup::Cage | ChannelGroup::Pockets);
+        let groups: Vec<ChannelGroup> = ChannelGroup::ALL
+            .into_iter()
+            .filter(|group| asked.contains(group) || *group == ChannelGroup::Energy)
+            .filter(|group| problem.cage.is_some() || !needs_cage(group))
+            .collect();
+        let terms = terms(problem);
+        let mut columns = vec![Column::new("time", "s")];
+        for &group in &groups {
+            add_columns(problem, group, &terms, &mut columns);
+        }
+        let mut values = Vec::new();
+        let memory = RecorderError::Memory { rows, columns: columns.len() };
+        let wanted = rows.checked_mul(columns.len());
+        match wanted.map(|wanted| values.try_reserve_exact(wanted)) {
+            Some(Ok(())) => Ok(Recorder { groups, terms, columns, values }),
+            _ => Err(memory),
+        }
+    }
+
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Rows recorded so far.
+    pub fn rows(&self) -> usize {
+        self.values.len() / self.columns.len()
+    }
+
+    /// Rows that have room.
+    pub fn capacity(&self) -> usize {
+        self.values.capacity() / self.columns.len()
+    }
+
+    /// Forgets the rows from number `rows` on.
+    pub fn truncate(&mut self, rows: usize) {
+        self.values.truncate(rows * self.columns.len());
+    }
+
+    /// A row of the table, in the order of the columns.
+    pub fn row(&self, row: usize) -> &[f64] {
+        let width = self.columns.len();
+        &self.values[row * width..(row + 1) * width]
+    }
+
+    /// The first `rows` rows as a table.
+    ///
+    /// # Errors
+    /// Never for columns made by [`Recorder::new`].
+    pub fn series(&self, rows: usize) -> Result<Series, SeriesError> {
+        let width = self.columns.len();
+        let values = self.values[..rows * width].to_vec();
+        let data = Array2::from_shape_vec((rows, width), values)
+            .expect("every row has one value a column");
+        Series::new(self.columns.clone(), data)
+    }
+
+    /// Takes over the first `rows` rows of a table that an earlier part of the run left.
+    ///
+    /// Returns whether the table has these columns and as many rows.
+    pub fn restore(&mut self, series: &Series, rows: usize) -> bool {
+        if series.columns() != self.columns || series.data().nrows() < rows {
+            return false;
+        }
+        self.values.clear();
+        for row in series.data().rows().into_iter().take(rows) {
+            self.values.extend(row);
+        }
+        true
+    }
+
+    /// Adds a row; call with the simulation's own snapshot of the present time.
+    pub fn record(&mut self, simulation: &Simulation, snapshot: &Snapshot) {
+        let (at, width) = (self.values.len(), self.columns.len());
+        let before = at.checked_sub(width);
+        self.values.push(snapshot.time);
+        for index in 0..self.groups.len() {
+            match self.groups[index] {
+                ChannelGroup::Races => self.races(simulation, snapshot),
+                ChannelGroup::Cage => self.cage(simulation, snapshot, before, at),
+                ChannelGroup::Orbits => self.orbits(simulation, snapshot, before, at),
+                ChannelGroup::Loads => {
+                    let System { layout, table, .. } = &simulation.system;
+                    for ball in 0..layout.balls {
+                        let loads = [table.load[ball], table.load[layout.padded + ball]];
+                        self.values.extend(loads);
+                    }
+                }
+                ChannelGroup::Pockets => {
+                    let pockets = &simulation.system.pockets;
+                    self.values.extend(pockets.iter().map(|contact| contact.normal_load));
+                }
+                ChannelGroup::Slip => self.slip(simulation, snapshot),
+                ChannelGroup::Forces => {
+                    for loads in [&snapshot.instant.on_inner, &snapshot.instant.on_outer] {
+                        self.values.extend(loads.force);
+                    }
+                }
+                ChannelGroup::Energy => {
+                    for index in 0..self.terms.len() {
+                        self.values.push(energy_term(self.terms[index], snapshot));
+                    }
+                }
+            }
+        }
+        debug_assert_eq!(self.values.len(), at + width);
+    }
+
+    fn races(&mut self, simulation: &Simulation, snapshot: &Snapshot) {
+        self.race(&snapshot.instant.inner);
+        if simulation.system.problem.outer.is_some() {
+            self.race(&snapshot.instant.outer);
+        }
+    }
+
+    fn race(&mut self, now: &RaceNow) {
+        self.values.extend(now.state.position);
+        self.values.extend(tilts_of(now.motion.axis).map(f64::to_degrees));
+        self.values.extend(now.state.velocity);
+        self.values.push(dot(now.state.spin, now.motion.axis));
+    }
+
+    fn cage(
+        &mut self,
+        simulation: &Simulation,
+        snapshot: &Snapshot,
+        before: Option<usize>,
+        row: usize,
+    ) {
+        let system = &simulation.system;
+        let (Some(body), Some(now)) = (&system.problem.cage, &snapshot.instant.cage) else {
+            return;
+        };
+        let at = system.layout.cage();
+        let cage = BodyState::from_slice(&simulation.state[at..at + BODY]);
+        let [_, y, z]: [f64; 3] = (cage.orientation * Vector3::y()).into();
+        let speed = dot(now.spin, now.axis);
+        self.values.extend(now.position);
+        self.values.extend(tilts_of(now.axis).map(f64::to_degrees));
+        self.turned(libm::atan2(z, y), speed, before, row);
+        self.values.push(speed);
+        if body.contacts.guidance != Guidance::Balls {
+            self.values.push(system.guides[0].normal_load + system.guides[1].normal_load);
+        }
+    }
+
+    fn orbits(
+        &mut self,
+        simulation: &Simulation,
+        snapshot: &Snapshot,
+        before: Option<usize>,
+        row: usize,
+    ) {
+        let layout = simulation.system.layout;
+        let outer = &snapshot.instant.outer.state;
+        for ball in 0..layout.balls {
+            let vector = |component| layout.ball_vector(&simulation.state, component, ball);
+            let [_, y, z] = sub(vector(POSITION), outer.position);
+            let [_, v, w] = sub(vector(VELOCITY), outer.velocity);
+            let speed = (y * w - z * v) / (y * y + z * z);
+            self.turned(libm::atan2(z, y), speed, before, row);
+            self.values.push(speed);
+        }
+    }
+
+    /// Pushes an angle in degrees with all its turns: of the angles that differ by whole turns the
+    /// one closest to where the speed (in the next column) leads from the row before.
+    fn turned(&mut self, wrapped: f64, speed: f64, before: Option<usize>, row: usize) {
+        let column = self.values.len() - row;
+        let angle = match before {
+            None => wrapped,
+            Some(before) => {
+                let previous = &self.values[before..];
+                let duration = self.values[row] - previous[0];
+                let mean_speed = 0.5 * (previous[column + 1] + speed);
+                let expected = previous[column].to_radians() + mean_speed * duration;
+                wrapped + TAU * ((expected - wrapped) / TAU).round()
+            }
+        };
+        self.values.push(angle.to_degrees());
+    }
+
+    fn slip(&mut self, simulation: &Simulation, snapshot: &Snapshot) {
+        let System { layout, table, laws, .. } = &simulation.system;
+        let races = [&snapshot.instant.inner, &snapshot.instant.outer];
+        for ball in 0..layout.balls {
+            for (side, race) in races.into_iter().enumerate() {
+                let pair = side * layout.padded + ball;
+                let mut here = Sliding::default();
+                // Nothing slides where nothing touches.
+                if table.load[pair] > 0.0 {
+                    let vector = |component| layout.ball_vector(&simulation.state, component, ball);
+                    let contact = &table.contact[pair];
+                    here = sliding(
+                        &Motion {
+                            position: vector(POSITION),
+                            velocity: vector(VELOCITY),
+                            spin: vector(SPIN),
+                        },
+                        &Motion {
+                            position: race.motion.position,
+                            velocity: race.motion.velocity,
+                            spin: race.motion.spin,
+                        },
+                        race.motion.axis,
+                        contact.outward,
+                        contact.normal,
+                        laws.ball_radius - 0.5 * contact.overlap,
+                    );
+                }
+                self.values.extend(here.slip);
+                self.values.push(here.relative_spin[2]);
+            }
+        }
+    }
+}
+
+fn add_columns(
+    problem: &DynamicProblem,
+    group: ChannelGroup,
+    terms: &[Term],
+    columns: &mut Vec<Column>,
+) {
+    let mut add = |name: String, unit: &str| columns.push(Column::new(name, unit));
+    let balls = 1..=problem.geometry.ball_count;
+    match group {
+        ChannelGroup::Races => {
+            let outer = problem.outer.as_ref().map(|_| "outer");
+            for race in ["inner"].into_iter().chain(outer) {
+                for (name, unit) in [
+                    ("x", "m"),
+                    ("y", "m"),
+                    ("z", "m"),
+                    ("tilt_y", "deg"),
+                    ("tilt_z", "deg"),
+                    ("velocity_x", "m/s"),
+                    ("velocity_y", "m/s"),
+                    ("velocity_z", "m/s"),
+                    ("speed", "rad/s"),
+                ] {
+                    add(format!("{race}_{name}"), unit);
+                }
+            }
+        }
+        ChannelGroup::Cage => {
+            let Some(cage) = &problem.cage else { return };
+            for (name, unit) in [
+                ("x", "m"),
+                ("y", "m"),
+                ("z", "m"),
+                ("tilt_y", "deg"),
+                ("tilt_z", "deg"),
+                ("angle", "deg"),
+                ("speed", "rad/s"),
+            ] {
+                add(format!("cage_{name}"), unit);
+            }
+            if cage.contacts.guidance != Guidance::Balls {
+                add("cage_guide_load".into(), "N");
+            }
+        }
+        ChannelGroup::Orbits => balls.for_each(|ball| {
+            add(format!("ball_{ball}_angle"), "deg");
+            add(format!("ball_{ball}_orbital_speed"), "rad/s");
+        }),
+        ChannelGroup::Loads => balls.for_each(|ball| {
+            add(format!("ball_{ball}_inner_load"), "N");
+            add(format!("ball_{ball}_outer_load"), "N");
+        }),
+        ChannelGroup::Pockets => {
+            balls.for_each(|ball| add(format!("ball_{ball}_pocket_load"), "N"));
+        }
+        ChannelGroup::Slip => balls.for_each(|ball| {
+            for race in ["inner", "outer"] {
+                add(format!("ball_{ball}_{race}_slip_rolling"), "m/s");
+                add(format!("ball_{ball}_{race}_slip_transverse"), "m/s");
+                add(format!("ball_{ball}_{race}_spin"), "rad/s");
+            }
+        }),
+        ChannelGroup::Forces => {
+            for race in ["inner", "outer"] {
+                for axis in ["x", "y", "z"] {
+                    add(format!("contact_force_on_{race}_{axis}"), "N");
+                }
+            }
+        }
+        ChannelGroup::Energy => {
+            for term in terms {
+                add(term_name(*term).into(), "J");
+            }
+        }
+    }
+}
+
+/// What can differ from zero in this problem.
+fn terms(problem: &DynamicProblem) -> Vec<Term> {
+    let cage = problem.cage.is_some();
+    let on_foundation = [Some(&problem.inner), problem.outer.as_ref()]
+        .into_iter()
+        .flatten()
+        .any(|body| body.foundation_stiffness != [0.0; 5] || body.foundation_damping != [0.0; 5]);
+    let terms = [
+        (Term::Kinetic, true),
+        (Term::Contact, true),
+        (Term::CageContact, cage),
+        (Term::Gravity, problem.gravity != [0.0; 3]),
+        (Term::Foundation, on_foundation),
+        (Term::Work(Ledger::Traction), problem.traction != TractionLaw::None),
+        (Term::Work(Ledger::ContactDamping), problem.damping != ContactDamping::None),
+        (Term::Work(Ledger::CageFriction), cage),
+        (Term::Work(Ledger::Foundation), on_foundation),
+        (Term::Work(Ledger::Drives), true),
+        (Term::Residual, true),
+    ];
+    terms.into_iter().filter(|(_, present)| *present).map(|(term, _)| term).collect()
+}
+
+fn term_name(term: Term) -> &'static str {
+    match term {
+        Term::Kinetic => "energy_kinetic",
+        Term::Contact => "energy_contact",
+        Term::CageContact => "energy_cage_contact",
+        Term::Gravity => "energy_gravity",
+        Term::Foundation => "energy_foundation",
+        Term::Work(Ledger::Traction) => "work_traction",
+        Term::Work(Ledger::ContactDamping) => "work_contact_damping",
+        Term::Work(Ledger::CageFriction) => "work_cage_friction",
+        Term::Work(Ledger::Foundation) => "work_foundation_damping",
+        Term::Work(Ledger::Drives) => "work_drives",
+        Term::Residual => "energy_residual",
+    }
+}
+
+fn energy_term(term: Term, snapshot: &Snapshot) -> f64 {
+    match term {
+        Term::Kinetic => snapshot.energy.kinetic,
+        Term::Contact => snapshot.energy.contact,
+        Term::CageContact => snapshot.energy.cage_contact,
+        Term::Gravity => snapshot.energy.gravity,
+        Term::Foundation => snapshot.energy.foundation,
+        Term::Work(entry) => snapshot.ledger[entry as usize],
+        Term::Residual => snapshot.residual,
+    }
+}

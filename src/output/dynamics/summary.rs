@@ -1,0 +1,286 @@
+//! `summary.json` of a run, and the folder around it.
+
+use crate::ch2_housing::bearing::frequencies::ratios;
+use crate::output::atomic::write_atomic;
+use crate::output::dynamics::session::{Session, Status};
+use crate::output::dynamics::table::RunTable;
+use crate::output::results::{ResultsError, RunRecord, insert_record, pretty, quantity};
+use crate::output::series::{Column, Series, columns_path};
+use crate::output::spectrum::{LEAKAGE, Spectrum, WINDOW, peaks};
+use crate::output::state::SERIES;
+use crate::solver::dynamics::run::Stepping;
+use ndarray::Array2;
+use serde_json::{Map, Value, json};
+use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
+
+/// Peaks listed of each spectrum.
+const PEAKS: usize = 8;
+
+/// What a summary needs beside the session and its table.
+#[derive(Clone, Debug, Default)]
+pub struct RunReport {
+    pub record: RunRecord,
+    /// What ended the run before its end, if anything did.
+    pub stopped_by: Option<String>,
+    /// How the steps were to be chosen, as the scene has it.
+    pub stepping: Option<Stepping>,
+    /// Whether spectra were asked for.
+    pub spectra: bool,
+}
+
+/// Writes `series.csv`, `series.npy`, `spectrum.csv` if asked for, and `summary.json`; returns
+/// the files.
+///
+/// # Errors
+/// A value that is not finite, a file that cannot be written.
+pub fn write_run_results(
+    folder: &Path,
+    session: &Session,
+    table: &RunTable,
+    report: &RunReport,
+) -> Result<Vec<PathBuf>, ResultsError> {
+    let spectra = if report.spectra { table.spectra() } else { Vec::new() };
+    let summary = run_summary(session, table, &spectra, report)?;
+    let [csv, npy, json] = ["series.csv", SERIES, "summary.json"].map(|name| folder.join(name));
+    table.series.write_csv(&csv)?;
+    table.series.write_npy(&npy)?;
+    let mut written = vec![csv, columns_path(&npy), npy];
+    if let Some(series) = spectrum_series(table, &spectra)? {
+        let path = folder.join("spectrum.csv");
+        series.write_csv(&path)?;
+        written.push(path);
+    }
+    write_atomic(&json, pretty(&summary).as_bytes())?;
+    written.push(json);
+    Ok(written)
+}
+
+/// One row a bin: frequency, then the amplitude of each channel.
+fn spectrum_series(
+    table: &RunTable,
+    spectra: &[(&'static str, Spectrum)],
+) -> Result<Option<Series>, ResultsError> {
+    let Some((_, first)) = spectra.first() else { return Ok(None) };
+    let mut columns = vec![Column::new("frequency", "Hz")];
+    columns.extend(spectra.iter().map(|(name, _)| Column::new(*name, table.unit(name))));
+    let bins = first.amplitude.len();
+    let data = Array2::from_shape_fn((bins, columns.len()), |(bin, column)| match column {
+        0 => bin as f64 * first.bin_width,
+        _ => spectra[column - 1].1.amplitude[bin],
+    });
+    Ok(Some(Series::new(columns, data)?))
+}
+
+/// Content of `summary.json`.
+///
+/// # Errors
+/// A value that is not finite, a `null` in a further section, a section name used twice.
+pub fn run_summary(
+    session: &Session,
+    table: &RunTable,
+    spectra: &[(&'static str, Spectrum)],
+    report: &RunReport,
+) -> Result<Value, ResultsError> {
+    let simulation = &session.simulation;
+    let complete = session.status == Status::Complete;
+    let mut summary = Map::new();
+    summary.insert("kind".into(), json!("run"));
+    summary.insert("complete".into(), json!(complete));
+    if let Some(reason) = &report.stopped_by {
+        summary.insert("stopped_by".into(), json!(reason));
+    }
+    summary.insert("end".into(), quantity("end", session.end, "s")?);
+    summary.insert("time".into(), quantity("time", last_time(table), "s")?);
+    summary.insert("step".into(), step(session, report)?);
+    summary.insert("output".into(), output(session, table)?);
+    let work = &simulation.system.work;
+    summary.insert(
+        "work".into(),
+        json!({
+            "steps": simulation.steps,
+            "evaluations": work.evaluations,
+            "distance_tests": work.distance_tests,
+            "loaded_contacts": work.loaded_contacts,
+            "slices": work.slices,
+            "pocket_tests": work.pocket_tests,
+            "guide_tests": work.guide_tests,
+        }),
+    );
+    if let Some(energy) = energy(table)? {
+        summary.insert("energy".into(), energy);
+    }
+    summary.insert("final".into(), final_values(table)?);
+    if table.window.is_empty() {
+        let note = "the run has not come to the window yet";
+        summary.insert("window".into(), json!({ "rows": 0, "note": note }));
+    } else {
+        summary.insert("window".into(), window(table)?);
+        if let Some(kinematics) = kinematics(session, table)? {
+            summary.insert("kinematics".into(), kinematics);
+        }
+    }
+    if !spectra.is_empty() {
+        summary.insert("spectra".into(), spectra_section(table, spectra)?);
+    }
+    insert_record(&mut summary, &report.record)?;
+    Ok(Value::Object(summary))
+}
+
+fn last_time(table: &RunTable) -> f64 {
+    table.series.data().column(0).last().copied().unwrap_or(0.0)
+}
+
+fn step(session: &Session, report: &RunReport) -> Result<Value, ResultsError> {
+    let simulation = &session.simulation;
+    let size = simulation.step_size;
+    let mut step = Map::new();
+    step.insert("size".into(), quantity("step", size, "s")?);
+    let reason = match (&simulation.limit, report.stepping) {
+        (Some(limit), Some(Stepping::FractionOfLimit(fraction))) => {
+            step.insert("stability_limit".into(), quantity("limit", limit.step, "s")?);
+            format!(
+                "{fraction} of the stability limit at the start, shortened to a whole number of \
+                 steps an output interval; {}",
+                limit.reason()
+            )
+        }
+        (Some(limit), _) => limit.reason(),
+        (None, _) => "given".into(),
+    };
+    step.insert("reason".into(), json!(reason));
+    Ok(Value::Object(step))
+}
+
+fn output(session: &Session, table: &RunTable) -> Result<Value, ResultsError> {
+    Ok(json!({
+        "interval": quantity("interval", table.interval, "s")?,
+        "steps_per_row": session.steps_per_row,
+        "rows": table.series.data().nrows(),
+        "rows_at_equal_intervals": session.rows_on_grid(),
+    }))
+}
+
+/// The ledger at the last row: where the energy is, what went in and out, what is missing.
+fn energy(table: &RunTable) -> Result<Option<Value>, ResultsError> {
+    let Some(last) = table.series.data().nrows().checked_sub(1) else { return Ok(None) };
+    let mut terms = Map::new();
+    for (index, column) in table.series.columns().iter().enumerate() {
+        if column.name.starts_with("energy_") || column.name.starts_with("work_") {
+            let value = table.series.data()[(last, index)];
+            terms.insert(column.name.clone(), quantity(&column.name, value, &column.unit)?);
+        }
+    }
+    if terms.is_empty() {
+        return Ok(None);
+    }
+    if let Some(residuals) = table.all("energy_residual") {
+        let largest = residuals.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
+        terms.insert("largest_residual".into(), quantity("largest_residual", largest, "J")?);
+    }
+    Ok(Some(Value::Object(terms)))
+}
+
+fn final_values(table: &RunTable) -> Result<Value, ResultsError> {
+    let mut values = Map::new();
+    if let Some(last) = table.series.data().nrows().checked_sub(1) {
+        for (index, column) in table.series.columns().iter().enumerate() {
+            let value = table.series.data()[(last, index)];
+            values.insert(column.name.clone(), quantity(&column.name, value, &column.unit)?);
+        }
+    }
+    Ok(Value::Object(values))
+}
+
+/// Mean, extremes and peak-to-peak amplitude of every channel over the window.
+fn window(table: &RunTable) -> Result<Value, ResultsError> {
+    let rows = table.window.clone();
+    let times = table.series.data().column(0);
+    let mut channels = Map::new();
+    for column in &table.series.columns()[1..] {
+        let values = table.windowed(&column.name).unwrap_or_default();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let entry = |value: f64| quantity(&column.name, value, &column.unit);
+        channels.insert(
+            column.name.clone(),
+            json!({
+                "mean": entry(mean)?,
+                "smallest": entry(low)?,
+                "largest": entry(high)?,
+                "peak_to_peak": entry(high - low)?,
+            }),
+        );
+    }
+    Ok(json!({
+        "start": quantity("start", times[rows.start], "s")?,
+        "end": quantity("end", times[rows.end - 1], "s")?,
+        "rows": rows.len(),
+        "channels": channels,
+    }))
+}
+
+/// Mean speeds over the window beside those of pure rolling at the nominal contact angle.
+fn kinematics(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsError> {
+    let geometry = &session.simulation.system.problem.geometry;
+    let mean = |channel: &str| {
+        let values = table.windowed(channel)?;
+        Some(values.iter().sum::<f64>() / values.len() as f64)
+    };
+    let Some(inner) = mean("inner_speed").filter(|speed| *speed != 0.0) else { return Ok(None) };
+    let outer = mean("outer_speed").unwrap_or(0.0);
+    let g = geometry;
+    let ratio = ratios(g.ball_count, g.ball_radius, g.pitch_radius, g.contact_angle).cage;
+    let rolling = ratio * inner + (1.0 - ratio) * outer;
+    let mut section = Map::new();
+    let speed = |value: f64| quantity("speed", value, "rad/s");
+    let frequency = |value: f64| quantity("frequency", value / TAU, "Hz");
+    section.insert("inner_race_speed".into(), speed(inner)?);
+    section.insert("inner_race_frequency".into(), frequency(inner)?);
+    section.insert("rolling_cage_speed".into(), speed(rolling)?);
+    section.insert("rolling_cage_frequency".into(), frequency(rolling)?);
+    let orbital: Option<Vec<f64>> =
+        (1..=geometry.ball_count).map(|ball| mean(&format!("ball_{ball}_orbital_speed"))).collect();
+    let balls = orbital.map(|speeds| speeds.iter().sum::<f64>() / speeds.len() as f64);
+    for (name, measured) in [("ball_set", balls), ("cage", mean("cage_speed"))] {
+        let Some(measured) = measured else { continue };
+        section.insert(format!("{name}_speed"), speed(measured)?);
+        section.insert(format!("{name}_frequency"), frequency(measured)?);
+        if rolling != 0.0 {
+            let slip = 1.0 - measured / rolling;
+            section.insert(format!("{name}_slip"), quantity("slip", slip, "1")?);
+        }
+    }
+    Ok(Some(Value::Object(section)))
+}
+
+fn spectra_section(
+    table: &RunTable,
+    spectra: &[(&'static str, Spectrum)],
+) -> Result<Value, ResultsError> {
+    let mut channels = Map::new();
+    let bin_width = spectra.first().map_or(0.0, |(_, spectrum)| spectrum.bin_width);
+    for (name, spectrum) in spectra {
+        let unit = table.unit(name);
+        let found: Result<Vec<Value>, ResultsError> = peaks(spectrum, PEAKS)
+            .into_iter()
+            .map(|peak| {
+                Ok(json!({
+                    "frequency": quantity("frequency", peak.frequency, "Hz")?,
+                    "amplitude": quantity("amplitude", peak.amplitude, unit)?,
+                    "bin_frequency": quantity("frequency", peak.bin_frequency, "Hz")?,
+                    "bin_amplitude": quantity("amplitude", peak.bin_amplitude, unit)?,
+                }))
+            })
+            .collect();
+        channels.insert((*name).into(), json!({ "peaks": found? }));
+    }
+    Ok(json!({
+        "window": WINDOW,
+        "leakage": LEAKAGE,
+        "rows": table.window.len(),
+        "bin_width": quantity("bin_width", bin_width, "Hz")?,
+        "channels": channels,
+    }))
+}

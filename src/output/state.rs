@@ -1,0 +1,310 @@
+//! `state.json`: all a run needs to go on with the same bits; its rows so far are in `series.npy`.
+//!
+//! Numbers are written as the shortest decimal that reads back to the same bits. The series is
+//! written before the state, so that it never has fewer rows than the state speaks of; it may
+//! have more, and those are computed again.
+
+use crate::output::atomic::{WriteError, write_atomic};
+use crate::output::dynamics::session::{RunRequest, Session, SessionError};
+use crate::output::results::pretty;
+use crate::output::series::{Series, SeriesError};
+use crate::solver::channels::ChannelGroup;
+use crate::solver::dynamics::checkpoint::Checkpoint;
+use crate::solver::dynamics::contacts::Work;
+use crate::solver::dynamics::model::DynamicProblem;
+use crate::solver::dynamics::stability::StepLimit;
+use crate::solver::dynamics::system::Energy;
+use nalgebra::Complex;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+pub const STATE: &str = "state.json";
+pub const SERIES: &str = "series.npy";
+
+/// Why the run stood still when the state was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stopped {
+    /// It did not: written on the way.
+    Running,
+    Interrupted,
+    Failed,
+    Complete,
+}
+
+/// Content of `state.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StateFile {
+    pub program: String,
+    pub version: String,
+    /// See [`fingerprint`].
+    pub fingerprint: String,
+    pub stopped: Stopped,
+    /// What ended a failed run.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub error: Option<String>,
+    /// s.
+    pub time: f64,
+    pub steps: u64,
+    pub step_size: f64,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub limit: Option<LimitEntry>,
+    /// When the run was to end, and the time between rows that it was asked for, s.
+    pub end: f64,
+    pub output_interval: f64,
+    pub steps_per_row: u64,
+    pub rows: usize,
+    /// Wall time so far, s.
+    pub seconds: f64,
+    pub state: Vec<f64>,
+    pub damping: Vec<f64>,
+    pub was_loaded: Vec<bool>,
+    /// Kinetic, contact, cage contact, gravity, foundation, J.
+    pub first_energy: [f64; 5],
+    pub largest_contact_energy: f64,
+    /// Evaluations, distance tests, loaded contacts, slices, pocket tests, guide tests.
+    pub work: [u64; 6],
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LimitEntry {
+    pub step: f64,
+    /// Real and imaginary part, 1/s.
+    pub eigenvalue: [f64; 2],
+}
+
+#[derive(Debug, Error)]
+pub enum StateError {
+    #[error("cannot read {}: {source}", path.display())]
+    Read { path: PathBuf, source: std::io::Error },
+    #[error("{} is not the state of a run: {source}", path.display())]
+    Json { path: PathBuf, source: serde_json::Error },
+    #[error(
+        "{} was written by version {found}; this is {}, whose bits may differ; start anew (--fresh)",
+        path.display(), env!("CARGO_PKG_VERSION")
+    )]
+    Version { path: PathBuf, found: String },
+    #[error(
+        "{} belongs to another scene: only end, plots and window may change from one part of a run \
+         to the next; choose another --out, or start anew (--fresh)",
+        path.display()
+    )]
+    Scene { path: PathBuf },
+    #[error("the rows beside {} are {kept} s apart, the scene now asks for {asked} s", path.display())]
+    Interval { path: PathBuf, kept: f64, asked: f64 },
+    #[error("{} holds a damaged state: {what}", path.display())]
+    Damaged { path: PathBuf, what: &'static str },
+    #[error("{} has no rows that fit the state beside it", path.display())]
+    Rows { path: PathBuf },
+    #[error("the run has already come to {time} s, past its new end of {end} s")]
+    Past { time: f64, end: f64 },
+    #[error("{what} is {value}; only finite numbers are kept in a state")]
+    NotFinite { what: &'static str, value: f64 },
+    #[error(transparent)]
+    Series(#[from] SeriesError),
+    #[error(transparent)]
+    Session(#[from] SessionError),
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// Sha256 of what decides every bit of a run but its length: the problem, how it is stepped, what
+/// is recorded, and the version. The end is not in it, so that a run can be extended, nor the
+/// output interval, which is compared by itself.
+pub fn fingerprint(problem: &DynamicProblem, request: &RunRequest) -> String {
+    // Debug text has every field, and the shortest decimals that tell two numbers apart.
+    let RunRequest { options, channels, end: _, output_interval: _ } = request;
+    let groups: Vec<&str> =
+        ChannelGroup::ALL.into_iter().filter(|g| channels.contains(g)).map(|g| g.name()).collect();
+    let text = format!("{} {problem:?} {options:?} {groups:?}", env!("CARGO_PKG_VERSION"));
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Why a state is written, and what the session does not know.
+#[derive(Clone, Debug)]
+pub struct StateRecord {
+    pub fingerprint: String,
+    pub stopped: Stopped,
+    pub error: Option<String>,
+    /// As asked for, s.
+    pub output_interval: f64,
+    pub seconds: f64,
+}
+
+/// Writes `series.npy` and `state.json` of a session into its results folder.
+///
+/// # Errors
+/// A number that is not finite (the state there stays), a file that cannot be written.
+pub fn save(folder: &Path, session: &Session, record: &StateRecord) -> Result<(), StateError> {
+    let (checkpoint, rows) = session.resumable();
+    let file = state_file(&checkpoint, rows, session, record);
+    check_finite(&file)?;
+    session.recorder.series(session.recorder.rows())?.write_npy(&folder.join(SERIES))?;
+    let value = serde_json::to_value(&file).expect("a state is plain JSON");
+    Ok(write_atomic(&folder.join(STATE), pretty(&value).as_bytes())?)
+}
+
+/// Reads `state.json` of a results folder; `None` if there is none.
+///
+/// # Errors
+/// A file that cannot be read or is no state.
+pub fn read(folder: &Path) -> Result<Option<StateFile>, StateError> {
+    let path = folder.join(STATE);
+    match std::fs::read(&path) {
+        Ok(bytes) => serde_json::from_slice(&bytes)
+            .map(Some)
+            .map_err(|source| StateError::Json { path, source }),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(source) => Err(StateError::Read { path, source }),
+    }
+}
+
+/// The session that goes on where `file`, read from `folder`, was written.
+///
+/// # Errors
+/// A state of another version or scene, one that is damaged or lacks its rows, an end that has
+/// already passed.
+pub fn resume(
+    folder: &Path,
+    file: &StateFile,
+    problem: DynamicProblem,
+    request: &RunRequest,
+) -> Result<Session, StateError> {
+    let path = folder.join(STATE);
+    if file.version != env!("CARGO_PKG_VERSION") {
+        return Err(StateError::Version { path, found: file.version.clone() });
+    }
+    if file.fingerprint != fingerprint(&problem, request) {
+        return Err(StateError::Scene { path });
+    }
+    if !request.accepts_interval(file.output_interval, file.end) {
+        let (kept, asked) = (file.output_interval, request.output_interval);
+        return Err(StateError::Interval { path, kept, asked });
+    }
+    check_finite(file)?;
+    let checkpoint = checkpoint(file);
+    let damaged = |what| StateError::Damaged { path: path.clone(), what };
+    if !checkpoint.fits(&problem) {
+        return Err(damaged("its lists have other lengths than the bearing asks for"));
+    }
+    if file.steps_per_row == 0 || file.step_size <= 0.0 {
+        return Err(damaged("no step from one row to the next"));
+    }
+    // Written as it is so that an end that is not a number is refused as well.
+    let ahead = request.end > file.time;
+    if !ahead {
+        return Err(StateError::Past { time: file.time, end: request.end });
+    }
+    let mut session = Session::from_checkpoint(problem, request, &checkpoint, file.steps_per_row)?;
+    let series_path = folder.join(SERIES);
+    let series = Series::read_npy(&series_path)?;
+    if !session.recorder.restore(&series, file.rows) {
+        return Err(StateError::Rows { path: series_path });
+    }
+    Ok(session)
+}
+
+fn state_file(
+    checkpoint: &Checkpoint,
+    rows: usize,
+    session: &Session,
+    record: &StateRecord,
+) -> StateFile {
+    let energy = &checkpoint.first_energy;
+    let work = &checkpoint.work;
+    StateFile {
+        program: "bearing-dynamics".into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        fingerprint: record.fingerprint.clone(),
+        stopped: record.stopped,
+        error: record.error.clone(),
+        time: checkpoint.time,
+        steps: checkpoint.steps,
+        step_size: checkpoint.step_size,
+        limit: checkpoint.limit.map(|limit| LimitEntry {
+            step: limit.step,
+            eigenvalue: [limit.eigenvalue.re, limit.eigenvalue.im],
+        }),
+        end: session.end,
+        output_interval: record.output_interval,
+        steps_per_row: session.steps_per_row,
+        rows,
+        seconds: record.seconds,
+        state: checkpoint.state.clone(),
+        damping: checkpoint.damping.clone(),
+        was_loaded: checkpoint.was_loaded.clone(),
+        first_energy: [
+            energy.kinetic,
+            energy.contact,
+            energy.cage_contact,
+            energy.gravity,
+            energy.foundation,
+        ],
+        largest_contact_energy: checkpoint.largest_contact_energy,
+        work: [
+            work.evaluations,
+            work.distance_tests,
+            work.loaded_contacts,
+            work.slices,
+            work.pocket_tests,
+            work.guide_tests,
+        ],
+    }
+}
+
+fn checkpoint(file: &StateFile) -> Checkpoint {
+    let [kinetic, contact, cage_contact, gravity, foundation] = file.first_energy;
+    let [evaluations, distance_tests, loaded_contacts, slices, pocket_tests, guide_tests] =
+        file.work;
+    Checkpoint {
+        time: file.time,
+        steps: file.steps,
+        step_size: file.step_size,
+        limit: file.limit.map(|limit| StepLimit {
+            step: limit.step,
+            eigenvalue: Complex::new(limit.eigenvalue[0], limit.eigenvalue[1]),
+        }),
+        state: file.state.clone(),
+        damping: file.damping.clone(),
+        was_loaded: file.was_loaded.clone(),
+        first_energy: Energy { kinetic, contact, cage_contact, gravity, foundation },
+        largest_contact_energy: file.largest_contact_energy,
+        work: Work {
+            evaluations,
+            distance_tests,
+            loaded_contacts,
+            slices,
+            pocket_tests,
+            guide_tests,
+        },
+    }
+}
+
+/// JSON has no way to write NaN and infinity.
+fn check_finite(file: &StateFile) -> Result<(), StateError> {
+    let limit = file.limit.iter().flat_map(|l| [l.step, l.eigenvalue[0], l.eigenvalue[1]]);
+    let single = [file.time, file.step_size, file.seconds, file.end, file.output_interval];
+    let parts: [(&'static str, Vec<f64>); 4] = [
+        (
+            "time, step or energy",
+            single
+                .into_iter()
+                .chain(file.first_energy)
+                .chain([file.largest_contact_energy])
+                .collect(),
+        ),
+        ("a step limit", limit.collect()),
+        ("an entry of the state", file.state.clone()),
+        ("a damping factor", file.damping.clone()),
+    ];
+    for (what, values) in parts {
+        if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
+            return Err(StateError::NotFinite { what, value });
+        }
+    }
+    Ok(())
+}

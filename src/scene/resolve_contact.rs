@@ -1,0 +1,130 @@
+//! Traction and damping between balls and races.
+
+use crate::ch2_housing::bearing::contact::ContactDamping;
+use crate::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::resolve::Reader;
+use crate::scene::value::Checked;
+
+/// Keys that belong to some laws only.
+const TRACTION_KEYS: &[(&str, &[&str])] = &[
+    ("traction.coefficient", &["constant"]),
+    ("traction.regularisation_speed", &["constant"]),
+    ("traction.b", &["slide-to-roll", "slip-speed"]),
+    ("traction.c", &["slide-to-roll", "slip-speed"]),
+    ("traction.d", &["slide-to-roll", "slip-speed"]),
+    ("traction.entrainment_floor", &["slide-to-roll"]),
+    ("traction.points", &["table"]),
+];
+const DAMPING_KEYS: &[(&str, &[&str])] = &[
+    ("contact_damping.alpha", &["hunt-crossley"]),
+    ("contact_damping.restitution", &["lankarani-nikravesh"]),
+    ("contact_damping.slowest", &["lankarani-nikravesh"]),
+];
+
+/// A key of another law than the chosen one would have no effect.
+fn refuse_strangers(
+    reader: &Reader,
+    law: &str,
+    keys: &[(&str, &[&str])],
+) -> Result<(), SceneError> {
+    for (key, laws) in keys {
+        if law != "none" && reader.is_given(key) && !laws.contains(&law) {
+            let own: Vec<String> = laws.iter().map(|law| format!("`law = \"{law}\"`")).collect();
+            let advice = format!("leave it out, or choose {}", own.join(" or "));
+            let reason = "the chosen law does not use it";
+            return Err(reader.document.error(key, Problem::NotApplicable { reason, advice }));
+        }
+    }
+    Ok(())
+}
+
+pub(crate) fn traction(reader: &mut Reader) -> Result<TractionLaw, SceneError> {
+    let law = reader.choice("traction.law").unwrap_or("none");
+    refuse_strangers(reader, law, TRACTION_KEYS)?;
+    let because = format!(" with `law = \"{law}\"`");
+    Ok(match law {
+        "constant" => TractionLaw::Constant {
+            coefficient: reader.required_number("traction.coefficient", &because)?,
+            regularisation_speed: reader
+                .required_number("traction.regularisation_speed", &because)?,
+        },
+        "slide-to-roll" => TractionLaw::SlideToRoll {
+            curve: curve(reader, 0, "over the slide-to-roll ratio: a plain number", "22.28")?,
+            entrainment_floor: reader.number("traction.entrainment_floor").unwrap_or(0.01),
+        },
+        "slip-speed" => TractionLaw::SlipSpeed {
+            curve: curve(reader, 1, "over the sliding speed: in s/m", "\"20 s/m\"")?,
+        },
+        "table" => TractionLaw::Table { points: points(reader, &because)? },
+        _ => TractionLaw::None,
+    })
+}
+
+/// The exponential curve; its slopes must be of kind number `kind` of their key.
+fn curve(
+    reader: &mut Reader,
+    kind: usize,
+    unit: &'static str,
+    example: &str,
+) -> Result<ExponentialCurve, SceneError> {
+    let common = ExponentialCurve::BOUNDARY;
+    let mut values = [common.b, common.c, common.d];
+    for (value, path) in values.iter_mut().zip(["traction.b", "traction.c", "traction.d"]) {
+        match reader.document.value(path) {
+            Some(Checked::Number(given)) => *value = *given,
+            Some(Checked::Either(index, given)) if *index == kind => *value = *given,
+            Some(_) => {
+                let name = path.rsplit('.').next().unwrap_or(path);
+                let advice = format!("write {name} = {example}");
+                let problem = Problem::NotApplicable { reason: unit, advice };
+                return Err(reader.document.error(path, problem));
+            }
+            None if kind == 1 => {
+                return Err(reader.missing(path, " with `law = \"slip-speed\"` (b and c in s/m)"));
+            }
+            None => {
+                let reason = "common boundary-lubrication set; the source's curve is not printed";
+                reader.note(path, &crate::scene::units::plain(*value), reason);
+            }
+        }
+    }
+    let [b, c, d] = values;
+    let curve = ExponentialCurve { b, c, d };
+    // dκ/dx = 0 at x = (1 + c d/b)/c.
+    let peak = if b > 0.0 { curve.coefficient((1.0 + c * d / b) / c).max(d) } else { d };
+    if peak <= 2.0 {
+        Ok(curve)
+    } else {
+        Err(reader.document.error("traction.b", Problem::FrictionTooLarge { peak }))
+    }
+}
+
+fn points(reader: &Reader, because: &str) -> Result<Vec<[f64; 2]>, SceneError> {
+    let path = "traction.points";
+    let Some(Checked::Curve(points)) = reader.document.value(path) else {
+        return Err(reader.missing(path, because));
+    };
+    if points.first().is_some_and(|first| first[0] == 0.0 && first[1] != 0.0) {
+        let reason = "friction at rest has no direction";
+        let advice = "begin with [\"0 m/s\", 0.0] or with a sliding speed above 0".to_string();
+        return Err(reader.document.error(path, Problem::NotApplicable { reason, advice }));
+    }
+    Ok(points.clone())
+}
+
+pub(crate) fn damping(reader: &mut Reader) -> Result<ContactDamping, SceneError> {
+    let law = reader.choice("contact_damping.law").unwrap_or("none");
+    refuse_strangers(reader, law, DAMPING_KEYS)?;
+    let because = format!(" with `law = \"{law}\"`");
+    Ok(match law {
+        "hunt-crossley" => ContactDamping::HuntCrossley {
+            alpha: reader.required_number("contact_damping.alpha", &because)?,
+        },
+        "lankarani-nikravesh" => ContactDamping::LankaraniNikravesh {
+            restitution: reader.required_number("contact_damping.restitution", &because)?,
+            slowest: reader.number("contact_damping.slowest").unwrap_or(1e-3),
+        },
+        _ => ContactDamping::None,
+    })
+}

@@ -1,0 +1,341 @@
+//! What only a run needs: bodies of the races, loads that turn, steps.
+
+use crate::ch2_housing::bearing::geometry::{BearingGeometry, Material};
+use crate::ch2_housing::bearing::inertia::{Inertia, grooved_ring};
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::resolve::Reader;
+use crate::scene::resolved::{Cage, Dimensions, Dynamics, RunSettings};
+use crate::scene::units::plain;
+use crate::scene::value::Checked;
+use crate::scene::{resolve_cage, resolve_contact};
+use crate::solver::dynamics::model::{Drive, RaceBody, RotatingLoad, Rotation};
+use crate::solver::dynamics::run::{RunOptions, Start, Stepping};
+use crate::solver::profile::Profile;
+use crate::solver::statics::COORDINATE_NAMES;
+
+/// Parts that are resolved already.
+pub(crate) struct Parts<'p> {
+    pub geometry: &'p BearingGeometry,
+    pub dimensions: &'p Dimensions,
+    pub inner_material: &'p Material,
+    pub outer_material: &'p Material,
+    pub cage: Option<&'p Cage>,
+}
+
+pub(crate) fn dynamics(
+    reader: &mut Reader,
+    parts: &Parts,
+    inner_drives: [Drive; 5],
+) -> Result<Dynamics, SceneError> {
+    let inner = RaceBody {
+        inertia: race_inertia(reader, parts, &INNER)?,
+        drives: inner_drives,
+        rotation: inner_rotation(reader),
+        foundation_stiffness: [0.0; 5],
+        foundation_damping: [0.0; 5],
+    };
+    Ok(Dynamics {
+        inner,
+        outer: outer_race(reader, parts)?,
+        cage: resolve_cage::in_run(reader, parts.geometry, parts.cage)?,
+        rotating_load: rotating_load(reader)?,
+        unbalance: reader.given_number("inner_race.unbalance").unwrap_or(0.0),
+        traction: resolve_contact::traction(reader)?,
+        // Checked by the key table: 1 to 201.
+        slices: reader.number("traction.slices").unwrap_or(15.0) as usize,
+        heathcote: heathcote(reader),
+        damping: resolve_contact::damping(reader)?,
+        run: run(reader)?,
+        plots: Vec::new(),
+        defaults_used: Vec::new(),
+    })
+}
+
+fn inner_rotation(reader: &mut Reader) -> Rotation {
+    if let Some(torque) = reader.profile("inner_race.torque") {
+        return Rotation::Torque(torque);
+    }
+    Rotation::Speed(reader.profile("inner_race.speed").unwrap_or_else(|| {
+        reader.note("inner_race.speed", "0 rpm", "neither a speed nor a torque is given");
+        Profile::ZERO
+    }))
+}
+
+fn heathcote(reader: &mut Reader) -> bool {
+    match reader.document.value("traction.heathcote") {
+        Some(Checked::Boolean(given)) => *given,
+        _ => {
+            reader.note_default("traction.heathcote");
+            false
+        }
+    }
+}
+
+fn rotating_load(reader: &mut Reader) -> Result<Option<RotatingLoad>, SceneError> {
+    let force = "inner_race.rotating_load.force";
+    let speed = "inner_race.rotating_load.speed";
+    let phase = "inner_race.rotating_load.phase";
+    if ![force, speed, phase].iter().any(|key| reader.is_given(key)) {
+        return Ok(None);
+    }
+    let Some(profile) = reader.profile(force) else {
+        return Err(reader.missing(force, ""));
+    };
+    Ok(Some(RotatingLoad {
+        force: profile,
+        speed: reader.required_number(speed, "")?,
+        phase: reader.number(phase).unwrap_or(0.0),
+    }))
+}
+
+fn outer_race(reader: &mut Reader, parts: &Parts) -> Result<Option<RaceBody>, SceneError> {
+    let motion = reader.choice("outer_race.motion").unwrap_or("fixed");
+    let foundation = |reader: &mut Reader, what: &str| {
+        COORDINATE_NAMES.map(|name| {
+            let path = format!("outer_race.foundation.{what}.{name}");
+            reader.given_number(&path).unwrap_or(0.0)
+        })
+    };
+    if motion == "fixed" {
+        refuse_motion(reader)?;
+        return Ok(None);
+    }
+    let foundation_stiffness = foundation(reader, "stiffness");
+    let foundation_damping = foundation(reader, "damping");
+    if foundation_stiffness == [0.0; 5] {
+        reader.note("outer_race.foundation", "none", "no spring holds the moving outer race");
+    }
+    Ok(Some(RaceBody {
+        inertia: race_inertia(reader, parts, &OUTER)?,
+        drives: reader.drives("outer_race", parts.geometry.ball_radius)?,
+        rotation: if motion == "5-dof" {
+            Rotation::Speed(Profile::ZERO)
+        } else {
+            Rotation::Torque(Profile::ZERO)
+        },
+        foundation_stiffness,
+        foundation_damping,
+    }))
+}
+
+/// Keys that do nothing to a fixed race are refused, so that nobody waits for their effect.
+fn refuse_motion(reader: &Reader) -> Result<(), SceneError> {
+    let mut keys = Vec::new();
+    for name in COORDINATE_NAMES {
+        let (load, held) =
+            if name.starts_with("tilt") { ("moment", "tilt") } else { ("load", "displacement") };
+        keys.push(format!("outer_race.{name}.{load}"));
+        let held = format!("outer_race.{name}.{held}");
+        if matches!(reader.document.value(&held), Some(Checked::Profile(_))) {
+            keys.push(held);
+        }
+        keys.push(format!("outer_race.foundation.stiffness.{name}"));
+        keys.push(format!("outer_race.foundation.damping.{name}"));
+    }
+    for name in ["mass", "axial", "transverse"] {
+        keys.push(format!("outer_race.inertia.{name}"));
+    }
+    match keys.iter().find(|key| reader.is_given(key)) {
+        None => Ok(()),
+        Some(key) => {
+            let reason = "the outer race is fixed";
+            let advice = "write motion = \"5-dof\" in [outer_race], or leave this out".to_string();
+            Err(reader.document.error(key, Problem::NotApplicable { reason, advice }))
+        }
+    }
+}
+
+/// Where the keys of a race stand, and on which side of its groove the material lies.
+struct Side {
+    table: &'static str,
+    geometry: &'static str,
+    plain: &'static str,
+    /// +1: material inside the groove.
+    sign: f64,
+}
+
+const INNER: Side = Side {
+    table: "inner_race",
+    geometry: "bearing.inner_race",
+    plain: "bearing.inner_race.bore_radius",
+    sign: 1.0,
+};
+const OUTER: Side = Side {
+    table: "outer_race",
+    geometry: "bearing.outer_race",
+    plain: "bearing.outer_race.outer_radius",
+    sign: -1.0,
+};
+
+/// Sizes that no table states, as parts of the ball diameter. Wall and length are those of
+/// Table 2.2: 3.574 mm and 20 mm with balls of 11.91 mm.
+const WALL: f64 = 0.30;
+const LENGTH: f64 = 1.68;
+/// Common height of a deep-groove bearing's shoulders.
+const SHOULDER: f64 = 0.20;
+
+/// Given, or a ring with a groove of the race's sizes.
+fn race_inertia(reader: &mut Reader, parts: &Parts, side: &Side) -> Result<Inertia, SceneError> {
+    let inner = side.sign > 0.0;
+    let added =
+        if inner { reader.given_number("inner_race.added_mass").unwrap_or(0.0) } else { 0.0 };
+    let shoulder_key = format!("{}.shoulder_radius", side.geometry);
+    let given_shoulder = shoulder(reader, parts, side, &shoulder_key)?;
+    let keys = ["mass", "axial", "transverse"].map(|key| format!("{}.inertia.{key}", side.table));
+    if keys.iter().any(|key| reader.is_given(key)) {
+        let because = " beside the other entries of `inertia`";
+        let [mass, axial, transverse] = keys.each_ref().map(|k| reader.required_number(k, because));
+        let inertia = Inertia { mass: mass? + added, axial: axial?, transverse: transverse? };
+        check_inertia(reader, &keys[1], inertia.axial, inertia.transverse)?;
+        return Ok(inertia);
+    }
+    let sizes = parts.dimensions;
+    let (race, raceway, given_plain, density) = if inner {
+        let density = parts.inner_material.density;
+        (&sizes.inner_race, &parts.geometry.inner, sizes.bore_radius, density)
+    } else {
+        let density = parts.outer_material.density;
+        (&sizes.outer_race, &parts.geometry.outer, sizes.outer_radius, density)
+    };
+    let diameter = 2.0 * sizes.nominal_ball_radius;
+    let plain_radius = given_plain.unwrap_or_else(|| {
+        let radius = (race.radius - side.sign * WALL * diameter).max(0.5 * race.radius);
+        let reason = "wall of 0.3 ball diameters behind the groove, as the outer race of Table 2.2";
+        reader.note(side.plain, &millimetres(radius), reason);
+        radius
+    });
+    let land = given_shoulder.unwrap_or_else(|| {
+        let radius = race.radius + side.sign * SHOULDER * diameter;
+        let reason = "shoulders as high as 20 % of the ball diameter";
+        reader.note(&shoulder_key, &millimetres(radius), reason);
+        radius
+    });
+    let length = sizes.length.unwrap_or_else(|| {
+        let length = LENGTH * diameter;
+        let reason = "1.68 ball diameters, as in Table 2.2";
+        reader.note("bearing.length", &millimetres(length), reason);
+        length
+    });
+    let ring = grooved_ring(
+        plain_radius,
+        land,
+        raceway.centre_radius,
+        raceway.groove_radius,
+        length,
+        density,
+    );
+    let value = format!(
+        "mass {:.4e} kg, axial {:.4e} kg m^2, transverse {:.4e} kg m^2",
+        ring.mass, ring.axial, ring.transverse
+    );
+    reader.note(&format!("{}.inertia", side.table), &value, "a grooved ring of the race's sizes");
+    Ok(Inertia { mass: ring.mass + added, ..ring })
+}
+
+/// The given shoulder radius: beyond the groove bottom, short of the balls' centres.
+fn shoulder(
+    reader: &Reader,
+    parts: &Parts,
+    side: &Side,
+    key: &str,
+) -> Result<Option<f64>, SceneError> {
+    let Some(value) = reader.given_number(key) else { return Ok(None) };
+    let inner = side.sign > 0.0;
+    let sizes = parts.dimensions;
+    let bottom = if inner { sizes.inner_race.radius } else { sizes.outer_race.radius };
+    let pitch = parts.geometry.pitch_radius;
+    let order = |relation, other_name, other| {
+        let advice = "a shoulder stands beside the groove, lower than the balls' centres";
+        let problem = Problem::WrongOrder { value, relation, other_name, other, advice };
+        Err(reader.document.error(key, problem))
+    };
+    let (past_bottom, past_pitch) =
+        if inner { ("more than", "less than") } else { ("less than", "more than") };
+    if (value - bottom) * side.sign <= 0.0 {
+        order(past_bottom, "the groove bottom's radius", bottom)
+    } else if (pitch - value) * side.sign <= 0.0 {
+        order(past_pitch, "the pitch radius", pitch)
+    } else {
+        Ok(Some(value))
+    }
+}
+
+/// No body has I_axial > 2 I_transverse: ∫(y² + z²) ≤ ∫(x² + y²) + ∫(x² + z²).
+pub(crate) fn check_inertia(
+    reader: &Reader,
+    key: &str,
+    axial: f64,
+    transverse: f64,
+) -> Result<(), SceneError> {
+    if axial <= 2.0 * transverse {
+        Ok(())
+    } else {
+        Err(reader.document.error(key, Problem::ImpossibleInertia { axial, transverse }))
+    }
+}
+
+/// A length as it would be written, to six digits.
+pub(crate) fn millimetres(metres: f64) -> String {
+    let rounded: f64 = format!("{:.5e}", metres * 1e3).parse().unwrap_or(metres * 1e3);
+    format!("{} mm", plain(rounded))
+}
+
+fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
+    let Some(end) = reader.given_number("numerics.end") else { return Ok(None) };
+    let usual = RunOptions::default();
+    let start = match reader.choice("numerics.start") {
+        Some("nominal") => Start::Nominal,
+        _ => Start::Equilibrium,
+    };
+    let fraction = reader.given_number("numerics.step_fraction");
+    let stepping = match (reader.given_number("numerics.step"), fraction) {
+        (Some(step), _) => Stepping::Fixed(step),
+        (None, Some(fraction)) => Stepping::FractionOfLimit(fraction),
+        (None, None) => {
+            reader.note("numerics.step_fraction", "0.5", "half the largest stable step");
+            Stepping::FractionOfLimit(0.5)
+        }
+    };
+    reader.choice("numerics.integrator");
+    let options = RunOptions {
+        start,
+        stepping,
+        energy_limit: reader.number("numerics.energy_limit").unwrap_or(usual.energy_limit),
+        ..usual
+    };
+    let output_interval = within(reader, "numerics.output_interval", end)?.unwrap_or_else(|| {
+        let interval = end / 1000.0;
+        let value = format!("{} s", plain(interval));
+        reader.note("numerics.output_interval", &value, "a thousandth of the run");
+        interval
+    });
+    let window_start = within(reader, "output.window_start", end)?.unwrap_or_else(|| {
+        let start = 0.5 * end;
+        let reason = "means and spectra are taken over the second half of the run";
+        reader.note("output.window_start", &format!("{} s", plain(start)), reason);
+        start
+    });
+    let channels = match reader.document.value("output.channels") {
+        Some(Checked::Texts(names)) => Some(names.clone()),
+        _ => None,
+    };
+    Ok(Some(RunSettings { options, end, output_interval, window_start, channels }))
+}
+
+/// A time that must lie in the run.
+fn within(reader: &Reader, key: &str, end: f64) -> Result<Option<f64>, SceneError> {
+    match reader.given_number(key) {
+        Some(value) if value > end || (value == end && key == "output.window_start") => {
+            let problem = Problem::WrongTime {
+                value,
+                relation: "not before",
+                other_name: "the end of the run",
+                other: end,
+                allowed: "less than",
+                advice: "check the units of both",
+            };
+            Err(reader.document.error(key, problem))
+        }
+        given => Ok(given),
+    }
+}

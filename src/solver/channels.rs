@@ -1,0 +1,64 @@
+//! Groups of channels that a run records; what nobody asks for is not computed.
+
+/// A group of columns of the time series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ChannelGroup {
+    /// Position, tilts, velocity and speed of the inner race, and of the outer race if it moves.
+    Races,
+    /// Position, speed and angle of the cage, and its load on the guiding race.
+    Cage,
+    /// Angle and speed of each ball around the bearing.
+    Orbits,
+    /// Normal load of each ball on both races.
+    Loads,
+    /// Load of each ball in its pocket.
+    Pockets,
+    /// Slip at the middle of each contact and spin about its normal.
+    Slip,
+    /// Sum of contact forces on each race.
+    Forces,
+    /// Energies, work and losses since the start, and what is unaccounted for.
+    Energy,
+}
+
+impl ChannelGroup {
+    pub const ALL: [ChannelGroup; 8] = [
+        ChannelGroup::Races,
+        ChannelGroup::Cage,
+        ChannelGroup::Orbits,
+        ChannelGroup::Loads,
+        ChannelGroup::Pockets,
+        ChannelGroup::Slip,
+        ChannelGroup::Forces,
+        ChannelGroup::Energy,
+    ];
+
+    /// All but the slip: six columns a ball, for those who ask.
+    pub const DEFAULT: [ChannelGroup; 7] = [
+        ChannelGroup::Races,
+        ChannelGroup::Cage,
+        ChannelGroup::Orbits,
+        ChannelGroup::Loads,
+        ChannelGroup::Pockets,
+        ChannelGroup::Forces,
+        ChannelGroup::Energy,
+    ];
+
+    /// As in a scene.
+    pub fn name(self) -> &'static str {
+        match self {
+            ChannelGroup::Races => "races",
+            ChannelGroup::Cage => "cage",
+            ChannelGroup::Orbits => "orbits",
+            ChannelGroup::Loads => "loads",
+            ChannelGroup::Pockets => "pockets",
+            ChannelGroup::Slip => "slip",
+            ChannelGroup::Forces => "forces",
+            ChannelGroup::Energy => "energy",
+        }
+    }
+
+    pub fn from_name(name: &str) -> Option<ChannelGroup> {
+        ChannelGroup::ALL.into_iter().find(|group| group.name() == name)
+    }
+}

@@ -1,0 +1,91 @@
+//! Everything a simulation needs to go on with the same bits.
+
+use super::contacts::Work;
+use super::model::DynamicProblem;
+use super::run::{RunOptions, Simulation, SimulationError, Stepping};
+use super::stability::StepLimit;
+use super::state::Layout;
+use super::system::Energy;
+
+/// A simulation at the end of a step, as plain numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Checkpoint {
+    /// s.
+    pub time: f64,
+    pub steps: u64,
+    /// s.
+    pub step_size: f64,
+    pub limit: Option<StepLimit>,
+    /// The whole state vector; see [`super::state`].
+    pub state: Vec<f64>,
+    /// Contact damping of each pair and whether it carried load: the history of contacts.
+    pub damping: Vec<f64>,
+    pub was_loaded: Vec<bool>,
+    /// Energy at the start and the largest contact energy since, J: the ledger counts from there.
+    pub first_energy: Energy,
+    pub largest_contact_energy: f64,
+    pub work: Work,
+}
+
+impl Checkpoint {
+    /// Whether its lists have the lengths that the problem asks for.
+    pub fn fits(&self, problem: &DynamicProblem) -> bool {
+        let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
+        let pairs = 2 * layout.padded;
+        self.state.len() == layout.len()
+            && self.damping.len() == pairs
+            && self.was_loaded.len() == pairs
+    }
+}
+
+impl Simulation {
+    pub fn checkpoint(&self) -> Checkpoint {
+        let mut checkpoint = Checkpoint::default();
+        self.checkpoint_into(&mut checkpoint);
+        checkpoint
+    }
+
+    /// As [`Simulation::checkpoint`]; allocates nothing the second time.
+    pub fn checkpoint_into(&self, checkpoint: &mut Checkpoint) {
+        checkpoint.time = self.time;
+        checkpoint.steps = self.steps;
+        checkpoint.step_size = self.step_size;
+        checkpoint.limit = self.limit;
+        checkpoint.state.clone_from(&self.state);
+        checkpoint.damping.clone_from(&self.system.damping);
+        checkpoint.was_loaded.clone_from(&self.was_loaded);
+        checkpoint.first_energy = self.first_energy;
+        checkpoint.largest_contact_energy = self.largest_contact_energy;
+        checkpoint.work = self.system.work;
+    }
+
+    /// Goes on where a checkpoint was taken: the same problem and options give the same bits as
+    /// if nothing had come between.
+    ///
+    /// # Errors
+    /// A step size that is no step.
+    ///
+    /// # Panics
+    /// If the checkpoint does not [fit](Checkpoint::fits) the problem.
+    pub fn from_checkpoint(
+        problem: DynamicProblem,
+        options: RunOptions,
+        checkpoint: &Checkpoint,
+    ) -> Result<Simulation, SimulationError> {
+        assert!(checkpoint.fits(&problem), "a checkpoint of another problem");
+        let fixed = RunOptions { stepping: Stepping::Fixed(checkpoint.step_size), ..options };
+        let state = checkpoint.state.clone();
+        let mut simulation = Simulation::from_state(problem, fixed, state, checkpoint.time)?;
+        simulation.options = options;
+        simulation.steps = checkpoint.steps;
+        simulation.limit = checkpoint.limit;
+        // Setting up made the quaternions unit once more, which moves their last bit.
+        simulation.state.copy_from_slice(&checkpoint.state);
+        simulation.system.damping.copy_from_slice(&checkpoint.damping);
+        simulation.system.work = checkpoint.work;
+        simulation.was_loaded.copy_from_slice(&checkpoint.was_loaded);
+        simulation.first_energy = checkpoint.first_energy;
+        simulation.largest_contact_energy = checkpoint.largest_contact_energy;
+        Ok(simulation)
+    }
+}

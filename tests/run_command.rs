@@ -1,0 +1,327 @@
+//! `bearing run` as a user meets it: results folder, signals, errors, comparison.
+
+use serde_json::Value;
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// Table 4.1's bearing at 1000 rpm under 250 N, with a cage but without friction between balls
+/// and races.
+fn scene(numerics: &str, output: &str) -> String {
+    format!(
+        r#"
+title = "Run"
+[bearing]
+kind = "deep-groove"
+balls = 8
+clearance = {{ radial = "-5 um" }}
+inner_race = {{ radius = "20.047 mm", groove_radius = "6.013 mm", bore_radius = "15 mm" }}
+outer_race = {{ radius = "31.953 mm", groove_radius = "6.310 mm" }}
+[bearing.cage]
+pocket_radius = "6.1 mm"
+inner_radius = "23.5 mm"
+outer_radius = "28.5 mm"
+race_clearance = "0.1 mm"
+mass = "20 g"
+guidance = "outer-race"
+length = "12 mm"
+contact = {{ law = "penalty", stiffness = "1e6 N/m" }}
+[inner_race]
+z = {{ load = "-250 N" }}
+tilt_y = {{ tilt = "0.05 deg" }}
+tilt_z = {{ tilt = "0 deg" }}
+speed = "1000 rpm"
+[ball_forces]
+gravity = ["0 m/s^2", "0 m/s^2", "-9.80665 m/s^2"]
+[traction]
+law = "none"
+[numerics]
+{numerics}
+[output]
+{output}
+"#
+    )
+}
+
+const ALL_PLOTS: &str = r#"plots = ["orbit", "spectrum", "series", "slip-spin", "polar"]
+window_start = "0.1 ms""#;
+
+struct Place {
+    folder: tempfile::TempDir,
+}
+
+impl Place {
+    fn new() -> Place {
+        Place { folder: tempfile::tempdir().unwrap() }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn scene(&self, name: &str, text: &str) -> PathBuf {
+        let path = self.path(name);
+        fs::write(&path, text).unwrap();
+        path
+    }
+}
+
+fn command(scene: &Path, out: &Path, further: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_bearing"));
+    command.arg("run").arg(scene).arg("--out").arg(out).args(further);
+    command
+}
+
+fn run(scene: &Path, out: &Path, further: &[&str]) -> Output {
+    command(scene, out, further).output().unwrap()
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("it was not killed")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn json(path: PathBuf) -> Value {
+    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+}
+
+/// Every file of two folders to the byte, but for wall times.
+fn assert_same_results(expected: &Path, found: &Path) {
+    let names = |folder: &Path| {
+        let mut names: Vec<String> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    };
+    assert_eq!(names(expected), names(found));
+    for name in names(expected) {
+        let [a, b] = [expected, found].map(|folder| folder.join(&name));
+        if name.ends_with(".json") && name != "series.columns.json" {
+            let [mut a, mut b] = [a, b].map(json);
+            for tree in [&mut a, &mut b] {
+                assert!(tree.as_object_mut().unwrap().remove("seconds").is_some(), "{name}");
+            }
+            assert_eq!(a.to_string(), b.to_string(), "{name}");
+        } else {
+            assert!(fs::read(a).unwrap() == fs::read(b).unwrap(), "{name} differs");
+        }
+    }
+}
+
+fn signal(child: &Child, name: &str) {
+    let id = child.id().to_string();
+    assert!(Command::new("kill").args([name, &id]).status().unwrap().success());
+}
+
+/// Starts a run and waits until it steps.
+fn start(mut command: Command) -> Child {
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stdout.as_mut().unwrap());
+    let mut line = String::new();
+    while !line.contains("a row every") {
+        line.clear();
+        assert!(lines.read_line(&mut line).unwrap() > 0, "it ended before it stepped");
+    }
+    child
+}
+
+fn wait(mut child: Child) -> (Option<i32>, String) {
+    let mut text = String::new();
+    child.stderr.as_mut().unwrap().read_to_string(&mut text).unwrap();
+    (child.wait().unwrap().code(), text)
+}
+
+#[test]
+fn a_run_leaves_a_results_folder() {
+    let place = Place::new();
+    let numerics = "end = \"4.05 ms\"\nstep = \"2 us\"\noutput_interval = \"13.2 us\"";
+    let scene = place.scene("scene.toml", &scene(numerics, ALL_PLOTS));
+    let out = place.path("out");
+    let output = run(&scene, &out, &["--threads", "2"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert_eq!(stderr(&output), "", "quiet when piped");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    // 13.2 µs are no whole number of 2 µs steps.
+    for part in ["step 2.0000e-6 s: given", "rounded to whole steps", "a row every 7 steps"] {
+        assert!(said.contains(part), "{part} is not in {said}");
+    }
+    for name in [
+        "orbit_cage.svg",
+        "orbit_inner_race.svg",
+        "polar.svg",
+        "series.columns.json",
+        "series.csv",
+        "series.npy",
+        "series_energy.svg",
+        "slip.svg",
+        "spectrum.csv",
+        "spectrum_cage.svg",
+        "spin.svg",
+        "state.json",
+        "summary.json",
+    ] {
+        assert!(out.join(name).exists(), "{name}");
+    }
+    let summary = json(out.join("summary.json"));
+    assert_eq!(summary["complete"], true);
+    assert_eq!(summary["time"]["value"], 4.05e-3);
+    assert_eq!(summary["work"]["steps"], 2025);
+    assert_eq!(summary["step"]["size"]["unit"], "s");
+    assert_eq!(summary["motion"]["cage"]["contact_law"], "penalty");
+    for part in ["assumptions", "plan", "scene", "energy", "kinematics", "window", "spectra"] {
+        assert!(!summary[part].is_null(), "{part}");
+    }
+    // The shaft's speed and what pure rolling makes of it: (1 − r_b/r_p)/2 with the table's radii.
+    let shaft = summary["kinematics"]["inner_race_frequency"]["value"].as_f64().unwrap();
+    assert!((shaft - 1000.0 / 60.0).abs() <= 1e-9, "{shaft}");
+    let rolling = summary["kinematics"]["rolling_cage_frequency"]["value"].as_f64().unwrap();
+    let expected = shaft * 0.5 * (1.0 - 5.9555 / 26.0);
+    assert!((rolling - expected).abs() <= 2e-3, "{rolling} {expected}");
+
+    // The same scene once more, and with another load: compare names time and channel.
+    let again = place.path("again");
+    assert_eq!(code(&run(&scene, &again, &[])), 0);
+    assert_same_results(&out, &again);
+    let text = fs::read_to_string(&scene).unwrap();
+    let other = place.scene(
+        "other.toml",
+        &text.replace(
+            "\"1000 rpm\"",
+            "{ table = [[\"0 s\", \
+        \"1000 rpm\"], [\"2 ms\", \"1000 rpm\"], [\"3 ms\", \"1001 rpm\"]] }",
+        ),
+    );
+    let different = place.path("different");
+    let output = run(&other, &different, &[]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let compare = |a: &Path, b: &Path| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_bearing"));
+        let output = command.arg("compare").arg(a).arg(b).output().unwrap();
+        (code(&output), String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    assert_eq!(compare(&out, &again).0, 0);
+    let (code, report) = compare(&out, &different);
+    assert_eq!(code, 1);
+    let first = report.lines().find(|line| line.contains("time = ")).expect("a time is named");
+    assert!(first.contains("time = 0.0020"), "the speeds part after 2 ms: {first}");
+    assert!(report.contains("inner_") || report.contains("energy_"), "{report}");
+}
+
+#[test]
+fn interrupted_by_a_signal_and_resumed() {
+    let place = Place::new();
+    // A second or so, whatever the machine: the signal comes in the middle.
+    let numerics = "end = \"200.001 ms\"\nstep = \"2 us\"\noutput_interval = \"0.1 ms\"";
+    let scene = place.scene("scene.toml", &scene(numerics, ALL_PLOTS));
+    let whole = place.path("whole");
+    let parts = place.path("parts");
+    let begun = Instant::now();
+    let mut child = start(command(&scene, &parts, &[]));
+    std::thread::sleep(Duration::from_millis(60));
+    signal(&child, "-TERM");
+    let (code_of_part, message) = wait(child);
+    assert_eq!(code_of_part, Some(2), "{message}");
+    assert!(message.contains("interrupted at t = ") && message.contains("--resume"), "{message}");
+    let summary = json(parts.join("summary.json"));
+    assert_eq!(summary["complete"], false);
+    assert_eq!(summary["stopped_by"], "interrupted");
+    let rows = fs::read_to_string(parts.join("series.csv")).unwrap().lines().count() - 1;
+    assert_eq!(summary["output"]["rows"], rows);
+    assert!(rows > 1 && rows < 2000, "{rows}");
+
+    // Without a word about it nothing is overwritten.
+    let refused = run(&scene, &parts, &[]);
+    assert_eq!(code(&refused), 2);
+    assert!(stderr(&refused).contains("--resume") && stderr(&refused).contains("--fresh"));
+    assert_eq!(json(parts.join("summary.json")), summary);
+
+    child = start(command(&scene, &parts, &["--resume"]));
+    std::thread::sleep(Duration::from_millis(30));
+    signal(&child, "-INT");
+    assert_eq!(wait(child).0, Some(2));
+    let output = run(&scene, &parts, &["--resume"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("resumed at t = "));
+    assert_eq!(code(&run(&scene, &whole, &[])), 0);
+    assert_same_results(&whole, &parts);
+    assert!(begun.elapsed() < Duration::from_secs(60));
+}
+
+#[test]
+fn killed_outright_it_goes_on_from_the_last_state_kept() {
+    let place = Place::new();
+    let numerics = "end = \"1000 s\"\nstep = \"2 us\"\noutput_interval = \"1 ms\"";
+    let endless = place.scene("scene.toml", &scene(numerics, "plots = []"));
+    let (whole, parts) = (place.path("whole"), place.path("parts"));
+    let child = start(command(&endless, &parts, &["--save-every", "1"]));
+    let begun = Instant::now();
+    while !parts.join("state.json").exists() {
+        assert!(begun.elapsed() < Duration::from_secs(60), "no state is kept");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    signal(&child, "-KILL");
+    assert_eq!(wait(child).0, None);
+    assert_eq!(json(parts.join("state.json"))["stopped"], "running");
+    // A run of another length goes on from there.
+    let time = json(parts.join("state.json"))["time"].as_f64().unwrap();
+    let numerics = numerics.replace("1000 s", &format!("{:.3} ms", 1e3 * time + 2.0005));
+    let shorter = place.scene("shorter.toml", &scene(&numerics, "plots = []"));
+    let output = run(&shorter, &parts, &["--resume"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert_eq!(code(&run(&shorter, &whole, &[])), 0);
+    assert_same_results(&whole, &parts);
+}
+
+#[test]
+fn a_run_that_fails_says_where_and_keeps_its_state() {
+    let place = Place::new();
+    let numerics = "end = \"10 ms\"\nstep = \"40 us\"\noutput_interval = \"40 us\"";
+    let scene = place.scene("scene.toml", &scene(numerics, "plots = [\"series\"]"));
+    let out = place.path("out");
+    let output = run(&scene, &out, &[]);
+    assert_eq!(code(&output), 2);
+    let message = stderr(&output);
+    assert!(message.contains("t = ") && message.contains("step "), "{message}");
+    assert!(message.contains("state before that step"), "{message}");
+    let state = json(out.join("state.json"));
+    assert_eq!(state["stopped"], "failed");
+    assert!(message.contains(state["error"].as_str().unwrap()));
+    let summary = json(out.join("summary.json"));
+    assert_eq!((&summary["complete"], &summary["stopped_by"]), (&false.into(), &state["error"]));
+    // It stands before the step that the message names.
+    let named = message.split("step ").nth(1).unwrap();
+    let named: u64 =
+        named.chars().take_while(char::is_ascii_digit).collect::<String>().parse().unwrap();
+    assert_eq!(state["steps"].as_u64().unwrap() + 1, named, "{message}");
+    // Going on fails in the same place; starting anew needs no flag.
+    let again = run(&scene, &out, &["--resume"]);
+    assert_eq!((code(&again), stderr(&again)), (2, message.clone()));
+    assert_eq!(stderr(&run(&scene, &out, &[])), message);
+}
+
+#[test]
+fn what_cannot_be_run_is_said_before_anything_is_written() {
+    let place = Place::new();
+    let out = place.path("out");
+    let numerics = "end = \"1 ms\"\nstep = \"2 us\"";
+    let text = scene(numerics, "channels = [\"races\", \"lodas\"]");
+    let output = run(&place.scene("a.toml", &text), &out, &[]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("lodas") && stderr(&output).contains("loads"));
+    let text = scene(numerics, "").replace("end = \"1 ms\"\n", "");
+    let output = run(&place.scene("b.toml", &text), &out, &[]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("numerics.end"), "{}", stderr(&output));
+    let text = scene("end = \"1000 s\"\nstep = \"1 ns\"\noutput_interval = \"1 ns\"", "");
+    let output = run(&place.scene("c.toml", &text), &out, &[]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("do not fit in memory"), "{}", stderr(&output));
+    assert!(!out.join("state.json").exists() && !out.join("summary.json").exists());
+}

@@ -1,0 +1,107 @@
+//! Small bearings in motion.
+#![allow(dead_code)]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+use bearing_dynamics::ch2_housing::bearing::cage::{CageContacts, CageForce, Guidance, Pocket};
+use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
+use bearing_dynamics::ch2_housing::bearing::inertia::{self, Inertia};
+use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
+use bearing_dynamics::output::dynamics::session::RunRequest;
+use bearing_dynamics::solver::channels::ChannelGroup;
+use bearing_dynamics::solver::dynamics::model::{
+    CageBody, Drive, DynamicProblem, RaceBody, Rotation,
+};
+use bearing_dynamics::solver::dynamics::run::{RunOptions, Stepping};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::statics::Condition;
+
+/// Table 4.1's bearing under 250 N down, at 1000 rpm, no traction, no cage, fixed outer race.
+pub fn frictionless() -> DynamicProblem {
+    let geometry = common::table_4_1(-3e-6);
+    let mut conditions = common::FREE;
+    conditions[2] = Condition::Load(-250.0);
+    let statics = common::problem(geometry, conditions);
+    let mut drives = [const { Drive::Load(Profile::ZERO) }; 5];
+    drives[2] = Drive::Load(Profile::Constant(-250.0));
+    DynamicProblem {
+        geometry,
+        inner_contact: statics.inner_contact,
+        outer_contact: statics.outer_contact,
+        ball: inertia::ball(geometry.ball_radius, 7850.0),
+        inner: race(drives, Rotation::Speed(Profile::Constant(104.72))),
+        outer: None,
+        outer_start: [0.0; 5],
+        cage: None,
+        ball_phase: 0.1,
+        traction: TractionLaw::None,
+        slices: 15,
+        heathcote: false,
+        damping: ContactDamping::None,
+        gravity: [0.0; 3],
+        rotating_load: None,
+        unbalance: 0.0,
+    }
+}
+
+pub fn race(drives: [Drive; 5], rotation: Rotation) -> RaceBody {
+    RaceBody {
+        inertia: Inertia { mass: 0.2, axial: 5e-5, transverse: 4e-5 },
+        drives,
+        rotation,
+        foundation_stiffness: [0.0; 5],
+        foundation_damping: [0.0; 5],
+    }
+}
+
+pub fn cage() -> CageBody {
+    let (inner, outer, length) = (23.5e-3, 28.5e-3, 12e-3);
+    CageBody {
+        inertia: inertia::hollow_cylinder(inner, outer, length, 1400.0),
+        contacts: CageContacts {
+            pocket: Pocket::Cylindrical,
+            pocket_radius: 6.1e-3,
+            pocket_pitch_radius: 26e-3,
+            guidance: Guidance::OuterRace,
+            guide_radius: outer,
+            race_clearance: 0.1e-3,
+            length,
+            force: CageForce::Penalty { stiffness: 1e6 },
+            friction: 0.1,
+            regularisation_speed: 0.05,
+        },
+    }
+}
+
+/// Everything at once: traction, a cage, gravity, an outer race on springs, contact history.
+pub fn complete() -> DynamicProblem {
+    let free = [const { Drive::Load(Profile::ZERO) }; 5];
+    let mut outer = race(free, Rotation::Speed(Profile::ZERO));
+    outer.foundation_stiffness = [1e7, 1e7, 1e7, 1e4, 1e4];
+    outer.foundation_damping = [200.0, 200.0, 200.0, 0.2, 0.2];
+    DynamicProblem {
+        cage: Some(cage()),
+        outer: Some(outer),
+        gravity: [0.0, 0.0, -9.81],
+        traction: TractionLaw::SlideToRoll {
+            curve: ExponentialCurve::BOUNDARY,
+            entrainment_floor: 0.01,
+        },
+        slices: 5,
+        heathcote: false,
+        damping: ContactDamping::LankaraniNikravesh { restitution: 0.9, slowest: 0.1 },
+        unbalance: 1e-4,
+        ..frictionless()
+    }
+}
+
+/// `rows` output intervals of ten steps and a bit, so that the last step is a shortened one.
+pub fn request(step: f64, rows: usize) -> RunRequest {
+    RunRequest {
+        options: RunOptions { stepping: Stepping::Fixed(step), ..RunOptions::default() },
+        end: step * (10.0 * rows as f64 + 3.4),
+        output_interval: 10.0 * step,
+        channels: ChannelGroup::ALL.to_vec(),
+    }
+}

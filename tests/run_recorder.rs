@@ -1,0 +1,213 @@
+//! What a run records is what its bodies do.
+
+mod run_common;
+
+use bearing_dynamics::output::dynamics::recorder::{Recorder, RecorderError};
+use bearing_dynamics::output::dynamics::session::{RunRequest, Session, SessionError, Status};
+use bearing_dynamics::output::dynamics::table::RunTable;
+use bearing_dynamics::solver::channels::ChannelGroup;
+use bearing_dynamics::solver::dynamics::model::{DynamicProblem, Rotation};
+use bearing_dynamics::solver::dynamics::run::{RunOptions, Stepping};
+use bearing_dynamics::solver::profile::Profile;
+use run_common::{complete, frictionless, request};
+
+fn to_the_end(problem: DynamicProblem, request: &RunRequest) -> Session {
+    let mut session = Session::start(problem, request).unwrap();
+    while session.advance(1000).unwrap() == Status::Running {}
+    session
+}
+
+fn table(session: &Session) -> RunTable {
+    RunTable::new(session, 0.0).unwrap()
+}
+
+fn column(session: &Session, name: &str) -> Vec<f64> {
+    table(session).all(name).unwrap_or_else(|| panic!("no channel {name}"))
+}
+
+#[test]
+fn rows_lie_on_whole_steps_and_the_run_ends_at_its_end() {
+    let wanted = request(1e-6, 20);
+    let session = to_the_end(frictionless(), &wanted);
+    let times = column(&session, "time");
+    assert_eq!((times.len(), session.rows_on_grid()), (22, 21));
+    assert_eq!(times[21], wanted.end);
+    for (row, time) in times[..21].iter().enumerate() {
+        // 200 sums of 1e-6, each rounded to 1e-20 at most.
+        assert!((time - 1e-5 * row as f64).abs() <= 1e-17, "row {row}: {time}");
+    }
+    assert_eq!(session.simulation.steps, 204);
+    // An end on a row: no row is off the grid.
+    let session = to_the_end(frictionless(), &RunRequest { end: 2e-4, ..wanted });
+    assert_eq!((session.recorder.rows(), session.rows_on_grid()), (21, 21));
+    assert_eq!((session.simulation.steps, session.simulation.time), (200, 2e-4));
+}
+
+#[test]
+fn a_given_step_rounds_the_interval_and_a_derived_step_fits_it() {
+    let given = RunRequest { output_interval: 1.234e-5, ..request(1e-6, 5) };
+    let session = Session::start(frictionless(), &given).unwrap();
+    assert_eq!((session.steps_per_row, session.simulation.step_size), (12, 1e-6));
+    let stepping = Stepping::FractionOfLimit(0.5);
+    let derived =
+        RunRequest { options: RunOptions { stepping, ..RunOptions::default() }, ..given.clone() };
+    let session = Session::start(frictionless(), &derived).unwrap();
+    let limit = session.simulation.limit.unwrap().step;
+    assert!(session.simulation.step_size <= 0.5 * limit);
+    assert!((session.interval() / 1.234e-5 - 1.0).abs() <= 1e-15);
+    let finer = RunRequest { output_interval: 1e-9, ..given };
+    assert_eq!(Session::start(frictionless(), &finer).unwrap().steps_per_row, 1);
+}
+
+#[test]
+fn what_makes_no_run_is_refused() {
+    let start = |request: RunRequest| Session::start(frictionless(), &request).err().unwrap();
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let wanted = request(1e-6, 5);
+        assert!(matches!(start(RunRequest { end: bad, ..wanted.clone() }), SessionError::End(_)));
+        let wanted = RunRequest { output_interval: bad, ..wanted };
+        assert!(matches!(start(wanted), SessionError::Interval(_)));
+    }
+    let rows = usize::MAX / 64;
+    let error = Recorder::new(&frictionless(), &[], rows).err().unwrap();
+    assert!(matches!(error, RecorderError::Memory { .. }));
+}
+
+#[test]
+fn no_row_asks_for_more_memory() {
+    let mut session = Session::start(complete(), &request(1e-6, 30)).unwrap();
+    let room = session.recorder.capacity();
+    while session.advance(50).unwrap() == Status::Running {}
+    assert_eq!(session.recorder.rows(), 32);
+    assert_eq!(session.recorder.capacity(), room);
+}
+
+#[test]
+fn only_what_is_asked_for_is_there() {
+    let names = |problem: &DynamicProblem, groups: &[ChannelGroup]| {
+        let recorder = Recorder::new(problem, groups, 1).unwrap();
+        recorder.columns().iter().map(|column| column.name.clone()).collect::<Vec<_>>()
+    };
+    // The ledger is always kept, and without friction, cage and gravity it is short.
+    let ledger = ["time", "energy_kinetic", "energy_contact", "work_drives", "energy_residual"];
+    assert_eq!(names(&frictionless(), &[]), ledger);
+    let cage = [ChannelGroup::Cage, ChannelGroup::Pockets];
+    assert_eq!(names(&frictionless(), &cage), ledger, "there is no cage");
+    let with_cage = names(&complete(), &cage);
+    assert!(with_cage.contains(&"cage_guide_load".to_string()));
+    assert!(with_cage.contains(&"ball_8_pocket_load".to_string()));
+    assert!(!with_cage.iter().any(|name| name.contains("slip") || name.contains("inner")));
+    let races = names(&complete(), &[ChannelGroup::Races]);
+    assert!(races.contains(&"outer_velocity_z".to_string()));
+    let default = names(&complete(), &ChannelGroup::DEFAULT);
+    assert!(!default.iter().any(|name| name.contains("slip")));
+    assert_eq!(names(&complete(), &[ChannelGroup::Slip]).len() - names(&complete(), &[]).len(), 48);
+}
+
+#[test]
+fn channels_are_the_bodies_motion() {
+    let session = to_the_end(complete(), &request(1e-6, 30));
+    let last = |name: &str| *column(&session, name).last().unwrap();
+    let (layout, state) = (session.simulation.system.layout, &session.simulation.state);
+    let at = |body: usize, entry: usize| state[body + entry];
+    for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
+        assert_eq!(last(&format!("inner_{axis}")), at(layout.inner(), i));
+        assert_eq!(last(&format!("inner_velocity_{axis}")), at(layout.inner(), 7 + i));
+        assert_eq!(last(&format!("outer_{axis}")), at(layout.outer(), i));
+        assert_eq!(last(&format!("cage_{axis}")), at(layout.cage(), i));
+    }
+    // The shaft is driven at 104.72 rad/s about an axis that barely tilts.
+    assert!((last("inner_speed") - 104.72).abs() <= 1e-12 * 104.72);
+    for ball in 1..=8 {
+        let part = |component: usize| state[layout.ball(component) + ball - 1];
+        let (y, z) = (part(1) - at(layout.outer(), 1), part(2) - at(layout.outer(), 2));
+        let off = last(&format!("ball_{ball}_angle")).to_radians() - z.atan2(y);
+        let turns = off / std::f64::consts::TAU;
+        assert!((turns - turns.round()).abs() <= 1e-12, "ball {ball}: {turns}");
+    }
+    // Loads of the balls on a race against the sum of its contact forces, which with traction of a
+    // tenth at most lies within a tenth of the vector sum of the normal loads.
+    let sum = |race: &str| {
+        (1..=8).fold([0.0; 2], |[y, z], ball| {
+            let load = last(&format!("ball_{ball}_{race}_load"));
+            let angle = last(&format!("ball_{ball}_angle")).to_radians();
+            [y + load * angle.cos(), z + load * angle.sin()]
+        })
+    };
+    for (race, sign) in [("inner", -1.0), ("outer", 1.0)] {
+        let [y, z] = sum(race);
+        let force = ["y", "z"].map(|axis| last(&format!("contact_force_on_{race}_{axis}")));
+        let error = (force[0] - sign * y).hypot(force[1] - sign * z);
+        assert!(error <= 0.15 * y.hypot(z), "{race}: {force:?} against {y} {z}");
+    }
+}
+
+#[test]
+fn angles_count_turns() {
+    // One row every 100 deg of orbit and more: wrapped angles alone would not tell the turns.
+    let mut problem = frictionless();
+    let speed = 30_000.0 * std::f64::consts::PI / 30.0;
+    problem.inner.rotation = Rotation::Speed(Profile::Constant(speed));
+    let mut wanted = request(5e-7, 1);
+    wanted.end = 12e-3;
+    wanted.output_interval = 1.5e-3;
+    wanted.options.energy_limit = 1.0;
+    let session = to_the_end(problem, &wanted);
+    let angles = column(&session, "ball_1_angle");
+    let speeds = column(&session, "ball_1_orbital_speed");
+    let swept = (angles[8] - angles[0]).to_radians();
+    let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
+    // Seconds × mean speed, of 14 rad; turns are 6.28 rad apart.
+    assert!(swept > 10.0, "{swept}");
+    assert!((swept - 12e-3 * mean).abs() <= 0.05 * swept, "{swept} against {}", 12e-3 * mean);
+}
+
+#[test]
+fn slip_is_the_difference_of_surface_speeds() {
+    // Balls start rolling at the nominal contact angle. Brake ball 1 by 10 rad/s about X: its
+    // outer contact then slides by 10 rad/s · r_b along the rolling direction.
+    let problem = frictionless();
+    let radius = problem.geometry.ball_radius;
+    let mut wanted = request(1e-6, 2);
+    // The brake takes energy that no ledger knows of.
+    wanted.options.energy_limit = 1e9;
+    let mut session = Session::start(problem.clone(), &wanted).unwrap();
+    let layout = session.simulation.system.layout;
+    let before: Vec<f64> = session.recorder.row(0).to_vec();
+    session.simulation.state[layout.ball(10)] += 10.0;
+    let snapshot = session.simulation.snapshot().unwrap();
+    session.recorder.record(&session.simulation, &snapshot);
+    let at = |name: &str| {
+        let columns = session.recorder.columns();
+        let index = columns.iter().position(|column| column.name == name).unwrap();
+        session.recorder.row(1)[index] - before[index]
+    };
+    // ω × n r with n = −out on the inner and +out on the outer race: out × X turned.
+    let outer = at("ball_1_outer_slip_rolling");
+    let inner = at("ball_1_inner_slip_rolling");
+    assert!((outer - 10.0 * radius).abs() <= 0.02 * 10.0 * radius, "{outer}");
+    assert!((inner + 10.0 * radius).abs() <= 0.02 * 10.0 * radius, "{inner}");
+    assert_eq!(at("ball_2_outer_slip_rolling"), 0.0);
+    // Spin about the outer normal, which points along the ball's radius.
+    let mut session = Session::start(problem, &wanted).unwrap();
+    let angle: f64 = 0.1;
+    session.simulation.state[layout.ball(11)] += 5.0 * angle.cos();
+    session.simulation.state[layout.ball(12)] += 5.0 * angle.sin();
+    let snapshot = session.simulation.snapshot().unwrap();
+    session.recorder.record(&session.simulation, &snapshot);
+    let columns = session.recorder.columns();
+    let index = columns.iter().position(|c| c.name == "ball_1_outer_spin").unwrap();
+    let spin = session.recorder.row(1)[index] - session.recorder.row(0)[index];
+    assert!((spin - 5.0).abs() <= 0.01, "{spin}");
+}
+
+#[test]
+fn the_window_starts_on_its_row() {
+    let session = to_the_end(frictionless(), &request(1e-6, 20));
+    let rows = |start: f64| RunTable::new(&session, start).unwrap().window;
+    assert_eq!(rows(0.0), 0..21);
+    // 5e-5 s is row 5 but for rounding; a bit later is row 6.
+    assert_eq!(rows(5e-5), 5..21);
+    assert_eq!(rows(5.1e-5), 6..21);
+    assert!(rows(1.0).is_empty());
+}
