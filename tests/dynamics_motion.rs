@@ -326,9 +326,9 @@ fn prescribed_histories_are_followed_and_their_work_is_booked() {
         problem.traction = CONSTANT;
         problem.inner.rotation = Rotation::Speed(speed.clone());
         problem.inner.foundation_stiffness = [1e6, 1e6, 1e6, 1e2, 1e2];
-        for i in 0..5 {
+        for (i, profile) in profiles.iter().enumerate() {
             if choice & (1 << i) != 0 {
-                problem.inner.drives[i] = Drive::Motion(profiles[i].clone());
+                problem.inner.drives[i] = Drive::Motion(profile.clone());
             }
         }
         let steps = [0.5e-6, 0.25e-6];
@@ -339,11 +339,11 @@ fn prescribed_histories_are_followed_and_their_work_is_booked() {
             let inner = inner_state(&simulation);
             let t = simulation.time;
             let tilts = tilts_of(inner.axis());
-            for i in 0..5 {
+            for (i, profile) in profiles.iter().enumerate() {
                 if choice & (1 << i) != 0 {
                     let value = if i < 3 { inner.position[i] } else { tilts[i - 3] };
                     // Tilts pass through a quaternion: some 2⁻⁵³.
-                    let error = (value - profiles[i].value(t)).abs();
+                    let error = (value - profile.value(t)).abs();
                     assert!(error <= if i < 3 { 0.0 } else { 1e-15 }, "{i}: {error}");
                 }
             }

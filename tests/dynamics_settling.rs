@@ -9,7 +9,7 @@ use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
+use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad, Rotation};
 use bearing_dynamics::solver::dynamics::race::tilts_of;
 use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
 use bearing_dynamics::solver::dynamics::start::static_problem;
@@ -180,7 +180,7 @@ fn rotating(loads: [f64; 5]) -> DynamicProblem {
 #[test]
 fn the_mean_of_a_turning_bearing_is_static() {
     for load in [250.0, 1500.0] {
-        let means = means(&rotating([0.0, 0.0, -load, 0.0, 0.0]), 4e-6, 1, 2);
+        let means = means(&rotating([0.0, 0.0, -load, 0.0, 0.0]), 2.5e-6, 1, 2);
         let error = means.dynamic[2] / means.fixed[2] - 1.0;
         println!("{load} N: {:?} {:?} {error:e}, {} s", means.dynamic, means.fixed, means.seconds);
         assert!(error.abs() <= 1e-3, "{load} N: {error}");
@@ -194,7 +194,7 @@ fn the_mean_moment_of_a_tilted_turning_bearing_is_static() {
     for (i, value) in [0.0, 0.0, 0.0, tilt, 0.0].into_iter().enumerate() {
         problem.inner.drives[i] = Drive::Motion(Profile::Constant(value));
     }
-    let means = means(&problem, 4e-6, 1, 2);
+    let means = means(&problem, 2.5e-6, 1, 2);
     let error = means.dynamic[1] / means.fixed[1] - 1.0;
     println!("tilt: {:?} {:?} {error:e}, {} s", means.dynamic, means.fixed, means.seconds);
     assert!(error.abs() <= 1e-3, "{error}");
@@ -299,4 +299,24 @@ fn cage_slip_grows_as_traction_falls() {
         slip
     });
     assert!(slips[0] < 0.02 && slips.windows(2).all(|pair| pair[1] > 2.0 * pair[0]), "{slips:?}");
+}
+
+#[test]
+fn equilibrium_starts_under_all_loads() {
+    // Gravity and a rotating load pull at the start too: nothing is accelerated but the rolling
+    // balls, and they only towards the axis.
+    let mut problem = bearing(table_3_5(), [10.0, 20.0, -100.0, 0.5, 0.2], 0.0);
+    problem.gravity = GRAVITY;
+    let force = Profile::Constant(250.0);
+    problem.rotating_load = Some(RotatingLoad { force, speed: 50.0, phase: 0.7 });
+    let mut simulation = simulation(&problem, 1e-6, Start::Equilibrium);
+    let mut rates = vec![0.0; simulation.state.len()];
+    simulation.system.evaluate(0.0, &simulation.state, &mut rates);
+    let at = simulation.system.layout.inner();
+    let inertia = problem.inner.inertia;
+    // Statics stops at 1e-11 of the largest load, some 200 N.
+    for i in 0..3 {
+        assert!((rates[at + VELOCITY + i] * inertia.mass).abs() <= 1e-7);
+        assert!((rates[at + SPIN + i] * inertia.transverse).abs() <= 1e-7 * 26e-3);
+    }
 }

@@ -1,7 +1,8 @@
 //! The step that Runge–Kutta can take: from the Jacobian's eigenvalues at a state.
 
+use super::state::{ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use super::system::System;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, Quaternion};
 
 /// Where the step of an explicit method ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,53 +31,106 @@ pub fn growth(z: Complex<f64>) -> f64 {
     (one + z * (one + z / 2.0 * (one + z / 3.0 * (one + z / 4.0)))).norm()
 }
 
-/// Jacobian of the rates by central differences, over the entries that matter: orientations and
-/// the energy ledger do not feed back on the motion of symmetric bodies, padding does not move.
-pub fn jacobian(system: &mut System, t: f64, state: &[f64]) -> DMatrix<f64> {
-    let entries = moving_entries(system);
-    let mut rates = [vec![0.0; state.len()], vec![0.0; state.len()]];
-    let mut shifted = state.to_vec();
-    let mut matrix = DMatrix::zeros(entries.len(), entries.len());
-    let radius = system.problem.geometry.ball_radius;
-    for (column, &(entry, is_position)) in entries.iter().enumerate() {
-        // Far below an overlap of 1 µm and a creep of 1e-5 of the rolling speed.
-        let step = if is_position { 1e-10 } else { 1e-7 * state[entry].abs().max(radius) };
-        for (rates, sign) in rates.iter_mut().zip([1.0, -1.0]) {
-            shifted[entry] = state[entry] + sign * step;
-            system.evaluate(t, &shifted, rates);
+/// One direction in which a state may be moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Direction {
+    /// An entry of the state vector that is a position (m).
+    Position(usize),
+    /// An entry that is a velocity or a spin (m/s, rad/s).
+    Rate(usize),
+    /// Rotation (rad) of the body whose 13 entries start at `body` about inertial axis `axis`.
+    Turn { body: usize, axis: usize },
+}
+
+impl Direction {
+    fn step(self, state: &[f64], ball_radius: f64) -> f64 {
+        match self {
+            // Far below an overlap of 1 µm, at the races' radius too, and a creep of 1e-5 of the
+            // rolling speed.
+            Direction::Position(_) => 1e-10,
+            Direction::Turn { .. } => 1e-9,
+            Direction::Rate(entry) => 1e-7 * state[entry].abs().max(ball_radius),
         }
-        shifted[entry] = state[entry];
-        for (row, &(entry, _)) in entries.iter().enumerate() {
-            matrix[(row, column)] = (rates[0][entry] - rates[1][entry]) / (2.0 * step);
+    }
+
+    fn shift(self, state: &mut [f64], by: f64) {
+        match self {
+            Direction::Position(entry) | Direction::Rate(entry) => state[entry] += by,
+            Direction::Turn { body, axis } => {
+                // dq = ½ dθ q.
+                let mut turn = [0.0; 3];
+                turn[axis] = by;
+                let q = [0, 1, 2, 3].map(|i| state[body + ORIENTATION + i]);
+                for (i, change) in quaternion_rate(q, turn).into_iter().enumerate() {
+                    state[body + ORIENTATION + i] += change;
+                }
+            }
+        }
+    }
+
+    /// How fast the rates move the state in this direction.
+    fn rate(self, state: &[f64], rates: &[f64]) -> f64 {
+        match self {
+            Direction::Position(entry) | Direction::Rate(entry) => rates[entry],
+            Direction::Turn { body, axis } => {
+                // ω = 2 dq/dt q*, vector part.
+                let quaternion = |of: &[f64]| {
+                    let q = [0, 1, 2, 3].map(|i| of[body + ORIENTATION + i]);
+                    Quaternion::new(q[0], q[1], q[2], q[3])
+                };
+                2.0 * (quaternion(rates) * quaternion(state).conjugate()).imag()[axis]
+            }
+        }
+    }
+}
+
+/// Jacobian of the rates by central differences, over the directions that matter: the orientation
+/// of a ball and the energy ledger do not feed back on the motion, padding does not move.
+pub fn jacobian(system: &mut System, t: f64, state: &[f64]) -> DMatrix<f64> {
+    let directions = directions(system);
+    let mut rates = vec![0.0; state.len()];
+    let mut shifted = state.to_vec();
+    let mut matrix = DMatrix::zeros(directions.len(), directions.len());
+    let radius = system.problem.geometry.ball_radius;
+    for (column, direction) in directions.iter().enumerate() {
+        let step = direction.step(state, radius);
+        for sign in [1.0, -1.0] {
+            shifted.copy_from_slice(state);
+            direction.shift(&mut shifted, sign * step);
+            system.evaluate(t, &shifted, &mut rates);
+            for (row, direction) in directions.iter().enumerate() {
+                matrix[(row, column)] += sign * direction.rate(&shifted, &rates) / (2.0 * step);
+            }
         }
     }
     matrix
 }
 
-/// Entries of the state that take part, and whether they are positions.
-fn moving_entries(system: &System) -> Vec<(usize, bool)> {
-    use super::state::{BODY, POSITION, SPIN, VELOCITY};
+fn directions(system: &System) -> Vec<Direction> {
     let layout = system.layout;
-    let mut entries = Vec::new();
+    let mut directions = Vec::new();
     let mut add = |of: &dyn Fn(usize) -> usize| {
         for i in 0..3 {
-            entries.push((of(POSITION + i), true));
-            entries.push((of(VELOCITY + i), false));
-            entries.push((of(SPIN + i), false));
+            directions.push(Direction::Position(of(POSITION + i)));
+            directions.push(Direction::Rate(of(VELOCITY + i)));
+            directions.push(Direction::Rate(of(SPIN + i)));
         }
     };
     for ball in 0..layout.balls {
         add(&|component| layout.ball(component) + ball);
     }
-    add(&|component| layout.inner() + component);
-    if system.problem.outer.is_some() {
-        add(&|component| layout.outer() + component);
+    let races_and_cage = [
+        (layout.inner(), true),
+        (layout.outer(), system.problem.outer.is_some()),
+        (layout.cage(), layout.has_cage),
+    ];
+    for (body, _) in races_and_cage.iter().filter(|(_, moves)| *moves) {
+        add(&|component| body + component);
     }
-    if layout.has_cage {
-        add(&|component| layout.cage() + component);
+    for (body, _) in races_and_cage.into_iter().filter(|(_, moves)| *moves) {
+        directions.extend((0..3).map(|axis| Direction::Turn { body, axis }));
     }
-    debug_assert!(entries.iter().all(|entry| entry.0 < layout.ledger() + BODY));
-    entries
+    directions
 }
 
 /// Largest stable step at a state; `None` where nothing is stiff (no contact at all).

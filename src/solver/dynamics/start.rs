@@ -10,13 +10,20 @@ use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, su
 use crate::solver::statics::{Condition, StaticProblem, StaticSolution, StaticsError, solve};
 use nalgebra::Vector3;
 
-/// The static problem that the dynamic one settles into at time `t`.
+/// The static problem that the dynamic one settles into at time `t`; a rotating load stands still
+/// where it is then, an unbalance is left out.
 pub fn static_problem(problem: &DynamicProblem, t: f64) -> StaticProblem {
+    let mut others = [0.0; 5];
+    for (other, gravity) in others.iter_mut().zip(problem.gravity) {
+        *other = problem.inner.inertia.mass * gravity;
+    }
+    if let Some(load) = &problem.rotating_load {
+        let (sin, cos) = libm::sincos(load.phase + load.speed * t);
+        others[1] += load.force.value(t) * cos;
+        others[2] += load.force.value(t) * sin;
+    }
     let conditions = std::array::from_fn(|i| match &problem.inner.drives[i] {
-        Drive::Load(profile) => {
-            let weight = if i < 3 { problem.inner.inertia.mass * problem.gravity[i] } else { 0.0 };
-            Condition::Load(profile.value(t) + weight)
-        }
+        Drive::Load(profile) => Condition::Load(profile.value(t) + others[i]),
         Drive::Motion(profile) => Condition::Displacement(profile.value(t)),
     });
     let at = &problem.outer_start;

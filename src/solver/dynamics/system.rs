@@ -9,9 +9,7 @@ use super::state::{
 use crate::ch2_housing::bearing::cage::{
     AxisMotion, CageContact, Guidance, cage_energy, guide_contact, pocket_contact,
 };
-use crate::ch2_housing::bearing::contact::{
-    ContactDamping, RaceLaw, normal_load, strain_energy,
-};
+use crate::ch2_housing::bearing::contact::{ContactDamping, RaceLaw, normal_load, strain_energy};
 use crate::ch2_housing::bearing::geometry::Raceway;
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use crate::ch2_housing::bearing::traction::{Slices, TractionLaw};
