@@ -289,6 +289,7 @@ pub fn fixed_step(step: f64, start: Start) -> RunOptions {
         stepping: Stepping::Fixed(step),
         driver: Driver::Lanes,
         energy_limit: f64::INFINITY,
+        ..RunOptions::default()
     }
 }
 

@@ -75,6 +75,6 @@ pub fn orbit(plot: &OrbitPlot) -> Result<String, PlotError> {
                 canvas::marker(area, index, last)?;
             }
         }
-        legend.draw(area, &plot.curves, legend_top, true, true)
+        legend.draw(area, &plot.curves, legend_top, |_| (true, true))
     })
 }

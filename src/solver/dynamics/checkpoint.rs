@@ -79,12 +79,12 @@ impl Simulation {
         simulation.options = options;
         simulation.steps = checkpoint.steps;
         simulation.limit = checkpoint.limit;
-        // Setting up made the quaternions unit once more, which moves their last bit.
-        simulation.state.copy_from_slice(&checkpoint.state);
         simulation.system.damping.copy_from_slice(&checkpoint.damping);
         simulation.system.work = checkpoint.work;
         simulation.was_loaded.copy_from_slice(&checkpoint.was_loaded);
+        // The ledger counts from there.
         simulation.first_energy = checkpoint.first_energy;
+        simulation.ledger_before = 0.0;
         simulation.largest_contact_energy = checkpoint.largest_contact_energy;
         Ok(simulation)
     }

@@ -101,8 +101,9 @@ pub struct Simulation {
     pub(super) options: RunOptions,
     integrator: Stepper,
     pub(super) was_loaded: Vec<bool>,
-    /// Energy at the start less what the ledger already held, J.
-    pub(super) energy_before: f64,
+    pub(super) first_energy: Energy,
+    /// What the ledger already held then, J.
+    pub(super) ledger_before: f64,
     pub(super) largest_contact_energy: f64,
     rates: Vec<f64>,
 }
@@ -174,13 +175,14 @@ impl Simulation {
         let instant = system.evaluate(time, &state, &mut rates);
         let first_energy = system.energy(&state, &instant);
         let at = system.layout.ledger();
-        let energy_before = first_energy.total() - state[at..at + LEDGER].iter().sum::<f64>();
+        let ledger_before = state[at..at + LEDGER].iter().sum();
         let mut was_loaded = vec![false; system.damping.len()];
         system.commit_damping(&mut was_loaded);
         Ok(Simulation {
             integrator,
             largest_contact_energy: first_energy.contact,
-            energy_before,
+            first_energy,
+            ledger_before,
             was_loaded,
             rates,
             system,
@@ -273,7 +275,9 @@ impl Simulation {
         let at = self.system.layout.ledger();
         let mut ledger = [0.0; LEDGER];
         ledger.copy_from_slice(&self.state[at..at + LEDGER]);
-        let residual = energy.total() - self.energy_before - ledger.iter().sum::<f64>();
+        let residual = energy.total()
+            - self.first_energy.total()
+            - (ledger.iter().sum::<f64>() - self.ledger_before);
         self.largest_contact_energy = self.largest_contact_energy.max(energy.contact);
         let turned_over: f64 =
             self.largest_contact_energy + ledger.iter().map(|entry| entry.abs()).sum::<f64>();
