@@ -3,9 +3,14 @@
 //! No input may panic; each either resolves to a scene of usable numbers or gives one error that
 //! names the file. `SCENE_FUZZ_INPUTS=1000000 cargo test --release --test scene_fuzz` runs a million.
 
-use bearing_dynamics::scene::units::Dimension;
+use bearing_dynamics::ch2_housing::bearing::traction::coefficient;
+use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::keys::{self, Kind};
+use bearing_dynamics::scene::units::Dimension;
 use bearing_dynamics::scene::{self, Document, Format, Scene, SceneError};
+use bearing_dynamics::solver::dynamics::model::{Drive, Rotation};
+use bearing_dynamics::solver::dynamics::run::Stepping;
+use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::Condition;
 use std::collections::HashSet;
 use std::panic::catch_unwind;
@@ -305,8 +310,45 @@ fn check_scene(scene: &Scene) {
         assert!(value.is_finite(), "{scene:?}");
     }
     assert!((3..=200).contains(&g.ball_count), "{scene:?}");
+    check_motion(scene);
     assert!(g.ball_radius < g.inner.groove_radius && g.ball_radius < g.outer.groove_radius);
     assert!(g.radial_clearance.abs() <= 0.05 * g.ball_radius * 1.06, "{scene:?}");
+}
+
+/// What must hold for every run that a scene makes.
+fn check_motion(scene: &Scene) {
+    let times = [0.0, 1e-3, 1.0, 1e4];
+    let finite = |profile: &Profile| times.iter().all(|t| profile.value(*t).is_finite());
+    // A bearing whose parts have no mass is refused with a message.
+    let Ok(problem) = dynamic_problem(scene) else { return };
+    for race in [Some(&problem.inner), problem.outer.as_ref()].into_iter().flatten() {
+        let inertia = race.inertia;
+        for value in [inertia.mass, inertia.axial, inertia.transverse] {
+            assert!(value > 0.0 && value.is_finite(), "{scene:?}");
+        }
+        for drive in &race.drives {
+            let (Drive::Load(profile) | Drive::Motion(profile)) = drive;
+            assert!(finite(profile), "{scene:?}");
+        }
+        let (Rotation::Speed(profile) | Rotation::Torque(profile)) = &race.rotation;
+        assert!(finite(profile), "{scene:?}");
+        let foundation = race.foundation_stiffness.iter().chain(&race.foundation_damping);
+        assert!(foundation.copied().all(|value| value >= 0.0 && value.is_finite()), "{scene:?}");
+    }
+    if let Some(cage) = &problem.cage {
+        assert!(cage.inertia.mass > 0.0 && cage.contacts.length > 0.0, "{scene:?}");
+        assert!(cage.contacts.regularisation_speed > 0.0, "{scene:?}");
+    }
+    for slip in [0.0, 1e-6, 0.1, 1e3] {
+        let friction = coefficient(&problem.traction, slip, 1.0);
+        assert!((0.0..=2.0 + 1e-12).contains(&friction), "{friction} {scene:?}");
+    }
+    assert!((1..=201).contains(&problem.slices), "{scene:?}");
+    if let Ok(run) = run_options(scene) {
+        assert!(run.end > 0.0 && run.window_start < run.end && run.output_interval > 0.0);
+        let (Stepping::Fixed(step) | Stepping::FractionOfLimit(step)) = run.options.stepping;
+        assert!(step > 0.0, "{scene:?}");
+    }
 }
 
 fn check_error(error: &SceneError) {

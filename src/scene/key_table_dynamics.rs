@@ -86,7 +86,7 @@ pub(super) const KEYS: &[Key] = &[
         "Stiffness of the cage's contacts: N/m for `penalty`, N/m^1.5 for `hertz`.")
         .hint("(5.8) has 2e8 N/m").example_of("\"2e8 N/m\""),
     Key::new("bearing.cage.friction", FRICTION, Default { value: "0.1", reason: "section 5.3.2" },
-        "Friction coefficient of the cage's contacts.").hint(FRICTION_HINT),
+        "Friction coefficient of the cage's contacts.").hint(FRICTION_HINT).example_of("0.1"),
     quantity("bearing.cage.regularisation_speed", SLIP,
         Default { value: "0.01 m/s", reason: "the source states none" },
         "Sliding speed below which the cage's friction is rounded off.").hint(SLIP_HINT),
@@ -168,7 +168,7 @@ pub(super) const KEYS: &[Key] = &[
         Default { value: "1e-3 m/s", reason: "contacts that begin at rest need a speed of approach" },
         "Least speed of approach that `lankarani-nikravesh` divides by."),
 
-    quantity("numerics.end", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("required for a run"), "Time at which the run ends."),
+    quantity("numerics.end", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("required for a run"), "Time at which the run ends.").hint("a run of seconds takes seconds to minutes; check the unit"),
     quantity("numerics.step", Kind::Quantity(Time, closed(1e-12, 1e-2, "s")), Optional,
         "Fixed step; leave it out, and it follows from the stability limit.").group("step").hint(STEP_HINT).example_of("1 us"),
     Key::new("numerics.step_fraction", Kind::Number(above(0.0, 2.0, "")),

@@ -229,7 +229,7 @@ pub static KEYS: &[Key] = &ALL_KEYS;
 /// Every table, in the order of the reference. `assumptions` and `sweep` have keys of the user's.
 pub static TABLES: &[Table] = &ALL_TABLES;
 
-const ALL_KEYS: [Key; key_table::KEYS.len() + key_table_dynamics::KEYS.len()] = {
+static ALL_KEYS: [Key; key_table::KEYS.len() + key_table_dynamics::KEYS.len()] = {
     let mut all = [key_table::KEYS[0]; key_table::KEYS.len() + key_table_dynamics::KEYS.len()];
     let mut i = 0;
     while i < all.len() {
@@ -242,7 +242,7 @@ const ALL_KEYS: [Key; key_table::KEYS.len() + key_table_dynamics::KEYS.len()] = 
     all
 };
 
-const ALL_TABLES: [Table; key_table::TABLES.len() + key_table_dynamics::TABLES.len()] = {
+static ALL_TABLES: [Table; key_table::TABLES.len() + key_table_dynamics::TABLES.len()] = {
     let mut all =
         [key_table::TABLES[0]; key_table::TABLES.len() + key_table_dynamics::TABLES.len()];
     let mut i = 0;

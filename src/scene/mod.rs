@@ -24,6 +24,7 @@ mod key_table;
 mod key_table_dynamics;
 pub mod keys;
 mod profile;
+pub mod reference;
 mod resolve;
 mod resolve_cage;
 mod resolve_contact;

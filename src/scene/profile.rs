@@ -133,13 +133,13 @@ pub fn read(
         "table" => Profile::Table { points: reader.points("table")? },
         "amplitude" => {
             let (mean, amplitude) = (reader.own("mean")?, reader.own("amplitude")?);
-            reader.limit("amplitude", &[mean + amplitude, mean - amplitude])?;
+            reader.limit(["amplitude", "mean"], &[mean + amplitude, mean - amplitude])?;
             let (frequency, phase) = (reader.other(&FREQUENCY)?, reader.other(&PHASE)?);
             Profile::Harmonic { mean, amplitude, frequency, phase }
         }
         _ => {
             let (base, peak) = (reader.own("base")?, reader.own("half_sine")?);
-            reader.limit("half_sine", &[base + peak])?;
+            reader.limit(["half_sine", "base"], &[base + peak])?;
             let (start, duration) = (reader.other(&START)?, reader.other(&DURATION)?);
             Profile::HalfSine { base, peak, start, duration }
         }
@@ -192,7 +192,7 @@ fn form_of(entries: &[Entry], offset: usize) -> Result<&'static Form, ValueError
         return Err(match entries.iter().find(|entry| !anywhere(entry)) {
             Some(stray) => unknown(stray, heads.collect()),
             None => {
-                let because = " what kind of profile this is".to_string();
+                let because = ": nothing says what kind of profile this is".to_string();
                 let example =
                     heads.map(|head| format!("`{head}`")).collect::<Vec<_>>().join(" or ");
                 (offset, Problem::Missing { because, example }).into()
@@ -308,12 +308,12 @@ impl Reader<'_> {
     }
 
     /// What values reach together must be allowed as well.
-    fn limit(&self, name: &str, reached: &[f64]) -> Result<(), ValueError> {
+    fn limit(&self, [name, other]: [&str; 2], reached: &[f64]) -> Result<(), ValueError> {
         if reached.iter().all(|value| self.range.contains(*value, Some(self.dimension))) {
             return Ok(());
         }
         let problem = Problem::OutOfRange {
-            written: "the sum of what the profile adds up".to_string(),
+            written: format!("what `{name}` and `{other}` reach together"),
             allowed: self.range.to_string(),
             advice: self.key.hint,
         };
@@ -324,5 +324,9 @@ impl Reader<'_> {
 
 fn wrong(expected: String, found: &Value) -> Problem {
     let advice = format!("profiles look like {}", FORMS[0].example);
-    Problem::WrongKind { expected, found: described(found), advice }
+    let found = match found {
+        Value::List(items) => format!("a list of {}", items.len()),
+        other => described(other),
+    };
+    Problem::WrongKind { expected, found, advice }
 }

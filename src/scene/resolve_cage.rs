@@ -174,7 +174,11 @@ fn force(reader: &mut Reader) -> Result<Option<CageForce>, SceneError> {
     let hertz = reader.choice_if_given("bearing.cage.contact.law") == Some("hertz");
     match (reader.document.value(path), hertz) {
         (None, false) => Ok(None),
-        (None, true) => Err(reader.missing(path, " with `law = \"hertz\"`, in N/m^1.5")),
+        (None, true) => {
+            let because = " with `law = \"hertz\"`".to_string();
+            let example = "`stiffness = \"1e10 N/m^1.5\"` to [bearing.cage.contact]".to_string();
+            Err(reader.document.error(path, Problem::Missing { because, example }))
+        }
         (Some(Checked::Either(0, stiffness)), false) => {
             Ok(Some(CageForce::Penalty { stiffness: *stiffness }))
         }

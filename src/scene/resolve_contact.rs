@@ -50,11 +50,16 @@ pub(crate) fn traction(reader: &mut Reader) -> Result<TractionLaw, SceneError> {
                 .required_number("traction.regularisation_speed", &because)?,
         },
         "slide-to-roll" => TractionLaw::SlideToRoll {
-            curve: curve(reader, 0, "over the slide-to-roll ratio: a plain number", "22.28")?,
+            curve: curve(
+                reader,
+                0,
+                "this curve is over the slide-to-roll ratio, a plain number",
+                "22.28",
+            )?,
             entrainment_floor: reader.number("traction.entrainment_floor").unwrap_or(0.01),
         },
         "slip-speed" => TractionLaw::SlipSpeed {
-            curve: curve(reader, 1, "over the sliding speed: in s/m", "\"20 s/m\"")?,
+            curve: curve(reader, 1, "this curve is over the sliding speed, in s/m", "\"20 s/m\"")?,
         },
         "table" => TractionLaw::Table { points: points(reader, &because)? },
         _ => TractionLaw::None,
@@ -81,7 +86,9 @@ fn curve(
                 return Err(reader.document.error(path, problem));
             }
             None if kind == 1 => {
-                return Err(reader.missing(path, " with `law = \"slip-speed\"` (b and c in s/m)"));
+                return Err(
+                    reader.missing(path, " with `law = \"slip-speed\"`, whose b and c are in s/m")
+                );
             }
             None => {
                 let reason = "common boundary-lubrication set; the source's curve is not printed";

@@ -322,20 +322,16 @@ fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
     Ok(Some(RunSettings { options, end, output_interval, window_start, channels }))
 }
 
-/// A time that must lie in the run.
+/// A time that must lie in the run; a window must begin before the end.
 fn within(reader: &Reader, key: &str, end: f64) -> Result<Option<f64>, SceneError> {
-    match reader.given_number(key) {
-        Some(value) if value > end || (value == end && key == "output.window_start") => {
-            let problem = Problem::WrongTime {
-                value,
-                relation: "not before",
-                other_name: "the end of the run",
-                other: end,
-                allowed: "less than",
-                advice: "check the units of both",
-            };
-            Err(reader.document.error(key, problem))
-        }
-        given => Ok(given),
+    let Some(value) = reader.given_number(key) else { return Ok(None) };
+    let (relation, allowed) =
+        if key == "output.window_start" { ("not before", "less than") } else { ("after", "up to") };
+    if value < end || (value == end && allowed == "up to") {
+        return Ok(Some(value));
     }
+    let (other_name, other) = ("the end of the run", end);
+    let advice = "check the units of both";
+    let problem = Problem::WrongTime { value, relation, other_name, other, allowed, advice };
+    Err(reader.document.error(key, problem))
 }

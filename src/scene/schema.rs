@@ -1,8 +1,8 @@
-//! The key table as JSON Schema (for editors) and as the reference `docs/scene.md`.
+//! The key table as JSON Schema, for editors.
 
-use crate::scene::keys::{self, KEYS, Key, Kind, Need, Range, TABLES};
+use crate::scene::keys::{self, KEYS, Key, Kind, Need, Range};
 use crate::scene::profile::{FORMS, Member};
-use crate::scene::units::{Dimension, plain};
+use crate::scene::units::Dimension;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -32,7 +32,7 @@ fn definition_name(dimension: Dimension) -> String {
 }
 
 /// "length", "rotation speed".
-fn noun(dimension: Dimension) -> &'static str {
+pub(crate) fn noun(dimension: Dimension) -> &'static str {
     dimension.name().split_once(' ').map_or(dimension.name(), |(_, noun)| noun)
 }
 
@@ -269,7 +269,7 @@ fn reference(dimension: Dimension) -> Value {
     json!({ "$ref": format!("#/$defs/{}", definition_name(dimension)) })
 }
 
-fn range_text(key: &Key) -> Option<String> {
+pub(crate) fn range_text(key: &Key) -> Option<String> {
     match key.kind {
         Kind::Integer { low, high } => Some(format!("from {low} to {high}")),
         Kind::Number(range)
@@ -290,139 +290,3 @@ fn range_text(key: &Key) -> Option<String> {
         _ => None,
     }
 }
-
-/// The text of `docs/scene.md`.
-pub fn reference_markdown() -> String {
-    let mut text = String::from(INTRODUCTION);
-    table_markdown(&mut text, "", "Top of the file", "");
-    for table in TABLES {
-        table_markdown(&mut text, table.path, &format!("`[{}]`", table.path), table.doc);
-        let _ = writeln!(text, "```toml\n{}\n```\n", table.example.replace(" or {", "   # or {"));
-    }
-    text.push_str(DIMENSIONS_INTRODUCTION);
-    text.push_str("| quantity | units | SI value of one unit |\n|---|---|---|\n");
-    for dimension in Dimension::ALL {
-        let spellings: Vec<String> = dimension
-            .units()
-            .iter()
-            .map(|unit| {
-                let all: Vec<String> = unit.spellings.iter().map(|s| format!("`{s}`")).collect();
-                all.join(" = ")
-            })
-            .collect();
-        let values: Vec<String> =
-            dimension.units().iter().map(|unit| plain(unit.scale.factor())).collect();
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} {} |",
-            noun(dimension),
-            spellings.join(", "),
-            values.join(", "),
-            dimension.si_unit()
-        );
-    }
-    text.push_str(RELATIONS);
-    text
-}
-
-fn table_markdown(text: &mut String, path: &str, heading: &str, doc: &str) {
-    let _ = writeln!(text, "## {heading}");
-    if !doc.is_empty() {
-        let _ = writeln!(text, "{doc}");
-    }
-    text.push('\n');
-    let rows: Vec<&Key> = KEYS.iter().filter(|key| key.table() == path).collect();
-    if rows.is_empty() {
-        return;
-    }
-    text.push_str("| key | value | allowed | default | meaning |\n|---|---|---|---|---|\n");
-    for key in rows {
-        let default = match key.need {
-            Need::Required => "**required**".to_string(),
-            Need::Optional => "none".to_string(),
-            Need::Depends(how) => how.to_string(),
-            Need::Default { value, reason } => format!("`{value}` ({reason})"),
-        };
-        let (kind, allowed) = kind_and_range(key);
-        let _ =
-            writeln!(text, "| `{}` | {kind} | {allowed} | {default} | {} |", key.name(), key.doc);
-    }
-    text.push('\n');
-}
-
-fn kind_and_range(key: &Key) -> (String, String) {
-    let words = |choices: &[&str]| {
-        choices.iter().map(|word| format!("`\"{word}\"`")).collect::<Vec<_>>().join(", ")
-    };
-    let range = range_text(key).unwrap_or_default();
-    match key.kind {
-        Kind::Text => ("text".to_string(), "any".to_string()),
-        Kind::Boolean => ("boolean".to_string(), "`true`, `false`".to_string()),
-        Kind::Integer { .. } => ("whole number".to_string(), range),
-        Kind::Choice(choices) => ("word".to_string(), words(choices)),
-        Kind::Choices(choices) => ("list of words".to_string(), words(choices)),
-        Kind::Number(_) => ("number".to_string(), range),
-        Kind::Quantity(dimension, _) => (noun(dimension).to_string(), range),
-        Kind::Profile(dimension, _) => (format!("{} or profile", noun(dimension)), range),
-        Kind::Either(kinds) => {
-            let nouns: Vec<&str> = kinds
-                .iter()
-                .map(|kind| match kind {
-                    Kind::Quantity(dimension, _) => noun(*dimension),
-                    _ => "number",
-                })
-                .collect();
-            (nouns.join(" or "), range)
-        }
-        Kind::Curve(dimension, ..) => {
-            (format!("list of pairs: {}, number", noun(dimension)), range)
-        }
-        Kind::Texts => ("list of texts".to_string(), "any".to_string()),
-        Kind::Vector(dimension, _) => {
-            (format!("list of three: {}", noun(dimension)), format!("each {range}"))
-        }
-    }
-}
-
-const INTRODUCTION: &str = "\
-# Scene reference
-
-<!-- Made from the key table in src/scene/keys.rs. After changing that table: SCENE_DOCS=write cargo test --release --test scene_docs -->
-
-A scene is a TOML file, or a JSON file of the same shape. Every dimensional value is a text of a number and a
-unit, `\"20.047 mm\"`: nothing is guessed from a bare number. Unknown keys are refused. `bearing check SCENE` names
-the first thing that is wrong, with file, line and column, the allowed range and what to do; `bearing schema` prints
-a JSON Schema for editors.
-
-Axes: X axial, Y lateral, Z up. Ball azimuths run from +Y towards +Z.
-
-";
-
-const DIMENSIONS_INTRODUCTION: &str = "\
-## Units
-A space between number and unit may be left out. Numbers have a decimal point, and may have an exponent (`1.5e3 N`). In units
-that are powers of ten of SI the value is the double nearest to the decimal number written.
-
-";
-
-const RELATIONS: &str = "
-## Sizes that follow from others
-**Deep-groove.** With `C` the radial clearance, `C = R_outer - R_inner - 2 r_ball`, positive for a gap; the diametral
-clearance is `2 C`. Race radii are groove-bottom radii from the axis. Give any three of the two race radii, the ball and
-the clearance. If all four are given, the part named by `clearance.through` takes the size that follows, and its given
-size is only the nominal one: for the ball, the one that `conformity` and `osculation` refer to.
-
-**Angular-contact.** Give pitch radius, contact angle, ball and grooves; the parts then just touch at that angle, with the
-inner race's groove centres at `+X` and the outer one's at `-X`. An inner race pushed along `+X` loads the balls. A clearance
-(default 0) is the radial travel of the inner race from there to contact, made through the ball or a race.
-
-**Checks over several keys.** Groove radius more than the ball radius and less than ten times it; balls fit side by side on
-the pitch radius; ball not larger than the cage pocket; clearance at most 5 % of the ball radius, likewise the distance between
-nominal and resulting size; bore inside and outer radius outside the grooves; cage inner radius less than the outer one;
-displacements at most a ball radius.
-
-## Sweeps
-Values are a list, `[\"5 um\", \"0 um\"]` or `\"5 um, 0 um\"`, or a range `\"low .. high / count\"` with both ends included. Varying a
-key takes away the keys that exclude it: varying `bearing.clearance.radial` replaces a diametral clearance.
-Texts, lists and `ball_forces.gravity` cannot be varied.
-";

@@ -1,0 +1,205 @@
+//! The key table as the reference `docs/scene.md`.
+
+use crate::scene::keys::{KEYS, Key, Kind, Need, TABLES, Table};
+use crate::scene::profile::{FORMS, Member};
+use crate::scene::schema::{noun, range_text};
+use crate::scene::units::{Dimension, plain};
+use std::fmt::Write;
+
+/// The text of `docs/scene.md`.
+pub fn reference_markdown() -> String {
+    let mut text = String::from(INTRODUCTION);
+    table_markdown(&mut text, "", "Top of the file", "");
+    // What moves a bearing lies after what it is, outputs and sweeps last.
+    let order = [
+        "assumptions",
+        "bearing",
+        "inner_race",
+        "outer_race",
+        "ball_forces",
+        "traction",
+        "contact_damping",
+        "numerics",
+    ];
+    let mut tables: Vec<&Table> = TABLES.iter().collect();
+    tables.sort_by_key(|table| {
+        let top = table.path.split('.').next().unwrap_or_default();
+        order.iter().position(|name| *name == top).unwrap_or(order.len())
+    });
+    for table in tables {
+        table_markdown(&mut text, table.path, &format!("`[{}]`", table.path), table.doc);
+        let _ = writeln!(text, "```toml\n{}\n```\n", table.example.replace(" or {", "   # or {"));
+    }
+    profiles_markdown(&mut text);
+    text.push_str(DIMENSIONS_INTRODUCTION);
+    text.push_str("| quantity | units | SI value of one unit |\n|---|---|---|\n");
+    for dimension in Dimension::ALL {
+        let spellings: Vec<String> = dimension
+            .units()
+            .iter()
+            .map(|unit| {
+                let all: Vec<String> = unit.spellings.iter().map(|s| format!("`{s}`")).collect();
+                all.join(" = ")
+            })
+            .collect();
+        let values: Vec<String> =
+            dimension.units().iter().map(|unit| plain(unit.scale.factor())).collect();
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} {} |",
+            noun(dimension),
+            spellings.join(", "),
+            values.join(", "),
+            dimension.si_unit()
+        );
+    }
+    text.push_str(RELATIONS);
+    text
+}
+
+fn profiles_markdown(text: &mut String) {
+    text.push_str(PROFILES_INTRODUCTION);
+    text.push_str("| profile | entries | meaning |\n|---|---|---|\n");
+    for form in FORMS {
+        let entries: Vec<String> = form
+            .members
+            .iter()
+            .enumerate()
+            .map(|(index, member)| match member {
+                Member::Other(key) => match key.need {
+                    Need::Default { value, .. } => format!("`{}` (default `{value}`)", key.path),
+                    _ => format!("`{}`", key.path),
+                },
+                Member::Own(name) if index > 0 => format!("`{name}` (default 0)"),
+                member => format!("`{}`", member.name()),
+            })
+            .collect();
+        let _ = writeln!(text, "| `{}` | {} | {} |", form.example, entries.join(", "), form.doc);
+    }
+    text.push('\n');
+}
+
+fn table_markdown(text: &mut String, path: &str, heading: &str, doc: &str) {
+    let _ = writeln!(text, "## {heading}");
+    if !doc.is_empty() {
+        let _ = writeln!(text, "{doc}");
+    }
+    text.push('\n');
+    let rows: Vec<&Key> = KEYS.iter().filter(|key| key.table() == path).collect();
+    if rows.is_empty() {
+        return;
+    }
+    text.push_str("| key | value | allowed | default | meaning |\n|---|---|---|---|---|\n");
+    for key in rows {
+        let default = match key.need {
+            Need::Required => "**required**".to_string(),
+            Need::Optional => "none".to_string(),
+            Need::Depends(how) => how.to_string(),
+            Need::Default { value, reason } => format!("`{value}` ({reason})"),
+        };
+        let (kind, allowed) = kind_and_range(key);
+        let _ =
+            writeln!(text, "| `{}` | {kind} | {allowed} | {default} | {} |", key.name(), key.doc);
+    }
+    text.push('\n');
+}
+
+fn kind_and_range(key: &Key) -> (String, String) {
+    let words = |choices: &[&str]| {
+        choices.iter().map(|word| format!("`\"{word}\"`")).collect::<Vec<_>>().join(", ")
+    };
+    let range = range_text(key).unwrap_or_default();
+    match key.kind {
+        Kind::Text => ("text".to_string(), "any".to_string()),
+        Kind::Boolean => ("boolean".to_string(), "`true`, `false`".to_string()),
+        Kind::Integer { .. } => ("whole number".to_string(), range),
+        Kind::Choice(choices) => ("word".to_string(), words(choices)),
+        Kind::Choices(choices) => ("list of words".to_string(), words(choices)),
+        Kind::Number(_) => ("number".to_string(), range),
+        Kind::Quantity(dimension, _) => (noun(dimension).to_string(), range),
+        Kind::Profile(dimension, _) => (format!("{} or profile", noun(dimension)), range),
+        Kind::Either(kinds) => {
+            let nouns: Vec<&str> = kinds
+                .iter()
+                .map(|kind| match kind {
+                    Kind::Quantity(dimension, _) => noun(*dimension),
+                    _ => "number",
+                })
+                .collect();
+            (nouns.join(" or "), range)
+        }
+        Kind::Curve(dimension, ..) => {
+            (format!("list of pairs: {}, number", noun(dimension)), range)
+        }
+        Kind::Texts => ("list of texts".to_string(), "any".to_string()),
+        Kind::Vector(dimension, _) => {
+            (format!("list of three: {}", noun(dimension)), format!("each {range}"))
+        }
+    }
+}
+
+const INTRODUCTION: &str = "\
+# Scene reference
+
+<!-- Made from the key tables in src/scene/key_table.rs and key_table_dynamics.rs. After changing that table: SCENE_DOCS=write cargo test --release --test scene_docs -->
+
+A scene is a TOML file, or a JSON file of the same shape. Every dimensional value is a text of a number and a
+unit, `\"20.047 mm\"`: nothing is guessed from a bare number. Unknown keys are refused. `bearing check SCENE` names
+the first thing that is wrong, with file, line and column, the allowed range and what to do; `bearing schema` prints
+a JSON Schema for editors.
+
+Axes: X axial, Y lateral, Z up. Ball azimuths run from +Y towards +Z.
+
+";
+
+const PROFILES_INTRODUCTION: &str = "\
+## Profiles
+Where the reference says \"or profile\", a value may change over time. A plain quantity is constant. Times count from the start
+of the run, up to 10000 s; durations are positive and times of a table increase. Statics takes the value at t = 0.
+
+";
+
+const DIMENSIONS_INTRODUCTION: &str = "\
+## Units
+A space between number and unit may be left out. Numbers have a decimal point, and may have an exponent (`1.5e3 N`). In units
+that are powers of ten of SI the value is the double nearest to the decimal number written.
+
+";
+
+const RELATIONS: &str = "
+## Sizes that follow from others
+**Deep-groove.** With `C` the radial clearance, `C = R_outer - R_inner - 2 r_ball`, positive for a gap; the diametral
+clearance is `2 C`. Race radii are groove-bottom radii from the axis. Give any three of the two race radii, the ball and
+the clearance. If all four are given, the part named by `clearance.through` takes the size that follows, and its given
+size is only the nominal one: for the ball, the one that `conformity` and `osculation` refer to.
+
+**Angular-contact.** Give pitch radius, contact angle, ball and grooves; the parts then just touch at that angle, with the
+inner race's groove centres at `+X` and the outer one's at `-X`. An inner race pushed along `+X` loads the balls. A clearance
+(default 0) is the radial travel of the inner race from there to contact, made through the ball or a race.
+
+**Checks over several keys.** Groove radius more than the ball radius and less than ten times it; balls fit side by side on
+the pitch radius; ball not larger than the cage pocket; clearance at most 5 % of the ball radius, likewise the distance between
+nominal and resulting size; bore inside and outer radius outside the grooves; cage inner radius less than the outer one;
+displacements at most a ball radius.
+
+## What a run takes from a scene
+A scene serves `statics` and a run alike; a run needs `numerics.end`. Every default that fills a hole is named with the results.
+
+**Masses.** A race without `inertia` is a ring with its groove, of the race's density: bore (or outer) radius 0.3 ball diameters
+behind the groove bottom, shoulders 0.2 ball diameters high, 1.68 ball diameters long, unless the scene gives these sizes.
+The grooves' axial offset in an angular-contact bearing is left out of the mass. Wall and length are those of Table 2.2.
+
+**Cage.** A cage takes part in a run if the scene gives `pocket_radius`, `inner_radius`, `outer_radius`, `mass` and `guidance`, and
+`race_clearance` where a race guides it; otherwise it is left out, with the reason. Its length follows from its mass if not given.
+
+**Outer race.** `fixed` has no equations. `5-dof` does not turn about X, `6-dof` may. Loads, motions, inertia and foundation of a
+fixed race are refused. The foundation is at rest where the race starts.
+
+**Traction.** `constant`: `coefficient`, `regularisation_speed`. `slide-to-roll`: `b`, `c` (plain numbers), `d`, `entrainment_floor`.
+`slip-speed`: `b`, `c` (s/m), `d`. `table`: `points`. The two curves are (b x - d) exp(-c x) + d, zero at rest; no curve may exceed 2.
+
+## Sweeps
+Values are a list, `[\"5 um\", \"0 um\"]` or `\"5 um, 0 um\"`, or a range `\"low .. high / count\"` with both ends included. Varying a
+key takes away the keys that exclude it: varying `bearing.clearance.radial` replaces a diametral clearance.
+Texts, lists and `ball_forces.gravity` cannot be varied. A varied profile becomes a constant.
+";
