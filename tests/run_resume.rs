@@ -9,8 +9,8 @@ use bearing_dynamics::output::state::{
     self, StateError, StateRecord, Stopped, fingerprint, read, resume, save,
 };
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
-use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError};
-use run_common::{complete, frictionless, request};
+use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Start};
+use run_common::{complete, frictionless, rattling, request};
 use std::fs;
 use std::path::Path;
 
@@ -64,12 +64,15 @@ fn assert_same_files(expected: &Path, found: &Path) {
 #[test]
 fn interrupted_anywhere_the_files_are_the_same() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, problem, integrator) in [
-        ("complete", complete(), Integrator::RungeKutta),
-        ("split", complete(), Integrator::Split),
-        ("frictionless", frictionless(), Integrator::RungeKutta),
+    use Integrator::{RungeKutta, Split};
+    for (name, problem, integrator, start) in [
+        ("complete", complete(), RungeKutta, Start::Equilibrium),
+        ("split", complete(), Split, Start::Equilibrium),
+        ("rattling", rattling(), RungeKutta, Start::Nominal),
+        ("frictionless", frictionless(), RungeKutta, Start::Equilibrium),
     ] {
         let mut request = request(STEP, 40);
+        request.options.start = start;
         request.options.integrator = integrator;
         let whole = folder.path().join(name);
         let started = Session::start(problem.clone(), &request).unwrap();
@@ -170,6 +173,11 @@ fn numbers_come_back_to_the_bit() {
     for row in 0..rows {
         assert_eq!(bits(session.recorder.row(row)), bits(back.recorder.row(row)));
     }
+    // The history is the file's, not that of the state it came with.
+    let mut file = read(folder.path()).unwrap().unwrap();
+    file.was_loaded[3] = !file.was_loaded[3];
+    let flipped = resume(folder.path(), &file, problem.clone(), &wanted).unwrap();
+    assert_eq!(flipped.simulation.checkpoint().was_loaded, file.was_loaded);
     // What JSON cannot hold is not written, and the state that is there stays.
     let before = fs::read(folder.path().join(state::STATE)).unwrap();
     session.simulation.system.damping[0] = f64::NAN;

@@ -96,6 +96,17 @@ pub fn complete() -> DynamicProblem {
     }
 }
 
+/// [`complete`] with room between its parts: balls part from the races and hit them again, and each
+/// time the speed of approach becomes history.
+pub fn rattling() -> DynamicProblem {
+    let geometry = common::table_4_1(3e-6);
+    DynamicProblem {
+        geometry,
+        damping: ContactDamping::LankaraniNikravesh { restitution: 0.95, slowest: 5e-3 },
+        ..complete()
+    }
+}
+
 /// `rows` output intervals of ten steps and a bit, so that the last step is a shortened one.
 pub fn request(step: f64, rows: usize) -> RunRequest {
     RunRequest {
