@@ -6,7 +6,8 @@ use bearing_dynamics::ch2_housing::bearing::contact::groove_force;
 use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough};
 use bearing_dynamics::kinematics::{Pose, euler};
 use bearing_dynamics::solver::statics::{
-    Condition, Determinacy, StaticOptions, StaticProblem, StaticSolution, solve, solve_from,
+    Condition, Determinacy, StaticOptions, StaticProblem, StaticSolution, StaticsError, solve,
+    solve_from,
 };
 use common::{FREE, problem, table_4_1, table_5_3};
 use nalgebra::{SVector, UnitQuaternion, Vector3};
@@ -172,6 +173,36 @@ proptest! {
         }
     }
 
+    /// A ball that only its weight or its speed holds is in balance too, however soft its seat.
+    #[test]
+    fn free_balls_settle(
+        geometry in any_geometry(),
+        position in any_position(),
+        speed in 0.5..60f64,
+        pull in prop::array::uniform3(-10.0..10.0f64),
+        phase in 0.0..6.3f64,
+    ) {
+        let mut task = held(geometry, &position);
+        task.orbital_speed = speed;
+        task.gravity = Vector3::from(pull);
+        task.ball_phase = phase;
+        let solution = solve(&task).unwrap();
+        for ball in &solution.balls {
+            let (sin, cos) = ball.azimuth.sin_cos();
+            let out = Vector3::new(0.0, cos, sin);
+            let force = Vector3::from(pull) * task.ball_mass
+                + out * (task.ball_mass * speed * speed * ball.position.dot(&out))
+                - ball.inner.force_on_race - ball.outer.force_on_race;
+            let scale = ball.inner.normal_load.max(ball.outer.normal_load);
+            // Newton ends at 1e-11 of the load, rounding of overlaps at about 1e-9 N.
+            let allowed = 1e-8 * scale + 2e-9;
+            prop_assert!(force.x.abs() <= allowed, "axial {:e} of {scale}", force.x);
+            prop_assert!(force.dot(&out).abs() <= allowed, "radial {:e}", force.dot(&out));
+            let around = Vector3::new(0.0, -sin, cos);
+            prop_assert!((force.dot(&around) + ball.cage_force).abs() <= allowed);
+        }
+    }
+
     /// The contact law itself, evaluated in coordinates a metre away from the origin.
     #[test]
     fn the_contact_force_turns_with_the_scene(
@@ -293,6 +324,43 @@ fn centrifugal_force_loads_the_outer_race_and_opens_its_contact_angle() {
         assert!((radial - force).abs() <= 1e-9 * b.outer.normal_load, "{radial} N, {force} N");
         assert!(axial.abs() <= 1e-9 * b.outer.normal_load);
     }
+}
+
+#[test]
+fn small_loads_are_solved_from_a_cold_start_too() {
+    for force in [0.1, 1.0, 5.0] {
+        for clearance in [5e-6, 10e-6, 40e-6] {
+            let mut conditions = FREE;
+            conditions[2] = Condition::Load(-force);
+            let task = problem(table_4_1(clearance), conditions);
+            let solution = solve(&task).unwrap_or_else(|error| panic!("{force} N: {error}"));
+            let held = solution.force_on_inner.z;
+            assert!((held - force).abs() <= 1e-9 * force + 2e-9, "{held} N of {force} N");
+        }
+    }
+}
+
+#[test]
+fn a_ball_pushed_out_of_its_grooves_is_an_error() {
+    // 4 MN on an 8-ball bearing of this size turns the contacts past 90°.
+    let mut conditions = FREE;
+    conditions[0] = Condition::Load(4e6);
+    conditions[2] = Condition::Load(-4e6);
+    let error = solve(&problem(table_4_1(0.0), conditions)).unwrap_err();
+    let known =
+        matches!(error, StaticsError::BallOutside { .. } | StaticsError::NoEquilibrium { .. });
+    assert!(known, "{error}");
+}
+
+#[test]
+fn a_preload_that_has_slid_away_holds_nothing() {
+    // An angular-contact bearing free along its axis pushes itself out of its preload.
+    let mut geometry = table_5_3();
+    geometry = geometry.with_radial_clearance(-5e-6, ClearanceThrough::Ball);
+    let held = Condition::Displacement(0.0);
+    let free = Condition::Load(0.0);
+    let solution = solve(&problem(geometry, [free, held, free, held, held])).unwrap();
+    assert!(matches!(solution.determinacy, Determinacy::Indeterminate { .. }));
 }
 
 #[test]

@@ -146,6 +146,9 @@ pub struct SettledBall {
     pub outer_load: f64,
     /// Contact energy minus the work of the body force, J.
     pub energy: f64,
+    /// Unbalanced force on the ball in its plane over the largest force on it; rounding when it
+    /// has settled.
+    pub unbalance: f64,
 }
 
 /// The two-dimensional energy of a ball with slope and curvature in its plane.
@@ -261,25 +264,149 @@ fn starting_point(
     // A groove holds its ball from one side only: a line that points towards the axis belongs to
     // races so far apart that the torus has been left.
     if overlap > 16.0 * f64::EPSILON * contacts.outer.centre_radius && line[1] > 0.0 {
-        return Some(point);
+        if plane.is_forceless() {
+            return Some(point);
+        }
+        let [along, outward] = plane.body_force(point[1]);
+        let squeeze =
+            contacts.outer_stiffness.min(contacts.inner_stiffness) * overlap * overlap.sqrt();
+        if squeeze > 100.0 * libm::hypot(along, outward) {
+            return Some(point);
+        }
+        // Squeezed no harder than it is pushed: either may decide where the ball rests.
+        let resting = resting_place(plane, race, contacts, point, evaluations);
+        *evaluations += 4;
+        let energy = |at| plane_energy(plane, race, contacts, at).energy;
+        return Some(if energy(resting) < energy(point) { resting } else { point });
     }
-    let [along, outward] = plane.body_force(contacts.outer.centre_radius);
-    let force = libm::hypot(along, outward);
-    if force == 0.0 {
+    if plane.is_forceless() {
         return None;
     }
-    // A free ball goes where the body force takes it: onto the outer race, or onto the inner one.
-    let push = [along / force, outward / force];
-    let sink = |stiffness: f64| libm::cbrt(force / stiffness).powi(2);
-    let reach = outer_room + sink(contacts.outer_stiffness);
-    let on_outer = [outer_centre[0] + push[0] * reach, outer_centre[1] + push[1] * reach];
-    *evaluations += 1;
-    if plane_energy(plane, race, contacts, on_outer).inner.load == 0.0 {
-        return Some(on_outer);
+    Some(resting_place(plane, race, contacts, point, evaluations))
+}
+
+/// Overlap of both contacts together for a ball on the line between the groove centres, m, and the
+/// angle of that line to the outer race's radial plane, rad.
+pub fn overlap_of_races(
+    plane: &BallPlane,
+    race: &InnerRacePosition,
+    contacts: &BallContacts,
+) -> (f64, f64) {
+    let outer = [contacts.outer.centre_axial, contacts.outer.centre_radius];
+    let inner = inner_centre_in_plane(plane, race, &contacts.inner, outer);
+    let line = [inner[0] - outer[0], inner[1] - outer[1]];
+    let rooms =
+        contacts.outer.groove_radius + contacts.inner.groove_radius - 2.0 * contacts.ball_radius;
+    (libm::hypot(line[0], line[1]) - rooms, libm::atan2(line[0], line[1]))
+}
+
+/// Where the body force takes a ball with room: onto the outer race, onto the inner one, or into
+/// the wedge between both. Exact for parallel races but for the inner race's tilt.
+///
+/// Newton's method needs so good a start here: a ball held by its weight alone is a million times
+/// softer along the groove than across it.
+fn resting_place(
+    plane: &BallPlane,
+    race: &InnerRacePosition,
+    contacts: &BallContacts,
+    middle: [f64; 2],
+    evaluations: &mut usize,
+) -> [f64; 2] {
+    let outer_centre = [contacts.outer.centre_axial, contacts.outer.centre_radius];
+    let rooms = [
+        contacts.outer.groove_radius - contacts.ball_radius,
+        contacts.inner.groove_radius - contacts.ball_radius,
+    ];
+    let stiffnesses = [contacts.outer_stiffness, contacts.inner_stiffness];
+    let sink = |load: f64, stiffness: f64| libm::cbrt(load / stiffness).powi(2);
+    let mut best = (f64::INFINITY, middle);
+    for side in 0..2 {
+        // The normal is the force's direction; centre and force depend on the place a little.
+        let mut point = middle;
+        for _ in 0..4 {
+            *evaluations += 1;
+            let [along, outward] = plane.body_force(point[1]);
+            let force = libm::hypot(along, outward);
+            if force == 0.0 {
+                break;
+            }
+            let centre = if side == 0 {
+                outer_centre
+            } else {
+                inner_centre_in_plane(plane, race, &contacts.inner, point)
+            };
+            let reach = (rooms[side] + sink(force, stiffnesses[side])) / force;
+            point = [centre[0] + along * reach, centre[1] + outward * reach];
+        }
+        *evaluations += 2;
+        let there = plane_energy(plane, race, contacts, point);
+        if there.energy < best.0 {
+            best = (there.energy, point);
+        }
     }
-    let centre = inner_centre_in_plane(plane, race, &contacts.inner, point);
-    let reach = inner_room + sink(contacts.inner_stiffness);
-    Some([centre[0] + push[0] * reach, centre[1] + push[1] * reach])
+    if let Some(point) = wedge(plane, race, contacts, outer_centre, rooms, best.1, evaluations) {
+        *evaluations += 2;
+        let there = plane_energy(plane, race, contacts, point);
+        if there.energy < best.0 {
+            best = (there.energy, point);
+        }
+    }
+    best.1
+}
+
+/// Ball pressed into the wedge between both races: distances from both centres of curvature are
+/// room plus overlap, and the overlaps follow from the loads that balance the body force.
+fn wedge(
+    plane: &BallPlane,
+    race: &InnerRacePosition,
+    contacts: &BallContacts,
+    outer_centre: [f64; 2],
+    rooms: [f64; 2],
+    start: [f64; 2],
+    evaluations: &mut usize,
+) -> Option<[f64; 2]> {
+    let mut point = start;
+    let mut overlaps = [0.0; 2];
+    for _ in 0..30 {
+        *evaluations += 1;
+        let inner_centre = inner_centre_in_plane(plane, race, &contacts.inner, point);
+        let line = [inner_centre[0] - outer_centre[0], inner_centre[1] - outer_centre[1]];
+        let distance = libm::hypot(line[0], line[1]);
+        let along = [line[0] / distance, line[1] / distance];
+        let (outer, inner) = (rooms[0] + overlaps[0], rooms[1] + overlaps[1]);
+        let foot = (outer * outer - inner * inner + distance * distance) / (2.0 * distance);
+        let square = outer * outer - foot * foot;
+        // Written so that NaN leaves here too.
+        if square.is_nan() || square <= 0.0 {
+            return None;
+        }
+        let force = plane.body_force(point[1]);
+        // Of the two corners the one that the force points to.
+        let aside = [-along[1], along[0]];
+        let sign = if force[0] * aside[0] + force[1] * aside[1] < 0.0 { -1.0 } else { 1.0 };
+        let height = sign * square.sqrt();
+        point = [
+            outer_centre[0] + foot * along[0] + height * aside[0],
+            outer_centre[1] + foot * along[1] + height * aside[1],
+        ];
+        let to = |centre: [f64; 2], reach: f64| {
+            [(point[0] - centre[0]) / reach, (point[1] - centre[1]) / reach]
+        };
+        let (n, m) = (to(outer_centre, outer), to(inner_centre, inner));
+        let determinant = n[0] * m[1] - n[1] * m[0];
+        let loads = [
+            (force[0] * m[1] - force[1] * m[0]) / determinant,
+            (n[0] * force[1] - n[1] * force[0]) / determinant,
+        ];
+        if !(loads[0] > 0.0 && loads[1] > 0.0) {
+            return None;
+        }
+        overlaps = [
+            libm::cbrt(loads[0] / contacts.outer_stiffness).powi(2),
+            libm::cbrt(loads[1] / contacts.inner_stiffness).powi(2),
+        ];
+    }
+    Some(point)
 }
 
 /// The inner groove's centre of curvature as the ball at `point` sees it in its own plane, m.
@@ -364,6 +491,11 @@ fn minimise(
             None => break,
         }
     }
+    let scale = now.inner.load.max(now.outer.load).max(body);
+    let noise = 4.0 * f64::EPSILON * radius * (now.curvature[0] + now.curvature[2]);
+    // A load of an overlap of some ulps is rounding too: the weight of a ball beside the axis.
+    let rounding_load = normal_load(contacts.outer_stiffness, 256.0 * f64::EPSILON * radius);
+    let left = (now.slope[0].abs().max(now.slope[1].abs()) - noise - rounding_load).max(0.0);
     SettledBall {
         position,
         inner: now.inner.contact,
@@ -371,6 +503,7 @@ fn minimise(
         inner_load: now.inner.load,
         outer_load: now.outer.load,
         energy: now.energy,
+        unbalance: if scale > 0.0 { left / scale } else { 0.0 },
     }
 }
 

@@ -6,10 +6,11 @@
 //! coordinates are the only unknowns of the outer loop.
 
 use super::ball::{
-    BallContacts, BallPlane, InnerRacePosition, SettledBall, add_to_race, energy_noise, settle,
+    BallContacts, BallPlane, InnerRacePosition, SettledBall, add_to_race, energy_noise,
+    overlap_of_races, settle,
 };
 use super::static_start;
-use crate::ch2_housing::bearing::contact::MeridianContact;
+use crate::ch2_housing::bearing::contact::{MeridianContact, normal_load};
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use crate::kinematics::Pose;
@@ -151,6 +152,17 @@ pub enum StaticsError {
     )]
     NoEquilibrium { coordinate: &'static str, travel: f64, ball_radius: f64 },
     #[error(
+        "ball {ball} has found no equilibrium between the races: {unbalance:.1e} of the force on it is \
+         unbalanced; hold or load the inner race differently, or leave the forces on balls out"
+    )]
+    BallNotSettled { ball: usize, unbalance: f64 },
+    #[error(
+        "ball {ball} leaves its grooves: pressed {overlap:.3e} m deep at a contact angle of \
+         {degrees:.1} deg, past the 90 deg where the races hold it; the load is too large for this \
+         bearing, check it and its unit"
+    )]
+    BallOutside { ball: usize, overlap: f64, degrees: f64 },
+    #[error(
         "no equilibrium found in {iterations} iterations: unbalanced load {residual:.3e} N against \
          {allowed:.3e} N allowed; last position x, y, z {position:?} m, tilts {tilts:?} rad"
     )]
@@ -180,6 +192,48 @@ pub fn solve_from(
     options: &StaticOptions,
 ) -> Result<StaticSolution, StaticsError> {
     check_finite(problem)?;
+    match solve_directly(problem, guess, options) {
+        // A loose bearing under a small load lies in a long curved valley of the energy, along
+        // which Newton's method creeps. A larger load straightens it; follow that down.
+        Err(StaticsError::NotConverged { .. }) if guess.is_none() => unload(problem, options),
+        result => result,
+    }
+}
+
+/// Equilibrium under ever smaller multiples of the loads, down to the loads themselves.
+fn unload(
+    problem: &StaticProblem,
+    options: &StaticOptions,
+) -> Result<StaticSolution, StaticsError> {
+    let mut start = None;
+    let mut work = (0, 0);
+    let patient = StaticOptions { max_iterations: 10 * options.max_iterations, ..*options };
+    for halvings in (1..=24).rev() {
+        let factor = f64::powi(2.0, halvings);
+        let mut loaded = problem.clone();
+        for condition in &mut loaded.conditions {
+            if let Condition::Load(load) = condition {
+                *load *= factor;
+            }
+        }
+        // Loads too large for the bearing fail; a smaller multiple starts from where it was.
+        if let Ok(solution) = solve_directly(&loaded, start.as_ref(), options) {
+            work.0 += solution.iterations;
+            work.1 += solution.contact_evaluations;
+            start = Some(solution.coordinates);
+        }
+    }
+    let mut solution = solve_directly(problem, start.as_ref(), &patient)?;
+    solution.iterations += work.0;
+    solution.contact_evaluations += work.1;
+    Ok(solution)
+}
+
+fn solve_directly(
+    problem: &StaticProblem,
+    guess: Option<&SVector<f64, 5>>,
+    options: &StaticOptions,
+) -> Result<StaticSolution, StaticsError> {
     let model = Model::new(problem);
     let mut at = guess.copied().unwrap_or_else(|| static_start::guess(problem, &model.contacts));
     for (i, condition) in problem.conditions.iter().enumerate() {
@@ -199,6 +253,7 @@ pub fn solve_from(
         here = trials.into_iter().min_by(|a, b| a.energy.total_cmp(&b.energy)).unwrap_or(here);
         search.descend(&mut here)?;
     }
+    search.check_balls(&here)?;
     Ok(search.solution(here))
 }
 
@@ -396,6 +451,35 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Every ball settled, and none past the edge of what a torus can hold.
+    fn check_balls(&self, here: &Evaluation) -> Result<(), StaticsError> {
+        /// Newton's last step leaves 1e-11; anything above this is a ball still on its way.
+        const SETTLED: f64 = 1e-8;
+        let race = InnerRacePosition::new(&here.at);
+        for (index, (plane, ball)) in self.model.planes.iter().zip(&here.balls).enumerate() {
+            let ball_number = index + 1;
+            match ball {
+                Some(ball) if ball.unbalance > SETTLED || ball.unbalance.is_nan() => {
+                    let unbalance = ball.unbalance;
+                    return Err(StaticsError::BallNotSettled { ball: ball_number, unbalance });
+                }
+                Some(_) => {}
+                None => {
+                    let (overlap, angle) = overlap_of_races(plane, &race, &self.model.contacts);
+                    if overlap > 0.0 && angle.abs() > std::f64::consts::FRAC_PI_2 {
+                        let degrees = angle.to_degrees();
+                        return Err(StaticsError::BallOutside {
+                            ball: ball_number,
+                            overlap,
+                            degrees,
+                        });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn give_up(&self, here: &Evaluation, residual: f64, allowed: f64) -> Result<(), StaticsError> {
         Err(StaticsError::NotConverged {
             iterations: self.iterations,
@@ -494,11 +578,17 @@ impl<'a> Search<'a> {
         let scaled_diagonal = (0..5)
             .map(|i| here.stiffness[(i, i)] / self.model.scale[i].powi(2))
             .fold(0.0, f64::max);
-        let free_directions: Vec<_> = modes
-            .into_iter()
-            .filter(|mode| mode.0 <= NO_STIFFNESS * scaled_diagonal)
-            .map(|mode| mode.1)
-            .collect();
+        // An overlap of some ulps of the radius is no contact, and its stiffness none.
+        let contacts = &self.model.contacts;
+        let rounding = 256.0 * f64::EPSILON * contacts.outer.centre_radius;
+        let noise = normal_load(contacts.inner_stiffness.max(contacts.outer_stiffness), rounding);
+        let threshold = if here.largest_ball_load <= noise {
+            f64::INFINITY
+        } else {
+            NO_STIFFNESS * scaled_diagonal
+        };
+        let free_directions: Vec<_> =
+            modes.into_iter().filter(|mode| mode.0 <= threshold).map(|mode| mode.1).collect();
         if free_directions.is_empty() {
             Determinacy::Determinate
         } else {
