@@ -381,3 +381,153 @@ fn gravity_lays_loose_balls_onto_the_races() {
         }
     }
 }
+
+/// Largest error of the analytic stiffness against fourth-order differences of the loads, over the
+/// largest entry of the diagonal; tilts are taken times the pitch radius.
+fn stiffness_error(task: &StaticProblem, position: [f64; 5], step: f64) -> f64 {
+    let solved = |position: [f64; 5]| {
+        let mut task = task.clone();
+        task.conditions = position.map(Condition::Displacement);
+        solve(&task).unwrap()
+    };
+    let stiffness = solved(position).stiffness;
+    let pitch = task.geometry.pitch_radius;
+    let scale = [1.0, 1.0, 1.0, pitch, pitch];
+    let largest = (0..5).map(|i| stiffness[(i, i)] / (scale[i] * scale[i])).fold(0.0, f64::max);
+    let mut worst = 0.0_f64;
+    for j in 0..5 {
+        let step = step / scale[j];
+        let loads_at = |steps: f64| {
+            let mut moved = position;
+            moved[j] += steps * step;
+            solved(moved).loads
+        };
+        let slope = ((loads_at(1.0) - loads_at(-1.0)) * 8.0 - (loads_at(2.0) - loads_at(-2.0)))
+            / (12.0 * step);
+        for i in 0..5 {
+            let error = (slope[i] - stiffness[(i, j)]).abs() / (scale[i] * scale[j] * largest);
+            assert!(error.is_finite());
+            worst = worst.max(error);
+        }
+    }
+    worst
+}
+
+#[test]
+fn stiffness_of_a_fast_bearing_is_the_derivative_of_the_loads() {
+    // The centrifugal force grows with the radius, −mω² of stiffness. Against the swivel of a
+    // lightly loaded contact it matters: every ball's inner load stays below its outer one.
+    for (speed, axial) in [(500.0, 4e-6), (1000.0, 6e-6), (2000.0, 12e-6)] {
+        let mut task = problem(table_5_3(), FREE);
+        task.orbital_speed = speed;
+        let position = [axial, 0.6e-6, -0.4e-6, 1e-5, -2e-5];
+        task.conditions = position.map(Condition::Displacement);
+        let solution = solve(&task).unwrap();
+        for ball in &solution.balls {
+            // Steps of 20 nm stay far from the kink of an opening contact.
+            assert!(ball.inner.approach > 3e-7, "{:e}", ball.inner.approach);
+            assert!(ball.outer.normal_load > 1.2 * ball.inner.normal_load);
+        }
+        let error = stiffness_error(&task, position, 2e-8);
+        // Truncation (2e-8/3e-7)⁴ ≈ 2e-5 of one soft contact, 1e-7 of the whole; rounding below it.
+        assert!(error <= 1e-7, "{error:e} at {speed} rad/s");
+    }
+}
+
+#[test]
+fn a_soft_direction_that_holds_is_determinate() {
+    // One ball right under the load holds the race along X by the swivel of its contact line
+    // alone, like a link of length L between the groove centres: Q/L, a small part of 3Q/(2δ).
+    let geometry = table_4_1(5e-6);
+    for (load, ratio) in [(0.03, 1e-5..5e-5), (1e-4, 2e-7..1e-6)] {
+        let mut conditions = [Condition::Displacement(0.0); 5];
+        conditions[0] = Condition::Load(0.0);
+        conditions[2] = Condition::Load(-load);
+        let mut task = problem(geometry, conditions);
+        task.ball_phase = -std::f64::consts::FRAC_PI_2;
+        let solution = solve(&task).unwrap();
+        let loaded = solution.balls.iter().filter(|ball| ball.inner.normal_load > 0.0);
+        assert_eq!(loaded.count(), 1);
+        let ball = &solution.balls[0];
+        let overlap = ball.inner.approach + ball.outer.approach;
+        let grooves = geometry.inner.groove_radius + geometry.outer.groove_radius;
+        let link = grooves - 2.0 * geometry.ball_radius + overlap;
+        let (along, across) = (1.5 * load / overlap, load / link);
+        // An overlap of 0.4 nm at a radius of 30 mm is known to some 1e-7.
+        assert!((solution.stiffness[(0, 0)] / across - 1.0).abs() <= 1e-6);
+        assert!((solution.stiffness[(2, 2)] / along - 1.0).abs() <= 1e-6);
+        assert!(ratio.contains(&(across / along)), "{:e}", across / along);
+        assert_eq!(solution.determinacy, Determinacy::Determinate, "{load} N");
+    }
+}
+
+#[test]
+fn moments_count_about_the_centres_of_both_races() {
+    // Held in a frame that is neither the world nor the outer race's.
+    let frame = Pose {
+        position: Vector3::new(0.2, -0.1, 0.05),
+        orientation: euler::quaternion(0.4, -0.3, 0.8),
+    };
+    let outer = Pose {
+        position: Vector3::new(-30e-6, 50e-6, 40e-6),
+        orientation: euler::quaternion(0.0, 2e-3, -1e-3),
+    };
+    let at = [-22e-6, 55e-6, 33e-6, 2.4e-3, -0.8e-3];
+    for geometry in [table_4_1(-5e-6), table_5_3()] {
+        let mut task = problem(geometry, at.map(Condition::Displacement));
+        task.frame = frame;
+        task.outer_pose = outer.seen_from_parent_of(&frame);
+        let solution = solve(&task).unwrap();
+        let inner_centre = Vector3::new(at[0], at[1], at[2]);
+        let scale = largest_load(&solution) * geometry.pitch_radius;
+        let mut about_inner = Vector3::zeros();
+        let mut about_outer = Vector3::zeros();
+        // What the cage leaves of the moment of all contact forces about the frame's origin.
+        let mut of_the_cage = Vector3::zeros();
+        for ball in &solution.balls {
+            about_inner += (ball.position - inner_centre).cross(&ball.inner.force_on_race);
+            about_outer += (ball.position - outer.position).cross(&ball.outer.force_on_race);
+            let (sin, cos) = ball.azimuth.sin_cos();
+            let around = outer.orientation * Vector3::new(0.0, -sin, cos);
+            of_the_cage += ball.position.cross(&(around * ball.cage_force));
+        }
+        // Forces of some 100 N, 50 µm off their centre, make a thousandth of `scale`.
+        assert!((solution.moment_on_outer - about_outer).amax() <= 1e-12 * scale);
+        assert!((solution.moment_on_inner - about_inner).amax() <= 1e-12 * scale);
+        let whole = solution.moment_on_inner
+            + inner_centre.cross(&solution.force_on_inner)
+            + solution.moment_on_outer
+            + outer.position.cross(&solution.force_on_outer);
+        assert!((whole - of_the_cage).amax() <= 1e-9 * scale, "{whole:?}, {of_the_cage:?}");
+        // Outer races transmit what inner races get, taken over to the outer centre.
+        assert!(outer.position.cross(&solution.force_on_outer).amax() >= 1e-4 * scale);
+    }
+}
+
+#[test]
+fn an_unloaded_ball_is_shown_inside_its_room() {
+    // On the line of both groove centres; the gap divides as the room in the two grooves does, so
+    // that a ball that fills neither is shown between both.
+    let (clearance, lift) = (20e-6, 4e-6);
+    let mut conditions = [Condition::Displacement(0.0); 5];
+    conditions[2] = Condition::Displacement(lift);
+    let geometry = table_4_1(clearance);
+    let mut task = problem(geometry, conditions);
+    task.ball_phase = std::f64::consts::FRAC_PI_2;
+    let solution = solve(&task).unwrap();
+    let rooms =
+        [geometry.inner, geometry.outer].map(|race| race.groove_radius - geometry.ball_radius);
+    // Ball 1 on top, where the lifted race has come closer, and ball 5 opposite.
+    for (ball, gap) in
+        [(&solution.balls[0], clearance - lift), (&solution.balls[4], clearance + lift)]
+    {
+        let share = |room: f64| gap * room / (rooms[0] + rooms[1]);
+        // Differences of lengths of 30 mm.
+        assert!((ball.inner.approach + share(rooms[0])).abs() <= 1e-16);
+        assert!((ball.outer.approach + share(rooms[1])).abs() <= 1e-16);
+        assert_eq!(ball.inner.normal_load + ball.outer.normal_load, 0.0);
+        // Groove bottom of the outer race, less gap and ball radius.
+        let height = 31.953e-3 - share(rooms[1]) - geometry.ball_radius;
+        assert!((ball.position.z.abs() - height).abs() <= 1e-16);
+    }
+}

@@ -187,7 +187,8 @@ fn readme(input: &PackInput) -> String {
         "Case pack: a bearing, and the results to hold another implementation against.
 
 1. Solve {scene} with your program (resolved.json has the same in SI units, defaults filled in).
-2. Write summary.json, series.csv and series.npy of the same form into a folder, say candidate.
+2. Write summary.json and series.csv of the same form into a folder, say candidate (series.npy
+   with series.columns.json holds the same table once more and may be left out).
    Copy the parts of summary.json that only repeat the input (scene, assumptions).
 3. Run, from the folder that holds this one:
 
@@ -198,7 +199,9 @@ fn readme(input: &PackInput) -> String {
 
 The tolerance class is {class}; tolerances.json says where another one holds, and may be edited
 per channel. manifest.json has the sha256 of every file as it was written. Wall time, number of
-threads and versions are not compared. Angles are in degrees, all else in SI units, as the headers say.
+threads, versions and the program's name are not compared. Where a ball carries nothing in both
+contacts of the reference, its position, approaches (gaps) and contact angles are not compared
+either (class f64-exact excepted): no law says where in its room such a ball is. Angles are in degrees, all else in SI units, as the headers say.
 ",
         scene = input.scene_name,
         class = input.class.name(),

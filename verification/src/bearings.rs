@@ -27,8 +27,10 @@ pub struct Lengths {
     pub ball_radius: f64,
     /// Zero for a deep-groove bearing.
     pub contact_angle: f64,
-    /// Radial clearance, obtained through the ball radius.
+    /// Radial clearance.
     pub clearance: f64,
+    /// The part whose size makes the clearance.
+    pub through: ClearanceThrough,
 }
 
 /// Tables 2.2, 3.5 and 4.1: races of 20.047 and 31.953 mm; a ball of 5.953 mm just touches.
@@ -40,6 +42,7 @@ pub const DEEP_GROOVE: Lengths = Lengths {
     ball_radius: 5.953e-3,
     contact_angle: 0.0,
     clearance: 0.0,
+    through: ClearanceThrough::Ball,
 };
 
 /// Table 5.3.
@@ -51,6 +54,7 @@ pub const ANGULAR_CONTACT: Lengths = Lengths {
     ball_radius: 5.953e-3,
     contact_angle: 35.0 * PI / 180.0,
     clearance: 0.0,
+    through: ClearanceThrough::Ball,
 };
 
 /// Which Hertz solution both sides use.
@@ -86,7 +90,7 @@ pub fn problem(
             lengths.ball_radius,
         )
     };
-    let geometry = nominal.with_radial_clearance(lengths.clearance, ClearanceThrough::Ball);
+    let geometry = nominal.with_radial_clearance(lengths.clearance, lengths.through);
     let model = match model {
         Hertz::Fit => HertzModel::HamrockBrewe,
         Hertz::Exact => HertzModel::Exact,
@@ -111,11 +115,18 @@ pub fn problem(
 pub fn oracle(lengths: &Lengths, model: Hertz, ball_phase: f64) -> OracleBearing {
     let Lengths { pitch_radius, inner_groove_radius: gi, outer_groove_radius: go, .. } = *lengths;
     let (nominal, angle) = (lengths.ball_radius, lengths.contact_angle);
-    let inner = [pitch_radius + (gi - nominal) * angle.cos(), (gi - nominal) * angle.sin(), gi];
-    let outer = [pitch_radius - (go - nominal) * angle.cos(), (nominal - go) * angle.sin(), go];
+    let mut inner = [pitch_radius + (gi - nominal) * angle.cos(), (gi - nominal) * angle.sin(), gi];
+    let mut outer = [pitch_radius - (go - nominal) * angle.cos(), (nominal - go) * angle.sin(), go];
+    let mut ball = nominal;
     // Radial travel by the clearance must stretch the line of groove centres to gi + go − 2 r.
-    let line = [inner[0] - outer[0] + lengths.clearance, inner[1] - outer[1]];
-    let ball = 0.5 * (gi + go - (line[0] * line[0] + line[1] * line[1]).sqrt());
+    match lengths.through {
+        ClearanceThrough::Ball => {
+            let line = [inner[0] - outer[0] + lengths.clearance, inner[1] - outer[1]];
+            ball = 0.5 * (gi + go - (line[0] * line[0] + line[1] * line[1]).sqrt());
+        }
+        ClearanceThrough::InnerRace => inner[0] -= lengths.clearance,
+        ClearanceThrough::OuterRace => outer[0] += lengths.clearance,
+    }
     // Radii of the races along the contact normal at the nominal contact angle.
     let race = [inner[0] / angle.cos() - gi, outer[0] / angle.cos() + go];
     let modulus = hertz::effective_modulus(210e9, 0.3, 210e9, 0.3);

@@ -2,7 +2,6 @@
 
 use bearing_dynamics::solver::statics::solve;
 
-use crate::bearings::{self, Hertz};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
@@ -31,8 +30,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     while solved < SAMPLES {
         seed += 1;
         let sample = Sample::seeded(seed);
-        let problem =
-            bearings::problem(&sample.lengths, Hertz::Fit, sample.phase, sample.conditions)?;
+        let problem = sample.problem()?;
         // Some random loads pull an angular-contact bearing apart: both sides then say so.
         let Ok(solution) = solve(&problem) else {
             without_equilibrium += 1;
@@ -50,13 +48,9 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     }
     let origin = "energy minimised over all coordinates at once, automatic differentiation";
     let quantities = [
-        ("ball_loads", "ball load, over the largest ball load", worst.ball_loads),
-        ("loads_at_ours", "load at our position, over the largest ball load", worst.loads_at_ours),
-        (
-            "unbalanced",
-            "unbalanced load at our position, over the largest ball load",
-            worst.unbalanced,
-        ),
+        ("ball_loads", "ball load, over the largest force", worst.ball_loads),
+        ("loads_at_ours", "load at our position, over the largest force", worst.loads_at_ours),
+        ("unbalanced", "unbalanced load at our position, over the largest force", worst.unbalanced),
         ("position", "position, over the largest overlap", worst.position),
     ];
     for (id, quantity, worst) in quantities {

@@ -1,16 +1,30 @@
 //! Random bearings with random conditions, and how far two solvers differ on them.
 
-use bearing_dynamics::solver::statics::{Condition, StaticSolution};
+use std::f64::consts::{PI, TAU};
+
+use bearing_dynamics::ch2_housing::bearing::geometry::ClearanceThrough;
+use bearing_dynamics::ch2_housing::bearing::hertz::HertzError;
+use bearing_dynamics::kinematics::{Pose, euler};
+use bearing_dynamics::solver::statics::{Condition, StaticProblem, StaticSolution};
+use nalgebra::Vector3;
 
 use crate::bearings::{self, Hertz, Lengths, known};
+use crate::oracles::statics::OracleBearing;
 
-/// A bearing and what is prescribed for its inner race.
+/// A bearing, where its outer race stands, what acts on its balls and what is prescribed for its
+/// inner race.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     pub lengths: Lengths,
     /// rad.
     pub phase: f64,
     pub conditions: [Condition; 5],
+    /// x, y, z (m), tilt_y, tilt_z (rad) of the outer race.
+    pub outer_race: [f64; 5],
+    /// Acceleration that acts on the balls, m/s²: gravity, or shaking in mid-swing.
+    pub gravity: [f64; 3],
+    /// Speed of the ball set, rad/s.
+    pub orbital_speed: f64,
 }
 
 impl Sample {
@@ -36,12 +50,17 @@ impl Sample {
         let spacing = between(1.3, 2.0);
         let lengths = Lengths {
             balls,
-            pitch_radius: ball_radius * spacing / (std::f64::consts::PI / balls as f64).sin(),
+            pitch_radius: ball_radius * spacing / (PI / balls as f64).sin(),
             inner_groove_radius: ball_radius * between(1.01, 1.12),
             outer_groove_radius: ball_radius * between(1.02, 1.12),
             ball_radius,
             contact_angle: if angular { between(12.0, 45.0).to_radians() } else { 0.0 },
             clearance: between(-20e-6, 40e-6),
+            through: match between(0.0, 4.0) {
+                part if part < 1.0 => ClearanceThrough::InnerRace,
+                part if part < 2.0 => ClearanceThrough::OuterRace,
+                _ => ClearanceThrough::Ball,
+            },
         };
         // Loads that make overlaps of some µm, whatever the size of the bearing.
         let force = ball_radius * ball_radius * 4e7;
@@ -63,11 +82,71 @@ impl Sample {
                 });
             }
         }
-        Sample { lengths, phase: between(0.0, std::f64::consts::TAU), conditions }
+        let phase = between(0.0, TAU);
+        // Half of the samples each: a moved outer race, weight, rotation. At 1000 m/s² a ball
+        // weighs some newtons; at 1000 rad/s it pulls with hundreds.
+        let [moved, heavy, turning] = [(); 3].map(|()| between(0.0, 1.0) < 0.5);
+        let mut only_if = |wanted: bool, low: f64, high: f64| {
+            let value = between(low, high);
+            if wanted { value } else { 0.0 }
+        };
+        let mut outer_race = [0.0; 5];
+        for (i, coordinate) in outer_race.iter_mut().enumerate() {
+            let reach = if i < 3 { 50e-6 } else { 0.5f64.to_radians() };
+            *coordinate = only_if(moved, -reach, reach);
+            // Given displacements of the inner race count from the outer one.
+            if let Condition::Displacement(value) = &mut conditions[i] {
+                *value += *coordinate;
+            }
+        }
+        let gravity = [(); 3].map(|()| only_if(heavy, -1e3, 1e3));
+        let orbital_speed = only_if(turning, 50.0, 1e3);
+        Sample { lengths, phase, conditions, outer_race, gravity, orbital_speed }
+    }
+
+    /// What the program makes of the sample.
+    pub fn problem(&self) -> Result<StaticProblem, HertzError> {
+        let mut problem =
+            bearings::problem(&self.lengths, Hertz::Fit, self.phase, self.conditions)?;
+        let [x, y, z, tilt_y, tilt_z] = self.outer_race;
+        problem.outer_pose = Pose {
+            position: Vector3::new(x, y, z),
+            orientation: euler::quaternion(0.0, tilt_y, tilt_z),
+        };
+        problem.gravity = Vector3::from(self.gravity);
+        problem.orbital_speed = self.orbital_speed;
+        Ok(problem)
+    }
+
+    /// What the independent solver makes of it.
+    pub fn oracle(&self) -> OracleBearing {
+        let mut oracle = bearings::oracle(&self.lengths, Hertz::Fit, self.phase);
+        let [x, y, z, xi, lambda] = self.outer_race;
+        oracle.outer_position = [x, y, z];
+        // Ry(ξ) Rz(λ), multiplied out.
+        let ((sx, cx), (sl, cl)) = (xi.sin_cos(), lambda.sin_cos());
+        oracle.outer_rotation = [[cx * cl, -cx * sl, sx], [sl, cl, 0.0], [-sx * cl, sx * sl, cx]];
+        let mass = ball_mass(oracle.ball_radius);
+        oracle.ball_force = self.gravity.map(|g| mass * g);
+        oracle.centrifugal = mass * self.orbital_speed * self.orbital_speed;
+        oracle
+    }
+
+    /// Weight or centrifugal force of a ball, whichever is larger, N.
+    fn body_force(&self) -> f64 {
+        let mass = ball_mass(self.lengths.ball_radius);
+        let [x, y, z] = self.gravity;
+        let weight = mass * (x * x + y * y + z * z).sqrt();
+        weight.max(mass * self.orbital_speed * self.orbital_speed * self.lengths.pitch_radius)
     }
 }
 
-/// Largest differences, loads over the largest ball load, positions over the largest overlap.
+/// Of steel, 7850 kg/m³; kg.
+fn ball_mass(radius: f64) -> f64 {
+    7850.0 * 4.0 / 3.0 * PI * radius * radius * radius
+}
+
+/// Largest differences, loads over the largest ball load or body force, positions over the largest overlap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Disagreement {
     pub ball_loads: f64,
@@ -93,7 +172,7 @@ impl Disagreement {
 
 /// How far the oracle's equilibrium, and its loads at our position, are from ours.
 pub fn disagreement(sample: &Sample, ours: &StaticSolution) -> Disagreement {
-    let oracle = bearings::oracle(&sample.lengths, Hertz::Fit, sample.phase);
+    let oracle = sample.oracle();
     let known = known(&sample.conditions);
     let at: [f64; 5] = std::array::from_fn(|i| ours.coordinates[i]);
     let theirs = oracle.solve(&known, Some(at));
@@ -110,6 +189,7 @@ pub fn disagreement(sample: &Sample, ours: &StaticSolution) -> Disagreement {
         .iter()
         .flat_map(|ball| [ball.inner.load, ball.outer.load])
         .chain(applied)
+        .chain([sample.body_force()])
         .fold(f64::MIN_POSITIVE, f64::max);
     let overlap = theirs
         .balls

@@ -2,19 +2,16 @@
 
 use bearing_dynamics::solver::statics::solve;
 use proptest::prelude::*;
-use verification::bearings::{self, Hertz};
 use verification::cases::statics_independent::{Sample, disagreement};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn loads_and_residuals_agree(units in prop::collection::vec(0.0..1.0f64, 32)) {
+    fn loads_and_residuals_agree(units in prop::collection::vec(0.0..1.0f64, 48)) {
         let mut next = units.into_iter().cycle();
         let sample = Sample::from_unit_numbers(|| next.next().unwrap_or(0.5));
-        let problem =
-            bearings::problem(&sample.lengths, Hertz::Fit, sample.phase, sample.conditions)
-                .unwrap();
+        let problem = sample.problem().unwrap();
         let Ok(solution) = solve(&problem) else {
             return Err(TestCaseError::reject("no equilibrium"));
         };

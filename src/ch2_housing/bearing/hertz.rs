@@ -216,6 +216,27 @@ mod tests {
     }
 
     #[test]
+    fn a_ceramic_ball_on_a_steel_race_counts_with_both_materials() {
+        use crate::ch2_housing::bearing::geometry::BearingGeometry;
+        let geometry =
+            BearingGeometry::deep_groove(8, 20.047e-3, 6.013e-3, 31.953e-3, 6.310e-3, 5.953e-3);
+        let steel = Material { youngs_modulus: 210e9, poisson_ratio: 0.3, density: 7850.0 };
+        let nitride = Material { youngs_modulus: 310e9, poisson_ratio: 0.27, density: 3200.0 };
+        // 1 − 0.3² = 0.91 and 1 − 0.27² = 0.9271, over the moduli in GPa.
+        let hybrid = 2e9 / (0.9271 / 310.0 + 0.91 / 210.0);
+        for side in [RaceSide::Inner, RaceSide::Outer] {
+            for model in [HertzModel::HamrockBrewe, HertzModel::Exact] {
+                let found = contact(model, side, &geometry, &nitride, &steel).unwrap();
+                assert!((found.effective_modulus / hybrid - 1.0).abs() <= 1e-14);
+                // K_H is proportional to E', which for steel on steel is 210 GPa/0.91.
+                let all_steel = contact(model, side, &geometry, &steel, &steel).unwrap();
+                let ratio = found.stiffness / all_steel.stiffness;
+                assert!((ratio / (hybrid * 0.91 / 210e9) - 1.0).abs() <= 1e-14, "{ratio}");
+            }
+        }
+    }
+
+    #[test]
     fn exchanging_the_directions_changes_nothing() {
         for model in [HertzModel::HamrockBrewe, HertzModel::Exact] {
             let one = contact_from_radii(model, 0.004, 0.3, 2e11).unwrap();

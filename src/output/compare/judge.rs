@@ -2,6 +2,7 @@
 
 use crate::output::compare::channels::{Content, Leaf, LeafValue};
 use crate::output::compare::tolerance::{Tolerance, ToleranceClass, ToleranceError, Tolerances};
+use crate::output::compare::unloaded;
 use crate::output::compare::{
     ChannelResult, CompareError, Comparison, Divergence, DivergenceKind, Worst, is_ignored_by_name,
 };
@@ -94,6 +95,11 @@ impl<'a> Judge<'a> {
         }
     }
 
+    /// Notes what of the present file is not compared.
+    pub fn leave_out(&mut self, what: &str) {
+        self.ignored.push(format!("{}: {what}", self.file));
+    }
+
     /// Opens a channel, or notes that it is not compared.
     fn open(&mut self, channel: &str, unit: &str) -> Option<Tolerance> {
         if let Some((used, _)) = self.tolerances.entry(channel) {
@@ -102,7 +108,7 @@ impl<'a> Judge<'a> {
         let (class, tolerance) = self.tolerances.of_channel(channel, unit, self.default_class);
         let tolerance = tolerance.filter(|_| !is_ignored_by_name(channel));
         if tolerance.is_none() {
-            self.ignored.push(format!("{}: {channel}", self.file));
+            self.leave_out(channel);
             return None;
         }
         self.channels.push(ChannelResult {
@@ -182,6 +188,8 @@ impl<'a> Judge<'a> {
             *scale = values.iter().fold(*scale, larger_finite);
         }
         let label = |row: usize| row_label(reference, row);
+        let unloaded = unloaded::unloaded_rows(reference);
+        let mut left_out = false;
         for (position, column) in reference.columns().iter().enumerate() {
             let (name, unit) = (column.name.as_str(), column.unit.as_str());
             let Some(tolerance) = self.open(name, unit) else {
@@ -207,6 +215,11 @@ impl<'a> Judge<'a> {
                 reference.data().column(position).iter().zip(values).enumerate()
             {
                 let order = (row + 1, position);
+                let is_idle = unloaded.as_ref().is_some_and(|rows| rows[row]);
+                if is_idle && unloaded::is_place(name) && is_arbitrary(tolerance, expected, value) {
+                    left_out = true;
+                    continue;
+                }
                 self.real(index, order, &|| label(row), expected, value, (tolerance, scale));
             }
             if rows != found_rows {
@@ -216,6 +229,9 @@ impl<'a> Judge<'a> {
                 let place = format!("row {}", shorter + 1);
                 self.diverge((shorter + 1, position), name, unit, place, kind);
             }
+        }
+        if left_out {
+            self.leave_out(unloaded::NOTE);
         }
         for column in candidate.columns() {
             if reference.column(&column.name).is_none() {
@@ -234,6 +250,8 @@ impl<'a> Judge<'a> {
                 *scale = larger_finite(*scale, &value);
             }
         }
+        let places = unloaded::unloaded_places(reference);
+        let mut left_out = false;
         // Channel → its number in `self.channels` and its tolerance, `None` if it is left out.
         let mut opened: BTreeMap<&str, Option<(usize, Tolerance)>> = BTreeMap::new();
         for (position, leaf) in reference.iter().enumerate() {
@@ -260,12 +278,21 @@ impl<'a> Judge<'a> {
                 continue;
             }
             match (&leaf.value, other.value.as_real()) {
+                (LeafValue::Real(expected), Some(value))
+                    if places.contains(leaf.path.as_str())
+                        && is_arbitrary(tolerance, *expected, value) =>
+                {
+                    left_out = true;
+                }
                 (LeafValue::Real(expected), Some(value)) => {
                     let scale = scales[&(vector_stem(channel), leaf.unit.as_str())];
                     self.real(index, order, &place, *expected, value, (tolerance, scale));
                 }
                 _ => self.channels[index].checked += 1,
             }
+        }
+        if left_out {
+            self.leave_out(unloaded::NOTE);
         }
         self.further_leaves(reference, candidate, &opened);
     }
@@ -313,6 +340,11 @@ impl<'a> Judge<'a> {
             }
         }
     }
+}
+
+/// A choice of the program: any finite number will do, unless the same bits are asked for.
+fn is_arbitrary(tolerance: Tolerance, reference: f64, candidate: f64) -> bool {
+    !tolerance.is_exact() && reference.is_finite() && candidate.is_finite()
 }
 
 fn larger_finite(largest: f64, value: &f64) -> f64 {

@@ -71,9 +71,12 @@ impl ToleranceClass {
 /// Zero for dimensionless and unknown units: no floor unless `tolerances.json` gives one.
 fn ordinary_magnitude(unit: &str) -> f64 {
     match unit {
-        "m" => 1e-6,              // a micrometre of approach or clearance
-        "mm" => 1e-3,             // the same
-        "um" => 1.0,              // the same
+        // A position 30 mm from the axis is rounded by up to 7e-18 m in each operation. An approach
+        // or a displacement is what is left of a few hundred of them: within 1e-14 m, the floor of
+        // f64-reordered, whatever its own size.
+        "m" => 1e-4,
+        "mm" => 1e-1,             // the same
+        "um" => 100.0,            // the same
         "N" => 100.0,             // a ball load: a load that balances to zero keeps 1e-11 of it
         "N m" => 1.0,             // that load on a centimetre
         "deg" => 1e-3,            // a small tilt
