@@ -5,6 +5,8 @@
 //! `kinematics, mesh, elements <- ch2 <- ch3 <- ch4 <- ch5 <- solver <- scene, output <- main`.
 //! `docs/equations.md` maps every equation to its item here and to its verification case.
 #![forbid(unsafe_code)]
+// Indices are the notation of components, as in the equations.
+#![allow(clippy::needless_range_loop)]
 
 pub mod ch2_housing;
 pub mod kinematics;

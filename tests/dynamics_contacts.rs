@@ -1,4 +1,5 @@
 //! Laws of the contact forces at one instant: action and reaction, frame invariance, energy.
+#![allow(clippy::needless_range_loop)] // indices are the notation of components
 
 mod common;
 #[path = "common/dynamics.rs"]

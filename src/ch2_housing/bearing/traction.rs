@@ -67,7 +67,7 @@ impl ExponentialCurve {
 pub fn exp_of_negative(x: f64) -> f64 {
     const LOG2_E: f64 = std::f64::consts::LOG2_E;
     // ln 2 in two parts: the first has trailing zeros, so that k·ln2 is exact.
-    const LN2_HIGH: f64 = 6.931_471_803_691_238_2e-1;
+    const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
     const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
     // 1.5·2⁵²: adding it leaves the nearest integer in the low bits.
     const MAGIC: f64 = 6_755_399_441_055_744.0;

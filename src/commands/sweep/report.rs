@@ -23,7 +23,7 @@ pub struct Record {
 pub fn unit_of(axis: &SweepAxis) -> String {
     let text = axis.value(0).unwrap_or_default();
     match kind_of(axis) {
-        Some(Kind::Quantity(dimension, _)) => {
+        Some(Kind::Quantity(dimension, _) | Kind::Profile(dimension, _)) => {
             parse_quantity(&text, dimension).map_or(String::new(), |first| first.unit.into())
         }
         Some(Kind::Integer { .. } | Kind::Number(_)) => "1".into(),
@@ -35,7 +35,7 @@ pub fn unit_of(axis: &SweepAxis) -> String {
 pub fn number_of(axis: &SweepAxis, index: usize) -> f64 {
     let text = axis.value(index).unwrap_or_default();
     match kind_of(axis) {
-        Some(Kind::Quantity(dimension, _)) => {
+        Some(Kind::Quantity(dimension, _) | Kind::Profile(dimension, _)) => {
             let first = axis.value(0).unwrap_or_default();
             match (parse_quantity(&text, dimension), parse_quantity(&first, dimension)) {
                 (Ok(value), Ok(first)) if value.scale == first.scale => value.number,

@@ -70,6 +70,7 @@ pub enum Driver {
 }
 
 /// Contacts of all balls with both races.
+#[allow(clippy::too_many_arguments)]
 pub fn evaluate(
     driver: Driver,
     laws: &ContactLaws,

@@ -70,6 +70,11 @@ pub enum SimulationError {
     #[error("the step is {0} s; it must be positive and finite")]
     Step(f64),
     #[error(
+        "the split integrator does not know the Heathcote term; leave one of them out \
+         (traction.heathcote, numerics.integrator)"
+    )]
+    SplitHeathcote,
+    #[error(
         "no contact is stiff at the start, so no step follows from it; give a step \
          (numerics.step)"
     )]
@@ -155,6 +160,9 @@ impl Simulation {
     ) -> Result<Simulation, SimulationError> {
         let mut system = System::new(problem, options.driver);
         let integrator = match options.integrator {
+            Integrator::Split if system.problem.heathcote => {
+                return Err(SimulationError::SplitHeathcote);
+            }
             Integrator::Split if system.laws.traction != TractionLaw::None => {
                 Stepper::Split(Split::new(&mut system))
             }

@@ -3,8 +3,12 @@
 //! Sliding dies out within 1e-7 s in a rolling contact, a hundred times faster than anything else
 //! moves. So each step is split: Runge–Kutta moves everything without traction; then traction acts
 //! for the whole step on velocities alone, contacts and normal loads held, by one linearly
-//! implicit Euler step per ball. The pair of steps, repeated, is Strang's splitting but for half a
-//! traction step at the ends: second order in the step.
+//! implicit Euler step per ball: first order in the step, with a small constant. On the bearing of
+//! Table 3.5 at 1000 rpm and 1500 N steps of 1, 2 and 4 µs move the inner race by 1.2, 2.2 and
+//! 4.2e-10 m over 10 ms, where Runge–Kutta with explicit traction needs steps below 0.18 µs.
+//!
+//! The moments by which a curved contact (Heathcote) brakes the ball are not in it; a run that asks
+//! for both is refused.
 //!
 //! Each ball is solved on its own: 6 × 6, symmetric and positive definite, since traction never
 //! feeds energy. Races keep their velocity during the solve and then take the opposite impulses.
@@ -324,6 +328,7 @@ fn tangents(
     }
 }
 
+#[allow(clippy::too_many_arguments)]
 #[inline(always)]
 fn over_lanes(
     slices: &Slices,
