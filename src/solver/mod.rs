@@ -1,8 +1,10 @@
 //! Solvers: what a scene needs, and equilibrium.
 pub mod ball;
+mod ball_start;
 pub mod channels;
 pub mod dynamics;
 pub mod plan;
 pub mod profile;
+mod static_search;
 mod static_start;
 pub mod statics;

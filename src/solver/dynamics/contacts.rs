@@ -1,8 +1,9 @@
 //! Ball–race contacts of one evaluation: detection for every pair, then traction for the loaded
 //! ones only.
 //!
-//! Two drivers call the same scalar laws: [`Driver::Plain`] contact by contact, [`Driver::Lanes`] over blocks of
-//! [`LANES`] contacts. The order of operations within a contact is the same, so the bits are too.
+//! Two drivers call the same scalar laws: [`Driver::Plain`] contact by contact, [`Driver::Lanes`]
+//! over blocks of [`LANES`] contacts. The order of operations within a contact is the same, so the
+//! bits are too.
 
 use super::race::RaceNow;
 use super::state::{LANES, Layout, POSITION, SPIN, VELOCITY};
