@@ -76,7 +76,7 @@ fn a_preload_that_has_slid_away_holds_nothing() {
     let geometry = BearingGeometry::angular_contact(
         8,
         26e-3,
-        5.0780807175224965e-3,
+        5.078_080_717_522_497e-3,
         5.121316701954446e-3,
         5e-3,
         13.930546377604271f64.to_radians(),
