@@ -1,2 +1,3 @@
 //! Chapter 2: the dynamic bearing model and the flexible housing.
 pub mod bearing;
+pub mod linear_elastic;

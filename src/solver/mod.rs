@@ -7,4 +7,5 @@ pub mod plan;
 pub mod profile;
 mod static_search;
 mod static_start;
+pub mod solid;
 pub mod statics;

@@ -1,0 +1,328 @@
+//! The ten-node tetrahedron: quadratic displacements, which bend without locking.
+//!
+//! Nodes as in VTK and Abaqus: four corners, then the middles of the edges 1–2, 2–3, 3–1, 1–4,
+//! 2–4, 3–4. Stiffness by four quadrature points, exact for straight edges under linear stress.
+
+use super::ElementError;
+use crate::kinematics::strain::{
+    Mat3, Sym3, determinant, first_piola_kirchhoff, full, green_lagrange, green_lagrange_change,
+    times,
+};
+use crate::kinematics::vec3::{Vec3, add_scaled, cross, scale};
+
+/// Corners that each mid-edge node lies between, from node 5 on.
+pub const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+
+/// Nodes of the faces: three corners as in [`super::tet4::FACES`], then the middles of the edges
+/// between the first and second, second and third, third and first.
+pub const FACES: [[usize; 6]; 4] =
+    [[1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6], [0, 1, 3, 4, 8, 7], [0, 2, 1, 6, 5, 4]];
+
+/// Quadrature points of the stiffness.
+pub const POINTS: usize = 4;
+
+/// One quadrature point in the undeformed state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// ∂N/∂X of the ten nodes, 1/m.
+    pub gradients: [Vec3; 10],
+    /// Volume that the point stands for, m³.
+    pub volume: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tet10 {
+    pub points: [Point; POINTS],
+}
+
+/// Barycentric coordinates of quadrature point `point` of the four-point rule of degree 2.
+fn stiffness_rule(point: usize) -> [f64; 4] {
+    // (5 − √5)/20 and (5 + 3√5)/20.
+    const NEAR: f64 = 0.138_196_601_125_010_5;
+    const FAR: f64 = 0.585_410_196_624_968_5;
+    let mut coordinates = [NEAR; 4];
+    coordinates[point] = FAR;
+    coordinates
+}
+
+/// Shape functions at barycentric coordinates.
+pub fn shape_functions(l: &[f64; 4]) -> [f64; 10] {
+    let mut n = [0.0; 10];
+    for i in 0..4 {
+        n[i] = l[i] * (2.0 * l[i] - 1.0);
+    }
+    for (i, [a, b]) in EDGES.into_iter().enumerate() {
+        n[4 + i] = 4.0 * l[a] * l[b];
+    }
+    n
+}
+
+/// Derivatives of the shape functions along the second, third and fourth barycentric coordinate,
+/// the first one following.
+fn shape_derivatives(l: &[f64; 4]) -> [Vec3; 10] {
+    let mut by_coordinate = [[0.0; 4]; 10];
+    for i in 0..4 {
+        by_coordinate[i][i] = 4.0 * l[i] - 1.0;
+    }
+    for (i, [a, b]) in EDGES.into_iter().enumerate() {
+        by_coordinate[4 + i][a] = 4.0 * l[b];
+        by_coordinate[4 + i][b] = 4.0 * l[a];
+    }
+    by_coordinate.map(|d| [d[1] - d[0], d[2] - d[0], d[3] - d[0]])
+}
+
+/// Gradients of the shape functions and the determinant of the map at one place.
+fn gradients_at(nodes: &[Vec3; 10], l: &[f64; 4]) -> ([Vec3; 10], f64) {
+    let derivatives = shape_derivatives(l);
+    // Columns of the map: ∂X/∂ξ.
+    let mut map = [[0.0; 3]; 3];
+    for (node, derivative) in nodes.iter().zip(&derivatives) {
+        for k in 0..3 {
+            map[k] = add_scaled(map[k], derivative[k], *node);
+        }
+    }
+    let det = determinant(&map);
+    let per = 1.0 / det;
+    // Rows of the inverse, transposed: ∂ξ/∂X.
+    let inverse = [
+        scale(cross(map[1], map[2]), per),
+        scale(cross(map[2], map[0]), per),
+        scale(cross(map[0], map[1]), per),
+    ];
+    let gradients = derivatives.map(|d| {
+        let mut g = scale(inverse[0], d[0]);
+        g = add_scaled(g, d[1], inverse[1]);
+        add_scaled(g, d[2], inverse[2])
+    });
+    (gradients, det)
+}
+
+impl Tet10 {
+    /// From the undeformed nodes, m; edges may be curved.
+    ///
+    /// # Errors
+    /// A map that folds at a quadrature point or a corner.
+    pub fn new(nodes: &[Vec3; 10]) -> Result<Tet10, ElementError> {
+        for corner in 0..4 {
+            let mut l = [0.0; 4];
+            l[corner] = 1.0;
+            let determinant = gradients_at(nodes, &l).1;
+            if !(determinant > 0.0 && determinant.is_finite()) {
+                return Err(ElementError::Folded { point: POINTS + corner, determinant });
+            }
+        }
+        let mut points = [Point { gradients: [[0.0; 3]; 10], volume: 0.0 }; POINTS];
+        for (point, at) in points.iter_mut().enumerate() {
+            let (gradients, determinant) = gradients_at(nodes, &stiffness_rule(point));
+            if !(determinant > 0.0 && determinant.is_finite()) {
+                return Err(ElementError::Folded { point, determinant });
+            }
+            *at = Point { gradients, volume: determinant / 24.0 };
+        }
+        Ok(Tet10 { points })
+    }
+
+    /// Displacement gradient at a quadrature point.
+    #[inline(always)]
+    pub fn displacement_gradient(&self, point: usize, displacement: &[Vec3; 10]) -> Mat3 {
+        self.points[point].displacement_gradient(displacement)
+    }
+
+    /// Forces on the nodes, −∫P ∂N/∂X dV, N.
+    #[inline(always)]
+    pub fn nodal_forces(
+        &self,
+        displacement: &[Vec3; 10],
+        stress: impl Fn(&Sym3) -> Sym3,
+    ) -> [Vec3; 10] {
+        let mut forces = [[0.0; 3]; 10];
+        for point in &self.points {
+            point.add_forces(displacement, &stress, &mut forces);
+        }
+        forces
+    }
+
+    /// Change of the nodal forces when the displacements change; see
+    /// [`super::tet4::Tet4::force_change`].
+    #[inline(always)]
+    pub fn force_change(
+        &self,
+        displacement: &[Vec3; 10],
+        change: &[Vec3; 10],
+        stress: impl Fn(&Sym3) -> Sym3,
+    ) -> [Vec3; 10] {
+        let mut forces = [[0.0; 3]; 10];
+        for point in &self.points {
+            let h = point.displacement_gradient(displacement);
+            let dh = point.displacement_gradient(change);
+            let s = full(&stress(&green_lagrange(&h)));
+            let mut dp = first_piola_kirchhoff(&h, &stress(&green_lagrange_change(&h, &dh)));
+            for i in 0..3 {
+                for j in 0..3 {
+                    dp[i][j] += dh[i][0] * s[0][j] + dh[i][1] * s[1][j] + dh[i][2] * s[2][j];
+                }
+            }
+            point.add_forces_of(&dp, &mut forces);
+        }
+        forces
+    }
+
+    /// m³.
+    pub fn volume(&self) -> f64 {
+        self.points.iter().map(|point| point.volume).sum()
+    }
+}
+
+impl Point {
+    #[inline(always)]
+    pub fn displacement_gradient(&self, displacement: &[Vec3; 10]) -> Mat3 {
+        let mut h = [[0.0; 3]; 3];
+        for n in 0..10 {
+            for i in 0..3 {
+                for j in 0..3 {
+                    h[i][j] += displacement[n][i] * self.gradients[n][j];
+                }
+            }
+        }
+        h
+    }
+
+    /// Adds this point's share of the nodal forces.
+    #[inline(always)]
+    pub fn add_forces(
+        &self,
+        displacement: &[Vec3; 10],
+        stress: &impl Fn(&Sym3) -> Sym3,
+        forces: &mut [Vec3; 10],
+    ) {
+        let h = self.displacement_gradient(displacement);
+        self.add_forces_of(&first_piola_kirchhoff(&h, &stress(&green_lagrange(&h))), forces);
+    }
+
+    #[inline(always)]
+    fn add_forces_of(&self, p: &Mat3, forces: &mut [Vec3; 10]) {
+        let mut scaled = *p;
+        for i in 0..3 {
+            for j in 0..3 {
+                scaled[i][j] *= -self.volume;
+            }
+        }
+        for n in 0..10 {
+            let force = times(&scaled, self.gradients[n]);
+            for i in 0..3 {
+                forces[n][i] += force[i];
+            }
+        }
+    }
+}
+
+/// Consistent masses between the nodes, kg: ρ∫NᵢNⱼ dV by a rule of degree 5, exact for straight
+/// edges (the products are of degree 4).
+pub fn consistent_mass(nodes: &[Vec3; 10], density: f64) -> [[f64; 10]; 10] {
+    let mut mass = [[0.0; 10]; 10];
+    for (l, weight) in mass_rule() {
+        let n = shape_functions(&l);
+        let share = density * weight * gradients_at(nodes, &l).1 / 6.0;
+        for i in 0..10 {
+            for j in 0..10 {
+                mass[i][j] += share * n[i] * n[j];
+            }
+        }
+    }
+    mass
+}
+
+/// Lumped masses, kg: the diagonal of the consistent matrix, scaled to the mass of the element
+/// (Hinton, Rock and Zienkiewicz). All are positive, where row sums would give corners negative
+/// ones; for straight edges a corner has 1/36 and a middle 4/27 of the element.
+pub fn lumped_mass(nodes: &[Vec3; 10], density: f64) -> [f64; 10] {
+    let consistent = consistent_mass(nodes, density);
+    let total: f64 = consistent.iter().flatten().sum();
+    let trace: f64 = (0..10).map(|i| consistent[i][i]).sum();
+    std::array::from_fn(|i| consistent[i][i] * total / trace)
+}
+
+/// Keast's fifteen points of degree 5 (Keast 1986, rule 6), barycentric; weights sum to 1.
+fn mass_rule() -> [([f64; 4], f64); 15] {
+    let root = 15f64.sqrt();
+    let mut rule = [([0.25; 4], 16.0 / 135.0); 15];
+    let mut at = 1;
+    for sign in [1.0, -1.0] {
+        let near = (7.0 - sign * root) / 34.0;
+        let far = (13.0 + 3.0 * sign * root) / 34.0;
+        let weight = (2665.0 + sign * 14.0 * root) / 37800.0;
+        for i in 0..4 {
+            let mut l = [near; 4];
+            l[i] = far;
+            rule[at] = (l, weight);
+            at += 1;
+        }
+    }
+    let (a, b) = ((10.0 - 2.0 * root) / 40.0, (10.0 + 2.0 * root) / 40.0);
+    for [i, j] in EDGES {
+        let mut l = [a; 4];
+        l[i] = b;
+        l[j] = b;
+        rule[at] = (l, 10.0 / 189.0);
+        at += 1;
+    }
+    rule
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ∫ of a monomial over a tetrahedron of unit volume: 6·a!b!c!d!/(a+b+c+d+3)!.
+    fn exact(powers: [u32; 4]) -> f64 {
+        let factorial = |n: u32| (1..=n).map(f64::from).product::<f64>();
+        6.0 * powers.iter().map(|&p| factorial(p)).product::<f64>()
+            / factorial(powers.iter().sum::<u32>() + 3)
+    }
+
+    #[test]
+    fn the_rules_integrate_what_they_promise() {
+        let rules: [(u32, Vec<([f64; 4], f64)>); 2] = [
+            (2, (0..POINTS).map(|point| (stiffness_rule(point), 0.25)).collect()),
+            (5, mass_rule().to_vec()),
+        ];
+        for (degree, rule) in rules {
+            for a in 0..=degree {
+                for b in 0..=degree - a {
+                    for c in 0..=degree - a - b {
+                        let powers = [a, b, c, 0];
+                        let sum: f64 = rule
+                            .iter()
+                            .map(|(l, w)| {
+                                w * (0..4).map(|i| l[i].powi(powers[i] as i32)).product::<f64>()
+                            })
+                            .sum();
+                        // Fifteen terms of at most 1, rounding only.
+                        assert!((sum - exact(powers)).abs() <= 1e-14, "{powers:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn lumped_masses_of_a_straight_element() {
+        let corners = [[0.0; 3], [1.0, 0.1, 0.0], [0.2, 1.3, 0.0], [0.0, 0.3, 0.9]];
+        let nodes: [Vec3; 10] = std::array::from_fn(|i| {
+            if i < 4 {
+                corners[i]
+            } else {
+                let [a, b] = EDGES[i - 4];
+                std::array::from_fn(|k| 0.5 * (corners[a][k] + corners[b][k]))
+            }
+        });
+        let masses = lumped_mass(&nodes, 6.0);
+        let total: f64 = masses.iter().sum();
+        let volume = Tet10::new(&nodes).unwrap().volume();
+        assert!((total - 6.0 * volume).abs() <= 1e-14 * total);
+        for (i, mass) in masses.iter().enumerate() {
+            let share = if i < 4 { 1.0 / 36.0 } else { 4.0 / 27.0 };
+            assert!((mass / total - share).abs() <= 1e-14, "{i}: {}", mass / total);
+        }
+    }
+}

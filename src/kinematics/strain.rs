@@ -1,0 +1,131 @@
+//! Deformation at a point of a solid, from the displacement gradient H.
+//!
+//! Strains are made of H itself, never of F − 1: at a strain of 1e-6 that keeps every digit, where
+//! FᵀF − 1 has lost ten. Plain inlined arithmetic without branches, so that a loop over lanes of
+//! elements becomes vector code with the same bits as the single call.
+
+use crate::kinematics::vec3::Vec3;
+
+/// Rows of a 3 × 3 matrix.
+pub type Mat3 = [[f64; 3]; 3];
+
+/// A symmetric tensor: xx, yy, zz, xy, yz, zx.
+pub type Sym3 = [f64; 6];
+
+/// The full matrix of a symmetric tensor.
+#[inline(always)]
+pub fn full(s: &Sym3) -> Mat3 {
+    [[s[0], s[3], s[5]], [s[3], s[1], s[4]], [s[5], s[4], s[2]]]
+}
+
+/// Deformation gradient F = 1 + H (4.2).
+#[inline(always)]
+pub fn deformation_gradient(h: &Mat3) -> Mat3 {
+    let mut f = *h;
+    for i in 0..3 {
+        f[i][i] += 1.0;
+    }
+    f
+}
+
+/// Right Cauchy–Green tensor C = FᵀF (2.2), for laws that want C itself; for strains use
+/// [`green_lagrange`].
+#[inline(always)]
+pub fn right_cauchy_green(h: &Mat3) -> Sym3 {
+    let e = green_lagrange(h);
+    [1.0 + 2.0 * e[0], 1.0 + 2.0 * e[1], 1.0 + 2.0 * e[2], 2.0 * e[3], 2.0 * e[4], 2.0 * e[5]]
+}
+
+/// Green–Lagrange strain (2.3), written in the displacement gradient: E = (H + Hᵀ + HᵀH)/2.
+#[inline(always)]
+pub fn green_lagrange(h: &Mat3) -> Sym3 {
+    let product = |i: usize, j: usize| h[0][i] * h[0][j] + h[1][i] * h[1][j] + h[2][i] * h[2][j];
+    [
+        h[0][0] + 0.5 * product(0, 0),
+        h[1][1] + 0.5 * product(1, 1),
+        h[2][2] + 0.5 * product(2, 2),
+        0.5 * (h[0][1] + h[1][0] + product(0, 1)),
+        0.5 * (h[1][2] + h[2][1] + product(1, 2)),
+        0.5 * (h[2][0] + h[0][2] + product(2, 0)),
+    ]
+}
+
+/// Change of [`green_lagrange`] when H changes by `change`: sym(Fᵀ dH).
+#[inline(always)]
+pub fn green_lagrange_change(h: &Mat3, change: &Mat3) -> Sym3 {
+    let f = deformation_gradient(h);
+    let half = |i: usize, j: usize| {
+        f[0][i] * change[0][j] + f[1][i] * change[1][j] + f[2][i] * change[2][j]
+    };
+    [
+        half(0, 0),
+        half(1, 1),
+        half(2, 2),
+        0.5 * (half(0, 1) + half(1, 0)),
+        0.5 * (half(1, 2) + half(2, 1)),
+        0.5 * (half(2, 0) + half(0, 2)),
+    ]
+}
+
+/// J − 1 with J = det F, every digit kept at small H.
+#[inline(always)]
+pub fn volume_change(h: &Mat3) -> f64 {
+    let minor = |i: usize, j: usize| h[i][i] * h[j][j] - h[i][j] * h[j][i];
+    h[0][0] + h[1][1] + h[2][2] + minor(0, 1) + minor(1, 2) + minor(2, 0) + determinant(h)
+}
+
+#[inline(always)]
+pub fn determinant(a: &Mat3) -> f64 {
+    a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1])
+        - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0])
+        + a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0])
+}
+
+/// First Piola–Kirchhoff stress P = F S, as S + H S.
+#[inline(always)]
+pub fn first_piola_kirchhoff(h: &Mat3, second: &Sym3) -> Mat3 {
+    let s = full(second);
+    let mut p = s;
+    for i in 0..3 {
+        for j in 0..3 {
+            p[i][j] += h[i][0] * s[0][j] + h[i][1] * s[1][j] + h[i][2] * s[2][j];
+        }
+    }
+    p
+}
+
+/// Cauchy stress T = F S Fᵀ/J (2.5).
+pub fn cauchy(h: &Mat3, second: &Sym3) -> Sym3 {
+    let f = deformation_gradient(h);
+    let p = first_piola_kirchhoff(h, second);
+    let per_volume = 1.0 / (1.0 + volume_change(h));
+    let entry = |i: usize, j: usize| {
+        per_volume * (p[i][0] * f[j][0] + p[i][1] * f[j][1] + p[i][2] * f[j][2])
+    };
+    [entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(2, 0)]
+}
+
+#[inline(always)]
+pub fn times(a: &Mat3, v: Vec3) -> Vec3 {
+    [
+        a[0][0] * v[0] + a[0][1] * v[1] + a[0][2] * v[2],
+        a[1][0] * v[0] + a[1][1] * v[1] + a[1][2] * v[2],
+        a[2][0] * v[0] + a[2][1] * v[1] + a[2][2] * v[2],
+    ]
+}
+
+/// von Mises stress of a Cauchy stress.
+pub fn von_mises(t: &Sym3) -> f64 {
+    let square = |x: f64| x * x;
+    (0.5 * (square(t[0] - t[1]) + square(t[1] - t[2]) + square(t[2] - t[0]))
+        + 3.0 * (square(t[3]) + square(t[4]) + square(t[5])))
+    .sqrt()
+}
+
+/// Principal values of a symmetric tensor, largest first.
+pub fn principal(t: &Sym3) -> [f64; 3] {
+    let values = nalgebra::Matrix3::from(full(t)).symmetric_eigenvalues();
+    let mut values = [values[0], values[1], values[2]];
+    values.sort_by(|a, b| b.total_cmp(a));
+    values
+}

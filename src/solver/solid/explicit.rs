@@ -1,0 +1,395 @@
+//! Explicit steps of a solid: central differences, or Runge–Kutta as in the source.
+
+use super::energy::{SolidEnergy, strain_energy};
+use super::model::{DampedMotion, Prescribed, SolidError, SolidModel, SolidProblem};
+use super::step_limit::{SolidStepLimit, step_limit};
+use super::tet4_blocks::Node;
+use crate::kinematics::vec3::{Vec3, add, cross, sub};
+use nalgebra::{Matrix3, Vector3};
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ExplicitMethod {
+    /// Order 2, one force evaluation a step; stable to ωh = 2.
+    #[default]
+    CentralDifferences,
+    /// Classical fourth order, four evaluations; stable to ωh = 2.83.
+    RungeKutta,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SolidStepping {
+    /// s; refused beyond the limit.
+    Fixed(f64),
+    /// This fraction of the stability limit at the start.
+    FractionOfLimit(f64),
+}
+
+/// Work done, for tests that pin it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SolidWork {
+    pub evaluations: u64,
+    pub elements: u64,
+}
+
+/// A solid in motion.
+pub struct ExplicitSolid {
+    pub model: SolidModel,
+    pub method: ExplicitMethod,
+    pub time: f64,
+    pub step_size: f64,
+    pub steps: u64,
+    pub limit: SolidStepLimit,
+    pub displacement: Vec<Node>,
+    /// At `time` for Runge–Kutta; half a step before it for central differences.
+    rate: Vec<Node>,
+    force: Vec<Node>,
+    /// Work of loads and drives, and of damping (≤ 0), since the start, J.
+    pub external_work: f64,
+    pub damping_work: f64,
+    pub work: SolidWork,
+    stages: Option<Box<Stages>>,
+}
+
+/// Room for the stages of Runge–Kutta.
+struct Stages {
+    displacement: Vec<Node>,
+    rate: Vec<Node>,
+    displacement_sum: Vec<Node>,
+    rate_sum: Vec<Node>,
+}
+
+impl ExplicitSolid {
+    /// Starts at t = 0 from given displacements and velocities (m, m/s), one for each node.
+    ///
+    /// # Errors
+    /// A step beyond the stability limit.
+    pub fn new(
+        model: SolidModel,
+        method: ExplicitMethod,
+        stepping: SolidStepping,
+        displacement: Vec<Vec3>,
+        velocity: Vec<Vec3>,
+    ) -> Result<ExplicitSolid, SolidError> {
+        let pad = |list: Vec<Vec3>| -> Vec<Node> {
+            list.into_iter().map(|v| [v[0], v[1], v[2], 0.0]).collect()
+        };
+        let displacement = pad(displacement);
+        let limit = step_limit(&model, &displacement, method);
+        let step_size = match stepping {
+            SolidStepping::FractionOfLimit(fraction) => fraction * limit.step,
+            SolidStepping::Fixed(step) => step,
+        };
+        if !(step_size > 0.0 && step_size <= limit.step) {
+            return Err(SolidError::Step {
+                step: step_size,
+                limit: limit.step,
+                element: limit.element,
+                at: limit.at,
+            });
+        }
+        let count = model.mass.len();
+        let stages = (method == ExplicitMethod::RungeKutta).then(|| {
+            let zeros = || vec![[0.0; 4]; count];
+            Box::new(Stages {
+                displacement: zeros(),
+                rate: zeros(),
+                displacement_sum: zeros(),
+                rate_sum: zeros(),
+            })
+        });
+        let mut solid = ExplicitSolid {
+            method,
+            time: 0.0,
+            step_size,
+            steps: 0,
+            limit,
+            displacement,
+            rate: pad(velocity),
+            force: vec![[0.0; 4]; count],
+            external_work: 0.0,
+            damping_work: 0.0,
+            work: SolidWork::default(),
+            stages,
+            model,
+        };
+        solid.impose();
+        if method == ExplicitMethod::CentralDifferences {
+            // Back by half a step, so that the first full kick ends half a step ahead.
+            solid.evaluate();
+            let acceleration = solid.acceleration();
+            for (rate, acceleration) in solid.rate.iter_mut().zip(acceleration) {
+                for i in 0..3 {
+                    rate[i] -= 0.5 * step_size * acceleration[i];
+                }
+            }
+        }
+        Ok(solid)
+    }
+
+    /// Writes prescribed displacements and their rates into the state.
+    fn impose(&mut self) {
+        for Prescribed { node, axis, profile } in &self.model.problem.prescribed {
+            self.displacement[*node as usize][*axis] = profile.value(self.time);
+            self.rate[*node as usize][*axis] = profile.rate(self.time);
+        }
+    }
+
+    /// Accelerations of the free components under the present forces and damping; zero elsewhere.
+    fn acceleration(&self) -> Vec<Vec3> {
+        let SolidModel { per_mass, problem, mass, .. } = &self.model;
+        let rigid = rigid_motion(problem, mass, &self.displacement, &self.rate);
+        (0..mass.len())
+            .map(|n| {
+                let rest = rigid.velocity(problem.nodes[n], self.displacement[n]);
+                [0, 1, 2].map(|i: usize| {
+                    if per_mass[n][i] == 0.0 {
+                        return 0.0;
+                    }
+                    self.force[n][i] * per_mass[n][i]
+                        - problem.damping * (self.rate[n][i] - rest[i])
+                })
+            })
+            .collect()
+    }
+
+    /// Forces of elements and loads at the present state.
+    fn evaluate(&mut self) {
+        self.force.fill([0.0; 4]);
+        self.model.add_internal_forces(&self.displacement, &mut self.force);
+        self.model.add_external_forces(self.time, &mut self.force);
+        self.work.evaluations += 1;
+        self.work.elements += self.model.problem.elements.len() as u64;
+    }
+
+    /// One step. `contacts` adds further forces on the nodes, given time and displacements; their
+    /// work is the caller's to book.
+    ///
+    /// # Errors
+    /// A value that is not finite.
+    pub fn step(
+        &mut self,
+        contacts: impl FnMut(f64, &[Node], &mut [Node]),
+    ) -> Result<(), SolidError> {
+        match self.method {
+            ExplicitMethod::CentralDifferences => self.central_step(contacts),
+            ExplicitMethod::RungeKutta => self.runge_kutta_step(contacts),
+        }
+        self.steps += 1;
+        self.watch()
+    }
+
+    /// v(t+h/2) = [(1 − αh/2) v(t−h/2) + h f/m] / (1 + αh/2), then u(t+h) = u(t) + h v(t+h/2).
+    fn central_step(&mut self, mut contacts: impl FnMut(f64, &[Node], &mut [Node])) {
+        self.evaluate();
+        contacts(self.time, &self.displacement, &mut self.force);
+        let h = self.step_size;
+        let half_damping = 0.5 * h * self.model.problem.damping;
+        let (keep, per_sum) = (1.0 - half_damping, 1.0 / (1.0 + half_damping));
+        self.external_work += 0.5 * h * self.load_power(self.time);
+        let next = self.time + h;
+        for Prescribed { node, axis, profile } in &self.model.problem.prescribed {
+            let (n, i) = (*node as usize, *axis);
+            let rate = (profile.value(next) - self.displacement[n][i]) / h;
+            let before = self.rate[n][i];
+            // What the drive adds to the other forces moves the node's mass.
+            let drive = self.model.mass[n] * (rate - before) / h - self.force[n][i];
+            self.external_work += 0.5 * h * drive * (rate + before);
+            self.rate[n][i] = rate;
+        }
+        let relative = self.model.problem.damped_motion == DampedMotion::RelativeToRigid;
+        if half_damping == 0.0 {
+            for (n, per_mass) in self.model.per_mass.iter().enumerate() {
+                for i in 0..4 {
+                    self.rate[n][i] += h * self.force[n][i] * per_mass[i];
+                    self.displacement[n][i] += h * self.rate[n][i];
+                }
+            }
+        } else {
+            let SolidModel { per_mass, problem, mass, .. } = &self.model;
+            let rigid = if relative {
+                rigid_motion(problem, mass, &self.displacement, &self.rate)
+            } else {
+                RigidMotion::default()
+            };
+            for n in 0..mass.len() {
+                let rest = rigid.velocity(problem.nodes[n], self.displacement[n]);
+                for i in 0..3 {
+                    let before = self.rate[n][i];
+                    if per_mass[n][i] != 0.0 {
+                        let excess = before - rest[i];
+                        let kick = h * self.force[n][i] * per_mass[n][i];
+                        self.rate[n][i] = rest[i] + (keep * excess + kick) * per_sum;
+                    }
+                    let mean = 0.5 * (before + self.rate[n][i]);
+                    self.damping_work -= h * problem.damping * mass[n] * mean * (mean - rest[i]);
+                    self.displacement[n][i] += h * self.rate[n][i];
+                }
+            }
+        }
+        self.external_work += 0.5 * h * self.load_power(self.time);
+        self.time = next;
+    }
+
+    /// Power of loads and gravity at the present rates, with their forces at time `t`, W.
+    fn load_power(&self, t: f64) -> f64 {
+        let mut power = 0.0;
+        for load in &self.model.problem.loads {
+            let factor = load.profile.value(t);
+            for (node, force) in &load.forces {
+                let rate = &self.rate[*node as usize];
+                power += factor * (force[0] * rate[0] + force[1] * rate[1] + force[2] * rate[2]);
+            }
+        }
+        let gravity = self.model.problem.gravity;
+        if gravity != [0.0; 3] {
+            for (rate, mass) in self.rate.iter().zip(&self.model.mass) {
+                power +=
+                    mass * (gravity[0] * rate[0] + gravity[1] * rate[1] + gravity[2] * rate[2]);
+            }
+        }
+        power
+    }
+
+    /// Classical fourth-order Runge–Kutta for displacements and rates (2.7).
+    fn runge_kutta_step(&mut self, mut contacts: impl FnMut(f64, &[Node], &mut [Node])) {
+        let mut stages = self.stages.take().expect("made for this method");
+        let (h, start) = (self.step_size, self.time);
+        stages.displacement.copy_from_slice(&self.displacement);
+        stages.rate.copy_from_slice(&self.rate);
+        stages.displacement_sum.copy_from_slice(&self.displacement);
+        stages.rate_sum.copy_from_slice(&self.rate);
+        for (weight, ahead) in [(1.0, 0.5), (2.0, 0.5), (2.0, 1.0), (1.0, 0.0)] {
+            self.evaluate();
+            contacts(self.time, &self.displacement, &mut self.force);
+            let share = h * weight / 6.0;
+            self.external_work += share * self.load_power(self.time);
+            let SolidModel { per_mass, problem, mass, .. } = &self.model;
+            let rigid = if problem.damping == 0.0 {
+                RigidMotion::default()
+            } else {
+                rigid_motion(problem, mass, &self.displacement, &self.rate)
+            };
+            for n in 0..mass.len() {
+                let rest = rigid.velocity(problem.nodes[n], self.displacement[n]);
+                for i in 0..3 {
+                    let rate = self.rate[n][i];
+                    let brake = problem.damping * (rate - rest[i]);
+                    self.damping_work -= share * mass[n] * brake * rate;
+                    let acceleration = if per_mass[n][i] == 0.0 {
+                        0.0
+                    } else {
+                        self.force[n][i] * per_mass[n][i] - brake
+                    };
+                    stages.displacement_sum[n][i] += share * rate;
+                    stages.rate_sum[n][i] += share * acceleration;
+                    self.displacement[n][i] = stages.displacement[n][i] + ahead * h * rate;
+                    self.rate[n][i] = stages.rate[n][i] + ahead * h * acceleration;
+                }
+            }
+            // Drives: what they add to the other forces at this stage.
+            for Prescribed { node, axis, profile } in &problem.prescribed {
+                let (n, i) = (*node as usize, *axis);
+                let drive = mass[n] * profile.acceleration(self.time) - self.force[n][i];
+                self.external_work += share * drive * profile.rate(self.time);
+            }
+            self.time = start + ahead * h;
+            self.impose();
+        }
+        self.time = start + h;
+        self.displacement.copy_from_slice(&stages.displacement_sum);
+        self.rate.copy_from_slice(&stages.rate_sum);
+        self.impose();
+        self.stages = Some(stages);
+    }
+
+    /// A value that is not finite spreads to the whole body; a look at every node finds it.
+    fn watch(&self) -> Result<(), SolidError> {
+        // Every few steps: the look costs as much as moving the nodes.
+        if !self.steps.is_multiple_of(16) {
+            return Ok(());
+        }
+        match self.displacement.iter().position(|u| !(u[0] + u[1] + u[2]).is_finite()) {
+            None => Ok(()),
+            Some(node) => Err(SolidError::NotFinite { node, time: self.time, step: self.steps }),
+        }
+    }
+
+    /// Velocities at `time`, m/s. Central differences need a force evaluation for it.
+    pub fn velocity(&mut self) -> Vec<Vec3> {
+        let ahead = match self.method {
+            ExplicitMethod::CentralDifferences => 0.5 * self.step_size,
+            ExplicitMethod::RungeKutta => 0.0,
+        };
+        self.evaluate();
+        let acceleration = self.acceleration();
+        self.rate
+            .iter()
+            .zip(acceleration)
+            .map(|(v, a)| [0, 1, 2].map(|i: usize| v[i] + ahead * a[i]))
+            .collect()
+    }
+
+    /// Energy at `time`, J. For central differences the kinetic part is ½ v(t−h/2)·m·v(t+h/2),
+    /// which together with the strain energy is what the method keeps.
+    pub fn energy(&mut self) -> SolidEnergy {
+        let strain = strain_energy(&self.model, &self.displacement);
+        self.evaluate();
+        let ahead = match self.method {
+            ExplicitMethod::CentralDifferences => self.step_size,
+            ExplicitMethod::RungeKutta => 0.0,
+        };
+        let mut kinetic = 0.0;
+        for (n, acceleration) in self.acceleration().into_iter().enumerate() {
+            for i in 0..3 {
+                let rate = self.rate[n][i];
+                kinetic += 0.5 * self.model.mass[n] * rate * (rate + ahead * acceleration[i]);
+            }
+        }
+        SolidEnergy { strain, kinetic }
+    }
+}
+
+/// A body's mean motion: that of a rigid body with the same momenta.
+#[derive(Clone, Copy, Debug, Default)]
+struct RigidMotion {
+    centre: Vec3,
+    translation: Vec3,
+    spin: Vec3,
+}
+
+impl RigidMotion {
+    fn velocity(&self, place: Vec3, displacement: Node) -> Vec3 {
+        let now = add(place, [displacement[0], displacement[1], displacement[2]]);
+        add(self.translation, cross(self.spin, sub(now, self.centre)))
+    }
+}
+
+/// The motion that damping leaves alone; none in an absolute frame.
+fn rigid_motion(
+    problem: &SolidProblem,
+    mass: &[f64],
+    displacement: &[Node],
+    rate: &[Node],
+) -> RigidMotion {
+    if problem.damped_motion == DampedMotion::Absolute {
+        return RigidMotion::default();
+    }
+    let vector = |v: &Node| Vector3::new(v[0], v[1], v[2]);
+    let place = |n: usize| Vector3::from(problem.nodes[n]) + vector(&displacement[n]);
+    let total: f64 = mass.iter().sum();
+    let mut centre = Vector3::zeros();
+    let mut translation = Vector3::zeros();
+    for (n, mass) in mass.iter().enumerate() {
+        centre += place(n) * (mass / total);
+        translation += vector(&rate[n]) * (mass / total);
+    }
+    let mut inertia = Matrix3::zeros();
+    let mut angular_momentum = Vector3::zeros();
+    for (n, &mass) in mass.iter().enumerate() {
+        let arm = place(n) - centre;
+        inertia += (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * mass;
+        angular_momentum += arm.cross(&vector(&rate[n])) * mass;
+    }
+    let spin = inertia.try_inverse().map_or(Vector3::zeros(), |inverse| inverse * angular_momentum);
+    RigidMotion { centre: centre.into(), translation: translation.into(), spin: spin.into() }
+}

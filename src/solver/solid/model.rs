@@ -1,0 +1,254 @@
+//! A flexible solid as plain data, and with everything precomputed.
+
+use super::tet4_blocks::Node;
+use super::{tet4_blocks, tet10_blocks};
+use crate::ch2_housing::linear_elastic::LinearElastic;
+use crate::elements::ElementError;
+use crate::elements::tet4::Tet4;
+use crate::elements::tet10::{self, Tet10};
+use crate::kinematics::vec3::Vec3;
+use crate::mesh::tet_mesh::Elements;
+use crate::solver::profile::Profile;
+use thiserror::Error;
+
+/// What mass-proportional damping brakes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DampedMotion {
+    /// All motion (2.7).
+    #[default]
+    Absolute,
+    /// Motion relative to the body's own mean translation and rotation, for a body that spins.
+    RelativeToRigid,
+}
+
+/// Forces on nodes that grow and fade together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Load {
+    /// Node, force in N at profile value 1.
+    pub forces: Vec<(u32, Vec3)>,
+    pub profile: Profile,
+}
+
+/// One displacement component whose course is given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prescribed {
+    pub node: u32,
+    pub axis: usize,
+    /// Displacement over time, m.
+    pub profile: Profile,
+}
+
+/// A solid of one material, SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolidProblem {
+    /// Undeformed places, m.
+    pub nodes: Vec<Vec3>,
+    pub elements: Elements,
+    pub material: LinearElastic,
+    /// kg/m³.
+    pub density: f64,
+    /// Damping force per mass and velocity, 1/s: the coefficient of (2.7) divided by the mass.
+    pub damping: f64,
+    pub damped_motion: DampedMotion,
+    /// Held or moved displacement components.
+    pub prescribed: Vec<Prescribed>,
+    pub loads: Vec<Load>,
+    /// m/s².
+    pub gravity: Vec3,
+}
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SolidError {
+    #[error("element {}: {source}; check the mesh", element + 1)]
+    Element { element: usize, source: ElementError },
+    #[error("density is {0} kg/m3; it must be positive and finite")]
+    Density(f64),
+    #[error("damping is {0} 1/s; it must be zero or positive, and finite")]
+    Damping(f64),
+    #[error("node {node} does not exist: the mesh has {count} nodes")]
+    NoSuchNode { node: u32, count: usize },
+    #[error("node {node} belongs to no element, so it has no mass; drop it from the mesh")]
+    NoMass { node: usize },
+    #[error("axis {axis} of node {node} is prescribed twice")]
+    PrescribedTwice { node: u32, axis: usize },
+    #[error(
+        "the step of {step:.3e} s is beyond the stability limit of {limit:.3e} s, set by element \
+         {} at {}; take a smaller step or a coarser mesh there", element + 1, place(at)
+    )]
+    Step { step: f64, limit: f64, element: usize, at: Vec3 },
+    #[error("node {node} has a value that is not finite at t = {time} s, step {step}")]
+    NotFinite { node: usize, time: f64, step: u64 },
+    #[error(
+        "element {} is turned inside out at t = {time} s, step {step} (volume ratio {ratio:.3})",
+        element + 1
+    )]
+    Inverted { element: usize, ratio: f64, time: f64, step: u64 },
+}
+
+fn place(at: &Vec3) -> String {
+    format!("({:.6}, {:.6}, {:.6}) m", at[0], at[1], at[2])
+}
+
+/// Elements as the force loop reads them.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Blocks {
+    Linear(Vec<tet4_blocks::Block>),
+    Quadratic(Vec<tet10_blocks::Block>),
+}
+
+/// A problem with everything precomputed.
+#[derive(Clone, Debug)]
+pub struct SolidModel {
+    pub problem: SolidProblem,
+    pub blocks: Blocks,
+    /// Lumped mass of each node, kg.
+    pub mass: Vec<f64>,
+    /// Reciprocal of the mass by component; zero where the displacement is prescribed.
+    pub per_mass: Vec<Node>,
+}
+
+/// The undeformed corners of an element.
+pub fn corners<const N: usize>(nodes: &[Vec3], element: &[u32; N]) -> [Vec3; N] {
+    element.map(|node| nodes[node as usize])
+}
+
+impl SolidModel {
+    /// # Errors
+    /// An element of no volume, a node without mass or out of range, a material constant out of
+    /// range.
+    pub fn new(problem: SolidProblem) -> Result<SolidModel, SolidError> {
+        if !(problem.density > 0.0 && problem.density.is_finite()) {
+            return Err(SolidError::Density(problem.density));
+        }
+        if !(problem.damping >= 0.0 && problem.damping.is_finite()) {
+            return Err(SolidError::Damping(problem.damping));
+        }
+        let nodes = &problem.nodes;
+        let count = nodes.len();
+        if let Some(&node) = problem.elements.all_nodes().iter().find(|n| **n as usize >= count) {
+            return Err(SolidError::NoSuchNode { node, count });
+        }
+        let mut mass = vec![0.0; count];
+        let at = |element| move |source| SolidError::Element { element, source };
+        let blocks = match &problem.elements {
+            Elements::Linear(list) => {
+                let mut built = Vec::with_capacity(list.len());
+                for (index, element) in list.iter().enumerate() {
+                    let tet = Tet4::new(&corners(nodes, element)).map_err(at(index))?;
+                    for node in element {
+                        mass[*node as usize] += tet.nodal_mass(problem.density);
+                    }
+                    built.push((tet, *element));
+                }
+                Blocks::Linear(tet4_blocks::blocks(built.into_iter()))
+            }
+            Elements::Quadratic(list) => {
+                let mut built = Vec::with_capacity(list.len());
+                for (index, element) in list.iter().enumerate() {
+                    let places = corners(nodes, element);
+                    let tet = Tet10::new(&places).map_err(at(index))?;
+                    let shares = tet10::lumped_mass(&places, problem.density);
+                    for (node, share) in element.iter().zip(shares) {
+                        mass[*node as usize] += share;
+                    }
+                    built.push((tet, *element));
+                }
+                Blocks::Quadratic(tet10_blocks::blocks(built.into_iter()))
+            }
+        };
+        if let Some(node) = mass.iter().position(|m| *m == 0.0) {
+            return Err(SolidError::NoMass { node });
+        }
+        let mut per_mass: Vec<Node> =
+            mass.iter().map(|m| [1.0 / m, 1.0 / m, 1.0 / m, 0.0]).collect();
+        for Prescribed { node, axis, .. } in &problem.prescribed {
+            let (node, axis) = (*node, *axis);
+            let entry =
+                per_mass.get_mut(node as usize).ok_or(SolidError::NoSuchNode { node, count })?;
+            if entry[axis] == 0.0 {
+                return Err(SolidError::PrescribedTwice { node, axis });
+            }
+            entry[axis] = 0.0;
+        }
+        for (node, _) in problem.loads.iter().flat_map(|load| &load.forces) {
+            if *node as usize >= count {
+                return Err(SolidError::NoSuchNode { node: *node, count });
+            }
+        }
+        Ok(SolidModel { problem, blocks, mass, per_mass })
+    }
+
+    /// Adds the forces of all elements on the nodes, N.
+    pub fn add_internal_forces(&self, displacement: &[Node], forces: &mut [Node]) {
+        let material = self.problem.material;
+        match &self.blocks {
+            Blocks::Linear(blocks) => {
+                tet4_blocks::add_forces(blocks, material, displacement, forces);
+            }
+            Blocks::Quadratic(blocks) => {
+                tet10_blocks::add_forces(blocks, material, displacement, forces);
+            }
+        }
+    }
+
+    /// Adds loads and gravity at time `t`, N.
+    pub fn add_external_forces(&self, t: f64, forces: &mut [Node]) {
+        for load in &self.problem.loads {
+            let factor = load.profile.value(t);
+            for (node, force) in &load.forces {
+                let sum = &mut forces[*node as usize];
+                for i in 0..3 {
+                    sum[i] += factor * force[i];
+                }
+            }
+        }
+        let gravity = self.problem.gravity;
+        if gravity != [0.0; 3] {
+            for (sum, mass) in forces.iter_mut().zip(&self.mass) {
+                for i in 0..3 {
+                    sum[i] += mass * gravity[i];
+                }
+            }
+        }
+    }
+
+    /// The same element by element with the scalar law, as the oracle of the blocks.
+    pub fn add_internal_forces_plain(&self, displacement: &[Node], forces: &mut [Node]) {
+        let material = self.problem.material;
+        let law = |strain: &_| material.second_piola_kirchhoff(strain);
+        let vector = |node: u32| {
+            let u = displacement[node as usize];
+            [u[0], u[1], u[2]]
+        };
+        let nodes = &self.problem.nodes;
+        let mut add = |node: u32, force: Vec3| {
+            for i in 0..3 {
+                forces[node as usize][i] += force[i];
+            }
+        };
+        let sound = "elements were checked when the model was made";
+        match &self.problem.elements {
+            Elements::Linear(list) => {
+                for element in list {
+                    let tet = Tet4::new(&corners(nodes, element)).expect(sound);
+                    let of = tet
+                        .nodal_forces(&crate::elements::tet4::relative(&element.map(vector)), law);
+                    for n in 0..3 {
+                        add(element[n], of[n]);
+                    }
+                    let last = [0, 1, 2].map(|i: usize| -(of[0][i] + of[1][i] + of[2][i]));
+                    add(element[3], last);
+                }
+            }
+            Elements::Quadratic(list) => {
+                for element in list {
+                    let tet = Tet10::new(&corners(nodes, element)).expect(sound);
+                    let of = tet.nodal_forces(&element.map(vector), law);
+                    for n in 0..10 {
+                        add(element[n], of[n]);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! The step that explicit methods can take: from the highest frequency of the whole body, found by
+//! Lanczos' power iteration, and the element with the highest frequency of its own.
+
+use super::explicit::ExplicitMethod;
+use super::model::{SolidModel, corners};
+use super::tet4_blocks::Node;
+use crate::elements::tet4::{Tet4, relative};
+use crate::elements::tet10::{self, Tet10};
+use crate::kinematics::vec3::Vec3;
+use crate::mesh::tet_mesh::Elements;
+
+/// Where the step of an explicit method ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolidStepLimit {
+    /// Largest stable step, s.
+    pub step: f64,
+    /// Highest angular frequency of the body, rad/s.
+    pub frequency: f64,
+    /// The element whose own highest frequency is the highest, counted from 0, that frequency
+    /// (rad/s; no body is faster than its fastest element), and its centre (m).
+    pub element: usize,
+    pub element_frequency: f64,
+    pub at: Vec3,
+    /// Products with the stiffness that it took.
+    pub products: usize,
+}
+
+/// ωh at which a method turns unstable without damping. For Runge–Kutta √8; damping moves either
+/// limit by less than αh.
+fn reach(method: ExplicitMethod) -> f64 {
+    match method {
+        ExplicitMethod::CentralDifferences => 2.0,
+        ExplicitMethod::RungeKutta => 8f64.sqrt(),
+    }
+}
+
+/// The largest stable step at given displacements.
+pub fn step_limit(
+    model: &SolidModel,
+    displacement: &[Node],
+    method: ExplicitMethod,
+) -> SolidStepLimit {
+    let elements = ElementTangents::new(model, displacement);
+    let (frequency, products) = highest_frequency(model, &elements);
+    let (element, element_frequency) = elements.fastest();
+    let nodes = model.problem.elements.corners(element);
+    let at = [0, 1, 2]
+        .map(|i: usize| nodes.iter().map(|n| 0.25 * model.problem.nodes[*n as usize][i]).sum());
+    let step = reach(method) / frequency;
+    SolidStepLimit { step, frequency, element, element_frequency, at, products }
+}
+
+/// Everything a product with the tangent stiffness needs.
+struct ElementTangents<'a> {
+    model: &'a SolidModel,
+    displacement: &'a [Node],
+    linear: Vec<Tet4>,
+    quadratic: Vec<Tet10>,
+}
+
+impl<'a> ElementTangents<'a> {
+    fn new(model: &'a SolidModel, displacement: &'a [Node]) -> Self {
+        let nodes = &model.problem.nodes;
+        let sound = "elements were checked when the model was made";
+        let (mut linear, mut quadratic) = (Vec::new(), Vec::new());
+        match &model.problem.elements {
+            Elements::Linear(list) => {
+                linear = list.iter().map(|e| Tet4::new(&corners(nodes, e)).expect(sound)).collect();
+            }
+            Elements::Quadratic(list) => {
+                quadratic =
+                    list.iter().map(|e| Tet10::new(&corners(nodes, e)).expect(sound)).collect();
+            }
+        }
+        ElementTangents { model, displacement, linear, quadratic }
+    }
+
+    /// Nodes of an element and its forces against a change of displacement, −K_e x.
+    fn product(&self, element: usize, x: impl Fn(usize, u32) -> Vec3) -> Product {
+        let law = |strain: &_| self.model.problem.material.second_piola_kirchhoff(strain);
+        let at = |node: u32| {
+            let u = self.displacement[node as usize];
+            [u[0], u[1], u[2]]
+        };
+        match &self.model.problem.elements {
+            Elements::Linear(list) => {
+                let nodes = list[element];
+                let change = relative(&[0, 1, 2, 3].map(|n: usize| x(n, nodes[n])));
+                let [a, b, c] =
+                    self.linear[element].force_change(&relative(&nodes.map(at)), &change, law);
+                let last = [0, 1, 2].map(|i: usize| -(a[i] + b[i] + c[i]));
+                let mut forces = [[0.0; 3]; 10];
+                forces[..4].copy_from_slice(&[a, b, c, last]);
+                Product { count: 4, forces }
+            }
+            Elements::Quadratic(list) => {
+                let nodes = list[element];
+                let mut change = [[0.0; 3]; 10];
+                for n in 0..10 {
+                    change[n] = x(n, nodes[n]);
+                }
+                let forces = self.quadratic[element].force_change(&nodes.map(at), &change, law);
+                Product { count: 10, forces }
+            }
+        }
+    }
+
+    /// The element with the highest frequency under its own lumped mass, by power iteration; a few
+    /// percent do for naming it.
+    fn fastest(&self) -> (usize, f64) {
+        let problem = &self.model.problem;
+        let mut best = (0, 0.0);
+        for element in 0..problem.elements.len() {
+            let masses = match &problem.elements {
+                Elements::Linear(_) => {
+                    let mut masses = [0.0; 10];
+                    masses[..4].fill(self.linear[element].nodal_mass(problem.density));
+                    masses
+                }
+                Elements::Quadratic(list) => {
+                    tet10::lumped_mass(&corners(&problem.nodes, &list[element]), problem.density)
+                }
+            };
+            let mut x = start_vector();
+            let mut square = 0.0;
+            for _ in 0..20 {
+                let Product { count, forces } = self.product(element, |n, _| x[n]);
+                let mut largest = 0.0f64;
+                for n in 0..count {
+                    for i in 0..3 {
+                        x[n][i] = -forces[n][i] / masses[n];
+                        largest = largest.max(x[n][i].abs());
+                    }
+                }
+                square = largest;
+                for v in x.iter_mut().flatten() {
+                    *v /= largest;
+                }
+            }
+            if square > best.1 {
+                best = (element, square);
+            }
+        }
+        (best.0, best.1.sqrt())
+    }
+}
+
+struct Product {
+    count: usize,
+    forces: [Vec3; 10],
+}
+
+/// Some motion of an element with a share of everything.
+fn start_vector() -> [Vec3; 10] {
+    let mut x = [[0.0; 3]; 10];
+    for (k, v) in x.iter_mut().flatten().enumerate() {
+        *v = libm::sin(1.0 + 2.7 * k as f64);
+    }
+    x
+}
+
+/// Highest angular frequency of the body, rad/s, by Lanczos' recurrence from a fixed start, ended
+/// when it settles to 1e-4; and the products with the stiffness that it took.
+fn highest_frequency(model: &SolidModel, elements: &ElementTangents) -> (f64, usize) {
+    const MOST: usize = 200;
+    let root: Vec<[f64; 3]> =
+        model.per_mass.iter().map(|m| [m[0].sqrt(), m[1].sqrt(), m[2].sqrt()]).collect();
+    let count = root.len();
+    let dot = |a: &[Vec3], b: &[Vec3]| -> f64 {
+        a.iter().zip(b).map(|(a, b)| a[0] * b[0] + a[1] * b[1] + a[2] * b[2]).sum()
+    };
+    // A checkered motion: the fastest modes move neighbours against each other.
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    let mut now: Vec<Vec3> = (0..count)
+        .map(|n| [0, 1, 2].map(|i: usize| if root[n][i] == 0.0 { 0.0 } else { random() }))
+        .collect();
+    let length = dot(&now, &now).sqrt();
+    if length == 0.0 {
+        return (f64::MIN_POSITIVE, 0);
+    }
+    now.iter_mut().flatten().for_each(|v| *v /= length);
+    let mut before = vec![[0.0; 3]; count];
+    let (mut diagonal, mut beside): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    let mut largest = 0.0;
+    for product in 1..=MOST {
+        let mut next = vec![[0.0; 3]; count];
+        for element in 0..model.problem.elements.len() {
+            let nodes = model.problem.elements.nodes(element);
+            let Product { count, forces } = elements.product(element, |_, node| {
+                let (x, r) = (now[node as usize], root[node as usize]);
+                [x[0] * r[0], x[1] * r[1], x[2] * r[2]]
+            });
+            for n in 0..count {
+                let (sum, r) = (&mut next[nodes[n] as usize], root[nodes[n] as usize]);
+                for i in 0..3 {
+                    sum[i] -= forces[n][i] * r[i];
+                }
+            }
+        }
+        let alpha = dot(&next, &now);
+        let last = beside.last().copied().unwrap_or(0.0);
+        for n in 0..count {
+            for i in 0..3 {
+                next[n][i] -= alpha * now[n][i] + last * before[n][i];
+            }
+        }
+        diagonal.push(alpha);
+        let found = largest_of_tridiagonal(&diagonal, &beside);
+        let beta = dot(&next, &next).sqrt();
+        let settled = (found - largest).abs() <= 1e-5 * found && product >= 8;
+        largest = found;
+        if settled || beta <= 1e-12 * found {
+            return (largest.sqrt(), product);
+        }
+        beside.push(beta);
+        next.iter_mut().flatten().for_each(|v| *v /= beta);
+        before = std::mem::replace(&mut now, next);
+    }
+    (largest.sqrt(), MOST)
+}
+
+/// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on the signs of its pivots.
+fn largest_of_tridiagonal(diagonal: &[f64], beside: &[f64]) -> f64 {
+    let bound = |i: usize| {
+        let left = if i > 0 { beside[i - 1].abs() } else { 0.0 };
+        let right = beside.get(i).map_or(0.0, |b| b.abs());
+        diagonal[i] + left + right
+    };
+    let mut high = (0..diagonal.len()).map(bound).fold(f64::MIN, f64::max);
+    let mut low = diagonal.iter().copied().fold(f64::MIN, f64::max);
+    let above_all = |x: f64| {
+        let mut pivot = diagonal[0] - x;
+        for i in 1..diagonal.len() {
+            if pivot >= 0.0 {
+                return false;
+            }
+            pivot = diagonal[i] - x - beside[i - 1] * beside[i - 1] / pivot;
+        }
+        pivot < 0.0
+    };
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if above_all(middle) { high = middle } else { low = middle }
+    }
+    high
+}

@@ -1,0 +1,341 @@
+//! Laws of explicit steps of a solid.
+
+use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
+use bearing_dynamics::kinematics::vec3::{Vec3, cross};
+use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
+use bearing_dynamics::solver::solid::energy::strain_energy;
+use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solver::solid::model::{DampedMotion, SolidError, SolidModel, SolidProblem};
+use proptest::prelude::*;
+
+const DENSITY: f64 = 7800.0;
+
+/// A block of a × b × c cubes of side 10 mm, cut into six tetrahedra each, its inner nodes shaken.
+fn block(cells: [usize; 3], order: Order) -> SolidProblem {
+    let [a, b, c] = cells;
+    let id = |i: usize, j: usize, k: usize| ((i * (b + 1) + j) * (c + 1) + k) as u32;
+    let mut nodes = Vec::new();
+    for i in 0..=a {
+        for j in 0..=b {
+            for k in 0..=c {
+                let shake = |seed: f64| 0.1 * (seed * (1 + i + 7 * j + 31 * k) as f64).sin();
+                nodes.push([
+                    0.01 * (i as f64 + shake(12.9)),
+                    0.01 * (j as f64 + shake(78.2)),
+                    0.01 * (k as f64 + shake(37.7)),
+                ]);
+            }
+        }
+    }
+    let mut linear = Vec::new();
+    for i in 0..a {
+        for j in 0..b {
+            for k in 0..c {
+                let corner = [
+                    id(i, j, k),
+                    id(i + 1, j, k),
+                    id(i + 1, j + 1, k),
+                    id(i, j + 1, k),
+                    id(i, j, k + 1),
+                    id(i + 1, j, k + 1),
+                    id(i + 1, j + 1, k + 1),
+                    id(i, j + 1, k + 1),
+                ];
+                for tet in [
+                    [0, 1, 2, 6],
+                    [0, 2, 3, 6],
+                    [0, 3, 7, 6],
+                    [0, 7, 4, 6],
+                    [0, 4, 5, 6],
+                    [0, 5, 1, 6],
+                ] {
+                    linear.push(tet.map(|n: usize| corner[n]));
+                }
+            }
+        }
+    }
+    let mesh = bearing_dynamics::mesh::TetMesh::new(nodes, Elements::Linear(linear)).unwrap();
+    let mesh = match order {
+        Order::Linear => mesh,
+        Order::Quadratic => bearing_dynamics::mesh::quadratic::elevate(&mesh, &[]).unwrap().mesh,
+    };
+    SolidProblem {
+        nodes: mesh.nodes,
+        elements: mesh.elements,
+        material: LinearElastic::new(2.1e11, 0.3).unwrap(),
+        density: DENSITY,
+        damping: 0.0,
+        damped_motion: DampedMotion::Absolute,
+        prescribed: Vec::new(),
+        loads: Vec::new(),
+        gravity: [0.0; 3],
+    }
+}
+
+fn still(problem: &SolidProblem) -> Vec<Vec3> {
+    vec![[0.0; 3]; problem.nodes.len()]
+}
+
+/// A smooth deformation of some size.
+fn bent(problem: &SolidProblem, size: f64) -> Vec<Vec3> {
+    problem
+        .nodes
+        .iter()
+        .map(|x| {
+            [
+                size * ((40.0 * x[0]).sin() * 0.01 + 0.3 * x[1]),
+                size * (0.2 * x[2] - 0.4 * x[0] + 20.0 * x[0] * x[1]),
+                size * (0.3 * x[2] + 10.0 * x[1] * x[2]),
+            ]
+        })
+        .collect()
+}
+
+fn pad(list: &[Vec3]) -> Vec<[f64; 4]> {
+    list.iter().map(|v| [v[0], v[1], v[2], 0.0]).collect()
+}
+
+#[test]
+fn blocks_and_the_plain_loop_give_the_same_bits() {
+    for order in [Order::Linear, Order::Quadratic] {
+        // 3 · 2 · 2 · 6 = 72 elements and 30: the latter does not fill its last block.
+        for cells in [[3, 2, 2], [5, 1, 1]] {
+            let model = SolidModel::new(block(cells, order)).unwrap();
+            let moved = pad(&bent(&model.problem, 0.05));
+            let mut lanes = vec![[0.0; 4]; moved.len()];
+            let mut plain = lanes.clone();
+            model.add_internal_forces(&moved, &mut lanes);
+            model.add_internal_forces_plain(&moved, &mut plain);
+            for (a, b) in lanes.iter().zip(&plain) {
+                for i in 0..3 {
+                    assert!(a[i].to_bits() == b[i].to_bits(), "{order:?} {cells:?} {a:?} {b:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn forces_are_minus_the_slope_of_the_energy() {
+    for order in [Order::Linear, Order::Quadratic] {
+        let model = SolidModel::new(block([2, 1, 1], order)).unwrap();
+        let moved = pad(&bent(&model.problem, 0.1));
+        let mut forces = vec![[0.0; 4]; moved.len()];
+        model.add_internal_forces(&moved, &mut forces);
+        let scale = forces.iter().flatten().fold(0.0f64, |a, b| a.max(b.abs()));
+        let step = 1e-6 * 0.01;
+        for node in 0..moved.len() {
+            for i in 0..3 {
+                let at = |by: f64| {
+                    let mut shifted = moved.clone();
+                    shifted[node][i] += by;
+                    strain_energy(&model, &shifted)
+                };
+                let slope = (at(step) - at(-step)) / (2.0 * step);
+                let error = (forces[node][i] + slope).abs() / scale;
+                // Rounding of energies of about 1e-16 · 3 · W/(h F L); seen 1e-9.
+                assert!(error <= 1e-8, "{order:?} {node} {i}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn free_fall() {
+    for order in [Order::Linear, Order::Quadratic] {
+        for method in [ExplicitMethod::CentralDifferences, ExplicitMethod::RungeKutta] {
+            let mut problem = block([2, 2, 1], order);
+            problem.gravity = [0.3, -2.0, -9.81];
+            let start = still(&problem);
+            let model = SolidModel::new(problem).unwrap();
+            let volume: f64 = model.mass.iter().sum::<f64>() / DENSITY;
+            let mut solid = ExplicitSolid::new(
+                model,
+                method,
+                SolidStepping::FractionOfLimit(0.5),
+                start.clone(),
+                start,
+            )
+            .unwrap();
+            for _ in 0..100 {
+                solid.step(|_, _, _| {}).unwrap();
+            }
+            let t = solid.time;
+            for (velocity, place) in solid.velocity().iter().zip(solid.displacement.clone()) {
+                for (i, g) in [0.3, -2.0, -9.81].into_iter().enumerate() {
+                    assert!((velocity[i] / (g * t) - 1.0).abs() <= 1e-12);
+                    assert!((place[i] / (0.5 * g * t * t) - 1.0).abs() <= 1e-12, "{method:?}");
+                }
+            }
+            assert!(volume > 0.0);
+        }
+    }
+}
+
+#[test]
+fn energy_is_kept() {
+    for order in [Order::Linear, Order::Quadratic] {
+        for (method, fraction, limit) in [
+            (ExplicitMethod::CentralDifferences, 0.5, 1e-9),
+            // Runge–Kutta damps (ωh)⁶/72 a step of a mode: 9e-7 over this run of the fastest.
+            (ExplicitMethod::RungeKutta, 0.02, 1e-6),
+        ] {
+            let problem = block([4, 1, 1], order);
+            // So small that the body is linear, where central differences keep their energy exactly.
+            let (start, rest) = (bent(&problem, 1e-9), still(&problem));
+            let mut solid = ExplicitSolid::new(
+                SolidModel::new(problem).unwrap(),
+                method,
+                SolidStepping::FractionOfLimit(fraction),
+                start,
+                rest,
+            )
+            .unwrap();
+            let first = solid.energy();
+            let first = first.strain + first.kinetic;
+            let mut worst = 0.0f64;
+            for _ in 0..2000 {
+                solid.step(|_, _, _| {}).unwrap();
+            }
+            let now = solid.energy();
+            worst = worst.max(((now.strain + now.kinetic) / first - 1.0).abs());
+            println!("{order:?} {method:?} {worst:e} limit {:?}", solid.limit);
+            assert!(worst <= limit, "{order:?} {method:?}: {worst}");
+        }
+    }
+}
+
+#[test]
+fn steps_end_where_the_limit_says() {
+    for order in [Order::Linear, Order::Quadratic] {
+        for method in [ExplicitMethod::CentralDifferences, ExplicitMethod::RungeKutta] {
+            let problem = block([4, 1, 1], order);
+            let rest = still(&problem);
+            let start = bent(&problem, 1e-9);
+            let grows = |ratio: f64| {
+                let model = SolidModel::new(problem.clone()).unwrap();
+                let mut solid = ExplicitSolid::new(
+                    model,
+                    method,
+                    SolidStepping::FractionOfLimit(1.0),
+                    start.clone(),
+                    rest.clone(),
+                )
+                .unwrap();
+                solid.step_size *= ratio;
+                let first = solid.energy().strain;
+                for _ in 0..3000 {
+                    if solid.step(|_, _, _| {}).is_err() {
+                        return true;
+                    }
+                }
+                let now = strain_energy(&solid.model, &solid.displacement);
+                !(now <= 100.0 * first)
+            };
+            assert!(!grows(0.99), "{order:?} {method:?}");
+            assert!(grows(1.01), "{order:?} {method:?}");
+        }
+    }
+}
+
+#[test]
+fn a_step_beyond_the_limit_is_refused() {
+    let problem = block([1, 1, 1], Order::Linear);
+    let rest = still(&problem);
+    let make = |stepping| {
+        let model = SolidModel::new(problem.clone()).unwrap();
+        let method = ExplicitMethod::CentralDifferences;
+        ExplicitSolid::new(model, method, stepping, rest.clone(), rest.clone())
+    };
+    let limit = make(SolidStepping::FractionOfLimit(0.9)).unwrap().limit.step;
+    assert!(make(SolidStepping::Fixed(0.99 * limit)).is_ok());
+    assert!(matches!(make(SolidStepping::Fixed(1.01 * limit)), Err(SolidError::Step { .. })));
+    assert!(make(SolidStepping::Fixed(f64::NAN)).is_err());
+}
+
+/// A body that spins about X as if rigid, stretched by nothing.
+#[test]
+fn damping_leaves_rotation_alone_where_asked() {
+    for (damped_motion, kept) in
+        [(DampedMotion::RelativeToRigid, 1.0), (DampedMotion::Absolute, f64::NAN)]
+    {
+        let mut problem = block([2, 2, 2], Order::Linear);
+        problem.damping = 1e4;
+        problem.damped_motion = damped_motion;
+        let spin = [200.0, 0.0, 0.0];
+        let velocity: Vec<Vec3> = problem.nodes.iter().map(|x| cross(spin, *x)).collect();
+        let nodes = problem.nodes.clone();
+        let mass = SolidModel::new(problem.clone()).unwrap().mass;
+        let momentum = |displacement: &[[f64; 4]], velocity: &[Vec3]| -> f64 {
+            (0..mass.len())
+                .map(|n| {
+                    let place = [0, 1, 2].map(|i: usize| nodes[n][i] + displacement[n][i]);
+                    mass[n] * cross(place, velocity[n])[0]
+                })
+                .sum()
+        };
+        let mut solid = ExplicitSolid::new(
+            SolidModel::new(problem).unwrap(),
+            ExplicitMethod::CentralDifferences,
+            SolidStepping::FractionOfLimit(0.5),
+            vec![[0.0; 3]; nodes.len()],
+            velocity.clone(),
+        )
+        .unwrap();
+        let first = momentum(&solid.displacement, &velocity);
+        while solid.time < 1e-4 {
+            solid.step(|_, _, _| {}).unwrap();
+        }
+        let now = solid.velocity();
+        let last = momentum(&solid.displacement, &now);
+        // Damping in the body's own frame has no net force and moment; in space it brakes by
+        // e^(−αt).
+        let expected = if kept == 1.0 { first } else { first * (-1e4 * solid.time).exp() };
+        assert!((last / expected - 1.0).abs() <= 1e-3, "{damped_motion:?} {last} {expected}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// A turn of the deformed body turns its forces.
+    #[test]
+    fn forces_turn_with_the_body(angles in prop::array::uniform3(-3.0f64..3.0), size in 0.0f64..0.2) {
+        for order in [Order::Linear, Order::Quadratic] {
+            let model = SolidModel::new(block([2, 1, 1], order)).unwrap();
+            let moved = bent(&model.problem, size);
+            let turn = nalgebra::Rotation3::from_euler_angles(angles[0], angles[1], angles[2]);
+            let turned: Vec<Vec3> = (0..moved.len())
+                .map(|n| {
+                    let x = nalgebra::Vector3::from(model.problem.nodes[n]);
+                    (turn * (x + nalgebra::Vector3::from(moved[n])) - x).into()
+                })
+                .collect();
+            let forces = |moved: &[Vec3]| {
+                let mut sum = vec![[0.0; 4]; moved.len()];
+                model.add_internal_forces(&pad(moved), &mut sum);
+                sum
+            };
+            let (before, after) = (forces(&moved), forces(&turned));
+            let mut sum = [0.0; 3];
+            let mut moment = [0.0; 3];
+            for n in 0..before.len() {
+                let b = nalgebra::Vector3::new(before[n][0], before[n][1], before[n][2]);
+                let a = nalgebra::Vector3::new(after[n][0], after[n][1], after[n][2]);
+                // Stresses of E times rounding of strains (1e-16 of a displacement gradient of up
+                // to 2), over faces of 1e-4 m².
+                prop_assert!((turn * b - a).norm() <= 2e11 * 1e-4 * 1e-14, "{}", (turn * b - a).norm());
+                let place: Vec3 = std::array::from_fn(|i| model.problem.nodes[n][i] + turned[n][i]);
+                let arm = cross(place, a.into());
+                for i in 0..3 {
+                    sum[i] += a[i];
+                    moment[i] += arm[i];
+                }
+            }
+            for i in 0..3 {
+                prop_assert!(sum[i].abs() <= 2e11 * 1e-4 * 1e-14);
+                prop_assert!(moment[i].abs() <= 2e11 * 1e-6 * 1e-14);
+            }
+        }
+    }
+}
