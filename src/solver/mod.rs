@@ -5,6 +5,7 @@ pub mod channels;
 pub mod dynamics;
 pub mod plan;
 pub mod profile;
+pub mod sparse;
 mod static_search;
 mod static_start;
 pub mod solid;

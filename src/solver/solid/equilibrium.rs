@@ -1,0 +1,209 @@
+//! Static equilibrium of a solid by Newton's method.
+
+use super::model::{Prescribed, SolidModel};
+use super::tangent::{PRESCRIBED, Unknowns, pattern, stiffness};
+use crate::kinematics::vec3::Vec3;
+use crate::solver::sparse::{Factor, FactorError, SymmetricMatrix};
+use thiserror::Error;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EquilibriumOptions {
+    /// Largest unbalanced force, as a fraction of the largest force at work.
+    pub tolerance: f64,
+    pub most_iterations: usize,
+    /// Load steps are halved until they converge, down to this fraction of the load.
+    pub smallest_load_step: f64,
+}
+
+impl Default for EquilibriumOptions {
+    fn default() -> Self {
+        EquilibriumOptions {
+            // Rounding of nodal forces of stiff elements under small loads leaves about 1e-11.
+            tolerance: 1e-10,
+            most_iterations: 30,
+            smallest_load_step: 1.0 / 1024.0,
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum EquilibriumError {
+    #[error(transparent)]
+    Factor(#[from] FactorError),
+    #[error(
+        "no equilibrium found: at {fraction} of the load the unbalanced force is {residual:.3e} N \
+         of {scale:.3e} N after {iterations} iterations; apply less load"
+    )]
+    NotConverged { fraction: f64, residual: f64, scale: f64, iterations: usize },
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Equilibrium {
+    /// m, one for each node.
+    pub displacement: Vec<Vec3>,
+    /// Forces of the supports on the nodes, N; zero on free components.
+    pub reactions: Vec<Vec3>,
+    /// Largest unbalanced force over the largest force at work.
+    pub residual: f64,
+    pub iterations: usize,
+    pub factorisations: usize,
+}
+
+/// Equilibrium under the loads and prescribed displacements at time `t`.
+///
+/// # Errors
+/// A body that is free to move, or no convergence.
+pub fn equilibrium(
+    model: &SolidModel,
+    t: f64,
+    options: &EquilibriumOptions,
+) -> Result<Equilibrium, EquilibriumError> {
+    let mut newton = Newton::new(model, t, options);
+    let (mut reached, mut step) = (0.0, 1.0);
+    while reached < 1.0 {
+        let wanted = f64::min(reached + step, 1.0);
+        let before = newton.displacement.clone();
+        match newton.converge(wanted) {
+            Ok(()) => reached = wanted,
+            Err(error) if 0.5 * step < options.smallest_load_step => return Err(error),
+            Err(EquilibriumError::Factor(error)) if newton.untouched => return Err(error.into()),
+            Err(_) => {
+                newton.displacement = before;
+                newton.stale = true;
+                step *= 0.5;
+            }
+        }
+    }
+    Ok(newton.finish())
+}
+
+struct Newton<'a> {
+    model: &'a SolidModel,
+    options: &'a EquilibriumOptions,
+    t: f64,
+    unknowns: Unknowns,
+    matrix: SymmetricMatrix,
+    factor: Option<Factor>,
+    /// Whether the factors are of another state than the last one solved for.
+    stale: bool,
+    /// Whether nothing has been factorised yet.
+    untouched: bool,
+    displacement: Vec<Vec3>,
+    external: Vec<[f64; 4]>,
+    residual: f64,
+    iterations: usize,
+    factorisations: usize,
+}
+
+impl<'a> Newton<'a> {
+    fn new(model: &'a SolidModel, t: f64, options: &'a EquilibriumOptions) -> Self {
+        let unknowns = Unknowns::new(model);
+        let mut external = vec![[0.0; 4]; model.mass.len()];
+        model.add_external_forces(t, &mut external);
+        Newton {
+            matrix: pattern(&model.problem, &unknowns),
+            unknowns,
+            factor: None,
+            stale: true,
+            untouched: true,
+            displacement: vec![[0.0; 3]; model.mass.len()],
+            external,
+            residual: f64::NAN,
+            iterations: 0,
+            factorisations: 0,
+            model,
+            options,
+            t,
+        }
+    }
+
+    /// Internal forces at the present displacements, N.
+    fn internal(&self) -> Vec<[f64; 4]> {
+        let padded: Vec<_> = self.displacement.iter().map(|u| [u[0], u[1], u[2], 0.0]).collect();
+        let mut forces = vec![[0.0; 4]; padded.len()];
+        self.model.add_internal_forces(&padded, &mut forces);
+        forces
+    }
+
+    /// Newton iterations at a fraction of the load. The factors of an earlier state are kept as
+    /// long as they bring the residual down tenfold a step.
+    fn converge(&mut self, fraction: f64) -> Result<(), EquilibriumError> {
+        for Prescribed { node, axis, profile } in &self.model.problem.prescribed {
+            self.displacement[*node as usize][*axis] = fraction * profile.value(self.t);
+        }
+        let mut last = f64::INFINITY;
+        for iteration in 0..=self.options.most_iterations {
+            let internal = self.internal();
+            let mut right = vec![0.0; self.unknowns.count];
+            let (mut largest, mut scale) = (0.0f64, 0.0f64);
+            for (n, of) in self.unknowns.of.iter().enumerate() {
+                for i in 0..3 {
+                    scale = scale.max(internal[n][i].abs()).max(self.external[n][i].abs());
+                    if of[i] != PRESCRIBED {
+                        let unbalanced = internal[n][i] + fraction * self.external[n][i];
+                        right[of[i]] = unbalanced;
+                        largest = largest.max(unbalanced.abs());
+                    }
+                }
+            }
+            self.residual = if scale > 0.0 { largest / scale } else { 0.0 };
+            if self.residual <= self.options.tolerance {
+                return Ok(());
+            }
+            let diverged = !largest.is_finite() || (iteration > 3 && largest > 1e3 * last);
+            if iteration == self.options.most_iterations || diverged {
+                return Err(EquilibriumError::NotConverged {
+                    fraction,
+                    residual: largest,
+                    scale,
+                    iterations: iteration,
+                });
+            }
+            if self.stale || !(largest <= 0.1 * last) {
+                self.refactor()?;
+            }
+            last = largest;
+            self.factor.as_ref().expect("factorised above").solve(&mut right);
+            for (n, of) in self.unknowns.of.iter().enumerate() {
+                for i in 0..3 {
+                    if of[i] != PRESCRIBED {
+                        self.displacement[n][i] += right[of[i]];
+                    }
+                }
+            }
+            self.iterations += 1;
+        }
+        unreachable!("the loop returns at its last iteration")
+    }
+
+    fn refactor(&mut self) -> Result<(), EquilibriumError> {
+        stiffness(self.model, &self.unknowns, &self.displacement, &mut self.matrix);
+        match &mut self.factor {
+            Some(factor) => factor.refactor(&self.matrix)?,
+            None => self.factor = Some(Factor::new(&self.matrix)?),
+        }
+        self.untouched = false;
+        self.stale = false;
+        self.factorisations += 1;
+        Ok(())
+    }
+
+    fn finish(self) -> Equilibrium {
+        let internal = self.internal();
+        let reactions = (0..self.displacement.len())
+            .map(|n| {
+                [0, 1, 2].map(|i: usize| {
+                    let held = self.unknowns.of[n][i] == PRESCRIBED;
+                    if held { -internal[n][i] - self.external[n][i] } else { 0.0 }
+                })
+            })
+            .collect();
+        Equilibrium {
+            reactions,
+            displacement: self.displacement,
+            residual: self.residual,
+            iterations: self.iterations,
+            factorisations: self.factorisations,
+        }
+    }
+}

@@ -1,0 +1,278 @@
+//! Lowest natural frequencies and mode shapes of a solid: Lanczos' method on the shifted and
+//! inverted problem.
+
+use super::model::SolidModel;
+use super::tangent::{MassMatrix, PRESCRIBED, Unknowns, mass, pattern, stiffness};
+use crate::kinematics::vec3::Vec3;
+use crate::solver::sparse::{Factor, FactorError, SymmetricMatrix};
+use nalgebra::{DMatrix, SymmetricEigen};
+use std::f64::consts::TAU;
+use thiserror::Error;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModeOptions {
+    /// How many modes, those of no frequency included.
+    pub count: usize,
+    pub mass: MassMatrix,
+    /// Largest residual ‖K x − λ M x‖ over ‖(λ − shift) M x‖.
+    pub tolerance: f64,
+}
+
+impl ModeOptions {
+    pub fn new(count: usize) -> ModeOptions {
+        ModeOptions { count, mass: MassMatrix::Consistent, tolerance: 1e-8 }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ModeError {
+    #[error(transparent)]
+    Factor(#[from] FactorError),
+    #[error("{wanted} modes are asked for, but the body has only {unknowns} free components")]
+    TooMany { wanted: usize, unknowns: usize },
+    #[error("only {found} of {wanted} modes settled within {vectors} vectors")]
+    NotConverged { found: usize, wanted: usize, vectors: usize },
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// Hz; what rounding leaves of zero for a rigid motion.
+    pub frequency: f64,
+    /// Displacements of all nodes; scaled so that xᵀ M x = 1 kg.
+    pub shape: Vec<Vec3>,
+    /// ‖K x − λ M x‖ over ‖(λ − shift) M x‖.
+    pub residual: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Modes {
+    /// From the lowest frequency on.
+    pub modes: Vec<Mode>,
+    pub unknowns: usize,
+    /// Solves with the factorised stiffness.
+    pub solves: usize,
+}
+
+/// Vectors that are carried on at once: pairs of equal frequencies and the six rigid motions are
+/// then found together, not one after the other by rounding.
+const BLOCK: usize = 6;
+
+/// Lowest modes about the undeformed state.
+///
+/// The shift is negative, so that the stiffness of a free body can be factorised too: minus the
+/// square of the lowest angular frequency that a body of this size can have, about a tenth of shear
+/// wave speed over size.
+///
+/// # Errors
+/// More modes than unknowns, a mesh in parts without stiffness, no convergence.
+pub fn modes(model: &SolidModel, options: &ModeOptions) -> Result<Modes, ModeError> {
+    let unknowns = Unknowns::new(model);
+    let size = unknowns.count;
+    if options.count > size {
+        return Err(ModeError::TooMany { wanted: options.count, unknowns: size });
+    }
+    let mut stiff = pattern(&model.problem, &unknowns);
+    let mut masses = stiff.clone();
+    let rest = vec![[0.0; 3]; model.mass.len()];
+    stiffness(model, &unknowns, &rest, &mut stiff);
+    mass(model, &unknowns, options.mass, &mut masses);
+    let shift = shift(model);
+    let mut shifted = stiff.clone();
+    shifted.add_scaled(-shift, &masses);
+    let factor = Factor::new(&shifted)?;
+
+    let most = (4 * options.count + 60).min(size);
+    let mut krylov = Krylov::new(&masses, &factor);
+    krylov.start(size.min(BLOCK));
+    loop {
+        let found = krylov.ritz(options.count);
+        let checked: Vec<_> = found
+            .into_iter()
+            .map(|(vector, inverse)| {
+                let value = shift + 1.0 / inverse;
+                let residual = residual(&stiff, &masses, &vector, value, shift);
+                (value, vector, residual)
+            })
+            .collect();
+        let settled = checked.iter().filter(|mode| mode.2 <= options.tolerance).count();
+        let solves = krylov.solves;
+        if settled >= options.count {
+            let mut modes: Vec<Mode> = checked
+                .into_iter()
+                .map(|(value, vector, residual)| Mode {
+                    frequency: value.max(0.0).sqrt() / TAU,
+                    shape: spread(&unknowns, &vector),
+                    residual,
+                })
+                .collect();
+            modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+            return Ok(Modes { modes, unknowns: size, solves });
+        }
+        if krylov.basis.len() >= most || !krylov.grow(most) {
+            return Err(ModeError::NotConverged {
+                found: settled,
+                wanted: options.count,
+                vectors: krylov.basis.len(),
+            });
+        }
+    }
+}
+
+fn shift(model: &SolidModel) -> f64 {
+    let problem = &model.problem;
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for node in &problem.nodes {
+        for i in 0..3 {
+            low[i] = low[i].min(node[i]);
+            high[i] = high[i].max(node[i]);
+        }
+    }
+    let size = (0..3).map(|i| (high[i] - low[i]).powi(2)).sum::<f64>();
+    -0.1 * problem.material.shear_modulus / (problem.density * size)
+}
+
+fn spread(unknowns: &Unknowns, vector: &[f64]) -> Vec<Vec3> {
+    let at = |index: usize| if index == PRESCRIBED { 0.0 } else { vector[index] };
+    unknowns.of.iter().map(|of| of.map(at)).collect()
+}
+
+fn residual(
+    stiff: &SymmetricMatrix,
+    masses: &SymmetricMatrix,
+    vector: &[f64],
+    value: f64,
+    shift: f64,
+) -> f64 {
+    let mut force = vec![0.0; vector.len()];
+    let mut momentum = vec![0.0; vector.len()];
+    stiff.multiply(vector, &mut force);
+    masses.multiply(vector, &mut momentum);
+    let (mut gap, mut scale) = (0.0, 0.0);
+    for (force, momentum) in force.iter().zip(&momentum) {
+        gap += (force - value * momentum).powi(2);
+        scale += ((value - shift) * momentum).powi(2);
+    }
+    (gap / scale).sqrt()
+}
+
+/// The space that the powers of the inverse span, orthonormal under the mass.
+struct Krylov<'a> {
+    masses: &'a SymmetricMatrix,
+    factor: &'a Factor,
+    basis: Vec<Vec<f64>>,
+    /// Mass times each vector, and inverse times that.
+    momenta: Vec<Vec<f64>>,
+    images: Vec<Vec<f64>>,
+    /// basisᵀ · mass · image.
+    projected: DMatrix<f64>,
+    solves: usize,
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl<'a> Krylov<'a> {
+    fn new(masses: &'a SymmetricMatrix, factor: &'a Factor) -> Self {
+        Krylov {
+            masses,
+            factor,
+            basis: Vec::new(),
+            momenta: Vec::new(),
+            images: Vec::new(),
+            projected: DMatrix::zeros(0, 0),
+            solves: 0,
+        }
+    }
+
+    /// Random vectors from a fixed seed.
+    fn start(&mut self, count: usize) {
+        let mut seed = 0x2545_f491_4f6c_dd1d_u64;
+        for _ in 0..count {
+            let vector = (0..self.masses.size())
+                .map(|_| {
+                    seed ^= seed << 13;
+                    seed ^= seed >> 7;
+                    seed ^= seed << 17;
+                    (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+                })
+                .collect();
+            self.take(vector);
+        }
+    }
+
+    /// Adds what is new in a vector; whether there was anything new.
+    fn take(&mut self, mut vector: Vec<f64>) -> bool {
+        let size = vector.len();
+        let mut momentum = vec![0.0; size];
+        self.masses.multiply(&vector, &mut momentum);
+        let first = dot(&vector, &momentum).sqrt();
+        // Twice is enough (Kahan, Parlett).
+        for _ in 0..2 {
+            for (known, with_mass) in self.basis.iter().zip(&self.momenta) {
+                let share = dot(with_mass, &vector);
+                for (v, k) in vector.iter_mut().zip(known) {
+                    *v -= share * k;
+                }
+            }
+        }
+        self.masses.multiply(&vector, &mut momentum);
+        let length = dot(&vector, &momentum).sqrt();
+        if !(length > 1e-12 * first) {
+            return false;
+        }
+        for (v, m) in vector.iter_mut().zip(&mut momentum) {
+            *v /= length;
+            *m /= length;
+        }
+        let mut image = momentum.clone();
+        self.factor.solve(&mut image);
+        self.solves += 1;
+        self.basis.push(vector);
+        self.momenta.push(momentum);
+        self.images.push(image);
+        let count = self.basis.len();
+        let old = std::mem::replace(&mut self.projected, DMatrix::zeros(count, count));
+        self.projected.view_mut((0, 0), (count - 1, count - 1)).copy_from(&old);
+        let newest = &self.images[count - 1];
+        for (i, momentum) in self.momenta.iter().enumerate() {
+            let value = dot(momentum, newest);
+            self.projected[(i, count - 1)] = value;
+            self.projected[(count - 1, i)] = value;
+        }
+        true
+    }
+
+    /// One more block; whether the space grew.
+    fn grow(&mut self, most: usize) -> bool {
+        let count = self.basis.len();
+        let mut grew = false;
+        for at in count.saturating_sub(BLOCK)..count {
+            if self.basis.len() < most {
+                grew |= self.take(self.images[at].clone());
+            }
+        }
+        grew
+    }
+
+    /// The best approximations of the eigenvectors with the largest eigenvalues of the inverse.
+    fn ritz(&self, wanted: usize) -> Vec<(Vec<f64>, f64)> {
+        let eigen = SymmetricEigen::new(self.projected.clone());
+        let mut order: Vec<usize> = (0..self.basis.len()).collect();
+        order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+        order
+            .into_iter()
+            .take(wanted)
+            .map(|at| {
+                let mut vector = vec![0.0; self.masses.size()];
+                for (basis, share) in self.basis.iter().zip(eigen.eigenvectors.column(at).iter()) {
+                    for (v, b) in vector.iter_mut().zip(basis) {
+                        *v += share * b;
+                    }
+                }
+                (vector, eigen.eigenvalues[at])
+            })
+            .collect()
+    }
+}

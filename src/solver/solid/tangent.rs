@@ -1,0 +1,190 @@
+//! Tangent stiffness and consistent mass of a solid as sparse matrices over its free components.
+
+use super::model::{SolidModel, SolidProblem, corners};
+use crate::elements::tet4::{Tet4, relative};
+use crate::elements::tet10::{self, Tet10};
+use crate::kinematics::vec3::Vec3;
+use crate::mesh::tet_mesh::Elements;
+use crate::solver::sparse::{Entry, SymmetricMatrix};
+
+/// Marks a prescribed component.
+pub const PRESCRIBED: usize = usize::MAX;
+
+/// Which displacement component is which unknown: three for each node, [`PRESCRIBED`] where there
+/// is none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unknowns {
+    pub of: Vec<[usize; 3]>,
+    pub count: usize,
+}
+
+impl Unknowns {
+    pub fn new(model: &SolidModel) -> Unknowns {
+        let mut count = 0;
+        let of = model
+            .per_mass
+            .iter()
+            .map(|per_mass| {
+                let mut of = [PRESCRIBED; 3];
+                for i in 0..3 {
+                    if per_mass[i] != 0.0 {
+                        of[i] = count;
+                        count += 1;
+                    }
+                }
+                of
+            })
+            .collect();
+        Unknowns { of, count }
+    }
+}
+
+/// An empty matrix with room for every pair of components that share an element.
+pub fn pattern(problem: &SolidProblem, unknowns: &Unknowns) -> SymmetricMatrix {
+    let mut columns: Vec<Vec<usize>> = vec![Vec::new(); unknowns.count];
+    // Node by node first: three components share their neighbours.
+    let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); unknowns.of.len()];
+    for element in 0..problem.elements.len() {
+        let nodes = problem.elements.nodes(element);
+        for a in nodes {
+            neighbours[*a as usize].extend_from_slice(nodes);
+        }
+    }
+    for (node, others) in neighbours.iter_mut().enumerate() {
+        others.sort_unstable();
+        others.dedup();
+        for column in unknowns.of[node] {
+            if column == PRESCRIBED {
+                continue;
+            }
+            let rows = others.iter().flat_map(|other| unknowns.of[*other as usize]);
+            columns[column] = rows.filter(|row| *row != PRESCRIBED && *row >= column).collect();
+        }
+        *others = Vec::new();
+    }
+    SymmetricMatrix::new(columns)
+}
+
+/// Fills `matrix` with the tangent stiffness at given displacements, N/m.
+pub fn stiffness(
+    model: &SolidModel,
+    unknowns: &Unknowns,
+    displacement: &[Vec3],
+    matrix: &mut SymmetricMatrix,
+) {
+    matrix.clear();
+    let problem = &model.problem;
+    let law = |strain: &_| problem.material.second_piola_kirchhoff(strain);
+    let sound = "elements were checked when the model was made";
+    match &problem.elements {
+        Elements::Linear(list) => {
+            for nodes in list {
+                let tet = Tet4::new(&corners(&problem.nodes, nodes)).expect(sound);
+                let moved = relative(&corners(displacement, nodes));
+                add_element(unknowns, nodes, matrix, |node, axis| {
+                    let mut change = [[0.0; 3]; 4];
+                    change[node][axis] = -1.0;
+                    let [a, b, c] = tet.force_change(&moved, &relative(&change), law);
+                    [a, b, c, [0, 1, 2].map(|i: usize| -(a[i] + b[i] + c[i]))]
+                });
+            }
+        }
+        Elements::Quadratic(list) => {
+            for nodes in list {
+                let tet = Tet10::new(&corners(&problem.nodes, nodes)).expect(sound);
+                let moved = corners(displacement, nodes);
+                add_element(unknowns, nodes, matrix, |node, axis| {
+                    let mut change = [[0.0; 3]; 10];
+                    change[node][axis] = -1.0;
+                    tet.force_change(&moved, &change, law)
+                });
+            }
+        }
+    }
+}
+
+/// Adds an element given by its columns: forces for a unit of minus one component.
+fn add_element<const N: usize>(
+    unknowns: &Unknowns,
+    nodes: &[u32; N],
+    matrix: &mut SymmetricMatrix,
+    column_of: impl Fn(usize, usize) -> [Vec3; N],
+) {
+    for b in 0..N {
+        for j in 0..3 {
+            let column = unknowns.of[nodes[b] as usize][j];
+            if column == PRESCRIBED {
+                continue;
+            }
+            let values = column_of(b, j);
+            for a in 0..N {
+                for i in 0..3 {
+                    let row = unknowns.of[nodes[a] as usize][i];
+                    if row != PRESCRIBED && row >= column {
+                        matrix.add(Entry { row, column }, values[a][i]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Which mass matrix.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MassMatrix {
+    #[default]
+    Consistent,
+    /// Diagonal, as explicit steps use it.
+    Lumped,
+}
+
+/// Fills `matrix` with masses, kg.
+pub fn mass(
+    model: &SolidModel,
+    unknowns: &Unknowns,
+    kind: MassMatrix,
+    matrix: &mut SymmetricMatrix,
+) {
+    matrix.clear();
+    if kind == MassMatrix::Lumped {
+        for (of, mass) in unknowns.of.iter().zip(&model.mass) {
+            for &row in of.iter().filter(|row| **row != PRESCRIBED) {
+                matrix.add(Entry { row, column: row }, *mass);
+            }
+        }
+        return;
+    }
+    let problem = &model.problem;
+    let sound = "elements were checked when the model was made";
+    let mut add = |a: u32, b: u32, share: f64| {
+        for i in 0..3 {
+            let (row, column) = (unknowns.of[a as usize][i], unknowns.of[b as usize][i]);
+            if row != PRESCRIBED && column != PRESCRIBED && row >= column {
+                matrix.add(Entry { row, column }, share);
+            }
+        }
+    };
+    match &problem.elements {
+        Elements::Linear(list) => {
+            for nodes in list {
+                let tet = Tet4::new(&corners(&problem.nodes, nodes)).expect(sound);
+                for a in 0..4 {
+                    for b in 0..4 {
+                        add(nodes[a], nodes[b], tet.consistent_mass(problem.density, a, b));
+                    }
+                }
+            }
+        }
+        Elements::Quadratic(list) => {
+            for nodes in list {
+                let shares =
+                    tet10::consistent_mass(&corners(&problem.nodes, nodes), problem.density);
+                for a in 0..10 {
+                    for b in 0..10 {
+                        add(nodes[a], nodes[b], shares[a][b]);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! Laws of equilibrium and of natural modes of a solid.
+
+use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
+use bearing_dynamics::kinematics::vec3::Vec3;
+use bearing_dynamics::mesh::TetMesh;
+use bearing_dynamics::mesh::quadratic::elevate;
+use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::equilibrium::{
+    EquilibriumError, EquilibriumOptions, equilibrium,
+};
+use bearing_dynamics::solver::solid::model::{
+    DampedMotion, Load, Prescribed, SolidModel, SolidProblem,
+};
+use bearing_dynamics::solver::solid::modes::{ModeOptions, modes};
+use bearing_dynamics::solver::solid::tangent::MassMatrix;
+use bearing_dynamics::solver::sparse::FactorError;
+
+const YOUNG: f64 = 2.1e11;
+
+/// A bar of cubes with side `size / cells`, its inner nodes shaken when asked.
+fn bar(size: Vec3, cells: [usize; 3], order: Order, shaken: bool) -> SolidProblem {
+    let [a, b, c] = cells;
+    let id = |i: usize, j: usize, k: usize| ((i * (b + 1) + j) * (c + 1) + k) as u32;
+    let mut nodes = Vec::new();
+    for i in 0..=a {
+        for j in 0..=b {
+            for k in 0..=c {
+                let inner = i > 0 && i < a && j > 0 && j < b && k > 0 && k < c;
+                let shake = |seed: f64| {
+                    let by = 0.2 * (seed * (1 + i + 7 * j + 31 * k) as f64).sin();
+                    if shaken && inner { by } else { 0.0 }
+                };
+                nodes.push([
+                    size[0] * (i as f64 + shake(12.9)) / a as f64,
+                    size[1] * (j as f64 + shake(78.2)) / b as f64,
+                    size[2] * (k as f64 + shake(37.7)) / c as f64,
+                ]);
+            }
+        }
+    }
+    const CUT: [[usize; 4]; 6] =
+        [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
+    let mut linear = Vec::new();
+    for i in 0..a {
+        for j in 0..b {
+            for k in 0..c {
+                let corner = [
+                    id(i, j, k),
+                    id(i + 1, j, k),
+                    id(i + 1, j + 1, k),
+                    id(i, j + 1, k),
+                    id(i, j, k + 1),
+                    id(i + 1, j, k + 1),
+                    id(i + 1, j + 1, k + 1),
+                    id(i, j + 1, k + 1),
+                ];
+                linear.extend(CUT.map(|tet| tet.map(|n| corner[n])));
+            }
+        }
+    }
+    let mut mesh = TetMesh::new(nodes, Elements::Linear(linear)).unwrap();
+    if order == Order::Quadratic {
+        mesh = elevate(&mesh, &[]).unwrap().mesh;
+    }
+    SolidProblem {
+        nodes: mesh.nodes,
+        elements: mesh.elements,
+        material: LinearElastic::new(YOUNG, 0.3).unwrap(),
+        density: 7800.0,
+        damping: 0.0,
+        damped_motion: DampedMotion::Absolute,
+        prescribed: Vec::new(),
+        loads: Vec::new(),
+        gravity: [0.0; 3],
+    }
+}
+
+fn hold(problem: &mut SolidProblem, value: impl Fn(Vec3) -> [Option<f64>; 3]) {
+    for (node, place) in problem.nodes.iter().enumerate() {
+        for (axis, value) in value(*place).into_iter().enumerate() {
+            if let Some(value) = value {
+                let profile = Profile::Constant(value);
+                problem.prescribed.push(Prescribed { node: node as u32, axis, profile });
+            }
+        }
+    }
+}
+
+#[test]
+fn patch_test() {
+    let size = [0.02, 0.02, 0.02];
+    let gradient = [[1e-3, 2e-4, -3e-4], [4e-4, -5e-4, 1e-4], [0.0, 3e-4, 2e-4]];
+    let field =
+        |x: Vec3| [0, 1, 2].map(|i: usize| (0..3).map(|j| gradient[i][j] * x[j]).sum::<f64>());
+    for order in [Order::Linear, Order::Quadratic] {
+        let mut problem = bar(size, [3, 3, 3], order, true);
+        hold(&mut problem, |x| {
+            let outside = (0..3).any(|i| x[i] < 1e-9 || x[i] > size[i] - 1e-9);
+            if outside { field(x).map(Some) } else { [None; 3] }
+        });
+        let model = SolidModel::new(problem).unwrap();
+        let options = EquilibriumOptions { tolerance: 1e-13, ..Default::default() };
+        let found = equilibrium(&model, 0.0, &options).unwrap();
+        for (u, x) in found.displacement.iter().zip(&model.problem.nodes) {
+            let exact = field(*x);
+            for i in 0..3 {
+                assert!((u[i] - exact[i]).abs() <= 1e-12 * 2e-5, "{order:?} {u:?} {exact:?}");
+            }
+        }
+    }
+}
+
+/// Supports that leave Poisson contraction free: x on the end, y and z on planes of symmetry.
+#[test]
+fn a_pulled_bar() {
+    let size = [0.1, 0.02, 0.01];
+    for order in [Order::Linear, Order::Quadratic] {
+        let mut problem = bar(size, [6, 2, 1], order, true);
+        hold(&mut problem, |x| {
+            [0, 1, 2].map(|i: usize| if x[i] < 1e-9 { Some(0.0) } else { None })
+        });
+        let end: Vec<u32> = (0..problem.nodes.len() as u32)
+            .filter(|n| problem.nodes[*n as usize][0] > size[0] - 1e-9)
+            .collect();
+        let stretch = 1e-5;
+        for node in end {
+            let profile = Profile::Constant(stretch);
+            problem.prescribed.push(Prescribed { node, axis: 0, profile });
+        }
+        let model = SolidModel::new(problem).unwrap();
+        let found = equilibrium(&model, 0.0, &EquilibriumOptions::default()).unwrap();
+        let pull: f64 = found
+            .reactions
+            .iter()
+            .zip(&model.problem.nodes)
+            .filter(|(_, x)| x[0] > size[0] - 1e-9)
+            .map(|(force, _)| force[0])
+            .sum();
+        // St. Venant–Kirchhoff: S = E e + …, P = (1 + H) S, e = H + H²/2, uniaxial stress.
+        let h = stretch / size[0];
+        let exact = YOUNG * (h + 0.5 * h * h) * (1.0 + h) * size[1] * size[2];
+        assert!((pull / exact - 1.0).abs() <= 1e-9, "{order:?} {pull} {exact}");
+    }
+}
+
+/// Large rotation: a strip bent by a force keeps equilibrium of force and moment.
+#[test]
+fn large_deflection_converges_in_load_steps() {
+    let size = [0.2, 0.004, 0.004];
+    let mut problem = bar(size, [20, 1, 1], Order::Quadratic, false);
+    hold(&mut problem, |x| if x[0] < 1e-9 { [Some(0.0); 3] } else { [None; 3] });
+    let end: Vec<u32> = (0..problem.nodes.len() as u32)
+        .filter(|n| problem.nodes[*n as usize][0] > size[0] - 1e-9)
+        .collect();
+    let forces = end.iter().map(|n| (*n, [0.0, 0.0, 100.0 / end.len() as f64])).collect();
+    problem.loads.push(Load { forces, profile: Profile::Constant(1.0) });
+    let model = SolidModel::new(problem).unwrap();
+    let found = equilibrium(&model, 0.0, &EquilibriumOptions::default()).unwrap();
+    let tip = found.displacement[end[0] as usize];
+    let inertia = size[1].powi(4) / 12.0;
+    let linear = 100.0 * size[0].powi(3) / (3.0 * YOUNG * inertia);
+    // The elastica's tip sinks less than the straight beam's and moves inwards: P L²/(E I) = 0.89
+    // gives 0.28 L down and 0.048 L in (Bisshopp and Drucker's curves, to two digits).
+    println!("{linear} {tip:?} {} {}", found.iterations, found.factorisations);
+    assert!((tip[2] / size[0] - 0.274).abs() <= 0.01, "{tip:?} {linear}");
+    assert!((tip[0] / size[0] + 0.046).abs() <= 0.005, "{tip:?}");
+    let sum: f64 = found.reactions.iter().map(|r| r[2]).sum();
+    assert!((sum + 100.0).abs() <= 1e-6);
+}
+
+#[test]
+fn a_free_body_has_no_equilibrium() {
+    let mut problem = bar([0.1, 0.02, 0.01], [3, 1, 1], Order::Linear, false);
+    let end = problem.nodes.len() as u32 - 1;
+    let forces = vec![(end, [1.0, 0.0, 0.0])];
+    problem.loads.push(Load { forces, profile: Profile::Constant(1.0) });
+    let model = SolidModel::new(problem).unwrap();
+    let found = equilibrium(&model, 0.0, &EquilibriumOptions::default());
+    assert!(
+        matches!(
+            found,
+            Err(EquilibriumError::Factor(FactorError::NotPositiveDefinite { .. }))
+                | Err(EquilibriumError::NotConverged { .. })
+        ),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn a_free_body_has_six_modes_of_no_frequency() {
+    for order in [Order::Linear, Order::Quadratic] {
+        for mass in [MassMatrix::Consistent, MassMatrix::Lumped] {
+            let model = SolidModel::new(bar([0.1, 0.02, 0.01], [8, 2, 1], order, false)).unwrap();
+            let options = ModeOptions { mass, ..ModeOptions::new(10) };
+            let found = modes(&model, &options).unwrap();
+            let frequency: Vec<f64> = found.modes.iter().map(|m| m.frequency).collect();
+            println!("{order:?} {mass:?} {frequency:?} {}", found.solves);
+            // Rounding of K x: 1e-16 of the highest ω² (about 1e13) is 30 rad²/s².
+            assert!(frequency[5] <= 5.0, "{frequency:?}");
+            assert!(frequency[6] >= 1000.0, "{frequency:?}");
+            // Shapes are orthonormal under the mass.
+            if mass == MassMatrix::Lumped {
+                for a in 0..10 {
+                    for b in 0..10 {
+                        let product: f64 = (0..model.mass.len())
+                            .map(|n| {
+                                let (x, y) = (found.modes[a].shape[n], found.modes[b].shape[n]);
+                                model.mass[n] * (x[0] * y[0] + x[1] * y[1] + x[2] * y[2])
+                            })
+                            .sum();
+                        let exact = if a == b { 1.0 } else { 0.0 };
+                        assert!((product - exact).abs() <= 1e-8, "{a} {b} {product}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A rod on rollers with both ends held along its axis: f = n/(2L)·√(E/ρ) where Poisson contraction
+/// is held too (ν = 0 here, so that it is one-dimensional).
+#[test]
+fn frequencies_of_a_rod() {
+    let size = [0.1, 0.005, 0.005];
+    let mut problem = bar(size, [20, 1, 1], Order::Quadratic, false);
+    problem.material = LinearElastic::new(YOUNG, 0.0).unwrap();
+    hold(&mut problem, |x| {
+        let end = x[0] < 1e-9 || x[0] > size[0] - 1e-9;
+        [end.then_some(0.0), Some(0.0), Some(0.0)]
+    });
+    let model = SolidModel::new(problem).unwrap();
+    let found = modes(&model, &ModeOptions::new(3)).unwrap();
+    for (n, mode) in found.modes.iter().enumerate() {
+        let exact = (n + 1) as f64 * 0.5 / size[0] * (YOUNG / 7800.0f64).sqrt();
+        // Quadratic elements, 20 along: (π n/20)⁴/1440.
+        let bound = (0.157 * (n + 1) as f64).powi(4) / 300.0 + 1e-9;
+        assert!((mode.frequency / exact - 1.0).abs() <= bound, "{} {exact}", mode.frequency);
+    }
+}
