@@ -94,9 +94,11 @@ fn inverted(mesh: &TetMesh) -> Option<Fault> {
         let points = mesh.corner_points(index);
         let volume = straight_volume(points);
         // Flat to rounding: the volume is a difference of products of this size.
-        let longest = EDGES.map(|[a, b]| (points[b] - points[a]).norm()).into_iter().fold(0.0, f64::max);
+        let longest =
+            EDGES.map(|[a, b]| (points[b] - points[a]).norm()).into_iter().fold(0.0, f64::max);
         let rounding = 1e-14 * longest * longest * longest;
-        (!(volume > rounding)).then_some(-volume)
+        let sound = volume > rounding;
+        (!sound).then_some(-volume)
     };
     worst(mesh, bad).map(|(count, element, value)| Fault::Inverted {
         count,
@@ -112,7 +114,8 @@ fn folded(mesh: &TetMesh) -> Option<Fault> {
     let bad = |index: usize| {
         let least = least_jacobian(&list[index].map(|node| mesh.point(node)));
         let corners_in_order = straight_volume(mesh.corner_points(index)) > 0.0;
-        (corners_in_order && !(least > 0.0)).then(|| -least / (6.0 * volume(mesh, index).abs()))
+        let open = least > 0.0;
+        (corners_in_order && !open).then(|| -least / (6.0 * volume(mesh, index).abs()))
     };
     worst(mesh, bad).map(|(count, element, value)| Fault::Folded {
         count,
@@ -125,7 +128,8 @@ fn folded(mesh: &TetMesh) -> Option<Fault> {
 fn slivers(mesh: &TetMesh, limit: f64) -> Option<Fault> {
     let bad = |index: usize| {
         let aspect = shape(mesh.corner_points(index)).aspect;
-        (!(aspect <= limit)).then_some(if aspect.is_nan() { f64::INFINITY } else { aspect })
+        let allowed = aspect <= limit;
+        (!allowed).then_some(if aspect.is_nan() { f64::INFINITY } else { aspect })
     };
     worst(mesh, bad).map(|(count, element, aspect)| Fault::Sliver {
         count,
@@ -143,7 +147,8 @@ fn mid_sides(mesh: &TetMesh) -> Option<Fault> {
         for (middle, [a, b]) in EDGES.into_iter().enumerate() {
             let [p, q, m] = [nodes[a], nodes[b], nodes[4 + middle]].map(|node| mesh.point(node));
             let off = (m - (p + q) * 0.5).norm() / (q - p).norm();
-            if !(off <= FARTHEST_MID_SIDE) {
+            let near = off <= FARTHEST_MID_SIDE;
+            if !near {
                 let first = found.unwrap_or((0, element as u32, nodes[4 + middle], off));
                 found = Some((first.0 + 1, first.1, first.2, first.3));
             }

@@ -51,7 +51,8 @@ pub fn jacobian(points: &[Vector3<f64>; 10], at: [f64; 4]) -> f64 {
 /// Smallest of a ten-node element's Jacobians at corners, mid-sides and centre.
 pub fn least_jacobian(points: &[Vector3<f64>; 10]) -> f64 {
     let corner = |i: usize| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 });
-    let middle = |[a, b]: [usize; 2]| std::array::from_fn(|j| if j == a || j == b { 0.5 } else { 0.0 });
+    let middle =
+        |[a, b]: [usize; 2]| std::array::from_fn(|j| if j == a || j == b { 0.5 } else { 0.0 });
     let places = (0..4).map(corner).chain(EDGES.into_iter().map(middle)).chain([[0.25; 4]]);
     places.map(|at| jacobian(points, at)).fold(f64::INFINITY, f64::min)
 }

@@ -98,7 +98,8 @@ fn far_end(neighbours: &Lists, start: u32) -> u32 {
         if depth <= reach {
             return root;
         }
-        let least = last_level.iter().min_by_key(|&&node| (neighbours.of(node as usize).len(), node));
+        let least =
+            last_level.iter().min_by_key(|&&node| (neighbours.of(node as usize).len(), node));
         (root, reach) = (*least.unwrap_or(&root), depth);
     }
 }

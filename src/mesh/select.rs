@@ -48,12 +48,7 @@ pub fn nodes_in(mesh: &TetMesh, region: &Region) -> Vec<u32> {
 /// Those of `boundary` (faces from [`surface`](crate::mesh::topology::surface)) that lie on
 /// `surface`: their corners within `tolerance`, and their normals along its own. Without the second
 /// condition a triangle of an end face whose three corners touch the rim would pass.
-pub fn faces_on(
-    mesh: &TetMesh,
-    boundary: &[Face],
-    surface: &Surface,
-    tolerance: f64,
-) -> Vec<Face> {
+pub fn faces_on(mesh: &TetMesh, boundary: &[Face], surface: &Surface, tolerance: f64) -> Vec<Face> {
     let lies_on = |&face: &Face| {
         let corners = mesh.face_corners(face).map(|node| mesh.point(node));
         let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
@@ -113,7 +108,8 @@ impl TetMesh {
         tolerance: f64,
     ) -> Result<usize, MeshError> {
         let unit = Vector3::from(normal).normalize();
-        let sides = self.nodes.iter().map(|&p| (Vector3::from(p) - Vector3::from(point)).dot(&unit));
+        let sides =
+            self.nodes.iter().map(|&p| (Vector3::from(p) - Vector3::from(point)).dot(&unit));
         let (low, high) = sides.fold((0f64, 0f64), |(low, high), s| (low.min(s), high.max(s)));
         if low < -tolerance && high > tolerance {
             return Err(MeshError::Dimension {

@@ -6,10 +6,22 @@ use std::fmt;
 /// An unbounded surface. Lengths in m; directions need not have unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
-    Plane { point: [f64; 3], normal: [f64; 3] },
-    Cylinder { point: [f64; 3], axis: [f64; 3], radius: f64 },
+    Plane {
+        point: [f64; 3],
+        normal: [f64; 3],
+    },
+    Cylinder {
+        point: [f64; 3],
+        axis: [f64; 3],
+        radius: f64,
+    },
     /// Radius `radius` at `point`, growing by `slope` per metre along the axis.
-    Cone { point: [f64; 3], axis: [f64; 3], radius: f64, slope: f64 },
+    Cone {
+        point: [f64; 3],
+        axis: [f64; 3],
+        radius: f64,
+        slope: f64,
+    },
 }
 
 /// A place in the coordinates of a surface of revolution.
@@ -99,10 +111,9 @@ impl fmt::Display for Surface {
             Surface::Cylinder { point, axis, radius } => {
                 write!(f, "cylinder of radius {radius} m about {axis:?} through {point:?}")
             }
-            Surface::Cone { point, axis, radius, slope } => write!(
-                f,
-                "cone of radius {radius} m at {point:?} and slope {slope} along {axis:?}"
-            ),
+            Surface::Cone { point, axis, radius, slope } => {
+                write!(f, "cone of radius {radius} m at {point:?} and slope {slope} along {axis:?}")
+            }
         }
     }
 }

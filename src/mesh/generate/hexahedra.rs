@@ -73,7 +73,8 @@ impl Hexahedra {
                     if sign == 0.0 {
                         sign = volume.signum();
                     }
-                    if !(volume * sign > 0.0) {
+                    let in_order = volume * sign > 0.0;
+                    if !in_order {
                         return Err(MeshError::Tangled { block, cell: index });
                     }
                     if sign < 0.0 {
@@ -87,7 +88,8 @@ impl Hexahedra {
     }
 
     fn weld(&mut self) {
-        let (mut low, mut high) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+        let (mut low, mut high) =
+            (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
         for &point in &self.points {
             low = low.inf(&Vector3::from(point));
             high = high.sup(&Vector3::from(point));
@@ -120,7 +122,8 @@ fn cut(cell: [u32; 8]) -> [[u32; 4]; 6] {
         if [a, b, c, d].contains(&apex) {
             continue;
         }
-        let triangles = if a.min(c) < b.min(d) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+        let triangles =
+            if a.min(c) < b.min(d) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
         for [p, q, r] in triangles {
             // The floor is listed inwards, the other sides outwards.
             tets[next] = if side == 0 { [apex, p, r, q] } else { [apex, p, q, r] };

@@ -1,7 +1,7 @@
 //! Housings A to D of 2.4: plane sections (Y, Z) about a bore, drawn out along X.
 //!
 //! Their dimensions stand in a figure that is lost, so each is an input. The section is meshed by
-//! rays from the bore to an outline around it; the pillow block's base sticks out of that outline
+//! lines from the bore to an outline around it; the pillow block's base sticks out of that outline
 //! and is added as blocks of its own.
 
 use crate::mesh::error::MeshError;
@@ -62,8 +62,8 @@ impl PillowBlock {
     }
 }
 
-/// Cells of a housing: `around` the bore (about so many), from the bore to the outline and along
-/// X; radial steps grow by `radial_growth` from the bore outwards.
+/// Cells of a housing: `around` the bore (a few more where fillets need them), from the bore to
+/// the outline and along X; radial steps grow by `radial_growth` from the bore outwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HousingMesh {
     pub around: usize,
@@ -116,7 +116,9 @@ fn steps(from: Point, to: Point, around: usize) -> usize {
     ((angle / TAU * around as f64).round() as usize).max(1)
 }
 
-/// Cells along rays from the bore to the closed loop `outline`, drawn out along `x`.
+/// Cells between the bore and the closed loop `outline`, drawn out along `x`. The loop begins
+/// straight below the bore; points on the bore are spread evenly, so that short runs of the
+/// outline, the fillets, do not make thin wedges.
 fn add_core(
     cells: &mut Hexahedra,
     bore_radius: f64,
@@ -125,21 +127,15 @@ fn add_core(
     x: &[f64],
 ) {
     let parts = geometric(0.0, 1.0, mesh.radial, mesh.radial_growth);
-    cells.add_block([mesh.axial, mesh.radial, outline.len() - 1], |[i, j, k]| {
-        let outer = outline[k];
-        let reach = (outer[0] * outer[0] + outer[1] * outer[1]).sqrt();
-        let inner = outer.map(|c| c * (bore_radius / reach));
-        let [y, z] = part_way(inner, outer, parts[j]);
+    let around = outline.len() - 1;
+    cells.add_block([mesh.axial, mesh.radial, around], |[i, j, k]| {
+        let angle = TAU * k as f64 / around as f64 - FRAC_PI_2;
+        let [y, z] = part_way(on_circle([0.0; 2], bore_radius, angle), outline[k], parts[j]);
         [x[i], y, z]
     });
 }
 
-fn square(
-    bore_radius: f64,
-    side: f64,
-    depth: f64,
-    mesh: &HousingMesh,
-) -> Result<Solid, MeshError> {
+fn square(bore_radius: f64, side: f64, depth: f64, mesh: &HousingMesh) -> Result<Solid, MeshError> {
     between("side of the housing", side, 0.0, f64::INFINITY)?;
     between("bore radius", bore_radius, 0.0, 0.5 * side)?;
     between("depth", depth, 0.0, f64::INFINITY)?;
@@ -169,11 +165,10 @@ fn ends(x: &[f64]) -> Vec<(&'static str, Surface)> {
 struct Section {
     /// Where the core's outline leaves the bottom.
     foot: Point,
-    /// Middle of the fillet, where it meets the core's outline.
-    on_fillet: Point,
     fillet_centre: Point,
     fillet_radius: f64,
-    /// Where the fillet ends in the neck, and the neck in the annulus.
+    /// Where the fillet ends in the neck and the core's outline begins to follow the surface, and
+    /// where the neck ends in the annulus.
     neck_low: Point,
     neck_high: Point,
     outer_radius: f64,
@@ -198,15 +193,15 @@ fn section(block: &PillowBlock) -> Result<Section, MeshError> {
     between("base width", block.base_width, least_base, f64::INFINITY)?;
     let (bottom, base_top) = (-centre_height, block.base_height - centre_height);
     let fillet_centre = [neck + block.fillet_radius, base_top + block.fillet_radius];
-    let on_fillet = on_circle(fillet_centre, block.fillet_radius, 1.25 * PI);
-    // The outline's line to the bottom leans inwards, half way to square with the fillet.
-    let foot = [(on_fillet[0] - 0.4 * (on_fillet[1] - bottom)).max(0.3 * on_fillet[0]), bottom];
+    let neck_low = [neck, fillet_centre[1]];
+    // From the fillet's upper end the core's outline leans inwards to the bottom: half way between
+    // the fillet's tangent and the line to the bore, so that neither side is pointed.
+    let foot = [(neck - 0.8 * (neck_low[1] - bottom)).max(0.3 * neck), bottom];
     Ok(Section {
         foot,
-        on_fillet,
         fillet_centre,
         fillet_radius: block.fillet_radius,
-        neck_low: [neck, fillet_centre[1]],
+        neck_low,
         neck_high: [neck, -drop],
         outer_radius,
         bottom,
@@ -217,14 +212,12 @@ fn section(block: &PillowBlock) -> Result<Section, MeshError> {
 
 impl Section {
     /// The core's outline from the bottom's middle to the height of the centre, and the steps
-    /// from the foot to the fillet.
+    /// from the foot to the neck.
     fn lower_outline(&self, around: usize) -> (Path, usize) {
         let mut path = Path::from([0.0, self.bottom]);
         path.line_to(self.foot, steps(path.last(), self.foot, around));
-        let rising = steps(self.foot, self.on_fillet, around);
-        path.line_to(self.on_fillet, rising);
-        let bend = steps(self.on_fillet, self.neck_low, around);
-        path.arc(self.fillet_centre, self.fillet_radius, 1.25 * PI, PI, bend);
+        let rising = steps(self.foot, self.neck_low, around);
+        path.line_to(self.neck_low, rising);
         path.line_to(self.neck_high, steps(self.neck_low, self.neck_high, around));
         if self.neck_high[1] < 0.0 {
             let start = libm::atan2(self.neck_high[1], self.neck_high[0]);
@@ -245,8 +238,8 @@ impl Section {
     ) {
         let foot_end = [self.fillet_centre[0], self.bottom];
         let count = |length: f64| ((length / cell).ceil() as usize).clamp(1, 1000);
-        let bend = count(self.fillet_radius);
-        let angles = uniform(1.25 * PI, 1.5 * PI, bend);
+        let bend = count(FRAC_PI_2 * self.fillet_radius).max(3);
+        let angles = uniform(PI, 1.5 * PI, bend);
         let up = uniform(0.0, 1.0, rising);
         let place = |i: usize, [y, z]: Point| [x[i], signs[0] * y, signs[1] * z];
         cells.add_block([x.len() - 1, bend, rising], |[i, j, k]| {
@@ -282,7 +275,7 @@ fn pillow_block(
     }
     let mut cells = Hexahedra::default();
     add_core(&mut cells, block.bore_radius, &path.closed_by_mirror(0), mesh, &x);
-    let cell = (section.on_fillet[1] - section.bottom) / rising as f64;
+    let cell = TAU * block.bore_radius / mesh.around as f64;
     let heights: &[f64] = if mirrored { &[1.0, -1.0] } else { &[1.0] };
     for &height in heights {
         for side in [1.0, -1.0] {

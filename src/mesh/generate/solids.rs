@@ -151,7 +151,7 @@ pub fn shaft(
     between("longest layer", longest, 0.0, f64::INFINITY)?;
     divisions("cells around the shaft", around, 8)?;
     divisions("radial cells", radial, 1)?;
-    if around % 8 != 0 {
+    if !around.is_multiple_of(8) {
         let (what, allowed) = ("cells around the shaft", "the multiples of 8".to_string());
         return Err(MeshError::Dimension { what, value: around as f64, allowed });
     }
@@ -172,10 +172,8 @@ pub fn shaft(
     let sets = [("outer", outer), ("x_low", ends[0]), ("x_high", ends[1])];
     let mut solid = with_sets(cells.into_mesh()?, &sets, vec![outer])?;
     for (index, &station) in stations.iter().enumerate() {
-        let region = Region::On {
-            surface: Surface::plane(0, station),
-            tolerance: 1e-9 * solid.mesh.size(),
-        };
+        let region =
+            Region::On { surface: Surface::plane(0, station), tolerance: 1e-9 * solid.mesh.size() };
         solid.mesh.add_node_set(&format!("station_{}", index + 1), &region)?;
     }
     Ok(solid)
@@ -185,7 +183,9 @@ pub fn shaft(
 /// its sides to the rim.
 fn disc(cells: &mut Hexahedra, radius: f64, side: usize, radial: usize, x: &[f64]) {
     /// Radius of the core's corners over the shaft's.
-    const CORE: f64 = 0.5;
+    const CORE: f64 = 0.55;
+    /// How far the core's border bulges from a square (0) to a circle (1).
+    const BULGE: f64 = 0.35;
     let layers = x.len() - 1;
     // Rim and border of the core over u in [-1, 1], a quarter of the way round.
     let on_rim = |u: f64| {
@@ -194,9 +194,10 @@ fn disc(cells: &mut Hexahedra, radius: f64, side: usize, radial: usize, x: &[f64
     };
     let border = |u: f64| {
         let [c, s] = on_rim(u);
-        // Half way between the circle and the square in it.
+        // Between the square and the circle round it, nearer the square: corners stay corners.
         let chord = [FRAC_1_SQRT_2, u * FRAC_1_SQRT_2];
-        [CORE * 0.5 * (c + chord[0]), CORE * 0.5 * (s + chord[1])]
+        [(c, chord[0]), (s, chord[1])]
+            .map(|(round, flat)| CORE * (BULGE * round + (1.0 - BULGE) * flat))
     };
     let unit = |i: usize| -1.0 + 2.0 * i as f64 / side as f64;
     // Transfinite: the four bulging borders, minus the corners counted twice.

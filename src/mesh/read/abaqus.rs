@@ -7,6 +7,7 @@ use crate::mesh::read::assemble::{Numbered, RawFace, RawMesh};
 use crate::mesh::read::error::{Problem, ReadError};
 use crate::mesh::read::source::{Source, excerpt};
 use crate::mesh::read::{LengthUnit, Loaded};
+use std::collections::BTreeMap;
 
 /// A keyword line: `*ELEMENT, TYPE=C3D4, ELSET=all`.
 struct Keyword {
@@ -63,7 +64,7 @@ pub fn read_abaqus(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> 
     if bytes.trim_ascii().is_empty() {
         return Err(source.error(Problem::Empty));
     }
-    let mut deck = Deck::default();
+    let mut deck = Deck { raw: RawMesh::new(bytes.len()), parts: 0, instances: 0 };
     let mut block = Block::Nothing;
     let mut first = true;
     loop {
@@ -74,7 +75,9 @@ pub fn read_abaqus(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> 
         }
         if first && !line.starts_with(b"*") {
             let found = excerpt(line);
-            return Err(source.error_at(at, Problem::OtherFormat { expected: "Abaqus .inp", found }));
+            return Err(
+                source.error_at(at, Problem::OtherFormat { expected: "Abaqus .inp", found })
+            );
         }
         first = false;
         if line.starts_with(b"*") {
@@ -110,9 +113,8 @@ fn keyword(source: &mut Source, line: &[u8], at: usize) -> Keyword {
         }
     }
     let mut words = text[1..].split(',').map(str::trim);
-    let squeeze = |word: &str| {
-        word.split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_uppercase()
-    };
+    let squeeze =
+        |word: &str| word.split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_uppercase();
     let name = squeeze(words.next().unwrap_or_default());
     let parameter = |word: &str| {
         let (key, value) = word.split_once('=').unwrap_or((word, ""));
@@ -121,7 +123,6 @@ fn keyword(source: &mut Source, line: &[u8], at: usize) -> Keyword {
     Keyword { name, parameters: words.filter(|w| !w.is_empty()).map(parameter).collect(), at }
 }
 
-#[derive(Default)]
 struct Deck {
     raw: RawMesh,
     parts: usize,
@@ -136,7 +137,9 @@ impl Deck {
         let name = |key| keyword.required(source, key).map(str::to_string);
         match keyword.name.as_str() {
             "NODE" => match keyword.parameter("SYSTEM").unwrap_or("R") {
-                "R" | "r" => Ok(Block::Nodes { set: keyword.parameter("NSET").map(str::to_string) }),
+                "R" | "r" => {
+                    Ok(Block::Nodes { set: keyword.parameter("NSET").map(str::to_string) })
+                }
                 other => refuse(format!("the coordinate system {other}"), "write Cartesian nodes"),
             },
             "ELEMENT" => {
@@ -156,13 +159,15 @@ impl Deck {
                 self.raw.element_sets.entry(name.clone()).or_default();
                 Ok(Block::ElementSet { name, generate })
             }
-            "SURFACE" => match keyword.parameter("TYPE").unwrap_or("ELEMENT").to_ascii_uppercase().as_str() {
-                "ELEMENT" => Ok(Block::Surface { name: name("NAME")? }),
-                other => {
-                    let hint = "define it by elements and their sides";
-                    refuse(format!("a surface of type {other}"), hint)
+            "SURFACE" => {
+                match keyword.parameter("TYPE").unwrap_or("ELEMENT").to_ascii_uppercase().as_str() {
+                    "ELEMENT" => Ok(Block::Surface { name: name("NAME")? }),
+                    other => {
+                        let hint = "define it by elements and their sides";
+                        refuse(format!("a surface of type {other}"), hint)
+                    }
                 }
-            },
+            }
             "PART" | "INSTANCE" => {
                 let is_part = keyword.name == "PART";
                 let count = if is_part { &mut self.parts } else { &mut self.instances };
@@ -177,7 +182,9 @@ impl Deck {
             "SYSTEM" | "NGEN" | "NCOPY" | "ELGEN" | "ELCOPY" | "NFILL" => {
                 refuse(format!("*{}", keyword.name), "write nodes and elements out")
             }
-            "HEADING" | "END PART" | "END INSTANCE" | "ASSEMBLY" | "END ASSEMBLY" => Ok(Block::Nothing),
+            "HEADING" | "END PART" | "END INSTANCE" | "ASSEMBLY" | "END ASSEMBLY" => {
+                Ok(Block::Nothing)
+            }
             other => {
                 self.raw.ignore(format!("*{}", excerpt(other.as_bytes())));
                 Ok(Block::Nothing)
@@ -196,7 +203,7 @@ impl Deck {
         let words: Vec<&str> = text.split(',').map(str::trim).collect();
         // A comma may end a line.
         let words = match words.split_last() {
-            Some((last, before)) if last.is_empty() => before,
+            Some((&"", before)) => before,
             _ => &words[..],
         };
         match block {
@@ -222,14 +229,16 @@ impl Deck {
                 Ok(())
             }
             Block::NodeSet { name, generate } => {
-                let sets = &mut self.raw.node_sets;
-                extend_set(source, at, words, *generate, |word| sets.get(word).cloned())
-                    .map(|tags| sets.entry(name.clone()).or_default().extend(tags))
+                let count = member_count(source, at, words, *generate, &self.raw.node_sets)?;
+                self.raw.take_room(source, at, count)?;
+                extend_set(words, *generate, name, &mut self.raw.node_sets);
+                Ok(())
             }
             Block::ElementSet { name, generate } => {
-                let sets = &mut self.raw.element_sets;
-                extend_set(source, at, words, *generate, |word| sets.get(word).cloned())
-                    .map(|tags| sets.entry(name.clone()).or_default().extend(tags))
+                let count = member_count(source, at, words, *generate, &self.raw.element_sets)?;
+                self.raw.take_room(source, at, count)?;
+                extend_set(words, *generate, name, &mut self.raw.element_sets);
+                Ok(())
             }
             Block::Surface { name } => self.surface(source, at, words, name),
             Block::Instance => {
@@ -302,8 +311,11 @@ impl Deck {
     ) -> Result<(), ReadError> {
         let elements = match words[0].parse::<u64>() {
             Ok(tag) => vec![tag],
-            Err(_) => match self.raw.element_sets.get(words[0]) {
-                Some(tags) => tags.clone(),
+            Err(_) => match self.raw.element_sets.get(words[0]).cloned() {
+                Some(tags) => {
+                    self.raw.take_room(source, at, tags.len())?;
+                    tags
+                }
                 None => {
                     let problem = Problem::UnknownSet { name: words[0].to_string() };
                     return Err(source.error_at(at, problem));
@@ -336,46 +348,70 @@ fn number<T: std::str::FromStr>(
     word: &str,
     what: &'static str,
 ) -> Result<T, ReadError> {
-    word.parse().map_err(|_| {
-        source.error_at(at, Problem::Number { found: excerpt(word.as_bytes()), what })
-    })
+    word.parse()
+        .map_err(|_| source.error_at(at, Problem::Number { found: excerpt(word.as_bytes()), what }))
 }
 
-/// Members on one line of a set: numbers, names of sets, or with GENERATE first, last, step.
-fn extend_set(
+type Sets = BTreeMap<String, Vec<u64>>;
+
+/// How many members a line of a set has: numbers, names of sets, or with GENERATE first, last and
+/// step. Known before any is made.
+fn member_count(
     source: &Source,
     at: usize,
     words: &[&str],
     generate: bool,
-    set: impl Fn(&str) -> Option<Vec<u64>>,
-) -> Result<Vec<u64>, ReadError> {
+    sets: &Sets,
+) -> Result<usize, ReadError> {
     if !generate {
-        let mut tags = Vec::new();
-        for word in words {
-            match (word.parse::<u64>(), set(word)) {
-                (Ok(tag), _) => tags.push(tag),
-                (Err(_), Some(members)) => tags.extend(members),
-                (Err(_), None) => {
-                    let problem = Problem::UnknownSet { name: excerpt(word.as_bytes()) };
-                    return Err(source.error_at(at, problem));
-                }
+        let count = |word: &&str| match (word.parse::<u64>(), sets.get(*word)) {
+            (Ok(_), _) => Ok(1),
+            (Err(_), Some(members)) => Ok(members.len()),
+            (Err(_), None) => {
+                let problem = Problem::UnknownSet { name: excerpt(word.as_bytes()) };
+                Err(source.error_at(at, problem))
             }
-        }
-        return Ok(tags);
+        };
+        return words.iter().map(count).try_fold(0usize, |sum, n| Ok(sum.saturating_add(n?)));
     }
-    let mut bounds: [u64; 3] = [0, 0, 1];
-    for (bound, word) in bounds.iter_mut().zip(words) {
-        *bound = number(source, at, word, "a number of GENERATE")?;
+    for word in words {
+        number::<u64>(source, at, word, "a number of GENERATE")?;
     }
-    let [first, last, step] = bounds;
+    let [first, last, step] = range(words);
     // A range can name at most what a file of this size can define.
-    let count = last.saturating_sub(first) / u64::max(step, 1);
+    let count = last.saturating_sub(first) / step.max(1);
     if step == 0 || last < first || count > source.length() as u64 {
         let found = format!("{first}, {last}, {step}");
         let what = "a range (first, last, step) of numbers in this file";
         return Err(source.error_at(at, Problem::Number { found, what }));
     }
-    Ok((first..=last).step_by(step as usize).collect())
+    Ok(count as usize + 1)
+}
+
+/// First, last and step of a line whose words are numbers.
+fn range(words: &[&str]) -> [u64; 3] {
+    let mut bounds = [0, 0, 1];
+    for (bound, word) in bounds.iter_mut().zip(words) {
+        *bound = word.parse().unwrap_or_default();
+    }
+    bounds
+}
+
+/// Adds the members of a line that [`member_count`] has passed.
+fn extend_set(words: &[&str], generate: bool, name: &str, sets: &mut Sets) {
+    let mut tags = Vec::new();
+    if generate {
+        let [first, last, step] = range(words);
+        tags.extend((first..=last).step_by(step as usize));
+    } else {
+        for word in words {
+            match word.parse() {
+                Ok(tag) => tags.push(tag),
+                Err(_) => tags.extend(sets.get(*word).into_iter().flatten()),
+            }
+        }
+    }
+    sets.entry(name.to_string()).or_default().extend(tags);
 }
 
 fn kind(source: &Source, at: usize, name: &str) -> Result<Kind, ReadError> {

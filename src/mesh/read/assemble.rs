@@ -33,8 +33,9 @@ pub enum Numbered {
 }
 
 /// What a file holds, collected while it is read.
-#[derive(Default)]
 pub struct RawMesh {
+    /// Members that sets may still have: sets that name sets could grow without end.
+    room: usize,
     nodes: Vec<[f64; 3]>,
     node_index: HashMap<u64, u32>,
     tets: Vec<RawTet>,
@@ -48,6 +49,41 @@ pub struct RawMesh {
 }
 
 impl RawMesh {
+    /// An empty mesh from a file of this many bytes. A set's member takes eight bytes in memory
+    /// and at least two in the file unless ranges and groups repeat it; beyond a few repetitions of
+    /// everything the file is not believed.
+    pub fn new(file_length: usize) -> RawMesh {
+        const REPETITIONS: usize = 4;
+        const ANY_FILE: usize = 10_000;
+        RawMesh {
+            room: file_length.saturating_mul(REPETITIONS).saturating_add(ANY_FILE),
+            nodes: Vec::new(),
+            node_index: HashMap::new(),
+            tets: Vec::new(),
+            tet_index: HashMap::new(),
+            nodes_per_element: 0,
+            node_sets: BTreeMap::new(),
+            element_sets: BTreeMap::new(),
+            surface_sets: BTreeMap::new(),
+            numbered: HashMap::new(),
+            ignored: BTreeMap::new(),
+        }
+    }
+
+    /// Accounts for `count` more members of sets, before they are made.
+    pub fn take_room(&mut self, source: &Source, at: usize, count: usize) -> Result<(), ReadError> {
+        match self.room.checked_sub(count) {
+            Some(room) => {
+                self.room = room;
+                Ok(())
+            }
+            None => {
+                let problem = Problem::TooManyMembers { length: source.length() };
+                Err(source.error_at(at, problem))
+            }
+        }
+    }
+
     pub fn ignore(&mut self, what: String) {
         *self.ignored.entry(what).or_default() += 1;
     }
@@ -155,8 +191,7 @@ impl RawMesh {
             let indices = members(name, "element", tags, &self.tet_index).map_err(end)?;
             mesh.element_sets.insert(name.clone(), indices);
         }
-        let faces =
-            if self.surface_sets.is_empty() { Vec::new() } else { sorted_faces(&mesh) };
+        let faces = if self.surface_sets.is_empty() { Vec::new() } else { sorted_faces(&mesh) };
         for (name, members) in &self.surface_sets {
             let mut set = Vec::new();
             for &member in members {

@@ -40,15 +40,21 @@ pub enum Problem {
     Truncated { what: String },
     #[error("{found:?} is not {what}")]
     Number { found: String, what: &'static str },
-    #[error("the file claims {claimed} {what}, for which the {left} bytes that follow cannot do; the file is damaged or cut off")]
+    #[error(
+        "the file claims {claimed} {what}, for which the {left} bytes that follow cannot do; the file is damaged or cut off"
+    )]
     Count { what: &'static str, claimed: u64, left: usize },
-    #[error("{expected} was expected here and {found:?} was found; the counts before it may be wrong")]
+    #[error(
+        "{expected} was expected here and {found:?} was found; the counts before it may be wrong"
+    )]
     Expected { expected: String, found: String },
     #[error("the file has no {section} section")]
     MissingSection { section: &'static str },
     #[error("elements of type {found} are not read; mesh with tetrahedra of four or ten nodes")]
     ElementType { found: String },
-    #[error("{this} nodes an element here and {first} before; a mesh has elements of one order only")]
+    #[error(
+        "{this} nodes an element here and {first} before; a mesh has elements of one order only"
+    )]
     MixedOrders { first: usize, this: usize },
     #[error("{kind} {tag} is defined twice")]
     Duplicate { kind: &'static str, tag: u64 },
@@ -58,6 +64,10 @@ pub enum Problem {
     RepeatedNode { element: u64, node: u64 },
     #[error("set \"{set}\" names {kind} {tag}, which the file does not define")]
     UnknownMember { set: String, kind: &'static str, tag: u64 },
+    #[error(
+        "the sets have more members than a file of {length} bytes can mean; ranges or groups repeat too much"
+    )]
+    TooManyMembers { length: usize },
     #[error("set \"{name}\" is not defined before it is used")]
     UnknownSet { name: String },
     #[error("set \"{set}\" has a face on nodes {nodes:?} that is no side of a tetrahedron")]

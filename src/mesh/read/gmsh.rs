@@ -37,24 +37,29 @@ pub fn read_gmsh(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> {
     }
     let (version, coding) = header(&mut source)?;
     let mut names = Names::default();
-    let mut raw = RawMesh::default();
+    let mut raw = RawMesh::new(bytes.len());
     let mut entities = gmsh4::Entities::default();
     let (mut nodes_seen, mut elements_seen) = (false, false);
     while let Some(line) = source.full_line() {
         let start = source.position();
         let Some(section) = line.strip_prefix(b"$") else {
             let expected = "a section ($…)".to_string();
-            return Err(source.error_at(start, Problem::Expected { expected, found: excerpt(line) }));
+            return Err(
+                source.error_at(start, Problem::Expected { expected, found: excerpt(line) })
+            );
         };
         match (section, version) {
             (b"PhysicalNames", _) => names = physical_names(&mut source)?,
-            (b"Entities", Version::V41) => entities = in_coding(&mut source, coding, gmsh4::entities)?,
+            (b"Entities", Version::V41) => {
+                entities = in_coding(&mut source, coding, gmsh4::entities)?
+            }
             (b"Nodes", Version::V41) => {
                 in_coding(&mut source, coding, |source| gmsh4::nodes(source, &mut raw))?;
                 nodes_seen = true;
             }
             (b"Elements", Version::V41) => {
-                let read = |source: &mut Source| gmsh4::elements(source, &entities, &names, &mut raw);
+                let read =
+                    |source: &mut Source| gmsh4::elements(source, &entities, &names, &mut raw);
                 in_coding(&mut source, coding, read)?;
                 elements_seen = true;
             }
@@ -88,7 +93,9 @@ pub fn read_gmsh(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> {
                 return Err(source.error_at(end, Problem::Truncated { what }));
             }
             let expected = format!("$End{}", excerpt(section));
-            return Err(source.error_at(end, Problem::Expected { expected, found: excerpt(closing) }));
+            return Err(
+                source.error_at(end, Problem::Expected { expected, found: excerpt(closing) })
+            );
         }
     }
     for (seen, section) in [(nodes_seen, "$Nodes"), (elements_seen, "$Elements")] {
@@ -120,8 +127,11 @@ enum Version {
 fn header(source: &mut Source) -> Result<(Version, Coding), ReadError> {
     let start = source.position();
     let line = source.full_line().unwrap_or_default();
-    let words: Vec<String> =
-        line.split(|byte| byte.is_ascii_whitespace()).filter(|w| !w.is_empty()).map(excerpt).collect();
+    let words: Vec<String> = line
+        .split(|byte| byte.is_ascii_whitespace())
+        .filter(|w| !w.is_empty())
+        .map(excerpt)
+        .collect();
     let word = |index: usize| words.get(index).map(String::as_str).unwrap_or_default();
     let version = match word(0) {
         "4.1" => Version::V41,
@@ -130,7 +140,8 @@ fn header(source: &mut Source) -> Result<(Version, Coding), ReadError> {
         other => return Err(source.error_at(start, Problem::Version { found: other.into() })),
     };
     if word(2) != "8" {
-        let (what, hint) = ("a size of numbers other than 8 bytes".to_string(), "save it on a 64-bit system");
+        let (what, hint) =
+            ("a size of numbers other than 8 bytes".to_string(), "save it on a 64-bit system");
         return Err(source.error_at(start, Problem::Unsupported { what, hint }));
     }
     let coding = match word(1) {
@@ -227,6 +238,7 @@ pub(super) fn place_element(
     groups: &[String],
     raw: &mut RawMesh,
 ) -> Result<(), ReadError> {
+    raw.take_room(source, at, groups.len() * nodes.len())?;
     match kind {
         Kind::Point | Kind::Line => {
             for group in groups {

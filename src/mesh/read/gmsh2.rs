@@ -126,6 +126,7 @@ impl Groups<'_> {
         if kind == Kind::Tet {
             let first = *self.tets.entry(nodes.to_vec()).or_insert(tag);
             if first != tag {
+                raw.take_room(source, at, groups.len())?;
                 for group in groups {
                     raw.element_sets.entry(group).or_default().push(first);
                 }

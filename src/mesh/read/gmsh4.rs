@@ -52,12 +52,7 @@ fn totals(source: &mut Source, what: &'static str) -> Result<(u64, u64), ReadErr
     Ok((blocks, total))
 }
 
-fn expect_total(
-    source: &Source,
-    what: &str,
-    announced: u64,
-    found: u64,
-) -> Result<(), ReadError> {
+fn expect_total(source: &Source, what: &str, announced: u64, found: u64) -> Result<(), ReadError> {
     if announced == found {
         return Ok(());
     }

@@ -91,12 +91,13 @@ impl<'a> Source<'a> {
         Ok((start, &self.bytes[start..self.at]))
     }
 
-    pub fn text_number<T: std::str::FromStr>(&mut self, what: &'static str) -> Result<T, ReadError> {
+    pub fn text_number<T: std::str::FromStr>(
+        &mut self,
+        what: &'static str,
+    ) -> Result<T, ReadError> {
         let (start, word) = self.word(what)?;
         let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-        number.ok_or_else(|| {
-            self.error_at(start, Problem::Number { found: excerpt(word), what })
-        })
+        number.ok_or_else(|| self.error_at(start, Problem::Number { found: excerpt(word), what }))
     }
 
     fn raw<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N], ReadError> {
@@ -141,7 +142,12 @@ impl<'a> Source<'a> {
     }
 
     /// Refuses a count of things that take at least `least` bytes each and cannot all be there.
-    pub fn expect_room(&self, what: &'static str, claimed: u64, least: u64) -> Result<(), ReadError> {
+    pub fn expect_room(
+        &self,
+        what: &'static str,
+        claimed: u64,
+        least: u64,
+    ) -> Result<(), ReadError> {
         let left = self.left();
         // The last number of a text needs no blank behind it.
         if claimed.saturating_mul(least) <= left as u64 + 1 {
@@ -161,7 +167,8 @@ impl<'a> Source<'a> {
                 Ok(())
             }
             None => {
-                let what = format!("a section that should end with {}", excerpt(marker));
+                let what =
+                    format!("a section that should end with {}", excerpt(marker.trim_ascii()));
                 Err(self.error(Problem::Truncated { what }))
             }
         }

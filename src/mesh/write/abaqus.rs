@@ -18,7 +18,8 @@ const ALL_ELEMENTS: &str = "all_elements";
 /// # Errors
 /// [`MeshError::Name`] for a set whose name the format cannot hold.
 pub fn write_abaqus(mesh: &TetMesh) -> Result<String, MeshError> {
-    let names = mesh.node_sets.keys().chain(mesh.element_sets.keys()).chain(mesh.surface_sets.keys());
+    let names =
+        mesh.node_sets.keys().chain(mesh.element_sets.keys()).chain(mesh.surface_sets.keys());
     for name in names {
         check_name(name)?;
     }
