@@ -10,6 +10,7 @@
 
 pub mod ch2_housing;
 pub mod kinematics;
+pub mod mesh;
 pub mod output;
 pub mod scene;
 pub mod solver;

@@ -1,0 +1,80 @@
+//! Meshes of the dissertation's parts: mapped blocks of hexahedra, cut into tetrahedra.
+//!
+//! Every generator gives a [`Solid`]: a four-node mesh with named surface sets, and the curved
+//! surfaces it approximates, so that [`Solid::quadratic`] can put mid-side nodes on them.
+//! Dimensions are inputs, in m; where the source states none, the default says so.
+mod cage;
+mod grading;
+mod hexahedra;
+mod housing;
+mod outline;
+mod solids;
+
+pub use cage::{Cage, CageMesh, RailRelief};
+pub use grading::{graded, uniform};
+pub use housing::{Housing, HousingMesh, PillowBlock};
+pub use solids::{ContactBlock, Ring, RingMesh, bar, contact_block, ring, shaft};
+
+use crate::mesh::error::MeshError;
+use crate::mesh::quadratic::{Elevated, elevate};
+use crate::mesh::surface::Surface;
+use crate::mesh::tet_mesh::TetMesh;
+use crate::mesh::topology::surface;
+
+/// A generated mesh and the curved surfaces that bound the true body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solid {
+    pub mesh: TetMesh,
+    pub curved: Vec<Surface>,
+}
+
+/// Part of the mesh's size within which generated nodes lie on the surfaces they were put on.
+const ON_SURFACE: f64 = 1e-9;
+
+impl Solid {
+    /// The same body in ten-node elements with mid-side nodes on the curved surfaces.
+    ///
+    /// # Errors
+    /// As [`elevate`].
+    pub fn quadratic(&self) -> Result<Elevated, MeshError> {
+        elevate(&self.mesh, &self.curved)
+    }
+}
+
+/// Adds named surface sets to a generated mesh; a name that comes twice joins its surfaces.
+fn with_sets(
+    mut mesh: TetMesh,
+    sets: &[(&str, Surface)],
+    curved: Vec<Surface>,
+) -> Result<Solid, MeshError> {
+    let boundary = surface(&mesh);
+    let tolerance = ON_SURFACE * mesh.size();
+    for (name, on) in sets {
+        let before = mesh.surface_sets.remove(*name).unwrap_or_default();
+        mesh.add_surface_set(name, &boundary, on, tolerance)?;
+        let faces = mesh.surface_sets.entry((*name).to_string()).or_default();
+        faces.extend(before);
+        faces.sort_unstable();
+        let nodes = mesh.nodes_of_faces(&mesh.surface_sets[*name]);
+        mesh.node_sets.insert((*name).to_string(), nodes);
+    }
+    Ok(Solid { mesh, curved })
+}
+
+/// Refuses a dimension that is not above `low` and below `high`.
+fn between(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), MeshError> {
+    if value > low && value < high {
+        return Ok(());
+    }
+    Err(MeshError::Dimension { what, value, allowed: format!("{low} to {high} (both excluded)") })
+}
+
+/// Refuses a count outside `low..=MOST_DIVISIONS`.
+fn divisions(what: &'static str, count: usize, low: usize) -> Result<(), MeshError> {
+    const MOST_DIVISIONS: usize = 100_000;
+    if (low..=MOST_DIVISIONS).contains(&count) {
+        return Ok(());
+    }
+    let allowed = format!("{low} to {MOST_DIVISIONS}");
+    Err(MeshError::Dimension { what, value: count as f64, allowed })
+}

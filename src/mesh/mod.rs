@@ -1,0 +1,33 @@
+//! Tetrahedral meshes: what they are, where they come from, whether they are any good.
+//!
+//! | Job | Where |
+//! |---|---|
+//! | the mesh and its node order | [`tet_mesh`], [`node_order`] |
+//! | surfaces, adjacency, volumes, areas | [`topology`], [`measure`] |
+//! | sets by geometry, symmetry planes | [`select`] |
+//! | quality, faults, repairs | [`quality`], [`check`], [`repair`] |
+//! | numbering for speed, mid-side nodes | [`numbering`], [`quadratic`] |
+//! | files in and out | [`read`], [`write`] |
+//! | blocks, rings, shafts, housings, cages | [`generate`] |
+//!
+//! Lengths are metres everywhere past the readers. Readers take bytes and writers give bytes:
+//! nothing here opens a file, and nothing knows a scene, a material or a unit string.
+pub mod check;
+pub mod error;
+pub mod generate;
+pub mod measure;
+pub mod node_order;
+pub mod numbering;
+pub mod quadratic;
+pub mod quality;
+pub mod read;
+pub mod repair;
+pub mod select;
+pub mod surface;
+pub mod tet_mesh;
+pub mod topology;
+pub mod write;
+
+pub use error::{Fault, MeshError};
+pub use surface::Surface;
+pub use tet_mesh::{Elements, Face, Order, TetMesh};

@@ -1,0 +1,155 @@
+//! From four-node to ten-node elements, with mid-side nodes on the true curved surfaces.
+
+use crate::mesh::error::MeshError;
+use crate::mesh::measure::{least_jacobian, straight_volume};
+use crate::mesh::node_order::EDGES;
+use crate::mesh::select::faces_on;
+use crate::mesh::surface::Surface;
+use crate::mesh::tet_mesh::{Elements, TetMesh};
+use crate::mesh::topology::surface;
+use nalgebra::Vector3;
+
+/// A ten-node mesh, and how many mid-side nodes had to stay off their curved surface because
+/// an element would have folded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Elevated {
+    pub mesh: TetMesh,
+    pub pulled_back: usize,
+}
+
+/// An element may lose this part of its straight Jacobian at its worst place before mid-side
+/// nodes are pulled back.
+const LEAST_JACOBIAN: f64 = 0.1;
+
+/// Part of the mesh's size within which a corner counts as lying on a curved surface.
+const ON_SURFACE: f64 = 1e-7;
+
+/// Puts a node on every edge. Edges of boundary faces that lie on one of `curved` get theirs
+/// projected onto it; edges on two of them onto both.
+///
+/// Node sets that share a name with a surface set become the nodes of its faces; other node sets
+/// gain the middle of each edge whose two ends they hold.
+///
+/// # Errors
+/// [`MeshError::AlreadyQuadratic`]; [`MeshError::TooLarge`] where the nodes cannot be numbered.
+pub fn elevate(mesh: &TetMesh, curved: &[Surface]) -> Result<Elevated, MeshError> {
+    let Elements::Linear(list) = &mesh.elements else {
+        return Err(MeshError::AlreadyQuadratic);
+    };
+    let mut edges: Vec<[u32; 2]> = Vec::with_capacity(6 * list.len());
+    for corners in list {
+        edges.extend(EDGES.map(|[a, b]| sorted(corners[a], corners[b])));
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    let first = mesh.nodes.len() as u32;
+    if first.checked_add(u32::try_from(edges.len()).unwrap_or(u32::MAX)).is_none() {
+        return Err(MeshError::TooLarge { count: mesh.nodes.len() + edges.len() });
+    }
+    // Every edge asked for is in the list it is looked for in.
+    let middle_of = |a: u32, b: u32| edges.binary_search(&sorted(a, b)).unwrap_or(0);
+
+    let straight: Vec<Vector3<f64>> =
+        edges.iter().map(|&[a, b]| (mesh.point(a) + mesh.point(b)) * 0.5).collect();
+    let mut on: Vec<Vec<usize>> = vec![Vec::new(); edges.len()];
+    let boundary = surface(mesh);
+    for (index, shape) in curved.iter().enumerate() {
+        for face in faces_on(mesh, &boundary, shape, ON_SURFACE * mesh.size()) {
+            let [a, b, c] = mesh.face_corners(face);
+            for edge in [middle_of(a, b), middle_of(b, c), middle_of(c, a)] {
+                if !on[edge].contains(&index) {
+                    on[edge].push(index);
+                }
+            }
+        }
+    }
+    let mut middles: Vec<Vector3<f64>> = straight
+        .iter()
+        .zip(&on)
+        .map(|(&place, on)| onto_all(place, &on.iter().map(|&i| curved[i]).collect::<Vec<_>>()))
+        .collect();
+
+    let quadratic: Vec<[u32; 10]> = list
+        .iter()
+        .map(|&corners| {
+            let mut nodes = [0; 10];
+            nodes[..4].copy_from_slice(&corners);
+            for (middle, [a, b]) in EDGES.into_iter().enumerate() {
+                nodes[4 + middle] = first + middle_of(corners[a], corners[b]) as u32;
+            }
+            nodes
+        })
+        .collect();
+    let pulled_back = unfold(mesh, &quadratic, &straight, &mut middles);
+
+    let mut elevated = mesh.clone();
+    elevated.elements = Elements::Quadratic(quadratic);
+    elevated.nodes.extend(middles.iter().map(|&place| <[f64; 3]>::from(place)));
+    for (name, set) in &mut elevated.node_sets {
+        if !mesh.surface_sets.contains_key(name) {
+            let mut holds = vec![false; mesh.nodes.len()];
+            set.iter().for_each(|&node| holds[node as usize] = true);
+            let both = |[a, b]: &[u32; 2]| holds[*a as usize] && holds[*b as usize];
+            let within = (0..edges.len()).filter(|&edge| both(&edges[edge]));
+            set.extend(within.map(|edge| first + edge as u32));
+        }
+    }
+    for (name, faces) in &mesh.surface_sets {
+        if mesh.node_sets.contains_key(name) {
+            elevated.node_sets.insert(name.clone(), elevated.nodes_of_faces(faces));
+        }
+    }
+    Ok(Elevated { mesh: elevated, pulled_back })
+}
+
+fn sorted(a: u32, b: u32) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// Projection onto several surfaces in turn; they cross at large angles, so this converges fast.
+fn onto_all(place: Vector3<f64>, surfaces: &[Surface]) -> Vector3<f64> {
+    const ROUNDS: usize = 60;
+    let mut place = place;
+    let rounds = if surfaces.len() > 1 { ROUNDS } else { 1 };
+    for _ in 0..rounds {
+        for surface in surfaces {
+            place = surface.project(place);
+        }
+    }
+    place
+}
+
+/// Moves mid-side nodes half way back to their edges, again and again, wherever an element is
+/// folded or nearly so; at last onto the edge itself. Returns how many nodes were moved.
+fn unfold(
+    mesh: &TetMesh,
+    elements: &[[u32; 10]],
+    straight: &[Vector3<f64>],
+    middles: &mut [Vector3<f64>],
+) -> usize {
+    const HALVINGS: usize = 4;
+    let first = mesh.nodes.len();
+    let mut moved = vec![false; middles.len()];
+    for round in 0..=HALVINGS {
+        let mut bad = vec![false; middles.len()];
+        for nodes in elements {
+            let point = |node: u32| match (node as usize).checked_sub(first) {
+                Some(middle) => middles[middle],
+                None => mesh.point(node),
+            };
+            let points = nodes.map(point);
+            let whole = 6.0 * straight_volume([points[0], points[1], points[2], points[3]]);
+            if least_jacobian(&points) < LEAST_JACOBIAN * whole {
+                nodes[4..].iter().for_each(|&node| bad[node as usize - first] = true);
+            }
+        }
+        for middle in (0..middles.len()).filter(|&middle| bad[middle]) {
+            if middles[middle] != straight[middle] {
+                moved[middle] = true;
+                let part = if round < HALVINGS { 0.5 } else { 0.0 };
+                middles[middle] = straight[middle] + (middles[middle] - straight[middle]) * part;
+            }
+        }
+    }
+    moved.into_iter().filter(|&moved| moved).count()
+}

@@ -1,0 +1,430 @@
+//! Abaqus' and CalculiX' `.inp`: nodes, C3D4 and C3D10 elements, node and element sets, surfaces.
+//!
+//! Keywords about anything but the mesh are skipped and reported. One part with one unmoved
+//! instance is read; more than one is refused, because their numbers overlap.
+
+use crate::mesh::read::assemble::{Numbered, RawFace, RawMesh};
+use crate::mesh::read::error::{Problem, ReadError};
+use crate::mesh::read::source::{Source, excerpt};
+use crate::mesh::read::{LengthUnit, Loaded};
+use std::collections::BTreeMap;
+
+/// A keyword line: `*ELEMENT, TYPE=C3D4, ELSET=all`.
+struct Keyword {
+    name: String,
+    parameters: Vec<(String, String)>,
+    at: usize,
+}
+
+impl Keyword {
+    fn parameter(&self, name: &str) -> Option<&str> {
+        self.parameters.iter().find(|(key, _)| key == name).map(|(_, value)| value.as_str())
+    }
+
+    fn required(&self, source: &Source, name: &'static str) -> Result<&str, ReadError> {
+        self.parameter(name).filter(|value| !value.is_empty()).ok_or_else(|| {
+            let expected = format!("{name}= behind *{}", self.name);
+            source.error_at(self.at, Problem::Expected { expected, found: String::new() })
+        })
+    }
+}
+
+/// What the data lines of the present keyword are.
+enum Block {
+    Nothing,
+    Nodes { set: Option<String> },
+    Elements { kind: Kind, set: Option<String>, pending: Vec<u64>, from: usize },
+    NodeSet { name: String, generate: bool },
+    ElementSet { name: String, generate: bool },
+    Surface { name: String },
+    Instance,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Tet(usize),
+    Triangle(usize),
+    Line(usize),
+}
+
+impl Kind {
+    fn node_count(self) -> usize {
+        match self {
+            Kind::Tet(count) | Kind::Triangle(count) | Kind::Line(count) => count,
+        }
+    }
+}
+
+/// Reads an input deck.
+///
+/// # Errors
+/// [`ReadError`] with the line where the file is wrong.
+pub fn read_abaqus(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> {
+    let mut source = Source::new(bytes);
+    if bytes.trim_ascii().is_empty() {
+        return Err(source.error(Problem::Empty));
+    }
+    let mut deck = Deck { raw: RawMesh::new(bytes.len()), parts: 0, instances: 0 };
+    let mut block = Block::Nothing;
+    let mut first = true;
+    loop {
+        let at = source.position();
+        let Some(line) = source.line() else { break };
+        if line.is_empty() || line.starts_with(b"**") {
+            continue;
+        }
+        if first && !line.starts_with(b"*") {
+            let found = excerpt(line);
+            return Err(
+                source.error_at(at, Problem::OtherFormat { expected: "Abaqus .inp", found })
+            );
+        }
+        first = false;
+        if line.starts_with(b"*") {
+            finish(&source, &block)?;
+            let keyword = keyword(&mut source, line, at);
+            block = deck.open(&source, &keyword)?;
+        } else {
+            deck.data(&source, at, line, &mut block)?;
+        }
+    }
+    finish(&source, &block)?;
+    deck.raw.finish(&source, unit)
+}
+
+/// An element whose list of nodes is still open when its block ends.
+fn finish(source: &Source, block: &Block) -> Result<(), ReadError> {
+    match block {
+        Block::Elements { pending, from, .. } if !pending.is_empty() => {
+            let what = format!("the nodes of element {}", pending[0]);
+            Err(source.error_at(*from, Problem::Truncated { what }))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Takes a keyword line apart; a comma at its end continues it on the next line.
+fn keyword(source: &mut Source, line: &[u8], at: usize) -> Keyword {
+    let mut text = String::from_utf8_lossy(line).into_owned();
+    while text.ends_with(',') {
+        match source.line() {
+            Some(more) => text.push_str(&String::from_utf8_lossy(more)),
+            None => break,
+        }
+    }
+    let mut words = text[1..].split(',').map(str::trim);
+    let squeeze =
+        |word: &str| word.split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_uppercase();
+    let name = squeeze(words.next().unwrap_or_default());
+    let parameter = |word: &str| {
+        let (key, value) = word.split_once('=').unwrap_or((word, ""));
+        (squeeze(key), value.trim().trim_matches('"').to_string())
+    };
+    Keyword { name, parameters: words.filter(|w| !w.is_empty()).map(parameter).collect(), at }
+}
+
+struct Deck {
+    raw: RawMesh,
+    parts: usize,
+    instances: usize,
+}
+
+impl Deck {
+    fn open(&mut self, source: &Source, keyword: &Keyword) -> Result<Block, ReadError> {
+        let refuse = |what: String, hint| {
+            Err(source.error_at(keyword.at, Problem::Unsupported { what, hint }))
+        };
+        let name = |key| keyword.required(source, key).map(str::to_string);
+        match keyword.name.as_str() {
+            "NODE" => match keyword.parameter("SYSTEM").unwrap_or("R") {
+                "R" | "r" => {
+                    Ok(Block::Nodes { set: keyword.parameter("NSET").map(str::to_string) })
+                }
+                other => refuse(format!("the coordinate system {other}"), "write Cartesian nodes"),
+            },
+            "ELEMENT" => {
+                let kind = kind(source, keyword.at, keyword.required(source, "TYPE")?)?;
+                let set = keyword.parameter("ELSET").map(str::to_string);
+                Ok(Block::Elements { kind, set, pending: Vec::new(), from: keyword.at })
+            }
+            "NSET" => {
+                let generate = keyword.parameter("GENERATE").is_some();
+                let name = name("NSET")?;
+                self.raw.node_sets.entry(name.clone()).or_default();
+                Ok(Block::NodeSet { name, generate })
+            }
+            "ELSET" => {
+                let generate = keyword.parameter("GENERATE").is_some();
+                let name = name("ELSET")?;
+                self.raw.element_sets.entry(name.clone()).or_default();
+                Ok(Block::ElementSet { name, generate })
+            }
+            "SURFACE" => {
+                match keyword.parameter("TYPE").unwrap_or("ELEMENT").to_ascii_uppercase().as_str() {
+                    "ELEMENT" => Ok(Block::Surface { name: name("NAME")? }),
+                    other => {
+                        let hint = "define it by elements and their sides";
+                        refuse(format!("a surface of type {other}"), hint)
+                    }
+                }
+            }
+            "PART" | "INSTANCE" => {
+                let is_part = keyword.name == "PART";
+                let count = if is_part { &mut self.parts } else { &mut self.instances };
+                *count += 1;
+                if *count > 1 {
+                    let hint = "flatten the model or write one part to a file";
+                    return refuse(format!("a second *{}", keyword.name), hint);
+                }
+                Ok(if is_part { Block::Nothing } else { Block::Instance })
+            }
+            "INCLUDE" => refuse("*INCLUDE".into(), "join the files into one"),
+            "SYSTEM" | "NGEN" | "NCOPY" | "ELGEN" | "ELCOPY" | "NFILL" => {
+                refuse(format!("*{}", keyword.name), "write nodes and elements out")
+            }
+            "HEADING" | "END PART" | "END INSTANCE" | "ASSEMBLY" | "END ASSEMBLY" => {
+                Ok(Block::Nothing)
+            }
+            other => {
+                self.raw.ignore(format!("*{}", excerpt(other.as_bytes())));
+                Ok(Block::Nothing)
+            }
+        }
+    }
+
+    fn data(
+        &mut self,
+        source: &Source,
+        at: usize,
+        line: &[u8],
+        block: &mut Block,
+    ) -> Result<(), ReadError> {
+        let text = String::from_utf8_lossy(line);
+        let words: Vec<&str> = text.split(',').map(str::trim).collect();
+        // A comma may end a line.
+        let words = match words.split_last() {
+            Some((&"", before)) => before,
+            _ => &words[..],
+        };
+        match block {
+            Block::Nothing => Ok(()),
+            Block::Nodes { set } => self.node(source, at, words, set.as_deref()),
+            Block::Elements { kind, set, pending, from } => {
+                if pending.is_empty() {
+                    *from = at;
+                }
+                for word in words {
+                    pending.push(number(source, at, word, "the number of a node")?);
+                }
+                let wanted = kind.node_count() + 1;
+                if pending.len() > wanted {
+                    let expected = format!("{wanted} numbers an element");
+                    let found = pending.len().to_string();
+                    return Err(source.error_at(at, Problem::Expected { expected, found }));
+                }
+                if pending.len() == wanted {
+                    self.element(source, *from, *kind, pending, set.as_deref())?;
+                    pending.clear();
+                }
+                Ok(())
+            }
+            Block::NodeSet { name, generate } => {
+                let count = member_count(source, at, words, *generate, &self.raw.node_sets)?;
+                self.raw.take_room(source, at, count)?;
+                extend_set(words, *generate, name, &mut self.raw.node_sets);
+                Ok(())
+            }
+            Block::ElementSet { name, generate } => {
+                let count = member_count(source, at, words, *generate, &self.raw.element_sets)?;
+                self.raw.take_room(source, at, count)?;
+                extend_set(words, *generate, name, &mut self.raw.element_sets);
+                Ok(())
+            }
+            Block::Surface { name } => self.surface(source, at, words, name),
+            Block::Instance => {
+                let what = "a moved instance".to_string();
+                let hint = "write the part where it stands";
+                Err(source.error_at(at, Problem::Unsupported { what, hint }))
+            }
+        }
+    }
+
+    fn node(
+        &mut self,
+        source: &Source,
+        at: usize,
+        words: &[&str],
+        set: Option<&str>,
+    ) -> Result<(), ReadError> {
+        if words.len() < 4 {
+            let what = "a node: its number and three coordinates".to_string();
+            return Err(source.error_at(at, Problem::Truncated { what }));
+        }
+        let tag = number(source, at, words[0], "the number of a node")?;
+        let mut place = [0.0; 3];
+        for (x, word) in place.iter_mut().zip(&words[1..]) {
+            *x = number(source, at, word, "a coordinate")?;
+            if !f64::is_finite(*x) {
+                let problem = Problem::Number { found: word.to_string(), what: "a coordinate" };
+                return Err(source.error_at(at, problem));
+            }
+        }
+        self.raw.add_node(source, at, tag, place)?;
+        if let Some(set) = set {
+            self.raw.node_sets.entry(set.to_string()).or_default().push(tag);
+        }
+        Ok(())
+    }
+
+    fn element(
+        &mut self,
+        source: &Source,
+        at: usize,
+        kind: Kind,
+        numbers: &[u64],
+        set: Option<&str>,
+    ) -> Result<(), ReadError> {
+        let (tag, nodes) = (numbers[0], &numbers[1..]);
+        match kind {
+            Kind::Tet(_) => self.raw.add_tet(source, at, tag, nodes)?,
+            Kind::Triangle(_) => {
+                let corners = [nodes[0], nodes[1], nodes[2]];
+                self.raw.add_numbered(source, at, tag, Numbered::Triangle(corners))?;
+            }
+            Kind::Line(_) => {
+                self.raw.add_numbered(source, at, tag, Numbered::Line(nodes.to_vec()))?;
+            }
+        }
+        if let Some(set) = set {
+            self.raw.element_sets.entry(set.to_string()).or_default().push(tag);
+        }
+        Ok(())
+    }
+
+    /// `set or element, S1`, or without a side all free sides.
+    fn surface(
+        &mut self,
+        source: &Source,
+        at: usize,
+        words: &[&str],
+        name: &str,
+    ) -> Result<(), ReadError> {
+        let elements = match words[0].parse::<u64>() {
+            Ok(tag) => vec![tag],
+            Err(_) => match self.raw.element_sets.get(words[0]).cloned() {
+                Some(tags) => {
+                    self.raw.take_room(source, at, tags.len())?;
+                    tags
+                }
+                None => {
+                    let problem = Problem::UnknownSet { name: words[0].to_string() };
+                    return Err(source.error_at(at, problem));
+                }
+            },
+        };
+        let side = match words.get(1).map(|side| side.to_ascii_uppercase()).as_deref() {
+            None | Some("") => None,
+            Some("S1") => Some(0),
+            Some("S2") => Some(1),
+            Some("S3") => Some(2),
+            Some("S4") => Some(3),
+            Some(other) => {
+                let problem = Problem::Number { found: other.to_string(), what: "a side S1 to S4" };
+                return Err(source.error_at(at, problem));
+            }
+        };
+        let faces = elements.into_iter().map(|element| match side {
+            Some(side) => RawFace::Side { element, side },
+            None => RawFace::Free { element },
+        });
+        self.raw.surface_sets.entry(name.to_string()).or_default().extend(faces);
+        Ok(())
+    }
+}
+
+fn number<T: std::str::FromStr>(
+    source: &Source,
+    at: usize,
+    word: &str,
+    what: &'static str,
+) -> Result<T, ReadError> {
+    word.parse()
+        .map_err(|_| source.error_at(at, Problem::Number { found: excerpt(word.as_bytes()), what }))
+}
+
+type Sets = BTreeMap<String, Vec<u64>>;
+
+/// How many members a line of a set has: numbers, names of sets, or with GENERATE first, last and
+/// step. Known before any is made.
+fn member_count(
+    source: &Source,
+    at: usize,
+    words: &[&str],
+    generate: bool,
+    sets: &Sets,
+) -> Result<usize, ReadError> {
+    if !generate {
+        let count = |word: &&str| match (word.parse::<u64>(), sets.get(*word)) {
+            (Ok(_), _) => Ok(1),
+            (Err(_), Some(members)) => Ok(members.len()),
+            (Err(_), None) => {
+                let problem = Problem::UnknownSet { name: excerpt(word.as_bytes()) };
+                Err(source.error_at(at, problem))
+            }
+        };
+        return words.iter().map(count).try_fold(0usize, |sum, n| Ok(sum.saturating_add(n?)));
+    }
+    for word in words {
+        number::<u64>(source, at, word, "a number of GENERATE")?;
+    }
+    let [first, last, step] = range(words);
+    // A range can name at most what a file of this size can define.
+    let count = last.saturating_sub(first) / step.max(1);
+    if step == 0 || last < first || count > source.length() as u64 {
+        let found = format!("{first}, {last}, {step}");
+        let what = "a range (first, last, step) of numbers in this file";
+        return Err(source.error_at(at, Problem::Number { found, what }));
+    }
+    Ok(count as usize + 1)
+}
+
+/// First, last and step of a line whose words are numbers.
+fn range(words: &[&str]) -> [u64; 3] {
+    let mut bounds = [0, 0, 1];
+    for (bound, word) in bounds.iter_mut().zip(words) {
+        *bound = word.parse().unwrap_or_default();
+    }
+    bounds
+}
+
+/// Adds the members of a line that [`member_count`] has passed.
+fn extend_set(words: &[&str], generate: bool, name: &str, sets: &mut Sets) {
+    let mut tags = Vec::new();
+    if generate {
+        let [first, last, step] = range(words);
+        tags.extend((first..=last).step_by(step as usize));
+    } else {
+        for word in words {
+            match word.parse() {
+                Ok(tag) => tags.push(tag),
+                Err(_) => tags.extend(sets.get(*word).into_iter().flatten()),
+            }
+        }
+    }
+    sets.entry(name.to_string()).or_default().extend(tags);
+}
+
+fn kind(source: &Source, at: usize, name: &str) -> Result<Kind, ReadError> {
+    match name.to_ascii_uppercase().as_str() {
+        "C3D4" => Ok(Kind::Tet(4)),
+        "C3D10" => Ok(Kind::Tet(10)),
+        "S3" | "CPS3" | "CPE3" | "STRI3" | "M3D3" | "SFM3D3" => Ok(Kind::Triangle(3)),
+        "S6" | "CPS6" | "CPE6" | "STRI65" | "M3D6" | "SFM3D6" => Ok(Kind::Triangle(6)),
+        "T3D2" | "B31" => Ok(Kind::Line(2)),
+        "T3D3" | "B32" => Ok(Kind::Line(3)),
+        other => {
+            let found = excerpt(other.as_bytes());
+            Err(source.error_at(at, Problem::ElementType { found }))
+        }
+    }
+}

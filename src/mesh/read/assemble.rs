@@ -1,0 +1,293 @@
+//! From numbers as a file has them to a mesh: tags become indices, triangles become faces.
+
+use crate::mesh::error::MeshError;
+use crate::mesh::read::error::{Problem, ReadError};
+use crate::mesh::read::source::Source;
+use crate::mesh::read::{LengthUnit, Loaded, Note, size_note};
+use crate::mesh::tet_mesh::{Elements, Face, TetMesh};
+use crate::mesh::topology::sorted_faces;
+use std::collections::{BTreeMap, HashMap};
+
+/// An element as the file lists it, in this program's node order.
+struct RawTet {
+    tag: u64,
+    nodes: [u64; 10],
+    at: usize,
+}
+
+/// A member of a named surface.
+#[derive(Clone, Copy)]
+pub enum RawFace {
+    /// Three corner nodes, as a triangle in the file gives them.
+    Corners([u64; 3]),
+    /// A side (0…3) of an element.
+    Side { element: u64, side: u8 },
+    /// All sides of an element that no other element shares.
+    Free { element: u64 },
+}
+
+/// An element that is no tetrahedron.
+pub enum Numbered {
+    Triangle([u64; 3]),
+    Line(Vec<u64>),
+}
+
+/// What a file holds, collected while it is read.
+pub struct RawMesh {
+    /// Members that sets may still have: sets that name sets could grow without end.
+    room: usize,
+    nodes: Vec<[f64; 3]>,
+    node_index: HashMap<u64, u32>,
+    tets: Vec<RawTet>,
+    tet_index: HashMap<u64, u32>,
+    nodes_per_element: usize,
+    pub node_sets: BTreeMap<String, Vec<u64>>,
+    pub element_sets: BTreeMap<String, Vec<u64>>,
+    pub surface_sets: BTreeMap<String, Vec<RawFace>>,
+    numbered: HashMap<u64, Numbered>,
+    ignored: BTreeMap<String, usize>,
+}
+
+impl RawMesh {
+    /// An empty mesh from a file of this many bytes. A set's member takes eight bytes in memory
+    /// and at least two in the file unless ranges and groups repeat it; beyond a few repetitions of
+    /// everything the file is not believed.
+    pub fn new(file_length: usize) -> RawMesh {
+        const REPETITIONS: usize = 4;
+        const ANY_FILE: usize = 10_000;
+        RawMesh {
+            room: file_length.saturating_mul(REPETITIONS).saturating_add(ANY_FILE),
+            nodes: Vec::new(),
+            node_index: HashMap::new(),
+            tets: Vec::new(),
+            tet_index: HashMap::new(),
+            nodes_per_element: 0,
+            node_sets: BTreeMap::new(),
+            element_sets: BTreeMap::new(),
+            surface_sets: BTreeMap::new(),
+            numbered: HashMap::new(),
+            ignored: BTreeMap::new(),
+        }
+    }
+
+    /// Accounts for `count` more members of sets, before they are made.
+    pub fn take_room(&mut self, source: &Source, at: usize, count: usize) -> Result<(), ReadError> {
+        match self.room.checked_sub(count) {
+            Some(room) => {
+                self.room = room;
+                Ok(())
+            }
+            None => {
+                let problem = Problem::TooManyMembers { length: source.length() };
+                Err(source.error_at(at, problem))
+            }
+        }
+    }
+
+    pub fn ignore(&mut self, what: String) {
+        *self.ignored.entry(what).or_default() += 1;
+    }
+
+    /// A numbered triangle or line, which sets of elements may name like a tetrahedron.
+    pub fn add_numbered(
+        &mut self,
+        source: &Source,
+        at: usize,
+        tag: u64,
+        other: Numbered,
+    ) -> Result<(), ReadError> {
+        if self.numbered.insert(tag, other).is_some() {
+            return Err(source.error_at(at, Problem::Duplicate { kind: "element", tag }));
+        }
+        Ok(())
+    }
+
+    /// Triangles and lines named in sets of elements move to sets of surfaces and nodes.
+    fn sort_numbered(&mut self) {
+        if self.numbered.is_empty() {
+            return;
+        }
+        let mut emptied = Vec::new();
+        for (name, tags) in &mut self.element_sets {
+            let before = tags.len();
+            tags.retain(|tag| match self.numbered.get(tag) {
+                None => true,
+                Some(Numbered::Triangle(corners)) => {
+                    let set = self.surface_sets.entry(name.clone()).or_default();
+                    set.push(RawFace::Corners(*corners));
+                    false
+                }
+                Some(Numbered::Line(ends)) => {
+                    self.node_sets.entry(name.clone()).or_default().extend(ends);
+                    false
+                }
+            });
+            if before > 0 && tags.is_empty() {
+                emptied.push(name.clone());
+            }
+        }
+        for name in emptied {
+            self.element_sets.remove(&name);
+        }
+    }
+
+    pub fn add_node(
+        &mut self,
+        source: &Source,
+        at: usize,
+        tag: u64,
+        place: [f64; 3],
+    ) -> Result<(), ReadError> {
+        if self.node_index.insert(tag, self.nodes.len() as u32).is_some() {
+            return Err(source.error_at(at, Problem::Duplicate { kind: "node", tag }));
+        }
+        self.nodes.push(place);
+        Ok(())
+    }
+
+    /// Adds an element of 4 or 10 nodes.
+    pub fn add_tet(
+        &mut self,
+        source: &Source,
+        at: usize,
+        tag: u64,
+        nodes: &[u64],
+    ) -> Result<(), ReadError> {
+        let fail = |problem| Err(source.error_at(at, problem));
+        if self.tets.is_empty() {
+            self.nodes_per_element = nodes.len();
+        } else if nodes.len() != self.nodes_per_element {
+            let (first, this) = (self.nodes_per_element, nodes.len());
+            return fail(Problem::MixedOrders { first, this });
+        }
+        if let Some(i) = (1..nodes.len()).find(|&i| nodes[..i].contains(&nodes[i])) {
+            return fail(Problem::RepeatedNode { element: tag, node: nodes[i] });
+        }
+        if self.tet_index.insert(tag, self.tets.len() as u32).is_some() {
+            return fail(Problem::Duplicate { kind: "element", tag });
+        }
+        let mut all = [0; 10];
+        all[..nodes.len()].copy_from_slice(nodes);
+        self.tets.push(RawTet { tag, nodes: all, at });
+        Ok(())
+    }
+
+    /// The mesh in metres, with all sets resolved.
+    pub fn finish(mut self, source: &Source, unit: LengthUnit) -> Result<Loaded, ReadError> {
+        let end = |problem: Problem| source.error(problem);
+        if self.tets.is_empty() {
+            return Err(end(MeshError::NoElements.into()));
+        }
+        self.sort_numbered();
+        let factor = unit.in_metres();
+        let nodes = self.nodes.iter().map(|place| place.map(|x| x * factor)).collect();
+        let elements = match self.nodes_per_element {
+            4 => Elements::Linear(self.resolved(source)?),
+            _ => Elements::Quadratic(self.resolved(source)?),
+        };
+        let mut mesh = TetMesh::new(nodes, elements).map_err(|error| end(error.into()))?;
+
+        for (name, tags) in &self.element_sets {
+            let indices = members(name, "element", tags, &self.tet_index).map_err(end)?;
+            mesh.element_sets.insert(name.clone(), indices);
+        }
+        let faces = if self.surface_sets.is_empty() { Vec::new() } else { sorted_faces(&mesh) };
+        for (name, members) in &self.surface_sets {
+            let mut set = Vec::new();
+            for &member in members {
+                self.resolve_face(name, member, &faces, &mut set).map_err(end)?;
+            }
+            set.sort_unstable();
+            set.dedup();
+            mesh.node_sets.insert(name.clone(), mesh.nodes_of_faces(&set));
+            mesh.surface_sets.insert(name.clone(), set);
+        }
+        for (name, tags) in &self.node_sets {
+            let indices = members(name, "node", tags, &self.node_index).map_err(end)?;
+            let set = mesh.node_sets.entry(name.clone()).or_default();
+            set.extend(indices);
+            set.sort_unstable();
+            set.dedup();
+        }
+        let ignored = self.ignored.into_iter().map(|(what, count)| Note::Ignored { what, count });
+        let notes = size_note(&mesh, unit).into_iter().chain(ignored).collect();
+        Ok(Loaded { mesh, notes })
+    }
+
+    /// Elements by node indices, the first N nodes of each.
+    fn resolved<const N: usize>(&self, source: &Source) -> Result<Vec<[u32; N]>, ReadError> {
+        let mut elements = Vec::with_capacity(self.tets.len());
+        for tet in &self.tets {
+            let mut nodes = [0; N];
+            for (node, tag) in nodes.iter_mut().zip(tet.nodes) {
+                *node = *self.node_index.get(&tag).ok_or_else(|| {
+                    let problem = Problem::UnknownNode { element: tet.tag, node: tag };
+                    source.error_at(tet.at, problem)
+                })?;
+            }
+            elements.push(nodes);
+        }
+        Ok(elements)
+    }
+
+    fn resolve_face(
+        &self,
+        set: &str,
+        member: RawFace,
+        faces: &[([u32; 3], Face)],
+        into: &mut Vec<Face>,
+    ) -> Result<(), Problem> {
+        let element_of = |tag: u64| {
+            let unknown = || Problem::UnknownMember { set: set.to_string(), kind: "element", tag };
+            self.tet_index.get(&tag).copied().ok_or_else(unknown)
+        };
+        let owners = |key: [u32; 3]| {
+            let first = faces.partition_point(|(other, _)| *other < key);
+            faces[first..].iter().take_while(move |(other, _)| *other == key).map(|(_, face)| *face)
+        };
+        match member {
+            RawFace::Corners(tags) => {
+                let loose = || Problem::LooseFace { set: set.to_string(), nodes: tags };
+                let mut key = [0; 3];
+                for (node, tag) in key.iter_mut().zip(tags) {
+                    *node = *self.node_index.get(&tag).ok_or_else(loose)?;
+                }
+                key.sort_unstable();
+                // A triangle between two elements stands for the first one's side.
+                into.push(owners(key).next().ok_or_else(loose)?);
+            }
+            RawFace::Side { element, side } => {
+                into.push(Face { element: element_of(element)?, side });
+            }
+            RawFace::Free { element } => {
+                let element = element_of(element)?;
+                // Elements are few sides: look each up by its corners.
+                let tet = &self.tets[element as usize];
+                for (side, corners) in crate::mesh::node_order::SIDES.iter().enumerate() {
+                    let mut key = corners.map(|local| self.node_index[&tet.nodes[local]]);
+                    key.sort_unstable();
+                    if owners(key).count() == 1 {
+                        into.push(Face { element, side: side as u8 });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn members(
+    set: &str,
+    kind: &'static str,
+    tags: &[u64],
+    index: &HashMap<u64, u32>,
+) -> Result<Vec<u32>, Problem> {
+    let find = |&tag: &u64| {
+        let unknown = || Problem::UnknownMember { set: set.to_string(), kind, tag };
+        index.get(&tag).copied().ok_or_else(unknown)
+    };
+    let mut indices: Vec<u32> = tags.iter().map(find).collect::<Result<_, _>>()?;
+    indices.sort_unstable();
+    indices.dedup();
+    Ok(indices)
+}

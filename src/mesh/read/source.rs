@@ -1,0 +1,176 @@
+//! Bytes of a file, read as lines, words or binary numbers, with places for messages.
+
+use crate::mesh::read::error::{Place, Problem, ReadError};
+
+/// How numbers are written in a section.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coding {
+    Text,
+    Little,
+    Big,
+}
+
+pub struct Source<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    pub coding: Coding,
+}
+
+/// Start of something found in a file, short enough for a message of one line.
+pub fn excerpt(bytes: &[u8]) -> String {
+    const LONGEST: usize = 40;
+    String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST)]).into_owned()
+}
+
+impl<'a> Source<'a> {
+    pub fn new(bytes: &'a [u8]) -> Source<'a> {
+        Source { bytes, at: 0, coding: Coding::Text }
+    }
+
+    pub fn position(&self) -> usize {
+        self.at
+    }
+
+    pub fn length(&self) -> usize {
+        self.bytes.len()
+    }
+
+    pub fn left(&self) -> usize {
+        self.bytes.len() - self.at
+    }
+
+    /// The place of byte `at` as a person finds it.
+    pub fn place(&self, at: usize) -> Place {
+        match self.coding {
+            Coding::Text => {
+                let before = &self.bytes[..at.min(self.bytes.len())];
+                Place::Line(1 + before.iter().filter(|&&byte| byte == b'\n').count())
+            }
+            _ => Place::Byte(at),
+        }
+    }
+
+    pub fn error_at(&self, at: usize, problem: Problem) -> ReadError {
+        ReadError { place: self.place(at), problem }
+    }
+
+    pub fn error(&self, problem: Problem) -> ReadError {
+        self.error_at(self.at, problem)
+    }
+
+    /// The next line without its end; `None` at the end of the file.
+    pub fn line(&mut self) -> Option<&'a [u8]> {
+        if self.at >= self.bytes.len() {
+            return None;
+        }
+        let rest = &self.bytes[self.at..];
+        let length = rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
+        self.at += (length + 1).min(rest.len());
+        Some(rest[..length].trim_ascii())
+    }
+
+    /// The next line that is not blank.
+    pub fn full_line(&mut self) -> Option<&'a [u8]> {
+        loop {
+            let line = self.line()?;
+            if !line.is_empty() {
+                return Some(line);
+            }
+        }
+    }
+
+    fn word(&mut self, what: &str) -> Result<(usize, &'a [u8]), ReadError> {
+        let rest = &self.bytes[self.at..];
+        let blank = rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+        let length = rest[blank..].iter().take_while(|byte| !byte.is_ascii_whitespace()).count();
+        if length == 0 {
+            return Err(self.error(Problem::Truncated { what: what.to_string() }));
+        }
+        let start = self.at + blank;
+        self.at = start + length;
+        Ok((start, &self.bytes[start..self.at]))
+    }
+
+    pub fn text_number<T: std::str::FromStr>(
+        &mut self,
+        what: &'static str,
+    ) -> Result<T, ReadError> {
+        let (start, word) = self.word(what)?;
+        let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+        number.ok_or_else(|| self.error_at(start, Problem::Number { found: excerpt(word), what }))
+    }
+
+    fn raw<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N], ReadError> {
+        let Some(bytes) = self.bytes[self.at..].first_chunk::<N>() else {
+            return Err(self.error(Problem::Truncated { what: what.to_string() }));
+        };
+        self.at += N;
+        let mut bytes = *bytes;
+        if self.coding == Coding::Big {
+            bytes.reverse();
+        }
+        Ok(bytes)
+    }
+
+    /// A whole number of four bytes, or a word.
+    pub fn int(&mut self, what: &'static str) -> Result<i64, ReadError> {
+        match self.coding {
+            Coding::Text => self.text_number(what),
+            _ => Ok(i64::from(i32::from_le_bytes(self.raw(what)?))),
+        }
+    }
+
+    /// A whole number of eight bytes without sign, or a word.
+    pub fn size(&mut self, what: &'static str) -> Result<u64, ReadError> {
+        match self.coding {
+            Coding::Text => self.text_number(what),
+            _ => Ok(u64::from_le_bytes(self.raw(what)?)),
+        }
+    }
+
+    /// A finite number of eight bytes, or a word.
+    pub fn double(&mut self, what: &'static str) -> Result<f64, ReadError> {
+        let start = self.at;
+        let number: f64 = match self.coding {
+            Coding::Text => self.text_number(what)?,
+            _ => f64::from_le_bytes(self.raw(what)?),
+        };
+        if number.is_finite() {
+            return Ok(number);
+        }
+        Err(self.error_at(start, Problem::Number { found: number.to_string(), what }))
+    }
+
+    /// Refuses a count of things that take at least `least` bytes each and cannot all be there.
+    pub fn expect_room(
+        &self,
+        what: &'static str,
+        claimed: u64,
+        least: u64,
+    ) -> Result<(), ReadError> {
+        let left = self.left();
+        // The last number of a text needs no blank behind it.
+        if claimed.saturating_mul(least) <= left as u64 + 1 {
+            return Ok(());
+        }
+        Err(self.error(Problem::Count { what, claimed, left }))
+    }
+
+    /// Goes behind the next line that starts with `marker`; nothing before it is read.
+    pub fn skip_behind(&mut self, marker: &[u8]) -> Result<(), ReadError> {
+        let start = self.at;
+        let found = self.bytes[start..].windows(marker.len()).position(|bytes| bytes == marker);
+        match found {
+            Some(offset) => {
+                self.at = start + offset;
+                self.line();
+                Ok(())
+            }
+            None => {
+                let what =
+                    format!("a section that should end with {}", excerpt(marker.trim_ascii()));
+                Err(self.error(Problem::Truncated { what }))
+            }
+        }
+    }
+}

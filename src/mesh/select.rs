@@ -1,0 +1,133 @@
+//! Sets by geometry: nodes in a box or on a surface, boundary faces on a surface.
+
+use crate::mesh::error::MeshError;
+use crate::mesh::measure::face_normal;
+use crate::mesh::surface::Surface;
+use crate::mesh::tet_mesh::{Face, TetMesh};
+use nalgebra::Vector3;
+use std::fmt;
+
+/// Where nodes are looked for. Lengths in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Region {
+    /// Between two corners, faces included.
+    Box { low: [f64; 3], high: [f64; 3] },
+    /// Within `tolerance` of a surface.
+    On { surface: Surface, tolerance: f64 },
+}
+
+impl Region {
+    /// How far outside the region a place is, m; 0 within.
+    fn outside(&self, place: Vector3<f64>) -> f64 {
+        match self {
+            Region::Box { low, high } => {
+                let off = |i: usize| (low[i] - place[i]).max(place[i] - high[i]).max(0.0);
+                Vector3::new(off(0), off(1), off(2)).norm()
+            }
+            Region::On { surface, tolerance } => (surface.distance(place) - tolerance).max(0.0),
+        }
+    }
+}
+
+impl fmt::Display for Region {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Region::Box { low, high } => write!(f, "box {low:?} to {high:?}"),
+            Region::On { surface, tolerance } => write!(f, "{surface}, within {tolerance:e} m"),
+        }
+    }
+}
+
+/// Nodes in a region, ascending.
+pub fn nodes_in(mesh: &TetMesh, region: &Region) -> Vec<u32> {
+    // Through `<=`, so that a distance that is not a number selects nothing.
+    let inside = |&node: &u32| region.outside(mesh.point(node)) <= 0.0;
+    (0..mesh.nodes.len() as u32).filter(inside).collect()
+}
+
+/// Those of `boundary` (faces from [`surface`](crate::mesh::topology::surface)) that lie on
+/// `surface`: their corners within `tolerance`, and their normals along its own. Without the second
+/// condition a triangle of an end face whose three corners touch the rim would pass.
+pub fn faces_on(mesh: &TetMesh, boundary: &[Face], surface: &Surface, tolerance: f64) -> Vec<Face> {
+    let lies_on = |&face: &Face| {
+        let corners = mesh.face_corners(face).map(|node| mesh.point(node));
+        let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
+        let normal = face_normal(mesh, face).normalize();
+        corners.iter().all(|&corner| surface.distance(corner) <= tolerance)
+            && normal.dot(&surface.normal(centre)).abs() >= 0.7
+    };
+    boundary.iter().copied().filter(lies_on).collect()
+}
+
+impl TetMesh {
+    /// Adds the node set `name` and says how many nodes it has.
+    ///
+    /// # Errors
+    /// [`MeshError::EmptySet`] with the distance of the nearest node.
+    pub fn add_node_set(&mut self, name: &str, region: &Region) -> Result<usize, MeshError> {
+        let nodes = nodes_in(self, region);
+        if nodes.is_empty() {
+            return Err(self.empty_set(name, region));
+        }
+        let count = nodes.len();
+        self.node_sets.insert(name.to_string(), nodes);
+        Ok(count)
+    }
+
+    /// Adds the surface set `name` from faces of `boundary`, and the node set of its nodes.
+    ///
+    /// # Errors
+    /// [`MeshError::EmptySet`] with the distance of the nearest node.
+    pub fn add_surface_set(
+        &mut self,
+        name: &str,
+        boundary: &[Face],
+        surface: &Surface,
+        tolerance: f64,
+    ) -> Result<usize, MeshError> {
+        let faces = faces_on(self, boundary, surface, tolerance);
+        if faces.is_empty() {
+            return Err(self.empty_set(name, &Region::On { surface: *surface, tolerance }));
+        }
+        let count = faces.len();
+        self.node_sets.insert(name.to_string(), self.nodes_of_faces(&faces));
+        self.surface_sets.insert(name.to_string(), faces);
+        Ok(count)
+    }
+
+    /// Adds the nodes of a symmetry plane as node set `name`. A plane that cuts through the mesh
+    /// instead of bounding it is refused.
+    ///
+    /// # Errors
+    /// [`MeshError::EmptySet`], and [`MeshError::Dimension`] for a plane with nodes on both sides.
+    pub fn add_symmetry_plane(
+        &mut self,
+        name: &str,
+        point: [f64; 3],
+        normal: [f64; 3],
+        tolerance: f64,
+    ) -> Result<usize, MeshError> {
+        let unit = Vector3::from(normal).normalize();
+        let sides =
+            self.nodes.iter().map(|&p| (Vector3::from(p) - Vector3::from(point)).dot(&unit));
+        let (low, high) = sides.fold((0f64, 0f64), |(low, high), s| (low.min(s), high.max(s)));
+        if low < -tolerance && high > tolerance {
+            return Err(MeshError::Dimension {
+                what: "extent behind the symmetry plane",
+                value: high.min(-low),
+                allowed: format!("0 to {tolerance:e} m: the mesh must lie on one side"),
+            });
+        }
+        let surface = Surface::Plane { point, normal };
+        self.add_node_set(name, &Region::On { surface, tolerance })
+    }
+
+    fn empty_set(&self, name: &str, region: &Region) -> MeshError {
+        let distances = self.nodes.iter().map(|&p| region.outside(Vector3::from(p)));
+        MeshError::EmptySet {
+            name: name.to_string(),
+            region: region.to_string(),
+            nearest: distances.fold(f64::INFINITY, f64::min),
+        }
+    }
+}

@@ -1,0 +1,323 @@
+//! Files that Gmsh wrote, read back; files of our own; and files that are wrong, each refused with
+//! what, where and what to do.
+
+use bearing_dynamics::mesh::check::{Limits, check};
+use bearing_dynamics::mesh::generate::{Ring, RingMesh, bar, ring};
+use bearing_dynamics::mesh::measure::{total_area, total_volume};
+use bearing_dynamics::mesh::read::{
+    LengthUnit, Loaded, Note, Place, Problem, ReadError, read_abaqus, read_gmsh,
+};
+use bearing_dynamics::mesh::topology::surface;
+use bearing_dynamics::mesh::write::write_abaqus;
+use bearing_dynamics::mesh::{MeshError, Order, TetMesh};
+use std::f64::consts::PI;
+use std::fs;
+use std::path::PathBuf;
+
+fn data(name: &str) -> Vec<u8> {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh").join(name);
+    fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn read(name: &str) -> Loaded {
+    let reader = if name.ends_with(".inp") { read_abaqus } else { read_gmsh };
+    reader(&data(name), LengthUnit::Millimetre).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+const FORMS: [&str; 5] = ["v41.msh", "v41_binary.msh", "v22.msh", "v22_binary.msh", ".inp"];
+
+fn file(body: &str, order: usize, form: &str) -> String {
+    let join = if form.starts_with('.') { "" } else { "_" };
+    format!("{body}_o{order}{join}{form}")
+}
+
+fn off(found: f64, exact: f64) -> f64 {
+    ((found - exact) / exact).abs()
+}
+
+fn sound(mesh: &TetMesh, name: &str) {
+    if let Err(faults) = check(mesh, &Limits::default()) {
+        panic!("{name}: {faults}");
+    }
+}
+
+#[test]
+fn a_box_from_gmsh_in_every_form() {
+    for order in [1, 2] {
+        for form in FORMS {
+            let name = file("box", order, form);
+            let Loaded { mesh, notes } = read(&name);
+            assert_eq!(notes, [], "{name}");
+            sound(&mesh, &name);
+            let (nodes, kind) =
+                if order == 1 { (40, Order::Linear) } else { (207, Order::Quadratic) };
+            assert_eq!((mesh.nodes.len(), mesh.elements.len()), (nodes, 90), "{name}");
+            assert_eq!(mesh.order(), kind);
+            // Text forms print 16 digits, the input deck 14.
+            assert!(off(total_volume(&mesh), 6e-6) <= 1e-12, "{name}");
+            let whole = 2.0 * (6e-4 + 3e-4 + 2e-4);
+            assert!(off(total_area(&mesh, &surface(&mesh)), whole) <= 1e-12, "{name}");
+            for (set, x) in [("clamped", 0.0), ("loaded", 30e-3)] {
+                let faces = mesh.surface_set(set).unwrap();
+                assert!(off(total_area(&mesh, faces), 2e-4) <= 1e-12, "{name}");
+                let at_x = |&&n: &&u32| (mesh.nodes[n as usize][0] - x).abs() <= 1e-12;
+                let nodes = mesh.node_set(set).unwrap();
+                assert_eq!(nodes.iter().filter(at_x).count(), nodes.len(), "{name}");
+                assert_eq!(nodes, mesh.nodes_of_faces(faces), "{name}");
+            }
+            let body = if form == ".inp" { "steel_body" } else { "steel body" };
+            assert_eq!(mesh.element_set(body).unwrap().len(), 90, "{name}");
+            let corner = mesh.node_set("corner").unwrap();
+            assert_eq!(corner.len(), 1);
+            let place = mesh.nodes[corner[0] as usize];
+            assert!(place.iter().zip([0.0, 0.0, 0.01]).all(|(a, b)| (a - b).abs() <= 1e-15));
+        }
+    }
+}
+
+#[test]
+fn a_ring_from_gmsh_in_every_form() {
+    let exact = PI * (0.02f64.powi(2) - 0.012f64.powi(2)) * 0.01;
+    for form in FORMS {
+        let name = file("ring", 1, form);
+        let Loaded { mesh, .. } = read(&name);
+        sound(&mesh, &name);
+        assert!(off(total_volume(&mesh), 8031.238064854431e-9) <= 1e-12, "{name}");
+
+        let name = file("ring", 2, form);
+        let Loaded { mesh, .. } = read(&name);
+        sound(&mesh, &name);
+        // Mid-side nodes on the cylinders: 20 chords' error of the straight mesh all but gone.
+        assert!(off(total_volume(&mesh), exact) <= 1e-3, "{name}: {}", total_volume(&mesh) / exact);
+        let bore = mesh.surface_set("bore").unwrap();
+        assert!(off(total_area(&mesh, bore), 2.0 * PI * 0.012 * 0.01) <= 2e-3, "{name}");
+        let radius = |&n: &u32| mesh.nodes[n as usize][1].hypot(mesh.nodes[n as usize][2]);
+        assert!(mesh.node_set("bore").unwrap().iter().all(|n| off(radius(n), 0.012) <= 1e-12));
+    }
+}
+
+#[test]
+fn all_forms_of_a_mesh_are_the_same_mesh() {
+    for (body, order) in [("box", 1), ("box", 2), ("ring", 1), ("ring", 2)] {
+        let first = read(&file(body, order, FORMS[0])).mesh;
+        for form in &FORMS[1..4] {
+            let other = read(&file(body, order, form)).mesh;
+            assert_eq!(first.elements, other.elements, "{body} {order} {form}");
+            assert_eq!(first.node_sets, other.node_sets, "{body} {order} {form}");
+            assert_eq!(first.surface_sets, other.surface_sets, "{body} {order} {form}");
+            let farthest = first.nodes.iter().flatten().zip(other.nodes.iter().flatten());
+            assert!(farthest.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) <= 1e-16);
+        }
+    }
+}
+
+#[test]
+fn an_input_deck_of_ours_reads_back_bit_for_bit() {
+    let solid = ring(
+        &Ring { inner_radius: 0.01, outer_radius: 0.02, width: 0.01 },
+        &RingMesh { around: 10, radial: 2, axial: 2, radial_growth: 1.0 },
+    )
+    .unwrap();
+    for mut mesh in [solid.mesh.clone(), solid.quadratic().unwrap().mesh] {
+        mesh.element_sets.insert("some".into(), vec![3, 5, 9]);
+        let text = write_abaqus(&mesh).unwrap();
+        let mut back = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap().mesh;
+        assert_eq!(back.node_sets.remove("all_nodes").unwrap().len(), mesh.nodes.len());
+        assert_eq!(back.element_sets.remove("all_elements").unwrap().len(), mesh.elements.len());
+        assert_eq!(back, mesh);
+        let again = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap().mesh;
+        assert_eq!(write_abaqus(&again).unwrap(), text, "reading what was written adds nothing");
+    }
+    let mut mesh = solid.mesh;
+    mesh.node_sets.insert("two words".into(), vec![0]);
+    assert!(matches!(write_abaqus(&mesh), Err(MeshError::Name { .. })));
+}
+
+/// One tetrahedron and its sets, as a person would type them.
+const DECK: &str = "*Heading
+ a tetrahedron
+*Node, nset=everything
+1, 0., 0., 0.
+2, 1., 0., 0.
+3, 0., 1., 0.
+7, 0., 0., 1.
+**
+*Element, type=C3D4, elset=body
+11, 1, 2,
+3, 7
+*Nset, nset=base, generate
+1, 3, 1
+*Nset, nset=more
+base, 7
+*Elset, elset=again
+body
+*Surface, name=floor, type=ELEMENT
+body, S1
+*Surface, name=skin
+again,
+*Material, name=steel
+*Elastic
+210e9, 0.3
+";
+
+fn deck(from: &str, to: &str) -> ReadError {
+    assert!(DECK.contains(from), "{from}");
+    let text = DECK.replacen(from, to, 1);
+    read_abaqus(text.as_bytes(), LengthUnit::Metre).expect_err("this deck is wrong")
+}
+
+#[test]
+fn a_typed_input_deck() {
+    let Loaded { mesh, notes } = read_abaqus(DECK.as_bytes(), LengthUnit::Metre).unwrap();
+    assert_eq!(mesh.node_set("everything").unwrap(), [0, 1, 2, 3]);
+    assert_eq!(mesh.node_set("base").unwrap(), [0, 1, 2]);
+    assert_eq!(mesh.node_set("more").unwrap(), [0, 1, 2, 3]);
+    assert_eq!(mesh.surface_set("skin").unwrap().len(), 4);
+    let floor = mesh.surface_set("floor").unwrap();
+    assert_eq!((floor.len(), mesh.node_set("floor").unwrap()), (1, &[0, 1, 2][..]));
+    let said: Vec<String> = notes.iter().map(Note::to_string).collect();
+    assert_eq!(said, ["*ELASTIC was skipped (1 times)", "*MATERIAL was skipped (1 times)"]);
+}
+
+#[test]
+fn wrong_input_decks_are_placed() {
+    let line =
+        |error: &ReadError, expected| assert_eq!(error.place, Place::Line(expected), "{error}");
+    let error = deck("2, 1., 0., 0.", "2, 1., 0.");
+    assert!(matches!(error.problem, Problem::Truncated { .. }), "{error}");
+    line(&error, 5);
+    let error = deck("2, 1., 0., 0.", "2, 1., nan, 0.");
+    assert!(matches!(error.problem, Problem::Number { .. }), "{error}");
+    let error = deck("7, 0., 0., 1.", "3, 0., 0., 1.");
+    assert_eq!(error.problem, Problem::Duplicate { kind: "node", tag: 3 });
+    line(&error, 7);
+    let error = deck("3, 7\n", "3, 8\n");
+    assert_eq!(error.problem, Problem::UnknownNode { element: 11, node: 8 });
+    line(&error, 10);
+    let error = deck("3, 7\n", "\n");
+    assert!(matches!(error.problem, Problem::Truncated { .. }), "{error}");
+    let error = deck("3, 7\n", "3, 3\n");
+    assert_eq!(error.problem, Problem::RepeatedNode { element: 11, node: 3 });
+    let error = deck("C3D4", "C3D8");
+    assert!(matches!(error.problem, Problem::ElementType { .. }), "{error}");
+    line(&error, 9);
+    let error =
+        deck("*Nset, nset=base", "*Element, type=C3D10\n12,1,2,3,7,1,2,3,7,1,2\n*Nset, nset=base");
+    assert_eq!(error.problem, Problem::MixedOrders { first: 4, this: 10 });
+    let error = deck("base, 7", "bas, 7");
+    assert_eq!(error.problem, Problem::UnknownSet { name: "bas".into() });
+    line(&error, 15);
+    let error = deck("base, 7", "base, 8");
+    let unknown = Problem::UnknownMember { set: "more".into(), kind: "node", tag: 8 };
+    assert_eq!(error.problem, unknown);
+    let error = deck("1, 3, 1", "1, 4000000000, 1");
+    assert!(matches!(error.problem, Problem::Number { .. }), "{error}");
+    let error = deck("1, 3, 1", "1, 3, 0");
+    assert!(matches!(error.problem, Problem::Number { .. }), "{error}");
+    // A set that names itself doubles with every line.
+    let doubling = format!("base, 7\n{}", "more, more\n".repeat(60));
+    let error = deck("base, 7", &doubling);
+    assert!(matches!(error.problem, Problem::TooManyMembers { .. }), "{error}");
+    let error = deck("body, S1", "body, S5");
+    assert!(matches!(error.problem, Problem::Number { .. }), "{error}");
+    for (from, to) in [
+        ("*Heading", "*Include, input=other.inp"),
+        ("*Heading", "*Part, name=a\n*End Part\n*Part, name=b"),
+        ("*Heading", "*Instance, name=a, part=b\n1., 0., 0."),
+    ] {
+        let error = deck(from, to);
+        assert!(matches!(error.problem, Problem::Unsupported { .. }), "{error}");
+    }
+}
+
+fn gmsh_error(bytes: &[u8]) -> ReadError {
+    read_gmsh(bytes, LengthUnit::Millimetre).expect_err("this file is wrong")
+}
+
+fn box_text(from: &str, to: &str) -> ReadError {
+    let text = String::from_utf8(data("box_o1_v41.msh")).unwrap();
+    assert!(text.contains(from), "{from}");
+    gmsh_error(text.replacen(from, to, 1).as_bytes())
+}
+
+#[test]
+fn wrong_gmsh_files_are_placed() {
+    assert_eq!(gmsh_error(b" \n").problem, Problem::Empty);
+    assert!(matches!(gmsh_error(b"solid cube").problem, Problem::OtherFormat { .. }));
+    let error = box_text("4.1 0 8", "4 0 8");
+    assert_eq!(
+        (error.place, error.problem),
+        (Place::Line(2), Problem::Version { found: "4".into() })
+    );
+    let error = box_text("$Elements", "$Other");
+    assert!(
+        matches!(error.problem, Problem::Truncated { .. } | Problem::MissingSection { .. }),
+        "{error}"
+    );
+    let error = box_text("$EndNodes", "17\n$EndNodes");
+    assert!(matches!(error.problem, Problem::Expected { .. }), "{error}");
+    // A header that claims two thousand million nodes.
+    let text = String::from_utf8(data("box_o1_v41.msh")).unwrap();
+    let counts = text.lines().skip_while(|line| *line != "$Nodes").nth(1).unwrap().to_string();
+    let claim = counts.replacen(" 40 ", " 2000000000 ", 1);
+    assert_ne!(counts, claim);
+    let error = box_text(&counts, &claim);
+    assert!(matches!(error.problem, Problem::Count { claimed: 2_000_000_000, .. }), "{error}");
+    // A lie that the file is long enough for.
+    let error = box_text(&counts, &counts.replacen(" 40 ", " 41 ", 1));
+    assert!(matches!(error.problem, Problem::Expected { .. }), "{error}");
+    for (name, count) in [("box_o1_v22.msh", "\n40\n"), ("box_o1_v22_binary.msh", "\n40\n")] {
+        let bytes = data(name);
+        let at = bytes.windows(4).position(|w| w == count.as_bytes()).unwrap();
+        let longer = [&bytes[..at], b"\n2000000000\n", &bytes[at + 4..]].concat();
+        let error = gmsh_error(&longer);
+        assert!(matches!(error.problem, Problem::Count { claimed: 2_000_000_000, .. }), "{error}");
+    }
+}
+
+/// Every cut of a file must be refused, and say that it was cut or what is missing.
+#[test]
+fn truncated_files_are_refused() {
+    for form in FORMS {
+        let bytes = data(&file("box", 1, form));
+        let reader = if form == ".inp" { read_abaqus } else { read_gmsh };
+        let whole = reader(&bytes, LengthUnit::Millimetre).unwrap();
+        let end = bytes.trim_ascii_end().len();
+        for length in 0..end {
+            match reader(&bytes[..length], LengthUnit::Millimetre) {
+                Err(error) => assert!(!error.to_string().contains('\n'), "{error:?}"),
+                // An input deck has no end mark: cut within its last sets it is whole but for them.
+                Ok(part) => {
+                    assert_eq!(form, ".inp", "{length} of {end} bytes");
+                    assert_eq!(part.mesh.nodes, whole.mesh.nodes);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn binary_counts_are_not_believed() {
+    let bytes = data("box_o1_v41_binary.msh");
+    let start = bytes.windows(6).position(|w| w == b"$Nodes").unwrap() + 7;
+    for (offset, count) in [(0, u64::MAX), (8, 2_000_000_000), (8, u64::MAX / 2)] {
+        let mut wrong = bytes.clone();
+        wrong[start + offset..start + offset + 8].copy_from_slice(&count.to_le_bytes());
+        let error = gmsh_error(&wrong);
+        assert!(
+            matches!(error.problem, Problem::Count { claimed, .. } if claimed == count),
+            "{error}"
+        );
+        assert!(matches!(error.place, Place::Byte(_)));
+    }
+}
+
+#[test]
+fn millimetres_read_as_metres_are_noticed() {
+    let loaded = read_gmsh(&data("box_o1_v41.msh"), LengthUnit::Metre).unwrap();
+    let said = loaded.notes[0].to_string();
+    assert!(said.contains("3.7417e1 m across") && said.contains("3.7417e-2 m"), "{said}");
+    let small = write_abaqus(&bar([0.1, 0.01, 0.01], [4, 1, 1]).unwrap().mesh).unwrap();
+    let loaded = read_abaqus(small.as_bytes(), LengthUnit::Millimetre).unwrap();
+    assert!(matches!(loaded.notes[..], [Note::UnlikelySize { .. }]), "{:?}", loaded.notes);
+}
