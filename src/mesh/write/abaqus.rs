@@ -16,7 +16,7 @@ const ALL_ELEMENTS: &str = "all_elements";
 
 /// Nodes, elements (C3D4 or C3D10) and all sets of `mesh`. Surface sets become element surfaces.
 ///
-/// Coordinates are written as exactly as [`NUMBER_WIDTH`] allows: most keep every bit.
+/// Coordinates are written within CalculiX' 20 characters: most keep every bit.
 ///
 /// # Errors
 /// [`MeshError::Name`] for a set whose name the format cannot hold.
