@@ -29,9 +29,10 @@ bench:
 pareto:
 	$(VERIFY) pareto --out target/pareto
 
-## A million mutated scenes through the reader.
+## A million mutated scenes and mesh files through their readers.
 fuzz:
 	SCENE_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test scene_fuzz -- --nocapture
+	MESH_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test mesh_fuzz -- --nocapture
 
 doc:
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --release --locked --no-deps --workspace
