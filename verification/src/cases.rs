@@ -14,6 +14,8 @@ mod kinematic_frequencies;
 mod misalignment_moment;
 #[path = "../statics_independent/case.rs"]
 pub mod statics_independent;
+#[path = "../varying_compliance_dynamics/case.rs"]
+mod varying_compliance_dynamics;
 #[path = "../varying_compliance_statics/case.rs"]
 mod varying_compliance_statics;
 
@@ -22,6 +24,7 @@ pub const CASES: &[Case] = &[
     statics_independent::CASE,
     misalignment_moment::CASE,
     varying_compliance_statics::CASE,
+    varying_compliance_dynamics::CASE,
     axial_load_closed_form::CASE,
     kinematic_frequencies::CASE,
 ];
