@@ -33,13 +33,8 @@ const PUBLISHED_SPEED: f64 = 1000.0;
 /// The source's rotor, 400 mm of 30 mm steel, weighs 2.22 kg; each bearing carries half of it.
 const ROTOR_SHARE: f64 = 1.11;
 const SAMPLES: usize = 100;
-const KNOWN: [Known; 5] = [
-    Known::Load(0.0),
-    Known::Load(0.0),
-    Known::Load(LOAD),
-    Known::Value(0.0),
-    Known::Value(0.0),
-];
+const KNOWN: [Known; 5] =
+    [Known::Load(0.0), Known::Load(0.0), Known::Load(LOAD), Known::Value(0.0), Known::Value(0.0)];
 /// Amplitudes in nm: the last digits follow the order of operations through 8000 steps.
 const GOLDEN: GoldenTolerance = GoldenTolerance { relative: 1e-6, absolute: 1e-3 };
 
@@ -123,8 +118,7 @@ fn pitch(setting: &Setting) -> Result<Pitch, CaseError> {
     }
     problem.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
     if setting.traction {
-        problem.traction =
-            TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 0.05 };
+        problem.traction = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 0.05 };
     }
     let orbit = motion::cage_ratio(&problem) * setting.rpm * RPM;
     let time = TAU / lengths.balls as f64 / orbit;
@@ -228,13 +222,19 @@ fn amplitudes(context: &mut CaseContext, pitches: &[Pitch]) {
             context.check(if 0.02 * even > 1.0 {
                 check.relative(0.02, why)
             } else {
-                check.absolute(1.0, "1 nm, the larger allowance here: uneven balls alone move the race by 0.5 nm")
+                check.absolute(
+                    1.0,
+                    "1 nm, the larger allowance here: uneven balls alone move the race by 0.5 nm",
+                )
             });
             if let Some(looser) = i.checked_sub(1).map(|looser| &pitches[looser]) {
                 context.check(
                     Check::new(
                         &format!("order_{axis}_{tag}"),
-                        &format!("{name} amplitude at {at} below that at {}", shown(CLEARANCES[i - 1])),
+                        &format!(
+                            "{name} amplitude at {at} below that at {}",
+                            shown(CLEARANCES[i - 1])
+                        ),
                         "nm",
                         ours,
                     )
@@ -305,7 +305,10 @@ fn without_traction(context: &mut CaseContext) -> Result<(), CaseError> {
             uneven,
         )
         .closed_form(0.0, "balls that pass the load zone evenly")
-        .at_least(0.1, "the ball under the load is thrown out of the load zone; with traction 0.001 rad"),
+        .at_least(
+            0.1,
+            "the ball under the load is thrown out of the load zone; with traction 0.001 rad",
+        ),
     );
     context.finding(
         "traction_needed",
@@ -339,7 +342,8 @@ fn dynamic_effects(context: &mut CaseContext) -> Result<(), CaseError> {
             ]);
         }
     }
-    let columns = ["inner race", "speed, rpm", "Y amplitude over statics", "Z amplitude over statics"];
+    let columns =
+        ["inner race", "speed, rpm", "Y amplitude over statics", "Z amplitude over statics"];
     context.finding(
         "where_dynamics_differs",
         "Up to the source's 1000 rpm the isolated bearing is quasi-static: ball passing lies at 51 Hz, the race of 0.08 kg \
