@@ -149,7 +149,7 @@ fn make_and_break(context: &mut CaseContext, curves: &mut Vec<Curve>) -> Result<
             slope(&bounces),
             "a mass that bounces off a 3/2-power spring by a Runge–Kutta of its own, 400 bounces",
         )
-        .absolute(0.4, "as above; the bounces' own order scatters by 0.02"),
+        .absolute(0.4, "as above; the bounces' own order scatters by 0.1"),
     );
     context.check(
         Check::new(
