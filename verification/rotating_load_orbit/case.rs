@@ -267,7 +267,7 @@ fn figures(context: &mut CaseContext, still: &Orbit, turning: &Orbit) -> Result<
         "radius",
         svg,
         "The scale is 1 nm: traction, which statics leaves out, shrinks the orbit by 0.09 nm. At rest the creep of the balls \
-         makes one wave; at 2000 rpm the balls pass the load.",
+         makes one wave; at 2000 rpm the slightly uneven ball set does, once for each of its turns against the load.",
     );
     Ok(())
 }
