@@ -125,7 +125,8 @@ fn loads_of_zero_equal_none() {
     let one = at_work(8, 1);
     let mut other = one.clone();
     other.gravity = [0.0, -0.0, 0.0];
-    other.rotating_load = Some(RotatingLoad { force: Profile::ZERO, speed: 100.0, phase: 0.3 });
+    other.rotating_load =
+        Some(RotatingLoad { force: Profile::ZERO, speed: Profile::Constant(100.0), phase: 0.3 });
     other.inner.foundation_stiffness = [0.0; 5];
     check_twins(&one, &other);
     // Gravity on a bearing of weightless force: it does act when it is there.

@@ -282,7 +282,8 @@ fn killed_outright_it_goes_on_from_the_last_state_kept() {
 #[test]
 fn a_run_that_fails_says_where_and_keeps_its_state() {
     let place = Place::new();
-    let numerics = "end = \"10 ms\"\nstep = \"40 us\"\noutput_interval = \"40 us\"";
+    let numerics = "end = \"10 ms\"\nstep = \"6 us\"\noutput_interval = \"60 us\"\n\
+        start = \"nominal\"\nenergy_limit = 1e-7";
     let scene = place.scene("scene.toml", &scene(numerics, "plots = [\"series\"]"));
     let out = place.path("out");
     let output = run(&scene, &out, &[]);

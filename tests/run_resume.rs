@@ -10,7 +10,7 @@ use bearing_dynamics::output::state::{
 };
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Start};
-use run_common::{complete, frictionless, rattling, request};
+use run_common::{complete, frictionless, jolted, rattling, request};
 use std::fs;
 use std::path::Path;
 
@@ -70,6 +70,7 @@ fn interrupted_anywhere_the_files_are_the_same() {
         ("split", complete(), Split, Start::Equilibrium),
         ("rattling", rattling(), RungeKutta, Start::Nominal),
         ("frictionless", frictionless(), RungeKutta, Start::Equilibrium),
+        ("jolted", jolted(), RungeKutta, Start::Equilibrium),
     ] {
         let mut request = request(STEP, 40);
         request.options.start = start;

@@ -58,7 +58,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let scene = scene::read_file(&arguments.scene)?;
     let settings = run_options(&scene)?;
     let problem = dynamic_problem(&scene)?;
-    let request = request(&scene, &settings)?;
+    let request = request(&scene, &settings);
     let folder = results_folder(&arguments.scene, &arguments.out);
     let kept = kept_state(arguments, &folder)?;
     let read_seconds = start.elapsed().as_secs_f64();
@@ -138,19 +138,8 @@ fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) ->
 }
 
 /// What the scene asks of a run.
-pub fn request(scene: &Scene, settings: &RunSettings) -> Result<RunRequest, Box<dyn Error>> {
-    let mut channels = match &settings.channels {
-        None => ChannelGroup::DEFAULT.to_vec(),
-        Some(names) => {
-            let group = |name: &String| {
-                ChannelGroup::from_name(name).ok_or_else(|| {
-                    let known = ChannelGroup::ALL.map(ChannelGroup::name).join(", ");
-                    format!("output.channels: {name:?} is no group of channels; there are {known}")
-                })
-            };
-            names.iter().map(group).collect::<Result<_, _>>()?
-        }
-    };
+pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
+    let mut channels = settings.channels.clone();
     let plots = &scene.dynamics.plots;
     let mut needs = |groups: &[ChannelGroup]| channels.extend_from_slice(groups);
     if plots.contains(&RunPlot::SlipSpin) {
@@ -158,12 +147,12 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> Result<RunRequest, Box<
     }
     channels.sort();
     channels.dedup();
-    Ok(RunRequest {
+    RunRequest {
         options: settings.options,
         end: settings.end,
         output_interval: settings.output_interval,
         channels,
-    })
+    }
 }
 
 /// The state to go on from, if that was asked for; what an earlier run left is removed otherwise.
@@ -213,9 +202,19 @@ fn announcement(session: &Session, request: &RunRequest, kept: Option<&StateFile
     let simulation = &session.simulation;
     let reason = match &simulation.limit {
         Some(limit) => format!("{} (stable up to {:.4e} s)", limit.reason(), limit.step),
-        None => "given".into(),
+        None => match simulation.step_watch.smallest {
+            Some(limit) => {
+                format!("given ({:.3} of the largest stable one)", simulation.step_size / limit)
+            }
+            None => "given".into(),
+        },
     };
     let mut text = format!("step {:.4e} s: {reason}\n", simulation.step_size);
+    if let Some([ratio, time]) = simulation.step_watch.exceeded {
+        text += &format!(
+            "WARNING: the step is {ratio:.3} times the largest stable one at t = {time} s\n"
+        );
+    }
     let (interval, asked) = (session.interval(), request.output_interval);
     let rounded = if (interval / asked - 1.0).abs() > 1e-9 {
         format!(" ({asked} s asked for, rounded to whole steps)")

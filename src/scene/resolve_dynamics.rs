@@ -8,6 +8,7 @@ use crate::scene::resolved::{Cage, Dimensions, Dynamics, RunSettings};
 use crate::scene::units::plain;
 use crate::scene::value::Checked;
 use crate::scene::{resolve_cage, resolve_contact};
+use crate::solver::channels::ChannelGroup;
 use crate::solver::dynamics::model::{Drive, RaceBody, RotatingLoad, Rotation};
 use crate::solver::dynamics::run::{RunOptions, Start, Stepping};
 use crate::solver::profile::Profile;
@@ -81,9 +82,12 @@ fn rotating_load(reader: &mut Reader) -> Result<Option<RotatingLoad>, SceneError
     let Some(profile) = reader.profile(force) else {
         return Err(reader.missing(force, ""));
     };
+    let Some(turning) = reader.profile(speed) else {
+        return Err(reader.missing(speed, ""));
+    };
     Ok(Some(RotatingLoad {
         force: profile,
-        speed: reader.required_number(speed, "")?,
+        speed: turning,
         phase: reader.number(phase).unwrap_or(0.0),
     }))
 }
@@ -316,8 +320,10 @@ fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
         start
     });
     let channels = match reader.document.value("output.channels") {
-        Some(Checked::Texts(names)) => Some(names.clone()),
-        _ => None,
+        Some(Checked::Choices(names)) => {
+            names.iter().filter_map(|name| ChannelGroup::from_name(name)).collect()
+        }
+        _ => ChannelGroup::DEFAULT.to_vec(),
     };
     Ok(Some(RunSettings { options, end, output_interval, window_start, channels }))
 }

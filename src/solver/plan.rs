@@ -131,13 +131,21 @@ fn start(start: Start) -> Stage {
 
 fn step_size(stepping: Stepping) -> Stage {
     match stepping {
-        Stepping::Fixed(step) => {
-            stage("stability limit", false, format!("the step is given: {step} s"))
-        }
+        Stepping::Fixed(step) => stage(
+            "stability limit",
+            true,
+            format!(
+                "the step is given: {step:e} s; it is held against the limit at the start and \
+                     where contacts get stiffer"
+            ),
+        ),
         Stepping::FractionOfLimit(fraction) => stage(
             "stability limit",
             true,
-            format!("the step is {fraction} of it, from the Jacobian at the start"),
+            format!(
+                "the step is {fraction} of it, from the Jacobian at the start; looked at again where \
+                 contacts get stiffer"
+            ),
         ),
     }
 }

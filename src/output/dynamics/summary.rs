@@ -149,6 +149,17 @@ fn step(session: &Session, report: &RunReport) -> Result<Value, ResultsError> {
         (None, _) => "given".into(),
     };
     step.insert("reason".into(), json!(reason));
+    let watch = &simulation.step_watch;
+    step.insert("limit_judged".into(), json!(watch.judged));
+    if let Some(smallest) = watch.smallest {
+        step.insert("smallest_stability_limit".into(), quantity("limit", smallest, "s")?);
+    }
+    if let Some([ratio, time]) = watch.exceeded {
+        let warning = format!(
+            "the step is {ratio:.3} times the largest stable one at t = {time} s; take a shorter one"
+        );
+        step.insert("warning".into(), json!(warning));
+    }
     Ok(Value::Object(step))
 }
 

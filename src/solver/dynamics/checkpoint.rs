@@ -1,11 +1,12 @@
 //! Everything a simulation needs to go on with the same bits.
 
 use super::contacts::Work;
+use super::energy::Energy;
 use super::model::DynamicProblem;
 use super::run::{RunOptions, Simulation, SimulationError, Stepping};
 use super::stability::StepLimit;
 use super::state::Layout;
-use super::system::Energy;
+use super::step_watch::StepWatch;
 
 /// A simulation at the end of a step, as plain numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,6 +17,7 @@ pub struct Checkpoint {
     /// s.
     pub step_size: f64,
     pub limit: Option<StepLimit>,
+    pub step_watch: StepWatch,
     /// The whole state vector; see [`super::state`].
     pub state: Vec<f64>,
     /// Contact damping of each pair and whether it carried load: the history of contacts.
@@ -51,6 +53,7 @@ impl Simulation {
         checkpoint.steps = self.steps;
         checkpoint.step_size = self.step_size;
         checkpoint.limit = self.limit;
+        checkpoint.step_watch = self.step_watch;
         checkpoint.state.clone_from(&self.state);
         checkpoint.damping.clone_from(&self.system.damping);
         checkpoint.was_loaded.clone_from(&self.was_loaded);
@@ -79,6 +82,7 @@ impl Simulation {
         simulation.options = options;
         simulation.steps = checkpoint.steps;
         simulation.limit = checkpoint.limit;
+        simulation.step_watch = checkpoint.step_watch;
         simulation.system.damping.copy_from_slice(&checkpoint.damping);
         simulation.system.work = checkpoint.work;
         simulation.was_loaded.copy_from_slice(&checkpoint.was_loaded);

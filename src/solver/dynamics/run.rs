@@ -1,13 +1,15 @@
 //! A simulation: state, time, step after step, watched.
 
 use super::contacts::Driver;
+use super::energy::Energy;
 use super::model::DynamicProblem;
 use super::rk4::RungeKutta;
 use super::split::Split;
 use super::stability::{StepLimit, step_limit};
 use super::start;
-use super::state::{BODY, LEDGER, Layout, POSITION};
-use super::system::{Energy, Instant, System};
+use super::state::{BODY, LEDGER, Layout, Ledger, POSITION};
+use super::step_watch::{StepWatch, Stiffness, stiffness};
+use super::system::{Instant, System};
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::kinematics::vec3::{add_scaled, dot, norm, sub};
 use crate::solver::statics::StaticsError;
@@ -79,6 +81,12 @@ pub enum SimulationError {
          (numerics.step)"
     )]
     NoStep,
+    #[error(
+        "the step of {size:.3e} s is longer than the largest stable one, {limit:.3e} s at t = {time} s, \
+         step {step} ({reason}): what swings would grow, or what slides swing to and fro; take a \
+         shorter step (numerics.step or numerics.step_fraction)"
+    )]
+    StepTooLong { size: f64, limit: f64, reason: String, time: f64, step: u64 },
     #[error("{body} has a value that is not finite at t = {time} s, step {step}")]
     NotFinite { body: String, time: f64, step: u64 },
     #[error(
@@ -103,6 +111,8 @@ pub struct Simulation {
     pub steps: u64,
     /// What limits the step, where it was asked for.
     pub limit: Option<StepLimit>,
+    /// How the step compares with what the contacts allow since.
+    pub step_watch: StepWatch,
     pub(super) options: RunOptions,
     integrator: Stepper,
     pub(super) was_loaded: Vec<bool>,
@@ -110,7 +120,7 @@ pub struct Simulation {
     /// What the ledger already held then, J.
     pub(super) ledger_before: f64,
     pub(super) largest_contact_energy: f64,
-    rates: Vec<f64>,
+    pub(super) rates: Vec<f64>,
 }
 
 enum Stepper {
@@ -182,6 +192,11 @@ impl Simulation {
         system.work = Default::default();
         let instant = system.evaluate(time, &state, &mut rates);
         let first_energy = system.energy(&state, &instant);
+        let step_watch = StepWatch {
+            smallest: limit.map(|limit| limit.step),
+            stiffest: if limit.is_some() { stiffness(&system) } else { Stiffness::default() },
+            ..StepWatch::default()
+        };
         let at = system.layout.ledger();
         let ledger_before = state[at..at + LEDGER].iter().sum();
         let mut was_loaded = vec![false; system.damping.len()];
@@ -199,6 +214,7 @@ impl Simulation {
             step_size,
             steps: 0,
             limit,
+            step_watch,
             options,
         })
     }
@@ -228,6 +244,27 @@ impl Simulation {
         self.time += step;
         self.system.commit_damping(&mut self.was_loaded);
         self.watch()
+    }
+
+    /// Takes the state across a `corner`, which is the present time: where given motions have it,
+    /// velocities jump to what they are after it. The drives do the work of the jump, an impulse
+    /// that the contacts do not feel.
+    pub fn cross_corner(&mut self, corner: f64) {
+        let Simulation { system, state, rates, time, .. } = self;
+        if !system.problem.jolts_at(corner) {
+            system.latest = f64::INFINITY;
+            return;
+        }
+        let time = time.max(corner);
+        let mut energy = |system: &mut System, state: &[f64]| {
+            let instant = system.evaluate(time, state, rates);
+            system.energy(state, &instant).total()
+        };
+        let before = energy(system, state);
+        system.latest = f64::INFINITY;
+        system.tidy(time, state);
+        let after = energy(system, state);
+        state[system.layout.ledger_entry(Ledger::Drives)] += after - before;
     }
 
     /// Non-finite values spread within a step from any body to the races' velocities, so that a
