@@ -324,7 +324,7 @@ fn turning(context: &mut CaseContext) -> Result<(), CaseError> {
         "turning_moment",
         format!(
             "Turning changes the moment by {:+.2} % beside the resting bearing with evenly spaced balls; statics at the \
-             turning bearing's ball angles has {:+.2} % of that too. So it is where the balls are (they run unevenly under the \
+             turning bearing's ball angles has {:+.2} %. So it is where the balls are (they run unevenly under the \
              tilt, by up to {:.1e} rad), hardly their inertia or traction.",
             100.0 * (ours / still.loads[3] - 1.0),
             100.0 * (theirs / still.loads[3] - 1.0),
