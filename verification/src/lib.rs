@@ -16,6 +16,7 @@ pub mod date;
 pub mod golden;
 pub mod judge;
 pub mod machine;
+pub mod mutants;
 pub mod oracles;
 pub mod pareto;
 pub mod published;
