@@ -135,9 +135,8 @@ impl List {
     pub fn check_applies(&self, root: &Path) -> Result<(), String> {
         for mutant in &self.mutants {
             let path = root.join(&mutant.file);
-            let source = fs::read_to_string(&path).map_err(|error| {
-                format!("mutant `{}`: {}: {error}", mutant.id, path.display())
-            })?;
+            let source = fs::read_to_string(&path)
+                .map_err(|error| format!("mutant `{}`: {}: {error}", mutant.id, path.display()))?;
             mutant.seeded(&source)?;
         }
         Ok(())
