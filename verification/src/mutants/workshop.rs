@@ -88,10 +88,11 @@ impl Workshop {
                     name == format!("tests/{test}.rs") || name.starts_with("tests/common")
                 }
                 Check::Lib { .. } => false,
-                Check::Case { .. } => {
-                    name.starts_with("verification/") && name.ends_with(".rs")
-                        || name.ends_with("published.toml")
-                        || name.starts_with("golden/")
+                Check::Case { id } => {
+                    name.starts_with("verification/src/")
+                        && !name.starts_with("verification/src/mutants/")
+                        || name.starts_with(&format!("verification/{id}/"))
+                        || name == format!("golden/{id}.json")
                 }
             };
             name.starts_with("src/")
