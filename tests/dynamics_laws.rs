@@ -9,10 +9,11 @@ use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::kinematics::euler::about;
 use bearing_dynamics::solver::dynamics::contacts::Driver;
 use bearing_dynamics::solver::dynamics::model::{Drive, Rotation};
+use bearing_dynamics::solver::dynamics::race::tilts_of;
 use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
 use bearing_dynamics::solver::dynamics::stability::growth;
 use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, Layout, Ledger, VELOCITY};
+use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, Layout, Ledger, SPIN, VELOCITY};
 use bearing_dynamics::solver::profile::Profile;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
@@ -141,6 +142,35 @@ fn prescribed_tilts_are_followed_far_from_upright() {
     }
     assert!(turned > 0.1 * first, "{turned} of {first}");
     assert_eq!(simulation.system.work.loaded_contacts, 0);
+}
+
+#[test]
+fn a_tilting_moment_does_work_on_its_tilt() {
+    // Moments on the tilts are conjugate to them: what they put into a race that touches nothing is
+    // moment times tilt, also where the axes of both tilts are far from those of space.
+    let moments = [0.05, 0.08];
+    let mut problem = bearing(table_4_1(10e-6), [0.0, 0.0, 0.0, moments[0], moments[1]], 0.0);
+    problem.inner_contact.stiffness = 0.0;
+    problem.inner.inertia = Inertia { mass: 0.2, axial: 1e-4, transverse: 0.7e-4 };
+    problem.inner.rotation = Rotation::Torque(Profile::ZERO);
+    let mut simulation = simulation(&problem, 20e-6, Start::Nominal);
+    let at = simulation.system.layout.inner();
+    simulation.state[at + SPIN] = 20.0;
+    let first = simulation.snapshot().unwrap().energy.kinetic;
+    let mut largest = [0.0_f64; 2];
+    for _ in 0..2000 {
+        simulation.step().unwrap();
+        let tilts = tilts_of(inner_state(&simulation).axis());
+        let work: f64 = moments.iter().zip(tilts).map(|(moment, tilt)| moment * tilt).sum();
+        let gained = simulation.snapshot().unwrap().energy.kinetic - first;
+        // Fourth order of ω h = 1e-3, over 2000 steps.
+        assert!((gained - work).abs() <= 1e-10, "{gained} J for {work} J");
+        for (largest, tilt) in largest.iter_mut().zip(tilts) {
+            *largest = largest.max(tilt.abs());
+        }
+    }
+    println!("tilts up to {largest:?}");
+    assert!(largest.iter().all(|tilt| *tilt > 0.25), "{largest:?}");
 }
 
 #[test]

@@ -255,6 +255,21 @@ fn both_drivers_run_with_the_same_bits() {
 }
 
 #[test]
+fn simulations_side_by_side_have_the_bits_of_one_alone() {
+    // A simulation is one thread's work; what others do beside it changes nothing.
+    let problems = [at_work(8, 1), at_work(11, 2), at_work(9, 3)];
+    let alone: Vec<_> = problems.iter().map(|problem| bits(&after(problem, 200).state)).collect();
+    for (problem, expected) in problems.iter().zip(&alone) {
+        std::thread::scope(|scope| {
+            let runs = [0; 4].map(|_| scope.spawn(|| bits(&after(problem, 200).state)));
+            for run in runs {
+                assert_eq!(&run.join().unwrap(), expected);
+            }
+        });
+    }
+}
+
+#[test]
 fn going_on_from_a_state_changes_no_bit() {
     for law in 0..5 {
         let mut problem = at_work(8, law);
