@@ -36,6 +36,7 @@ pub fn run(root: &Path, only: &[String], jobs: usize) -> Result<Tally, String> {
         list.mutants.iter().filter(|m| only.is_empty() || only.contains(&m.id)).collect();
     let workshop = Workshop::new(root, jobs)?;
     let mut results = Results::read(workshop.folder());
+    results.outcomes.retain(|outcome| list.mutants.iter().any(|m| m.id == outcome.id));
     let todo: Vec<(&Mutant, String)> = selected
         .iter()
         .map(|mutant| (*mutant, workshop.key(&mutant.caught_by, &mutant.text())))
