@@ -3,7 +3,7 @@
 CARGO ?= cargo
 VERIFY = $(CARGO) run --release --locked -q -p verification --bin verify --
 
-.PHONY: verify verify-full test golden bench pareto doc lint fuzz
+.PHONY: verify verify-full test golden bench pareto mutants doc lint fuzz
 
 ## Benchmarks of the source against independent oracles; report in target/verify.
 verify:
@@ -28,6 +28,11 @@ bench:
 ## Run time against error, as CSV and SVG in target/pareto.
 pareto:
 	$(VERIFY) pareto --out target/pareto
+
+## Faults seeded in the physics, each to be caught by a test: report in target/mutants. JOBS=n, ONLY=id.
+JOBS ?= 1
+mutants:
+	$(VERIFY) mutants --jobs $(JOBS) $(if $(ONLY),--only $(ONLY))
 
 ## A million mutated scenes through the reader.
 fuzz:

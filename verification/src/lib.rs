@@ -17,6 +17,7 @@ pub mod golden;
 pub mod judge;
 pub mod machine;
 pub mod motion;
+pub mod mutants;
 pub mod oracles;
 pub mod pareto;
 pub mod published;
