@@ -6,6 +6,10 @@ use crate::case::{Case, Tier};
 
 #[path = "../axial_load_closed_form/case.rs"]
 mod axial_load_closed_form;
+#[path = "../cage_slip/case.rs"]
+mod cage_slip;
+#[path = "../cage_speed_table_5_4/case.rs"]
+mod cage_speed_table_5_4;
 #[path = "../hertz_elliptic/case.rs"]
 mod hertz_elliptic;
 #[path = "../kinematic_frequencies/case.rs"]
@@ -24,6 +28,8 @@ pub const CASES: &[Case] = &[
     varying_compliance_statics::CASE,
     axial_load_closed_form::CASE,
     kinematic_frequencies::CASE,
+    cage_slip::CASE,
+    cage_speed_table_5_4::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).
