@@ -153,7 +153,9 @@ pub fn simulate(
         simulation.step()?;
     }
     let layout = simulation.system.layout;
-    let (cage, outer) = (layout.cage(), layout.outer());
+    let outer = layout.outer();
+    // Where there is no cage the outer race stands in for it.
+    let cage = if layout.has_cage { layout.cage() } else { outer };
     let mut last = Angles::of(&layout, &simulation.state);
     let mut motion = Motion { first_cage_angle: last.cage, ..Motion::default() };
     for sample in 0..samples {
@@ -198,7 +200,7 @@ impl Angles {
         };
         Angles {
             shaft: about_x(layout.inner()),
-            cage: about_x(layout.cage()),
+            cage: if layout.has_cage { about_x(layout.cage()) } else { 0.0 },
             balls: (0..layout.balls).map(azimuth).collect(),
         }
     }
