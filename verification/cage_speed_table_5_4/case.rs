@@ -308,28 +308,16 @@ fn tables(context: &mut CaseContext, runs: &[Run]) {
 /// Friction levels at 445 N, and loads at a hundredth of the friction, at 10 Hz.
 fn slip_over_traction(context: &mut CaseContext) -> Result<u64, CaseError> {
     const SPEED: f64 = 10.0 * TAU;
-    let series: [(&str, &str, &[(f64, f64)]); 2] = [
-        (
-            "friction",
-            "445 N",
-            &[
-                (1.0, 445.0),
-                (0.1, 445.0),
-                (0.03, 445.0),
-                (0.01, 445.0),
-                (0.003, 445.0),
-                (0.002, 445.0),
-            ],
-        ),
-        ("load", "friction × 0.01", &[(0.01, 445.0), (0.01, 222.0), (0.01, 111.0), (0.01, 55.0)]),
-    ];
+    let levels = [1.0, 0.1, 0.03, 0.01, 0.003, 0.002].map(|level| (level, 445.0)).to_vec();
+    let loads = [445.0, 222.0, 111.0, 55.0].map(|load| (0.01, load)).to_vec();
+    let series = [("friction", "445 N", levels), ("load", "friction × 0.01", loads)];
     let mut steps = 0;
     let mut rows = Vec::new();
     let mut curves = Vec::new();
     for (name, kept, variants) in series {
         let mut before: Option<f64> = None;
         let mut points = Vec::new();
-        for &(level, load) in variants {
+        for (level, load) in variants {
             let mut problem = rolling(SPEED)?;
             set_load(&mut problem, load);
             scale_traction(&mut problem, level);
