@@ -8,6 +8,10 @@ use crate::case::{Case, Tier};
 mod axial_load_closed_form;
 #[path = "../bearing_conservation/case.rs"]
 mod bearing_conservation;
+#[path = "../cage_slip/case.rs"]
+mod cage_slip;
+#[path = "../cage_speed_table_5_4/case.rs"]
+mod cage_speed_table_5_4;
 #[path = "../hertz_elliptic/case.rs"]
 mod hertz_elliptic;
 #[path = "../kinematic_frequencies/case.rs"]
@@ -36,6 +40,8 @@ pub const CASES: &[Case] = &[
     axial_load_closed_form::CASE,
     bearing_conservation::CASE,
     kinematic_frequencies::CASE,
+    cage_slip::CASE,
+    cage_speed_table_5_4::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).

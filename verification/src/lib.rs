@@ -8,6 +8,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bearings;
+pub mod cage_bearing;
 pub mod case;
 pub mod cases;
 pub mod check;

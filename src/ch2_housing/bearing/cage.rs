@@ -5,13 +5,13 @@ use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot, norm, scale, sub};
 /// Force law of a cage contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CageForce {
-    /// K Δ, N/m, as in 5.3.2 with K = 2e8 N/m.
+    /// K Δ, N/m, equation (5.8); 5.3.2 takes K = 2e8 N/m.
     Penalty { stiffness: f64 },
     /// K Δ^{3/2}, N/m^1.5.
     Hertz { stiffness: f64 },
 }
 
-/// Force of a penetration (m), N; zero for a gap.
+/// Force of a penetration (m), N; zero for a gap. With [`CageForce::Penalty`] this is (5.8).
 pub fn cage_load(force: &CageForce, penetration: f64) -> f64 {
     if penetration <= 0.0 {
         return 0.0;
