@@ -64,10 +64,11 @@ fn assert_same_files(expected: &Path, found: &Path) {
 #[test]
 fn interrupted_anywhere_the_files_are_the_same() {
     let folder = tempfile::tempdir().unwrap();
-    use Integrator::{RungeKutta, Split};
+    use Integrator::{DormandPrince, Rosenbrock, RungeKutta};
     for (name, problem, integrator, start) in [
         ("complete", complete(), RungeKutta, Start::Equilibrium),
-        ("split", complete(), Split, Start::Equilibrium),
+        ("rosenbrock", complete(), Rosenbrock, Start::Equilibrium),
+        ("dormand-prince", rattling(), DormandPrince, Start::Nominal),
         ("rattling", rattling(), RungeKutta, Start::Nominal),
         ("frictionless", frictionless(), RungeKutta, Start::Equilibrium),
     ] {

@@ -80,7 +80,7 @@ pub fn dynamics(
     let balls = problem.geometry.ball_count;
     let mut stages = vec![
         start(options.start),
-        step_size(options.stepping),
+        step_size(options),
         stage(
             "distance test",
             true,
@@ -129,8 +129,16 @@ fn start(start: Start) -> Stage {
     }
 }
 
-fn step_size(stepping: Stepping) -> Stage {
-    match stepping {
+fn step_size(options: &RunOptions) -> Stage {
+    match options.stepping {
+        Stepping::Accuracy(accuracy) => stage(
+            "stability limit",
+            false,
+            format!(
+                "{} takes steps as long as an accuracy of {accuracy} allows",
+                options.integrator.name()
+            ),
+        ),
         Stepping::Fixed(step) => {
             stage("stability limit", false, format!("the step is given: {step} s"))
         }

@@ -1,7 +1,8 @@
 //! A run from start to end: steps, rows of the time series, and the last state that was sound.
 //!
-//! The step never changes on the way, so that a run that was interrupted goes on with the same
-//! bits; only the very last step is shortened to end at the end.
+//! Without error control the step never changes on the way, and with it steps follow from the state,
+//! from what the control remembers and from the time of the next row: either way a run that was
+//! interrupted goes on with the same bits. Only the very last step is shortened to end at the end.
 
 use crate::output::dynamics::recorder::{Recorder, RecorderError};
 use crate::solver::channels::ChannelGroup;
@@ -57,13 +58,15 @@ pub struct Session {
     pub simulation: Simulation,
     pub recorder: Recorder,
     pub end: f64,
-    /// Steps from one row to the next.
+    /// Steps from one row to the next; zero with error control, where steps end at the rows' times.
     pub steps_per_row: u64,
     pub status: Status,
     /// Before the step that completed or failed, and the rows at that time.
     sound: Checkpoint,
     sound_rows: usize,
     failed: bool,
+    /// Time between rows as asked for, s.
+    output_interval: f64,
 }
 
 impl Session {
@@ -92,6 +95,7 @@ impl Session {
                 steps
             }
             Stepping::Fixed(_) => steps.round().max(1.0),
+            Stepping::Accuracy(_) => 0.0,
         };
         let mut session = Session::new(simulation, request, steps_per_row as u64)?;
         session.record()?;
@@ -123,7 +127,10 @@ impl Session {
         request: &RunRequest,
         steps_per_row: u64,
     ) -> Result<Session, SessionError> {
-        let interval = steps_per_row as f64 * simulation.step_size;
+        let interval = match steps_per_row {
+            0 => request.output_interval,
+            steps => steps as f64 * simulation.step_size,
+        };
         // The first row, the last one off the grid, and one for rounding.
         let rows = (request.end / interval) as usize + 3;
         let recorder = Recorder::new(&simulation.system.problem, &request.channels, rows)?;
@@ -131,6 +138,7 @@ impl Session {
             sound: simulation.checkpoint(),
             sound_rows: 0,
             failed: false,
+            output_interval: request.output_interval,
             recorder,
             end: request.end,
             steps_per_row,
@@ -141,7 +149,10 @@ impl Session {
 
     /// Time between rows, s.
     pub fn interval(&self) -> f64 {
-        self.steps_per_row as f64 * self.simulation.step_size
+        match self.steps_per_row {
+            0 => self.output_interval,
+            steps => steps as f64 * self.simulation.step_size,
+        }
     }
 
     /// At most `steps` steps.
@@ -164,15 +175,30 @@ impl Session {
     }
 
     fn step(&mut self) -> Result<(), SimulationError> {
-        let step = self.simulation.step_size;
+        let by_time = self.steps_per_row == 0;
+        let row_time = self.recorder.rows() as f64 * self.output_interval;
+        let mut step = self.simulation.step_size;
+        if by_time {
+            step = towards(step, row_time - self.simulation.time);
+        }
         let left = self.end - self.simulation.time;
         // A last step that is whole but for rounding of the time is taken whole, so that no step
         // of nearly nothing follows it.
         if left <= step * (1.0 + 1e-6) {
-            self.simulation.step_by(left)?;
+            if self.simulation.step_by(left)? < left {
+                return Ok(());
+            }
             self.simulation.time = self.end;
             self.record()?;
             self.status = Status::Complete;
+            return Ok(());
+        }
+        if by_time {
+            let to_row = row_time - self.simulation.time;
+            if self.simulation.step_by(step)? == to_row {
+                self.simulation.time = row_time;
+                self.record()?;
+            }
             return Ok(());
         }
         self.simulation.step()?;
@@ -206,7 +232,20 @@ impl Session {
             return rows;
         }
         let last = self.recorder.row(rows - 1)[0] - self.recorder.row(rows - 2)[0];
-        let whole = (last - self.interval()).abs() <= 1e-3 * self.simulation.step_size;
+        let slack = if self.steps_per_row == 0 { last } else { self.simulation.step_size };
+        let whole = (last - self.interval()).abs() <= 1e-3 * slack;
         if whole { rows } else { rows - 1 }
+    }
+}
+
+/// A step no longer than `step` on the way to a row that is `left` away: there if it can be
+/// reached, half of the way if it could be reached in two, so that no tiny step comes last.
+fn towards(step: f64, left: f64) -> f64 {
+    if left <= step * (1.0 + 1e-6) {
+        left
+    } else if left < 2.0 * step {
+        0.5 * left
+    } else {
+        step
     }
 }
