@@ -140,6 +140,10 @@ const CASES: &[Case] = &[
     ("unknown integrator", "output_interval = \"0.1 ms\"", "integrator = \"rk5\"", 44, &["did you mean `rk4`"]),
     ("channels in one text", "window_start = \"50 ms\"", "channels = \"cage\"", 46, &["a list of texts"]),
     ("misspelt table", "[contact_damping]", "[contact_dampng]", 38, &["did you mean `contact_damping`"]),
+    ("accuracy without an error estimate", "step = \"1 us\"", "accuracy = 1e-3", 43, &["numerics.accuracy", "rk4 has no estimate", "rosenbrock"]),
+    ("accuracy out of range", "step = \"1 us\"", "accuracy = 0.5", 43, &["numerics.accuracy", "from 1e-8 to 0.1"]),
+    ("accuracy and step", "output_interval = \"0.1 ms\"", "accuracy = 1e-3", 44, &["numerics.accuracy", "numerics.step"]),
+    ("limit of another integrator", "step = \"1 us\"", "integrator = \"rosenbrock\"\nstep_fraction = 0.5", 44, &["numerics.step_fraction", "that of rk4"]),
 ];
 
 #[test]

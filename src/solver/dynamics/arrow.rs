@@ -162,8 +162,8 @@ impl Arrow {
     }
 
     /// Solves (1 − hγ J) w = r for all entries of the state; `at` is the state of the Jacobian.
-    /// Nothing feeds back from the ledger and the orientation of balls: what the ledger says of traction
-    /// and of prescribed motions follows the rest of `w`, its other entries are those of `r`.
+    /// Nothing feeds back from the ledger and the orientation of balls: what drives of prescribed
+    /// motions do follows the rest of `w`, their other entries are those of `r`.
     pub fn solve(
         &mut self,
         linearised: &Linearised,
@@ -226,7 +226,7 @@ impl Arrow {
                 moved[i] += scale * rate[i];
             }
         }
-        let mut power = [0.0; 2];
+        let mut power = 0.0;
         for (block, right) in self.balls.iter_mut().enumerate() {
             for hub in 0..self.hub_count {
                 if !self.coupled[block][hub] {
@@ -249,11 +249,8 @@ impl Arrow {
                 }
             }
             for contact in &linearised.contacts[block][..2] {
-                if contact.rows == 4 {
-                    let hub = contact.hub.unwrap_or(0);
-                    let change = powers(contact, &position, &moved[hub], right, &rates[hub]);
-                    power[0] += change[0];
-                    power[1] += change[1];
+                if let (4, Some(hub)) = (contact.rows, contact.hub) {
+                    power += drive_power(contact, &position, &moved[hub], right, &rates[hub]);
                 }
             }
             // Lanes beyond the last ball stand still.
@@ -268,8 +265,7 @@ impl Arrow {
                 }
             }
         }
-        w[layout.ledger_entry(Ledger::Traction)] += scale * power[0];
-        w[layout.ledger_entry(Ledger::Drives)] += scale * power[1];
+        w[layout.ledger_entry(Ledger::Drives)] += scale * power;
         for (hub, rate) in linearised.hubs.iter().zip(&rates) {
             let (linear, turning) = from_basis(hub, rate);
             let q = [0, 1, 2, 3].map(|i| at[hub.at + ORIENTATION + i]);
@@ -328,15 +324,14 @@ fn weigh(contact: &LaneContact, lever: &[[Lane; 6]; 4], scale: f64) -> [[Lane; 6
     pushed
 }
 
-/// What a contact pushes back along its rows for displacements and velocities of ball and hub, and
-/// how its sliding (t, s, spin about n) changes.
+/// What a contact pushes back along its rows for displacements and velocities of ball and hub.
 #[inline(always)]
 fn reaction(
     contact: &LaneContact,
     position: &[Lane; 3],
     moved: &[f64; 6],
     velocity: Option<(&[Lane; 6], &[f64; 6])>,
-) -> ([Lane; 4], [Lane; 3]) {
+) -> [Lane; 4] {
     let mut pushes = [ZERO; 4];
     let mut approach = ZERO;
     for i in 0..3 {
@@ -405,7 +400,7 @@ fn reaction(
             [pushes[1][l], pushes[2][l], pushes[3][l]] = [along, across, about];
         }
     }
-    (pushes, slid)
+    pushes
 }
 
 /// hγ K r: takes from the right-hand sides what the displacements in them push back.
@@ -418,7 +413,7 @@ fn spring_back(
     hubs: &mut [f64; MOST],
 ) {
     let of_hub = &moved[contact.hub.unwrap_or(0)];
-    let (mut pushes, _) = reaction(contact, position, of_hub, None);
+    let mut pushes = reaction(contact, position, of_hub, None);
     let rows = if contact.rows == 4 { 4 } else { 1 };
     for (row, push) in pushes.iter_mut().enumerate().take(rows) {
         for l in 0..LANES {
@@ -439,27 +434,20 @@ fn spring_back(
     }
 }
 
-/// Change of the powers of traction and of the drives that hold prescribed velocities.
-fn powers(
+/// Change of the power of the drives that hold prescribed velocities.
+fn drive_power(
     contact: &LaneContact,
     position: &[Lane; 3],
     moved: &[f64; 6],
     ball: &[Lane; 6],
     hub: &[f64; 6],
-) -> [f64; 2] {
-    let (pushes, slid) = reaction(contact, position, moved, Some((ball, hub)));
-    let mut lost = ZERO;
+) -> f64 {
+    let pushes = reaction(contact, position, moved, Some((ball, hub)));
     let mut driven = ZERO;
-    for row in 0..3 {
-        for l in 0..LANES {
-            let traction = contact.load[l] * contact.per_load[row][l];
-            lost[l] += traction * slid[row][l] - contact.sliding[row][l] * pushes[1 + row][l];
-        }
+    for (row, push) in pushes.iter().enumerate() {
+        add_product(&mut driven, &contact.driven[row], push);
     }
-    for row in 0..4 {
-        add_product(&mut driven, &contact.driven[row], &pushes[row]);
-    }
-    [total(&lost), total(&driven)]
+    total(&driven)
 }
 
 /// Both ends of the cage on its guiding race: (hub, lever) pairs of the bodies that move.

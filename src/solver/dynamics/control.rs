@@ -24,14 +24,16 @@ impl Attempt {
     }
 }
 
-/// Error of one step that is allowed, over the accuracy of the whole run.
-pub const SHARE: f64 = 1.0;
+/// Error of one step that is allowed, over the accuracy of the whole run: errors add up, and where
+/// bearings ring without damping for some hundred periods they add up to this.
+pub const SHARE: f64 = 0.02;
 /// The scale of displacements is not below this part of a ball radius: some nanometres.
 const FLOOR: f64 = 1e-6;
 /// Steps are kept this much shorter than the estimate asks for.
 const SAFETY: f64 = 0.9;
+const LEAST_ERROR: f64 = 0.02;
 const SHORTEST: f64 = 0.2;
-const LONGEST: f64 = 4.0;
+const LONGEST: f64 = 2.5;
 
 /// What a run with error control remembers from step to step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -158,7 +160,8 @@ impl Controller {
         let memory = &mut self.memory;
         memory.largest = memory.largest.max(step);
         memory.smallest = if memory.smallest == 0.0 { step } else { memory.smallest.min(step) };
-        let norm = norm.max(1e-8);
+        // A step cut short to end at a row has hardly an error, which says nothing of the next.
+        let norm = norm.max(LEAST_ERROR);
         let factor = SAFETY
             * libm::pow(norm, -0.7 / self.order)
             * libm::pow(memory.previous_error, 0.4 / self.order);

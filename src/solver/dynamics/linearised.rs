@@ -48,9 +48,6 @@ pub struct LaneContact {
     pub carried: [[Lane; 3]; 3],
     /// Traction along t and s and moment about n that a unit of normal load makes.
     pub per_load: [Lane; 3],
-    /// N, and slip along t and s and spin about n: what the power lost follows from.
-    pub load: Lane,
-    pub sliding: [Lane; 3],
     /// Motion along the four rows that the hub's prescribed velocities make.
     pub driven: [Lane; 4],
 }
@@ -265,14 +262,12 @@ fn race_contacts(
             // Nothing pushes back: levers of no consequence.
             to.stiffness[lane] = 0.0;
             to.damping[lane] = 0.0;
-            to.load[lane] = 0.0;
             for slope in &mut to.slope {
                 slope[lane] = 0.0;
             }
             continue;
         }
         to.rows = rows;
-        to.load[lane] = table.load[pair];
         let contact = &table.contact[pair];
         let motion = &race.motion;
         let normal = contact.normal;
@@ -306,9 +301,6 @@ fn race_contacts(
         let per_radius = dot(normal, contact.outward) / dot(between, contact.outward);
         let reach = laws.ball_radius - 0.5 * contact.overlap;
         let [about_t, about_s, about_n] = here.relative_spin;
-        for (to, value) in to.sliding.iter_mut().zip([here.slip[0], here.slip[1], about_n]) {
-            to[lane] = value;
-        }
         let carried = [
             sub(
                 add_scaled(scale(normal, -0.5 * about_s), -reach * per_distance * about_n, across),

@@ -10,6 +10,7 @@ use super::arrow::Arrow;
 use super::contacts::Want;
 use super::control::Attempt;
 use super::linearised::Linearised;
+use super::state::Ledger;
 use super::system::System;
 
 pub const STAGES: usize = 4;
@@ -66,10 +67,31 @@ impl Rosenbrock {
         }
     }
 
-    /// What all attempts of a step from `state` at `t` share.
+    /// What all attempts of a step from `state` at `t` share: the first stage and the contacts.
     pub fn begin(&mut self, system: &mut System, t: f64, state: &[f64]) {
         let instant = system.evaluate_with(Want::ForcesAndSlopes, t, state, &mut self.first);
         self.linearised.update(system, state, &instant);
+    }
+
+    /// Goes on from `state`, reached by an accepted step at `t`.
+    ///
+    /// Losses go with the square of a sliding that the stages know badly and both ends of the step
+    /// well: the ledger takes them by the trapezoidal rule.
+    pub fn accept(
+        &mut self,
+        system: &mut System,
+        t: f64,
+        step: f64,
+        before: &[f64],
+        state: &mut [f64],
+    ) {
+        let entries = [Ledger::Traction, Ledger::ContactDamping, Ledger::CageFriction]
+            .map(|e| system.layout.ledger_entry(e));
+        let first = entries.map(|at| self.first[at]);
+        self.begin(system, t, state);
+        for (at, first) in entries.into_iter().zip(first) {
+            state[at] = before[at] + 0.5 * step * (first + self.first[at]);
+        }
     }
 
     /// One step from where it began; `state` stays.

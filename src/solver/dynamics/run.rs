@@ -56,8 +56,8 @@ impl Integrator {
     }
 }
 
-/// Error control gives up below this step, s: a thousandth of a period of the stiffest contact is
-/// 1e-8 s.
+/// Error control gives up below this step, s; a thousandth of a period of the stiffest contact is
+/// a million times longer.
 const SHORTEST_STEP: f64 = 1e-14;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -311,11 +311,17 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// Rates at the present state, history included, for the integrator that keeps them.
+    /// First stage at the present state, history included, for the integrators that keep it.
     pub(super) fn take_first_rates(&mut self) {
-        if let Stepper::DormandPrince(integrator) = &mut self.integrator {
-            self.system.evaluate(self.time, &self.state, &mut self.rates);
-            integrator.begin(&self.rates);
+        match &mut self.integrator {
+            Stepper::RungeKutta(_) => {}
+            Stepper::DormandPrince(integrator) => {
+                self.system.evaluate(self.time, &self.state, &mut self.rates);
+                integrator.begin(&self.rates);
+            }
+            Stepper::Rosenbrock(integrator) => {
+                integrator.begin(&mut self.system, self.time, &self.state);
+            }
         }
     }
 
@@ -353,7 +359,6 @@ impl Simulation {
             }
             Stepper::Rosenbrock(integrator) => {
                 let t = self.time;
-                integrator.begin(system, t, state);
                 let go = |system: &mut System, step, attempt: &mut Attempt| {
                     integrator.attempt(system, t, step, state, attempt);
                 };
@@ -362,6 +367,7 @@ impl Simulation {
                 self.step_size = next.unwrap_or(self.step_size);
                 std::mem::swap(state, &mut attempt.state);
                 system.tidy(t + taken, state);
+                integrator.accept(system, t + taken, taken, &attempt.state, state);
                 taken
             }
         };
