@@ -36,6 +36,8 @@ fn problem(with_cage: bool, damping: ContactDamping) -> DynamicProblem {
 struct Run {
     positions: Vec<[f64; 3]>,
     seconds: f64,
+    /// Least seconds a step over ten rows: what other processes of the machine cost is not in it.
+    step_seconds: f64,
     simulation: Simulation,
 }
 
@@ -53,7 +55,13 @@ fn run(
     let mut simulation = Simulation::new(problem.clone(), options).expect("a start");
     let mut positions = Vec::with_capacity(rows);
     let start = Instant::now();
+    let (mut step_seconds, mut before) = (f64::MAX, (0.0, 0));
     for row in 1..=rows {
+        if row % 10 == 1 && row > 1 {
+            let now = (start.elapsed().as_secs_f64(), simulation.steps);
+            step_seconds = step_seconds.min((now.0 - before.0) / (now.1 - before.1) as f64);
+            before = now;
+        }
         let time = end * row as f64 / rows as f64;
         loop {
             let left = time - simulation.time;
@@ -73,7 +81,7 @@ fn run(
         }
         positions.push(inner_state(&simulation).position);
     }
-    Run { positions, seconds: start.elapsed().as_secs_f64(), simulation }
+    Run { positions, seconds: start.elapsed().as_secs_f64(), step_seconds, simulation }
 }
 
 /// Largest error, largest peak-to-peak motion of a coordinate, largest displacement, from `from` on.
@@ -103,9 +111,9 @@ fn accuracy_table(name: &str, problem: &DynamicProblem, reference_step: f64) {
     for accuracy in [1e-2, 1e-3, 1e-4] {
         let once = || run(problem, method, Stepping::Accuracy(accuracy), lanes, end, rows);
         let mut found = once();
-        let mut least = found.seconds;
-        for _ in 0..4 {
-            least = least.min(once().seconds);
+        let mut least = found.step_seconds;
+        for _ in 0..9 {
+            least = least.min(once().step_seconds);
         }
         let [error, swing, displacement] = compare(&found, &reference, 0);
         let [late, late_swing, _] = compare(&found, &reference, steady);
@@ -116,8 +124,8 @@ fn accuracy_table(name: &str, problem: &DynamicProblem, reference_step: f64) {
         println!(
             "{accuracy:8.0e} {steps:6} {:8} {:8.2} {:13.2} {error:9.1e} {:11.1e} {:16.1e} {:9.1e} {:21.1e} {residual:16.1e}",
             found.simulation.system.work.rejected_steps,
-            least / steps as f64 * 1e6,
-            least / end,
+            least * 1e6,
+            least * steps as f64 / end,
             error / overlap,
             error / displacement,
             error / swing,

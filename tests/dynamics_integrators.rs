@@ -179,8 +179,8 @@ fn steps_a_hundred_times_the_explicit_limit_are_stable() {
 
 /// Scenes of different kinds: name, problem, start, end.
 ///
-/// The last number is how many times the accuracy the error may be: one, but after a blow on the
-/// race, when everything swings by many times the overlap that it counts against, six.
+/// The last number is how many times the accuracy the error may be: one, and six after a blow on
+/// the race, where 1e-2, 1e-3 and 1e-4 asked for came out as 0.5, 5.8 and 2.3 times that.
 fn scenes() -> Vec<(&'static str, DynamicProblem, f64, f64)> {
     let mut turning = rolling();
     turning.inner.drives[2] = Drive::Load(Profile::ZERO);

@@ -4,17 +4,17 @@
 //!
 //! Balls are eliminated a block of [`LANES`] at a time, with every driver.
 
+use super::elimination::{
+    Block, MOST, ZERO, add_product, factor_dense, factor_lanes, solve_columns, solve_dense,
+    solve_lanes, subtract_product, total,
+};
 use super::linearised::{Hub, Lane, LaneContact, Linearised, from_basis, to_basis};
 use super::state::{LANES, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use crate::ch2_housing::bearing::inertia::Inertia;
 use nalgebra::Quaternion;
 
-const ZERO: Lane = [0.0; LANES];
 /// Most hubs a bearing has: two races and a cage.
 const HUBS: usize = 3;
-const MOST: usize = 6 * HUBS;
-
-type Block = [[Lane; 6]; 6];
 
 /// A factored matrix and room to solve with it.
 #[derive(Clone, Debug)]
@@ -31,26 +31,6 @@ pub struct Arrow {
     coupled: Vec<[bool; HUBS]>,
     schur: [[f64; MOST]; MOST],
     balls: Vec<[Lane; 6]>,
-}
-
-#[inline(always)]
-fn add_product(sum: &mut Lane, a: &Lane, b: &Lane) {
-    for l in 0..LANES {
-        sum[l] += a[l] * b[l];
-    }
-}
-
-#[inline(always)]
-fn subtract_product(sum: &mut Lane, a: &Lane, b: &Lane) {
-    for l in 0..LANES {
-        sum[l] -= a[l] * b[l];
-    }
-}
-
-#[inline(always)]
-fn total(lane: &Lane) -> f64 {
-    let [a, b, c, d, e, f, g, h] = *lane;
-    ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
 impl Arrow {
@@ -495,86 +475,5 @@ fn guide_forces(
                 hubs[6 * hub + j] -= lever[0][j] * push;
             }
         }
-    }
-}
-
-/// LDLᵀ in place; see [`Arrow::factors`].
-fn factor_lanes(matrix: &mut Block) {
-    for k in 0..6 {
-        let mut per_pivot = ZERO;
-        for l in 0..LANES {
-            per_pivot[l] = 1.0 / matrix[k][k][l];
-        }
-        for i in k + 1..6 {
-            let mut factor = ZERO;
-            for l in 0..LANES {
-                factor[l] = matrix[k][i][l] * per_pivot[l];
-            }
-            for j in i..6 {
-                let above = matrix[k][j];
-                subtract_product(&mut matrix[i][j], &factor, &above);
-            }
-        }
-        matrix[k][k] = per_pivot;
-    }
-}
-
-#[inline(always)]
-fn solve_lanes(factors: &Block, right: &mut [Lane; 6]) {
-    for k in 0..6 {
-        let mut scaled = ZERO;
-        for l in 0..LANES {
-            scaled[l] = right[k][l] * factors[k][k][l];
-        }
-        for i in k + 1..6 {
-            subtract_product(&mut right[i], &factors[k][i], &scaled);
-        }
-    }
-    for k in (0..6).rev() {
-        for j in k + 1..6 {
-            let known = right[j];
-            subtract_product(&mut right[k], &factors[k][j], &known);
-        }
-        for l in 0..LANES {
-            right[k][l] *= factors[k][k][l];
-        }
-    }
-}
-
-fn solve_columns(factors: &Block, columns: &mut Block) {
-    for j in 0..6 {
-        let mut column = [0, 1, 2, 3, 4, 5].map(|i: usize| columns[i][j]);
-        solve_lanes(factors, &mut column);
-        for i in 0..6 {
-            columns[i][j] = column[i];
-        }
-    }
-}
-
-fn factor_dense(matrix: &mut [[f64; MOST]; MOST], count: usize) {
-    for k in 0..count {
-        let per_pivot = 1.0 / matrix[k][k];
-        for i in k + 1..count {
-            let factor = matrix[k][i] * per_pivot;
-            for j in i..count {
-                matrix[i][j] -= factor * matrix[k][j];
-            }
-        }
-        matrix[k][k] = per_pivot;
-    }
-}
-
-fn solve_dense(factors: &[[f64; MOST]; MOST], count: usize, right: &mut [f64; MOST]) {
-    for k in 0..count {
-        let scaled = right[k] * factors[k][k];
-        for i in k + 1..count {
-            right[i] -= factors[k][i] * scaled;
-        }
-    }
-    for k in (0..count).rev() {
-        for j in k + 1..count {
-            right[k] -= factors[k][j] * right[j];
-        }
-        right[k] *= factors[k][k];
     }
 }

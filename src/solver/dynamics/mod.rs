@@ -9,6 +9,7 @@ pub mod checkpoint;
 pub mod contacts;
 pub mod control;
 pub mod dormand_prince;
+pub mod elimination;
 pub mod linearised;
 pub mod model;
 pub mod race;
