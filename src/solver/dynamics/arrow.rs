@@ -238,11 +238,9 @@ impl Arrow {
             for i in 0..3 {
                 let place = |component: usize| layout.ball(component + i) + block * LANES;
                 let (x, v, s) = (place(POSITION), place(VELOCITY), place(SPIN));
-                for l in 0..used {
-                    w[v + l] = right[i][l];
-                    w[s + l] = right[3 + i][l];
-                    w[x + l] = position[i][l];
-                }
+                w[v..v + used].copy_from_slice(&right[i][..used]);
+                w[s..s + used].copy_from_slice(&right[3 + i][..used]);
+                w[x..x + used].copy_from_slice(&position[i][..used]);
             }
         }
         w[layout.ledger_entry(Ledger::Drives)] += scale * power;

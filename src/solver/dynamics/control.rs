@@ -129,7 +129,8 @@ impl Controller {
         };
         let mut norm = 0.0f64;
         let mut take = |value: f64| {
-            if !(value <= norm) {
+            // NaN comes in and stays.
+            if value > norm || value.is_nan() {
                 norm = value;
             }
         };
