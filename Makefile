@@ -21,9 +21,10 @@ test:
 golden:
 	$(VERIFY) golden --case "$(CASE)" --reason "$(REASON)"
 
-## Kernels under criterion.
+## Kernels under criterion; what an accuracy costs in motion, with a bound on lanes against plain loops.
 bench:
 	$(CARGO) bench --locked --bench statics --profile release
+	$(CARGO) bench --locked --bench dynamics --profile release
 
 ## Run time against error, as CSV and SVG in target/pareto.
 pareto:

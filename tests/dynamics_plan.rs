@@ -307,6 +307,8 @@ fn work_is_counted_exactly() {
         slices: 15 * 16 * evaluations,
         pocket_tests: 0,
         guide_tests: 0,
+        factorisations: 0,
+        rejected_steps: 0,
     };
     assert_eq!(after(&problem, steps as usize).system.work, closed);
     // No traction: no slices.

@@ -11,8 +11,10 @@ use crate::output::series::{Series, SeriesError};
 use crate::solver::channels::ChannelGroup;
 use crate::solver::dynamics::checkpoint::Checkpoint;
 use crate::solver::dynamics::contacts::Work;
+use crate::solver::dynamics::control::Memory;
 use crate::solver::dynamics::energy::Energy;
 use crate::solver::dynamics::model::DynamicProblem;
+use crate::solver::dynamics::run::Stepping;
 use crate::solver::dynamics::stability::{Cause, StepLimit};
 use crate::solver::dynamics::step_watch::{StepWatch, Stiffness};
 use nalgebra::Complex;
@@ -57,6 +59,7 @@ pub struct StateFile {
     /// When the run was to end, and the time between rows that it was asked for, s.
     pub end: f64,
     pub output_interval: f64,
+    /// Zero with error control: rows then are `output_interval` apart.
     pub steps_per_row: u64,
     pub rows: usize,
     /// Wall time so far, s.
@@ -67,8 +70,13 @@ pub struct StateFile {
     /// Kinetic, contact, cage contact, gravity, foundation, J.
     pub first_energy: [f64; 5],
     pub largest_contact_energy: f64,
-    /// Evaluations, distance tests, loaded contacts, slices, pocket tests, guide tests.
-    pub work: [u64; 6],
+    /// Evaluations, distance tests, loaded contacts, slices, pocket tests, guide tests,
+    /// factorisations, rejected steps.
+    pub work: [u64; 8],
+    /// With error control: largest overlap (m), error of the step before, smallest and largest
+    /// step (s).
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub control: Option<[f64; 4]>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -211,7 +219,11 @@ pub fn resume(
     if !checkpoint.fits(&problem) {
         return Err(damaged("its lists have other lengths than the bearing asks for"));
     }
-    if file.steps_per_row == 0 || file.step_size <= 0.0 {
+    let by_time = file.control.is_some();
+    if by_time != matches!(request.options.stepping, Stepping::Accuracy(_)) {
+        return Err(damaged("error control without its sizes, or sizes without it"));
+    }
+    if (file.steps_per_row == 0) != by_time || file.step_size <= 0.0 {
         return Err(damaged("no step from one row to the next"));
     }
     // Written as it is so that an end that is not a number is refused as well.
@@ -219,7 +231,8 @@ pub fn resume(
     if !ahead {
         return Err(StateError::Past { time: file.time, end: request.end });
     }
-    let mut session = Session::from_checkpoint(problem, request, &checkpoint, file.steps_per_row)?;
+    let kept = RunRequest { output_interval: file.output_interval, ..request.clone() };
+    let mut session = Session::from_checkpoint(problem, &kept, &checkpoint, file.steps_per_row)?;
     let series_path = folder.join(SERIES);
     let series = Series::read_npy(&series_path)?;
     if !session.recorder.restore(&series, file.rows) {
@@ -280,7 +293,12 @@ fn state_file(
             work.slices,
             work.pocket_tests,
             work.guide_tests,
+            work.factorisations,
+            work.rejected_steps,
         ],
+        control: checkpoint.control.map(|memory| {
+            [memory.displacement, memory.previous_error, memory.smallest, memory.largest]
+        }),
     }
 }
 
@@ -291,8 +309,16 @@ fn cause(name: &str) -> Option<Cause> {
 fn checkpoint(file: &StateFile) -> Checkpoint {
     let [oscillation, decay] = file.step_watch.stiffest;
     let [kinetic, contact, cage_contact, gravity, foundation] = file.first_energy;
-    let [evaluations, distance_tests, loaded_contacts, slices, pocket_tests, guide_tests] =
-        file.work;
+    let [
+        evaluations,
+        distance_tests,
+        loaded_contacts,
+        slices,
+        pocket_tests,
+        guide_tests,
+        factorisations,
+        rejected_steps,
+    ] = file.work;
     Checkpoint {
         time: file.time,
         steps: file.steps,
@@ -322,7 +348,15 @@ fn checkpoint(file: &StateFile) -> Checkpoint {
             slices,
             pocket_tests,
             guide_tests,
+            factorisations,
+            rejected_steps,
         },
+        control: file.control.map(|[displacement, previous_error, smallest, largest]| Memory {
+            displacement,
+            previous_error,
+            smallest,
+            largest,
+        }),
     }
 }
 
@@ -333,7 +367,8 @@ fn check_finite(file: &StateFile) -> Result<(), StateError> {
     let watch = &file.step_watch;
     let watched = watch.stiffest.into_iter().chain(watch.smallest);
     let limit = limit.chain(watched).chain(watch.exceeded.into_iter().flatten());
-    let parts: [(&'static str, Vec<f64>); 4] = [
+    let parts: [(&'static str, Vec<f64>); 5] = [
+        ("a size of the error control", file.control.into_iter().flatten().collect()),
         (
             "time, step or energy",
             single

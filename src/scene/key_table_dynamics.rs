@@ -17,7 +17,7 @@ pub const CAGE_LAWS: &[&str] = &["penalty", "hertz"];
 pub const TRACTION_LAWS: &[&str] = &["none", "constant", "slide-to-roll", "slip-speed", "table"];
 pub const DAMPING_LAWS: &[&str] = &["none", "hunt-crossley", "lankarani-nikravesh"];
 pub const STARTS: &[&str] = &["equilibrium", "nominal"];
-pub const INTEGRATORS: &[&str] = &["rk4"];
+pub const INTEGRATORS: &[&str] = &["rk4", "dormand-prince", "rosenbrock"];
 /// Names of [`ChannelGroup::ALL`].
 pub const CHANNELS: &[&str] = &{
     let mut names = [""; ChannelGroup::ALL.len()];
@@ -183,8 +183,12 @@ pub(super) const KEYS: &[Key] = &[
     quantity("numerics.step", Kind::Quantity(Time, closed(1e-12, 1e-2, "s")), Optional,
         "Fixed step; leave it out, and it follows from the stability limit.").group("step").hint(STEP_HINT).example_of("1 us"),
     Key::new("numerics.step_fraction", Kind::Number(above(0.0, 2.0, "")),
-        Depends("0.5 where no `step` is given"),
-        "Step as a part of the largest stable one.").group("step").hint("1 is the stability limit; above it the run fails").example_of("0.5"),
+        Depends("0.5 with `rk4` where no `step` is given; refused with another integrator"),
+        "Step as a part of the largest stable one of `rk4`.").group("step").hint("1 is the stability limit; above it the run fails").example_of("0.5"),
+    Key::new("numerics.accuracy", Kind::Number(closed(1e-8, 0.1, "")),
+        Depends("0.001 with another integrator than `rk4` where no `step` is given; refused with `rk4`"),
+        "Error wanted in the motion of the races, as a part of the largest overlap of a contact; steps follow from it.")
+        .group("step").hint("0.001 is usual; an undamped bearing rings, and below 1e-4 the ringing sets the step").example_of("0.001"),
     Key::new("numerics.start", Kind::Choice(STARTS), Default { value: "equilibrium", reason: "no shock at the start" },
         "Start at the static equilibrium of the loads at t = 0, or in nominal positions; balls and cage roll either way."),
     quantity("numerics.output_interval", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("a thousandth of the run"),
@@ -192,7 +196,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("numerics.energy_limit", Kind::Number(above(0.0, 1.0, "")), Default { value: "0.01", reason: "1 % of the energy turned over" },
         "Energy unaccounted for, as a part of the energy turned over, at which the run is stopped.").example_of("0.01"),
     Key::new("numerics.integrator", Kind::Choice(INTEGRATORS), Default { value: "rk4", reason: "classical fourth-order Runge-Kutta, as the source" },
-        "Time integration."),
+        "Time integration: classical Runge-Kutta; Dormand and Prince's explicit method of fifth order; a linearly implicit one that traction and contacts do not bind. The latter two take an `accuracy`."),
 
     Key::new("output.channels", Kind::Choices(CHANNELS),
         Default { value: "races, cage, orbits, loads, pockets, forces, energy", reason: "all but `slip`, which has six columns a ball" },

@@ -30,7 +30,7 @@ fn options() -> (RunOptions, u64) {
     let steps_per_sample = 2;
     let options = RunOptions {
         start: Start::Equilibrium,
-        integrator: Integrator::Split,
+        integrator: Integrator::Rosenbrock,
         stepping: Stepping::Fixed(INTERVAL / steps_per_sample as f64),
         ..RunOptions::default()
     };

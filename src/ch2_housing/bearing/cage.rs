@@ -22,6 +22,17 @@ pub fn cage_load(force: &CageForce, penetration: f64) -> f64 {
     }
 }
 
+/// Slope of the force of a penetration, N/m.
+pub fn cage_stiffness(force: &CageForce, penetration: f64) -> f64 {
+    if penetration <= 0.0 {
+        return 0.0;
+    }
+    match force {
+        CageForce::Penalty { stiffness } => *stiffness,
+        CageForce::Hertz { stiffness } => 1.5 * stiffness * penetration.sqrt(),
+    }
+}
+
 /// Energy stored at a penetration, J.
 pub fn cage_energy(force: &CageForce, penetration: f64) -> f64 {
     if penetration <= 0.0 {
@@ -81,6 +92,9 @@ pub struct CageContact {
     /// Normal force and friction on the other body; the cage feels the opposite at `point`.
     pub force: Vec3,
     pub point: Vec3,
+    /// Unit vector of the normal force on the other body, and its sliding over the cage (m/s).
+    pub push: Vec3,
+    pub slip: Vec3,
     /// Power of the friction, W, ≤ 0.
     pub power: f64,
 }
@@ -123,6 +137,8 @@ fn contact(
         normal_load: load,
         force: add_scaled(scale(push, load), -per_speed, slip),
         point,
+        push,
+        slip,
         power: -per_speed * speed * speed,
     }
 }

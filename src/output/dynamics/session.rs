@@ -1,10 +1,11 @@
 //! A run from start to end: steps, rows of the time series, and the last state that was sound.
 //!
-//! The step does not change on the way but where loads or given motions have a corner: steps end
-//! there, and the way from one row to the next is divided evenly between its corners. Either way
-//! the next step follows from the state, the last row's time and the problem alone, so that a run
-//! that was interrupted goes on with the same bits. The very last step is shortened to end at the
-//! end.
+//! With a fixed step the step does not change on the way but where loads or given motions have a
+//! corner: steps end there, and the way from one row to the next is divided evenly between its
+//! corners. With error control steps follow from the state, from what the control remembers and
+//! from the time of the next row or corner. Either way the next step follows from what is kept, so
+//! that a run that was interrupted goes on with the same bits. The very last step is shortened to
+//! end at the end.
 
 use crate::output::dynamics::recorder::{Recorder, RecorderError};
 use crate::solver::channels::ChannelGroup;
@@ -61,7 +62,7 @@ pub struct Session {
     pub simulation: Simulation,
     pub recorder: Recorder,
     pub end: f64,
-    /// Steps from one row to the next.
+    /// Steps from one row to the next; zero with error control, where steps end at the rows' times.
     pub steps_per_row: u64,
     pub status: Status,
     /// Before the step that completed or failed, and the rows at that time.
@@ -70,6 +71,8 @@ pub struct Session {
     failed: bool,
     /// Times of corners; see [`DynamicProblem::corners`].
     corners: Vec<f64>,
+    /// Time between rows as asked for, s.
+    output_interval: f64,
 }
 
 impl Session {
@@ -101,6 +104,7 @@ impl Session {
                 simulation.judge_step_now()?;
                 steps.round().max(1.0)
             }
+            Stepping::Accuracy(_) => 0.0,
         };
         let mut session = Session::new(simulation, request, steps_per_row as u64)?;
         session.record()?;
@@ -132,7 +136,10 @@ impl Session {
         request: &RunRequest,
         steps_per_row: u64,
     ) -> Result<Session, SessionError> {
-        let interval = steps_per_row as f64 * simulation.step_size;
+        let interval = match steps_per_row {
+            0 => request.output_interval,
+            steps => steps as f64 * simulation.step_size,
+        };
         // The first row, the last one off the grid, and one for rounding.
         let rows = (request.end / interval) as usize + 3;
         let recorder = Recorder::new(&simulation.system.problem, &request.channels, rows)?;
@@ -141,6 +148,7 @@ impl Session {
             sound_rows: 0,
             failed: false,
             corners: simulation.system.problem.corners(),
+            output_interval: request.output_interval,
             recorder,
             end: request.end,
             steps_per_row,
@@ -151,7 +159,10 @@ impl Session {
 
     /// Time between rows, s.
     pub fn interval(&self) -> f64 {
-        self.steps_per_row as f64 * self.simulation.step_size
+        match self.steps_per_row {
+            0 => self.output_interval,
+            steps => steps as f64 * self.simulation.step_size,
+        }
     }
 
     /// At most `steps` steps.
@@ -187,6 +198,9 @@ impl Session {
     }
 
     fn step(&mut self) -> Result<(), SimulationError> {
+        if self.steps_per_row == 0 {
+            return self.controlled_step();
+        }
         let step = self.simulation.step_size;
         let row_start = self.row_start();
         let row_end = row_start + self.interval();
@@ -213,6 +227,42 @@ impl Session {
         Ok(())
     }
 
+    /// A step whose size follows from the error, on the way to the next row, corner or the end.
+    fn controlled_step(&mut self) -> Result<(), SimulationError> {
+        let simulation = &mut self.simulation;
+        let time = simulation.time;
+        // Rows by count, so that rounding does not add up.
+        let row_time = self.recorder.rows() as f64 * self.output_interval;
+        // Nobody means a step so short.
+        let slack = 1e-9 * self.output_interval;
+        let end = if self.end <= row_time + slack { self.end } else { f64::INFINITY };
+        let row = row_time.min(end);
+        let corner = next_corner(&self.corners, time).filter(|corner| *corner <= row + slack);
+        let stop = corner.map_or(row, |corner| if corner >= row - slack { row } else { corner });
+        let left = stop - time;
+        let step = towards(simulation.step_size, left);
+        let crossed = corner.filter(|_| step == left);
+        if let Some(corner) = crossed {
+            simulation.system.latest = corner.next_down();
+        }
+        let taken = simulation.step_by(step);
+        if !matches!(taken, Ok(taken) if taken == left) {
+            simulation.system.latest = f64::INFINITY;
+            return taken.map(|_| ());
+        }
+        simulation.time = stop;
+        if let Some(corner) = crossed {
+            simulation.cross_corner(corner);
+        }
+        if stop == row {
+            self.record()?;
+        }
+        if stop == end {
+            self.status = Status::Complete;
+        }
+        Ok(())
+    }
+
     /// A step on the way to a row with corners before it: an equal part of what is left to the next
     /// corner or row, whatever the end of the run is.
     fn step_between_corners(&mut self, row_end: f64, slack: f64) -> Result<(), SimulationError> {
@@ -226,7 +276,7 @@ impl Session {
         let completes = self.end - time <= size * (1.0 + 1e-6);
         let stop = if completes { self.end } else { stop };
         if steps > 1.0 && !completes {
-            return simulation.step_by(size);
+            return simulation.step_by(size).map(|_| ());
         }
         let crossed = corner.filter(|corner| *corner <= stop + slack);
         if let Some(corner) = crossed {
@@ -270,7 +320,20 @@ impl Session {
             return rows;
         }
         let last = self.recorder.row(rows - 1)[0] - self.recorder.row(rows - 2)[0];
-        let whole = (last - self.interval()).abs() <= 1e-3 * self.simulation.step_size;
+        let slack = if self.steps_per_row == 0 { last } else { self.simulation.step_size };
+        let whole = (last - self.interval()).abs() <= 1e-3 * slack;
         if whole { rows } else { rows - 1 }
+    }
+}
+
+/// A step no longer than `step` on the way to a row that is `left` away: there if it can be
+/// reached, half of the way if it could be reached in two, so that no tiny step comes last.
+fn towards(step: f64, left: f64) -> f64 {
+    if left <= step * (1.0 + 1e-6) {
+        left
+    } else if left < 2.0 * step {
+        0.5 * left
+    } else {
+        step
     }
 }

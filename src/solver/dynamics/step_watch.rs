@@ -6,7 +6,7 @@
 //! nothing, and the Jacobian where they have become so stiff that the limit may have come down to
 //! the step.
 
-use super::run::{Simulation, SimulationError};
+use super::run::{Integrator, Simulation, SimulationError};
 use super::stability::step_limit;
 use super::system::System;
 use crate::ch2_housing::bearing::cage::CageForce;
@@ -126,6 +126,10 @@ impl Simulation {
     }
 
     fn judge_step(&mut self, now: Stiffness) -> Result<(), SimulationError> {
+        // The limit is that of Runge–Kutta.
+        if self.options.integrator != Integrator::RungeKutta {
+            return Ok(());
+        }
         // The Jacobian's evaluations are not those of the steps: they are counted as judgements.
         let work = self.system.work;
         let limit = step_limit(&mut self.system, self.time, &self.state);

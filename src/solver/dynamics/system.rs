@@ -1,6 +1,6 @@
 //! The equations of motion: state in, rates out.
 
-use super::contacts::{self, ContactLaws, ContactTable, Driver, Work};
+use super::contacts::{self, ContactLaws, ContactTable, Driver, Want, Work};
 use super::model::{DynamicProblem, RaceBody};
 use super::race::{self, RaceLoads, RaceNow};
 use super::state::{
@@ -121,7 +121,7 @@ impl System {
         (inner, outer)
     }
 
-    fn cage_motion(&self, state: &[f64]) -> Option<AxisMotion> {
+    pub(super) fn cage_motion(&self, state: &[f64]) -> Option<AxisMotion> {
         self.problem.cage.as_ref()?;
         let body = self.race_state(state, self.layout.cage());
         Some(AxisMotion {
@@ -134,6 +134,17 @@ impl System {
 
     /// Rates of the whole state vector at time `t`.
     pub fn evaluate(&mut self, t: f64, state: &[f64], rates: &mut [f64]) -> Instant {
+        self.evaluate_with(Want::Forces, t, state, rates)
+    }
+
+    /// As [`System::evaluate`], with the slopes of traction if they are wanted.
+    pub fn evaluate_with(
+        &mut self,
+        want: Want,
+        t: f64,
+        state: &[f64],
+        rates: &mut [f64],
+    ) -> Instant {
         self.work.evaluations += 1;
         let (inner, outer) = self.races(t, state);
         contacts::evaluate(
@@ -143,6 +154,7 @@ impl System {
             state,
             [&inner, &outer],
             &self.damping,
+            want,
             &mut self.table,
             &mut self.work,
         );
@@ -199,7 +211,7 @@ impl System {
         instant
     }
 
-    fn guidance(&self) -> Guidance {
+    pub(super) fn guidance(&self) -> Guidance {
         self.problem.cage.as_ref().map_or(Guidance::Balls, |cage| cage.contacts.guidance)
     }
 
@@ -419,17 +431,20 @@ fn write_body(
 
 impl System {
     /// Lankarani and Nikravesh: a contact that has just begun takes its speed of approach as v₀.
-    /// History changes here and nowhere else, once a step; call after [`System::evaluate`].
-    pub fn commit_damping(&mut self, was_loaded: &mut [bool]) {
+    /// History changes here and nowhere else, once a step; call after [`System::evaluate`]. Returns
+    /// whether a damping factor has changed.
+    pub fn commit_damping(&mut self, was_loaded: &mut [bool]) -> bool {
         let ContactDamping::LankaraniNikravesh { restitution, slowest } = self.problem.damping
         else {
-            return;
+            return false;
         };
+        let mut changed = false;
         for race in 0..2 {
             for ball in 0..self.layout.balls {
                 let pair = race * self.layout.padded + ball;
                 let contact = &self.table.contact[pair];
                 let loaded = contact.overlap > 0.0;
+                let before = self.damping[pair];
                 if loaded && !was_loaded[pair] {
                     let approach = contact.closing_speed.abs().max(slowest);
                     self.damping[pair] = 0.75 * (1.0 - restitution * restitution) / approach;
@@ -437,7 +452,9 @@ impl System {
                     self.damping[pair] = 0.0;
                 }
                 was_loaded[pair] = loaded;
+                changed |= self.damping[pair] != before;
             }
         }
+        changed
     }
 }
