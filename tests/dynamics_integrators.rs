@@ -185,7 +185,8 @@ fn scenes() -> Vec<(&'static str, DynamicProblem, f64, f64)> {
     let mut turning = rolling();
     turning.inner.drives[2] = Drive::Load(Profile::ZERO);
     let force = Profile::Constant(250.0);
-    turning.rotating_load = Some(RotatingLoad { force, speed: Profile::Constant(50.0 * RPM), phase: 0.3 });
+    turning.rotating_load =
+        Some(RotatingLoad { force, speed: Profile::Constant(50.0 * RPM), phase: 0.3 });
     // With clearance balls enter the load zone and leave it.
     let loads = [0.0, 0.0, -300.0, 0.0, 0.0];
     let loose = bearing(table_4_1(5e-6), loads, 6000.0 * RPM);

@@ -67,7 +67,8 @@ fn known(angle: f64) -> [Known; 5] {
 fn revolution(shaft: f64) -> Result<Orbit, CaseError> {
     let mut problem = motion::moving(&BEARING, 0.0, [0.0; 5], shaft)?;
     let force = Profile::Constant(LOAD);
-    problem.rotating_load = Some(RotatingLoad { force, speed: Profile::Constant(LOAD_SPEED), phase: 0.0 });
+    problem.rotating_load =
+        Some(RotatingLoad { force, speed: Profile::Constant(LOAD_SPEED), phase: 0.0 });
     problem.traction = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 0.05 };
     problem.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
     let step = TAU / LOAD_SPEED / (POINTS * EVERY) as f64;

@@ -235,13 +235,19 @@ impl Session {
         let row_time = self.recorder.rows() as f64 * self.output_interval;
         // Nobody means a step so short.
         let slack = 1e-9 * self.output_interval;
-        let end = if self.end <= row_time + slack { self.end } else { f64::INFINITY };
-        let row = row_time.min(end);
-        let corner = next_corner(&self.corners, time).filter(|corner| *corner <= row + slack);
-        let stop = corner.map_or(row, |corner| if corner >= row - slack { row } else { corner });
-        let left = stop - time;
-        let step = towards(simulation.step_size, left);
-        let crossed = corner.filter(|_| step == left);
+        let corner = next_corner(&self.corners, time).filter(|corner| *corner <= row_time + slack);
+        let at_row = |corner: f64| if corner >= row_time - slack { row_time } else { corner };
+        let mut stop = corner.map_or(row_time, at_row);
+        let mut left = stop - time;
+        let mut step = towards(simulation.step_size, left);
+        // The end changes the last step only, so that a run can be extended with the same bits.
+        let completes = self.end - time <= step * (1.0 + 1e-6);
+        if completes {
+            stop = self.end;
+            left = stop - time;
+            step = left;
+        }
+        let crossed = corner.filter(|corner| step == left && *corner <= stop + slack);
         if let Some(corner) = crossed {
             simulation.system.latest = corner.next_down();
         }
@@ -254,10 +260,10 @@ impl Session {
         if let Some(corner) = crossed {
             simulation.cross_corner(corner);
         }
-        if stop == row {
+        if completes || stop == row_time {
             self.record()?;
         }
-        if stop == end {
+        if completes {
             self.status = Status::Complete;
         }
         Ok(())
