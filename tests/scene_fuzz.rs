@@ -346,7 +346,8 @@ fn check_motion(scene: &Scene) {
     assert!((1..=201).contains(&problem.slices), "{scene:?}");
     if let Ok(run) = run_options(scene) {
         assert!(run.end > 0.0 && run.window_start < run.end && run.output_interval > 0.0);
-        let (Stepping::Fixed(step) | Stepping::FractionOfLimit(step)) = run.options.stepping;
+        let (Stepping::Fixed(step) | Stepping::FractionOfLimit(step) | Stepping::Accuracy(step)) =
+            run.options.stepping;
         assert!(step > 0.0, "{scene:?}");
     }
 }

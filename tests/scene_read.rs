@@ -352,8 +352,7 @@ fn every_default_and_every_example_is_a_value_its_key_takes() {
     for key in keys::KEYS {
         let text = format!("{} = {}", key.path, key.example());
         Document::read_str(&text, Format::Toml, "test").unwrap_or_else(|error| panic!("{error}"));
-        let lists =
-            matches!(key.kind, Kind::Vector(..) | Kind::Choices(_) | Kind::Curve(..) | Kind::Texts);
+        let lists = matches!(key.kind, Kind::Vector(..) | Kind::Choices(_) | Kind::Curve(..));
         let mut document = any_document();
         let set = document.set(key.path, key.example().trim_matches('"'));
         assert_eq!(set.is_ok(), !lists, "{}", key.path);

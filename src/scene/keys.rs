@@ -71,8 +71,6 @@ pub enum Kind {
     Either(&'static [Kind]),
     /// A list of pairs: a quantity, strictly increasing, and a plain number.
     Curve(Dimension, Range, Range),
-    /// A list of texts.
-    Texts,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -163,7 +161,6 @@ impl Key {
             Kind::Curve(dimension, range, _) => {
                 format!("[[\"{}\", 0.05]]", or(usual(dimension, range)))
             }
-            Kind::Texts => "[\"...\"]".to_string(),
             Kind::Vector(dimension, range) => {
                 format!("[\"0 {0}\", \"0 {0}\", \"{1}\"]", range.unit, or(usual(dimension, range)))
             }

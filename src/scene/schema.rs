@@ -246,7 +246,6 @@ fn key_schema(key: &'static Key) -> Value {
                 "prefixItems": [reference(dimension), number_schema(numbers)] });
             list(&pair, 1, None)
         }
-        Kind::Texts => json!({ "type": "array", "items": { "type": "string" } }),
         Kind::Quantity(dimension, _) => reference(dimension),
         Kind::Vector(dimension, _) => {
             json!({ "type": "array", "minItems": 3, "maxItems": 3, "items": reference(dimension) })

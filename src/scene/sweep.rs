@@ -170,7 +170,7 @@ fn range(key: &'static Key, text: &str, low: &str, rest: &str) -> Result<SweepVa
 
 fn refuse_unsweepable(key: &Key) -> Result<(), Problem> {
     match key.kind {
-        Kind::Text | Kind::Choices(_) | Kind::Vector(..) | Kind::Curve(..) | Kind::Texts => {
+        Kind::Text | Kind::Choices(_) | Kind::Vector(..) | Kind::Curve(..) => {
             Err(Problem::NotSweepable)
         }
         _ => Ok(()),

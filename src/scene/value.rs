@@ -23,7 +23,6 @@ pub enum Checked {
     Either(usize, f64),
     /// Pairs of [`Kind::Curve`].
     Curve(Vec<[f64; 2]>),
-    Texts(Vec<String>),
 }
 
 /// A problem and where it is: the offset of the element of a list or profile that has it.
@@ -86,13 +85,6 @@ pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
         (Kind::Curve(dimension, range, numbers), Value::List(items)) => {
             curve(key, items, node.offset, dimension, range, numbers)
         }
-        (Kind::Texts, Value::List(items)) => {
-            let text = |item: &Node| match &item.value {
-                Value::Text(text) => Ok(text.clone()),
-                other => Err((item.offset, wrong_kind(key, other))),
-            };
-            Ok(Checked::Texts(items.iter().map(text).collect::<Result<_, _>>()?))
-        }
         (_, other) => Err(here(wrong_kind(key, other))),
     }
 }
@@ -108,7 +100,7 @@ pub fn check_bare(key: &'static Key, text: &str) -> Result<Checked, Problem> {
             _ => Value::Text(text.to_string()),
         },
         Kind::Either(_) if parse_number(text).is_ok() => Value::Number(text.to_string()),
-        Kind::Vector(..) | Kind::Choices(_) | Kind::Curve(..) | Kind::Texts => {
+        Kind::Vector(..) | Kind::Choices(_) | Kind::Curve(..) => {
             return Err(Problem::NotSweepable);
         }
         Kind::Text | Kind::Choice(_) | Kind::Quantity(..) | Kind::Profile(..) | Kind::Either(_) => {
@@ -191,7 +183,6 @@ fn expected(kind: Kind) -> String {
         Kind::Curve(dimension, ..) => {
             format!("a list of pairs, each {} with its unit and a plain number", dimension.name())
         }
-        Kind::Texts => "a list of texts in quotes".to_string(),
     }
 }
 
