@@ -41,11 +41,12 @@ pub struct ExplicitSolid {
     pub limit: SolidStepLimit,
     pub displacement: Vec<Node>,
     /// At `time` for Runge–Kutta; half a step before it for central differences.
-    rate: Vec<Node>,
+    pub(super) rate: Vec<Node>,
     force: Vec<Node>,
-    /// Work of loads and drives, and of damping (≤ 0), since the start, J.
-    pub external_work: f64,
-    pub damping_work: f64,
+    /// Work of loads and drives, and of damping (≤ 0), on each node since the start, J: by node, so
+    /// that no sum depends on how many threads share the nodes.
+    pub(super) external_work: Vec<f64>,
+    pub(super) damping_work: Vec<f64>,
     pub work: SolidWork,
     stages: Option<Box<Stages>>,
 }
@@ -87,31 +88,10 @@ impl ExplicitSolid {
                 at: limit.at,
             });
         }
-        let count = model.mass.len();
-        let stages = (method == ExplicitMethod::RungeKutta).then(|| {
-            let zeros = || vec![[0.0; 4]; count];
-            Box::new(Stages {
-                displacement: zeros(),
-                rate: zeros(),
-                displacement_sum: zeros(),
-                rate_sum: zeros(),
-            })
-        });
-        let mut solid = ExplicitSolid {
-            method,
-            time: 0.0,
-            step_size,
-            steps: 0,
-            limit,
-            displacement,
-            rate: pad(velocity),
-            force: vec![[0.0; 4]; count],
-            external_work: 0.0,
-            damping_work: 0.0,
-            work: SolidWork::default(),
-            stages,
-            model,
-        };
+        let rate = pad(velocity);
+        let mut solid = ExplicitSolid::at_rest(model, method, step_size, limit);
+        solid.displacement = displacement;
+        solid.rate = rate;
         solid.impose();
         if method == ExplicitMethod::CentralDifferences {
             // Back by half a step, so that the first full kick ends half a step ahead.
@@ -124,6 +104,50 @@ impl ExplicitSolid {
             }
         }
         Ok(solid)
+    }
+
+    /// Undeformed and still at t = 0, with a step that is not looked at.
+    pub(super) fn at_rest(
+        model: SolidModel,
+        method: ExplicitMethod,
+        step_size: f64,
+        limit: SolidStepLimit,
+    ) -> ExplicitSolid {
+        let count = model.mass.len();
+        let stages = (method == ExplicitMethod::RungeKutta).then(|| {
+            let zeros = || vec![[0.0; 4]; count];
+            Box::new(Stages {
+                displacement: zeros(),
+                rate: zeros(),
+                displacement_sum: zeros(),
+                rate_sum: zeros(),
+            })
+        });
+        ExplicitSolid {
+            method,
+            time: 0.0,
+            step_size,
+            steps: 0,
+            limit,
+            displacement: vec![[0.0; 4]; count],
+            rate: vec![[0.0; 4]; count],
+            force: vec![[0.0; 4]; count],
+            external_work: vec![0.0; count],
+            damping_work: vec![0.0; count],
+            work: SolidWork::default(),
+            stages,
+            model,
+        }
+    }
+
+    /// Work of loads and drives since the start, J.
+    pub fn external_work(&self) -> f64 {
+        self.external_work.iter().sum()
+    }
+
+    /// Work of damping since the start, J; ≤ 0 but for a body that damping carries along.
+    pub fn damping_work(&self) -> f64 {
+        self.damping_work.iter().sum()
     }
 
     /// Writes prescribed displacements and their rates into the state.
@@ -185,7 +209,7 @@ impl ExplicitSolid {
         let h = self.step_size;
         let half_damping = 0.5 * h * self.model.problem.damping;
         let (keep, per_sum) = (1.0 - half_damping, 1.0 / (1.0 + half_damping));
-        self.external_work += 0.5 * h * self.load_power(self.time);
+        self.add_load_work(0.5 * h);
         let next = self.time + h;
         for Prescribed { node, axis, profile } in &self.model.problem.prescribed {
             let (n, i) = (*node as usize, *axis);
@@ -193,7 +217,7 @@ impl ExplicitSolid {
             let before = self.rate[n][i];
             // What the drive adds to the other forces moves the node's mass.
             let drive = self.model.mass[n] * (rate - before) / h - self.force[n][i];
-            self.external_work += 0.5 * h * drive * (rate + before);
+            self.external_work[n] += 0.5 * h * drive * (rate + before);
             self.rate[n][i] = rate;
         }
         let relative = self.model.problem.damped_motion == DampedMotion::RelativeToRigid;
@@ -221,33 +245,36 @@ impl ExplicitSolid {
                         self.rate[n][i] = rest[i] + (keep * excess + kick) * per_sum;
                     }
                     let mean = 0.5 * (before + self.rate[n][i]);
-                    self.damping_work -= h * problem.damping * mass[n] * mean * (mean - rest[i]);
+                    self.damping_work[n] -= h * problem.damping * mass[n] * mean * (mean - rest[i]);
                     self.displacement[n][i] += h * self.rate[n][i];
                 }
             }
         }
-        self.external_work += 0.5 * h * self.load_power(self.time);
+        self.add_load_work(0.5 * h);
         self.time = next;
     }
 
-    /// Power of loads and gravity at the present rates, with their forces at time `t`, W.
-    fn load_power(&self, t: f64) -> f64 {
-        let mut power = 0.0;
-        for load in &self.model.problem.loads {
-            let factor = load.profile.value(t);
+    /// Books what loads and gravity, with their forces at `time`, do in `seconds` at the present
+    /// rates.
+    fn add_load_work(&mut self, seconds: f64) {
+        let SolidModel { problem, mass, .. } = &self.model;
+        for load in &problem.loads {
+            let factor = seconds * load.profile.value(self.time);
             for (node, force) in &load.forces {
-                let rate = &self.rate[*node as usize];
-                power += factor * (force[0] * rate[0] + force[1] * rate[1] + force[2] * rate[2]);
+                let n = *node as usize;
+                let rate = &self.rate[n];
+                self.external_work[n] +=
+                    factor * (force[0] * rate[0] + force[1] * rate[1] + force[2] * rate[2]);
             }
         }
-        let gravity = self.model.problem.gravity;
+        let gravity = problem.gravity;
         if gravity != [0.0; 3] {
-            for (rate, mass) in self.rate.iter().zip(&self.model.mass) {
-                power +=
-                    mass * (gravity[0] * rate[0] + gravity[1] * rate[1] + gravity[2] * rate[2]);
+            for (n, rate) in self.rate.iter().enumerate() {
+                self.external_work[n] += seconds
+                    * mass[n]
+                    * (gravity[0] * rate[0] + gravity[1] * rate[1] + gravity[2] * rate[2]);
             }
         }
-        power
     }
 
     /// Classical fourth-order Runge–Kutta for displacements and rates (2.7).
@@ -262,7 +289,7 @@ impl ExplicitSolid {
             self.evaluate();
             contacts(self.time, &self.displacement, &mut self.force);
             let share = h * weight / 6.0;
-            self.external_work += share * self.load_power(self.time);
+            self.add_load_work(share);
             let SolidModel { per_mass, problem, mass, .. } = &self.model;
             let rigid = if problem.damping == 0.0 {
                 RigidMotion::default()
@@ -274,7 +301,7 @@ impl ExplicitSolid {
                 for i in 0..3 {
                     let rate = self.rate[n][i];
                     let brake = problem.damping * (rate - rest[i]);
-                    self.damping_work -= share * mass[n] * brake * rate;
+                    self.damping_work[n] -= share * mass[n] * brake * rate;
                     let acceleration = if per_mass[n][i] == 0.0 {
                         0.0
                     } else {
@@ -290,7 +317,7 @@ impl ExplicitSolid {
             for Prescribed { node, axis, profile } in &problem.prescribed {
                 let (n, i) = (*node as usize, *axis);
                 let drive = mass[n] * profile.acceleration(self.time) - self.force[n][i];
-                self.external_work += share * drive * profile.rate(self.time);
+                self.external_work[n] += share * drive * profile.rate(self.time);
             }
             self.time = start + ahead * h;
             self.impose();

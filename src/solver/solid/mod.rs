@@ -6,5 +6,6 @@ pub mod model;
 pub mod modes;
 pub mod step_limit;
 pub mod tangent;
+pub mod team;
 pub mod tet10_blocks;
 pub mod tet4_blocks;
