@@ -25,6 +25,7 @@ golden:
 bench:
 	$(CARGO) bench --locked --bench statics --profile release
 	$(CARGO) bench --locked --bench dynamics --profile release
+	$(CARGO) bench --locked --bench solids --profile release
 
 ## Run time against error, as CSV and SVG in target/pareto.
 pareto:

@@ -222,10 +222,12 @@ impl ExplicitSolid {
         }
         let relative = self.model.problem.damped_motion == DampedMotion::RelativeToRigid;
         if half_damping == 0.0 {
-            for (n, per_mass) in self.model.per_mass.iter().enumerate() {
+            let nodes = self.rate.iter_mut().zip(&mut self.displacement);
+            let pulls = self.force.iter().zip(&self.model.per_mass);
+            for ((rate, displacement), (force, per_mass)) in nodes.zip(pulls) {
                 for i in 0..4 {
-                    self.rate[n][i] += h * self.force[n][i] * per_mass[i];
-                    self.displacement[n][i] += h * self.rate[n][i];
+                    rate[i] += h * force[i] * per_mass[i];
+                    displacement[i] += h * rate[i];
                 }
             }
         } else {
