@@ -83,6 +83,7 @@ pub struct Boundary {
 pub struct ParetoContext {
     points: Vec<Point>,
     boundaries: Vec<Boundary>,
+    series_apart: bool,
     sentences: Vec<String>,
 }
 
@@ -94,6 +95,24 @@ impl ParetoContext {
 
     pub fn push(&mut self, point: Point) {
         self.points.push(point);
+    }
+
+    /// The series answer different questions: none of them beats another.
+    pub fn keep_series_apart(&mut self) {
+        self.series_apart = true;
+    }
+
+    /// For each point, whether no other of the same question beats it.
+    fn front(&self) -> Vec<bool> {
+        if !self.series_apart {
+            return on_front(&self.points);
+        }
+        let alone = |point: &Point| {
+            let rivals = self.points.iter().filter(|other| other.series == point.series);
+            let rivals: Vec<Point> = rivals.cloned().collect();
+            on_front(&rivals).into_iter().zip(&rivals).any(|(front, rival)| front && rival == point)
+        };
+        self.points.iter().map(alone).collect()
     }
 
     /// A vertical line in the figure.
@@ -179,7 +198,7 @@ pub fn run(study: &Study, folder: &Path) -> Result<(), ParetoError> {
     }
     fs::create_dir_all(folder)?;
     let file = |extension: &str| folder.join(format!("{}.{extension}", study.id));
-    write_atomically(&file("csv"), &table(study, &context.points))?;
+    write_atomically(&file("csv"), &table(study, &context))?;
     write_atomically(&file("svg"), &draw(study, &context)?)?;
     let mut text = format!("# {}\n\n![{}]({}.svg)\n", study.title, study.title, study.id);
     for sentence in &context.sentences {
@@ -225,19 +244,28 @@ pub fn cheapest_ways<'a>(
     measure: usize,
     whole: &str,
 ) -> String {
-    let way = |(limit, percent): (f64, &str)| match cheapest(points.clone(), measure, limit) {
-        None => format!("to {percent}: none of these"),
+    let way = |limit: f64| match cheapest(points.clone(), measure, limit) {
+        None => "none of these".to_string(),
         Some(point) => {
             let work = point.evaluations.map_or_else(String::new, |n| format!(", {n} evaluations"));
             let (series, variant) = (&point.series, &point.variant);
             let milliseconds = significant(1e3 * point.seconds);
             let error = point.measure(measure);
-            format!(
-                "to {percent}: {series}, {variant} ({milliseconds} ms{work}, error {error:.1e})"
-            )
+            format!("{series}, {variant} ({milliseconds} ms{work}, error {error:.1e})")
         }
     };
-    format!("cheapest way, as a part of {whole}, {}.", LIMITS.map(way).join("; "))
+    // Limits that the same point serves stand together.
+    let mut ways: Vec<(Vec<&str>, String)> = Vec::new();
+    for (limit, percent) in LIMITS {
+        let way = way(limit);
+        match ways.last_mut().filter(|last| last.1 == way) {
+            Some((percents, _)) => percents.push(percent),
+            None => ways.push((vec![percent], way)),
+        }
+    }
+    let said = |(percents, way): &(Vec<&str>, String)| format!("to {}: {way}", percents.join(", "));
+    let said: Vec<String> = ways.iter().map(said).collect();
+    format!("cheapest way, as a part of {whole}, {}.", said.join("; "))
 }
 
 /// Three digits.
@@ -246,7 +274,8 @@ fn significant(value: f64) -> String {
     format!("{value:.*}", digits.clamp(0, 9) as usize)
 }
 
-fn table(study: &Study, points: &[Point]) -> String {
+fn table(study: &Study, context: &ParetoContext) -> String {
+    let points = &context.points;
     let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
     let mut text =
         format!("series,variant,seconds,repeats,evaluations,{}", quoted(study.error_label));
@@ -254,7 +283,7 @@ fn table(study: &Study, points: &[Point]) -> String {
         text.push_str(&format!(",{}", quoted(label)));
     }
     text.push_str(",stable,on_front\n");
-    for (point, front) in points.iter().zip(on_front(points)) {
+    for (point, front) in points.iter().zip(context.front()) {
         let Point { series, variant, seconds, repeats, error, .. } = point;
         let evaluations = point.evaluations.map_or_else(String::new, |count| count.to_string());
         let (series, variant) = (quoted(series), quoted(variant));
@@ -271,7 +300,7 @@ fn table(study: &Study, points: &[Point]) -> String {
 /// Errors below this are drawn there: a logarithmic axis has no zero.
 const SMALLEST_DRAWN_ERROR: f64 = 1e-17;
 
-/// One curve a series, in the order of its variants, and the front through all of them; beside
+/// One curve a series, in the order of its variants, over the front through all of them; beside
 /// them what is unstable, and the boundaries as upright lines.
 fn draw(study: &Study, context: &ParetoContext) -> Result<String, ParetoError> {
     let points = &context.points;
@@ -282,21 +311,24 @@ fn draw(study: &Study, context: &ParetoContext) -> Result<String, ParetoError> {
     let (lowest, highest) = (lowest.max(SMALLEST_DRAWN_ERROR).min(highest), 3.0 * highest);
     let place =
         |point: &Point| [point.seconds.max(1e-9), point.error.clamp(SMALLEST_DRAWN_ERROR, highest)];
-    let mut curves: Vec<Curve> = Vec::new();
+    let mut front: Vec<[f64; 2]> = points
+        .iter()
+        .zip(context.front())
+        .filter(|(_, front)| *front)
+        .map(|(point, _)| place(point))
+        .collect();
+    front.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    // Below the series, so that they stay visible where they are on it.
+    let mut curves = vec![Curve::new("not beaten in both by any variant", front)];
+    if context.series_apart {
+        curves.clear();
+    }
     for point in points.iter().filter(|point| !point.unstable) {
         match curves.iter_mut().find(|curve| curve.name == point.series) {
             Some(curve) => curve.points.push(place(point)),
             None => curves.push(Curve::new(point.series.clone(), vec![place(point)])),
         }
     }
-    let mut front: Vec<[f64; 2]> = points
-        .iter()
-        .zip(on_front(points))
-        .filter(|(_, front)| *front)
-        .map(|(point, _)| place(point))
-        .collect();
-    front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    curves.push(Curve::new("not beaten in both by any variant", front));
     let unstable: Vec<[f64; 2]> = points.iter().filter(|p| p.unstable).map(place).collect();
     curves.push(Curve {
         separate: true,
@@ -344,6 +376,17 @@ mod tests {
     }
 
     #[test]
+    fn series_kept_apart_do_not_beat_each_other() {
+        let of =
+            |series: &str, seconds, error| Point { series: series.into(), ..point(seconds, error) };
+        let points = vec![of("a", 1.0, 1.0), of("a", 2.0, 2.0), of("b", 3.0, 3.0)];
+        let mut context = ParetoContext { points, ..ParetoContext::default() };
+        assert_eq!(context.front(), [true, false, false]);
+        context.keep_series_apart();
+        assert_eq!(context.front(), [true, false, true]);
+    }
+
+    #[test]
     fn the_cheapest_way_is_stable_accurate_and_fast() {
         let named = |variant: &str, seconds, error, further| Point {
             variant: variant.into(),
@@ -373,6 +416,11 @@ mod tests {
             "cheapest way, as a part of the swing, to 1 %: s, middle (12.3 ms, 40 evaluations, error \
              1.0e-2); to 0.1 %: s, fine (400 ms, 40 evaluations, error 1.0e-3); to 0.01 %: none of \
              these."
+        );
+        assert_eq!(
+            cheapest_ways(&points[3..4], 1, "it"),
+            "cheapest way, as a part of it, to 1 %, 0.1 %, 0.01 %: s, fine (400 ms, 40 evaluations, \
+             error 1.0e-5)."
         );
     }
 

@@ -162,7 +162,7 @@ pub fn errors(found: &History, reference: &History) -> [f64; 4] {
         for (found, value) in found.race.iter().zip(values) {
             let off = (found[i] - value).abs();
             // NaN stays.
-            error = if off <= error { error } else { off };
+            error = if off <= error || error.is_nan() { error } else { off };
         }
     }
     if found.race.len() != reference.race.len() {
@@ -288,6 +288,34 @@ pub fn limit(problem: &DynamicProblem, window: Window) -> Result<f64, CaseError>
     simulation.step_watch.smallest.ok_or_else(|| CaseError::message("no step limit"))
 }
 
+/// How far the points of `series` are off at their best, in each measure: what a model costs in
+/// accuracy at any step.
+pub fn best_errors(points: &[Point], measures: Measures, series: &str) -> String {
+    let best = |(index, measure): (usize, &usize)| {
+        let errors = points
+            .iter()
+            .filter(|point| point.series == series)
+            .map(|point| if index == 0 { point.error } else { point.more_errors[index - 1] });
+        format!("{:.1e} of {}", errors.fold(f64::INFINITY, f64::min), WHOLES[*measure])
+    };
+    measures.iter().enumerate().map(best).collect::<Vec<_>>().join(", ")
+}
+
+/// What the variants of one series do from the first to the last: time and first error.
+pub fn from_first_to_last(points: &[Point]) -> String {
+    match points {
+        [first, .., last] => format!(
+            "From {} to {} the time grows by a factor of {:.1} and the error goes from {:.1e} to {:.1e}.",
+            first.variant,
+            last.variant,
+            last.seconds / first.seconds,
+            first.error,
+            last.error
+        ),
+        _ => String::new(),
+    }
+}
+
 /// Runge–Kutta at fractions of its limit, below and beyond it, with the boundary marked.
 pub fn sweep_rk4(
     context: &mut ParetoContext,
@@ -351,6 +379,23 @@ mod tests {
         assert!(!beyond_limit(Method::rk4(1.0), None));
         let controlled = Method::accurate(Integrator::DormandPrince, 1e-3);
         assert!(!beyond_limit(controlled, Some(1e-9)));
+    }
+
+    #[test]
+    fn models_are_summed_up_from_their_points() {
+        let point = |variant: &str, seconds, error, further| Point {
+            more_errors: vec![further],
+            ..Point::new("fit", variant, seconds, error)
+        };
+        let points = [point("5", 1.0, 0.5, 0.02), point("45", 3.0, 0.25, 0.04)];
+        assert_eq!(
+            best_errors(&points, &[1, 0], "fit"),
+            "2.5e-1 of the race's swing, 2.0e-2 of the race's displacement"
+        );
+        assert_eq!(
+            from_first_to_last(&points),
+            "From 5 to 45 the time grows by a factor of 3.0 and the error goes from 5.0e-1 to 2.5e-1."
+        );
     }
 
     #[test]
