@@ -204,9 +204,21 @@ pub fn run(study: &Study, folder: &Path) -> Result<(), ParetoError> {
     for sentence in &context.sentences {
         text.push_str(&format!("\n- {sentence}"));
     }
-    text.push('\n');
+    text.push_str(&format!("\n\n{}\n", how_timed()));
     write_atomically(&file("md"), &text)?;
     Ok(())
+}
+
+fn how_timed() -> String {
+    let load = fs::read_to_string("/proc/loadavg").ok();
+    let load = load.and_then(|text| text.split(' ').next().map(String::from));
+    format!(
+        "One thread. A time is the least of several repetitions (column `repeats`), yet other processes of the \
+         machine lengthen it, and may change which of two close variants is the cheaper one; load average at the \
+         end: {}. Evaluations do not depend on the machine. A variant beyond the stability boundary is listed with \
+         `stable` false.",
+        load.as_deref().unwrap_or("unknown")
+    )
 }
 
 /// For each point, whether it is stable and no other such point is at least as good in both and
@@ -505,6 +517,7 @@ mod tests {
         }
         assert!(read("quadrature.svg").trim_end().ends_with("</svg>"));
         assert!(read("quadrature.md").contains("a sixteenth"));
+        assert!(read("quadrature.md").contains("load average"));
     }
 
     #[test]

@@ -179,8 +179,8 @@ pub fn errors(found: &History, reference: &History) -> [f64; 4] {
 
 /// Runs that take less than this, s, are repeated until they have taken it, and no more than
 /// [`MOST_REPEATS`] times: the fastest counts.
-const LONG_ENOUGH: f64 = 0.5;
-const MOST_REPEATS: usize = 5;
+const LONG_ENOUGH: f64 = 0.3;
+const MOST_REPEATS: usize = 15;
 
 /// One variant, timed, as a point of a study.
 pub struct Variant<'a> {
