@@ -5,16 +5,18 @@ mod common;
 mod dynamics;
 
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
+use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::kinematics::euler::about;
 use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, Rotation};
+use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
 use bearing_dynamics::solver::dynamics::race::tilts_of;
 use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
 use bearing_dynamics::solver::dynamics::stability::growth;
 use bearing_dynamics::solver::dynamics::start;
 use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, Layout, Ledger, SPIN, VELOCITY};
 use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::statics::solve;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::{Complex, Vector3};
@@ -106,6 +108,58 @@ fn a_start_rolls_without_slip() {
             let slip = inner - Vector3::new(speed, 0.0, 0.0).cross(&point);
             assert!(slip.norm() <= 1e-14 * race_speed, "slips on the inner race: {slip}");
         }
+    }
+}
+
+/// How far the inner race strays from the moving static equilibrium over 1 ms, peak to peak less
+/// what the equilibrium itself moves, m.
+fn ringing(problem: &DynamicProblem, state: Vec<f64>) -> f64 {
+    let Rotation::Speed(Profile::Constant(speed)) = problem.inner.rotation else { panic!() };
+    let g = problem.geometry;
+    let orbit = speed * ratios(g.ball_count, g.ball_radius, g.pitch_radius, g.contact_angle).cage;
+    // Below the onset of the traction, 1.8e-7 s.
+    let (step, steps, rows) = (1.25e-7, 8000, 100);
+    let options = fixed_step(step, Start::Equilibrium);
+    let mut simulation = Simulation::from_state(problem.clone(), options, state, 0.0).unwrap();
+    let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
+    for _ in 0..rows {
+        run(&mut simulation, steps / rows);
+        let ball_phase = problem.ball_phase + orbit * simulation.time;
+        let now = DynamicProblem { ball_phase, ..problem.clone() };
+        let fixed = solve(&start::static_problem(&now, 0.0)).unwrap();
+        for i in 0..2 {
+            let off = inner_state(&simulation).position[1 + i] - fixed.coordinates[1 + i];
+            (low[i], high[i]) = (low[i].min(off), high[i].max(off));
+        }
+    }
+    (high[0] - low[0]).max(high[1] - low[1])
+}
+
+#[test]
+fn a_started_bearing_moves_with_its_equilibrium() {
+    for law in [0, 2] {
+        let loads = [0.0, 0.0, -1500.0, 0.0, 0.0];
+        let problem = DynamicProblem {
+            traction: traction_laws().swap_remove(law),
+            ..bearing(table_4_1(-5e-6), loads, 1000.0 * RPM)
+        };
+        let layout = Layout::new(8, false);
+        let moving = start::at_equilibrium(&problem, &layout).unwrap().0;
+        // The same with the race at rest but for its rotation and balls that only go round.
+        let mut resting = moving.clone();
+        resting[layout.inner() + VELOCITY..layout.inner() + SPIN].fill(0.0);
+        for i in 0..layout.balls {
+            let mut ball = layout.ball_state(&resting, i);
+            let out = Vector3::new(0.0, ball.position[1], ball.position[2]).normalize();
+            let around = Vector3::x().cross(&out);
+            ball.velocity = (around * around.dot(&Vector3::from(ball.velocity))).into();
+            layout.set_ball(&mut resting, i, &ball);
+        }
+        let rings = [moving, resting].map(|state| ringing(&problem, state));
+        println!("law {law}: {:e} m, from rest {:e} m", rings[0], rings[1]);
+        // From rest: the equilibrium's speed over the race's frequency on its contacts.
+        assert!(rings[1] >= 1e-10, "{rings:?}");
+        assert!(rings[0] <= 0.1 * rings[1], "{rings:?}");
     }
 }
 

@@ -7,7 +7,7 @@
 
 use super::model::{Drive, DynamicProblem, RaceBody};
 use super::race;
-use super::start::{inner_speed, static_problem};
+use super::start::{inner_angle, inner_speed, static_problem};
 use crate::kinematics::Pose;
 use crate::kinematics::euler::{about, quaternion};
 use crate::solver::statics::{
@@ -32,19 +32,32 @@ pub struct Equilibrium {
 /// # Errors
 /// When the loads have no equilibrium.
 pub fn at_start(problem: &DynamicProblem) -> Result<Equilibrium, StaticsError> {
+    at(problem, 0.0, None)
+}
+
+/// The same under the loads at `t`, looked for `near` one that is known.
+///
+/// # Errors
+/// When the loads have no equilibrium.
+pub(super) fn at(
+    problem: &DynamicProblem,
+    t: f64,
+    near: Option<&Equilibrium>,
+) -> Result<Equilibrium, StaticsError> {
+    let guess = near.map(|near| &near.solution.coordinates);
     let Some(body) = &problem.outer else {
         let outer = problem.outer_start;
-        return Ok(Equilibrium { solution: inner_race(problem, &outer, None)?, outer });
+        return Ok(Equilibrium { solution: inner_race(problem, t, &outer, guess)?, outer });
     };
-    let mut outer = Five::from(problem.outer_start);
+    let mut outer = Five::from(near.map_or(problem.outer_start, |near| near.outer));
     let mut free = [true; 5];
     for i in 0..5 {
         if let Drive::Motion(profile) = &body.drives[i] {
-            (outer[i], free[i]) = (profile.value(0.0), false);
+            (outer[i], free[i]) = (profile.value(t), false);
         }
     }
-    let search = Search { problem, body, free };
-    let here = search.try_at(outer, None)?;
+    let search = Search { problem, t, body, free };
+    let here = search.try_at(outer, guess)?;
     search.descend(here)
 }
 
@@ -60,6 +73,8 @@ struct Trial {
 
 struct Search<'a> {
     problem: &'a DynamicProblem,
+    /// s.
+    t: f64,
     body: &'a RaceBody,
     free: [bool; 5],
 }
@@ -73,7 +88,7 @@ impl Search<'_> {
 
     fn try_at(&self, at: Five, guess: Option<&Five>) -> Result<Trial, StaticsError> {
         let outer: [f64; 5] = at.into();
-        let solution = inner_race(self.problem, &outer, guess)?;
+        let solution = inner_race(self.problem, self.t, &outer, guess)?;
         let now = race::fixed(&outer);
         let [e2, e3] = now.tilt_directions.map(Vector3::from);
         let on_race =
@@ -94,8 +109,8 @@ impl Search<'_> {
                 continue;
             };
             let spring = self.body.foundation_stiffness[i] * (at[i] - self.problem.outer_start[i]);
-            force[i] += profile.value(0.0) - spring;
-            largest = largest.max(profile.value(0.0).abs() / self.scale()[i]);
+            force[i] += profile.value(self.t) - spring;
+            largest = largest.max(profile.value(self.t).abs() / self.scale()[i]);
         }
         for ball in &solution.balls {
             largest = largest.max(ball.inner.normal_load).max(ball.outer.normal_load);
@@ -203,10 +218,11 @@ impl Search<'_> {
 /// Equilibrium of the inner race and the balls with the outer race at `outer`, in the world.
 fn inner_race(
     problem: &DynamicProblem,
+    t: f64,
     outer: &[f64; 5],
     guess: Option<&Five>,
 ) -> Result<StaticSolution, StaticsError> {
-    let mut statics = static_problem(problem, 0.0);
+    let mut statics = static_problem(problem, t);
     let at = Vector3::new(outer[0], outer[1], outer[2]);
     let start = problem.outer_start;
     // Statics looks for the inner race near its origin: it follows an outer race that gives way.
@@ -234,16 +250,16 @@ fn inner_race(
         tilts = [guess[3], guess[4]];
         moved(guess, -shift)
     });
-    let speed = inner_speed(problem, 0.0);
+    let speed = inner_speed(problem, t);
     let size = problem.unbalance * speed * speed;
     let without = statics.conditions;
+    let turned = about(Vector3::x(), inner_angle(problem, t)) * Vector3::y();
     let mut before = [f64::NAN; 2];
     // An unbalance follows the race's tilts, by at most tilt · F/(k R) of what they were before.
     for _ in 0..20 {
         statics.conditions = without;
         if size != 0.0 {
-            let along =
-                about(Vector3::y(), tilts[0]) * about(Vector3::z(), tilts[1]) * Vector3::y();
+            let along = about(Vector3::y(), tilts[0]) * about(Vector3::z(), tilts[1]) * turned;
             for i in 0..3 {
                 if let Condition::Load(load) = &mut statics.conditions[i] {
                     *load += size * along[i];
