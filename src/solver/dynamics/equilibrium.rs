@@ -8,10 +8,12 @@
 use super::model::{Drive, DynamicProblem, RaceBody};
 use super::race;
 use super::start::{inner_angle, inner_speed, static_problem};
+use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::kinematics::Pose;
 use crate::kinematics::euler::{about, quaternion};
 use crate::solver::statics::{
-    COORDINATE_NAMES, Condition, StaticOptions, StaticSolution, StaticsError, solve, solve_from,
+    COORDINATE_NAMES, Condition, StaticOptions, StaticProblem, StaticSolution, StaticsError, solve,
+    solve_from,
 };
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -27,7 +29,8 @@ pub struct Equilibrium {
 }
 
 /// Equilibrium under the loads at t = 0. Forces that turn stand still in the direction that they
-/// have then: the rotating load at its phase, an unbalance along the inner race's own Y.
+/// have then: the rotating load at its phase, an unbalance along the inner race's own Y. Balls that
+/// roll are held in their orbit by traction, where there is any.
 ///
 /// # Errors
 /// When the loads have no equilibrium.
@@ -254,16 +257,21 @@ fn inner_race(
     let size = problem.unbalance * speed * speed;
     let without = statics.conditions;
     let turned = about(Vector3::x(), inner_angle(problem, t)) * Vector3::y();
-    let mut before = [f64::NAN; 2];
-    // An unbalance follows the race's tilts, by at most tilt · F/(k R) of what they were before.
+    let rolls = speed != 0.0 && problem.traction != TractionLaw::None;
+    let mut held = Held::default();
+    let (mut near, mut before) = (near, [f64::NAN; 2]);
+    // An unbalance follows the race's tilts, by at most tilt · F/(k R) of what they were before;
+    // traction that holds balls in their orbit changes by its own shift over the pitch radius.
     for _ in 0..20 {
         statics.conditions = without;
-        if size != 0.0 {
-            let along = about(Vector3::y(), tilts[0]) * about(Vector3::z(), tilts[1]) * turned;
-            for i in 0..3 {
-                if let Condition::Load(load) = &mut statics.conditions[i] {
-                    *load += size * along[i];
-                }
+        let along = about(Vector3::y(), tilts[0]) * about(Vector3::z(), tilts[1]) * turned;
+        for (i, condition) in statics.conditions.iter_mut().enumerate() {
+            let Condition::Load(load) = condition else { continue };
+            if size != 0.0 && i < 3 {
+                *load += size * along[i];
+            }
+            if rolls {
+                *load += held.on_inner[i];
             }
         }
         let mut solution = match &near {
@@ -273,14 +281,71 @@ fn inner_race(
         };
         let now = [solution.coordinates[3], solution.coordinates[4]];
         let change = (now[0] - tilts[0]).abs().max((now[1] - tilts[1]).abs());
-        if size == 0.0 || change <= 1e-14 || now == before {
+        let mut settled = size == 0.0 || change <= 1e-14 || now == before;
+        if rolls {
+            let next = Held::of(problem, &statics, &solution);
+            let largest =
+                solution.balls.iter().fold(0.0f64, |most, b| most.max(b.inner.normal_load));
+            // Below what statics itself leaves over.
+            settled &= next.differs(&held) <= StaticOptions::default().tolerance * largest;
+            held = next;
+        }
+        if settled {
+            solution.force_on_outer += held.on_outer[0];
+            solution.moment_on_outer += held.on_outer[1];
             solution.coordinates = moved(&solution.coordinates, shift);
             for ball in &mut solution.balls {
                 ball.position += shift;
             }
             return Ok(solution);
         }
+        near = Some(solution.coordinates);
         (before, tilts) = (tilts, now);
     }
     solve(&statics)
+}
+
+/// Traction on the races that holds rolling balls in their orbit.
+///
+/// Normal loads, whose lines do not quite meet, and weight push a ball along its orbit. Statics
+/// holds it there; in a bearing that rolls steadily traction does, half of it at each race so that
+/// the ball's spin stays as it is.
+#[derive(Clone, Copy, Debug, Default)]
+struct Held {
+    /// Conjugate to x, y, z (N) and the tilts (N·m) of the inner race.
+    on_inner: [f64; 5],
+    /// N; N·m about its centre.
+    on_outer: [Vector3<f64>; 2],
+}
+
+impl Held {
+    fn of(problem: &DynamicProblem, statics: &StaticProblem, solution: &StaticSolution) -> Held {
+        let q = &solution.coordinates;
+        let tilted = about(Vector3::y(), q[3]) * about(Vector3::z(), q[4]) * Vector3::z();
+        let centres =
+            [Vector3::new(q[0], q[1], q[2]), statics.outer_pose.position - statics.frame.position];
+        let mut sums = [[Vector3::zeros(); 2]; 2];
+        for ball in &solution.balls {
+            let contacts = [&ball.inner, &ball.outer];
+            if contacts.iter().any(|contact| contact.normal_load <= 0.0) {
+                continue;
+            }
+            let (sin, cos) = libm::sincos(ball.azimuth);
+            let around = statics.outer_pose.orientation * Vector3::new(0.0, -sin, cos);
+            let force = around * (-0.5 * ball.cage_force);
+            for ((sum, contact), centre) in sums.iter_mut().zip(contacts).zip(centres) {
+                let towards_race = contact.force_on_race / contact.force_on_race.norm();
+                let point = ball.position + towards_race * problem.geometry.ball_radius;
+                sum[0] += force;
+                sum[1] += (point - centre).cross(&force);
+            }
+        }
+        let [[force, moment], on_outer] = sums;
+        Held { on_inner: [force.x, force.y, force.z, moment.y, moment.dot(&tilted)], on_outer }
+    }
+
+    /// Largest difference of a force on the inner race, N.
+    fn differs(&self, other: &Held) -> f64 {
+        (0..3).map(|i| (self.on_inner[i] - other.on_inner[i]).abs()).fold(0.0, f64::max)
+    }
 }
