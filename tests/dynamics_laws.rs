@@ -119,7 +119,7 @@ fn ringing(problem: &DynamicProblem, state: Vec<f64>) -> f64 {
     let Rotation::Speed(Profile::Constant(speed)) = problem.inner.rotation else { panic!() };
     let g = problem.geometry;
     let orbit = speed * ratios(g.ball_count, g.ball_radius, g.pitch_radius, g.contact_angle).cage;
-    // Below the limit of the traction, 1.8e-7 s; some 40 rows a period of the race.
+    // Below the limit of the traction, 1.6e-7 s; some 40 rows a period of the race.
     let (step, every, rows) = (1.25e-7, 40, 100);
     let options = fixed_step(step, Start::Equilibrium);
     let mut simulation = Simulation::from_state(problem.clone(), options, state, 0.0).unwrap();
