@@ -8,7 +8,7 @@
 use super::model::{Drive, DynamicProblem, RaceBody};
 use super::race;
 use super::start::{inner_angle, inner_speed, static_problem};
-use crate::ch2_housing::bearing::traction::TractionLaw;
+use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient};
 use crate::kinematics::Pose;
 use crate::kinematics::euler::{about, quaternion};
 use crate::solver::statics::{
@@ -283,7 +283,7 @@ fn inner_race(
         let change = (now[0] - tilts[0]).abs().max((now[1] - tilts[1]).abs());
         let mut settled = size == 0.0 || change <= 1e-14 || now == before;
         if rolls {
-            let next = Held::of(problem, &statics, &solution);
+            let next = Held::of(problem, t, &statics, &solution);
             let largest =
                 solution.balls.iter().fold(0.0f64, |most, b| most.max(b.inner.normal_load));
             // Below what statics itself leaves over.
@@ -305,11 +305,14 @@ fn inner_race(
     solve(&statics)
 }
 
+/// Largest slip of rolling contacts over their rolling speed.
+const CREEP: f64 = 0.01;
+
 /// Traction on the races that holds rolling balls in their orbit.
 ///
 /// Normal loads, whose lines do not quite meet, and weight push a ball along its orbit. Statics
 /// holds it there; in a bearing that rolls steadily traction does, half of it at each race so that
-/// the ball's spin stays as it is.
+/// the ball's spin stays as it is, and as far as a slip of [`CREEP`] gives that much.
 #[derive(Clone, Copy, Debug, Default)]
 struct Held {
     /// Conjugate to x, y, z (N) and the tilts (N·m) of the inner race.
@@ -319,11 +322,18 @@ struct Held {
 }
 
 impl Held {
-    fn of(problem: &DynamicProblem, statics: &StaticProblem, solution: &StaticSolution) -> Held {
+    fn of(
+        problem: &DynamicProblem,
+        t: f64,
+        statics: &StaticProblem,
+        solution: &StaticSolution,
+    ) -> Held {
         let q = &solution.coordinates;
         let tilted = about(Vector3::y(), q[3]) * about(Vector3::z(), q[4]) * Vector3::z();
         let centres =
             [Vector3::new(q[0], q[1], q[2]), statics.outer_pose.position - statics.frame.position];
+        let rolling_speed = 0.5 * (inner_speed(problem, t) * problem.geometry.pitch_radius).abs();
+        let grip = coefficient(&problem.traction, CREEP * rolling_speed, rolling_speed);
         let mut sums = [[Vector3::zeros(); 2]; 2];
         for ball in &solution.balls {
             let contacts = [&ball.inner, &ball.outer];
@@ -332,7 +342,8 @@ impl Held {
             }
             let (sin, cos) = libm::sincos(ball.azimuth);
             let around = statics.outer_pose.orientation * Vector3::new(0.0, -sin, cos);
-            let force = around * (-0.5 * ball.cage_force);
+            let most = grip * ball.inner.normal_load.min(ball.outer.normal_load);
+            let force = around * (-0.5 * ball.cage_force).clamp(-most, most);
             for ((sum, contact), centre) in sums.iter_mut().zip(contacts).zip(centres) {
                 let towards_race = contact.force_on_race / contact.force_on_race.norm();
                 let point = ball.position + towards_race * problem.geometry.ball_radius;
