@@ -9,7 +9,7 @@ use crate::ch2_housing::bearing::frequencies::ratios;
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
-use crate::solver::statics::{BallState, Condition, StaticProblem, StaticSolution, StaticsError};
+use crate::solver::statics::{Condition, StaticProblem, StaticSolution, StaticsError};
 use nalgebra::Vector3;
 
 /// The static problem that the dynamic one settles into at time `t` with the outer race where it
@@ -85,9 +85,8 @@ pub fn at_equilibrium(
     let mut state = vec![0.0; layout.len()];
     let q = &solution.coordinates;
     let positions: Vec<Vec3> = solution.balls.iter().map(|ball| ball.position.into()).collect();
-    let arms: Vec<_> = solution.balls.iter().map(|ball| contact_arms(problem, ball)).collect();
     let inner = [q[0], q[1], q[2], q[3], q[4]];
-    fill(problem, layout, &mut state, [&inner, &outer], &positions, &arms, &rates);
+    fill(problem, layout, &mut state, [&inner, &outer], &positions, &rates);
     Ok((state, solution))
 }
 
@@ -114,8 +113,7 @@ pub fn nominal(problem: &DynamicProblem, layout: &Layout) -> Vec<f64> {
         }
     }
     let rest = Rates::rest(layout.balls);
-    let arms = vec![None; layout.balls];
-    fill(problem, layout, &mut state, [&inner, &problem.outer_start], &positions, &arms, &rest);
+    fill(problem, layout, &mut state, [&inner, &problem.outer_start], &positions, &rest);
     state
 }
 
@@ -125,7 +123,6 @@ fn fill(
     state: &mut [f64],
     [inner, outer]: [&[f64; 5]; 2],
     positions: &[Vec3],
-    arms: &[Option<[Vec3; 2]>],
     rates: &Rates,
 ) {
     let orbital_speed = orbital_speed(problem, 0.0);
@@ -146,20 +143,11 @@ fn fill(
         let mut body = BodyState::at_rest(*position);
         let from_axis = sub(*position, outer.position);
         let outward = add_scaled(from_axis, -dot(from_axis, axis), axis);
-        let out = scale(outward, 1.0 / norm(outward));
-        let tangent = cross(axis, out);
         let with_outer = add(outer.velocity, cross(outer.spin, from_axis));
         let [along, away] = rates.balls[ball];
-        let own = add_scaled(scale(axis, along), away, out);
-        let arms = arms[ball].unwrap_or_else(|| {
-            let (sin, cos) = libm::sincos(problem.geometry.contact_angle);
-            let normal = add_scaled(scale(out, cos), sin, axis);
-            [-1.0, 1.0].map(|side| scale(normal, side * problem.geometry.ball_radius))
-        });
-        let (speed, spin) = rolling(*position, arms, &inner, with_outer, tangent);
-        let meridian = add_scaled(with_outer, -dot(with_outer, tangent), tangent);
-        body.velocity = add_scaled(add(meridian, own), speed, tangent);
-        body.spin = spin;
+        let own = add_scaled(scale(axis, along), away / norm(outward), outward);
+        body.velocity = add(cross(scale(axis, orbital_speed), outward), add(with_outer, own));
+        body.spin = rolling_spin(problem, &inner, &body, axis, outward);
         layout.set_ball(state, ball, &body);
     }
     // Lanes beyond the last ball hold a ball that stands in the groove and is never looked at.
@@ -180,36 +168,27 @@ fn moving(at: &[f64; 5], rates: &[f64; 5], speed: f64) -> BodyState {
     body
 }
 
-/// Speed along its orbit and spin of a ball that rolls without slip on both races over the contact
-/// points at `arms` from its centre, inner and outer; the spin is about the line in the meridian
-/// plane that is parallel to that through both points.
-fn rolling(
-    ball: Vec3,
-    arms: [Vec3; 2],
+/// Spin that rolls without slip on both races: about the meridian direction across the line from
+/// the outer to the inner contact, as fast as the inner race's surface asks for.
+fn rolling_spin(
+    problem: &DynamicProblem,
     inner: &BodyState,
-    outer_velocity: Vec3,
-    tangent: Vec3,
-) -> (f64, Vec3) {
-    let across = sub(arms[1], arms[0]);
-    let roll_axis = cross(tangent, scale(across, 1.0 / norm(across)));
-    let from_inner = sub(add(ball, arms[0]), inner.position);
-    let race_surface = dot(add(inner.velocity, cross(inner.spin, from_inner)), tangent);
-    let still = dot(outer_velocity, tangent);
-    // Centre plus spin × arm is the race's surface at both points.
-    let per_spin = arms.map(|arm| dot(cross(roll_axis, arm), tangent));
-    let spin = (race_surface - still) / (per_spin[0] - per_spin[1]);
-    (still - spin * per_spin[1], scale(roll_axis, spin))
-}
-
-/// From the ball's centre to its contacts with the inner and the outer race, in the middle of the
-/// overlaps; `None` for a ball that one of them does not load.
-fn contact_arms(problem: &DynamicProblem, ball: &BallState) -> Option<[Vec3; 2]> {
-    let contacts = [&ball.inner, &ball.outer];
-    let loaded = contacts.iter().all(|contact| contact.normal_load > 0.0);
-    loaded.then(|| {
-        contacts.map(|contact| {
-            let towards_race = contact.force_on_race.normalize();
-            (towards_race * (problem.geometry.ball_radius - 0.5 * contact.approach)).into()
-        })
-    })
+    ball: &BodyState,
+    axis: Vec3,
+    outward: Vec3,
+) -> Vec3 {
+    let angle = problem.geometry.contact_angle;
+    let out = scale(outward, 1.0 / norm(outward));
+    let (sin, cos) = libm::sincos(angle);
+    let normal = add_scaled(scale(out, cos), sin, axis);
+    let tangent = cross(axis, out);
+    let roll_axis = cross(tangent, normal);
+    let radius = problem.geometry.ball_radius;
+    let inner_point = scale(normal, -radius);
+    let from_inner = sub(add(ball.position, inner_point), inner.position);
+    let race_surface = add(inner.velocity, cross(inner.spin, from_inner));
+    // Centre plus spin × arm: the outer point stands still, the inner one moves with the race.
+    let half_difference = 0.5 * dot(race_surface, tangent);
+    let per_spin = dot(cross(roll_axis, inner_point), tangent);
+    scale(roll_axis, half_difference / per_spin)
 }
