@@ -8,13 +8,15 @@ mod dynamics;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::solver::dynamics::contacts::Driver;
+use bearing_dynamics::solver::dynamics::control::Attempt;
 use bearing_dynamics::solver::dynamics::dormand_prince as dopri;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
 use bearing_dynamics::solver::dynamics::rosenbrock as ros;
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, SimulationError, Stepping,
 };
-use bearing_dynamics::solver::dynamics::state::Ledger;
+use bearing_dynamics::solver::dynamics::start;
+use bearing_dynamics::solver::dynamics::state::{Layout, Ledger, POSITION, VELOCITY};
 use bearing_dynamics::solver::profile::Profile;
 use common::table_4_1;
 use dynamics::{CONSTANT, RPM, bearing, bits, inner_state, ledger, traction_laws};
@@ -54,6 +56,10 @@ fn motion(
     rows: usize,
 ) -> (Vec<[f64; 3]>, Simulation) {
     let mut simulation = started(problem, integrator, stepping);
+    (rows_of(&mut simulation, end, rows), simulation)
+}
+
+fn rows_of(simulation: &mut Simulation, end: f64, rows: usize) -> Vec<[f64; 3]> {
     let mut positions = Vec::new();
     for row in 1..=rows {
         let time = end * row as f64 / rows as f64;
@@ -67,9 +73,9 @@ fn motion(
                 break;
             }
         }
-        positions.push(inner_state(&simulation).position);
+        positions.push(inner_state(simulation).position);
     }
-    (positions, simulation)
+    positions
 }
 
 fn largest_difference(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
@@ -123,14 +129,36 @@ fn coefficients_fulfil_the_order_conditions_with_any_jacobian() {
     }
 }
 
-/// Error at the end of 0.4 ms for each step, over that of half the step, as an order.
+/// A simulation from the equilibrium start after `push` has changed its state.
+fn pushed(
+    problem: &DynamicProblem,
+    integrator: Integrator,
+    step: f64,
+    push: impl Fn(&Layout, &mut [f64]),
+) -> Simulation {
+    let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
+    let mut state = start::at_equilibrium(problem, &layout).unwrap().0;
+    push(&layout, &mut state);
+    let stepping = Stepping::Fixed(step);
+    let options =
+        RunOptions { integrator, stepping, energy_limit: f64::INFINITY, ..RunOptions::default() };
+    Simulation::from_state(problem.clone(), options, state, 0.0).unwrap()
+}
+
+/// Largest error over 0.4 ms for each step, over that of half the step, as an order; the race, which
+/// hardly swings after a start, and the balls are pushed to swing by some 50 nm.
 fn orders(problem: &DynamicProblem, integrator: Integrator, steps: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let end = 4e-4;
-    let reference = motion(problem, Integrator::DormandPrince, Stepping::Fixed(2.5e-7), end, 4).0;
-    let error = |&step: &f64| {
-        let found = motion(problem, integrator, Stepping::Fixed(step), end, 4).0;
-        largest_difference(&found, &reference)
+    let rows = |integrator, step| {
+        let mut simulation = pushed(problem, integrator, step, |layout, state| {
+            state[layout.inner() + VELOCITY + 2] += 3e-3;
+            for ball in 0..layout.balls {
+                state[layout.ball(VELOCITY + 2) + ball] -= 3e-3;
+            }
+        });
+        rows_of(&mut simulation, 4e-4, 25)
     };
+    let reference = rows(Integrator::DormandPrince, 2.5e-7);
+    let error = |&step: &f64| largest_difference(&rows(integrator, step), &reference);
     let errors: Vec<f64> = steps.iter().map(error).collect();
     let orders = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
     (errors, orders)
@@ -141,13 +169,13 @@ fn orders_on_smooth_motion_are_three_and_five() {
     let problem = gentle();
     let (errors, found) = orders(&problem, Integrator::Rosenbrock, &[2e-6, 1e-6, 5e-7]);
     assert!(found.iter().all(|order| (order - 3.0).abs() <= 0.25), "{errors:?} {found:?}");
-    let (errors, found) = orders(&problem, Integrator::DormandPrince, &[8e-6, 4e-6, 2e-6]);
+    let (errors, found) = orders(&problem, Integrator::DormandPrince, &[4e-6, 2e-6, 1e-6]);
     assert!(found.iter().all(|order| (order - 5.0).abs() <= 0.4), "{errors:?} {found:?}");
 }
 
 #[test]
 fn tiny_steps_of_both_methods_agree_with_runge_kutta() {
-    // With default traction, whose limit for explicit steps is 1.8e-7 s.
+    // With default traction, whose limit for explicit steps is 1.6e-7 s.
     let problem = rolling();
     let reference = motion(&problem, Integrator::RungeKutta, Stepping::Fixed(5e-8), 2e-4, 4).0;
     for (integrator, step) in [(Integrator::Rosenbrock, 5e-8), (Integrator::DormandPrince, 5e-8)] {
@@ -177,11 +205,11 @@ fn steps_a_hundred_times_the_explicit_limit_are_stable() {
     }
 }
 
-/// Scenes of different kinds: name, problem, start, end.
-///
-/// The last number is how many times the accuracy the error may be: one, and six after a blow on
-/// the race, where 1e-2, 1e-3 and 1e-4 asked for came out as 0.5, 5.8 and 2.3 times that.
-fn scenes() -> Vec<(&'static str, DynamicProblem, f64, f64)> {
+/// Rows of the history of the blow up to 1.2 ms: later the race, thrown back, loses contacts.
+const BEFORE_LOSS: usize = 20;
+
+/// Scenes of different kinds: name, problem, end.
+fn scenes() -> Vec<(&'static str, DynamicProblem, f64)> {
     let mut turning = rolling();
     turning.inner.drives[2] = Drive::Load(Profile::ZERO);
     let force = Profile::Constant(250.0);
@@ -195,42 +223,61 @@ fn scenes() -> Vec<(&'static str, DynamicProblem, f64, f64)> {
     impact.inner.drives[2] =
         Drive::Load(Profile::HalfSine { base: -500.0, peak: -3000.0, start: 5e-4, duration: 1e-3 });
     vec![
-        ("rolling", rolling(), 5e-3, 1.0),
-        ("rotating load", turning, 5e-3, 1.0),
-        ("parting", parting, 5e-3, 1.0),
-        ("impact", impact, 3e-3, 6.0),
+        ("rolling", rolling(), 5e-3),
+        ("rotating load", turning, 5e-3),
+        ("parting", parting, 5e-3),
+        ("impact", impact, 3e-3),
     ]
+}
+
+/// How many times larger than at the start a perturbation of the race's position by 1e-12 m gets.
+fn growth(problem: &DynamicProblem, end: f64, reference: &[[f64; 3]]) -> f64 {
+    let mut simulation = pushed(problem, Integrator::Rosenbrock, 2.5e-7, |layout, state| {
+        state[layout.inner() + POSITION + 2] += 1e-12;
+    });
+    largest_difference(&rows_of(&mut simulation, end, 50), reference) / 1e-12
 }
 
 #[test]
 fn the_accuracy_that_is_asked_for_is_delivered() {
     let mut lines = Vec::new();
     let mut kept = true;
-    for (name, problem, end, allowed) in scenes() {
+    for (name, problem, end) in scenes() {
         let fine = Stepping::Fixed(2.5e-7);
         let reference = motion(&problem, Integrator::Rosenbrock, fine, end, 50).0;
+        // After a blow contacts are lost and made again at times that depend on all before: what
+        // errors there are grow as any perturbation does, and no choice of steps prevents that.
+        let thrown = name == "impact";
+        let whole = if thrown { BEFORE_LOSS } else { 50 };
+        let growth = growth(&problem, end, &reference);
+        lines.push(format!("{name}: perturbations grow {growth:.1} times"));
+        kept &= if thrown { growth >= 100.0 } else { growth <= 10.0 };
         let mut steps_before = 0;
         for accuracy in [1e-2, 1e-3, 1e-4] {
             let stepping = Stepping::Accuracy(accuracy);
             let (found, simulation) = motion(&problem, Integrator::Rosenbrock, stepping, end, 50);
             let scale = simulation.control.as_ref().unwrap().memory.displacement;
-            let error = largest_difference(&found, &reference) / scale;
-            kept &= error <= allowed * accuracy && simulation.steps > steps_before;
+            let error = largest_difference(&found[..whole], &reference[..whole]) / scale;
+            let later = largest_difference(&found, &reference) / scale;
+            kept &= error <= accuracy && simulation.steps > steps_before;
+            // A tenth of the accuracy when contact is lost, grown.
+            kept &= !thrown || later <= 0.1 * growth * accuracy;
             steps_before = simulation.steps;
             let work = simulation.system.work;
             assert_eq!(work.factorisations, simulation.steps + work.rejected_steps);
             lines.push(format!(
-                "{name} {accuracy}: {error:.1e}, {steps_before} steps, {} rejected",
+                "{name} {accuracy}: {error:.1e}, whole history {later:.1e}, {steps_before} steps, {} rejected",
                 work.rejected_steps
             ));
         }
     }
+    println!("{lines:#?}");
     assert!(kept, "{lines:#?}");
 }
 
 #[test]
 fn drivers_give_the_same_bits_and_rejected_steps_leave_no_trace() {
-    let (_, problem, end, _) = scenes().swap_remove(3);
+    let (_, problem, end) = scenes().swap_remove(3);
     let run = |driver| {
         let stepping = Stepping::Accuracy(1e-3);
         let options = RunOptions {
@@ -321,5 +368,21 @@ fn dormand_prince_delivers_its_accuracy_without_stiff_traction() {
         let attempts = simulation.steps + work.rejected_steps;
         assert_eq!(work.evaluations, 6 * attempts + 2);
         assert_eq!(work.factorisations, 0);
+    }
+}
+
+/// One value that is not a number anywhere spoils the norm, whatever stands behind it.
+#[test]
+fn an_error_that_is_not_a_number_is_never_good_enough() {
+    let simulation = started(&rolling(), Integrator::Rosenbrock, Stepping::Accuracy(1e-3));
+    let control = simulation.control.as_ref().unwrap();
+    let length = simulation.state.len();
+    let layout = simulation.system.layout;
+    for at in [layout.ball(POSITION), layout.ball(VELOCITY) + 1, layout.inner() + POSITION] {
+        let mut attempt = Attempt::new(length);
+        attempt.error.fill(1e-15);
+        assert!(control.norm(&attempt).is_finite());
+        attempt.error[at] = f64::NAN;
+        assert!(control.norm(&attempt).is_nan(), "entry {at}");
     }
 }

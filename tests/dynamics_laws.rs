@@ -5,19 +5,22 @@ mod common;
 mod dynamics;
 
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
+use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
+use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::kinematics::euler::about;
 use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, Rotation};
+use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
 use bearing_dynamics::solver::dynamics::race::tilts_of;
 use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
 use bearing_dynamics::solver::dynamics::stability::growth;
 use bearing_dynamics::solver::dynamics::start;
 use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, Layout, Ledger, SPIN, VELOCITY};
 use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::statics::solve;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
-use nalgebra::{Complex, Vector3};
+use nalgebra::{Complex, Matrix3, Vector3};
 
 #[test]
 fn hunt_and_crossley_lose_alpha_times_the_speed() {
@@ -106,6 +109,72 @@ fn a_start_rolls_without_slip() {
             let slip = inner - Vector3::new(speed, 0.0, 0.0).cross(&point);
             assert!(slip.norm() <= 1e-14 * race_speed, "slips on the inner race: {slip}");
         }
+    }
+}
+
+/// Ringing of the inner race over 0.5 ms, m: how far, peak to peak, it strays from the equilibrium
+/// that moves with the balls, where a steady part and a drift (without traction nothing holds the
+/// balls in their orbit) do not count.
+fn ringing(problem: &DynamicProblem, state: Vec<f64>) -> f64 {
+    let Rotation::Speed(Profile::Constant(speed)) = problem.inner.rotation else { panic!() };
+    let g = problem.geometry;
+    let orbit = speed * ratios(g.ball_count, g.ball_radius, g.pitch_radius, g.contact_angle).cage;
+    // Below the limit of the traction, 1.6e-7 s; some 40 rows a period of the race.
+    let (step, every, rows) = (1.25e-7, 40, 100);
+    let options = fixed_step(step, Start::Equilibrium);
+    let mut simulation = Simulation::from_state(problem.clone(), options, state, 0.0).unwrap();
+    let mut off = Vec::new();
+    for _ in 0..rows {
+        run(&mut simulation, every);
+        let ball_phase = problem.ball_phase + orbit * simulation.time;
+        let now = DynamicProblem { ball_phase, ..problem.clone() };
+        let fixed = solve(&start::static_problem(&now, 0.0)).unwrap();
+        let position = inner_state(&simulation).position;
+        off.push([1, 2].map(|i| position[i] - fixed.coordinates[i]));
+    }
+    // Less the parabola through the rows by least squares.
+    let basis = |row: usize| {
+        let x = 2.0 * row as f64 / (rows - 1) as f64 - 1.0;
+        Vector3::new(1.0, x, x * x)
+    };
+    let normal: Matrix3<f64> = (0..rows).map(|row| basis(row) * basis(row).transpose()).sum();
+    let swing = |i: usize| {
+        let right: Vector3<f64> = (0..rows).map(|row| basis(row) * off[row][i]).sum();
+        let parabola = normal.lu().solve(&right).unwrap();
+        let rest = (0..rows).map(|row| off[row][i] - parabola.dot(&basis(row)));
+        let (low, high) = rest.fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)));
+        high - low
+    };
+    swing(0).max(swing(1))
+}
+
+#[test]
+fn a_started_bearing_moves_with_its_equilibrium() {
+    // With traction balls roll on the pitch circle, not on contacts half an overlap off it: what
+    // slips there pulls them into place within a millisecond.
+    for (law, most) in [(0, 0.1), (2, 0.2)] {
+        let loads = [0.0, 0.0, -1500.0, 0.0, 0.0];
+        let problem = DynamicProblem {
+            traction: traction_laws().swap_remove(law),
+            ..bearing(table_4_1(-5e-6), loads, 1000.0 * RPM)
+        };
+        let layout = Layout::new(8, false);
+        let moving = start::at_equilibrium(&problem, &layout).unwrap().0;
+        // In statics without traction, the race at rest but for its rotation, balls on the pitch
+        // circle's orbit and spin.
+        let smooth = DynamicProblem { traction: TractionLaw::None, ..problem.clone() };
+        let mut resting = start::at_equilibrium(&smooth, &layout).unwrap().0;
+        resting[layout.inner() + VELOCITY..layout.inner() + SPIN].fill(0.0);
+        let nominal = start::nominal(&problem, &layout);
+        for i in 0..layout.balls {
+            let ball = layout.ball_state(&resting, i);
+            let rolling = layout.ball_state(&nominal, i);
+            layout.set_ball(&mut resting, i, &BodyState { position: ball.position, ..rolling });
+        }
+        let rings = [moving, resting].map(|state| ringing(&problem, state));
+        println!("law {law}: {:e} m, from rest {:e} m", rings[0], rings[1]);
+        assert!(rings[1] >= 1e-10, "{rings:?}");
+        assert!(rings[0] <= most * rings[1], "{rings:?}");
     }
 }
 

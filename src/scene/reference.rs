@@ -197,7 +197,8 @@ fixed race are refused. The foundation is at rest where the race starts.
 **Start.** `equilibrium` is that of both races under the loads at t = 0: a moving outer race rests on its springs, and one that
 nothing holds is refused. Forces that turn stand still for it in their direction at t = 0, the rotating load at its phase, the
 unbalance along the inner race's own Y, with the speed of that time. Their mean over a turn would be zero and would start every run
-with a blow.
+with a blow. Where the inner race's speed is given and not zero at t = 0, everything also starts with the velocity at which its
+equilibrium moves on, balls roll without slip on the pitch circle, and traction, where there is any, holds them in their orbit.
 
 **Traction.** `constant`: `coefficient`, `regularisation_speed`. `slide-to-roll`: `b`, `c` (plain numbers), `d`, `entrainment_floor`.
 `slip-speed`: `b`, `c` (s/m), `d`. `table`: `points`. The two curves are (b x - d) exp(-c x) + d, zero at rest; no curve may exceed 2.

@@ -17,6 +17,10 @@ pub enum Tier {
     Full,
 }
 
+/// What a case computes. It is given a place to record in and nothing else, so that no published
+/// number is in its reach.
+pub type Computation = fn(&mut CaseContext) -> Result<(), CaseError>;
+
 /// One benchmark. The folder `verification/<id>` holds its README, its published numbers and
 /// the file that defines this constant.
 #[derive(Clone, Copy, Debug)]
@@ -29,8 +33,8 @@ pub struct Case {
     pub tier: Tier,
     /// Text of the case's `published.toml`.
     pub published: &'static str,
-    /// Computes, and states checks. It has no way to read `published`.
-    pub run: fn(&mut CaseContext) -> Result<(), CaseError>,
+    /// Computes, and states checks.
+    pub run: Computation,
 }
 
 /// Why a case could not be computed. Any error converts into it, so that `?` works on whatever

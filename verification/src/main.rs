@@ -118,7 +118,7 @@ fn verify(arguments: &Arguments) -> Result<bool, String> {
     save(&report)?;
     for (index, case) in selected.iter().enumerate() {
         eprint!("case {}/{} {} … ", index + 1, selected.len(), case.id);
-        let run = runner::compute(case);
+        let run = runner::compute(case.run);
         let outcome = runner::assess(case, &run, &golden_folder);
         eprintln!(
             "{} ({} checks, {:.2} s)",
@@ -154,7 +154,7 @@ fn accept(case: &str, reason: &str, folder: &Path) -> Result<bool, String> {
     let ids = if all { Vec::new() } else { vec![case.to_string()] };
     let mut accepted = true;
     for case in select(&ids, Tier::Full)? {
-        let run = runner::compute(&case);
+        let run = runner::compute(case.run);
         let outcome = runner::assess(&case, &run, folder);
         if outcome.status == CaseStatus::Failed {
             eprintln!("{}: not accepted, the case fails:", case.id);

@@ -2,7 +2,9 @@
 //!
 //! A study times variants of the same computation (other tolerances, models, meshes) and states
 //! each one's error against a reference of its own. [`run`] writes a table, a figure with the
-//! front of variants that no other variant beats in both, and the study's sentences.
+//! front of variants that no other variant beats in both, and the study's sentences. A variant
+//! beyond a stability boundary is reported as such: it is drawn, and is never on the front or in
+//! a sentence.
 
 use std::fs;
 use std::path::Path;
@@ -22,6 +24,8 @@ pub struct Study {
     pub title: &'static str,
     /// What the error is, with its unit, as an axis label.
     pub error_label: &'static str,
+    /// What further errors are, as heads of columns.
+    pub more_errors: &'static [&'static str],
     pub run: fn(&mut ParetoContext) -> Result<(), CaseError>,
 }
 
@@ -32,25 +36,88 @@ pub struct Point {
     pub series: String,
     pub variant: String,
     pub seconds: f64,
+    /// Times it was run; the fastest counts.
+    pub repeats: usize,
+    /// Infinite where an unstable run did not come to its end.
     pub error: f64,
+    /// As [`Study::more_errors`] names them.
+    pub more_errors: Vec<f64>,
+    /// Work that does not depend on the machine, where it was counted.
+    pub evaluations: Option<u64>,
+    pub unstable: bool,
+}
+
+impl Point {
+    /// A stable variant without counted work.
+    pub fn new(series: &str, variant: &str, seconds: f64, error: f64) -> Point {
+        Point {
+            series: series.to_string(),
+            variant: variant.to_string(),
+            seconds,
+            repeats: 1,
+            error,
+            more_errors: Vec::new(),
+            evaluations: None,
+            unstable: false,
+        }
+    }
+
+    /// The error, and after it the further ones.
+    fn measure(&self, index: usize) -> f64 {
+        match index.checked_sub(1) {
+            None => self.error,
+            Some(further) => self.more_errors.get(further).copied().unwrap_or(f64::NAN),
+        }
+    }
+}
+
+/// A cost below which variants of a series are unstable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Boundary {
+    pub name: String,
+    pub seconds: f64,
 }
 
 /// What a study records.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParetoContext {
     points: Vec<Point>,
+    boundaries: Vec<Boundary>,
+    series_apart: bool,
     sentences: Vec<String>,
 }
 
 impl ParetoContext {
     /// Record a variant timed by the study itself. Seconds are those of one evaluation.
     pub fn point(&mut self, series: &str, variant: &str, seconds: f64, error: f64) {
-        self.points.push(Point {
-            series: series.to_string(),
-            variant: variant.to_string(),
-            seconds,
-            error,
-        });
+        self.points.push(Point::new(series, variant, seconds, error));
+    }
+
+    pub fn push(&mut self, point: Point) {
+        self.points.push(point);
+    }
+
+    /// The series answer different questions: none of them beats another.
+    pub fn keep_series_apart(&mut self) {
+        self.series_apart = true;
+    }
+
+    /// For each point, whether no other of the same question beats it.
+    fn front(&self) -> Vec<bool> {
+        if !self.series_apart {
+            return on_front(&self.points);
+        }
+        let alone = |point: &Point| {
+            let rivals = self.points.iter().filter(|other| other.series == point.series);
+            let rivals: Vec<Point> = rivals.cloned().collect();
+            on_front(&rivals).into_iter().zip(&rivals).any(|(front, rival)| front && rival == point)
+        };
+        self.points.iter().map(alone).collect()
+    }
+
+    /// A vertical line in the figure.
+    pub fn boundary(&mut self, name: &str, seconds: f64) {
+        self.boundaries.push(Boundary { name: name.to_string(), seconds });
     }
 
     /// Time `compute` and record it with the error that `error` reads from its result. It is run
@@ -76,7 +143,7 @@ impl ParetoContext {
             }
         }
         let error = error(&result);
-        self.point(series, variant, seconds, error);
+        self.push(Point { repeats: repeats.max(1), ..Point::new(series, variant, seconds, error) });
         result
     }
 
@@ -96,8 +163,11 @@ pub enum ParetoError {
     Study(String),
     #[error("a study needs at least one point")]
     NoPoints,
-    #[error("{series} {variant}: {seconds} s, error {error}; both must be finite, not negative")]
-    Unusable { series: String, variant: String, seconds: f64, error: f64 },
+    #[error(
+        "{series} {variant}: {seconds} s, error {error}, further errors {more:?}; all must be there, \
+         finite and not negative"
+    )]
+    Unusable { series: String, variant: String, seconds: f64, error: f64, more: Vec<f64> },
     #[error("drawing failed: {0}")]
     Drawing(String),
     #[error(transparent)]
@@ -111,49 +181,130 @@ pub fn run(study: &Study, folder: &Path) -> Result<(), ParetoError> {
     if context.points.is_empty() {
         return Err(ParetoError::NoPoints);
     }
-    for Point { series, variant, seconds, error } in &context.points {
-        let sound = |value: f64| value >= 0.0 && value.is_finite();
-        if !(sound(*seconds) && sound(*error)) {
+    let sound = |value: f64| value >= 0.0 && value.is_finite();
+    for point in &context.points {
+        let ended = point.unstable && point.error == f64::INFINITY;
+        let errors = ended || sound(point.error) && point.more_errors.iter().all(|e| sound(*e));
+        let complete = ended || point.more_errors.len() == study.more_errors.len();
+        if !(sound(point.seconds) && errors && complete) {
             return Err(ParetoError::Unusable {
-                series: series.clone(),
-                variant: variant.clone(),
-                seconds: *seconds,
-                error: *error,
+                series: point.series.clone(),
+                variant: point.variant.clone(),
+                seconds: point.seconds,
+                error: point.error,
+                more: point.more_errors.clone(),
             });
         }
     }
     fs::create_dir_all(folder)?;
     let file = |extension: &str| folder.join(format!("{}.{extension}", study.id));
-    write_atomically(&file("csv"), &table(study, &context.points))?;
-    write_atomically(&file("svg"), &draw(study, &context.points)?)?;
+    write_atomically(&file("csv"), &table(study, &context))?;
+    write_atomically(&file("svg"), &draw(study, &context)?)?;
     let mut text = format!("# {}\n\n![{}]({}.svg)\n", study.title, study.title, study.id);
     for sentence in &context.sentences {
         text.push_str(&format!("\n- {sentence}"));
     }
-    text.push('\n');
+    text.push_str(&format!("\n\n{}\n", how_timed()));
     write_atomically(&file("md"), &text)?;
     Ok(())
 }
 
-/// For each point, whether no other point is at least as good in both and better in one.
-pub fn on_front(points: &[Point]) -> Vec<bool> {
-    let beats = |a: &Point, b: &Point| {
-        a.seconds <= b.seconds && a.error <= b.error && (a.seconds < b.seconds || a.error < b.error)
-    };
-    points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect()
+fn how_timed() -> String {
+    let load = fs::read_to_string("/proc/loadavg").ok();
+    let load = load.and_then(|text| text.split(' ').next().map(String::from));
+    format!(
+        "One thread. A time is the least of several repetitions (column `repeats`), yet other processes of the \
+         machine lengthen it, and may change which of two close variants is the cheaper one; load average at the \
+         end: {}. Evaluations do not depend on the machine. A variant beyond the stability boundary is listed with \
+         `stable` false.",
+        load.as_deref().unwrap_or("unknown")
+    )
 }
 
-fn table(study: &Study, points: &[Point]) -> String {
+/// For each point, whether it is stable and no other such point is at least as good in both and
+/// better in one.
+pub fn on_front(points: &[Point]) -> Vec<bool> {
+    let beats = |a: &Point, b: &Point| {
+        !a.unstable
+            && a.seconds <= b.seconds
+            && a.error <= b.error
+            && (a.seconds < b.seconds || a.error < b.error)
+    };
+    let unbeaten = |point: &Point| !points.iter().any(|other| beats(other, point));
+    points.iter().map(|point| !point.unstable && unbeaten(point)).collect()
+}
+
+/// The fastest stable point whose error of the given kind (0: the study's own, then the further
+/// ones) is not above `limit`.
+pub fn cheapest<'a>(
+    points: impl IntoIterator<Item = &'a Point>,
+    measure: usize,
+    limit: f64,
+) -> Option<&'a Point> {
+    points
+        .into_iter()
+        .filter(|point| !point.unstable && point.measure(measure) <= limit)
+        .min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+}
+
+/// Errors that sentences name a way to.
+const LIMITS: [(f64, &str); 3] = [(1e-2, "1 %"), (1e-3, "0.1 %"), (1e-4, "0.01 %")];
+
+/// The cheapest ways to 1 %, 0.1 % and 0.01 % of `whole`; the sentence goes on after "The".
+pub fn cheapest_ways<'a>(
+    points: impl IntoIterator<Item = &'a Point> + Clone,
+    measure: usize,
+    whole: &str,
+) -> String {
+    let way = |limit: f64| match cheapest(points.clone(), measure, limit) {
+        None => "none of these".to_string(),
+        Some(point) => {
+            let work = point.evaluations.map_or_else(String::new, |n| format!(", {n} evaluations"));
+            let (series, variant) = (&point.series, &point.variant);
+            let milliseconds = significant(1e3 * point.seconds);
+            let error = point.measure(measure);
+            format!("{series}, {variant} ({milliseconds} ms{work}, error {error:.1e})")
+        }
+    };
+    // Limits that the same point serves stand together.
+    let mut ways: Vec<(Vec<&str>, String)> = Vec::new();
+    for (limit, percent) in LIMITS {
+        let way = way(limit);
+        match ways.last_mut().filter(|last| last.1 == way) {
+            Some((percents, _)) => percents.push(percent),
+            None => ways.push((vec![percent], way)),
+        }
+    }
+    let said = |(percents, way): &(Vec<&str>, String)| format!("to {}: {way}", percents.join(", "));
+    let said: Vec<String> = ways.iter().map(said).collect();
+    format!("cheapest way, as a part of {whole}, {}.", said.join("; "))
+}
+
+/// Three digits.
+fn significant(value: f64) -> String {
+    let digits = if value > 0.0 { 2 - value.log10().floor() as i32 } else { 0 };
+    format!("{value:.*}", digits.clamp(0, 9) as usize)
+}
+
+fn table(study: &Study, context: &ParetoContext) -> String {
+    let points = &context.points;
     let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
-    let mut text = format!("series,variant,seconds,{},on_front\n", quoted(study.error_label));
-    for (point, front) in points.iter().zip(on_front(points)) {
-        text.push_str(&format!(
-            "{},{},{:e},{:e},{front}\n",
-            quoted(&point.series),
-            quoted(&point.variant),
-            point.seconds,
-            point.error
-        ));
+    let mut text =
+        format!("series,variant,seconds,repeats,evaluations,{}", quoted(study.error_label));
+    for label in study.more_errors {
+        text.push_str(&format!(",{}", quoted(label)));
+    }
+    text.push_str(",stable,on_front\n");
+    for (point, front) in points.iter().zip(context.front()) {
+        let Point { series, variant, seconds, repeats, error, .. } = point;
+        let evaluations = point.evaluations.map_or_else(String::new, |count| count.to_string());
+        let (series, variant) = (quoted(series), quoted(variant));
+        text.push_str(&format!("{series},{variant},{seconds:e},{repeats},{evaluations},{error:e}"));
+        for index in 0..study.more_errors.len() {
+            let error = point.more_errors.get(index).copied().unwrap_or(f64::INFINITY);
+            text.push_str(&format!(",{error:e}"));
+        }
+        text.push_str(&format!(",{},{front}\n", !point.unstable));
     }
     text
 }
@@ -161,27 +312,48 @@ fn table(study: &Study, points: &[Point]) -> String {
 /// Errors below this are drawn there: a logarithmic axis has no zero.
 const SMALLEST_DRAWN_ERROR: f64 = 1e-17;
 
-/// One curve a series, in the order of its variants, and the front through all of them.
-fn draw(study: &Study, points: &[Point]) -> Result<String, ParetoError> {
-    let place = |point: &Point| [point.seconds.max(1e-9), point.error.max(SMALLEST_DRAWN_ERROR)];
-    let mut curves: Vec<Curve> = Vec::new();
-    for point in points {
+/// One curve a series, in the order of its variants, over the front through all of them; beside
+/// them what is unstable, and the boundaries as upright lines.
+fn draw(study: &Study, context: &ParetoContext) -> Result<String, ParetoError> {
+    let points = &context.points;
+    // A run that did not come to its end is drawn above all others.
+    let finite = points.iter().map(|point| point.error).filter(|error| error.is_finite());
+    let (lowest, highest) =
+        finite.fold((f64::INFINITY, SMALLEST_DRAWN_ERROR), |(l, h), e| (l.min(e), h.max(e)));
+    let (lowest, highest) = (lowest.max(SMALLEST_DRAWN_ERROR).min(highest), 3.0 * highest);
+    let place =
+        |point: &Point| [point.seconds.max(1e-9), point.error.clamp(SMALLEST_DRAWN_ERROR, highest)];
+    let mut front: Vec<[f64; 2]> = points
+        .iter()
+        .zip(context.front())
+        .filter(|(_, front)| *front)
+        .map(|(point, _)| place(point))
+        .collect();
+    front.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    // Below the series, so that they stay visible where they are on it.
+    let mut curves = vec![Curve::new("not beaten in both by any variant", front)];
+    if context.series_apart {
+        curves.clear();
+    }
+    for point in points.iter().filter(|point| !point.unstable) {
         match curves.iter_mut().find(|curve| curve.name == point.series) {
             Some(curve) => curve.points.push(place(point)),
             None => curves.push(Curve::new(point.series.clone(), vec![place(point)])),
         }
     }
-    let mut front: Vec<[f64; 2]> = points
-        .iter()
-        .zip(on_front(points))
-        .filter(|(_, front)| *front)
-        .map(|(point, _)| place(point))
-        .collect();
-    front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    curves.push(Curve::new("not beaten in both by any variant", front));
+    let unstable: Vec<[f64; 2]> = points.iter().filter(|p| p.unstable).map(place).collect();
+    curves.push(Curve {
+        separate: true,
+        ..Curve::new("unstable (at the top: ended early)", unstable)
+    });
+    for Boundary { name, seconds } in &context.boundaries {
+        let line = vec![[*seconds, lowest], [*seconds, highest]];
+        curves.push(Curve::new(name.clone(), line));
+    }
+    curves.retain(|curve| !curve.points.is_empty());
     xy(&XyPlot {
         title: study.title.into(),
-        x: Axis::log("time of one evaluation", "s"),
+        x: Axis::log("time of one computation", "s"),
         y: Axis::log(study.error_label, "1"),
         style: Style::LinesAndMarkers,
         curves,
@@ -194,7 +366,7 @@ mod tests {
     use super::*;
 
     fn point(seconds: f64, error: f64) -> Point {
-        Point { series: "s".into(), variant: "v".into(), seconds, error }
+        Point::new("s", "v", seconds, error)
     }
 
     #[test]
@@ -203,6 +375,102 @@ mod tests {
         assert_eq!(on_front(&points), [true, true, false, true]);
         // Equals do not beat each other.
         assert_eq!(on_front(&[point(1.0, 1.0), point(1.0, 1.0)]), [true, true]);
+    }
+
+    fn unstable(seconds: f64, error: f64) -> Point {
+        Point { unstable: true, ..point(seconds, error) }
+    }
+
+    #[test]
+    fn what_is_unstable_is_neither_on_the_front_nor_beats_anything() {
+        let points = [unstable(0.1, 1e-9), point(1.0, 1.0), unstable(0.1, f64::INFINITY)];
+        assert_eq!(on_front(&points), [false, true, false]);
+    }
+
+    #[test]
+    fn series_kept_apart_do_not_beat_each_other() {
+        let of =
+            |series: &str, seconds, error| Point { series: series.into(), ..point(seconds, error) };
+        let points = vec![of("a", 1.0, 1.0), of("a", 2.0, 2.0), of("b", 3.0, 3.0)];
+        let mut context = ParetoContext { points, ..ParetoContext::default() };
+        assert_eq!(context.front(), [true, false, false]);
+        context.keep_series_apart();
+        assert_eq!(context.front(), [true, false, true]);
+    }
+
+    #[test]
+    fn the_cheapest_way_is_stable_accurate_and_fast() {
+        let named = |variant: &str, seconds, error, further| Point {
+            variant: variant.into(),
+            more_errors: vec![further],
+            evaluations: Some(40),
+            ..point(seconds, error)
+        };
+        let points = [
+            named("coarse", 0.002, 0.5, 0.009),
+            named("middle", 0.0123, 1e-2, 9e-4),
+            named("slow middle", 0.02, 2e-3, 8e-4),
+            named("fine", 0.4, 1e-3, 1e-5),
+            Point { unstable: true, ..named("beyond", 0.001, 1e-6, 1e-6) },
+            named("lost", 0.0001, f64::NAN, f64::NAN),
+        ];
+        let variant = |measure, limit| cheapest(&points, measure, limit).map(|p| &p.variant[..]);
+        // An error that equals the limit keeps it.
+        assert_eq!(variant(0, 1e-2), Some("middle"));
+        assert_eq!(variant(0, 1e-3), Some("fine"));
+        assert_eq!(variant(0, 1e-4), None);
+        assert_eq!(variant(1, 1e-2), Some("coarse"));
+        assert_eq!(variant(1, 1e-3), Some("middle"));
+        // There is no such error.
+        assert_eq!(variant(2, 1.0), None);
+        assert_eq!(
+            cheapest_ways(&points, 0, "the swing"),
+            "cheapest way, as a part of the swing, to 1 %: s, middle (12.3 ms, 40 evaluations, error \
+             1.0e-2); to 0.1 %: s, fine (400 ms, 40 evaluations, error 1.0e-3); to 0.01 %: none of \
+             these."
+        );
+        assert_eq!(
+            cheapest_ways(&points[3..4], 1, "it"),
+            "cheapest way, as a part of it, to 1 %, 0.1 %, 0.01 %: s, fine (400 ms, 40 evaluations, \
+             error 1.0e-5)."
+        );
+    }
+
+    #[test]
+    fn boundaries_and_unstable_runs_are_drawn_and_listed() {
+        let folder = tempfile::tempdir().unwrap();
+        let files = |run: fn(&mut ParetoContext) -> Result<(), CaseError>| {
+            let study = Study { run, more_errors: &["of the swing"], ..STUDY };
+            super::run(&study, folder.path())?;
+            let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+            Ok::<_, ParetoError>((read("quadrature.csv"), read("quadrature.svg")))
+        };
+        let (table, figure) = files(|context| {
+            context.push(Point { more_errors: vec![0.5], ..point(1.0, 0.1) });
+            context.push(unstable(0.5, f64::INFINITY));
+            context.boundary("limit of the step", 0.7);
+            Ok(())
+        })
+        .unwrap();
+        let lines: Vec<&str> = table.lines().skip(1).collect();
+        assert_eq!(
+            lines,
+            ["\"s\",\"v\",1e0,1,,1e-1,5e-1,true,true", "\"s\",\"v\",5e-1,1,,inf,inf,false,false"]
+        );
+        assert!(figure.contains("limit of the step") && figure.contains("unstable"));
+        // A stable run that has no error, and one without the further error.
+        for run in [
+            (|context| {
+                context.push(Point { more_errors: vec![0.5], ..point(1.0, f64::INFINITY) });
+                Ok(())
+            }) as fn(&mut ParetoContext) -> Result<(), CaseError>,
+            |context| {
+                context.push(point(1.0, 0.1));
+                Ok(())
+            },
+        ] {
+            assert!(matches!(files(run), Err(ParetoError::Unusable { .. })));
+        }
     }
 
     /// Trapezoidal rule on exp over [0, 1], whose integral is e − 1.
@@ -226,6 +494,7 @@ mod tests {
         id: "quadrature",
         title: "Trapezoidal rule",
         error_label: "relative error",
+        more_errors: &[],
         run: quadrature,
     };
 
@@ -239,7 +508,7 @@ mod tests {
         let errors: Vec<f64> = table
             .lines()
             .skip(1)
-            .map(|line| line.rsplit(',').nth(1).unwrap().parse().unwrap())
+            .map(|line| line.rsplit(',').nth(2).unwrap().parse().unwrap())
             .collect();
         // Second order: a factor 16 for four times the panels.
         for pair in errors.windows(2) {
@@ -248,6 +517,7 @@ mod tests {
         }
         assert!(read("quadrature.svg").trim_end().ends_with("</svg>"));
         assert!(read("quadrature.md").contains("a sixteenth"));
+        assert!(read("quadrature.md").contains("load average"));
     }
 
     #[test]

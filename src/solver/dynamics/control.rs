@@ -124,7 +124,7 @@ impl Controller {
         let largest = |at: usize, count: usize| {
             error[at..at + count].iter().fold(0.0f64, |largest, e| {
                 // NaN stays.
-                if e.abs() <= largest { largest } else { e.abs() }
+                if largest.is_nan() || e.abs() <= largest { largest } else { e.abs() }
             })
         };
         let mut norm = 0.0f64;

@@ -7,11 +7,13 @@
 
 use super::model::{Drive, DynamicProblem, RaceBody};
 use super::race;
-use super::start::{inner_speed, static_problem};
+use super::start::{inner_angle, inner_speed, static_problem};
+use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient};
 use crate::kinematics::Pose;
 use crate::kinematics::euler::{about, quaternion};
 use crate::solver::statics::{
-    COORDINATE_NAMES, Condition, StaticOptions, StaticSolution, StaticsError, solve, solve_from,
+    COORDINATE_NAMES, Condition, StaticOptions, StaticProblem, StaticSolution, StaticsError, solve,
+    solve_from,
 };
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -27,24 +29,38 @@ pub struct Equilibrium {
 }
 
 /// Equilibrium under the loads at t = 0. Forces that turn stand still in the direction that they
-/// have then: the rotating load at its phase, an unbalance along the inner race's own Y.
+/// have then: the rotating load at its phase, an unbalance along the inner race's own Y. Balls that
+/// roll are held in their orbit by traction, where there is any.
 ///
 /// # Errors
 /// When the loads have no equilibrium.
 pub fn at_start(problem: &DynamicProblem) -> Result<Equilibrium, StaticsError> {
+    at(problem, 0.0, None)
+}
+
+/// The same under the loads at `t`, looked for `near` one that is known.
+///
+/// # Errors
+/// When the loads have no equilibrium.
+pub(super) fn at(
+    problem: &DynamicProblem,
+    t: f64,
+    near: Option<&Equilibrium>,
+) -> Result<Equilibrium, StaticsError> {
+    let guess = near.map(|near| &near.solution.coordinates);
     let Some(body) = &problem.outer else {
         let outer = problem.outer_start;
-        return Ok(Equilibrium { solution: inner_race(problem, &outer, None)?, outer });
+        return Ok(Equilibrium { solution: inner_race(problem, t, &outer, guess)?, outer });
     };
-    let mut outer = Five::from(problem.outer_start);
+    let mut outer = Five::from(near.map_or(problem.outer_start, |near| near.outer));
     let mut free = [true; 5];
     for i in 0..5 {
         if let Drive::Motion(profile) = &body.drives[i] {
-            (outer[i], free[i]) = (profile.value(0.0), false);
+            (outer[i], free[i]) = (profile.value(t), false);
         }
     }
-    let search = Search { problem, body, free };
-    let here = search.try_at(outer, None)?;
+    let search = Search { problem, t, body, free };
+    let here = search.try_at(outer, guess)?;
     search.descend(here)
 }
 
@@ -60,6 +76,8 @@ struct Trial {
 
 struct Search<'a> {
     problem: &'a DynamicProblem,
+    /// s.
+    t: f64,
     body: &'a RaceBody,
     free: [bool; 5],
 }
@@ -73,7 +91,7 @@ impl Search<'_> {
 
     fn try_at(&self, at: Five, guess: Option<&Five>) -> Result<Trial, StaticsError> {
         let outer: [f64; 5] = at.into();
-        let solution = inner_race(self.problem, &outer, guess)?;
+        let solution = inner_race(self.problem, self.t, &outer, guess)?;
         let now = race::fixed(&outer);
         let [e2, e3] = now.tilt_directions.map(Vector3::from);
         let on_race =
@@ -94,8 +112,8 @@ impl Search<'_> {
                 continue;
             };
             let spring = self.body.foundation_stiffness[i] * (at[i] - self.problem.outer_start[i]);
-            force[i] += profile.value(0.0) - spring;
-            largest = largest.max(profile.value(0.0).abs() / self.scale()[i]);
+            force[i] += profile.value(self.t) - spring;
+            largest = largest.max(profile.value(self.t).abs() / self.scale()[i]);
         }
         for ball in &solution.balls {
             largest = largest.max(ball.inner.normal_load).max(ball.outer.normal_load);
@@ -203,10 +221,11 @@ impl Search<'_> {
 /// Equilibrium of the inner race and the balls with the outer race at `outer`, in the world.
 fn inner_race(
     problem: &DynamicProblem,
+    t: f64,
     outer: &[f64; 5],
     guess: Option<&Five>,
 ) -> Result<StaticSolution, StaticsError> {
-    let mut statics = static_problem(problem, 0.0);
+    let mut statics = static_problem(problem, t);
     let at = Vector3::new(outer[0], outer[1], outer[2]);
     let start = problem.outer_start;
     // Statics looks for the inner race near its origin: it follows an outer race that gives way.
@@ -234,20 +253,25 @@ fn inner_race(
         tilts = [guess[3], guess[4]];
         moved(guess, -shift)
     });
-    let speed = inner_speed(problem, 0.0);
+    let speed = inner_speed(problem, t);
     let size = problem.unbalance * speed * speed;
     let without = statics.conditions;
-    let mut before = [f64::NAN; 2];
-    // An unbalance follows the race's tilts, by at most tilt · F/(k R) of what they were before.
+    let turned = about(Vector3::x(), inner_angle(problem, t)) * Vector3::y();
+    let rolls = speed != 0.0 && problem.traction != TractionLaw::None;
+    let mut held = Held::default();
+    let (mut near, mut before) = (near, [f64::NAN; 2]);
+    // An unbalance follows the race's tilts, by at most tilt · F/(k R) of what they were before;
+    // traction that holds balls in their orbit changes by its own shift over the pitch radius.
     for _ in 0..20 {
         statics.conditions = without;
-        if size != 0.0 {
-            let along =
-                about(Vector3::y(), tilts[0]) * about(Vector3::z(), tilts[1]) * Vector3::y();
-            for i in 0..3 {
-                if let Condition::Load(load) = &mut statics.conditions[i] {
-                    *load += size * along[i];
-                }
+        let along = about(Vector3::y(), tilts[0]) * about(Vector3::z(), tilts[1]) * turned;
+        for (i, condition) in statics.conditions.iter_mut().enumerate() {
+            let Condition::Load(load) = condition else { continue };
+            if size != 0.0 && i < 3 {
+                *load += size * along[i];
+            }
+            if rolls {
+                *load += held.on_inner[i];
             }
         }
         let mut solution = match &near {
@@ -257,14 +281,82 @@ fn inner_race(
         };
         let now = [solution.coordinates[3], solution.coordinates[4]];
         let change = (now[0] - tilts[0]).abs().max((now[1] - tilts[1]).abs());
-        if size == 0.0 || change <= 1e-14 || now == before {
+        let mut settled = size == 0.0 || change <= 1e-14 || now == before;
+        if rolls {
+            let next = Held::of(problem, t, &statics, &solution);
+            let largest =
+                solution.balls.iter().fold(0.0f64, |most, b| most.max(b.inner.normal_load));
+            // Below what statics itself leaves over.
+            settled &= next.differs(&held) <= StaticOptions::default().tolerance * largest;
+            held = next;
+        }
+        if settled {
+            solution.force_on_outer += held.on_outer[0];
+            solution.moment_on_outer += held.on_outer[1];
             solution.coordinates = moved(&solution.coordinates, shift);
             for ball in &mut solution.balls {
                 ball.position += shift;
             }
             return Ok(solution);
         }
+        near = Some(solution.coordinates);
         (before, tilts) = (tilts, now);
     }
     solve(&statics)
+}
+
+/// Largest slip of rolling contacts over their rolling speed.
+const CREEP: f64 = 0.01;
+
+/// Traction on the races that holds rolling balls in their orbit.
+///
+/// Normal loads, whose lines do not quite meet, and weight push a ball along its orbit. Statics
+/// holds it there; in a bearing that rolls steadily traction does, half of it at each race so that
+/// the ball's spin stays as it is, and as far as a slip of [`CREEP`] gives that much.
+#[derive(Clone, Copy, Debug, Default)]
+struct Held {
+    /// Conjugate to x, y, z (N) and the tilts (N·m) of the inner race.
+    on_inner: [f64; 5],
+    /// N; N·m about its centre.
+    on_outer: [Vector3<f64>; 2],
+}
+
+impl Held {
+    fn of(
+        problem: &DynamicProblem,
+        t: f64,
+        statics: &StaticProblem,
+        solution: &StaticSolution,
+    ) -> Held {
+        let q = &solution.coordinates;
+        let tilted = about(Vector3::y(), q[3]) * about(Vector3::z(), q[4]) * Vector3::z();
+        let centres =
+            [Vector3::new(q[0], q[1], q[2]), statics.outer_pose.position - statics.frame.position];
+        let rolling_speed = 0.5 * (inner_speed(problem, t) * problem.geometry.pitch_radius).abs();
+        let grip = coefficient(&problem.traction, CREEP * rolling_speed, rolling_speed);
+        let mut sums = [[Vector3::zeros(); 2]; 2];
+        for ball in &solution.balls {
+            let contacts = [&ball.inner, &ball.outer];
+            if contacts.iter().any(|contact| contact.normal_load <= 0.0) {
+                continue;
+            }
+            let (sin, cos) = libm::sincos(ball.azimuth);
+            let around = statics.outer_pose.orientation * Vector3::new(0.0, -sin, cos);
+            let most = grip * ball.inner.normal_load.min(ball.outer.normal_load);
+            let force = around * (-0.5 * ball.cage_force).clamp(-most, most);
+            for ((sum, contact), centre) in sums.iter_mut().zip(contacts).zip(centres) {
+                let towards_race = contact.force_on_race / contact.force_on_race.norm();
+                let point = ball.position + towards_race * problem.geometry.ball_radius;
+                sum[0] += force;
+                sum[1] += (point - centre).cross(&force);
+            }
+        }
+        let [[force, moment], on_outer] = sums;
+        Held { on_inner: [force.x, force.y, force.z, moment.y, moment.dot(&tilted)], on_outer }
+    }
+
+    /// Largest difference of a force on the inner race, N.
+    fn differs(&self, other: &Held) -> f64 {
+        (0..3).map(|i| (self.on_inner[i] - other.on_inner[i]).abs()).fold(0.0, f64::max)
+    }
 }

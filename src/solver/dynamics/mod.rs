@@ -14,6 +14,7 @@ pub mod energy;
 pub mod equilibrium;
 pub mod linearised;
 pub mod model;
+pub mod quasi_static;
 pub mod race;
 pub mod rk4;
 pub mod rosenbrock;

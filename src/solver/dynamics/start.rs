@@ -2,11 +2,12 @@
 
 use super::equilibrium::{Equilibrium, at_start};
 use super::model::{Drive, DynamicProblem, Rotation};
+use super::quasi_static::{self, Rates};
 use super::race;
 use super::state::{BodyState, Layout};
 use crate::ch2_housing::bearing::frequencies::ratios;
 use crate::kinematics::Pose;
-use crate::kinematics::euler::{about, quaternion};
+use crate::kinematics::euler::quaternion;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
 use crate::solver::statics::{Condition, StaticProblem, StaticSolution, StaticsError};
 use nalgebra::Vector3;
@@ -53,6 +54,14 @@ pub(super) fn inner_speed(problem: &DynamicProblem, t: f64) -> f64 {
     }
 }
 
+/// Angle by which the prescribed speed has turned the inner race since t = 0, rad.
+pub(super) fn inner_angle(problem: &DynamicProblem, t: f64) -> f64 {
+    match &problem.inner.rotation {
+        Rotation::Speed(profile) => profile.integral(t),
+        Rotation::Torque(_) => 0.0,
+    }
+}
+
 /// Speed of the ball set by pure rolling with the outer race at rest, rad/s.
 fn orbital_speed(problem: &DynamicProblem, t: f64) -> f64 {
     let g = &problem.geometry;
@@ -60,8 +69,9 @@ fn orbital_speed(problem: &DynamicProblem, t: f64) -> f64 {
     ratio * inner_speed(problem, t)
 }
 
-/// State vector at equilibrium of both races under the loads at t = 0, balls and cage rolling; what
-/// turns stands still for it (see [`at_start`]).
+/// State vector at equilibrium of both races under the loads at t = 0, balls and cage rolling and
+/// all as fast as the equilibrium moves on (see [`quasi_static`]); what turns stands still for the
+/// equilibrium itself (see [`at_start`]).
 ///
 /// # Errors
 /// When the loads have no equilibrium.
@@ -69,12 +79,14 @@ pub fn at_equilibrium(
     problem: &DynamicProblem,
     layout: &Layout,
 ) -> Result<(Vec<f64>, StaticSolution), StaticsError> {
-    let Equilibrium { solution, outer } = at_start(problem)?;
+    let now = at_start(problem)?;
+    let rates = quasi_static::rates(problem, &now, orbital_speed(problem, 0.0));
+    let Equilibrium { solution, outer } = now;
     let mut state = vec![0.0; layout.len()];
     let q = &solution.coordinates;
     let positions: Vec<Vec3> = solution.balls.iter().map(|ball| ball.position.into()).collect();
     let inner = [q[0], q[1], q[2], q[3], q[4]];
-    fill(problem, layout, &mut state, [&inner, &outer], &positions);
+    fill(problem, layout, &mut state, [&inner, &outer], &positions, &rates);
     Ok((state, solution))
 }
 
@@ -100,7 +112,8 @@ pub fn nominal(problem: &DynamicProblem, layout: &Layout) -> Vec<f64> {
             *coordinate = profile.value(0.0);
         }
     }
-    fill(problem, layout, &mut state, [&inner, &problem.outer_start], &positions);
+    let rest = Rates::rest(layout.balls);
+    fill(problem, layout, &mut state, [&inner, &problem.outer_start], &positions, &rest);
     state
 }
 
@@ -110,38 +123,49 @@ fn fill(
     state: &mut [f64],
     [inner, outer]: [&[f64; 5]; 2],
     positions: &[Vec3],
+    rates: &Rates,
 ) {
     let orbital_speed = orbital_speed(problem, 0.0);
-    let axis_spin = |axis: Vec3, speed: f64| scale(axis, speed);
     let write = |state: &mut [f64], at: usize, body: &BodyState| {
         state[at..at + super::state::BODY].copy_from_slice(&body.to_array());
     };
-    let mut body = BodyState::at_rest([inner[0], inner[1], inner[2]]);
-    body.orientation = about(Vector3::y(), inner[3]) * about(Vector3::z(), inner[4]);
-    body.spin = axis_spin(body.axis(), inner_speed(problem, 0.0));
-    write(state, layout.inner(), &body);
-    let inner_body = body;
-
-    let outer = race::fixed(outer).state;
+    let inner = moving(inner, &rates.inner, inner_speed(problem, 0.0));
+    write(state, layout.inner(), &inner);
+    let outer = moving(outer, &rates.outer, 0.0);
     write(state, layout.outer(), &outer);
     let axis = outer.axis();
     if layout.has_cage {
         let mut cage = outer;
-        cage.spin = axis_spin(axis, orbital_speed);
+        cage.spin = add_scaled(outer.spin, orbital_speed, axis);
         write(state, layout.cage(), &cage);
     }
     for (ball, position) in positions.iter().enumerate() {
         let mut body = BodyState::at_rest(*position);
         let from_axis = sub(*position, outer.position);
         let outward = add_scaled(from_axis, -dot(from_axis, axis), axis);
-        body.velocity = cross(scale(axis, orbital_speed), outward);
-        body.spin = rolling_spin(problem, &inner_body, &body, axis, outward);
+        let with_outer = add(outer.velocity, cross(outer.spin, from_axis));
+        let [along, away] = rates.balls[ball];
+        let own = add_scaled(scale(axis, along), away / norm(outward), outward);
+        body.velocity = add(cross(scale(axis, orbital_speed), outward), add(with_outer, own));
+        body.spin = rolling_spin(problem, &inner, &body, axis, outward);
         layout.set_ball(state, ball, &body);
     }
     // Lanes beyond the last ball hold a ball that stands in the groove and is never looked at.
     for ball in layout.balls..layout.padded {
         layout.set_ball(state, ball, &BodyState::at_rest(positions[0]));
     }
+}
+
+/// A race at x, y, z, tilt_y, tilt_z, whose coordinates change at `rates`, turning at `speed`.
+fn moving(at: &[f64; 5], rates: &[f64; 5], speed: f64) -> BodyState {
+    let now = race::fixed(at);
+    let mut body = now.state;
+    let axis = body.axis();
+    let [e2, e3] = now.tilt_directions;
+    body.velocity = [rates[0], rates[1], rates[2]];
+    let tilting = add_scaled(scale(e2, rates[3] * now.cos_lambda), rates[4], e3);
+    body.spin = add_scaled(tilting, speed, axis);
+    body
 }
 
 /// Spin that rolls without slip on both races: about the meridian direction across the line from

@@ -13,6 +13,7 @@ pub const TOLERANCE: Study = Study {
     id: "statics_tolerance",
     title: "One static solution, combined load, bearing of Table 4.1 at −5 µm",
     error_label: "largest ball load error over largest ball load",
+    more_errors: &[],
     run: tolerance,
 };
 
@@ -20,6 +21,7 @@ pub const POSITIONS: Study = Study {
     id: "varying_compliance_positions",
     title: "Vertical varying-compliance amplitude at 0 µm and 1500 N",
     error_label: "error of the amplitude over the amplitude",
+    more_errors: &[],
     run: positions,
 };
 

@@ -1,0 +1,177 @@
+//! The isolated bearing of 4.3.1 at 1000 rpm under 1500 N: the first 10 ms, half a ball pitch.
+//!
+//! Each method's reference is a converged run of another one.
+
+use std::f64::consts::FRAC_PI_2;
+
+use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
+use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
+use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
+use bearing_dynamics::solver::dynamics::run::Integrator::{DormandPrince, Rosenbrock};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::statics::Condition;
+
+use super::motion::{LABELS, Measures, Method, Variant, Window, errors, follow, limit, measure};
+use super::motion::{best_errors, from_first_to_last, sentences, sweep_rk4};
+use crate::bearings::{self, DEEP_GROOVE, Hertz};
+use crate::case::CaseError;
+use crate::motion::{RPM, moving};
+use crate::pareto::{ParetoContext, Study};
+
+const MEASURES: Measures = &[1, 0, 3];
+const STUDY: Study = Study {
+    id: "",
+    title: "",
+    error_label: LABELS[1],
+    more_errors: &[LABELS[0], LABELS[3]],
+    run: |_| Ok(()),
+};
+
+pub const STEP: Study = Study {
+    id: "varying_compliance_step",
+    title: "Varying compliance (4.3.1): step of Runge–Kutta",
+    run: step,
+    ..STUDY
+};
+
+pub const INTEGRATOR: Study = Study {
+    id: "varying_compliance_integrator",
+    title: "Varying compliance (4.3.1): integrators, default friction",
+    run: integrator,
+    ..STUDY
+};
+
+/// The race hardly notices the slices; the balls do.
+const SLICES_MEASURES: Measures = &[3, 1, 0];
+
+pub const SLICES: Study = Study {
+    id: "varying_compliance_slices",
+    title: "Varying compliance (4.3.1): slices across the contact, default friction",
+    error_label: LABELS[3],
+    more_errors: &[LABELS[1], LABELS[0]],
+    run: slices,
+};
+
+pub const HERTZ: Study = Study {
+    id: "varying_compliance_hertz",
+    title: "Varying compliance (4.3.1): Hertz options, default friction",
+    run: hertz,
+    ..STUDY
+};
+
+const WINDOW: Window = Window { end: 10e-3, rows: 50 };
+/// Slices need no long window, and a hundred of them are slow.
+const SHORT: Window = Window { end: 2e-3, rows: 20 };
+
+const GENTLE: TractionLaw = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 0.05 };
+const DEFAULT: TractionLaw =
+    TractionLaw::SlideToRoll { curve: ExponentialCurve::BOUNDARY, entrainment_floor: 0.5 };
+
+/// As the case `varying_compliance_dynamics`: a ball starts at the bottom, tilts are held.
+fn problem(traction: TractionLaw) -> Result<DynamicProblem, CaseError> {
+    let loads = [0.0, 0.0, -1500.0, 0.0, 0.0];
+    let mut problem = moving(&DEEP_GROOVE, -FRAC_PI_2, loads, 1000.0 * RPM)?;
+    for tilt in [3, 4] {
+        problem.inner.drives[tilt] = Drive::Motion(Profile::ZERO);
+    }
+    problem.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
+    problem.traction = traction;
+    Ok(problem)
+}
+
+fn step(context: &mut ParetoContext) -> Result<(), CaseError> {
+    context.keep_series_apart();
+    let laws = [
+        ("no friction", TractionLaw::None),
+        ("regularised Coulomb", GENTLE),
+        ("default friction", DEFAULT),
+    ];
+    for (series, law) in laws {
+        let problem = problem(law)?;
+        let reference = follow(&problem, Method::rosenbrock(0.1e-6), WINDOW)?;
+        let fractions = [0.25, 0.5, 0.75, 0.95, 1.06, 1.3];
+        let limit = sweep_rk4(context, series, &problem, &fractions, WINDOW, &reference, MEASURES)?;
+        let subject =
+            format!("With {series}, where steps above {:.3} µs are unstable, the", 1e6 * limit);
+        sentences(context, MEASURES, &subject, |point| point.series == series);
+    }
+    context.sentence("Reference: the linearly implicit integrator with steps of 0.1 µs.");
+    Ok(())
+}
+
+fn integrator(context: &mut ParetoContext) -> Result<(), CaseError> {
+    let problem = problem(DEFAULT)?;
+    let fine = WINDOW.fitting(0.5 * limit(&problem, WINDOW)?);
+    let by_rk4 = follow(&problem, Method::rk4(fine), WINDOW)?;
+    let by_rosenbrock = follow(&problem, Method::rosenbrock(0.1e-6), WINDOW)?;
+    sweep_rk4(context, "rk4", &problem, &[0.5, 0.95, 1.06, 1.3], WINDOW, &by_rosenbrock, MEASURES)?;
+    let fixed = [0.5e-6, 1e-6, 2e-6, 5e-6, 10e-6, 20e-6, 50e-6].map(Method::rosenbrock);
+    let accuracies = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
+    let controlled = accuracies.map(|accuracy| Method::accurate(Rosenbrock, accuracy));
+    let explicit = accuracies.map(|accuracy| Method::accurate(DormandPrince, accuracy));
+    for (series, methods, reference) in [
+        ("rosenbrock, fixed step", &fixed[..], &by_rk4),
+        ("rosenbrock, error control", &controlled, &by_rk4),
+        ("dormand-prince, error control", &explicit, &by_rosenbrock),
+    ] {
+        for &method in methods {
+            let name = method.variant();
+            let variant = Variant { series, name, problem: &problem, method, limit: None };
+            measure(context, &variant, WINDOW, reference, MEASURES)?;
+        }
+    }
+    sentences(context, MEASURES, "The", |_| true);
+    let [displacement, swing, ..] = errors(&by_rosenbrock, &by_rk4);
+    context.sentence(format!(
+        "References: rosenbrock at 0.1 µs for the explicit methods, rk4 at half its limit for rosenbrock; they \
+         differ by {swing:.1e} of the swing and {displacement:.1e} of the displacement."
+    ));
+    Ok(())
+}
+
+fn slices(context: &mut ParetoContext) -> Result<(), CaseError> {
+    let sliced = |slices| problem(DEFAULT).map(|problem| DynamicProblem { slices, ..problem });
+    let converged = sliced(151)?;
+    let fine = SHORT.fitting(0.5 * limit(&converged, SHORT)?);
+    let reference = follow(&converged, Method::rk4(fine), SHORT)?;
+    for slices in [5, 7, 9, 11, 15, 21, 31, 45] {
+        let variant = Variant {
+            series: "dormand-prince, accuracy 1e-4",
+            name: format!("{slices} slices"),
+            problem: &sliced(slices)?,
+            method: Method::accurate(DormandPrince, 1e-4),
+            limit: None,
+        };
+        measure(context, &variant, SHORT, &reference, SLICES_MEASURES)?;
+    }
+    sentences(context, SLICES_MEASURES, "The", |_| true);
+    let spread = from_first_to_last(context.points());
+    context.sentence(spread);
+    context.sentence("Reference: 151 slices by rk4 at half its limit. A window of 2 ms.");
+    Ok(())
+}
+
+fn hertz(context: &mut ParetoContext) -> Result<(), CaseError> {
+    let with = |model: Hertz| -> Result<DynamicProblem, CaseError> {
+        let conditions = [Condition::Load(0.0); 5];
+        let still = bearings::problem(&DEEP_GROOVE, model, -FRAC_PI_2, conditions)?;
+        let (inner_contact, outer_contact) = (still.inner_contact, still.outer_contact);
+        Ok(DynamicProblem { inner_contact, outer_contact, ..problem(DEFAULT)? })
+    };
+    let exact = Method::accurate(DormandPrince, 1e-5);
+    let reference = follow(&with(Hertz::Exact)?, exact, WINDOW)?;
+    for (series, model) in [("hamrock-brewe", Hertz::Fit), ("exact", Hertz::Exact)] {
+        for step in [1e-6, 5e-6, 20e-6] {
+            let method = Method::rosenbrock(step);
+            let name = method.variant();
+            let variant = Variant { series, name, problem: &with(model)?, method, limit: None };
+            measure(context, &variant, WINDOW, &reference, MEASURES)?;
+        }
+    }
+    sentences(context, MEASURES, "The", |_| true);
+    let off = best_errors(context.points(), MEASURES, "hamrock-brewe");
+    context.sentence(format!("Hamrock and Brewe's fit is off by {off}, at any step."));
+    context
+        .sentence("Steps of rosenbrock; reference: the exact contact by dormand-prince at 1e-5.");
+    Ok(())
+}

@@ -1,0 +1,86 @@
+//! Every smoke case, run once for all checks of this file: each published number matters to its
+//! verdict, and each golden value is what it was.
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use verification::case::{Case, Computation, Tier};
+use verification::cases;
+use verification::golden::{self, differences};
+use verification::judge::{Status, judge, widest_tolerance};
+use verification::published::Published;
+use verification::runner::{Run, compute};
+
+/// In order; on all cores, since the cases know nothing of each other.
+fn smoke_runs() -> &'static [(Case, Run)] {
+    static RUNS: OnceLock<Vec<(Case, Run)>> = OnceLock::new();
+    RUNS.get_or_init(|| {
+        let cases = cases::of_tier(Tier::Smoke);
+        let runs: Vec<OnceLock<Run>> = cases.iter().map(|_| OnceLock::new()).collect();
+        let next = AtomicUsize::new(0);
+        let work = || {
+            while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+                let index = cases.iter().position(|other| other.id == case.id).unwrap();
+                runs[index].set(compute(case.run)).unwrap();
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 0..std::thread::available_parallelism().map_or(1, |cores| cores.get()) {
+                scope.spawn(work);
+            }
+        });
+        cases.iter().copied().zip(runs.into_iter().map(|run| run.into_inner().unwrap())).collect()
+    })
+}
+
+/// Bits of every check's own number, in order.
+fn ours(run: &Run) -> Vec<(String, u64)> {
+    run.record.ours().into_iter().map(|(id, value)| (id, value.to_bits())).collect()
+}
+
+/// What runs a case takes a function of the record alone. Were a case's text of published numbers
+/// handed over as well, this would not compile.
+const _: fn(Computation) -> Run = compute;
+
+#[test]
+fn altering_any_published_number_changes_the_verdict() {
+    for (case, run) in smoke_runs() {
+        let published = Published::parse(case.published).unwrap();
+        assert_eq!(run.error, None, "{}", case.id);
+        assert!(judge(&run.record, &published).holds(), "{} fails as it is", case.id);
+        for entry in published.values() {
+            let shift = 10.0 * widest_tolerance(&run.record, &published, &entry.id);
+            let failing = |value: f64| {
+                let verdict = judge(&run.record, &published.with(&entry.id, value));
+                for (check, ours) in verdict.checks.iter().zip(run.record.ours()) {
+                    assert_eq!(check.value.map(f64::to_bits), Some(ours.1.to_bits()));
+                }
+                verdict.checks.iter().any(|check| check.status == Status::Failed)
+            };
+            let (up, down) = (failing(entry.value + shift), failing(entry.value - shift));
+            let noticed = if entry.bound.is_some() { up || down } else { up && down };
+            assert!(noticed, "{}: nothing notices an altered `{}`", case.id, entry.id);
+        }
+    }
+}
+
+/// A static and a moving case: a second run gives the same bits, whatever ran beside the first.
+#[test]
+fn a_second_run_gives_the_same_bits() {
+    for id in ["misalignment_moment", "bearing_conservation"] {
+        let (case, first) = smoke_runs().iter().find(|(case, _)| case.id == id).unwrap();
+        assert_eq!(ours(first), ours(&compute(case.run)), "{id}");
+    }
+}
+
+#[test]
+fn smoke_cases_agree_with_their_past() {
+    for (case, run) in smoke_runs() {
+        assert_eq!(run.error, None, "{}", case.id);
+        let values = run.record.golden_values();
+        match golden::read(&golden::default_folder(), case.id).unwrap() {
+            Some(file) => assert_eq!(differences(&file.values, values), [""; 0], "{}", case.id),
+            None => assert!(values.is_empty(), "{} has no golden file", case.id),
+        }
+    }
+}
