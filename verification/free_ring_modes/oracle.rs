@@ -105,8 +105,8 @@ fn basis(plane: Plane) -> Vec<Function> {
     let mut functions = Vec::new();
     for component in 0..3 {
         let even = (component < 2) == (plane == Plane::In);
-        for i in 0..=3 {
-            for j in 0..=3 {
+        for i in 0..=4 {
+            for j in 0..=4 {
                 if (j % 2 == 0) == even {
                     functions.push((component, i, j));
                 }

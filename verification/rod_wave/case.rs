@@ -64,10 +64,9 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             Check::new(&format!("speed_{key}"), &format!("{key}: speed of the push"), "m/s", found)
                 .closed_form(speed, "√(E/ρ) of a thin rod")
                 .relative(
-                    2e-3,
-                    "waves of a tenth of a metre in cells of up to 4 mm: (2π·4/103)²/24 = 2.5e-3 for \
-                     linear elements of this length, less for the cells used; lateral inertia \
-                     slows by 2e-4 (Love)",
+                    1e-3,
+                    "waves of a tenth of a metre in linear cells of 2 mm: (2π·2/103)²/24 = 6e-4; \
+                     lateral inertia slows by 1e-4 (Love)",
                 )
                 .golden(GoldenTolerance::MIXED),
         );
@@ -79,7 +78,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 passage.behind,
             )
             .closed_form(behind, "impulse over ρ A c")
-            .relative(2e-3, "as the speed; ringing behind the push adds 1e-3")
+            .relative(1e-3, "as the speed")
             .golden(GoldenTolerance::MIXED),
         );
         rows.push(vec![

@@ -3,7 +3,7 @@
 
 use bearing_dynamics::elements::tet4::{Tet4, relative};
 use bearing_dynamics::elements::tet10::Tet10;
-use bearing_dynamics::kinematics::strain::{Sym3, von_mises};
+use bearing_dynamics::kinematics::strain::{Sym3, right_cauchy_green, von_mises};
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, bar, ring};
 use bearing_dynamics::mesh::measure::total_volume;
 use bearing_dynamics::mesh::{Order, TetMesh};
@@ -41,6 +41,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         free_fall(context, order)?;
         masses(context, order)?;
     }
+    right_cauchy_green_tensor(context);
     single_elements(context)?;
     manufactured(context)?;
     Ok(())
@@ -210,6 +211,27 @@ fn masses(context: &mut CaseContext, order: Order) -> Result<(), CaseError> {
         .absolute(1e-12, "both integrate polynomials exactly; rounding"),
     );
     Ok(())
+}
+
+/// C of (2.2) as the library makes it, by way of the strain, against FᵀF by plain products.
+fn right_cauchy_green_tensor(context: &mut CaseContext) {
+    let mut seed = 11;
+    let mut worst = 0.0f64;
+    for _ in 0..100 {
+        let h = [[0.0; 3]; 3].map(|row: Vec3| row.map(|_| 0.5 * scatter(&mut seed)));
+        let f = nalgebra::Matrix3::from(h).transpose() + nalgebra::Matrix3::identity();
+        let c = f.transpose() * f;
+        let plain = [c.m11, c.m22, c.m33, c.m12, c.m23, c.m13];
+        for (a, b) in right_cauchy_green(&h).iter().zip(plain) {
+            let gap = (a - b).abs();
+            worst = if gap <= worst { worst } else { gap };
+        }
+    }
+    context.check(
+        Check::new("right_cauchy_green", "largest difference of C from FᵀF", "1", worst)
+            .independent(0.0, "matrix products")
+            .absolute(1e-14, "rounding of sums of up to 4"),
+    );
 }
 
 /// Numbers without pattern in (−1, 1).

@@ -6,6 +6,8 @@ use crate::case::{Case, Tier};
 
 #[path = "../axial_load_closed_form/case.rs"]
 mod axial_load_closed_form;
+#[path = "../cage_modes_table_5_3/case.rs"]
+mod cage_modes_table_5_3;
 #[path = "../cantilever_timoshenko/case.rs"]
 mod cantilever_timoshenko;
 #[path = "../free_ring_modes/case.rs"]
@@ -42,6 +44,7 @@ pub const CASES: &[Case] = &[
     thick_ring_lame::CASE,
     cantilever_timoshenko::CASE,
     free_ring_modes::CASE,
+    cage_modes_table_5_3::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).
