@@ -40,8 +40,9 @@ fn moved(model: &SolidModel, field: impl Fn(Vec3) -> Vec3) -> Vec<Vec3> {
 /// Largest difference of any component from `exact`, over the largest of `exact`.
 fn off<'a>(found: impl Iterator<Item = &'a Sym3>, exact: &Sym3) -> f64 {
     let scale = exact.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-    found.flat_map(|t| t.iter().zip(exact)).fold(0.0, |worst, (a, b)| worst.max((a - b).abs()))
-        / scale
+    let gaps = found.flat_map(|t| t.iter().zip(exact)).map(|(a, b)| (a - b).abs() / scale);
+    // Not `f64::max`, which drops a NaN.
+    gaps.fold(0.0, |worst, gap| if gap <= worst { worst } else { gap })
 }
 
 /// Uniform deformation, as large as one likes, then turned: T = Q F S Fᵀ Qᵀ/J by plain matrices.
@@ -59,11 +60,14 @@ fn uniform_stress_turns_with_the_body() {
         for order in [Order::Linear, Order::Quadratic] {
             let model = model([3, 2, 2], order);
             let moved = moved(&model, |x| (f * Vector3::from(x) - Vector3::from(x)).into());
-            // Rounding of strains of 0.05 and their products; the rule's points to 1e-16.
+            // Turned, gradients of up to 2 are sums of ten products of 1e-16 each, over strains of
+            // 0.05; continuing the four points to a corner triples that.
             let raw = point_stresses(&model, &moved);
-            assert!(off(raw.iter().flatten(), &exact) <= 1e-13, "{order:?}");
+            let error = off(raw.iter().flatten(), &exact);
+            assert!(error <= 1e-12, "{order:?} {error}");
             let averaged = nodal_stresses(&model, &moved);
-            assert!(off(averaged.iter(), &exact) <= 1e-12, "{order:?}");
+            let error = off(averaged.iter(), &exact);
+            assert!(error <= 3e-12, "{order:?} {error}");
             assert_eq!(averaged.len(), model.mass.len());
         }
     }
