@@ -92,6 +92,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     );
     let literal = literal_modes(context)?;
     relieved_modes(context)?;
+    other_widths(context)?;
     published(context, &literal);
     impact::run(context)?;
     Ok(())
@@ -162,8 +163,8 @@ fn literal_modes(context: &mut CaseContext) -> Result<[f64; 2], CaseError> {
             )
             .independent(CONVERGED[i], "converged by two other finite-element programs")
             .at_least(
-                0.02 * CONVERGED[i],
-                "linear elements bend too stiffly: 66 000 of them are still more than 2 % high",
+                0.1 * CONVERGED[i],
+                "linear elements bend too stiffly: 66 000 of them in cut cells are still more than 10 % high",
             )
             .golden(GoldenTolerance::MIXED),
         );
@@ -201,16 +202,48 @@ fn relieved_modes(context: &mut CaseContext) -> Result<(), CaseError> {
     Ok(())
 }
 
+/// The ratio of the two pairs over the width that the source does not state.
+fn other_widths(context: &mut CaseContext) -> Result<(), CaseError> {
+    let mut rows = Vec::new();
+    let mut largest = 0.0;
+    for width in [14.5e-3, 16e-3, 18.01e-3, 20e-3, 22e-3, 25e-3] {
+        let cage = Cage { width, ..LITERAL };
+        let pairs = pairs(&cage.solid(&TEN_NODES[0])?, Order::Quadratic)?;
+        let ratio = pairs.means[1] / pairs.means[0];
+        largest = if ratio <= largest { largest } else { ratio };
+        rows.push(vec![
+            format!("{:.2}", 1e3 * width),
+            format!("{:.4}", STEEL.density * total_volume(&pairs.mesh)),
+            format!("{:.0}", pairs.means[0]),
+            format!("{:.0}", pairs.means[1]),
+            format!("{ratio:.3}"),
+        ]);
+    }
+    context.table(
+        "widths",
+        "The cage of Table 5.3 in other widths, coarsest mesh of ten-node elements",
+        &["width, mm", "mass, kg", "in the plane, Hz", "out of the plane, Hz", "ratio"],
+        rows,
+    );
+    context.check(
+        Check::new("largest_ratio", "largest ratio of the two pairs over all these widths", "1", largest)
+            .independent(4105.0 / 1989.0, "ratio of the pair that Table 5.2 prints for ABAQUS")
+            .at_most(0.2, "no width brings the ratio near the published one; nor do modulus and density, which move both alike"),
+    );
+    Ok(())
+}
+
 /// The six published frequencies against the literal cage.
 fn published(context: &mut CaseContext, literal: &[f64; 2]) {
-    let evidence = ["literal_in", "literal_out", "mass", "relieved_1", "relieved_2"];
+    let evidence =
+        ["literal_in", "literal_out", "mass", "largest_ratio", "relieved_1", "relieved_2"];
     let suspended = ["literal_in", "literal_out", "held_modes_below_5_khz", "held_modes"];
     let sources = [
         (
             "abaqus",
             "ABAQUS",
             "The geometry of Table 5.3 does not have these frequencies: their ratio is 2.06, that of the \
-             literal cage 1.74 on any fine mesh, and no width, material or density changes a ratio so. \
+             literal cage 1.74 on any fine mesh, and no width, modulus or density brings it near. \
              The cage solved there had another shape; rails lowered at the outside are one that fits.",
             &evidence[..],
         ),
