@@ -149,7 +149,7 @@ fn a_pulled_bar() {
 fn a_bar_under_its_own_weight() {
     let size = [0.1, 0.02, 0.02];
     let gravity = 10.0;
-    for (order, tolerance) in [(Order::Linear, 0.15), (Order::Quadratic, 1e-6)] {
+    for (order, tolerance) in [(Order::Linear, 0.25), (Order::Quadratic, 1e-6)] {
         let mut problem = bar(size, [5, 2, 2], order, true);
         problem.material = LinearElastic::new(YOUNG, 0.0).unwrap();
         problem.gravity = [gravity, 0.0, 0.0];
@@ -161,7 +161,8 @@ fn a_bar_under_its_own_weight() {
         for (u, x) in found.displacement.iter().zip(&model.problem.nodes) {
             let exact = [per_length * (size[0] * x[0] - 0.5 * x[0] * x[0]), 0.0, 0.0];
             for i in 0..3 {
-                // Linear elements are coarse here; of the rest squares of a strain of 4e-8 are left.
+                // Cut cells load their corners unevenly, which five linear ones along leave in the
+                // answer; of quadratic ones squares of a strain of 4e-8 are left.
                 let error = (u[i] - exact[i]).abs() / scale;
                 assert!(error <= tolerance, "{order:?} {x:?}: {error}");
             }
