@@ -42,7 +42,8 @@ fn off<'a>(found: impl Iterator<Item = &'a Sym3>, exact: &Sym3) -> f64 {
     let scale = exact.iter().fold(0.0f64, |a, b| a.max(b.abs()));
     let gaps = found.flat_map(|t| t.iter().zip(exact)).map(|(a, b)| (a - b).abs() / scale);
     // Not `f64::max`, which drops a NaN.
-    gaps.fold(0.0, |worst, gap| if gap <= worst { worst } else { gap })
+    let larger = |most: f64, gap: f64| if most.is_nan() || gap <= most { most } else { gap };
+    gaps.fold(0.0, larger)
 }
 
 /// Uniform deformation, as large as one likes, then turned: T = Q F S Fᵀ Qᵀ/J by plain matrices.

@@ -12,7 +12,7 @@ use crate::case::{Case, CaseError, Tier};
 use crate::check::{Check, Explanation};
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::solids::{STEEL, Vec3, free_body, mesh_of, name_of};
+use crate::solids::{STEEL, Vec3, free_body, largest, mesh_of, name_of};
 use crate::surface_picture::{SurfacePicture, surface_picture};
 
 mod impact;
@@ -205,12 +205,12 @@ fn relieved_modes(context: &mut CaseContext) -> Result<(), CaseError> {
 /// The ratio of the two pairs over the width that the source does not state.
 fn other_widths(context: &mut CaseContext) -> Result<(), CaseError> {
     let mut rows = Vec::new();
-    let mut largest = 0.0;
+    let mut ratios = Vec::new();
     for width in [14.5e-3, 16e-3, 18.01e-3, 20e-3, 22e-3, 25e-3] {
         let cage = Cage { width, ..LITERAL };
         let pairs = pairs(&cage.solid(&TEN_NODES[0])?, Order::Quadratic)?;
         let ratio = pairs.means[1] / pairs.means[0];
-        largest = if ratio <= largest { largest } else { ratio };
+        ratios.push(ratio);
         rows.push(vec![
             format!("{:.2}", 1e3 * width),
             format!("{:.4}", STEEL.density * total_volume(&pairs.mesh)),
@@ -226,7 +226,7 @@ fn other_widths(context: &mut CaseContext) -> Result<(), CaseError> {
         rows,
     );
     context.check(
-        Check::new("largest_ratio", "largest ratio of the two pairs over all these widths", "1", largest)
+        Check::new("largest_ratio", "largest ratio of the two pairs over all these widths", "1", largest(ratios))
             .independent(4105.0 / 1989.0, "ratio of the pair that Table 5.2 prints for ABAQUS")
             .at_most(0.2, "no width brings the ratio near the published one; nor do modulus and density, which move both alike"),
     );

@@ -9,7 +9,7 @@ use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::solids::{STEEL, Vec3, free_body, mesh_of, name_of};
+use crate::solids::{STEEL, Vec3, free_body, largest, mesh_of, name_of};
 use crate::surface_picture::{SurfacePicture, surface_picture};
 
 mod oracle;
@@ -79,7 +79,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                     .relative(tolerance, reason)
                     .golden(GoldenTolerance::MIXED),
             );
-            let spread = pair.iter().map(|m| (m.frequency / mean - 1.0).abs()).fold(0.0, f64::max);
+            let spread = largest(pair.iter().map(|m| (m.frequency / mean - 1.0).abs()));
             context.check(
                 Check::new(
                     &format!("{key}_pair"),
@@ -124,7 +124,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             }
         }
         rows.push(row);
-        let rigid = found.modes[..6].iter().map(|m| m.frequency).fold(0.0, f64::max);
+        let rigid = largest(found.modes[..6].iter().map(|m| m.frequency));
         context.check(
             Check::new(
                 &format!("rigid_{}_{around}", name_of(order)),

@@ -11,7 +11,7 @@ use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::solids::{STEEL, Vec3, free_body, mesh_of, name_of};
+use crate::solids::{STEEL, Vec3, free_body, largest, mesh_of, name_of};
 
 mod oracle;
 
@@ -246,8 +246,8 @@ fn step_boundary(
                 return Ok(true);
             }
         }
-        let largest = solid.displacement.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
-        Ok(!(largest <= 1e-11))
+        let size = largest(solid.displacement.iter().flatten().map(|x| x.abs()));
+        Ok(!(size <= 1e-11))
     };
     let (mut low, mut high) = (0.5, 1.5);
     for _ in 0..9 {

@@ -70,6 +70,12 @@ pub fn constant_load(forces: Vec<(u32, Vec3)>) -> Load {
     Load { forces, profile: Profile::Constant(1.0) }
 }
 
+/// The largest of some sizes, 0 of none; once not a number, always so (`f64::max` would drop it).
+pub fn largest(sizes: impl IntoIterator<Item = f64>) -> f64 {
+    let larger = |most: f64, size: f64| if most.is_nan() || size <= most { most } else { size };
+    sizes.into_iter().fold(0.0, larger)
+}
+
 /// Abscissas on (0, 1) and weights of Gauss' four-point rule.
 fn gauss() -> [(f64, f64); 4] {
     let root = (6f64 / 5.0).sqrt();
@@ -237,6 +243,12 @@ mod tests {
 
     fn total(forces: &[(u32, Vec3)]) -> Vec3 {
         [0, 1, 2].map(|i: usize| forces.iter().map(|(_, f)| f[i]).sum())
+    }
+
+    #[test]
+    fn what_is_not_a_number_stays() {
+        assert!(largest([1.0, f64::NAN, 2.0]).is_nan());
+        assert_eq!(largest([1.0, 3.0, 2.0]), 3.0);
     }
 
     #[test]
