@@ -144,6 +144,35 @@ fn a_pulled_bar() {
     }
 }
 
+/// A bar that hangs by its end: u = ρg/E (L x − x²/2) (ν = 0), which ten-node elements hold.
+#[test]
+fn a_bar_under_its_own_weight() {
+    let size = [0.1, 0.02, 0.02];
+    let gravity = 10.0;
+    for (order, tolerance) in [(Order::Linear, 0.25), (Order::Quadratic, 1e-6)] {
+        let mut problem = bar(size, [5, 2, 2], order, true);
+        problem.material = LinearElastic::new(YOUNG, 0.0).unwrap();
+        problem.gravity = [gravity, 0.0, 0.0];
+        hold(&mut problem, |x| if x[0] < 1e-9 { [Some(0.0); 3] } else { [None; 3] });
+        let model = SolidModel::new(problem).unwrap();
+        let found = equilibrium(&model, 0.0, &EquilibriumOptions::default()).unwrap();
+        let per_length = 7800.0 * gravity / YOUNG;
+        let scale = 0.5 * per_length * size[0] * size[0];
+        for (u, x) in found.displacement.iter().zip(&model.problem.nodes) {
+            let exact = [per_length * (size[0] * x[0] - 0.5 * x[0] * x[0]), 0.0, 0.0];
+            for i in 0..3 {
+                // Cut cells load their corners unevenly, which five linear ones along leave in the
+                // answer; of quadratic ones squares of a strain of 4e-8 are left.
+                let error = (u[i] - exact[i]).abs() / scale;
+                assert!(error <= tolerance, "{order:?} {x:?}: {error}");
+            }
+        }
+        let weight: f64 = 7800.0 * size.iter().product::<f64>() * gravity;
+        let held: f64 = found.reactions.iter().map(|force| force[0]).sum();
+        assert!((held / weight + 1.0).abs() <= 1e-9, "{order:?} {held} {weight}");
+    }
+}
+
 /// Large rotation: a strip bent by a force keeps equilibrium of force and moment.
 #[test]
 fn large_deflection_converges_in_load_steps() {

@@ -35,11 +35,18 @@ pub struct Tet10 {
     pub points: [Point; POINTS],
 }
 
+// (5 − √5)/20 and (5 + 3√5)/20.
+const NEAR: f64 = 0.138_196_601_125_010_5;
+const FAR: f64 = 0.585_410_196_624_968_5;
+
+/// Shares of the values at the four quadrature points in the linear field through them, at
+/// barycentric coordinates `l`.
+pub fn from_points(l: &[f64; 4]) -> [f64; POINTS] {
+    l.map(|coordinate| (coordinate - NEAR) / (FAR - NEAR))
+}
+
 /// Barycentric coordinates of quadrature point `point` of the four-point rule of degree 2.
 fn stiffness_rule(point: usize) -> [f64; 4] {
-    // (5 − √5)/20 and (5 + 3√5)/20.
-    const NEAR: f64 = 0.138_196_601_125_010_5;
-    const FAR: f64 = 0.585_410_196_624_968_5;
     let mut coordinates = [NEAR; 4];
     coordinates[point] = FAR;
     coordinates

@@ -12,18 +12,32 @@ mod bearing_conservation;
 mod cage_slip;
 #[path = "../cage_speed_table_5_4/case.rs"]
 mod cage_speed_table_5_4;
+#[path = "../cage_modes_table_5_3/case.rs"]
+mod cage_modes_table_5_3;
+#[path = "../cantilever_timoshenko/case.rs"]
+mod cantilever_timoshenko;
+#[path = "../free_ring_modes/case.rs"]
+mod free_ring_modes;
 #[path = "../hertz_elliptic/case.rs"]
 mod hertz_elliptic;
 #[path = "../kinematic_frequencies/case.rs"]
 mod kinematic_frequencies;
 #[path = "../misalignment_moment/case.rs"]
 mod misalignment_moment;
+#[path = "../rod_wave/case.rs"]
+mod rod_wave;
 #[path = "../rotating_load_orbit/case.rs"]
 mod rotating_load_orbit;
 #[path = "../settling_and_turning/case.rs"]
 mod settling_and_turning;
+#[path = "../solid_elements/case.rs"]
+mod solid_elements;
+#[path = "../solid_energy_and_steps/case.rs"]
+mod solid_energy_and_steps;
 #[path = "../statics_independent/case.rs"]
 pub mod statics_independent;
+#[path = "../thick_ring_lame/case.rs"]
+mod thick_ring_lame;
 #[path = "../varying_compliance_dynamics/case.rs"]
 mod varying_compliance_dynamics;
 #[path = "../varying_compliance_statics/case.rs"]
@@ -42,6 +56,13 @@ pub const CASES: &[Case] = &[
     kinematic_frequencies::CASE,
     cage_slip::CASE,
     cage_speed_table_5_4::CASE,
+    solid_elements::CASE,
+    solid_energy_and_steps::CASE,
+    rod_wave::CASE,
+    thick_ring_lame::CASE,
+    cantilever_timoshenko::CASE,
+    free_ring_modes::CASE,
+    cage_modes_table_5_3::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).

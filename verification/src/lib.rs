@@ -24,4 +24,6 @@ pub mod pareto;
 pub mod published;
 pub mod report;
 pub mod runner;
+pub mod solids;
 pub mod studies;
+pub mod surface_picture;

@@ -99,7 +99,7 @@ impl<'a> Newton<'a> {
     fn new(model: &'a SolidModel, t: f64, options: &'a EquilibriumOptions) -> Self {
         let unknowns = Unknowns::new(model);
         let mut external = vec![[0.0; 4]; model.mass.len()];
-        model.add_external_forces(t, &mut external);
+        model.add_static_forces(t, &mut external);
         Newton {
             matrix: pattern(&model.problem, &unknowns),
             unknowns,

@@ -1,10 +1,12 @@
-//! Flexible solids of tetrahedra: what is simulated, explicit steps, the step they can take.
+//! Flexible solids of tetrahedra: what is simulated, explicit steps and the step they can take,
+//! equilibrium, natural modes, stresses.
 pub mod energy;
 pub mod equilibrium;
 pub mod explicit;
 pub mod model;
 pub mod modes;
 pub mod step_limit;
+pub mod stress;
 pub mod tangent;
 pub mod team;
 pub mod tet10_blocks;

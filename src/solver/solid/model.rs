@@ -191,8 +191,38 @@ impl SolidModel {
         }
     }
 
-    /// Adds loads and gravity at time `t`, N.
+    /// Adds loads and gravity at time `t`, N, gravity by the lumped masses: all nodes of a free
+    /// body then fall alike.
     pub fn add_external_forces(&self, t: f64, forces: &mut [Node]) {
+        self.add_loads(t, forces);
+        self.add_gravity(forces, self.mass.iter().copied().enumerate());
+    }
+
+    /// Adds loads and gravity at time `t`, N, gravity as ∫Nρg dV: what equilibrium needs. For
+    /// four-node elements this is the same as by lumped masses. For ten-node elements lumped
+    /// masses are positive everywhere, as explicit steps need them, but as a load they would cost an
+    /// order of convergence; the consistent load pulls corners upwards.
+    pub fn add_static_forces(&self, t: f64, forces: &mut [Node]) {
+        self.add_loads(t, forces);
+        match &self.problem.elements {
+            Elements::Linear(_) => {
+                self.add_gravity(forces, self.mass.iter().copied().enumerate());
+            }
+            Elements::Quadratic(list) if self.problem.gravity != [0.0; 3] => {
+                for element in list {
+                    let shares = tet10::consistent_mass(
+                        &corners(&self.problem.nodes, element),
+                        self.problem.density,
+                    );
+                    let sums = shares.map(|row| row.iter().sum());
+                    self.add_gravity(forces, element.iter().map(|n| *n as usize).zip(sums));
+                }
+            }
+            Elements::Quadratic(_) => {}
+        }
+    }
+
+    fn add_loads(&self, t: f64, forces: &mut [Node]) {
         for load in &self.problem.loads {
             let factor = load.profile.value(t);
             for (node, force) in &load.forces {
@@ -202,12 +232,17 @@ impl SolidModel {
                 }
             }
         }
+    }
+
+    /// Weight of masses at nodes; nothing without gravity.
+    fn add_gravity(&self, forces: &mut [Node], masses: impl Iterator<Item = (usize, f64)>) {
         let gravity = self.problem.gravity;
-        if gravity != [0.0; 3] {
-            for (sum, mass) in forces.iter_mut().zip(&self.mass) {
-                for i in 0..3 {
-                    sum[i] += mass * gravity[i];
-                }
+        if gravity == [0.0; 3] {
+            return;
+        }
+        for (node, mass) in masses {
+            for i in 0..3 {
+                forces[node][i] += mass * gravity[i];
             }
         }
     }
