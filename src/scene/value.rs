@@ -24,6 +24,7 @@ pub enum Checked {
     /// Pairs of [`Kind::Curve`].
     Curve(Vec<[f64; 2]>),
     Texts(Vec<String>),
+    Quantities(Vec<f64>),
 }
 
 /// A problem and where it is: the offset of the element of a list or profile that has it.
@@ -80,6 +81,16 @@ pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
         (Kind::Profile(dimension, range), Value::Table(entries)) => {
             profile::read(key, dimension, range, entries, node.offset).map(Checked::Profile)
         }
+        (Kind::TrueOrProfile(..), Value::Boolean(value)) => Ok(Checked::Boolean(*value)),
+        (Kind::TrueOrProfile(dimension, range), Value::Text(_) | Value::Number(_)) => {
+            quantity(key, &node.value, dimension, range).map(Checked::Number).map_err(here)
+        }
+        (Kind::TrueOrProfile(dimension, range), Value::Table(entries)) => {
+            profile::read(key, dimension, range, entries, node.offset).map(Checked::Profile)
+        }
+        (Kind::Quantities(dimension, range), Value::List(items)) => {
+            quantities(key, items, node.offset, dimension, range)
+        }
         (Kind::Either(kinds), Value::Text(_) | Value::Number(_)) => {
             either(key, kinds, &node.value).map_err(here)
         }
@@ -108,9 +119,12 @@ pub fn check_bare(key: &'static Key, text: &str) -> Result<Checked, Problem> {
             _ => Value::Text(text.to_string()),
         },
         Kind::Either(_) if parse_number(text).is_ok() => Value::Number(text.to_string()),
-        Kind::Vector(..) | Kind::Choices(_) | Kind::Curve(..) | Kind::Texts => {
-            return Err(Problem::NotSweepable);
-        }
+        Kind::Vector(..)
+        | Kind::Choices(_)
+        | Kind::Curve(..)
+        | Kind::Texts
+        | Kind::Quantities(..)
+        | Kind::TrueOrProfile(..) => return Err(Problem::NotSweepable),
         Kind::Text | Kind::Choice(_) | Kind::Quantity(..) | Kind::Profile(..) | Kind::Either(_) => {
             Value::Text(text.to_string())
         }
@@ -169,6 +183,29 @@ fn curve(
     Ok(Checked::Curve(points))
 }
 
+/// A list of increasing quantities.
+fn quantities(
+    key: &Key,
+    items: &[Node],
+    offset: usize,
+    dimension: Dimension,
+    range: Range,
+) -> Result<Checked, ValueError> {
+    let mut values: Vec<f64> = Vec::new();
+    for item in items {
+        let value = quantity(key, &item.value, dimension, range).map_err(|p| (item.offset, p))?;
+        if values.last().is_some_and(|last| value <= *last) {
+            let written = shown(&item.value);
+            return Err((item.offset, Problem::NotIncreasing { written }).into());
+        }
+        values.push(value);
+    }
+    if values.is_empty() {
+        return Err((offset, wrong_kind(key, &Value::Other("an empty list"))).into());
+    }
+    Ok(Checked::Quantities(values))
+}
+
 /// A kind in words.
 fn expected(kind: Kind) -> String {
     match kind {
@@ -192,6 +229,12 @@ fn expected(kind: Kind) -> String {
             format!("a list of pairs, each {} with its unit and a plain number", dimension.name())
         }
         Kind::Texts => "a list of texts in quotes".to_string(),
+        Kind::Quantities(dimension, _) => {
+            format!("a list of increasing values with units, each {}", dimension.name())
+        }
+        Kind::TrueOrProfile(dimension, range) => {
+            format!("true, or {} with its unit, {range}, or a profile of it over time", dimension.name())
+        }
     }
 }
 

@@ -41,13 +41,18 @@ pub struct ExplicitSolid {
     pub limit: SolidStepLimit,
     pub displacement: Vec<Node>,
     /// At `time` for Runge–Kutta; half a step before it for central differences.
-    rate: Vec<Node>,
+    pub(super) rate: Vec<Node>,
     force: Vec<Node>,
     /// Work of loads and drives, and of damping (≤ 0), since the start, J.
     pub external_work: f64,
     pub damping_work: f64,
     pub work: SolidWork,
     stages: Option<Box<Stages>>,
+}
+
+/// Vectors as the force loop reads them.
+pub fn padded(list: Vec<Vec3>) -> Vec<Node> {
+    list.into_iter().map(|v| [v[0], v[1], v[2], 0.0]).collect()
 }
 
 /// Room for the stages of Runge–Kutta.
@@ -70,11 +75,23 @@ impl ExplicitSolid {
         displacement: Vec<Vec3>,
         velocity: Vec<Vec3>,
     ) -> Result<ExplicitSolid, SolidError> {
-        let pad = |list: Vec<Vec3>| -> Vec<Node> {
-            list.into_iter().map(|v| [v[0], v[1], v[2], 0.0]).collect()
-        };
-        let displacement = pad(displacement);
+        let displacement = padded(displacement);
         let limit = step_limit(&model, &displacement, method);
+        ExplicitSolid::with_limit(model, method, stepping, limit, displacement, padded(velocity))
+    }
+
+    /// As [`ExplicitSolid::new`] where the step limit at the start is known already.
+    ///
+    /// # Errors
+    /// A step beyond the stability limit.
+    pub fn with_limit(
+        model: SolidModel,
+        method: ExplicitMethod,
+        stepping: SolidStepping,
+        limit: SolidStepLimit,
+        displacement: Vec<Node>,
+        velocity: Vec<Node>,
+    ) -> Result<ExplicitSolid, SolidError> {
         let step_size = match stepping {
             SolidStepping::FractionOfLimit(fraction) => fraction * limit.step,
             SolidStepping::Fixed(step) => step,
@@ -104,7 +121,7 @@ impl ExplicitSolid {
             steps: 0,
             limit,
             displacement,
-            rate: pad(velocity),
+            rate: velocity,
             force: vec![[0.0; 4]; count],
             external_work: 0.0,
             damping_work: 0.0,

@@ -1,0 +1,54 @@
+//! Everything an explicit run of a solid needs to go on with the same bits.
+
+use super::explicit::{ExplicitSolid, SolidWork};
+use super::tet4_blocks::Node;
+
+/// A solid at the end of a step, as plain numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SolidCheckpoint {
+    /// s.
+    pub time: f64,
+    pub steps: u64,
+    pub displacement: Vec<Node>,
+    /// At `time` for Runge–Kutta; half a step before it for central differences.
+    pub rate: Vec<Node>,
+    /// J.
+    pub external_work: f64,
+    pub damping_work: f64,
+    pub work: SolidWork,
+}
+
+impl ExplicitSolid {
+    pub fn checkpoint(&self) -> SolidCheckpoint {
+        let mut checkpoint = SolidCheckpoint::default();
+        self.checkpoint_into(&mut checkpoint);
+        checkpoint
+    }
+
+    /// As [`ExplicitSolid::checkpoint`]; allocates nothing the second time.
+    pub fn checkpoint_into(&self, checkpoint: &mut SolidCheckpoint) {
+        checkpoint.time = self.time;
+        checkpoint.steps = self.steps;
+        checkpoint.displacement.clone_from(&self.displacement);
+        checkpoint.rate.clone_from(&self.rate);
+        checkpoint.external_work = self.external_work;
+        checkpoint.damping_work = self.damping_work;
+        checkpoint.work = self.work;
+    }
+
+    /// Goes back or on to where a checkpoint of the same problem, method and step was taken.
+    ///
+    /// # Panics
+    /// If the checkpoint has another number of nodes.
+    pub fn restore(&mut self, checkpoint: &SolidCheckpoint) {
+        assert_eq!(checkpoint.displacement.len(), self.displacement.len());
+        assert_eq!(checkpoint.rate.len(), self.rate.len());
+        self.time = checkpoint.time;
+        self.steps = checkpoint.steps;
+        self.displacement.clone_from(&checkpoint.displacement);
+        self.rate.clone_from(&checkpoint.rate);
+        self.external_work = checkpoint.external_work;
+        self.damping_work = checkpoint.damping_work;
+        self.work = checkpoint.work;
+    }
+}
