@@ -3,7 +3,7 @@
 CARGO ?= cargo
 VERIFY = $(CARGO) run --release --locked -q -p verification --bin verify --
 
-.PHONY: verify verify-full test golden bench pareto doc lint fuzz
+.PHONY: verify verify-full test golden bench pareto mutants doc lint fuzz
 
 ## Benchmarks of the source against independent oracles; report in target/verify.
 verify:
@@ -21,17 +21,25 @@ test:
 golden:
 	$(VERIFY) golden --case "$(CASE)" --reason "$(REASON)"
 
-## Kernels under criterion.
+## Kernels under criterion; what an accuracy costs in motion, with a bound on lanes against plain loops.
 bench:
 	$(CARGO) bench --locked --bench statics --profile release
+	$(CARGO) bench --locked --bench dynamics --profile release
+	$(CARGO) bench --locked --bench solids --profile release
 
 ## Run time against error, as CSV and SVG in target/pareto.
 pareto:
 	$(VERIFY) pareto --out target/pareto
 
-## A million mutated scenes through the reader.
+## Faults seeded in the physics, each to be caught by a test: report in target/mutants. JOBS=n, ONLY=id.
+JOBS ?= 1
+mutants:
+	$(VERIFY) mutants --jobs $(JOBS) $(if $(ONLY),--only $(ONLY))
+
+## A million mutated scenes and mesh files through their readers.
 fuzz:
 	SCENE_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test scene_fuzz -- --nocapture
+	MESH_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test mesh_fuzz -- --nocapture
 
 doc:
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --release --locked --no-deps --workspace

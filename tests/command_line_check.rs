@@ -157,3 +157,13 @@ fn twice_the_radial_clearance_as_diametral_gives_the_same_bits() {
         }
     }
 }
+
+#[test]
+fn the_motion_of_a_run_is_echoed() {
+    // A moving outer race, foundation, cage, profiles and traction; a scene for statics has none.
+    let root = tempdir().unwrap();
+    let text = |name| std::fs::read_to_string(scene(name)).unwrap();
+    let understood = echo(root.path(), &text("cage_600rpm.toml"));
+    insta::assert_snapshot!(serde_json::to_string_pretty(&understood["motion"]).unwrap());
+    assert!(echo(root.path(), &text("deep_groove_tilt.toml"))["motion"].is_null());
+}

@@ -526,3 +526,29 @@ fn tolerances_read_back_as_written() {
     let tolerances: Tolerances = serde_json::from_str(text).unwrap();
     assert_eq!(serde_json::to_string(&tolerances).unwrap(), text);
 }
+
+#[test]
+fn a_direction_is_the_same_a_turn_further() {
+    let write = |name: &str, values: [f64; 3], unit: &str| {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join(name);
+        let rows: String =
+            values.iter().enumerate().map(|(i, value)| format!("{i},{value:?}\n")).collect();
+        fs::write(&path, format!("time [s],cage_angle [{unit}]\n{rows}")).unwrap();
+        (root, path)
+    };
+    let differing = |reference: [f64; 3], candidate: [f64; 3], unit: &str, class| {
+        let (_a, reference) = write("a.csv", reference, unit);
+        let (_b, candidate) = write("b.csv", candidate, unit);
+        compared(&reference, &candidate, class).differing
+    };
+    let usual = ToleranceClass::F64Reordered;
+    assert_eq!(differing([-45.0, 0.0, 180.0], [315.0, 360.0, -180.0], "deg", usual), 0);
+    let tau = std::f64::consts::TAU;
+    assert_eq!(differing([-1.0, 0.0, 3.0], [tau - 1.0, -tau, 3.0], "rad", usual), 0);
+    // Not half a turn, not two, not in metres, and not to the bit.
+    assert_eq!(differing([-45.0, 0.0, 1.0], [135.0, 720.0, 1.0], "deg", usual), 2);
+    assert_eq!(differing([-45.0, 0.0, 1.0], [315.0, 0.0, 1.0], "m", usual), 1);
+    let exact = ToleranceClass::F64Exact;
+    assert_eq!(differing([-45.0, 0.0, 1.0], [315.0, 0.0, 1.0], "deg", exact), 1);
+}

@@ -243,7 +243,8 @@ impl Drives {
         }
         if self.turning {
             let force = Profile::Constant(100.0);
-            problem.rotating_load = Some(RotatingLoad { force, speed: 30.0, phase: 0.4 });
+            problem.rotating_load =
+                Some(RotatingLoad { force, speed: Profile::Constant(30.0), phase: 0.4 });
             problem.unbalance = 1e-4;
         }
     }

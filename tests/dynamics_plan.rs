@@ -5,14 +5,14 @@ mod common;
 #[path = "common/dynamics.rs"]
 mod dynamics;
 
-use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
+use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
-use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::solver::dynamics::contacts::{Driver, Work};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad, Rotation};
 use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, Start};
-use bearing_dynamics::solver::dynamics::state::{BODY, Layout};
+use bearing_dynamics::solver::dynamics::state::{BODY, Layout, Ledger, SPIN, VELOCITY};
 use bearing_dynamics::solver::profile::Profile;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
@@ -74,9 +74,67 @@ fn no_cage_equals_a_cage_that_touches_nothing() {
 }
 
 #[test]
+fn no_cage_equals_a_cage_of_no_stiffness() {
+    let one = at_work(8, 1);
+    for force in [CageForce::Penalty { stiffness: 0.0 }, CageForce::Hertz { stiffness: 0.0 }] {
+        let mut other = one.clone();
+        let mut body = cage(&one.geometry, Pocket::Spherical, Guidance::OuterRace);
+        body.contacts.force = force;
+        // Moved aside, so that balls lie in the walls of their pockets and the ring in its guide.
+        body.contacts.pocket_radius = one.geometry.ball_radius + 10e-6;
+        body.contacts.race_clearance = 10e-6;
+        other.cage = Some(body);
+        let mut touching = simulation(&other, STEP, Start::Equilibrium);
+        let at = touching.system.layout.cage();
+        touching.state[at..at + 3].copy_from_slice(&[0.1e-3, 0.1e-3, 0.0]);
+        run(&mut touching, 300);
+        assert!(touching.system.pockets.iter().all(|pocket| pocket.penetration > 0.0));
+        assert!(touching.system.guides.iter().all(|guide| guide.penetration > 0.0));
+        let end = after(&one, 300);
+        let ends = [&end, &touching].map(|end| without_cage(&end.system.layout, &end.state));
+        assert_eq!(value_bits(&ends[0]), value_bits(&ends[1]));
+    }
+}
+
+#[test]
+fn a_cage_without_friction_turns_no_ball() {
+    for pocket in [Pocket::Cylindrical, Pocket::Spherical] {
+        let mut problem = at_work(8, 0);
+        let mut body = cage(&problem.geometry, pocket, Guidance::OuterRace);
+        body.contacts.friction = 0.0;
+        body.contacts.pocket_radius = problem.geometry.ball_radius + 50e-6;
+        problem.cage = Some(body);
+        let mut simulation = simulation(&problem, STEP, Start::Equilibrium);
+        let layout = simulation.system.layout;
+        let at = layout.cage() + VELOCITY;
+        simulation.state[at..at + 3].copy_from_slice(&[0.5, -0.3, 0.4]);
+        let spins = |state: &[f64]| -> Vec<Vector3<f64>> {
+            (0..8).map(|ball| layout.ball_vector(state, SPIN, ball).into()).collect()
+        };
+        let before = spins(&simulation.state);
+        let mut largest = 0.0_f64;
+        for _ in 0..300 {
+            simulation.step().unwrap();
+            let loads = simulation.system.pockets.iter().map(|pocket| pocket.normal_load);
+            largest = loads.fold(largest, f64::max);
+        }
+        assert!(largest > 10.0, "no ball was hit: {largest} N");
+        assert_eq!(ledger(&simulation, Ledger::CageFriction), 0.0);
+        // What is left is rounding of arm × (load · normal): 1e-16 of 800 N on 6 mm turn a ball of
+        // 1e-7 kg m² by 5e-9 rad/s², for 0.3 ms.
+        for (spin, first) in spins(&simulation.state).iter().zip(&before) {
+            assert!((spin - first).norm() <= 1e-11, "{}", spin - first);
+        }
+    }
+}
+
+#[test]
 fn no_traction_equals_a_coefficient_of_zero() {
     let one = at_work(8, 0);
+    let flat = ExponentialCurve { b: 0.0, c: 100.0, d: 0.0 };
     let zeros = [
+        TractionLaw::SlideToRoll { curve: flat, entrainment_floor: 0.01 },
+        TractionLaw::SlipSpeed { curve: flat },
         TractionLaw::Constant { coefficient: 0.0, regularisation_speed: 0.05 },
         TractionLaw::Table { points: vec![[0.0, 0.0], [1.0, 0.0]] },
     ];
@@ -125,7 +183,8 @@ fn loads_of_zero_equal_none() {
     let one = at_work(8, 1);
     let mut other = one.clone();
     other.gravity = [0.0, -0.0, 0.0];
-    other.rotating_load = Some(RotatingLoad { force: Profile::ZERO, speed: 100.0, phase: 0.3 });
+    other.rotating_load =
+        Some(RotatingLoad { force: Profile::ZERO, speed: Profile::Constant(100.0), phase: 0.3 });
     other.inner.foundation_stiffness = [0.0; 5];
     check_twins(&one, &other);
     // Gravity on a bearing of weightless force: it does act when it is there.
@@ -197,6 +256,21 @@ fn both_drivers_run_with_the_same_bits() {
 }
 
 #[test]
+fn simulations_side_by_side_have_the_bits_of_one_alone() {
+    // A simulation is one thread's work; what others do beside it changes nothing.
+    let problems = [at_work(8, 1), at_work(11, 2), at_work(9, 3)];
+    let alone: Vec<_> = problems.iter().map(|problem| bits(&after(problem, 200).state)).collect();
+    for (problem, expected) in problems.iter().zip(&alone) {
+        std::thread::scope(|scope| {
+            let runs = [0; 4].map(|_| scope.spawn(|| bits(&after(problem, 200).state)));
+            for run in runs {
+                assert_eq!(&run.join().unwrap(), expected);
+            }
+        });
+    }
+}
+
+#[test]
 fn going_on_from_a_state_changes_no_bit() {
     for law in 0..5 {
         let mut problem = at_work(8, law);
@@ -233,6 +307,8 @@ fn work_is_counted_exactly() {
         slices: 15 * 16 * evaluations,
         pocket_tests: 0,
         guide_tests: 0,
+        factorisations: 0,
+        rejected_steps: 0,
     };
     assert_eq!(after(&problem, steps as usize).system.work, closed);
     // No traction: no slices.

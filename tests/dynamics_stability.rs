@@ -339,3 +339,43 @@ fn lankarani_and_nikravesh_give_back_the_restitution() {
         assert!(Vector3::from(simulation.system.table.contact[layout.padded].normal)[1] > 0.999);
     }
 }
+
+#[test]
+fn the_reason_names_what_binds_the_step() {
+    let radial = [50.0, 0.0, -1500.0, 0.0, 0.0];
+    let turning = || bearing(table_4_1(-5e-6), radial, 1000.0 * RPM);
+    let founded = |stiffness: f64, damping: f64| {
+        let mut problem = turning();
+        let mut outer = free_race();
+        outer.rotation = Rotation::Speed(Profile::ZERO);
+        outer.foundation_stiffness = [1e8, 1e8, stiffness, 1e5, 1e5];
+        outer.foundation_damping = [500.0, 500.0, damping, 0.5, 0.5];
+        problem.outer = Some(outer);
+        problem
+    };
+    let mut sliding = turning();
+    sliding.traction = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 0.005 };
+    let mut damped = turning();
+    damped.damping = ContactDamping::HuntCrossley { alpha: 200.0 };
+    // Both, one of them far slower than the other.
+    let mut both = sliding.clone();
+    both.damping = ContactDamping::HuntCrossley { alpha: 0.1 };
+    for (problem, expected) in [
+        (turning(), "stiffest contact: oscillation"),
+        (sliding, "traction onset: slip decays"),
+        (both, "traction onset: slip decays"),
+        (damped, "contact damping: motion decays"),
+        (founded(1e8, 1e6), "dashpot of the foundation: motion decays"),
+        (founded(1e12, 0.0), "spring of the foundation: oscillation"),
+    ] {
+        let layout = Layout::new(8, false);
+        let state = start::at_equilibrium(&problem, &layout).unwrap().0;
+        let mut system = System::new(problem.clone(), Driver::Lanes);
+        let limit = step_limit(&mut system, 0.0, &state).unwrap();
+        println!("{}: {:e} s", limit.reason(), limit.step);
+        assert!(limit.reason().starts_with(expected), "{} instead of {expected}", limit.reason());
+        // Nothing was taken out for good.
+        assert_eq!(system.problem, problem);
+        assert_eq!(step_limit(&mut system, 0.0, &state), Some(limit));
+    }
+}

@@ -82,7 +82,7 @@ fn a_ring_from_gmsh_in_every_form() {
         let name = file("ring", 1, form);
         let Loaded { mesh, .. } = read(&name);
         sound(&mesh, &name);
-        assert!(off(total_volume(&mesh), 8031.238064854431e-9) <= 1e-12, "{name}");
+        assert!(off(total_volume(&mesh), 8031.238064854431 * 1e-9) <= 1e-12, "{name}");
 
         let name = file("ring", 2, form);
         let Loaded { mesh, .. } = read(&name);
@@ -112,7 +112,7 @@ fn all_forms_of_a_mesh_are_the_same_mesh() {
 }
 
 #[test]
-fn an_input_deck_of_ours_reads_back_bit_for_bit() {
+fn an_input_deck_of_ours_reads_back() {
     let solid = ring(
         &Ring { inner_radius: 0.01, outer_radius: 0.02, width: 0.01 },
         &RingMesh { around: 10, radial: 2, axial: 2, radial_growth: 1.0 },
@@ -124,9 +124,18 @@ fn an_input_deck_of_ours_reads_back_bit_for_bit() {
         let mut back = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap().mesh;
         assert_eq!(back.node_sets.remove("all_nodes").unwrap().len(), mesh.nodes.len());
         assert_eq!(back.element_sets.remove("all_elements").unwrap().len(), mesh.elements.len());
+        // CalculiX reads 20 characters a number: at worst the seventeenth digit is lost.
+        for (found, exact) in back.nodes.as_flattened().iter().zip(mesh.nodes.as_flattened()) {
+            assert!((found - exact).abs() <= 1e-16 * mesh.size().max(1.0), "{found:e} {exact:e}");
+        }
+        let numbers = text.lines().flat_map(|line| line.split(", "));
+        assert!(numbers.filter(|word| word.parse::<f64>().is_ok()).all(|word| word.len() <= 20));
+        back.nodes = mesh.nodes.clone();
         assert_eq!(back, mesh);
-        let again = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap().mesh;
-        assert_eq!(write_abaqus(&again).unwrap(), text, "reading what was written adds nothing");
+        // What was read can be written and read again without any change.
+        let once = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap().mesh;
+        let text = write_abaqus(&once).unwrap();
+        assert_eq!(read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap().mesh, once);
     }
     let mut mesh = solid.mesh;
     mesh.node_sets.insert("two words".into(), vec![0]);

@@ -216,7 +216,20 @@ fn literal_cage_has_the_stated_mass() {
     assert!((orders[0] - 2.0).abs() <= 0.15, "{orders:?} {errors:?}");
     assert!(orders[1] >= 3.5, "{orders:?} {errors:?}");
     assert!(errors[1] <= 2e-5, "{errors:?}");
-    assert!(off(7850.0 * total_volume(&curved(&meshes[0])), 0.069) <= 1e-3);
+    let mesh = curved(&meshes[0]);
+    assert!(off(7850.0 * total_volume(&mesh), 0.069) <= 1e-3);
+    // Along a pocket's rim mid-side nodes lie on both cylinders.
+    let pocket = mesh.node_set("pocket_1").unwrap();
+    for (name, radius) in [("inner", CAGE.inner_radius), ("outer", CAGE.outer_radius)] {
+        let wall = mesh.node_set(name).unwrap();
+        let rim: Vec<u32> = pocket.iter().copied().filter(|n| wall.contains(n)).collect();
+        assert_eq!(rim.len(), 2 * 16);
+        for node in rim {
+            let [x, y, z] = mesh.nodes[node as usize];
+            assert!(off(y.hypot(z), radius) <= 1e-12, "{name}");
+            assert!(off(x.hypot(z), CAGE.pocket_radius) <= 1e-12, "{name}");
+        }
+    }
 }
 
 #[test]

@@ -282,7 +282,8 @@ fn killed_outright_it_goes_on_from_the_last_state_kept() {
 #[test]
 fn a_run_that_fails_says_where_and_keeps_its_state() {
     let place = Place::new();
-    let numerics = "end = \"10 ms\"\nstep = \"40 us\"\noutput_interval = \"40 us\"";
+    let numerics = "end = \"10 ms\"\nstep = \"6 us\"\noutput_interval = \"60 us\"\n\
+        start = \"nominal\"\nenergy_limit = 1e-7";
     let scene = place.scene("scene.toml", &scene(numerics, "plots = [\"series\"]"));
     let out = place.path("out");
     let output = run(&scene, &out, &[]);
@@ -304,6 +305,41 @@ fn a_run_that_fails_says_where_and_keeps_its_state() {
     let again = run(&scene, &out, &["--resume"]);
     assert_eq!((code(&again), stderr(&again)), (2, message.clone()));
     assert_eq!(stderr(&run(&scene, &out, &[])), message);
+}
+
+#[test]
+fn a_ball_forced_out_of_its_races_is_named_and_the_state_before_it_kept() {
+    let place = Place::new();
+    // Grooves have no shoulders: it takes a load that no steel bears.
+    let thrust =
+        r#"x = { load = { smooth_ramp = ["0 N", "1e9 N"], start = "0 s", duration = "0.5 ms" } }"#;
+    let numerics = "end = \"5 ms\"\nstep = \"0.2 us\"\noutput_interval = \"20 us\"";
+    let text = scene(numerics, "plots = []").replace(r#"z = { load = "-250 N" }"#, thrust);
+    assert!(text.contains(thrust));
+    let scene = place.scene("scene.toml", &text);
+    let out = place.path("out");
+    let output = run(&scene, &out, &[]);
+    assert_eq!(code(&output), 2);
+    let message = stderr(&output);
+    assert!(
+        message.contains("bearing: ball ") && message.contains("has left its races"),
+        "{message}"
+    );
+    let state = json(out.join("state.json"));
+    assert_eq!(state["stopped"], "failed");
+    assert!(message.contains(state["error"].as_str().unwrap()), "{message}");
+    // The last good state: numbers, of a step before the one that failed, with the rows so far.
+    let numbers = state["state"].as_array().unwrap();
+    assert!(numbers.len() > 13 * 8 && numbers.iter().all(Value::is_number));
+    let step = format!("step {}:", state["steps"].as_u64().unwrap() + 1);
+    assert!(message.contains(&step), "{message}");
+    let rows = state["rows"].as_u64().unwrap();
+    assert!(rows >= 2, "{rows} rows");
+    let series = fs::read_to_string(out.join("series.csv")).unwrap();
+    assert_eq!(series.lines().count() as u64, rows + 1);
+    assert_eq!(json(out.join("summary.json"))["complete"], false);
+    // It is a state to go on from: the same step fails again.
+    assert_eq!(stderr(&run(&scene, &out, &["--resume"])), message);
 }
 
 #[test]

@@ -9,8 +9,8 @@ use bearing_dynamics::output::state::{
     self, StateError, StateRecord, Stopped, fingerprint, read, resume, save,
 };
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
-use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Start};
-use run_common::{complete, frictionless, rattling, request};
+use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Start, Stepping};
+use run_common::{complete, frictionless, jolted, rattling, request};
 use std::fs;
 use std::path::Path;
 
@@ -64,34 +64,72 @@ fn assert_same_files(expected: &Path, found: &Path) {
 #[test]
 fn interrupted_anywhere_the_files_are_the_same() {
     let folder = tempfile::tempdir().unwrap();
-    use Integrator::{RungeKutta, Split};
+    use Integrator::{DormandPrince, Rosenbrock, RungeKutta};
     for (name, problem, integrator, start) in [
         ("complete", complete(), RungeKutta, Start::Equilibrium),
-        ("split", complete(), Split, Start::Equilibrium),
+        ("rosenbrock", complete(), Rosenbrock, Start::Equilibrium),
+        ("dormand-prince", rattling(), DormandPrince, Start::Nominal),
         ("rattling", rattling(), RungeKutta, Start::Nominal),
         ("frictionless", frictionless(), RungeKutta, Start::Equilibrium),
+        ("jolted", jolted(), RungeKutta, Start::Equilibrium),
     ] {
         let mut request = request(STEP, 40);
         request.options.start = start;
         request.options.integrator = integrator;
-        let whole = folder.path().join(name);
-        let started = Session::start(problem.clone(), &request).unwrap();
-        finish(&whole, &problem, &request, started);
         // On a row, off a row, before the first row, twice, within the last steps.
-        for stops in [vec![200], vec![137], vec![3], vec![55, 56, 333], vec![403]] {
-            let parts = folder.path().join(format!("{name} {stops:?}"));
-            let mut session = Session::start(problem.clone(), &request).unwrap();
-            let mut steps = 0;
-            for stop in stops {
-                assert_eq!(session.advance(stop - steps).unwrap(), Status::Running);
-                steps = stop;
-                write(&parts, &problem, &request, &session, Stopped::Interrupted);
-                session = go_on(&parts, &problem, &request);
-                assert_eq!(session.simulation.steps, steps);
-            }
-            finish(&parts, &problem, &request, session);
-            assert_same_files(&whole, &parts);
+        let stops = [vec![200], vec![137], vec![3], vec![55, 56, 333], vec![403]];
+        interrupt(folder.path(), name, &problem, &request, &stops);
+    }
+}
+
+#[test]
+fn with_error_control_the_files_are_the_same_too() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, problem, integrator, start) in [
+        ("rosenbrock", complete(), Integrator::Rosenbrock, Start::Equilibrium),
+        ("rattling", rattling(), Integrator::Rosenbrock, Start::Nominal),
+        ("dormand-prince", frictionless(), Integrator::DormandPrince, Start::Equilibrium),
+    ] {
+        let mut request = request(STEP, 40);
+        request.options.start = start;
+        request.options.integrator = integrator;
+        request.options.stepping = Stepping::Accuracy(1e-3);
+        // At least a step a row, and a last one off the grid.
+        let stops = [vec![1], vec![3, 4, 17], vec![40]];
+        interrupt(folder.path(), name, &problem, &request, &stops);
+        // A shorter run that is extended has the bits of the long one.
+        let short = RunRequest { end: 123.4 * STEP, ..request.clone() };
+        let parts = folder.path().join(format!("{name} extended"));
+        finish(&parts, &problem, &short, Session::start(problem.clone(), &short).unwrap());
+        let session = go_on(&parts, &problem, &request);
+        finish(&parts, &problem, &request, session);
+        assert_same_files(&folder.path().join(name), &parts);
+    }
+}
+
+/// Runs as a whole and with each list of stops; all files must be the same.
+fn interrupt(
+    folder: &Path,
+    name: &str,
+    problem: &DynamicProblem,
+    request: &RunRequest,
+    stops: &[Vec<u64>],
+) {
+    let whole = folder.join(name);
+    finish(&whole, problem, request, Session::start(problem.clone(), request).unwrap());
+    for stops in stops {
+        let parts = folder.join(format!("{name} {stops:?}"));
+        let mut session = Session::start(problem.clone(), request).unwrap();
+        let mut steps = 0;
+        for &stop in stops {
+            assert_eq!(session.advance(stop - steps).unwrap(), Status::Running);
+            steps = stop;
+            write(&parts, problem, request, &session, Stopped::Interrupted);
+            session = go_on(&parts, problem, request);
+            assert_eq!(session.simulation.steps, steps);
         }
+        finish(&parts, problem, request, session);
+        assert_same_files(&whole, &parts);
     }
 }
 

@@ -5,9 +5,9 @@ use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::scene::dynamics::{DynamicsError, dynamic_problem, run_options};
 use bearing_dynamics::scene::statics::static_problem;
-use bearing_dynamics::scene::{self, CageInRun, Document, Format, RunPlot, Scene};
+use bearing_dynamics::scene::{self, CageInRun, Document, Format, RunPlot, Scene, Subject};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::solver::dynamics::run::{Simulation, Start, Stepping};
+use bearing_dynamics::solver::dynamics::run::{Integrator, Simulation, Start, Stepping};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::Condition;
 use std::f64::consts::PI;
@@ -46,7 +46,11 @@ fn every_shipped_scene_makes_a_problem_of_usable_numbers() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let mut runs = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
-        let scene = scene::read_file(&entry.unwrap().path()).unwrap();
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            continue;
+        }
+        let Subject::Bearing(scene) = scene::read_subject(&path).unwrap() else { continue };
         static_problem(&scene).unwrap();
         let problem = dynamic_problem(&scene).unwrap();
         let parts = [Some(&problem.inner), problem.outer.as_ref()];
@@ -322,6 +326,7 @@ fn setting_a_profile_replaces_it_by_a_constant() {
     assert_eq!(problem.traction, TractionLaw::SlipSpeed { curve });
     let run = run_options(&scene).unwrap();
     assert_eq!(run.options.stepping, Stepping::FractionOfLimit(0.25));
+    assert_eq!(run.options.integrator, Integrator::RungeKutta);
     // And back: a load takes the place of a position.
     document.set("outer_race.x.load", "1 N").unwrap();
     assert_eq!(resolved(&document).outer_race[0], 0.0);
@@ -368,4 +373,23 @@ fn reading_a_scene_takes_no_time() {
     let best = (0..200).map(|_| time()).min().unwrap();
     println!("best of 200 readings: {best:?}");
     assert!(best.as_micros() <= 200, "{best:?}");
+}
+
+#[test]
+fn an_accuracy_takes_the_place_of_a_step() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let text = std::fs::read_to_string(folder.join("settling.toml")).unwrap();
+    for (keys, integrator, stepping) in [
+        ("step = \"2 us\"", Integrator::Rosenbrock, Stepping::Fixed(2e-6)),
+        ("accuracy = 1e-4", Integrator::Rosenbrock, Stepping::Accuracy(1e-4)),
+        ("accuracy = 0.01", Integrator::DormandPrince, Stepping::Accuracy(0.01)),
+        ("", Integrator::Rosenbrock, Stepping::Accuracy(1e-3)),
+    ] {
+        let keys = format!("integrator = \"{}\"\n{keys}", integrator.name());
+        let changed = text.replacen("step = \"1 us\"", &keys, 1);
+        assert_ne!(changed, text);
+        let scene = scene::read_str(&changed, scene::Format::Toml, "changed").unwrap();
+        let run = run_options(&scene).unwrap();
+        assert_eq!((run.options.integrator, run.options.stepping), (integrator, stepping));
+    }
 }

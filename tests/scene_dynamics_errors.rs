@@ -93,8 +93,8 @@ const CASES: &[Case] = &[
         &["inner_race.tilt_y.tilt.amplitude", "reach together", "from -5 deg to 5 deg"]),
     ("displacement beyond a ball", r#"x = { displacement = "7 um" }"#, r#"x = { displacement = { ramp = ["0 mm", "7 mm"], duration = "1 s" } }"#, 21,
         &["inner_race.x.displacement", "more than a ball radius"]),
-    ("profile where none may be", r#"force = "250 N", speed = "50 rpm""#, r#"force = "250 N", speed = { ramp = ["0 rpm", "1 rpm"], duration = "1 s" }"#, 28,
-        &["expected a rotation speed with its unit", "a table"]),
+    ("profile where none may be", "unbalance = \"900 g mm\"", r#"unbalance = { ramp = ["0 g mm", "1 g mm"], duration = "1 s" }"#, 29,
+        &["expected an unbalance with its unit", "a table"]),
     ("speed and torque", r#"unbalance = "900 g mm""#, r#"torque = "1 N m""#, 29, &["inner_race.torque", "together with `inner_race.speed`"]),
     ("rotating load without speed", r#", speed = "50 rpm""#, "", 28, &["inner_race.rotating_load.speed: missing", "50 rpm"]),
     ("unbalance in kg", "\"900 g mm\"", "\"0.9 kg\"", 29, &["unit of mass", "an unbalance", "g mm"]),
@@ -138,8 +138,14 @@ const CASES: &[Case] = &[
     ("output after the end", "\"0.1 ms\"", "\"0.2 s\"", 44, &["numerics.output_interval", "0.2 s", "after the end", "up to 0.1 s"]),
     ("window at the end", "\"50 ms\"", "\"100 ms\"", 46, &["output.window_start", "less than 0.1 s"]),
     ("unknown integrator", "output_interval = \"0.1 ms\"", "integrator = \"rk5\"", 44, &["did you mean `rk4`"]),
-    ("channels in one text", "window_start = \"50 ms\"", "channels = \"cage\"", 46, &["a list of texts"]),
+    ("channels in one text", "window_start = \"50 ms\"", "channels = \"cage\"", 46, &["a list out of", "\"races\"", "\"energy\""]),
+    ("misspelt channels", "window_start = \"50 ms\"", "channels = [\"races\", \"lodas\"]", 46, &["output.channels", "did you mean `loads`", "orbits"]),
+    ("column for a group of channels", "window_start = \"50 ms\"", "channels = [\"ball_1_inner_load\"]", 46, &["output.channels", "forces"]),
     ("misspelt table", "[contact_damping]", "[contact_dampng]", 38, &["did you mean `contact_damping`"]),
+    ("accuracy without an error estimate", "step = \"1 us\"", "accuracy = 1e-3", 43, &["numerics.accuracy", "rk4 has no estimate", "rosenbrock"]),
+    ("accuracy out of range", "step = \"1 us\"", "accuracy = 0.5", 43, &["numerics.accuracy", "from 1e-8 to 0.1"]),
+    ("accuracy and step", "output_interval = \"0.1 ms\"", "accuracy = 1e-3", 44, &["numerics.accuracy", "numerics.step"]),
+    ("limit of another integrator", "step = \"1 us\"", "integrator = \"rosenbrock\"\nstep_fraction = 0.5", 44, &["numerics.step_fraction", "that of rk4"]),
 ];
 
 #[test]

@@ -3,9 +3,13 @@
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::vec3::{Vec3, cross};
 use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
+use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::energy::strain_energy;
 use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{DampedMotion, SolidError, SolidModel, SolidProblem};
+use bearing_dynamics::solver::solid::model::{
+    DampedMotion, Load, Prescribed, SolidError, SolidModel, SolidProblem,
+};
+use bearing_dynamics::solver::solid::team::Team;
 use proptest::prelude::*;
 
 const DENSITY: f64 = 7800.0;
@@ -336,6 +340,59 @@ proptest! {
                 prop_assert!(sum[i].abs() <= 2e11 * 1e-4 * 1e-14);
                 prop_assert!(moment[i].abs() <= 2e11 * 1e-6 * 1e-14);
             }
+        }
+    }
+}
+
+/// Two and three threads: every bit of state and ledger is that of one.
+#[test]
+fn threads_change_no_bit() {
+    for order in [Order::Linear, Order::Quadratic] {
+        let mut problem = block([14, 12, 12], order);
+        problem.damping = 300.0;
+        problem.gravity = [1.0, -2.0, -9.81];
+        problem.loads.push(Load {
+            forces: (0..200).map(|n| (7 * n, [10.0, -3.0, f64::from(n)])).collect(),
+            profile: Profile::Harmonic { mean: 1.0, amplitude: 1.0, frequency: 1e4, phase: 0.3 },
+        });
+        for node in 0..100 {
+            let profile = Profile::Constant(0.0);
+            problem.prescribed.push(Prescribed { node, axis: 1, profile });
+        }
+        let start = bent(&problem, 1e-5);
+        let rest = still(&problem);
+        let make = || {
+            ExplicitSolid::new(
+                SolidModel::new(problem.clone()).unwrap(),
+                ExplicitMethod::CentralDifferences,
+                SolidStepping::FractionOfLimit(0.8),
+                start.clone(),
+                rest.clone(),
+            )
+            .unwrap()
+        };
+        let mut alone = make();
+        for _ in 0..30 {
+            alone.step(|_, _, _| {}).unwrap();
+        }
+        for threads in [2, 3] {
+            let mut shared = make();
+            let mut team = Team::new(&shared, threads);
+            assert!(team.elements() > shared.model.problem.elements.len());
+            team.advance(10).unwrap();
+            team.advance(20).unwrap();
+            team.gather(&mut shared);
+            assert!(shared.steps == 30 && shared.time.to_bits() == alone.time.to_bits());
+            for (a, b) in shared.displacement.iter().zip(&alone.displacement) {
+                assert!(a[..3].iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits()));
+            }
+            for (a, b) in [
+                (shared.external_work(), alone.external_work()),
+                (shared.damping_work(), alone.damping_work()),
+            ] {
+                assert!(a != 0.0 && a.to_bits() == b.to_bits(), "{a} {b}");
+            }
+            assert!(shared.velocity() == alone.velocity());
         }
     }
 }

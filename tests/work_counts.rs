@@ -1,9 +1,13 @@
-//! Work counts of the static solver, exact on any machine: a lost optimisation fails here.
+//! Work counts of the static solver and of error control, exact on any machine: a lost optimisation fails here.
 
 mod common;
+#[path = "common/dynamics.rs"]
+mod dynamics;
 
+use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
 use bearing_dynamics::solver::statics::{Condition, StaticOptions, solve, solve_from};
 use common::{FREE, problem, table_4_1, table_5_3};
+use dynamics::{RPM, bearing, traction_laws};
 
 #[test]
 fn cold_starts_take_a_known_number_of_iterations_and_evaluations() {
@@ -50,4 +54,32 @@ fn a_warm_start_from_the_neighbour_takes_two_iterations() {
     task.ball_phase += 0.01;
     let warm = solve_from(&task, Some(&neighbour.coordinates), &StaticOptions::default()).unwrap();
     assert_eq!(warm.iterations, 2);
+}
+
+#[test]
+fn error_controlled_runs_take_a_known_number_of_steps() {
+    // Table 3.5 at 1000 rpm and 1500 N, default friction, 2 ms.
+    let mut task = bearing(table_4_1(-5e-6), [0.0, 0.0, -1500.0, 0.0, 0.0], 1000.0 * RPM);
+    task.traction = traction_laws().swap_remove(2);
+    // An attempt costs a factorisation and three evaluations, an accepted one another, the start two.
+    let mut counts = Vec::new();
+    for accuracy in [1e-2, 1e-3, 1e-4] {
+        let options = RunOptions {
+            integrator: Integrator::Rosenbrock,
+            stepping: Stepping::Accuracy(accuracy),
+            ..RunOptions::default()
+        };
+        let mut simulation = Simulation::new(task.clone(), options).unwrap();
+        while simulation.time < 2e-3 {
+            simulation.step().unwrap();
+        }
+        let (steps, work) = (simulation.steps, simulation.system.work);
+        let attempts = steps + work.rejected_steps;
+        assert_eq!(work.factorisations, attempts);
+        assert_eq!(work.evaluations, 3 * attempts + steps + 2);
+        assert_eq!(work.distance_tests, 16 * work.evaluations);
+        assert_eq!(work.slices, 15 * work.loaded_contacts);
+        counts.push((steps, work.rejected_steps));
+    }
+    assert_eq!(counts, [(55, 5), (107, 15), (549, 3)], "accepted and rejected steps");
 }

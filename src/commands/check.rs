@@ -1,8 +1,9 @@
 //! `bearing check SCENE`.
 
-use super::{CommandResult, Outcome, echo, say};
+use super::{CommandResult, Outcome, echo, echo_run, say};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::results::pretty;
+use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::{self, Scene, Subject, statics::static_problem};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -25,7 +26,11 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     };
     static_problem(&scene)?;
     if arguments.json {
-        say(&pretty(&echo::scene(&scene)?))?;
+        let mut understood = echo::scene(&scene)?;
+        if scene.dynamics.run.is_some() {
+            understood["motion"] = echo_run::motion(&dynamic_problem(&scene)?)?;
+        }
+        say(&pretty(&understood))?;
     } else {
         say(&summary(&arguments.scene.display().to_string(), &scene))?;
     }

@@ -30,7 +30,7 @@ pub fn motion(problem: &DynamicProblem) -> Echo {
     if let Some(load) = &problem.rotating_load {
         let load = json!({
             "force": profile(&load.force, "N")?,
-            "speed": quantity("speed", load.speed, "rad/s")?,
+            "speed": profile(&load.speed, "rad/s")?,
             "phase": quantity("phase", load.phase.to_degrees(), "deg")?,
         });
         echo.insert("rotating_load".into(), load);

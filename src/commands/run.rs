@@ -13,7 +13,7 @@ use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{self, Plot, RunPlot, RunSettings, Scene, Subject};
 use bearing_dynamics::solver::channels::ChannelGroup;
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
-use bearing_dynamics::solver::dynamics::run::SimulationError;
+use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Stepping};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -37,7 +37,7 @@ pub struct Arguments {
     /// Discard an unfinished run in the results folder
     #[arg(long, conflicts_with = "resume")]
     pub(super) fresh: bool,
-    /// Threads the run may use; a bearing of rigid parts uses one
+    /// Threads the run may use, with the same bits; a bearing of rigid parts uses one
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: u16,
     /// Wall time between two states kept on the way, s
@@ -61,7 +61,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     };
     let settings = run_options(&scene)?;
     let problem = dynamic_problem(&scene)?;
-    let request = request(&scene, &settings)?;
+    let request = request(&scene, &settings);
     let folder = results_folder(&arguments.scene, &arguments.out);
     let kept = kept_state(arguments, &folder)?;
     let read_seconds = start.elapsed().as_secs_f64();
@@ -109,6 +109,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         record,
         stopped_by,
         stepping: Some(settings.options.stepping),
+        integrator: Some(settings.options.integrator),
         spectra: scene.dynamics.plots.contains(&RunPlot::Spectrum),
     };
     written.extend(write_run_results(&folder, &session, &table, &report)?);
@@ -141,19 +142,8 @@ fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) ->
 }
 
 /// What the scene asks of a run.
-pub fn request(scene: &Scene, settings: &RunSettings) -> Result<RunRequest, Box<dyn Error>> {
-    let mut channels = match &settings.channels {
-        None => ChannelGroup::DEFAULT.to_vec(),
-        Some(names) => {
-            let group = |name: &String| {
-                ChannelGroup::from_name(name).ok_or_else(|| {
-                    let known = ChannelGroup::ALL.map(ChannelGroup::name).join(", ");
-                    format!("output.channels: {name:?} is no group of channels; there are {known}")
-                })
-            };
-            names.iter().map(group).collect::<Result<_, _>>()?
-        }
-    };
+pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
+    let mut channels = settings.channels.clone();
     let plots = &scene.dynamics.plots;
     let mut needs = |groups: &[ChannelGroup]| channels.extend_from_slice(groups);
     if plots.contains(&RunPlot::SlipSpin) {
@@ -161,12 +151,12 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> Result<RunRequest, Box<
     }
     channels.sort();
     channels.dedup();
-    Ok(RunRequest {
+    RunRequest {
         options: settings.options,
         end: settings.end,
         output_interval: settings.output_interval,
         channels,
-    })
+    }
 }
 
 /// The state to go on from, if that was asked for; what an earlier run left is removed otherwise.
@@ -214,11 +204,37 @@ fn open(
 
 fn announcement(session: &Session, request: &RunRequest, kept: Option<&StateFile>) -> String {
     let simulation = &session.simulation;
+    let integrator = request.options.integrator.name();
+    if let Stepping::Accuracy(accuracy) = request.options.stepping {
+        let mut text = format!(
+            "{integrator}, accuracy {accuracy}: steps follow from it, the first of {:.4e} s\n\
+             to t = {} s, a row every {:.4e} s\n",
+            simulation.step_size,
+            session.end,
+            session.interval()
+        );
+        text += &resumed(kept);
+        return text;
+    }
     let reason = match &simulation.limit {
         Some(limit) => format!("{} (stable up to {:.4e} s)", limit.reason(), limit.step),
-        None => "given".into(),
+        None => match simulation.step_watch.smallest {
+            Some(limit) => {
+                format!("given ({:.3} of the largest stable one)", simulation.step_size / limit)
+            }
+            None => "given".into(),
+        },
     };
-    let mut text = format!("step {:.4e} s: {reason}\n", simulation.step_size);
+    let method = match request.options.integrator {
+        Integrator::RungeKutta => String::new(),
+        other => format!("{}, ", other.name()),
+    };
+    let mut text = format!("{method}step {:.4e} s: {reason}\n", simulation.step_size);
+    if let Some([ratio, time]) = simulation.step_watch.exceeded {
+        text += &format!(
+            "WARNING: the step is {ratio:.3} times the largest stable one at t = {time} s\n"
+        );
+    }
     let (interval, asked) = (session.interval(), request.output_interval);
     let rounded = if (interval / asked - 1.0).abs() > 1e-9 {
         format!(" ({asked} s asked for, rounded to whole steps)")
@@ -230,10 +246,14 @@ fn announcement(session: &Session, request: &RunRequest, kept: Option<&StateFile
         "{steps} steps to t = {} s, a row every {} steps = {interval:.4e} s{rounded}\n",
         session.end, session.steps_per_row
     );
-    if let Some(file) = kept {
-        text += &format!("resumed at t = {:.6} s, step {}\n", file.time, file.steps);
-    }
+    text += &resumed(kept);
     text
+}
+
+fn resumed(kept: Option<&StateFile>) -> String {
+    kept.map_or(String::new(), |file| {
+        format!("resumed at t = {:.6} s, step {}\n", file.time, file.steps)
+    })
 }
 
 /// Steps until the end, a signal or an error; keeps a state every now and then.
@@ -263,7 +283,7 @@ fn simulate(
         }
         if !bar.is_hidden() {
             let simulation = &session.simulation;
-            bar.set_position(simulation.steps);
+            bar.set_position(permille(session));
             bar.set_message(format!(
                 "t = {:.5} of {} s, step {:.2e} s",
                 simulation.time, session.end, simulation.step_size
@@ -274,14 +294,18 @@ fn simulate(
     Ok(end)
 }
 
+/// How much of the run is done, of a thousand.
+fn permille(session: &Session) -> u64 {
+    (1000.0 * session.simulation.time / session.end) as u64
+}
+
 fn progress_bar(session: &Session) -> ProgressBar {
     // Hidden by itself when standard error is not a terminal.
-    let simulation = &session.simulation;
-    let bar = ProgressBar::new((session.end / simulation.step_size).ceil() as u64);
+    let bar = ProgressBar::new(1000);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {msg}, {eta} left") {
         bar.set_style(style);
     }
-    bar.set_position(simulation.steps);
+    bar.set_position(permille(session));
     bar.reset_eta();
     bar
 }

@@ -7,7 +7,7 @@
 //! | sets by geometry, symmetry planes | [`select`] |
 //! | quality, faults, repairs | [`quality`], [`check`], [`repair`] |
 //! | numbering for speed, mid-side nodes | [`numbering`], [`quadratic`] |
-//! | files in and out | [`read`], [`write`] |
+//! | files in and out | [`read`], [`mod@write`] |
 //! | blocks, rings, shafts, housings, cages | [`generate`] |
 //!
 //! Lengths are metres everywhere past the readers. Readers take bytes and writers give bytes:

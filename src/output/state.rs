@@ -11,9 +11,12 @@ use crate::output::series::{Series, SeriesError};
 use crate::solver::channels::ChannelGroup;
 use crate::solver::dynamics::checkpoint::Checkpoint;
 use crate::solver::dynamics::contacts::Work;
+use crate::solver::dynamics::control::Memory;
+use crate::solver::dynamics::energy::Energy;
 use crate::solver::dynamics::model::DynamicProblem;
-use crate::solver::dynamics::stability::StepLimit;
-use crate::solver::dynamics::system::Energy;
+use crate::solver::dynamics::run::Stepping;
+use crate::solver::dynamics::stability::{Cause, StepLimit};
+use crate::solver::dynamics::step_watch::{StepWatch, Stiffness};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -52,9 +55,11 @@ pub struct StateFile {
     pub step_size: f64,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub limit: Option<LimitEntry>,
+    pub step_watch: StepWatchEntry,
     /// When the run was to end, and the time between rows that it was asked for, s.
     pub end: f64,
     pub output_interval: f64,
+    /// Zero with error control: rows then are `output_interval` apart.
     pub steps_per_row: u64,
     pub rows: usize,
     /// Wall time so far, s.
@@ -65,16 +70,36 @@ pub struct StateFile {
     /// Kinetic, contact, cage contact, gravity, foundation, J.
     pub first_energy: [f64; 5],
     pub largest_contact_energy: f64,
-    /// Evaluations, distance tests, loaded contacts, slices, pocket tests, guide tests.
-    pub work: [u64; 6],
+    /// Evaluations, distance tests, loaded contacts, slices, pocket tests, guide tests,
+    /// factorisations, rejected steps.
+    pub work: [u64; 8],
+    /// With error control: largest overlap (m), error of the step before, smallest and largest
+    /// step (s).
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub control: Option<[f64; 4]>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LimitEntry {
     pub step: f64,
     /// Real and imaginary part, 1/s.
     pub eigenvalue: [f64; 2],
+    /// As in [`Cause::name`].
+    pub cause: String,
+}
+
+/// See [`StepWatch`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StepWatchEntry {
+    pub judged: u64,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub smallest: Option<f64>,
+    /// Oscillation, 1/s²; decay, 1/s.
+    pub stiffest: [f64; 2],
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub exceeded: Option<[f64; 2]>,
 }
 
 #[derive(Debug, Error)]
@@ -188,10 +213,17 @@ pub fn resume(
     check_finite(file)?;
     let checkpoint = checkpoint(file);
     let damaged = |what| StateError::Damaged { path: path.clone(), what };
+    if file.limit.as_ref().is_some_and(|limit| cause(&limit.cause).is_none()) {
+        return Err(damaged("its step limit has a cause that is not known"));
+    }
     if !checkpoint.fits(&problem) {
         return Err(damaged("its lists have other lengths than the bearing asks for"));
     }
-    if file.steps_per_row == 0 || file.step_size <= 0.0 {
+    let by_time = file.control.is_some();
+    if by_time != matches!(request.options.stepping, Stepping::Accuracy(_)) {
+        return Err(damaged("error control without its sizes, or sizes without it"));
+    }
+    if (file.steps_per_row == 0) != by_time || file.step_size <= 0.0 {
         return Err(damaged("no step from one row to the next"));
     }
     // Written as it is so that an end that is not a number is refused as well.
@@ -199,7 +231,8 @@ pub fn resume(
     if !ahead {
         return Err(StateError::Past { time: file.time, end: request.end });
     }
-    let mut session = Session::from_checkpoint(problem, request, &checkpoint, file.steps_per_row)?;
+    let kept = RunRequest { output_interval: file.output_interval, ..request.clone() };
+    let mut session = Session::from_checkpoint(problem, &kept, &checkpoint, file.steps_per_row)?;
     let series_path = folder.join(SERIES);
     let series = Series::read_npy(&series_path)?;
     if !session.recorder.restore(&series, file.rows) {
@@ -216,6 +249,7 @@ fn state_file(
 ) -> StateFile {
     let energy = &checkpoint.first_energy;
     let work = &checkpoint.work;
+    let watch = &checkpoint.step_watch;
     StateFile {
         program: "bearing-dynamics".into(),
         version: env!("CARGO_PKG_VERSION").into(),
@@ -228,7 +262,14 @@ fn state_file(
         limit: checkpoint.limit.map(|limit| LimitEntry {
             step: limit.step,
             eigenvalue: [limit.eigenvalue.re, limit.eigenvalue.im],
+            cause: limit.cause.name().into(),
         }),
+        step_watch: StepWatchEntry {
+            judged: watch.judged,
+            smallest: watch.smallest,
+            stiffest: [watch.stiffest.oscillation, watch.stiffest.decay],
+            exceeded: watch.exceeded,
+        },
         end: session.end,
         output_interval: record.output_interval,
         steps_per_row: session.steps_per_row,
@@ -252,22 +293,49 @@ fn state_file(
             work.slices,
             work.pocket_tests,
             work.guide_tests,
+            work.factorisations,
+            work.rejected_steps,
         ],
+        control: checkpoint.control.map(|memory| {
+            [memory.displacement, memory.previous_error, memory.smallest, memory.largest]
+        }),
     }
 }
 
+fn cause(name: &str) -> Option<Cause> {
+    Cause::ALL.into_iter().find(|cause| cause.name() == name)
+}
+
 fn checkpoint(file: &StateFile) -> Checkpoint {
+    let [oscillation, decay] = file.step_watch.stiffest;
     let [kinetic, contact, cage_contact, gravity, foundation] = file.first_energy;
-    let [evaluations, distance_tests, loaded_contacts, slices, pocket_tests, guide_tests] =
-        file.work;
+    let [
+        evaluations,
+        distance_tests,
+        loaded_contacts,
+        slices,
+        pocket_tests,
+        guide_tests,
+        factorisations,
+        rejected_steps,
+    ] = file.work;
     Checkpoint {
         time: file.time,
         steps: file.steps,
         step_size: file.step_size,
-        limit: file.limit.map(|limit| StepLimit {
-            step: limit.step,
-            eigenvalue: Complex::new(limit.eigenvalue[0], limit.eigenvalue[1]),
+        limit: file.limit.as_ref().and_then(|limit| {
+            Some(StepLimit {
+                step: limit.step,
+                eigenvalue: Complex::new(limit.eigenvalue[0], limit.eigenvalue[1]),
+                cause: cause(&limit.cause)?,
+            })
         }),
+        step_watch: StepWatch {
+            judged: file.step_watch.judged,
+            smallest: file.step_watch.smallest,
+            stiffest: Stiffness { oscillation, decay },
+            exceeded: file.step_watch.exceeded,
+        },
         state: file.state.clone(),
         damping: file.damping.clone(),
         was_loaded: file.was_loaded.clone(),
@@ -280,7 +348,15 @@ fn checkpoint(file: &StateFile) -> Checkpoint {
             slices,
             pocket_tests,
             guide_tests,
+            factorisations,
+            rejected_steps,
         },
+        control: file.control.map(|[displacement, previous_error, smallest, largest]| Memory {
+            displacement,
+            previous_error,
+            smallest,
+            largest,
+        }),
     }
 }
 
@@ -288,7 +364,11 @@ fn checkpoint(file: &StateFile) -> Checkpoint {
 fn check_finite(file: &StateFile) -> Result<(), StateError> {
     let limit = file.limit.iter().flat_map(|l| [l.step, l.eigenvalue[0], l.eigenvalue[1]]);
     let single = [file.time, file.step_size, file.seconds, file.end, file.output_interval];
-    let parts: [(&'static str, Vec<f64>); 4] = [
+    let watch = &file.step_watch;
+    let watched = watch.stiffest.into_iter().chain(watch.smallest);
+    let limit = limit.chain(watched).chain(watch.exceeded.into_iter().flatten());
+    let parts: [(&'static str, Vec<f64>); 5] = [
+        ("a size of the error control", file.control.into_iter().flatten().collect()),
         (
             "time, step or energy",
             single

@@ -275,11 +275,8 @@ impl Document {
     /// An unknown key, or a value its key does not accept.
     pub fn set(&mut self, path: &str, text: &str) -> Result<(), SceneError> {
         let (row, key) = self.row(path)?;
-        let checked = if key.in_list() {
-            Err(Problem::NotSweepable)
-        } else {
-            value::check_bare(key, text)
-        };
+        let checked =
+            if key.in_list() { Err(Problem::NotSweepable) } else { value::check_bare(key, text) };
         let value = checked
             .map_err(|problem| SceneError::new(Place::file(&self.source.name), path, problem))?;
         for rival in key.rivals() {

@@ -1,13 +1,14 @@
 //! Rows of the key table that only a run needs: inertias, rotation, foundation, cage, traction, steps.
 
 use crate::scene::key_table::{
-    DENSITY, DENSITY_HINT, DISPLACEMENT, FORCE, LOAD_HINT, MOMENT, RADIUS, RADIUS_HINT,
+    DENSITY, DENSITY_HINT, DISPLACEMENT, FORCE, LOAD_HINT, MOMENT, RADIUS, RADIUS_HINT, SPIN,
     STEEL_DENSITY, TILT, TILT_HINT, quantity,
 };
 use crate::scene::keys::{Key, Kind, Need, Table, above, closed, open, table};
 use crate::scene::units::Dimension::{
-    self, Angle, HertzStiffness, InverseSpeed, Mass, RotationSpeed, Speed, Stiffness, Time,
+    self, Angle, HertzStiffness, InverseSpeed, Mass, Speed, Stiffness, Time,
 };
+use crate::solver::channels::ChannelGroup;
 use Need::{Default, Depends, Optional};
 
 pub const MOTIONS: &[&str] = &["fixed", "5-dof", "6-dof"];
@@ -16,7 +17,17 @@ pub const CAGE_LAWS: &[&str] = &["penalty", "hertz"];
 pub const TRACTION_LAWS: &[&str] = &["none", "constant", "slide-to-roll", "slip-speed", "table"];
 pub const DAMPING_LAWS: &[&str] = &["none", "hunt-crossley", "lankarani-nikravesh"];
 pub const STARTS: &[&str] = &["equilibrium", "nominal"];
-pub const INTEGRATORS: &[&str] = &["rk4"];
+pub const INTEGRATORS: &[&str] = &["rk4", "dormand-prince", "rosenbrock"];
+/// Names of [`ChannelGroup::ALL`].
+pub const CHANNELS: &[&str] = &{
+    let mut names = [""; ChannelGroup::ALL.len()];
+    let mut i = 0;
+    while i < names.len() {
+        names[i] = ChannelGroup::ALL[i].name();
+        i += 1;
+    }
+    names
+};
 
 const MASS: Kind = Kind::Quantity(Mass, open(0.0, 10_000.0, "kg"));
 const INERTIA: Kind = Kind::Quantity(Dimension::Inertia, open(0.0, 1e6, "kg m^2"));
@@ -104,8 +115,8 @@ pub(super) const KEYS: &[Key] = &[
         "Mass that moves with the inner race, such as its part of a shaft; without moment of inertia.").hint(MASS_HINT),
     quantity("inner_race.rotating_load.force", FORCE, Depends("required with the table"),
         "Size of the force, over time.").hint(LOAD_HINT),
-    quantity("inner_race.rotating_load.speed", Kind::Quantity(RotationSpeed, closed(-1e6, 1e6, "rpm")),
-        Depends("required with the table"), "Speed at which the force turns about X, from +Y towards +Z.").example_of("50 rpm"),
+    quantity("inner_race.rotating_load.speed", SPIN,
+        Depends("required with the table"), "Speed at which the force turns about X, from +Y towards +Z; its direction is the integral over time.").example_of("50 rpm"),
     quantity("inner_race.rotating_load.phase", Kind::Quantity(Angle, closed(-360.0, 360.0, "deg")),
         Default { value: "0 deg", reason: "the force starts along +Y" }, "Direction of the force at the start, from +Y towards +Z."),
     quantity("inner_race.unbalance", Kind::Quantity(Dimension::Unbalance, closed(0.0, 1e6, "kg m")), Optional,
@@ -172,8 +183,12 @@ pub(super) const KEYS: &[Key] = &[
     quantity("numerics.step", Kind::Quantity(Time, closed(1e-12, 1e-2, "s")), Optional,
         "Fixed step; leave it out, and it follows from the stability limit.").group("step").hint(STEP_HINT).example_of("1 us"),
     Key::new("numerics.step_fraction", Kind::Number(above(0.0, 2.0, "")),
-        Depends("0.5 where no `step` is given"),
-        "Step as a part of the largest stable one.").group("step").hint("1 is the stability limit; above it the run fails").example_of("0.5"),
+        Depends("0.5 with `rk4` where no `step` is given; refused with another integrator"),
+        "Step as a part of the largest stable one of `rk4`.").group("step").hint("1 is the stability limit; above it the run fails").example_of("0.5"),
+    Key::new("numerics.accuracy", Kind::Number(closed(1e-8, 0.1, "")),
+        Depends("0.001 with another integrator than `rk4` where no `step` is given; refused with `rk4`"),
+        "Error wanted in the motion of the races, as a part of the largest overlap of a contact; steps follow from it.")
+        .group("step").hint("0.001 is usual; an undamped bearing rings, and below 1e-4 the ringing sets the step").example_of("0.001"),
     Key::new("numerics.start", Kind::Choice(STARTS), Default { value: "equilibrium", reason: "no shock at the start" },
         "Start at the static equilibrium of the loads at t = 0, or in nominal positions; balls and cage roll either way."),
     quantity("numerics.output_interval", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("a thousandth of the run"),
@@ -181,9 +196,11 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("numerics.energy_limit", Kind::Number(above(0.0, 1.0, "")), Default { value: "0.01", reason: "1 % of the energy turned over" },
         "Energy unaccounted for, as a part of the energy turned over, at which the run is stopped.").example_of("0.01"),
     Key::new("numerics.integrator", Kind::Choice(INTEGRATORS), Default { value: "rk4", reason: "classical fourth-order Runge-Kutta, as the source" },
-        "Time integration."),
+        "Time integration: classical Runge-Kutta; Dormand and Prince's explicit method of fifth order; a linearly implicit one that traction and contacts do not bind. The latter two take an `accuracy`."),
 
-    Key::new("output.channels", Kind::Texts, Optional, "Columns of `series.csv`; every one unless given."),
+    Key::new("output.channels", Kind::Choices(CHANNELS),
+        Default { value: "races, cage, orbits, loads, pockets, forces, energy", reason: "all but `slip`, which has six columns a ball" },
+        "Groups of columns of `series.csv`; `energy` is always among them."),
     quantity("output.window_start", Kind::Quantity(Time, closed(0.0, 1e4, "s")), Depends("the middle of the run"),
         "Time from which means and spectra are taken.").example_of("0.05 s"),
 ];

@@ -71,8 +71,6 @@ pub enum Kind {
     Either(&'static [Kind]),
     /// A list of pairs: a quantity, strictly increasing, and a plain number.
     Curve(Dimension, Range, Range),
-    /// A list of texts.
-    Texts,
     /// A list of quantities, strictly increasing.
     Quantities(Dimension, Range),
     /// `true` for held at zero, or a profile.
@@ -172,7 +170,6 @@ impl Key {
             Kind::Curve(dimension, range, _) => {
                 format!("[[\"{}\", 0.05]]", or(usual(dimension, range)))
             }
-            Kind::Texts => "[\"...\"]".to_string(),
             Kind::Quantities(dimension, range) => {
                 format!("[\"{}\", \"100 {}\"]", or(usual(dimension, range)), range.unit)
             }

@@ -30,8 +30,11 @@ pub fn reference_markdown() -> String {
         order.iter().position(|name| *name == top).unwrap_or(order.len())
     });
     for table in tables {
-        let heading =
-            if table.list { format!("`[[{}]]`", table.path) } else { format!("`[{}]`", table.path) };
+        let heading = if table.list {
+            format!("`[[{}]]`", table.path)
+        } else {
+            format!("`[{}]`", table.path)
+        };
         table_markdown(&mut text, table.path, &heading, table.doc);
         let _ = writeln!(text, "```toml\n{}\n```\n", table.example.replace(" or {", "   # or {"));
     }
@@ -65,7 +68,9 @@ pub fn reference_markdown() -> String {
 
 fn generators_markdown(text: &mut String) {
     text.push_str(GENERATORS_INTRODUCTION);
-    text.push_str("| `generate` | keys of `[solid.mesh]`; those in brackets may be left out |\n|---|---|\n");
+    text.push_str(
+        "| `generate` | keys of `[solid.mesh]`; those in brackets may be left out |\n|---|---|\n",
+    );
     for (name, keys) in generators() {
         let _ = writeln!(text, "| `{name}` | {keys} |");
     }
@@ -146,7 +151,6 @@ fn kind_and_range(key: &Key) -> (String, String) {
         Kind::Curve(dimension, ..) => {
             (format!("list of pairs: {}, number", noun(dimension)), range)
         }
-        Kind::Texts => ("list of texts".to_string(), "any".to_string()),
         Kind::Quantities(dimension, _) => {
             (format!("list of increasing {}s", noun(dimension)), format!("each {range}"))
         }
@@ -223,6 +227,11 @@ The grooves' axial offset in an angular-contact bearing is left out of the mass.
 
 **Outer race.** `fixed` has no equations. `5-dof` does not turn about X, `6-dof` may. Loads, motions, inertia and foundation of a
 fixed race are refused. The foundation is at rest where the race starts.
+
+**Start.** `equilibrium` is that of both races under the loads at t = 0: a moving outer race rests on its springs, and one that
+nothing holds is refused. Forces that turn stand still for it in their direction at t = 0, the rotating load at its phase, the
+unbalance along the inner race's own Y, with the speed of that time. Their mean over a turn would be zero and would start every run
+with a blow.
 
 **Traction.** `constant`: `coefficient`, `regularisation_speed`. `slide-to-roll`: `b`, `c` (plain numbers), `d`, `entrainment_floor`.
 `slip-speed`: `b`, `c` (s/m), `d`. `table`: `points`. The two curves are (b x - d) exp(-c x) + d, zero at rest; no curve may exceed 2.

@@ -8,8 +8,9 @@ use crate::scene::resolved::{Cage, Dimensions, Dynamics, RunSettings};
 use crate::scene::units::plain;
 use crate::scene::value::Checked;
 use crate::scene::{resolve_cage, resolve_contact};
+use crate::solver::channels::ChannelGroup;
 use crate::solver::dynamics::model::{Drive, RaceBody, RotatingLoad, Rotation};
-use crate::solver::dynamics::run::{RunOptions, Start, Stepping};
+use crate::solver::dynamics::run::{Integrator, RunOptions, Start, Stepping};
 use crate::solver::profile::Profile;
 use crate::solver::statics::COORDINATE_NAMES;
 
@@ -81,9 +82,12 @@ fn rotating_load(reader: &mut Reader) -> Result<Option<RotatingLoad>, SceneError
     let Some(profile) = reader.profile(force) else {
         return Err(reader.missing(force, ""));
     };
+    let Some(turning) = reader.profile(speed) else {
+        return Err(reader.missing(speed, ""));
+    };
     Ok(Some(RotatingLoad {
         force: profile,
-        speed: reader.required_number(speed, "")?,
+        speed: turning,
         phase: reader.number(phase).unwrap_or(0.0),
     }))
 }
@@ -287,18 +291,15 @@ fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
         Some("nominal") => Start::Nominal,
         _ => Start::Equilibrium,
     };
-    let fraction = reader.given_number("numerics.step_fraction");
-    let stepping = match (reader.given_number("numerics.step"), fraction) {
-        (Some(step), _) => Stepping::Fixed(step),
-        (None, Some(fraction)) => Stepping::FractionOfLimit(fraction),
-        (None, None) => {
-            reader.note("numerics.step_fraction", "0.5", "half the largest stable step");
-            Stepping::FractionOfLimit(0.5)
-        }
+    let integrator = match reader.choice("numerics.integrator") {
+        Some("dormand-prince") => Integrator::DormandPrince,
+        Some("rosenbrock") => Integrator::Rosenbrock,
+        _ => Integrator::RungeKutta,
     };
-    reader.choice("numerics.integrator");
+    let stepping = stepping(reader, integrator)?;
     let options = RunOptions {
         start,
+        integrator,
         stepping,
         energy_limit: reader.number("numerics.energy_limit").unwrap_or(usual.energy_limit),
         ..usual
@@ -316,10 +317,46 @@ fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
         start
     });
     let channels = match reader.document.value("output.channels") {
-        Some(Checked::Texts(names)) => Some(names.clone()),
-        _ => None,
+        Some(Checked::Choices(names)) => {
+            names.iter().filter_map(|name| ChannelGroup::from_name(name)).collect()
+        }
+        _ => ChannelGroup::DEFAULT.to_vec(),
     };
     Ok(Some(RunSettings { options, end, output_interval, window_start, channels }))
+}
+
+fn stepping(reader: &mut Reader, integrator: Integrator) -> Result<Stepping, SceneError> {
+    let [step, fraction, accuracy] = ["step", "step_fraction", "accuracy"]
+        .map(|name| reader.given_number(&format!("numerics.{name}")));
+    let estimates = integrator != Integrator::RungeKutta;
+    let refuse = |key: &str, reason, advice: &str| {
+        let problem = Problem::NotApplicable { reason, advice: advice.to_string() };
+        Err(reader.document.error(key, problem))
+    };
+    if accuracy.is_some() && !estimates {
+        let reason = "the integrator rk4 has no estimate of its error";
+        let advice = "write integrator = \"rosenbrock\" or \"dormand-prince\", or give a step";
+        return refuse("numerics.accuracy", reason, advice);
+    }
+    if fraction.is_some() && estimates {
+        let reason = "the stability limit is that of rk4";
+        let advice = "give accuracy or step instead, or write integrator = \"rk4\"";
+        return refuse("numerics.step_fraction", reason, advice);
+    }
+    Ok(match (step, fraction, accuracy) {
+        (Some(step), _, _) => Stepping::Fixed(step),
+        (_, Some(fraction), _) => Stepping::FractionOfLimit(fraction),
+        (_, _, Some(accuracy)) => Stepping::Accuracy(accuracy),
+        _ if estimates => {
+            let reason = "error in the races' motion of a thousandth of the largest overlap";
+            reader.note("numerics.accuracy", "0.001", reason);
+            Stepping::Accuracy(1e-3)
+        }
+        _ => {
+            reader.note("numerics.step_fraction", "0.5", "half the largest stable step");
+            Stepping::FractionOfLimit(0.5)
+        }
+    })
 }
 
 /// A time that must lie in the run; a window must begin before the end.

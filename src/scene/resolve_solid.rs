@@ -217,9 +217,7 @@ fn set(item: ItemRef) -> Result<SetRequest, SceneError> {
             let axis = AXES.iter().position(|name| name == axis).unwrap_or(0);
             SetPlace::Surface(Surface::plane(axis, at))
         }
-        ("cylinder", Some(Checked::Number(radius))) => {
-            SetPlace::Surface(Surface::about_x(*radius))
-        }
+        ("cylinder", Some(Checked::Number(radius))) => SetPlace::Surface(Surface::about_x(*radius)),
         (_, Some(Checked::Vector(low))) => match item.value("high") {
             Some(Checked::Vector(high)) => SetPlace::Box { low: *low, high: *high },
             _ => {

@@ -26,10 +26,7 @@ const KEYS_OF: &[(&str, &[&str])] = &[
             "cells.growth?",
         ],
     ),
-    (
-        "shaft",
-        &["radius", "length?", "stations?", "cells.along", "cells.around", "cells.radial"],
-    ),
+    ("shaft", &["radius", "length?", "stations?", "cells.along", "cells.around", "cells.radial"]),
     (
         "cage",
         &[
@@ -242,9 +239,7 @@ fn generated(reader: &mut Reader, generator: &str) -> Result<MeshSource, SceneEr
         _ => {
             let (bore_radius, depth) = (size(reader, "bore_radius")?, size(reader, "depth")?);
             let housing = match generator {
-                "housing-a" => {
-                    Housing::Square { bore_radius, side: size(reader, "side")?, depth }
-                }
+                "housing-a" => Housing::Square { bore_radius, side: size(reader, "side")?, depth },
                 "housing-d" => {
                     let outer_radius = size(reader, "outer_radius")?;
                     Housing::Annulus { bore_radius, outer_radius, depth }

@@ -6,6 +6,7 @@ use crate::ch2_housing::bearing::hertz::HertzModel;
 use crate::ch2_housing::bearing::traction::TractionLaw;
 pub use crate::scene::document::Assumption;
 use crate::scene::sweep::SweepAxis;
+use crate::solver::channels::ChannelGroup;
 use crate::solver::dynamics::model::{CageBody, RaceBody, RotatingLoad};
 use crate::solver::dynamics::run::RunOptions;
 use crate::solver::statics::Condition;
@@ -103,8 +104,8 @@ pub struct RunSettings {
     pub output_interval: f64,
     /// Time from which means and spectra are taken, s.
     pub window_start: f64,
-    /// Columns to write; `None` for all.
-    pub channels: Option<Vec<String>>,
+    /// Groups of columns to write.
+    pub channels: Vec<ChannelGroup>,
 }
 
 /// What only a run needs, SI units.

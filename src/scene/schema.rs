@@ -253,7 +253,6 @@ fn key_schema(key: &'static Key) -> Value {
                 "prefixItems": [reference(dimension), number_schema(numbers)] });
             list(&pair, 1, None)
         }
-        Kind::Texts => json!({ "type": "array", "items": { "type": "string" } }),
         Kind::Quantities(dimension, _) => list(&reference(dimension), 1, None),
         Kind::TrueOrProfile(dimension, _) => {
             let profile = json!({ "$ref": format!("#/$defs/{}", profile_name(dimension)) });

@@ -58,11 +58,8 @@ const ON_SURFACE: f64 = 1e-6;
 pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
     let mut notes = Vec::new();
     let mut repaired = Repaired::default();
-    let limits = Limits {
-        aspect: request.largest_aspect,
-        cavities: request.cavities,
-        ..Limits::default()
-    };
+    let limits =
+        Limits { aspect: request.largest_aspect, cavities: request.cavities, ..Limits::default() };
     let (mesh, pulled_back) = match &request.source {
         MeshSource::File { path, unit } => {
             let bytes = std::fs::read(path)
@@ -88,10 +85,8 @@ pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
         }
         made => {
             let name = "solid.mesh";
-            let solid = generate(made).map_err(|source| SolidMeshError::Mesh {
-                name: name.to_string(),
-                source,
-            })?;
+            let solid = generate(made)
+                .map_err(|source| SolidMeshError::Mesh { name: name.to_string(), source })?;
             let (mesh, pulled_back) = of_order(solid, request.order)
                 .map_err(|source| SolidMeshError::Mesh { name: name.to_string(), source })?;
             check(&mesh, &limits)

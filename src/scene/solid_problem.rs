@@ -8,6 +8,7 @@ use crate::mesh::{Face, TetMesh};
 use crate::scene::solid::{LoadKind, ProbeOf, SolidScene};
 use crate::solver::profile::Profile;
 use crate::solver::solid::model::{Load, Prescribed, SolidProblem};
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
 
@@ -21,12 +22,14 @@ pub enum SolidSetupError {
     EmptySet { part: &'static str, set: String },
     #[error(
         "solid.load: pressure needs a surface, and \"{set}\" is a set of nodes or elements; the \
-         surfaces are: {}", list(known)
+         surfaces are: {}",
+        list(known)
     )]
     NoSurface { set: String, known: Vec<String> },
     #[error(
         "solid.held: sets \"{first}\" and \"{second}\" move the same node ({}) along {axis} in \
-         different ways", place(at)
+         different ways",
+        place(at)
     )]
     HeldTwice { first: String, second: String, axis: &'static str, at: Vec3 },
     #[error("solid.probe: two probes are called \"{name}\"; give one of them another `name`")]
@@ -49,6 +52,30 @@ pub struct NamedNodes {
     pub nodes: Vec<u32>,
 }
 
+/// Components held under the name of one set. A component of two sets belongs to the first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Support {
+    pub name: String,
+    /// Node and axis.
+    pub components: Vec<(u32, usize)>,
+}
+
+impl Support {
+    /// The axes along which it holds something, ascending.
+    pub fn axes(&self) -> Vec<usize> {
+        (0..3).filter(|axis| self.components.iter().any(|(_, held)| held == axis)).collect()
+    }
+
+    /// Sum of vectors over its components, for each of its [`axes`](Support::axes).
+    pub fn total(&self, of: &[Vec3]) -> Vec<f64> {
+        let along = |axis: usize| {
+            let own = self.components.iter().filter(move |(_, held)| *held == axis);
+            own.map(|(node, axis)| of[*node as usize][*axis]).sum()
+        };
+        self.axes().into_iter().map(along).collect()
+    }
+}
+
 /// A solid ready to be solved, and what is to be written of it.
 #[derive(Clone, Debug)]
 pub struct SolidSetup {
@@ -57,7 +84,7 @@ pub struct SolidSetup {
     pub velocity: Vec<Vec3>,
     pub probes: Vec<NamedNodes>,
     /// Supports; their reactions are written.
-    pub supports: Vec<NamedNodes>,
+    pub supports: Vec<Support>,
 }
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -83,11 +110,8 @@ pub fn setup(scene: &SolidScene, mesh: &TetMesh) -> Result<SolidSetup, SolidSetu
         gravity: scene.gravity,
     };
     let [u, v, w] = scene.velocity;
-    let velocity = mesh
-        .nodes
-        .iter()
-        .map(|[_, y, z]| [u, v - scene.spin * z, w + scene.spin * y])
-        .collect();
+    let velocity =
+        mesh.nodes.iter().map(|[_, y, z]| [u, v - scene.spin * z, w + scene.spin * y]).collect();
     Ok(SolidSetup { problem, velocity, probes: probes(scene, mesh)?, supports })
 }
 
@@ -120,32 +144,40 @@ pub fn nodes_of_set(
     }
 }
 
-type Supports = (Vec<Prescribed>, Vec<NamedNodes>);
+type Supports = (Vec<Prescribed>, Vec<Support>);
 
 /// Held components. A node of two sets may be held by both if they move it alike.
 fn supports(scene: &SolidScene, mesh: &TetMesh) -> Result<Supports, SolidSetupError> {
     let mut owner: BTreeMap<(u32, usize), (&str, &Profile)> = BTreeMap::new();
-    let mut named: Vec<NamedNodes> = Vec::new();
+    let mut named: Vec<Support> = Vec::new();
     for held in &scene.held {
         let nodes = nodes_of_set(mesh, &held.set, "solid.held")?;
+        let mut components = Vec::new();
         for (axis, profile) in held.motion.iter().enumerate() {
             let Some(profile) = profile else { continue };
             for &node in &nodes {
-                let (first, before) = *owner.entry((node, axis)).or_insert((&held.set, profile));
-                if before != profile {
-                    return Err(SolidSetupError::HeldTwice {
-                        first: first.to_string(),
-                        second: held.set.clone(),
-                        axis: AXES[axis],
-                        at: mesh.nodes[node as usize],
-                    });
+                match owner.entry((node, axis)) {
+                    Entry::Vacant(free) => {
+                        free.insert((&held.set, profile));
+                        components.push((node, axis));
+                    }
+                    Entry::Occupied(taken) if taken.get().1 == profile => {}
+                    Entry::Occupied(taken) => {
+                        return Err(SolidSetupError::HeldTwice {
+                            first: taken.get().0.to_string(),
+                            second: held.set.clone(),
+                            axis: AXES[axis],
+                            at: mesh.nodes[node as usize],
+                        });
+                    }
                 }
             }
         }
         // Two entries for one set, an axis each, are one support.
         let name = column_name(&held.set);
-        if !named.iter().any(|other| other.name == name) {
-            named.push(NamedNodes { name, nodes });
+        match named.iter_mut().find(|other| other.name == name) {
+            Some(support) => support.components.extend(components),
+            None => named.push(Support { name, components }),
         }
     }
     let prescribed = owner
@@ -211,8 +243,7 @@ fn probes(scene: &SolidScene, mesh: &TetMesh) -> Result<Vec<NamedNodes>, SolidSe
             ProbeOf::Set(set) => nodes_of_set(mesh, set, "solid.probe")?,
             ProbeOf::Place(at) => {
                 let off = |p: &Vec3| (0..3).map(|i| (p[i] - at[i]) * (p[i] - at[i])).sum::<f64>();
-                let nearest =
-                    (0..).zip(&mesh.nodes).min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
+                let nearest = (0..).zip(&mesh.nodes).min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
                 nearest.map(|(node, _)| vec![node]).unwrap_or_default()
             }
         };

@@ -175,7 +175,6 @@ fn refuse_unsweepable(key: &Key) -> Result<(), Problem> {
         | Kind::Choices(_)
         | Kind::Vector(..)
         | Kind::Curve(..)
-        | Kind::Texts
         | Kind::Quantities(..)
         | Kind::TrueOrProfile(..) => Err(Problem::NotSweepable),
         _ => Ok(()),

@@ -23,7 +23,6 @@ pub enum Checked {
     Either(usize, f64),
     /// Pairs of [`Kind::Curve`].
     Curve(Vec<[f64; 2]>),
-    Texts(Vec<String>),
     Quantities(Vec<f64>),
 }
 
@@ -97,13 +96,6 @@ pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
         (Kind::Curve(dimension, range, numbers), Value::List(items)) => {
             curve(key, items, node.offset, dimension, range, numbers)
         }
-        (Kind::Texts, Value::List(items)) => {
-            let text = |item: &Node| match &item.value {
-                Value::Text(text) => Ok(text.clone()),
-                other => Err((item.offset, wrong_kind(key, other))),
-            };
-            Ok(Checked::Texts(items.iter().map(text).collect::<Result<_, _>>()?))
-        }
         (_, other) => Err(here(wrong_kind(key, other))),
     }
 }
@@ -122,7 +114,6 @@ pub fn check_bare(key: &'static Key, text: &str) -> Result<Checked, Problem> {
         Kind::Vector(..)
         | Kind::Choices(_)
         | Kind::Curve(..)
-        | Kind::Texts
         | Kind::Quantities(..)
         | Kind::TrueOrProfile(..) => return Err(Problem::NotSweepable),
         Kind::Text | Kind::Choice(_) | Kind::Quantity(..) | Kind::Profile(..) | Kind::Either(_) => {
@@ -228,12 +219,14 @@ fn expected(kind: Kind) -> String {
         Kind::Curve(dimension, ..) => {
             format!("a list of pairs, each {} with its unit and a plain number", dimension.name())
         }
-        Kind::Texts => "a list of texts in quotes".to_string(),
         Kind::Quantities(dimension, _) => {
             format!("a list of increasing values with units, each {}", dimension.name())
         }
         Kind::TrueOrProfile(dimension, range) => {
-            format!("true, or {} with its unit, {range}, or a profile of it over time", dimension.name())
+            format!(
+                "true, or {} with its unit, {range}, or a profile of it over time",
+                dimension.name()
+            )
         }
     }
 }

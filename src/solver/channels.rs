@@ -45,7 +45,7 @@ impl ChannelGroup {
     ];
 
     /// As in a scene.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             ChannelGroup::Races => "races",
             ChannelGroup::Cage => "cage",

@@ -3,7 +3,7 @@
 
 use super::channels::ChannelGroup;
 use super::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
-use super::dynamics::run::{RunOptions, Start, Stepping};
+use super::dynamics::run::{Integrator, RunOptions, Start, Stepping};
 use super::statics::{Condition, StaticProblem};
 use crate::ch2_housing::bearing::cage::Guidance;
 use crate::ch2_housing::bearing::contact::ContactDamping;
@@ -80,7 +80,7 @@ pub fn dynamics(
     let balls = problem.geometry.ball_count;
     let mut stages = vec![
         start(options.start),
-        step_size(options.stepping),
+        step_size(options),
         stage(
             "distance test",
             true,
@@ -129,15 +129,36 @@ fn start(start: Start) -> Stage {
     }
 }
 
-fn step_size(stepping: Stepping) -> Stage {
-    match stepping {
-        Stepping::Fixed(step) => {
-            stage("stability limit", false, format!("the step is given: {step} s"))
-        }
+fn step_size(options: &RunOptions) -> Stage {
+    match options.stepping {
+        Stepping::Accuracy(accuracy) => stage(
+            "stability limit",
+            false,
+            format!(
+                "{} takes steps as long as an accuracy of {accuracy} allows",
+                options.integrator.name()
+            ),
+        ),
+        Stepping::Fixed(step) if options.integrator != Integrator::RungeKutta => stage(
+            "stability limit",
+            false,
+            format!("the step is given: {step:e} s; the limit is that of rk4, not looked at here"),
+        ),
+        Stepping::Fixed(step) => stage(
+            "stability limit",
+            true,
+            format!(
+                "the step is given: {step:e} s; it is held against the limit at the start and \
+                     where contacts get stiffer"
+            ),
+        ),
         Stepping::FractionOfLimit(fraction) => stage(
             "stability limit",
             true,
-            format!("the step is {fraction} of it, from the Jacobian at the start"),
+            format!(
+                "the step is {fraction} of it, from the Jacobian at the start; looked at again where \
+                 contacts get stiffer"
+            ),
         ),
     }
 }

@@ -126,6 +126,35 @@ impl Profile {
         }
     }
 
+    /// ∫ value dt from 0 to `t`, in closed form: the angle that a speed has turned.
+    pub fn integral(&self, t: f64) -> f64 {
+        match self {
+            Profile::Constant(value) => value * t,
+            Profile::Ramp { from, to, start, duration } => {
+                // Of the fraction f = (t − start)/duration: f²/2, and 1/2 + (f − 1) beyond.
+                let rise = ramp_integral(t, *start, *duration, |f| 0.5 * f * f);
+                from * t + (to - from) * rise
+            }
+            Profile::SmoothRamp { from, to, start, duration } => {
+                let quartic = |f: f64| f * f * f * f * (2.5 + f * (f - 3.0));
+                from * t + (to - from) * ramp_integral(t, *start, *duration, quartic)
+            }
+            Profile::Table { points } => table_integral(points, t) - table_integral(points, 0.0),
+            Profile::Harmonic { mean, amplitude, frequency, phase } => {
+                let pulsation = TAU * frequency;
+                let swing = libm::cos(*phase) - libm::cos(pulsation * t + phase);
+                mean * t + amplitude / pulsation * swing
+            }
+            Profile::HalfSine { base, peak, start, duration } => {
+                let area = |t: f64| {
+                    let f = ((t - start) / duration).clamp(0.0, 1.0);
+                    duration / PI * (1.0 - libm::cos(PI * f))
+                };
+                base * t + peak * (area(t) - area(0.0))
+            }
+        }
+    }
+
     /// Times at which value or slope jumps; a step should end there.
     pub fn corners(&self) -> Vec<f64> {
         match self {
@@ -147,6 +176,26 @@ fn fraction(t: f64, start: f64, duration: f64) -> f64 {
     } else {
         0.0
     }
+}
+
+/// ∫ of [`fraction`] from 0 to `t`, from its integral over the fraction itself: `part(1)` is 1/2.
+fn ramp_integral(t: f64, start: f64, duration: f64, part: impl Fn(f64) -> f64) -> f64 {
+    let end = start + duration;
+    let from_start = |t: f64| duration * part(fraction(t, start, duration)) + (t - end).max(0.0);
+    from_start(t) - from_start(0.0)
+}
+
+/// ∫ of a table from its first point to `t`.
+fn table_integral(points: &[[f64; 2]], t: f64) -> f64 {
+    let (Some(first), Some(last)) = (points.first(), points.last()) else { return 0.0 };
+    let mut sum = first[1] * (t - first[0]).min(0.0) + last[1] * (t - last[0]).max(0.0);
+    for pair in points.windows(2) {
+        let [a, b] = [pair[0], pair[1]];
+        let inside = t.clamp(a[0], b[0]) - a[0];
+        let slope = (b[1] - a[1]) / (b[0] - a[0]);
+        sum += inside * (a[1] + 0.5 * slope * inside);
+    }
+    sum
 }
 
 /// Value and slope of a table.
@@ -190,6 +239,36 @@ mod tests {
                 let error = (bend - profile.acceleration(t)).abs();
                 // The same for the fourth derivative: 63000·1e-10/6.
                 assert!(error <= 1e-5, "{profile:?} at {t}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn integrals_have_the_values_as_their_derivative() {
+        let profiles = [
+            Profile::Constant(3.0),
+            Profile::Ramp { from: 1.0, to: 3.0, start: 0.2, duration: 0.5 },
+            Profile::Ramp { from: 1.0, to: 3.0, start: -0.2, duration: 0.5 },
+            Profile::Ramp { from: 1.0, to: 3.0, start: 0.3, duration: 0.0 },
+            Profile::SmoothRamp { from: 1.0, to: -3.0, start: 0.2, duration: 0.5 },
+            Profile::Table { points: vec![[0.1, 1.0], [0.3, 2.0], [0.9, -1.0]] },
+            Profile::Table { points: vec![[-0.1, 1.0], [0.3, 2.0], [0.9, -1.0]] },
+            Profile::Harmonic { mean: 2.0, amplitude: 0.5, frequency: 3.0, phase: 0.4 },
+            Profile::HalfSine { base: 1.0, peak: 5.0, start: 0.3, duration: 0.4 },
+            Profile::HalfSine { base: 1.0, peak: 5.0, start: -0.1, duration: 0.4 },
+        ];
+        let step = 1e-5;
+        for profile in profiles {
+            assert_eq!(profile.integral(0.0), 0.0, "{profile:?}");
+            for k in 0..97 {
+                let t = 0.0101 * k as f64;
+                if profile.corners().iter().any(|corner| (t - corner).abs() < 2.0 * step) {
+                    continue;
+                }
+                let sum = (profile.integral(t + step) - profile.integral(t - step)) / (2.0 * step);
+                let error = (sum - profile.value(t)).abs();
+                // Second derivative · step²/6, at most 310·1e-10/6, and rounding of 2e-16/1e-5.
+                assert!(error <= 1e-8, "{profile:?} at {t}: {error}");
             }
         }
     }

@@ -158,6 +158,13 @@ pub enum StaticsError {
     )]
     BallOutside { ball: usize, overlap: f64, degrees: f64 },
     #[error(
+        "no equilibrium of the outer race: {force:.3e} N (a moment over the pitch radius) along \
+         {coordinate} are unbalanced after it has moved by {travel:.3e}; hold it by a spring \
+         (outer_race.foundation) or a given motion, or start in nominal positions \
+         (numerics.start = \"nominal\")"
+    )]
+    OuterAdrift { coordinate: &'static str, force: f64, travel: f64 },
+    #[error(
         "no equilibrium found in {iterations} iterations: unbalanced load {residual:.3e} N against \
          {allowed:.3e} N allowed; last position x, y, z {position:?} m, tilts {tilts:?} rad"
     )]

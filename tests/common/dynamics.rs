@@ -8,6 +8,7 @@ use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
 use bearing_dynamics::ch2_housing::bearing::inertia::{self, Inertia};
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::solver::dynamics::contacts::Driver;
+use bearing_dynamics::solver::dynamics::energy::Energy;
 use bearing_dynamics::solver::dynamics::model::{
     CageBody, Drive, DynamicProblem, RaceBody, Rotation,
 };
@@ -16,7 +17,7 @@ use bearing_dynamics::solver::dynamics::start;
 use bearing_dynamics::solver::dynamics::state::{
     BodyState, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY,
 };
-use bearing_dynamics::solver::dynamics::system::{Energy, Instant, System};
+use bearing_dynamics::solver::dynamics::system::{Instant, System};
 use bearing_dynamics::solver::profile::Profile;
 use nalgebra::{UnitQuaternion, Vector3};
 

@@ -84,8 +84,9 @@ pub fn complete() -> DynamicProblem {
         cage: Some(cage()),
         outer: Some(outer),
         gravity: [0.0, 0.0, -9.81],
+        // With a gentle onset, so that a step of 1 µs is well below its limit.
         traction: TractionLaw::SlideToRoll {
-            curve: ExponentialCurve::BOUNDARY,
+            curve: ExponentialCurve { b: 4.0, c: 30.0, d: 0.1 },
             entrainment_floor: 0.01,
         },
         slices: 5,
@@ -105,6 +106,19 @@ pub fn rattling() -> DynamicProblem {
         damping: ContactDamping::LankaraniNikravesh { restitution: 0.95, slowest: 5e-3 },
         ..complete()
     }
+}
+
+/// The inner race's motion given, with corners off every grid of steps and rows, two of them in one
+/// row and one on a row; a load with another corner.
+pub fn jolted() -> DynamicProblem {
+    let mut problem = frictionless();
+    let points = vec![[0.0, 0.0], [0.0317e-3, 1e-6], [0.0341e-3, 1e-6], [0.08e-3, -2e-6]];
+    problem.inner.drives[2] = Drive::Motion(Profile::Table { points });
+    let tilts = Profile::Ramp { from: 0.0, to: 5e-5, start: 0.0553e-3, duration: 0.05e-3 };
+    problem.inner.drives[3] = Drive::Motion(tilts);
+    let load = Profile::Ramp { from: 0.0, to: 100.0, start: 0.0, duration: 0.1234e-3 };
+    problem.inner.drives[0] = Drive::Load(load);
+    problem
 }
 
 /// `rows` output intervals of ten steps and a bit, so that the last step is a shortened one.

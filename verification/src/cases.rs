@@ -6,24 +6,42 @@ use crate::case::{Case, Tier};
 
 #[path = "../axial_load_closed_form/case.rs"]
 mod axial_load_closed_form;
+#[path = "../bearing_conservation/case.rs"]
+mod bearing_conservation;
+#[path = "../cage_slip/case.rs"]
+mod cage_slip;
+#[path = "../cage_speed_table_5_4/case.rs"]
+mod cage_speed_table_5_4;
 #[path = "../hertz_elliptic/case.rs"]
 mod hertz_elliptic;
 #[path = "../kinematic_frequencies/case.rs"]
 mod kinematic_frequencies;
 #[path = "../misalignment_moment/case.rs"]
 mod misalignment_moment;
+#[path = "../rotating_load_orbit/case.rs"]
+mod rotating_load_orbit;
+#[path = "../settling_and_turning/case.rs"]
+mod settling_and_turning;
 #[path = "../statics_independent/case.rs"]
 pub mod statics_independent;
+#[path = "../varying_compliance_dynamics/case.rs"]
+mod varying_compliance_dynamics;
 #[path = "../varying_compliance_statics/case.rs"]
 mod varying_compliance_statics;
 
 pub const CASES: &[Case] = &[
     hertz_elliptic::CASE,
+    rotating_load_orbit::CASE,
     statics_independent::CASE,
     misalignment_moment::CASE,
+    settling_and_turning::CASE,
     varying_compliance_statics::CASE,
+    varying_compliance_dynamics::CASE,
     axial_load_closed_form::CASE,
+    bearing_conservation::CASE,
     kinematic_frequencies::CASE,
+    cage_slip::CASE,
+    cage_speed_table_5_4::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).

@@ -8,6 +8,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bearings;
+pub mod cage_bearing;
 pub mod case;
 pub mod cases;
 pub mod check;
@@ -16,6 +17,8 @@ pub mod date;
 pub mod golden;
 pub mod judge;
 pub mod machine;
+pub mod motion;
+pub mod mutants;
 pub mod oracles;
 pub mod pareto;
 pub mod published;

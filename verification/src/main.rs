@@ -9,7 +9,7 @@ use clap::{Parser, Subcommand};
 use verification::case::{Case, Tier};
 use verification::machine::{self, Machine};
 use verification::report::{CaseReport, CaseStatus, Report};
-use verification::{cases, golden, pareto, runner};
+use verification::{cases, golden, mutants, pareto, runner};
 
 #[derive(Parser)]
 #[command(name = "verify", about, version, args_conflicts_with_subcommands = true)]
@@ -53,6 +53,18 @@ enum Action {
         #[arg(long, value_name = "ID")]
         study: Option<String>,
     },
+    /// Seed faults in the physics, one at a time, and see each one caught.
+    Mutants {
+        /// Only this fault; may be given again.
+        #[arg(long, value_name = "ID")]
+        only: Vec<String>,
+        /// Processors to use.
+        #[arg(long, value_name = "N", default_value_t = 1)]
+        jobs: usize,
+        /// The repository.
+        #[arg(long, value_name = "DIR")]
+        root: Option<PathBuf>,
+    },
 }
 
 fn main() -> ExitCode {
@@ -63,6 +75,10 @@ fn main() -> ExitCode {
             accept(&case, &reason, &golden.unwrap_or_else(golden::default_folder))
         }
         Some(Action::Pareto { out, study }) => studies(&out, study.as_deref()),
+        Some(Action::Mutants { only, jobs, root }) => {
+            let here = || Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+            seeded_faults(&root.unwrap_or_else(here), &only, jobs.max(1))
+        }
     };
     match outcome {
         Ok(true) => ExitCode::SUCCESS,
@@ -157,6 +173,17 @@ fn accept(case: &str, reason: &str, folder: &Path) -> Result<bool, String> {
         }
     }
     Ok(accepted)
+}
+
+fn seeded_faults(root: &Path, only: &[String], jobs: usize) -> Result<bool, String> {
+    let tally = mutants::run(root, only, jobs)?;
+    eprintln!(
+        "{} of {} seeded faults caught; report: {}",
+        tally.caught,
+        tally.caught + tally.survived,
+        root.join("target/mutants/report.md").display()
+    );
+    Ok(tally.survived == 0)
 }
 
 fn studies(out: &Path, only: Option<&str>) -> Result<bool, String> {

@@ -5,13 +5,13 @@ use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot, norm, scale, sub};
 /// Force law of a cage contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CageForce {
-    /// K Δ, N/m, as in 5.3.2 with K = 2e8 N/m.
+    /// K Δ, N/m, equation (5.8); 5.3.2 takes K = 2e8 N/m.
     Penalty { stiffness: f64 },
     /// K Δ^{3/2}, N/m^1.5.
     Hertz { stiffness: f64 },
 }
 
-/// Force of a penetration (m), N; zero for a gap.
+/// Force of a penetration (m), N; zero for a gap. With [`CageForce::Penalty`] this is (5.8).
 pub fn cage_load(force: &CageForce, penetration: f64) -> f64 {
     if penetration <= 0.0 {
         return 0.0;
@@ -19,6 +19,17 @@ pub fn cage_load(force: &CageForce, penetration: f64) -> f64 {
     match force {
         CageForce::Penalty { stiffness } => stiffness * penetration,
         CageForce::Hertz { stiffness } => stiffness * penetration * penetration.sqrt(),
+    }
+}
+
+/// Slope of the force of a penetration, N/m.
+pub fn cage_stiffness(force: &CageForce, penetration: f64) -> f64 {
+    if penetration <= 0.0 {
+        return 0.0;
+    }
+    match force {
+        CageForce::Penalty { stiffness } => *stiffness,
+        CageForce::Hertz { stiffness } => 1.5 * stiffness * penetration.sqrt(),
     }
 }
 
@@ -81,6 +92,9 @@ pub struct CageContact {
     /// Normal force and friction on the other body; the cage feels the opposite at `point`.
     pub force: Vec3,
     pub point: Vec3,
+    /// Unit vector of the normal force on the other body, and its sliding over the cage (m/s).
+    pub push: Vec3,
+    pub slip: Vec3,
     /// Power of the friction, W, ≤ 0.
     pub power: f64,
 }
@@ -123,6 +137,8 @@ fn contact(
         normal_load: load,
         force: add_scaled(scale(push, load), -per_speed, slip),
         point,
+        push,
+        slip,
         power: -per_speed * speed * speed,
     }
 }

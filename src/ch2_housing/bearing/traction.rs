@@ -141,48 +141,40 @@ pub fn regularised(coefficient: f64, speed: f64, slip: f64) -> (f64, f64) {
     (coefficient * slip / root, coefficient * speed * speed / (square * root))
 }
 
-/// Traction of slices and how it falls with more sliding: force along t and s and moment about n,
-/// and their negated derivatives by both slips and the relative spin (upper triangle: tt, ts, tn,
-/// ss, sn, nn); all over the normal load.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TractionTangent {
-    pub force: [f64; 3],
-    pub slope: [f64; 6],
-}
+/// How traction falls with more sliding: negated derivatives of the force along t and s and of the
+/// moment about n by both slips and the relative spin, over the normal load. Upper triangle of a
+/// symmetric matrix that has no negative eigenvalue: tt, ts, tn, ss, sn, nn.
+pub type TractionSlope = [f64; 6];
 
-/// Adds one slice as [`add_slice`] does, with its derivatives. Beyond the peak of the friction
-/// curve its slope counts as zero, so that the derivatives only ever dissipate.
+/// Adds the slope of one slice, whose force [`add_slice`] adds. `friction` gives coefficient and
+/// slope. Beyond the peak of the friction curve its slope counts as zero, so that the derivatives
+/// only ever dissipate.
 #[inline(always)]
-pub fn add_slice_tangent(
-    sum: &TractionTangent,
+pub fn add_slope(
+    sum: &TractionSlope,
     slip: [f64; 2],
     relative_spin: Vec3,
     y: f64,
     sagitta: f64,
     share: f64,
     friction: impl Fn(f64) -> (f64, f64),
-) -> TractionTangent {
+) -> TractionSlope {
     let [spin_t, spin_s, spin_n] = relative_spin;
     let slip_t = slip[0] - spin_n * y - spin_s * sagitta;
     let slip_s = slip[1] + spin_t * sagitta;
     let speed = (slip_t * slip_t + slip_s * slip_s).sqrt();
-    // At rest the secant κ/u is the tangent; 1e-12 m/s is far below any creep.
-    let speed = if speed > 1e-12 { speed } else { 1e-12 };
     let (coefficient, rise) = friction(speed);
-    let per = 1.0 / speed;
-    let secant = share * coefficient * per;
     let rise = if rise > 0.0 { rise } else { 0.0 };
+    // The secant κ/u tends to the tangent; 1e-12 m/s is far below any creep.
+    let crept = speed > 1e-12;
+    let per = 1.0 / if crept { speed } else { 1e-12 };
+    let secant = share * if crept { coefficient * per } else { rise };
     let steep = (share * rise - secant) * per * per;
     let tt = secant + steep * slip_t * slip_t;
     let ts = steep * slip_t * slip_s;
     let ss = secant + steep * slip_s * slip_s;
-    let along = secant * slip_t;
-    let [f, g, h] = sum.force;
-    let [a, b, c, d, e, k] = sum.slope;
-    TractionTangent {
-        force: [f - along, g - secant * slip_s, h + y * along],
-        slope: [a + tt, b + ts, c - y * tt, d + ss, e - y * ts, k + y * y * tt],
-    }
+    let [a, b, c, d, e, k] = *sum;
+    [a + tt, b + ts, c - y * tt, d + ss, e - y * ts, k + y * y * tt]
 }
 
 /// 1/U with the floor under U, s/m; one division a contact serves all its slices.
@@ -381,6 +373,24 @@ pub fn integrate(
         let sagitta = y * y * curvature;
         let friction = |speed: f64| coefficient(law, speed, sliding.entrainment);
         sum = add_slice(&sum, sliding.slip, sliding.relative_spin, y, sagitta, *share, friction);
+    }
+    sum
+}
+
+/// Slopes of all slices of one contact, in order; arguments as of [`integrate`].
+pub fn integrate_slope(
+    law: &TractionLaw,
+    slices: &Slices,
+    sliding: &Sliding,
+    semi_major: f64,
+    curvature: f64,
+) -> TractionSlope {
+    let mut sum = TractionSlope::default();
+    for (middle, share) in slices.middle.iter().zip(&slices.share) {
+        let y = middle * semi_major;
+        let sagitta = y * y * curvature;
+        let friction = |speed: f64| coefficient_and_slope(law, speed, sliding.entrainment);
+        sum = add_slope(&sum, sliding.slip, sliding.relative_spin, y, sagitta, *share, friction);
     }
     sum
 }

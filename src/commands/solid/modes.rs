@@ -18,8 +18,7 @@ pub fn run(path: &Path, scene: &SolidScene, out: &Option<PathBuf>, dry: bool) ->
     let (built, setup) = (&prepared.built, &prepared.setup);
     let start = Instant::now();
     let model = SolidModel::new(setup.problem.clone())?;
-    let options =
-        ModeOptions { mass: scene.mode_mass, ..ModeOptions::new(scene.mode_count) };
+    let options = ModeOptions { mass: scene.mode_mass, ..ModeOptions::new(scene.mode_count) };
     let found = modes(&model, &options)?;
     let seconds = vec![
         ("mesh".into(), prepared.mesh_seconds),

@@ -47,9 +47,10 @@ pub fn run(arguments: &Arguments, scene: &SolidScene, begun: Instant) -> Command
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))?;
 
     let start = Instant::now();
+    let threads = usize::from(arguments.threads);
     let mut session = match &kept {
-        Some(file) => state::resume(&folder, file, setup, &settings)?,
-        None => SolidSession::start(setup, &settings)?,
+        Some(file) => state::resume(&folder, file, setup, &settings, threads)?,
+        None => SolidSession::start(setup, &settings, threads)?,
     };
     let start_seconds = start.elapsed().as_secs_f64();
     let kept = kept.as_ref();
@@ -107,13 +108,17 @@ pub fn run(arguments: &Arguments, scene: &SolidScene, begun: Instant) -> Command
         ("simulate".into(), seconds),
         ("plots".into(), start.elapsed().as_secs_f64()),
     ];
-    let record = record(scene, plan::lines(scene, &prepared), seconds)?;
+    let mut record = record(scene, plan::lines(scene, &prepared), seconds)?;
+    record.threads = threads;
     let stress = stresses(&setup.problem, &session.displacement());
     let reason = stopped_by.as_deref();
-    let summary =
-        summary::run(&session, &settings, built, &stress, &spectra, reason, &record)?;
+    let summary = summary::run(&session, &settings, built, &stress, &spectra, reason, &record)?;
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
-    say(&format!("wrote series, fields, summary and {} plots to {}\n", plots.len(), folder.display()))?;
+    say(&format!(
+        "wrote series, fields, summary and {} plots to {}\n",
+        plots.len(),
+        folder.display()
+    ))?;
     outcome(arguments, &folder, &session, &settings, end)
 }
 

@@ -60,8 +60,11 @@ pub fn run(path: &Path, scene: &SolidScene, out: &Option<PathBuf>, dry: bool) ->
 fn table(summary: &Value) -> String {
     let number = |at: &Value| at["value"].as_f64().unwrap_or(f64::NAN);
     let axes = |at: &Value, scale: f64| {
-        let parts = ["x", "y", "z"].map(|axis| format!("{:>16.6}", scale * number(&at[axis])));
-        parts.concat()
+        let part = |axis: &str| match at[axis]["value"].as_f64() {
+            Some(value) => format!("{:>16.6}", scale * value),
+            None => format!("{:>16}", "-"),
+        };
+        ["x", "y", "z"].map(part).concat()
     };
     let mut text = format!("{:<28}{:>16}{:>16}{:>16}\n", "", "x", "y", "z");
     let mut line = |name: &str, values: String| {

@@ -6,6 +6,7 @@
 //! Own code, because the crates for these formats read one version each, or no physical groups,
 //! and none of them reports where a file is wrong.
 pub mod abaqus;
+mod abaqus_lines;
 mod assemble;
 mod error;
 pub mod gmsh;

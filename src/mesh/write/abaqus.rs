@@ -7,13 +7,16 @@ use std::fmt::Write;
 /// Numbers on a data line; the formats allow 16.
 const PER_LINE: usize = 12;
 
+/// CalculiX reads no number of more characters than this.
+const NUMBER_WIDTH: usize = 20;
+
 /// Sets that every file has.
 const ALL_NODES: &str = "all_nodes";
 const ALL_ELEMENTS: &str = "all_elements";
 
 /// Nodes, elements (C3D4 or C3D10) and all sets of `mesh`. Surface sets become element surfaces.
 ///
-/// Coordinates are written so that reading them gives the same bits.
+/// Coordinates are written within CalculiX' 20 characters: most keep every bit.
 ///
 /// # Errors
 /// [`MeshError::Name`] for a set whose name the format cannot hold.
@@ -28,7 +31,8 @@ pub fn write_abaqus(mesh: &TetMesh) -> Result<String, MeshError> {
     let mut text = format!("** Lengths in m\n*NODE, NSET={ALL_NODES}\n");
     let out = &mut text;
     for (node, [x, y, z]) in mesh.nodes.iter().enumerate() {
-        line(out, format_args!("{}, {x:e}, {y:e}, {z:e}", node + 1));
+        let [x, y, z] = [x, y, z].map(|x| number(*x));
+        line(out, format_args!("{}, {x}, {y}, {z}", node + 1));
     }
     let kind = match mesh.order() {
         Order::Linear => "C3D4",
@@ -55,6 +59,14 @@ pub fn write_abaqus(mesh: &TetMesh) -> Result<String, MeshError> {
         }
     }
     Ok(text)
+}
+
+/// A number in the shortest form that keeps its bits, or with as many digits as fit.
+fn number(x: f64) -> String {
+    let fits = |text: &String| text.len() <= NUMBER_WIDTH;
+    let exact = [format!("{x}"), format!("{x:e}")].into_iter().filter(fits).min_by_key(String::len);
+    let rounded = || (0..=16).rev().map(|digits| format!("{x:.digits$e}")).find(fits);
+    exact.or_else(rounded).unwrap_or_default()
 }
 
 /// Adds a line; writing to a string cannot fail.

@@ -22,6 +22,17 @@ fn vector_stem(channel: &str) -> &str {
     channel
 }
 
+/// The difference of two directions: one whole turn apart is the same direction, as 315° and −45°.
+/// More turns are counted turns, of which none may go missing.
+fn folded(difference: f64, unit: &str) -> f64 {
+    let turn = match unit {
+        "deg" => 360.0,
+        "rad" => std::f64::consts::TAU,
+        _ => return difference,
+    };
+    if difference < 1.5 * turn { difference.min((difference - turn).abs()) } else { difference }
+}
+
 /// Position of a difference: row (or place in the tree) and column; 0 comes before all rows.
 pub type Order = (usize, usize);
 
@@ -154,7 +165,10 @@ impl<'a> Judge<'a> {
         candidate: f64,
         (tolerance, scale): (Tolerance, f64),
     ) {
-        let difference = (candidate - reference).abs();
+        let mut difference = (candidate - reference).abs();
+        if !tolerance.is_exact() {
+            difference = folded(difference, &self.channels[index].unit);
+        }
         let allowed = tolerance.allowed(reference, scale);
         let finite = reference.is_finite() && candidate.is_finite();
         let same_bits = reference.to_bits() == candidate.to_bits();

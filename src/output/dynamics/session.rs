@@ -1,13 +1,18 @@
 //! A run from start to end: steps, rows of the time series, and the last state that was sound.
 //!
-//! The step never changes on the way, so that a run that was interrupted goes on with the same
-//! bits; only the very last step is shortened to end at the end.
+//! With a fixed step the step does not change on the way but where loads or given motions have a
+//! corner: steps end there, and the way from one row to the next is divided evenly between its
+//! corners. With error control steps follow from the state, from what the control remembers and
+//! from the time of the next row or corner. Either way the next step follows from what is kept, so
+//! that a run that was interrupted goes on with the same bits. The very last step is shortened to
+//! end at the end.
 
 use crate::output::dynamics::recorder::{Recorder, RecorderError};
 use crate::solver::channels::ChannelGroup;
 use crate::solver::dynamics::checkpoint::Checkpoint;
-use crate::solver::dynamics::model::DynamicProblem;
+use crate::solver::dynamics::model::{DynamicProblem, next_corner};
 use crate::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Stepping};
+use crate::solver::dynamics::step_watch::LOOK_EVERY;
 use thiserror::Error;
 
 /// What a run is asked for besides its problem.
@@ -57,13 +62,17 @@ pub struct Session {
     pub simulation: Simulation,
     pub recorder: Recorder,
     pub end: f64,
-    /// Steps from one row to the next.
+    /// Steps from one row to the next; zero with error control, where steps end at the rows' times.
     pub steps_per_row: u64,
     pub status: Status,
     /// Before the step that completed or failed, and the rows at that time.
     sound: Checkpoint,
     sound_rows: usize,
     failed: bool,
+    /// Times of corners; see [`DynamicProblem::corners`].
+    corners: Vec<f64>,
+    /// Time between rows as asked for, s.
+    output_interval: f64,
 }
 
 impl Session {
@@ -73,7 +82,7 @@ impl Session {
     /// makes an output interval; with a given step the interval is rounded to whole steps.
     ///
     /// # Errors
-    /// No equilibrium to start from, no step, no time to simulate, more rows than fit in memory.
+    /// No equilibrium to start from, no step or one that is too long, no time to simulate, more rows than fit in memory.
     pub fn start(problem: DynamicProblem, request: &RunRequest) -> Result<Session, SessionError> {
         if !(request.end > 0.0 && request.end.is_finite()) {
             return Err(SessionError::End(request.end));
@@ -91,7 +100,11 @@ impl Session {
                 simulation.step_size = interval / steps;
                 steps
             }
-            Stepping::Fixed(_) => steps.round().max(1.0),
+            Stepping::Fixed(_) => {
+                simulation.judge_step_now()?;
+                steps.round().max(1.0)
+            }
+            Stepping::Accuracy(_) => 0.0,
         };
         let mut session = Session::new(simulation, request, steps_per_row as u64)?;
         session.record()?;
@@ -123,7 +136,10 @@ impl Session {
         request: &RunRequest,
         steps_per_row: u64,
     ) -> Result<Session, SessionError> {
-        let interval = steps_per_row as f64 * simulation.step_size;
+        let interval = match steps_per_row {
+            0 => request.output_interval,
+            steps => steps as f64 * simulation.step_size,
+        };
         // The first row, the last one off the grid, and one for rounding.
         let rows = (request.end / interval) as usize + 3;
         let recorder = Recorder::new(&simulation.system.problem, &request.channels, rows)?;
@@ -131,6 +147,8 @@ impl Session {
             sound: simulation.checkpoint(),
             sound_rows: 0,
             failed: false,
+            corners: simulation.system.problem.corners(),
+            output_interval: request.output_interval,
             recorder,
             end: request.end,
             steps_per_row,
@@ -141,7 +159,10 @@ impl Session {
 
     /// Time between rows, s.
     pub fn interval(&self) -> f64 {
-        self.steps_per_row as f64 * self.simulation.step_size
+        match self.steps_per_row {
+            0 => self.output_interval,
+            steps => steps as f64 * self.simulation.step_size,
+        }
     }
 
     /// At most `steps` steps.
@@ -155,7 +176,7 @@ impl Session {
             }
             self.simulation.checkpoint_into(&mut self.sound);
             self.sound_rows = self.recorder.rows();
-            if let Err(error) = self.step() {
+            if let Err(error) = self.step().and_then(|()| self.watch()) {
                 self.failed = true;
                 return Err(error);
             }
@@ -163,8 +184,31 @@ impl Session {
         Ok(self.status)
     }
 
+    /// The step against what the contacts have become, every few steps.
+    fn watch(&mut self) -> Result<(), SimulationError> {
+        if self.simulation.steps.is_multiple_of(LOOK_EVERY) {
+            self.simulation.watch_step()?;
+        }
+        Ok(())
+    }
+
+    /// Time of the last row, s.
+    fn row_start(&self) -> f64 {
+        self.recorder.rows().checked_sub(1).map_or(0.0, |last| self.recorder.row(last)[0])
+    }
+
     fn step(&mut self) -> Result<(), SimulationError> {
+        if self.steps_per_row == 0 {
+            return self.controlled_step();
+        }
         let step = self.simulation.step_size;
+        let row_start = self.row_start();
+        let row_end = row_start + self.interval();
+        // Rounding of times is far below this, and nobody means a step so short.
+        let slack = 1e-6 * step;
+        if next_corner(&self.corners, row_start).is_some_and(|corner| corner <= row_end + slack) {
+            return self.step_between_corners(row_end, slack);
+        }
         let left = self.end - self.simulation.time;
         // A last step that is whole but for rounding of the time is taken whole, so that no step
         // of nearly nothing follows it.
@@ -176,8 +220,84 @@ impl Session {
             return Ok(());
         }
         self.simulation.step()?;
-        if self.simulation.steps.is_multiple_of(self.steps_per_row) {
+        let taken = ((self.simulation.time - row_start) / step).round();
+        if taken as u64 == self.steps_per_row {
             self.record()?;
+        }
+        Ok(())
+    }
+
+    /// A step whose size follows from the error, on the way to the next row, corner or the end.
+    fn controlled_step(&mut self) -> Result<(), SimulationError> {
+        let simulation = &mut self.simulation;
+        let time = simulation.time;
+        // Rows by count, so that rounding does not add up.
+        let row_time = self.recorder.rows() as f64 * self.output_interval;
+        // Nobody means a step so short.
+        let slack = 1e-9 * self.output_interval;
+        let corner = next_corner(&self.corners, time).filter(|corner| *corner <= row_time + slack);
+        let at_row = |corner: f64| if corner >= row_time - slack { row_time } else { corner };
+        let mut stop = corner.map_or(row_time, at_row);
+        let mut left = stop - time;
+        let mut step = towards(simulation.step_size, left);
+        // The end changes the last step only, so that a run can be extended with the same bits.
+        let completes = self.end - time <= step * (1.0 + 1e-6);
+        if completes {
+            stop = self.end;
+            left = stop - time;
+            step = left;
+        }
+        let crossed = corner.filter(|corner| step == left && *corner <= stop + slack);
+        if let Some(corner) = crossed {
+            simulation.system.latest = corner.next_down();
+        }
+        let taken = simulation.step_by(step);
+        if !matches!(taken, Ok(taken) if taken == left) {
+            simulation.system.latest = f64::INFINITY;
+            return taken.map(|_| ());
+        }
+        simulation.time = stop;
+        if let Some(corner) = crossed {
+            simulation.cross_corner(corner);
+        }
+        if completes || stop == row_time {
+            self.record()?;
+        }
+        if completes {
+            self.status = Status::Complete;
+        }
+        Ok(())
+    }
+
+    /// A step on the way to a row with corners before it: an equal part of what is left to the next
+    /// corner or row, whatever the end of the run is.
+    fn step_between_corners(&mut self, row_end: f64, slack: f64) -> Result<(), SimulationError> {
+        let simulation = &mut self.simulation;
+        let time = simulation.time;
+        let corner = next_corner(&self.corners, time).filter(|corner| *corner <= row_end + slack);
+        let stop = corner.unwrap_or(row_end);
+        let left = stop - time;
+        let steps = (left / simulation.step_size * (1.0 - 1e-9)).ceil().max(1.0);
+        let size = left / steps;
+        let completes = self.end - time <= size * (1.0 + 1e-6);
+        let stop = if completes { self.end } else { stop };
+        if steps > 1.0 && !completes {
+            return simulation.step_by(size).map(|_| ());
+        }
+        let crossed = corner.filter(|corner| *corner <= stop + slack);
+        if let Some(corner) = crossed {
+            simulation.system.latest = corner.next_down();
+        }
+        simulation.step_by(stop - time)?;
+        simulation.time = stop;
+        if let Some(corner) = crossed {
+            simulation.cross_corner(corner);
+        }
+        if completes || stop >= row_end - slack {
+            self.record()?;
+        }
+        if completes {
+            self.status = Status::Complete;
         }
         Ok(())
     }
@@ -206,7 +326,20 @@ impl Session {
             return rows;
         }
         let last = self.recorder.row(rows - 1)[0] - self.recorder.row(rows - 2)[0];
-        let whole = (last - self.interval()).abs() <= 1e-3 * self.simulation.step_size;
+        let slack = if self.steps_per_row == 0 { last } else { self.simulation.step_size };
+        let whole = (last - self.interval()).abs() <= 1e-3 * slack;
         if whole { rows } else { rows - 1 }
+    }
+}
+
+/// A step no longer than `step` on the way to a row that is `left` away: there if it can be
+/// reached, half of the way if it could be reached in two, so that no tiny step comes last.
+fn towards(step: f64, left: f64) -> f64 {
+    if left <= step * (1.0 + 1e-6) {
+        left
+    } else if left < 2.0 * step {
+        0.5 * left
+    } else {
+        step
     }
 }

@@ -8,7 +8,7 @@ use crate::output::results::{ResultsError, RunRecord, insert_record, pretty, qua
 use crate::output::series::{Column, Series, columns_path};
 use crate::output::spectrum::{LEAKAGE, Spectrum, WINDOW, peaks};
 use crate::output::state::SERIES;
-use crate::solver::dynamics::run::Stepping;
+use crate::solver::dynamics::run::{Integrator, Stepping};
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
 use std::f64::consts::TAU;
@@ -25,6 +25,7 @@ pub struct RunReport {
     pub stopped_by: Option<String>,
     /// How the steps were to be chosen, as the scene has it.
     pub stepping: Option<Stepping>,
+    pub integrator: Option<Integrator>,
     /// Whether spectra were asked for.
     pub spectra: bool,
 }
@@ -105,6 +106,8 @@ pub fn run_summary(
             "slices": work.slices,
             "pocket_tests": work.pocket_tests,
             "guide_tests": work.guide_tests,
+            "factorisations": work.factorisations,
+            "rejected_steps": work.rejected_steps,
         }),
     );
     if let Some(energy) = energy(table)? {
@@ -135,6 +138,22 @@ fn step(session: &Session, report: &RunReport) -> Result<Value, ResultsError> {
     let simulation = &session.simulation;
     let size = simulation.step_size;
     let mut step = Map::new();
+    if let Some(integrator) = report.integrator {
+        step.insert("method".into(), json!(integrator.name()));
+    }
+    if let (Some(control), Some(Stepping::Accuracy(accuracy))) =
+        (&simulation.control, report.stepping)
+    {
+        let memory = &control.memory;
+        step.insert("accuracy".into(), json!(accuracy));
+        step.insert("accepted".into(), json!(simulation.steps));
+        step.insert("rejected".into(), json!(simulation.system.work.rejected_steps));
+        step.insert("smallest".into(), quantity("smallest", memory.smallest, "s")?);
+        step.insert("largest".into(), quantity("largest", memory.largest, "s")?);
+        step.insert("scale".into(), quantity("largest overlap", memory.displacement, "m")?);
+        step.insert("reason".into(), json!("error control: as long as the accuracy allows"));
+        return Ok(Value::Object(step));
+    }
     step.insert("size".into(), quantity("step", size, "s")?);
     let reason = match (&simulation.limit, report.stepping) {
         (Some(limit), Some(Stepping::FractionOfLimit(fraction))) => {
@@ -149,6 +168,17 @@ fn step(session: &Session, report: &RunReport) -> Result<Value, ResultsError> {
         (None, _) => "given".into(),
     };
     step.insert("reason".into(), json!(reason));
+    let watch = &simulation.step_watch;
+    step.insert("limit_judged".into(), json!(watch.judged));
+    if let Some(smallest) = watch.smallest {
+        step.insert("smallest_stability_limit".into(), quantity("limit", smallest, "s")?);
+    }
+    if let Some([ratio, time]) = watch.exceeded {
+        let warning = format!(
+            "the step is {ratio:.3} times the largest stable one at t = {time} s; take a shorter one"
+        );
+        step.insert("warning".into(), json!(warning));
+    }
     Ok(Value::Object(step))
 }
 

@@ -7,12 +7,13 @@ use crate::kinematics::vec3::Vec3;
 use crate::output::series::{Column, Series, SeriesError};
 use crate::output::solid::fields::first_inverted;
 use crate::scene::solid::SolidRun;
-use crate::scene::solid_problem::{NamedNodes, SolidSetup};
+use crate::scene::solid_problem::{NamedNodes, SolidSetup, Support};
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::energy::SolidEnergy;
 use crate::solver::solid::explicit::{ExplicitSolid, SolidStepping, padded};
 use crate::solver::solid::model::{SolidError, SolidModel};
 use crate::solver::solid::step_limit::{SolidStepLimit, step_limit};
+use crate::solver::solid::team::Team;
 use ndarray::Array2;
 use thiserror::Error;
 
@@ -86,17 +87,20 @@ pub struct SolidSession {
     pub grid: Grid,
     pub energy_limit: f64,
     pub probes: Vec<NamedNodes>,
-    pub supports: Vec<NamedNodes>,
+    pub supports: Vec<Support>,
     columns: Vec<Column>,
     values: Vec<f64>,
-    /// Energy at the start, J.
-    pub first_energy: f64,
+    /// Energy held less work done at the start, J: what the ledger is held against.
+    pub first_balance: f64,
     /// Largest energy held or exchanged so far, J: what is unaccounted for is measured by it.
     pub turned_over: f64,
     /// Largest energy unaccounted for so far, J.
     pub largest_residual: f64,
     /// At the last row on the grid, or before a last row off it.
     sound: Sound,
+    /// Threads that step, and the parts they have once there are several.
+    threads: usize,
+    team: Option<Team>,
     /// Whether `sound` is what a later run goes on from.
     resume_from_sound: bool,
 }
@@ -115,7 +119,7 @@ pub struct Kept {
     pub checkpoint: SolidCheckpoint,
     pub grid: Grid,
     pub limit: SolidStepLimit,
-    pub first_energy: f64,
+    pub first_balance: f64,
     pub turned_over: f64,
     pub largest_residual: f64,
     /// Rows so far, one after the other.
@@ -127,14 +131,18 @@ impl SolidSession {
     ///
     /// # Errors
     /// A model that cannot be set up, a step beyond the limit, more rows than fit in memory.
-    pub fn start(setup: &SolidSetup, run: &SolidRun) -> Result<SolidSession, SolidRunError> {
+    pub fn start(
+        setup: &SolidSetup,
+        run: &SolidRun,
+        threads: usize,
+    ) -> Result<SolidSession, SolidRunError> {
         let model = SolidModel::new(setup.problem.clone())?;
         let still = vec![[0.0; 4]; model.mass.len()];
         let limit = step_limit(&model, &still, run.method);
         let grid = Grid::new(run, &limit);
         let mut session = SolidSession::at_start(setup, run, model, limit, grid)?;
-        let energy = session.solid.energy();
-        session.first_energy = energy.strain + energy.kinetic;
+        session.threads = threads;
+        session.first_balance = session.solid.ledger().balance();
         session.record()?;
         session.keep();
         Ok(session)
@@ -151,13 +159,15 @@ impl SolidSession {
         setup: &SolidSetup,
         run: &SolidRun,
         kept: Kept,
+        threads: usize,
     ) -> Result<SolidSession, SolidRunError> {
         let model = SolidModel::new(setup.problem.clone())?;
         let steps = (run.end / kept.grid.step_size).round().max(1.0) as u64;
         let grid = Grid { steps, ..kept.grid };
         let mut session = SolidSession::at_start(setup, run, model, kept.limit, grid)?;
         session.solid.restore(&kept.checkpoint);
-        session.first_energy = kept.first_energy;
+        session.threads = threads;
+        session.first_balance = kept.first_balance;
         session.turned_over = kept.turned_over;
         session.largest_residual = kept.largest_residual;
         // A last row off the grid was that of the earlier end.
@@ -177,8 +187,7 @@ impl SolidSession {
         let still = vec![[0.0; 4]; model.mass.len()];
         let stepping = SolidStepping::Fixed(grid.step_size);
         let velocity = padded(setup.velocity.clone());
-        let solid =
-            ExplicitSolid::with_limit(model, run.method, stepping, limit, still, velocity)?;
+        let solid = ExplicitSolid::with_limit(model, run.method, stepping, limit, still, velocity)?;
         let columns = columns(&setup.probes, &setup.supports);
         let rows = grid.rows_until(grid.steps) + 1;
         let mut values = Vec::new();
@@ -189,6 +198,8 @@ impl SolidSession {
         Ok(SolidSession {
             sound: Sound::default(),
             resume_from_sound: false,
+            threads: 1,
+            team: None,
             solid,
             grid,
             energy_limit: run.energy_limit,
@@ -196,7 +207,7 @@ impl SolidSession {
             supports: setup.supports.clone(),
             columns,
             values,
-            first_energy: 0.0,
+            first_balance: 0.0,
             turned_over: 0.0,
             largest_residual: 0.0,
         })
@@ -208,11 +219,12 @@ impl SolidSession {
     /// A value that is not finite, an inverted element, an energy ledger that does not close;
     /// [`SolidSession::resumable`] then is the state at the last row.
     pub fn advance(&mut self, steps: u64) -> Result<Progress, SolidRunError> {
-        for _ in 0..steps {
+        let target = self.solid.steps + steps;
+        while self.solid.steps < target {
             if self.solid.steps >= self.grid.steps {
                 return Ok(Progress::Complete);
             }
-            let done = self.step();
+            let done = self.step_to_row(target);
             self.resume_from_sound |= done.is_err();
             if let Some(index) = done? {
                 return Ok(Progress::Fields(index));
@@ -221,9 +233,20 @@ impl SolidSession {
         Ok(Progress::Running)
     }
 
-    /// One step; the number of the file of fields that is due after it.
-    fn step(&mut self) -> Result<Option<usize>, SolidRunError> {
-        self.solid.step(|_, _, _| {})?;
+    /// Steps to the next row, the end, or `target` before them; the number of the file of fields
+    /// that is due there.
+    fn step_to_row(&mut self, target: u64) -> Result<Option<usize>, SolidRunError> {
+        let next_row = (self.solid.steps / self.grid.steps_per_row + 1) * self.grid.steps_per_row;
+        let count = next_row.min(self.grid.steps).min(target) - self.solid.steps;
+        if self.threads > 1 {
+            let team = self.team.get_or_insert_with(|| Team::new(&self.solid, self.threads));
+            team.advance(count)?;
+            team.gather(&mut self.solid);
+        } else {
+            for _ in 0..count {
+                self.solid.step(|_, _, _| {})?;
+            }
+        }
         let steps = self.solid.steps;
         let on_grid = steps.is_multiple_of(self.grid.steps_per_row);
         if !on_grid && steps < self.grid.steps {
@@ -257,9 +280,10 @@ impl SolidSession {
         if let Some((element, ratio)) = first_inverted(&self.solid.model.problem, &displacement) {
             return Err(SolidError::Inverted { element, ratio, time, step }.into());
         }
-        let SolidEnergy { strain, kinetic } = self.solid.energy();
-        let (external, damping) = (self.solid.external_work, self.solid.damping_work);
-        let residual = strain + kinetic - self.first_energy - external - damping;
+        let ledger = self.solid.ledger();
+        let SolidEnergy { strain, kinetic } = ledger.energy;
+        let (external, damping) = (ledger.external_work, ledger.damping_work);
+        let residual = ledger.balance() - self.first_balance;
         for energy in [strain + kinetic, external.abs(), damping.abs()] {
             self.turned_over = self.turned_over.max(energy);
         }
@@ -277,7 +301,7 @@ impl SolidSession {
         }
         let reactions = self.reactions();
         for support in &self.supports {
-            self.values.extend(sum(&reactions, &support.nodes));
+            self.values.extend(support.total(&reactions));
         }
         Ok(())
     }
@@ -288,12 +312,10 @@ impl SolidSession {
         self.sound.largest_residual = self.largest_residual;
     }
 
-    /// Forces of the supports on the nodes, N; zero on free components.
+    /// Forces of the supports on the nodes at the time of the last ledger, N; zero on free
+    /// components.
     fn reactions(&self) -> Vec<Vec3> {
-        let model = &self.solid.model;
-        let mut forces = vec![[0.0; 4]; model.mass.len()];
-        model.add_internal_forces(&self.solid.displacement, &mut forces);
-        model.add_external_forces(self.solid.time, &mut forces);
+        let (model, forces) = (&self.solid.model, self.solid.forces());
         let mut reactions = vec![[0.0; 3]; forces.len()];
         for held in &model.problem.prescribed {
             let (node, axis) = (held.node as usize, held.axis);
@@ -370,19 +392,21 @@ pub fn sum(of: &[Vec3], nodes: &[u32]) -> Vec3 {
 }
 
 /// Columns of the probes and supports.
-pub fn probe_columns(probes: &[NamedNodes], supports: &[NamedNodes]) -> Vec<Column> {
+pub fn probe_columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column> {
     let mut columns = Vec::new();
     for probe in probes {
         columns.extend(["x", "y", "z"].map(|a| Column::new(format!("{}_{a}", probe.name), "m")));
     }
     for support in supports {
-        let name = |axis| format!("reaction_{}_{axis}", support.name);
-        columns.extend(["x", "y", "z"].map(|axis| Column::new(name(axis), "N")));
+        for axis in support.axes() {
+            let name = format!("reaction_{}_{}", support.name, ["x", "y", "z"][axis]);
+            columns.push(Column::new(name, "N"));
+        }
     }
     columns
 }
 
-fn columns(probes: &[NamedNodes], supports: &[NamedNodes]) -> Vec<Column> {
+fn columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column> {
     let mut columns = vec![Column::new("time", "s")];
     for name in ["energy_strain", "energy_kinetic", "work_external", "work_damping"] {
         columns.push(Column::new(name, "J"));

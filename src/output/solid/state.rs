@@ -1,4 +1,4 @@
-//! The state of a solid's run: `state.json`, with displacements and rates in `state-N.npy` beside it
+//! The state of a solid's run: `state.json`, with the nodes' numbers in `state-N.npy` beside it
 //! (N the number of steps) and the rows so far in `series.npy`.
 //!
 //! The arrays are written before `state.json` names them and the older ones are removed after, so
@@ -20,6 +20,9 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
+
+/// Numbers kept for each node.
+const WIDTH: usize = 8;
 
 /// Content of `state.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,15 +49,13 @@ pub struct SolidStateFile {
     pub rows: usize,
     /// Wall time so far, s.
     pub seconds: f64,
-    /// File with one row a node: displacement (m) and rate (m/s).
+    /// File with one row a node: displacement (m), rate (m/s), work of loads and of damping (J).
     pub arrays: String,
     pub limit: LimitEntry,
     /// J.
-    pub first_energy: f64,
+    pub first_balance: f64,
     pub turned_over: f64,
     pub largest_residual: f64,
-    pub external_work: f64,
-    pub damping_work: f64,
     /// Force evaluations and elements in them.
     pub work: [u64; 2],
 }
@@ -152,15 +153,16 @@ pub fn save(
     let file = state_file(&sound, session, record);
     session.series()?.write_npy(&folder.join(SERIES))?;
     let path = folder.join(&file.arrays);
-    let rows = checkpoint.displacement.iter().zip(&checkpoint.rate);
-    let values: Vec<f64> =
-        rows.flat_map(|(u, v)| [u[0], u[1], u[2], v[0], v[1], v[2]]).collect();
-    if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-        let what = if at % 6 < 3 { "a displacement" } else { "a rate" };
-        return Err(SolidStateError::Damaged { path, what });
+    let mut values = Vec::with_capacity(WIDTH * checkpoint.rate.len());
+    for (n, (u, v)) in checkpoint.displacement.iter().zip(&checkpoint.rate).enumerate() {
+        values.extend([u[0], u[1], u[2], v[0], v[1], v[2]]);
+        values.extend([checkpoint.external_work[n], checkpoint.damping_work[n]]);
     }
-    let table = Array2::from_shape_vec((checkpoint.rate.len(), 6), values)
-        .expect("six numbers for each node");
+    if !values.iter().all(|value| value.is_finite()) {
+        return Err(SolidStateError::Damaged { path, what: "a value that is not finite" });
+    }
+    let table = Array2::from_shape_vec((checkpoint.rate.len(), WIDTH), values)
+        .expect("eight numbers for each node");
     let mut bytes = Vec::new();
     table
         .write_npy(&mut bytes)
@@ -209,6 +211,7 @@ pub fn resume(
     file: &SolidStateFile,
     setup: &SolidSetup,
     run: &SolidRun,
+    threads: usize,
 ) -> Result<SolidSession, SolidStateError> {
     let path = folder.join(STATE);
     if file.version != env!("CARGO_PKG_VERSION") {
@@ -240,7 +243,7 @@ pub fn resume(
     }
     let arrays = Series::read_npy(&folder.join(&file.arrays))?;
     let nodes = setup.problem.nodes.len();
-    if arrays.data().dim() != (nodes, 6) {
+    if arrays.data().dim() != (nodes, WIDTH) {
         return Err(damaged("its arrays have another shape than the mesh asks for"));
     }
     arrays.check_finite()?;
@@ -248,6 +251,7 @@ pub fn resume(
         let row = |row: ndarray::ArrayView1<f64>| [row[from], row[from + 1], row[from + 2], 0.0];
         arrays.data().rows().into_iter().map(row).collect()
     };
+    let column = |at: usize| arrays.data().column(at).to_vec();
     let series = Series::read_npy(&folder.join(SERIES))?;
     let grid = Grid {
         step_size: file.step_size,
@@ -266,8 +270,8 @@ pub fn resume(
             steps: file.steps,
             displacement: part(0),
             rate: part(3),
-            external_work: file.external_work,
-            damping_work: file.damping_work,
+            external_work: column(6),
+            damping_work: column(7),
             work: SolidWork { evaluations: file.work[0], elements: file.work[1] },
         },
         grid,
@@ -279,23 +283,19 @@ pub fn resume(
             at: limit.at,
             products: limit.products,
         },
-        first_energy: file.first_energy,
+        first_balance: file.first_balance,
         turned_over: file.turned_over,
         largest_residual: file.largest_residual,
         values: series.data().iter().copied().collect(),
     };
-    let session = SolidSession::resume(setup, run, kept)?;
+    let session = SolidSession::resume(setup, run, kept, threads)?;
     if session.columns() != series.columns() {
         return Err(damaged("the rows beside it have other columns"));
     }
     Ok(session)
 }
 
-fn state_file(
-    sound: &Sound,
-    session: &SolidSession,
-    record: &SolidStateRecord,
-) -> SolidStateFile {
+fn state_file(sound: &Sound, session: &SolidSession, record: &SolidStateRecord) -> SolidStateFile {
     let (limit, checkpoint) = (&session.solid.limit, &sound.checkpoint);
     SolidStateFile {
         program: "bearing-dynamics".into(),
@@ -322,11 +322,9 @@ fn state_file(
             at: limit.at,
             products: limit.products,
         },
-        first_energy: session.first_energy,
+        first_balance: session.first_balance,
         turned_over: sound.turned_over,
         largest_residual: sound.largest_residual,
-        external_work: checkpoint.external_work,
-        damping_work: checkpoint.damping_work,
         work: [checkpoint.work.evaluations, checkpoint.work.elements],
     }
 }

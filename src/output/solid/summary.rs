@@ -137,7 +137,11 @@ fn extremes(mesh: &TetMesh, displacement: &[Vec3], stresses: &Stresses) -> Part 
 }
 
 /// Mean displacements of probes, sums of reactions.
-fn named(setup: &SolidSetup, displacement: &[Vec3], reactions: &[Vec3]) -> Result<[Value; 2], ResultsError> {
+fn named(
+    setup: &SolidSetup,
+    displacement: &[Vec3],
+    reactions: &[Vec3],
+) -> Result<[Value; 2], ResultsError> {
     let (mut probes, mut supports) = (Map::new(), Map::new());
     for probe in &setup.probes {
         let mut entry = vector(&probe.name, mean(displacement, &probe.nodes), "m")?;
@@ -145,8 +149,12 @@ fn named(setup: &SolidSetup, displacement: &[Vec3], reactions: &[Vec3]) -> Resul
         probes.insert(probe.name.clone(), entry);
     }
     for support in &setup.supports {
-        let reaction = vector(&support.name, sum(reactions, &support.nodes), "N")?;
-        supports.insert(support.name.clone(), reaction);
+        let mut reaction = Map::new();
+        for (axis, force) in support.axes().into_iter().zip(support.total(reactions)) {
+            let name = ["x", "y", "z"][axis];
+            reaction.insert(name.into(), quantity(name, force, "N")?);
+        }
+        supports.insert(support.name.clone(), Value::Object(reaction));
     }
     Ok([Value::Object(probes), Value::Object(supports)])
 }
@@ -194,10 +202,10 @@ fn static_series(setup: &SolidSetup, solution: &Equilibrium) -> Result<Series, S
         values.extend(mean(&solution.displacement, &probe.nodes));
     }
     for support in &setup.supports {
-        values.extend(sum(&solution.reactions, &support.nodes));
+        values.extend(support.total(&solution.reactions));
     }
-    let data = Array2::from_shape_vec((1, columns.len()), values)
-        .expect("one value for each column");
+    let data =
+        Array2::from_shape_vec((1, columns.len()), values).expect("one value for each column");
     Series::new(columns, data)
 }
 
@@ -226,8 +234,8 @@ pub fn modes(
     summary["modes"] = json!(list);
     let columns = [("mode", "1"), ("frequency", "Hz"), ("residual", "1")];
     let columns = columns.map(|(name, unit)| crate::output::series::Column::new(name, unit));
-    let data = Array2::from_shape_vec((found.modes.len(), 3), values)
-        .expect("three values for each mode");
+    let data =
+        Array2::from_shape_vec((found.modes.len(), 3), values).expect("three values for each mode");
     Ok((summary, Series::new(columns.to_vec(), data)?))
 }
 
@@ -292,7 +300,7 @@ pub fn run(
         let ledger = column.unit == "J";
         if ledger { &mut energy } else { &mut finals }.insert(column.name.clone(), entry);
     }
-    energy.insert("at_start".into(), quantity("energy", session.first_energy, "J")?);
+    energy.insert("at_start".into(), quantity("energy", session.first_balance, "J")?);
     energy.insert("turned_over".into(), quantity("energy", session.turned_over, "J")?);
     let residual = session.largest_residual;
     energy.insert("largest_residual".into(), quantity("energy", residual, "J")?);

@@ -1,11 +1,13 @@
 //! Everything a simulation needs to go on with the same bits.
 
 use super::contacts::Work;
+use super::control::Memory;
+use super::energy::Energy;
 use super::model::DynamicProblem;
 use super::run::{RunOptions, Simulation, SimulationError, Stepping};
 use super::stability::StepLimit;
 use super::state::Layout;
-use super::system::Energy;
+use super::step_watch::StepWatch;
 
 /// A simulation at the end of a step, as plain numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,6 +18,7 @@ pub struct Checkpoint {
     /// s.
     pub step_size: f64,
     pub limit: Option<StepLimit>,
+    pub step_watch: StepWatch,
     /// The whole state vector; see [`super::state`].
     pub state: Vec<f64>,
     /// Contact damping of each pair and whether it carried load: the history of contacts.
@@ -25,6 +28,8 @@ pub struct Checkpoint {
     pub first_energy: Energy,
     pub largest_contact_energy: f64,
     pub work: Work,
+    /// With error control only.
+    pub control: Option<Memory>,
 }
 
 impl Checkpoint {
@@ -51,12 +56,14 @@ impl Simulation {
         checkpoint.steps = self.steps;
         checkpoint.step_size = self.step_size;
         checkpoint.limit = self.limit;
+        checkpoint.step_watch = self.step_watch;
         checkpoint.state.clone_from(&self.state);
         checkpoint.damping.clone_from(&self.system.damping);
         checkpoint.was_loaded.clone_from(&self.was_loaded);
         checkpoint.first_energy = self.first_energy;
         checkpoint.largest_contact_energy = self.largest_contact_energy;
         checkpoint.work = self.system.work;
+        checkpoint.control = self.control.as_ref().map(|control| control.memory);
     }
 
     /// Goes on where a checkpoint was taken: the same problem and options give the same bits as
@@ -73,13 +80,25 @@ impl Simulation {
         checkpoint: &Checkpoint,
     ) -> Result<Simulation, SimulationError> {
         assert!(checkpoint.fits(&problem), "a checkpoint of another problem");
-        let fixed = RunOptions { stepping: Stepping::Fixed(checkpoint.step_size), ..options };
+        let stepping = match options.stepping {
+            Stepping::Accuracy(_) => options.stepping,
+            Stepping::Fixed(_) | Stepping::FractionOfLimit(_) => {
+                Stepping::Fixed(checkpoint.step_size)
+            }
+        };
+        let known = RunOptions { stepping, ..options };
         let state = checkpoint.state.clone();
-        let mut simulation = Simulation::from_state(problem, fixed, state, checkpoint.time)?;
+        let mut simulation = Simulation::from_state(problem, known, state, checkpoint.time)?;
         simulation.options = options;
+        simulation.step_size = checkpoint.step_size;
+        if let (Some(control), Some(memory)) = (&mut simulation.control, checkpoint.control) {
+            control.memory = memory;
+        }
         simulation.steps = checkpoint.steps;
         simulation.limit = checkpoint.limit;
+        simulation.step_watch = checkpoint.step_watch;
         simulation.system.damping.copy_from_slice(&checkpoint.damping);
+        simulation.take_first_rates();
         simulation.system.work = checkpoint.work;
         simulation.was_loaded.copy_from_slice(&checkpoint.was_loaded);
         // The ledger counts from there.

@@ -9,8 +9,9 @@ use super::race::RaceNow;
 use super::state::{LANES, Layout, POSITION, SPIN, VELOCITY};
 use crate::ch2_housing::bearing::contact::{RaceContact, RaceLaw, damped_load, race_contact};
 use crate::ch2_housing::bearing::traction::{
-    Motion, SliceSum, Slices, Sliding, TractionForce, TractionLaw, add_slice, coefficient,
-    integrate, per_entrainment, sliding, traction_force,
+    Motion, SliceSum, Slices, Sliding, TractionForce, TractionLaw, TractionSlope, add_slice,
+    add_slope, coefficient, coefficient_and_slope, integrate, integrate_slope, per_entrainment,
+    regularised, sliding, traction_force,
 };
 use crate::kinematics::vec3::{Vec3, sub};
 
@@ -35,6 +36,8 @@ pub struct ContactTable {
     /// Traction on the ball.
     pub traction: Vec<TractionForce>,
     pub sliding: Vec<Sliding>,
+    /// How traction falls with more sliding, where it was asked for.
+    pub slope: Vec<TractionSlope>,
     /// Loaded pairs, in order.
     pub active: Vec<usize>,
 }
@@ -47,6 +50,7 @@ impl ContactTable {
             load: vec![0.0; pairs],
             traction: vec![TractionForce::default(); pairs],
             sliding: vec![Sliding::default(); pairs],
+            slope: vec![TractionSlope::default(); pairs],
             active: Vec::with_capacity(pairs),
         }
     }
@@ -61,6 +65,17 @@ pub struct Work {
     pub slices: u64,
     pub pocket_tests: u64,
     pub guide_tests: u64,
+    /// Of the matrix of a linearly implicit step.
+    pub factorisations: u64,
+    /// Attempts that the error control threw away.
+    pub rejected_steps: u64,
+}
+
+/// Whether the slopes of traction are wanted beside the forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Want {
+    Forces,
+    ForcesAndSlopes,
 }
 
 /// Which driver runs the contacts.
@@ -79,6 +94,7 @@ pub fn evaluate(
     state: &[f64],
     races: [&RaceNow; 2],
     damping: &[f64],
+    want: Want,
     table: &mut ContactTable,
     work: &mut Work,
 ) {
@@ -101,9 +117,14 @@ pub fn evaluate(
         return;
     }
     work.slices += (table.active.len() * laws.slices.middle.len()) as u64;
-    match driver {
-        Driver::Plain => traction_plain(laws, layout, state, races, table),
-        Driver::Lanes => traction_lanes(laws, layout, state, races, table),
+    match (driver, want) {
+        (Driver::Plain, _) => traction_plain(laws, layout, state, races, want, table),
+        (Driver::Lanes, Want::Forces) => {
+            traction_lanes::<false>(laws, layout, state, races, table);
+        }
+        (Driver::Lanes, Want::ForcesAndSlopes) => {
+            traction_lanes::<true>(laws, layout, state, races, table);
+        }
     }
 }
 
@@ -234,6 +255,7 @@ fn traction_plain(
     layout: &Layout,
     state: &[f64],
     races: [&RaceNow; 2],
+    want: Want,
     table: &mut ContactTable,
 ) {
     let motions = races.map(race_motion);
@@ -243,58 +265,80 @@ fn traction_plain(
         let contact = &table.contact[pair];
         let sliding = sliding_of(laws, layout, state, &motions, &axes, pair, contact);
         let width = semi_major(laws, race, contact.overlap);
-        let sum = integrate(&laws.traction, &laws.slices, &sliding, width, laws.curvature[race]);
+        let (law, slices, curvature) = (&laws.traction, &laws.slices, laws.curvature[race]);
+        let sum = integrate(law, slices, &sliding, width, curvature);
+        if want == Want::ForcesAndSlopes {
+            table.slope[pair] = integrate_slope(law, slices, &sliding, width, curvature);
+        }
         table.traction[pair] = traction_force(&sum, &sliding, contact.normal, table.load[pair]);
         table.sliding[pair] = sliding;
     }
 }
 
-fn traction_lanes(
+fn traction_lanes<const SLOPES: bool>(
     laws: &ContactLaws,
     layout: &Layout,
     state: &[f64],
     races: [&RaceNow; 2],
     table: &mut ContactTable,
 ) {
-    // One instance of the loop for each law, so that nothing is decided inside it.
+    // One instance of the loop for each law, so that nothing is decided inside it. Without slopes
+    // the compiler drops what only they need.
     match &laws.traction {
         TractionLaw::None => {}
         TractionLaw::SlideToRoll { curve, entrainment_floor } => {
             let (curve, floor) = (*curve, *entrainment_floor);
             let prepare = |entrainment| per_entrainment(entrainment, floor);
-            let friction = |slip, per_entrainment| curve.coefficient(slip * per_entrainment);
-            lanes_of(laws, layout, state, races, table, prepare, friction);
+            let friction = |slip: f64, per_rolling: f64| {
+                let (value, slope) = curve.coefficient_and_slope(slip * per_rolling);
+                (value, slope * per_rolling)
+            };
+            lanes_of::<SLOPES>(laws, layout, state, races, table, prepare, friction);
         }
         TractionLaw::SlipSpeed { curve } => {
             let curve = *curve;
-            let friction = |slip, _| curve.coefficient(slip);
-            lanes_of(laws, layout, state, races, table, |_| 0.0, friction);
+            let friction = |slip, _| curve.coefficient_and_slope(slip);
+            lanes_of::<SLOPES>(laws, layout, state, races, table, |_| 0.0, friction);
         }
         TractionLaw::Constant { coefficient, regularisation_speed } => {
-            let (coefficient, u0) = (*coefficient, *regularisation_speed);
-            let friction = |slip: f64, _| coefficient * slip / (slip * slip + u0 * u0).sqrt();
-            lanes_of(laws, layout, state, races, table, |_| 0.0, friction);
+            let (coefficient, speed) = (*coefficient, *regularisation_speed);
+            let friction = |slip, _| regularised(coefficient, speed, slip);
+            lanes_of::<SLOPES>(laws, layout, state, races, table, |_| 0.0, friction);
         }
         law @ TractionLaw::Table { .. } => {
-            let friction = |slip, entrainment| coefficient(law, slip, entrainment);
-            lanes_of(laws, layout, state, races, table, |entrainment| entrainment, friction);
+            let friction = |slip, entrainment| {
+                if SLOPES {
+                    coefficient_and_slope(law, slip, entrainment)
+                } else {
+                    (coefficient(law, slip, entrainment), 0.0)
+                }
+            };
+            lanes_of::<SLOPES>(
+                laws,
+                layout,
+                state,
+                races,
+                table,
+                |entrainment| entrainment,
+                friction,
+            );
         }
     }
 }
 
 #[inline(always)]
-fn lanes_of(
+fn lanes_of<const SLOPES: bool>(
     laws: &ContactLaws,
     layout: &Layout,
     state: &[f64],
     races: [&RaceNow; 2],
     table: &mut ContactTable,
     prepare: impl Fn(f64) -> f64,
-    friction: impl Fn(f64, f64) -> f64 + Copy,
+    friction: impl Fn(f64, f64) -> (f64, f64) + Copy,
 ) {
     let motions = races.map(race_motion);
     let axes = races.map(|now| now.motion.axis);
-    let ContactTable { contact, load, traction, sliding, active } = table;
+    let ContactTable { contact, load, traction, sliding, slope, active } = table;
     for block in active.chunks(LANES) {
         let mut slip = [[0.0; LANES]; 2];
         let mut spin = [[0.0; LANES]; 3];
@@ -315,8 +359,12 @@ fn lanes_of(
             curvature[l] = laws.curvature[race];
             sliding[pair] = here;
         }
-        let sums = slice_lanes(laws, &slip, &spin, &width, &curvature, &rolling, friction);
+        let (sums, slopes) =
+            slice_lanes::<SLOPES>(laws, &slip, &spin, &width, &curvature, &rolling, friction);
         for (l, &pair) in block.iter().enumerate() {
+            if SLOPES {
+                slope[pair] = slopes[l];
+            }
             traction[pair] =
                 traction_force(&sums[l], &sliding[pair], contact[pair].normal, load[pair]);
         }
@@ -325,21 +373,28 @@ fn lanes_of(
 
 /// All slices of a block of contacts.
 #[inline(always)]
-fn slice_lanes(
+fn slice_lanes<const SLOPES: bool>(
     laws: &ContactLaws,
     slip: &[[f64; LANES]; 2],
     spin: &[[f64; LANES]; 3],
     width: &[f64; LANES],
     curvature: &[f64; LANES],
     prepared: &[f64; LANES],
-    friction: impl Fn(f64, f64) -> f64 + Copy,
-) -> [SliceSum; LANES] {
+    friction: impl Fn(f64, f64) -> (f64, f64) + Copy,
+) -> ([SliceSum; LANES], [TractionSlope; LANES]) {
+    // One array for each sum: an array of arrays would keep the loop from becoming vector code.
     let mut rolling = [0.0; LANES];
     let mut transverse = [0.0; LANES];
     let mut moment = [0.0; LANES];
     let mut about_t = [0.0; LANES];
     let mut about_s = [0.0; LANES];
     let mut power = [0.0; LANES];
+    let mut tt = [0.0; LANES];
+    let mut ts = [0.0; LANES];
+    let mut tn = [0.0; LANES];
+    let mut ss = [0.0; LANES];
+    let mut sn = [0.0; LANES];
+    let mut nn = [0.0; LANES];
     for (middle, share) in laws.slices.middle.iter().zip(&laws.slices.share) {
         for l in 0..LANES {
             let y = middle * width[l];
@@ -351,20 +406,21 @@ fn slice_lanes(
                 curvature_moment: [about_t[l], about_s[l]],
                 power: power[l],
             };
-            let after = add_slice(
-                &before,
-                [slip[0][l], slip[1][l]],
-                [spin[0][l], spin[1][l], spin[2][l]],
-                y,
-                sagitta,
-                *share,
-                |speed| friction(speed, prepared[l]),
-            );
+            let here = [slip[0][l], slip[1][l]];
+            let turning = [spin[0][l], spin[1][l], spin[2][l]];
+            let coefficient = |speed| friction(speed, prepared[l]).0;
+            let after = add_slice(&before, here, turning, y, sagitta, *share, coefficient);
             rolling[l] = after.rolling;
             transverse[l] = after.transverse;
             moment[l] = after.moment;
             [about_t[l], about_s[l]] = after.curvature_moment;
             power[l] = after.power;
+            if SLOPES {
+                let before = [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]];
+                let friction = |speed| friction(speed, prepared[l]);
+                [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]] =
+                    add_slope(&before, here, turning, y, sagitta, *share, friction);
+            }
         }
     }
     let mut sums = [SliceSum::default(); LANES];
@@ -377,5 +433,6 @@ fn slice_lanes(
             power: power[l],
         };
     }
-    sums
+    let slopes = std::array::from_fn(|l| [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]]);
+    (sums, slopes)
 }

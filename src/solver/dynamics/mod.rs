@@ -1,15 +1,25 @@
 //! The bearing in motion: every part a rigid body with six degrees of freedom (2.2.1, 4.2.1).
 //!
 //! `model` says what is simulated, `state` where it lies, `contacts` and `race` turn states into
-//! loads, `system` into rates; `rk4` integrates, `run` drives a simulation from start to end.
+//! loads, `system` into rates, `energy` into energies; `rk4`, `dormand_prince` and `rosenbrock`
+//! integrate (the last through `linearised` contacts and the `arrow` matrix), `control` chooses
+//! steps for an accuracy, `run` drives a simulation from start to end.
+pub mod arrow;
 pub mod checkpoint;
 pub mod contacts;
+pub mod control;
+pub mod dormand_prince;
+pub mod elimination;
+pub mod energy;
+pub mod equilibrium;
+pub mod linearised;
 pub mod model;
 pub mod race;
 pub mod rk4;
+pub mod rosenbrock;
 pub mod run;
-pub mod split;
 pub mod stability;
 pub mod start;
 pub mod state;
+pub mod step_watch;
 pub mod system;

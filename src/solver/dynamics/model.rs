@@ -31,10 +31,24 @@ pub enum Rotation {
 pub struct RotatingLoad {
     /// N.
     pub force: Profile,
-    /// rad/s; the angle is its integral, so that a speed may ramp.
-    pub speed: f64,
-    /// rad.
+    /// rad/s.
+    pub speed: Profile,
+    /// rad, at t = 0.
     pub phase: f64,
+}
+
+impl RotatingLoad {
+    /// Direction at time `t`, rad from +Y towards +Z: the phase and the integral of the speed.
+    pub fn angle(&self, t: f64) -> f64 {
+        self.phase + self.speed.integral(t)
+    }
+
+    /// Force on X, Y, Z at time `t`, N.
+    pub fn force(&self, t: f64) -> [f64; 3] {
+        let (sin, cos) = libm::sincos(self.angle(t));
+        let size = self.force.value(t);
+        [0.0, size * cos, size * sin]
+    }
 }
 
 /// A race with six degrees of freedom.
@@ -55,6 +69,33 @@ pub struct RaceBody {
 pub struct CageBody {
     pub inertia: Inertia,
     pub contacts: CageContacts,
+}
+
+impl RaceBody {
+    /// Profiles of what is given, not loaded: coordinates and the speed.
+    fn given(&self) -> impl Iterator<Item = &Profile> {
+        let coordinates = self.drives.iter().filter_map(|drive| match drive {
+            Drive::Motion(profile) => Some(profile),
+            Drive::Load(_) => None,
+        });
+        let speed = match &self.rotation {
+            Rotation::Speed(profile) => Some(profile),
+            Rotation::Torque(_) => None,
+        };
+        coordinates.chain(speed)
+    }
+
+    fn loads(&self) -> impl Iterator<Item = &Profile> {
+        let coordinates = self.drives.iter().filter_map(|drive| match drive {
+            Drive::Load(profile) => Some(profile),
+            Drive::Motion(_) => None,
+        });
+        let torque = match &self.rotation {
+            Rotation::Torque(profile) => Some(profile),
+            Rotation::Speed(_) => None,
+        };
+        coordinates.chain(torque)
+    }
 }
 
 /// A bearing in motion, SI units, inertial axes X axial, Y lateral, Z up.
@@ -83,4 +124,34 @@ pub struct DynamicProblem {
     pub rotating_load: Option<RotatingLoad>,
     /// Unbalance of the inner race, kg·m, at its spin angle.
     pub unbalance: f64,
+}
+
+impl DynamicProblem {
+    fn races(&self) -> impl Iterator<Item = &RaceBody> {
+        std::iter::once(&self.inner).chain(&self.outer)
+    }
+
+    /// Times after t = 0 at which a load or a given motion has a corner, in order, each once: no
+    /// step should cross them.
+    pub fn corners(&self) -> Vec<f64> {
+        let turning = self.rotating_load.iter().flat_map(|load| [&load.force, &load.speed]);
+        let profiles =
+            self.races().flat_map(|race| race.loads().chain(race.given())).chain(turning);
+        let mut corners: Vec<f64> = profiles.flat_map(Profile::corners).collect();
+        corners.retain(|time| *time > 0.0 && time.is_finite());
+        corners.sort_by(f64::total_cmp);
+        corners.dedup();
+        corners
+    }
+
+    /// Whether a given motion has a corner at `time`, so that velocities may jump.
+    pub fn jolts_at(&self, time: f64) -> bool {
+        let mut given = self.races().flat_map(RaceBody::given);
+        given.any(|profile| profile.corners().contains(&time))
+    }
+}
+
+/// First of the sorted `corners` after `time`.
+pub fn next_corner(corners: &[f64], time: f64) -> Option<f64> {
+    corners.get(corners.partition_point(|corner| *corner <= time)).copied()
 }

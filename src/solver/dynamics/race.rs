@@ -48,7 +48,7 @@ fn motion_of(state: &BodyState) -> AxisMotion {
 }
 
 /// Ry(ξ) Rz(λ) applied to Y and Z, from the axis alone and without an angle, and cos λ.
-fn directions(axis: Vec3) -> ([Vec3; 2], f64) {
+pub(super) fn directions(axis: Vec3) -> ([Vec3; 2], f64) {
     let cos_lambda = (axis[0] * axis[0] + axis[2] * axis[2]).sqrt();
     let per_cos = 1.0 / cos_lambda;
     let (cos_xi, sin_xi, sin_lambda) = (axis[0] * per_cos, -axis[2] * per_cos, axis[1]);

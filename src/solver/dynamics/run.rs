@@ -1,14 +1,17 @@
 //! A simulation: state, time, step after step, watched.
 
 use super::contacts::Driver;
+use super::control::{Attempt, Controller};
+use super::dormand_prince::{self, DormandPrince};
+use super::energy::Energy;
 use super::model::DynamicProblem;
 use super::rk4::RungeKutta;
-use super::split::Split;
+use super::rosenbrock::{self, Rosenbrock};
 use super::stability::{StepLimit, step_limit};
 use super::start;
-use super::state::{BODY, LEDGER, Layout, POSITION};
-use super::system::{Energy, Instant, System};
-use crate::ch2_housing::bearing::traction::TractionLaw;
+use super::state::{BODY, LEDGER, Layout, Ledger, POSITION};
+use super::step_watch::{StepWatch, Stiffness, stiffness};
+use super::system::{Instant, System};
 use crate::kinematics::vec3::{add_scaled, dot, norm, sub};
 use crate::solver::statics::StaticsError;
 use thiserror::Error;
@@ -27,18 +30,37 @@ pub enum Start {
 pub enum Stepping {
     /// As given, s.
     Fixed(f64),
-    /// This fraction of the stability limit at the start.
+    /// This fraction of the stability limit of Runge–Kutta at the start.
     FractionOfLimit(f64),
+    /// As long as keeps the error of the races' motion below this part of the largest overlap.
+    Accuracy(f64),
 }
 
 /// What moves the state on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integrator {
-    /// Classical fourth-order Runge–Kutta for everything, as in the source.
+    /// Classical fourth-order Runge–Kutta, as in the source; steps as given.
     RungeKutta,
-    /// Runge–Kutta with linearly implicit traction: steps as long as the contacts allow.
-    Split,
+    /// Explicit, of fifth order with error estimate: for bearings without stiff traction.
+    DormandPrince,
+    /// Linearly implicit, of third order with error estimate: contacts and traction bind no step.
+    Rosenbrock,
 }
+
+impl Integrator {
+    /// As scenes and results call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Integrator::RungeKutta => "rk4",
+            Integrator::DormandPrince => "dormand-prince",
+            Integrator::Rosenbrock => "rosenbrock",
+        }
+    }
+}
+
+/// Error control gives up below this step, s; a thousandth of a period of the stiffest contact is
+/// a million times longer.
+const SHORTEST_STEP: f64 = 1e-14;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunOptions {
@@ -69,16 +91,34 @@ pub enum SimulationError {
     Start(#[from] StaticsError),
     #[error("the step is {0} s; it must be positive and finite")]
     Step(f64),
+    #[error("the accuracy is {0}; it must be positive and finite")]
+    Accuracy(f64),
     #[error(
-        "the split integrator does not know the Heathcote term; leave one of them out \
-         (traction.heathcote, numerics.integrator)"
+        "Runge-Kutta of fourth order has no estimate of its error and takes no accuracy; give a step \
+         (numerics.step, numerics.step_fraction) or another integrator (rosenbrock, dormand-prince)"
     )]
-    SplitHeathcote,
+    NoErrorEstimate,
+    #[error(
+        "a fraction of the stability limit is a step for Runge-Kutta of fourth order only; give \
+         {0} an accuracy or a step (numerics.accuracy, numerics.step)"
+    )]
+    FractionOfOther(&'static str),
+    #[error(
+        "no step is short enough at t = {time} s, step {step}: the error of one of {size:.3e} s is \
+         still {error:.3e} of what the accuracy allows"
+    )]
+    StepVanished { time: f64, step: u64, size: f64, error: f64 },
     #[error(
         "no contact is stiff at the start, so no step follows from it; give a step \
          (numerics.step)"
     )]
     NoStep,
+    #[error(
+        "the step of {size:.3e} s is longer than the largest stable one, {limit:.3e} s at t = {time} s, \
+         step {step} ({reason}): what swings would grow, or what slides swing to and fro; take a \
+         shorter step (numerics.step or numerics.step_fraction)"
+    )]
+    StepTooLong { size: f64, limit: f64, reason: String, time: f64, step: u64 },
     #[error("{body} has a value that is not finite at t = {time} s, step {step}")]
     NotFinite { body: String, time: f64, step: u64 },
     #[error(
@@ -98,24 +138,30 @@ pub struct Simulation {
     pub system: System,
     pub state: Vec<f64>,
     pub time: f64,
-    /// s.
+    /// Of the next step, s.
     pub step_size: f64,
     pub steps: u64,
     /// What limits the step, where it was asked for.
     pub limit: Option<StepLimit>,
+    /// How the step compares with what the contacts allow since.
+    pub step_watch: StepWatch,
+    /// With error control only.
+    pub control: Option<Controller>,
     pub(super) options: RunOptions,
     integrator: Stepper,
+    attempt: Attempt,
     pub(super) was_loaded: Vec<bool>,
     pub(super) first_energy: Energy,
     /// What the ledger already held then, J.
     pub(super) ledger_before: f64,
     pub(super) largest_contact_energy: f64,
-    rates: Vec<f64>,
+    pub(super) rates: Vec<f64>,
 }
 
 enum Stepper {
     RungeKutta(RungeKutta),
-    Split(Split),
+    DormandPrince(DormandPrince),
+    Rosenbrock(Box<Rosenbrock>),
 }
 
 /// Everything that outputs are made of, at the present time.
@@ -128,6 +174,69 @@ pub struct Snapshot {
     pub ledger: [f64; LEDGER],
     /// Energy unaccounted for, J.
     pub residual: f64,
+}
+
+/// # Errors
+/// Steps that the integrator cannot choose.
+fn controller(
+    problem: &DynamicProblem,
+    options: &RunOptions,
+) -> Result<Option<Controller>, SimulationError> {
+    match (options.integrator, options.stepping) {
+        (_, Stepping::Accuracy(accuracy)) if !(accuracy > 0.0 && accuracy.is_finite()) => {
+            Err(SimulationError::Accuracy(accuracy))
+        }
+        (Integrator::RungeKutta, Stepping::Accuracy(_)) => Err(SimulationError::NoErrorEstimate),
+        (Integrator::RungeKutta, _) | (_, Stepping::Fixed(_)) => Ok(None),
+        (Integrator::DormandPrince, Stepping::Accuracy(accuracy)) => {
+            Ok(Some(Controller::new(problem, accuracy, dormand_prince::ERROR_ORDER)))
+        }
+        (Integrator::Rosenbrock, Stepping::Accuracy(accuracy)) => {
+            Ok(Some(Controller::new(problem, accuracy, rosenbrock::ERROR_ORDER)))
+        }
+        (other, Stepping::FractionOfLimit(_)) => {
+            Err(SimulationError::FractionOfOther(other.name()))
+        }
+    }
+}
+
+/// Tries `step` and, with error control, shorter ones until one is good enough. Returns its size
+/// and the size for the next.
+fn accepted(
+    system: &mut System,
+    control: Option<&mut Controller>,
+    t: f64,
+    steps: u64,
+    mut step: f64,
+    attempt: &mut Attempt,
+    mut go: impl FnMut(&mut System, f64, &mut Attempt),
+) -> Result<(f64, Option<f64>), SimulationError> {
+    let Some(control) = control else {
+        go(system, step, attempt);
+        return Ok((step, None));
+    };
+    let mut was_rejected = false;
+    loop {
+        go(system, step, attempt);
+        let norm = control.norm(attempt);
+        if norm <= 1.0 {
+            control.see(system);
+            return Ok((step, Some(control.longer(step, norm, was_rejected))));
+        }
+        system.work.rejected_steps += 1;
+        was_rejected = true;
+        let shorter = control.shorter(step, norm);
+        // Time no longer moves on.
+        if t + 1e-3 * shorter == t || shorter < SHORTEST_STEP {
+            return Err(SimulationError::StepVanished {
+                time: t,
+                step: steps + 1,
+                size: step,
+                error: norm,
+            });
+        }
+        step = shorter;
+    }
 }
 
 impl Simulation {
@@ -159,21 +268,21 @@ impl Simulation {
         time: f64,
     ) -> Result<Simulation, SimulationError> {
         let mut system = System::new(problem, options.driver);
+        let length = state.len();
         let integrator = match options.integrator {
-            Integrator::Split if system.problem.heathcote => {
-                return Err(SimulationError::SplitHeathcote);
-            }
-            Integrator::Split if system.laws.traction != TractionLaw::None => {
-                Stepper::Split(Split::new(&mut system))
-            }
-            _ => Stepper::RungeKutta(RungeKutta::new(state.len())),
+            Integrator::RungeKutta => Stepper::RungeKutta(RungeKutta::new(length)),
+            Integrator::DormandPrince => Stepper::DormandPrince(DormandPrince::new(length)),
+            Integrator::Rosenbrock => Stepper::Rosenbrock(Box::new(Rosenbrock::new(&system))),
         };
-        let (step_size, limit) = match options.stepping {
+        let control = controller(&system.problem, &options)?;
+        let (mut step_size, limit) = match options.stepping {
             Stepping::Fixed(step) => (step, None),
             Stepping::FractionOfLimit(fraction) => {
                 let limit = step_limit(&mut system, time, &state).ok_or(SimulationError::NoStep)?;
                 (fraction * limit.step, Some(limit))
             }
+            // From the overlaps, below.
+            Stepping::Accuracy(_) => (1.0, None),
         };
         if !(step_size > 0.0 && step_size.is_finite()) {
             return Err(SimulationError::Step(step_size));
@@ -182,12 +291,24 @@ impl Simulation {
         system.work = Default::default();
         let instant = system.evaluate(time, &state, &mut rates);
         let first_energy = system.energy(&state, &instant);
+        let step_watch = StepWatch {
+            smallest: limit.map(|limit| limit.step),
+            stiffest: if limit.is_some() { stiffness(&system) } else { Stiffness::default() },
+            ..StepWatch::default()
+        };
         let at = system.layout.ledger();
         let ledger_before = state[at..at + LEDGER].iter().sum();
         let mut was_loaded = vec![false; system.damping.len()];
         system.commit_damping(&mut was_loaded);
-        Ok(Simulation {
+        let control = control.map(|mut control| {
+            control.see(&system);
+            step_size = control.first_step();
+            control
+        });
+        let mut simulation = Simulation {
+            control,
             integrator,
+            attempt: Attempt::new(length),
             largest_contact_energy: first_energy.contact,
             first_energy,
             ledger_before,
@@ -199,8 +320,25 @@ impl Simulation {
             step_size,
             steps: 0,
             limit,
+            step_watch,
             options,
-        })
+        };
+        simulation.take_first_rates();
+        Ok(simulation)
+    }
+
+    /// First stage at the present state, history included, for the integrators that keep it.
+    pub(super) fn take_first_rates(&mut self) {
+        match &mut self.integrator {
+            Stepper::RungeKutta(_) => {}
+            Stepper::DormandPrince(integrator) => {
+                self.system.evaluate(self.time, &self.state, &mut self.rates);
+                integrator.begin(&self.rates);
+            }
+            Stepper::Rosenbrock(integrator) => {
+                integrator.begin(&mut self.system, self.time, &self.state);
+            }
+        }
     }
 
     /// One step; checks what can be checked cheaply.
@@ -208,26 +346,77 @@ impl Simulation {
     /// # Errors
     /// A value that is not finite, or a ball outside its races; the state is that after the step.
     pub fn step(&mut self) -> Result<(), SimulationError> {
-        self.step_by(self.step_size)
+        self.step_by(self.step_size).map(|_| ())
     }
 
-    /// One step of a given size, as for the last one before an output.
+    /// One step of a given size, as for the last one before an output; with error control one that
+    /// may be shorter. Returns its size.
     ///
     /// # Errors
     /// As [`Simulation::step`].
-    pub fn step_by(&mut self, step: f64) -> Result<(), SimulationError> {
-        match &mut self.integrator {
+    pub fn step_by(&mut self, step: f64) -> Result<f64, SimulationError> {
+        let Simulation { system, state, attempt, .. } = self;
+        let taken = match &mut self.integrator {
             Stepper::RungeKutta(integrator) => {
-                integrator.step(&mut self.system, self.time, step, &mut self.state);
+                integrator.step(system, self.time, step, state);
+                step
             }
-            Stepper::Split(split) => {
-                split.step(&mut self.system, self.time, step, &mut self.state);
+            Stepper::DormandPrince(integrator) => {
+                let t = self.time;
+                let go = |system: &mut System, step, attempt: &mut Attempt| {
+                    integrator.attempt(system, t, step, state, attempt);
+                };
+                let (taken, next) =
+                    accepted(system, self.control.as_mut(), t, self.steps, step, attempt, go)?;
+                self.step_size = next.unwrap_or(self.step_size);
+                integrator.accept();
+                std::mem::swap(state, &mut attempt.state);
+                taken
             }
-        }
+            Stepper::Rosenbrock(integrator) => {
+                let t = self.time;
+                let go = |system: &mut System, step, attempt: &mut Attempt| {
+                    integrator.attempt(system, t, step, state, attempt);
+                };
+                let (taken, next) =
+                    accepted(system, self.control.as_mut(), t, self.steps, step, attempt, go)?;
+                self.step_size = next.unwrap_or(self.step_size);
+                std::mem::swap(state, &mut attempt.state);
+                system.tidy(t + taken, state);
+                integrator.accept(system, t + taken, taken, &attempt.state, state);
+                taken
+            }
+        };
         self.steps += 1;
-        self.time += step;
-        self.system.commit_damping(&mut self.was_loaded);
-        self.watch()
+        self.time += taken;
+        if self.system.commit_damping(&mut self.was_loaded) {
+            self.take_first_rates();
+        }
+        self.watch()?;
+        Ok(taken)
+    }
+
+    /// Takes the state across a `corner`, which is the present time: where given motions have it,
+    /// velocities jump to what they are after it. The drives do the work of the jump, an impulse
+    /// that the contacts do not feel.
+    pub fn cross_corner(&mut self, corner: f64) {
+        let Simulation { system, state, rates, time, .. } = self;
+        if !system.problem.jolts_at(corner) {
+            system.latest = f64::INFINITY;
+            self.take_first_rates();
+            return;
+        }
+        let time = time.max(corner);
+        let mut energy = |system: &mut System, state: &[f64]| {
+            let instant = system.evaluate(time, state, rates);
+            system.energy(state, &instant).total()
+        };
+        let before = energy(system, state);
+        system.latest = f64::INFINITY;
+        system.tidy(time, state);
+        let after = energy(system, state);
+        state[system.layout.ledger_entry(Ledger::Drives)] += after - before;
+        self.take_first_rates();
     }
 
     /// Non-finite values spread within a step from any body to the races' velocities, so that a

@@ -1,7 +1,10 @@
 //! The step that Runge–Kutta can take: from the Jacobian's eigenvalues at a state.
 
+use super::model::RaceBody;
 use super::state::{ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use super::system::System;
+use crate::ch2_housing::bearing::cage::CageForce;
+use crate::ch2_housing::bearing::traction::TractionLaw;
 use nalgebra::{Complex, DMatrix, Quaternion, Schur};
 
 /// Where the step of an explicit method ends.
@@ -11,17 +14,98 @@ pub struct StepLimit {
     pub step: f64,
     /// The eigenvalue that sets it, 1/s.
     pub eigenvalue: Complex<f64>,
+    pub cause: Cause,
+}
+
+/// What makes the eigenvalue what it is: without it the step could be longer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    Contact,
+    CageContact,
+    FoundationSpring,
+    Traction,
+    ContactDamping,
+    CageFriction,
+    FoundationDashpot,
+}
+
+impl Cause {
+    pub const ALL: [Cause; 7] = [
+        Cause::Contact,
+        Cause::CageContact,
+        Cause::FoundationSpring,
+        Cause::Traction,
+        Cause::ContactDamping,
+        Cause::CageFriction,
+        Cause::FoundationDashpot,
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Cause::Contact => "stiffest contact",
+            Cause::CageContact => "contact of the cage",
+            Cause::FoundationSpring => "spring of the foundation",
+            Cause::Traction => "traction onset",
+            Cause::ContactDamping => "contact damping",
+            Cause::CageFriction => "friction onset of the cage",
+            Cause::FoundationDashpot => "dashpot of the foundation",
+        }
+    }
+
+    /// Takes it out of the equations; whether there was anything to take out.
+    fn remove(self, system: &mut System) -> bool {
+        let races = |system: &mut System, pick: fn(&mut RaceBody) -> &mut [f64; 5]| {
+            let problem = &mut system.problem;
+            let mut any = false;
+            for race in std::iter::once(&mut problem.inner).chain(&mut problem.outer) {
+                any |= *pick(race) != [0.0; 5];
+                *pick(race) = [0.0; 5];
+            }
+            any
+        };
+        match self {
+            // What is left when it is nothing else.
+            Cause::Contact => false,
+            Cause::Traction => {
+                std::mem::replace(&mut system.laws.traction, TractionLaw::None) != TractionLaw::None
+            }
+            Cause::ContactDamping => {
+                let any = system.damping.iter().any(|factor| *factor != 0.0);
+                system.damping.fill(0.0);
+                any
+            }
+            Cause::CageContact => system.problem.cage.as_mut().is_some_and(|cage| {
+                cage.contacts.force = CageForce::Penalty { stiffness: 0.0 };
+                true
+            }),
+            Cause::CageFriction => system
+                .problem
+                .cage
+                .as_mut()
+                .is_some_and(|cage| std::mem::replace(&mut cage.contacts.friction, 0.0) != 0.0),
+            Cause::FoundationSpring => races(system, |race| &mut race.foundation_stiffness),
+            Cause::FoundationDashpot => races(system, |race| &mut race.foundation_damping),
+        }
+    }
 }
 
 impl StepLimit {
-    /// What sets the step: an oscillation of a contact, or the onset of traction.
+    fn decays(eigenvalue: Complex<f64>) -> bool {
+        eigenvalue.re.abs() > eigenvalue.im.abs()
+    }
+
+    /// What sets the step, and how fast it is.
     pub fn reason(&self) -> String {
         let (re, im) = (self.eigenvalue.re, self.eigenvalue.im);
-        if re.abs() > im.abs() {
-            format!("traction onset: slip decays at {:.2e} 1/s", -re)
-        } else {
-            format!("stiffest contact: oscillation at {:.0} Hz", im.abs() / std::f64::consts::TAU)
+        let name = self.cause.name();
+        if !StepLimit::decays(self.eigenvalue) {
+            return format!("{name}: oscillation at {:.0} Hz", im.abs() / std::f64::consts::TAU);
         }
+        let what = match self.cause {
+            Cause::Traction | Cause::CageFriction => "slip",
+            _ => "motion",
+        };
+        format!("{name}: {what} decays at {:.2e} 1/s", -re)
     }
 }
 
@@ -135,6 +219,38 @@ fn directions(system: &System) -> Vec<Direction> {
 
 /// Largest stable step at a state; `None` where nothing is stiff (no contact at all).
 pub fn step_limit(system: &mut System, t: f64, state: &[f64]) -> Option<StepLimit> {
+    let (step, eigenvalue) = limiting(system, t, state)?;
+    let cause = cause(system, t, state, step, eigenvalue);
+    Some(StepLimit { step, eigenvalue, cause })
+}
+
+/// The part of the equations without which the step could grow most; the contacts, if none makes
+/// a tenth of difference.
+fn cause(system: &mut System, t: f64, state: &[f64], step: f64, eigenvalue: Complex<f64>) -> Cause {
+    let candidates: &[Cause] = if StepLimit::decays(eigenvalue) {
+        &[Cause::Traction, Cause::ContactDamping, Cause::CageFriction, Cause::FoundationDashpot]
+    } else {
+        &[Cause::CageContact, Cause::FoundationSpring]
+    };
+    let mut found = (1.1 * step, Cause::Contact);
+    for &candidate in candidates {
+        let (problem, laws, damping) =
+            (system.problem.clone(), system.laws.clone(), system.damping.clone());
+        let longer = if candidate.remove(system) {
+            limiting(system, t, state).map_or(f64::INFINITY, |limit| limit.0)
+        } else {
+            step
+        };
+        (system.problem, system.laws, system.damping) = (problem, laws, damping);
+        if longer > found.0 {
+            found = (longer, candidate);
+        }
+    }
+    found.1
+}
+
+/// The largest stable step and the eigenvalue that sets it.
+fn limiting(system: &mut System, t: f64, state: &[f64]) -> Option<(f64, Complex<f64>)> {
     let matrix = jacobian(system, t, state);
     let eigenvalues = eigenvalues(&matrix)?;
     let largest = eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
@@ -142,9 +258,9 @@ pub fn step_limit(system: &mut System, t: f64, state: &[f64]) -> Option<StepLimi
         .iter()
         // Slow modes may grow physically (a pendulum upside down) and set no step.
         .filter(|value| value.norm() > 1e-2 * largest)
-        .map(|&eigenvalue| StepLimit { step: limit_of(eigenvalue), eigenvalue })
-        .filter(|limit| limit.step.is_finite())
-        .min_by(|a, b| a.step.total_cmp(&b.step))
+        .map(|&eigenvalue| (limit_of(eigenvalue), eigenvalue))
+        .filter(|limit| limit.0.is_finite())
+        .min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// Eigenvalues by the QR algorithm, which stalls on some matrices of high symmetry (a preloaded

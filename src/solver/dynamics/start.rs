@@ -1,5 +1,6 @@
 //! Where a simulation starts: at equilibrium and rolling, or at rest in nominal positions.
 
+use super::equilibrium::{Equilibrium, at_start};
 use super::model::{Drive, DynamicProblem, Rotation};
 use super::race;
 use super::state::{BodyState, Layout};
@@ -7,20 +8,20 @@ use crate::ch2_housing::bearing::frequencies::ratios;
 use crate::kinematics::Pose;
 use crate::kinematics::euler::{about, quaternion};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
-use crate::solver::statics::{Condition, StaticProblem, StaticSolution, StaticsError, solve};
+use crate::solver::statics::{Condition, StaticProblem, StaticSolution, StaticsError};
 use nalgebra::Vector3;
 
-/// The static problem that the dynamic one settles into at time `t`; a rotating load stands still
-/// where it is then, an unbalance is left out.
+/// The static problem that the dynamic one settles into at time `t` with the outer race where it
+/// started; a rotating load stands still where it is then, an unbalance is left out.
 pub fn static_problem(problem: &DynamicProblem, t: f64) -> StaticProblem {
     let mut others = [0.0; 5];
     for (other, gravity) in others.iter_mut().zip(problem.gravity) {
         *other = problem.inner.inertia.mass * gravity;
     }
     if let Some(load) = &problem.rotating_load {
-        let (sin, cos) = libm::sincos(load.phase + load.speed * t);
-        others[1] += load.force.value(t) * cos;
-        others[2] += load.force.value(t) * sin;
+        for (other, force) in others.iter_mut().zip(load.force(t)) {
+            *other += force;
+        }
     }
     let conditions = std::array::from_fn(|i| match &problem.inner.drives[i] {
         Drive::Load(profile) => Condition::Load(profile.value(t) + others[i]),
@@ -45,7 +46,7 @@ pub fn static_problem(problem: &DynamicProblem, t: f64) -> StaticProblem {
 }
 
 /// Prescribed speed of the inner race at `t`, rad/s; zero when it is driven by a torque.
-fn inner_speed(problem: &DynamicProblem, t: f64) -> f64 {
+pub(super) fn inner_speed(problem: &DynamicProblem, t: f64) -> f64 {
     match &problem.inner.rotation {
         Rotation::Speed(profile) => profile.value(t),
         Rotation::Torque(_) => 0.0,
@@ -59,7 +60,8 @@ fn orbital_speed(problem: &DynamicProblem, t: f64) -> f64 {
     ratio * inner_speed(problem, t)
 }
 
-/// State vector at equilibrium under the loads at t = 0, balls and cage rolling.
+/// State vector at equilibrium of both races under the loads at t = 0, balls and cage rolling; what
+/// turns stands still for it (see [`at_start`]).
 ///
 /// # Errors
 /// When the loads have no equilibrium.
@@ -67,12 +69,12 @@ pub fn at_equilibrium(
     problem: &DynamicProblem,
     layout: &Layout,
 ) -> Result<(Vec<f64>, StaticSolution), StaticsError> {
-    let solution = solve(&static_problem(problem, 0.0))?;
+    let Equilibrium { solution, outer } = at_start(problem)?;
     let mut state = vec![0.0; layout.len()];
     let q = &solution.coordinates;
     let positions: Vec<Vec3> = solution.balls.iter().map(|ball| ball.position.into()).collect();
     let inner = [q[0], q[1], q[2], q[3], q[4]];
-    fill(problem, layout, &mut state, &inner, &positions, orbital_speed(problem, 0.0));
+    fill(problem, layout, &mut state, [&inner, &outer], &positions);
     Ok((state, solution))
 }
 
@@ -98,7 +100,7 @@ pub fn nominal(problem: &DynamicProblem, layout: &Layout) -> Vec<f64> {
             *coordinate = profile.value(0.0);
         }
     }
-    fill(problem, layout, &mut state, &inner, &positions, orbital_speed(problem, 0.0));
+    fill(problem, layout, &mut state, [&inner, &problem.outer_start], &positions);
     state
 }
 
@@ -106,10 +108,10 @@ fn fill(
     problem: &DynamicProblem,
     layout: &Layout,
     state: &mut [f64],
-    inner: &[f64; 5],
+    [inner, outer]: [&[f64; 5]; 2],
     positions: &[Vec3],
-    orbital_speed: f64,
 ) {
+    let orbital_speed = orbital_speed(problem, 0.0);
     let axis_spin = |axis: Vec3, speed: f64| scale(axis, speed);
     let write = |state: &mut [f64], at: usize, body: &BodyState| {
         state[at..at + super::state::BODY].copy_from_slice(&body.to_array());
@@ -120,7 +122,7 @@ fn fill(
     write(state, layout.inner(), &body);
     let inner_body = body;
 
-    let outer = race::fixed(&problem.outer_start).state;
+    let outer = race::fixed(outer).state;
     write(state, layout.outer(), &outer);
     let axis = outer.axis();
     if layout.has_cage {

@@ -1,15 +1,15 @@
 //! The equations of motion: state in, rates out.
 
-use super::contacts::{self, ContactLaws, ContactTable, Driver, Work};
+use super::contacts::{self, ContactLaws, ContactTable, Driver, Want, Work};
 use super::model::{DynamicProblem, RaceBody};
 use super::race::{self, RaceLoads, RaceNow};
 use super::state::{
     BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
 };
 use crate::ch2_housing::bearing::cage::{
-    AxisMotion, CageContact, Guidance, cage_energy, guide_contact, pocket_contact,
+    AxisMotion, CageContact, Guidance, guide_contact, pocket_contact,
 };
-use crate::ch2_housing::bearing::contact::{ContactDamping, RaceLaw, normal_load, strain_energy};
+use crate::ch2_housing::bearing::contact::{ContactDamping, RaceLaw, normal_load};
 use crate::ch2_housing::bearing::geometry::Raceway;
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use crate::ch2_housing::bearing::traction::{Slices, TractionLaw};
@@ -30,6 +30,9 @@ pub struct System {
     /// Contacts of the cage with each ball, then with the guiding race at both ends.
     pub pockets: Vec<CageContact>,
     pub guides: [CageContact; 2],
+    /// Profiles are read no later than this, s: in a step that ends at a corner, just before it, so
+    /// that no stage sees what comes after. Infinite otherwise.
+    pub latest: f64,
     fixed_outer: RaceNow,
     ball_force: Vec<Vec3>,
     ball_moment: Vec<Vec3>,
@@ -94,6 +97,7 @@ impl System {
             ball_force: vec![[0.0; 3]; layout.balls],
             ball_moment: vec![[0.0; 3]; layout.balls],
             work: Work::default(),
+            latest: f64::INFINITY,
             fixed_outer: race::fixed(&problem.outer_start),
             problem,
             layout,
@@ -108,6 +112,7 @@ impl System {
 
     /// Both races at time `t`, prescribed motions imposed.
     pub fn races(&self, t: f64, state: &[f64]) -> (RaceNow, RaceNow) {
+        let t = t.min(self.latest);
         let inner = race::now(&self.problem.inner, t, self.race_state(state, self.layout.inner()));
         let outer = match &self.problem.outer {
             Some(body) => race::now(body, t, self.race_state(state, self.layout.outer())),
@@ -116,7 +121,7 @@ impl System {
         (inner, outer)
     }
 
-    fn cage_motion(&self, state: &[f64]) -> Option<AxisMotion> {
+    pub(super) fn cage_motion(&self, state: &[f64]) -> Option<AxisMotion> {
         self.problem.cage.as_ref()?;
         let body = self.race_state(state, self.layout.cage());
         Some(AxisMotion {
@@ -129,6 +134,17 @@ impl System {
 
     /// Rates of the whole state vector at time `t`.
     pub fn evaluate(&mut self, t: f64, state: &[f64], rates: &mut [f64]) -> Instant {
+        self.evaluate_with(Want::Forces, t, state, rates)
+    }
+
+    /// As [`System::evaluate`], with the slopes of traction if they are wanted.
+    pub fn evaluate_with(
+        &mut self,
+        want: Want,
+        t: f64,
+        state: &[f64],
+        rates: &mut [f64],
+    ) -> Instant {
         self.work.evaluations += 1;
         let (inner, outer) = self.races(t, state);
         contacts::evaluate(
@@ -138,6 +154,7 @@ impl System {
             state,
             [&inner, &outer],
             &self.damping,
+            want,
             &mut self.table,
             &mut self.work,
         );
@@ -194,7 +211,7 @@ impl System {
         instant
     }
 
-    fn guidance(&self) -> Guidance {
+    pub(super) fn guidance(&self) -> Guidance {
         self.problem.cage.as_ref().map_or(Guidance::Balls, |cage| cage.contacts.guidance)
     }
 
@@ -304,14 +321,13 @@ impl System {
 
     /// Rates of both races.
     fn race_rates(&self, t: f64, instant: &Instant, rates: &mut [f64], ledger: &mut [f64; LEDGER]) {
+        let t = t.min(self.latest);
         let problem = &self.problem;
         let mut loads = instant.on_inner;
         loads.force = add_scaled(loads.force, problem.inner.inertia.mass, problem.gravity);
         let mut turning = [0.0; 3];
         if let Some(load) = &problem.rotating_load {
-            let (sin, cos) = libm::sincos(load.phase + load.speed * t);
-            let force = load.force.value(t);
-            turning = [0.0, force * cos, force * sin];
+            turning = load.force(t);
         }
         if problem.unbalance != 0.0 {
             // m e Ω² along the race's own Y, which turns with it.
@@ -413,94 +429,22 @@ fn write_body(
     rates[at + SPIN..at + SPIN + 3].copy_from_slice(&spin_rate);
 }
 
-/// Energy at one instant, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Energy {
-    pub kinetic: f64,
-    /// Stored in ball–race contacts.
-    pub contact: f64,
-    /// Stored in cage contacts.
-    pub cage_contact: f64,
-    /// −m g·r of all bodies.
-    pub gravity: f64,
-    /// Stored in the foundation's springs.
-    pub foundation: f64,
-}
-
-impl Energy {
-    pub fn total(&self) -> f64 {
-        self.kinetic + self.contact + self.cage_contact + self.gravity + self.foundation
-    }
-}
-
 impl System {
-    /// Energies of a state; call after [`System::evaluate`] at the same state.
-    pub fn energy(&self, state: &[f64], instant: &Instant) -> Energy {
-        let problem = &self.problem;
-        let layout = &self.layout;
-        let mut energy = Energy::default();
-        let mut add_body =
-            |mass: f64, axial: f64, transverse: f64, axis: Vec3, body: &[Vec3; 3]| {
-                let [position, velocity, spin] = *body;
-                let about_axis = dot(spin, axis);
-                energy.kinetic += 0.5 * mass * dot(velocity, velocity)
-                    + 0.5 * transverse * dot(spin, spin)
-                    + 0.5 * (axial - transverse) * about_axis * about_axis;
-                energy.gravity -= mass * dot(problem.gravity, position);
-            };
-        let ball = &problem.ball;
-        for i in 0..layout.balls {
-            let vector = |component| layout.ball_vector(state, component, i);
-            let body = [vector(POSITION), vector(VELOCITY), vector(SPIN)];
-            add_body(ball.mass, ball.axial, ball.transverse, [1.0, 0.0, 0.0], &body);
-        }
-        let races =
-            [(Some(&problem.inner), &instant.inner), (problem.outer.as_ref(), &instant.outer)];
-        for (body, now) in races {
-            if let Some(RaceBody { inertia, .. }) = body {
-                let parts = [now.state.position, now.state.velocity, now.state.spin];
-                add_body(inertia.mass, inertia.axial, inertia.transverse, now.motion.axis, &parts);
-            }
-        }
-        if let (Some(body), Some(cage)) = (&problem.cage, &instant.cage) {
-            let parts = [cage.position, cage.velocity, cage.spin];
-            let inertia = &body.inertia;
-            add_body(inertia.mass, inertia.axial, inertia.transverse, cage.axis, &parts);
-            for contact in self.pockets.iter().chain(&self.guides) {
-                energy.cage_contact += cage_energy(&body.contacts.force, contact.penetration);
-            }
-        }
-        for (race, law) in self.laws.races.iter().enumerate() {
-            for i in 0..layout.balls {
-                let overlap = self.table.contact[race * layout.padded + i].overlap;
-                energy.contact += strain_energy(law.stiffness, overlap);
-            }
-        }
-        for (body, now) in races {
-            let Some(body) = body else { continue };
-            let start =
-                if std::ptr::eq(body, &problem.inner) { [0.0; 5] } else { problem.outer_start };
-            for i in 0..5 {
-                let value = if i < 3 { now.state.position[i] } else { now.tilts()[i - 3] };
-                let stretch = value - start[i];
-                energy.foundation += 0.5 * body.foundation_stiffness[i] * stretch * stretch;
-            }
-        }
-        energy
-    }
-
     /// Lankarani and Nikravesh: a contact that has just begun takes its speed of approach as v₀.
-    /// History changes here and nowhere else, once a step; call after [`System::evaluate`].
-    pub fn commit_damping(&mut self, was_loaded: &mut [bool]) {
+    /// History changes here and nowhere else, once a step; call after [`System::evaluate`]. Returns
+    /// whether a damping factor has changed.
+    pub fn commit_damping(&mut self, was_loaded: &mut [bool]) -> bool {
         let ContactDamping::LankaraniNikravesh { restitution, slowest } = self.problem.damping
         else {
-            return;
+            return false;
         };
+        let mut changed = false;
         for race in 0..2 {
             for ball in 0..self.layout.balls {
                 let pair = race * self.layout.padded + ball;
                 let contact = &self.table.contact[pair];
                 let loaded = contact.overlap > 0.0;
+                let before = self.damping[pair];
                 if loaded && !was_loaded[pair] {
                     let approach = contact.closing_speed.abs().max(slowest);
                     self.damping[pair] = 0.75 * (1.0 - restitution * restitution) / approach;
@@ -508,7 +452,9 @@ impl System {
                     self.damping[pair] = 0.0;
                 }
                 was_loaded[pair] = loaded;
+                changed |= self.damping[pair] != before;
             }
         }
+        changed
     }
 }

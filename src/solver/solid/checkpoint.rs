@@ -12,9 +12,9 @@ pub struct SolidCheckpoint {
     pub displacement: Vec<Node>,
     /// At `time` for Runge–Kutta; half a step before it for central differences.
     pub rate: Vec<Node>,
-    /// J.
-    pub external_work: f64,
-    pub damping_work: f64,
+    /// Of each node, J.
+    pub external_work: Vec<f64>,
+    pub damping_work: Vec<f64>,
     pub work: SolidWork,
 }
 
@@ -31,8 +31,8 @@ impl ExplicitSolid {
         checkpoint.steps = self.steps;
         checkpoint.displacement.clone_from(&self.displacement);
         checkpoint.rate.clone_from(&self.rate);
-        checkpoint.external_work = self.external_work;
-        checkpoint.damping_work = self.damping_work;
+        checkpoint.external_work.clone_from(&self.external_work);
+        checkpoint.damping_work.clone_from(&self.damping_work);
         checkpoint.work = self.work;
     }
 
@@ -41,14 +41,16 @@ impl ExplicitSolid {
     /// # Panics
     /// If the checkpoint has another number of nodes.
     pub fn restore(&mut self, checkpoint: &SolidCheckpoint) {
-        assert_eq!(checkpoint.displacement.len(), self.displacement.len());
-        assert_eq!(checkpoint.rate.len(), self.rate.len());
+        let nodes = self.displacement.len();
+        assert_eq!((checkpoint.displacement.len(), checkpoint.rate.len()), (nodes, nodes));
+        let work = (checkpoint.external_work.len(), checkpoint.damping_work.len());
+        assert_eq!(work, (nodes, nodes));
         self.time = checkpoint.time;
         self.steps = checkpoint.steps;
         self.displacement.clone_from(&checkpoint.displacement);
         self.rate.clone_from(&checkpoint.rate);
-        self.external_work = checkpoint.external_work;
-        self.damping_work = checkpoint.damping_work;
+        self.external_work.clone_from(&checkpoint.external_work);
+        self.damping_work.clone_from(&checkpoint.damping_work);
         self.work = checkpoint.work;
     }
 }

@@ -1,6 +1,6 @@
 //! Explicit steps of a solid: central differences, or Runge–Kutta as in the source.
 
-use super::energy::{SolidEnergy, strain_energy};
+use super::energy::{SolidEnergy, SolidLedger, strain_energy};
 use super::model::{DampedMotion, Prescribed, SolidError, SolidModel, SolidProblem};
 use super::step_limit::{SolidStepLimit, step_limit};
 use super::tet4_blocks::Node;
@@ -43,9 +43,10 @@ pub struct ExplicitSolid {
     /// At `time` for Runge–Kutta; half a step before it for central differences.
     pub(super) rate: Vec<Node>,
     force: Vec<Node>,
-    /// Work of loads and drives, and of damping (≤ 0), since the start, J.
-    pub external_work: f64,
-    pub damping_work: f64,
+    /// Work of loads and drives, and of damping (≤ 0), on each node since the start, J: by node, so
+    /// that no sum depends on how many threads share the nodes.
+    pub(super) external_work: Vec<f64>,
+    pub(super) damping_work: Vec<f64>,
     pub work: SolidWork,
     stages: Option<Box<Stages>>,
 }
@@ -104,31 +105,9 @@ impl ExplicitSolid {
                 at: limit.at,
             });
         }
-        let count = model.mass.len();
-        let stages = (method == ExplicitMethod::RungeKutta).then(|| {
-            let zeros = || vec![[0.0; 4]; count];
-            Box::new(Stages {
-                displacement: zeros(),
-                rate: zeros(),
-                displacement_sum: zeros(),
-                rate_sum: zeros(),
-            })
-        });
-        let mut solid = ExplicitSolid {
-            method,
-            time: 0.0,
-            step_size,
-            steps: 0,
-            limit,
-            displacement,
-            rate: velocity,
-            force: vec![[0.0; 4]; count],
-            external_work: 0.0,
-            damping_work: 0.0,
-            work: SolidWork::default(),
-            stages,
-            model,
-        };
+        let mut solid = ExplicitSolid::at_rest(model, method, step_size, limit);
+        solid.displacement = displacement;
+        solid.rate = velocity;
         solid.impose();
         if method == ExplicitMethod::CentralDifferences {
             // Back by half a step, so that the first full kick ends half a step ahead.
@@ -141,6 +120,50 @@ impl ExplicitSolid {
             }
         }
         Ok(solid)
+    }
+
+    /// Undeformed and still at t = 0, with a step that is not looked at.
+    pub(super) fn at_rest(
+        model: SolidModel,
+        method: ExplicitMethod,
+        step_size: f64,
+        limit: SolidStepLimit,
+    ) -> ExplicitSolid {
+        let count = model.mass.len();
+        let stages = (method == ExplicitMethod::RungeKutta).then(|| {
+            let zeros = || vec![[0.0; 4]; count];
+            Box::new(Stages {
+                displacement: zeros(),
+                rate: zeros(),
+                displacement_sum: zeros(),
+                rate_sum: zeros(),
+            })
+        });
+        ExplicitSolid {
+            method,
+            time: 0.0,
+            step_size,
+            steps: 0,
+            limit,
+            displacement: vec![[0.0; 4]; count],
+            rate: vec![[0.0; 4]; count],
+            force: vec![[0.0; 4]; count],
+            external_work: vec![0.0; count],
+            damping_work: vec![0.0; count],
+            work: SolidWork::default(),
+            stages,
+            model,
+        }
+    }
+
+    /// Work of loads and drives since the start, J.
+    pub fn external_work(&self) -> f64 {
+        self.external_work.iter().sum()
+    }
+
+    /// Work of damping since the start, J; ≤ 0 but for a body that damping carries along.
+    pub fn damping_work(&self) -> f64 {
+        self.damping_work.iter().sum()
     }
 
     /// Writes prescribed displacements and their rates into the state.
@@ -202,7 +225,7 @@ impl ExplicitSolid {
         let h = self.step_size;
         let half_damping = 0.5 * h * self.model.problem.damping;
         let (keep, per_sum) = (1.0 - half_damping, 1.0 / (1.0 + half_damping));
-        self.external_work += 0.5 * h * self.load_power(self.time);
+        self.add_load_work(0.5 * h);
         let next = self.time + h;
         for Prescribed { node, axis, profile } in &self.model.problem.prescribed {
             let (n, i) = (*node as usize, *axis);
@@ -210,15 +233,17 @@ impl ExplicitSolid {
             let before = self.rate[n][i];
             // What the drive adds to the other forces moves the node's mass.
             let drive = self.model.mass[n] * (rate - before) / h - self.force[n][i];
-            self.external_work += 0.5 * h * drive * (rate + before);
+            self.external_work[n] += 0.5 * h * drive * (rate + before);
             self.rate[n][i] = rate;
         }
         let relative = self.model.problem.damped_motion == DampedMotion::RelativeToRigid;
         if half_damping == 0.0 {
-            for (n, per_mass) in self.model.per_mass.iter().enumerate() {
+            let nodes = self.rate.iter_mut().zip(&mut self.displacement);
+            let pulls = self.force.iter().zip(&self.model.per_mass);
+            for ((rate, displacement), (force, per_mass)) in nodes.zip(pulls) {
                 for i in 0..4 {
-                    self.rate[n][i] += h * self.force[n][i] * per_mass[i];
-                    self.displacement[n][i] += h * self.rate[n][i];
+                    rate[i] += h * force[i] * per_mass[i];
+                    displacement[i] += h * rate[i];
                 }
             }
         } else {
@@ -232,39 +257,44 @@ impl ExplicitSolid {
                 let rest = rigid.velocity(problem.nodes[n], self.displacement[n]);
                 for i in 0..3 {
                     let before = self.rate[n][i];
+                    // A driven component is not braked: its course is given.
                     if per_mass[n][i] != 0.0 {
                         let excess = before - rest[i];
                         let kick = h * self.force[n][i] * per_mass[n][i];
                         self.rate[n][i] = rest[i] + (keep * excess + kick) * per_sum;
+                        let mean = 0.5 * (before + self.rate[n][i]);
+                        self.damping_work[n] -=
+                            h * problem.damping * mass[n] * mean * (mean - rest[i]);
                     }
-                    let mean = 0.5 * (before + self.rate[n][i]);
-                    self.damping_work -= h * problem.damping * mass[n] * mean * (mean - rest[i]);
                     self.displacement[n][i] += h * self.rate[n][i];
                 }
             }
         }
-        self.external_work += 0.5 * h * self.load_power(self.time);
+        self.add_load_work(0.5 * h);
         self.time = next;
     }
 
-    /// Power of loads and gravity at the present rates, with their forces at time `t`, W.
-    fn load_power(&self, t: f64) -> f64 {
-        let mut power = 0.0;
-        for load in &self.model.problem.loads {
-            let factor = load.profile.value(t);
+    /// Books what loads and gravity, with their forces at `time`, do in `seconds` at the present
+    /// rates.
+    fn add_load_work(&mut self, seconds: f64) {
+        let SolidModel { problem, mass, .. } = &self.model;
+        for load in &problem.loads {
+            let factor = seconds * load.profile.value(self.time);
             for (node, force) in &load.forces {
-                let rate = &self.rate[*node as usize];
-                power += factor * (force[0] * rate[0] + force[1] * rate[1] + force[2] * rate[2]);
+                let n = *node as usize;
+                let rate = &self.rate[n];
+                self.external_work[n] +=
+                    factor * (force[0] * rate[0] + force[1] * rate[1] + force[2] * rate[2]);
             }
         }
-        let gravity = self.model.problem.gravity;
+        let gravity = problem.gravity;
         if gravity != [0.0; 3] {
-            for (rate, mass) in self.rate.iter().zip(&self.model.mass) {
-                power +=
-                    mass * (gravity[0] * rate[0] + gravity[1] * rate[1] + gravity[2] * rate[2]);
+            for (n, rate) in self.rate.iter().enumerate() {
+                self.external_work[n] += seconds
+                    * mass[n]
+                    * (gravity[0] * rate[0] + gravity[1] * rate[1] + gravity[2] * rate[2]);
             }
         }
-        power
     }
 
     /// Classical fourth-order Runge–Kutta for displacements and rates (2.7).
@@ -279,7 +309,7 @@ impl ExplicitSolid {
             self.evaluate();
             contacts(self.time, &self.displacement, &mut self.force);
             let share = h * weight / 6.0;
-            self.external_work += share * self.load_power(self.time);
+            self.add_load_work(share);
             let SolidModel { per_mass, problem, mass, .. } = &self.model;
             let rigid = if problem.damping == 0.0 {
                 RigidMotion::default()
@@ -290,13 +320,13 @@ impl ExplicitSolid {
                 let rest = rigid.velocity(problem.nodes[n], self.displacement[n]);
                 for i in 0..3 {
                     let rate = self.rate[n][i];
-                    let brake = problem.damping * (rate - rest[i]);
-                    self.damping_work -= share * mass[n] * brake * rate;
-                    let acceleration = if per_mass[n][i] == 0.0 {
-                        0.0
-                    } else {
-                        self.force[n][i] * per_mass[n][i] - brake
-                    };
+                    // A driven component is not braked: its course is given.
+                    let mut acceleration = 0.0;
+                    if per_mass[n][i] != 0.0 {
+                        let brake = problem.damping * (rate - rest[i]);
+                        self.damping_work[n] -= share * mass[n] * brake * rate;
+                        acceleration = self.force[n][i] * per_mass[n][i] - brake;
+                    }
                     stages.displacement_sum[n][i] += share * rate;
                     stages.rate_sum[n][i] += share * acceleration;
                     self.displacement[n][i] = stages.displacement[n][i] + ahead * h * rate;
@@ -307,7 +337,7 @@ impl ExplicitSolid {
             for Prescribed { node, axis, profile } in &problem.prescribed {
                 let (n, i) = (*node as usize, *axis);
                 let drive = mass[n] * profile.acceleration(self.time) - self.force[n][i];
-                self.external_work += share * drive * profile.rate(self.time);
+                self.external_work[n] += share * drive * profile.rate(self.time);
             }
             self.time = start + ahead * h;
             self.impose();
@@ -349,20 +379,48 @@ impl ExplicitSolid {
     /// Energy at `time`, J. For central differences the kinetic part is ½ v(t−h/2)·m·v(t+h/2),
     /// which together with the strain energy is what the method keeps.
     pub fn energy(&mut self) -> SolidEnergy {
+        self.ledger().energy
+    }
+
+    /// Energy held at `time` and the work done until then; leaves the forces of that time in
+    /// [`ExplicitSolid::forces`].
+    ///
+    /// Central differences book the work of each step with the mean of the rates before and after
+    /// it, that is half a step late; what is still to come of it is added here, so that the ledger
+    /// of a linear body closes to rounding.
+    pub fn ledger(&mut self) -> SolidLedger {
         let strain = strain_energy(&self.model, &self.displacement);
         self.evaluate();
         let ahead = match self.method {
             ExplicitMethod::CentralDifferences => self.step_size,
             ExplicitMethod::RungeKutta => 0.0,
         };
-        let mut kinetic = 0.0;
+        let mut loads = vec![[0.0; 4]; self.force.len()];
+        self.model.add_external_forces(self.time, &mut loads);
+        let SolidModel { mass, per_mass, .. } = &self.model;
+        let (mut kinetic, mut external, mut damping) = (0.0, 0.0, 0.0);
         for (n, acceleration) in self.acceleration().into_iter().enumerate() {
             for i in 0..3 {
-                let rate = self.rate[n][i];
-                kinetic += 0.5 * self.model.mass[n] * rate * (rate + ahead * acceleration[i]);
+                let (rate, force) = (self.rate[n][i], self.force[n][i]);
+                kinetic += 0.5 * mass[n] * rate * (rate + ahead * acceleration[i]);
+                external += 0.5 * ahead * loads[n][i] * rate;
+                if per_mass[n][i] == 0.0 {
+                    external -= 0.5 * ahead * force * rate;
+                } else {
+                    damping += 0.5 * ahead * (mass[n] * acceleration[i] - force) * rate;
+                }
             }
         }
-        SolidEnergy { strain, kinetic }
+        SolidLedger {
+            energy: SolidEnergy { strain, kinetic },
+            external_work: self.external_work() + external,
+            damping_work: self.damping_work() + damping,
+        }
+    }
+
+    /// Forces of elements and loads on the nodes as last evaluated, N.
+    pub fn forces(&self) -> &[Node] {
+        &self.force
     }
 }
 

@@ -8,5 +8,6 @@ pub mod modes;
 pub mod step_limit;
 pub mod support;
 pub mod tangent;
+pub mod team;
 pub mod tet10_blocks;
 pub mod tet4_blocks;

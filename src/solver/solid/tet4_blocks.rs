@@ -5,7 +5,7 @@
 //! needs lies lane by lane in the order in which it is read.
 
 use crate::ch2_housing::linear_elastic::LinearElastic;
-use crate::elements::tet4::Tet4;
+use crate::elements::tet4::{Tet4, relative};
 
 /// Elements a block.
 pub const LANES: usize = 4;
@@ -58,11 +58,11 @@ pub fn add_forces(
     let displacement = &displacement[..forces.len()];
     for block in blocks {
         let [a, b, c, d] = &block.nodes;
-        let last = gather(displacement, d);
-        let relative = [
-            relative_to(gather(displacement, a), &last),
-            relative_to(gather(displacement, b), &last),
-            relative_to(gather(displacement, c), &last),
+        let moved = [
+            gather(displacement, a),
+            gather(displacement, b),
+            gather(displacement, c),
+            gather(displacement, d),
         ];
         let mut force = [[[0.0; LANES]; 3]; 3];
         for lane in 0..LANES {
@@ -70,10 +70,9 @@ pub fn add_forces(
             let [a, b, c] = &block.gradients;
             let element =
                 Tet4 { gradients: [vector(a), vector(b), vector(c)], volume: block.volume[lane] };
-            let [a, b, c] = &relative;
-            let of = element.nodal_forces(&[vector(a), vector(b), vector(c)], |strain| {
-                material.second_piola_kirchhoff(strain)
-            });
+            let [a, b, c, d] = &moved;
+            let apart = relative(&[vector(a), vector(b), vector(c), vector(d)]);
+            let of = element.nodal_forces(&apart, |strain| material.second_piola_kirchhoff(strain));
             for n in 0..3 {
                 for i in 0..3 {
                     force[n][i][lane] = of[n][i];
@@ -113,14 +112,4 @@ fn gather(values: &[Node], nodes: &[u32; LANES]) -> [[f64; LANES]; 3] {
         }
     }
     components
-}
-
-#[inline(always)]
-fn relative_to(mut of: [[f64; LANES]; 3], last: &[[f64; LANES]; 3]) -> [[f64; LANES]; 3] {
-    for i in 0..3 {
-        for lane in 0..LANES {
-            of[i][lane] -= last[i][lane];
-        }
-    }
-    of
 }

@@ -9,6 +9,7 @@ pub mod elliptic;
 pub mod hertz;
 pub mod hyperdual;
 pub mod misalignment;
+pub mod rolling;
 pub mod statics;
 #[cfg(test)]
 mod statics_tests;

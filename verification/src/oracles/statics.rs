@@ -32,6 +32,8 @@ pub struct OracleBearing {
     pub stiffness_outer: f64,
     /// Azimuth of ball 0.
     pub phase: f64,
+    /// How far each ball is ahead of its even place, rad; empty: evenly spaced.
+    pub ahead: Vec<f64>,
     pub outer_position: Vec3,
     /// Outer race's body axes to the frame, row by row.
     pub outer_rotation: [Vec3; 3],
@@ -107,6 +109,7 @@ impl OracleBearing {
             stiffness_inner: stiffness[0],
             stiffness_outer: stiffness[1],
             phase,
+            ahead: Vec::new(),
             outer_position: [0.0; 3],
             outer_rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             ball_force: [0.0; 3],
@@ -116,7 +119,8 @@ impl OracleBearing {
     }
 
     pub fn azimuth(&self, ball: usize) -> f64 {
-        self.phase + TAU * ball as f64 / self.balls as f64
+        let ahead = self.ahead.get(ball).copied().unwrap_or(0.0);
+        self.phase + TAU * ball as f64 / self.balls as f64 + ahead
     }
 
     /// Length by which tilts are multiplied, so that all unknowns are lengths.

@@ -1,0 +1,477 @@
+//! The matrix of a linearly implicit step, M + hγ D + h²γ² K over all velocities: balls touch hubs
+//! (races, cage) and never each other, so that each ball is eliminated into the hubs and what
+//! remains is 6, 12 or 18 equations.
+//!
+//! Balls are eliminated a block of [`LANES`] at a time, with every driver.
+
+use super::elimination::{
+    Block, MOST, ZERO, add_product, factor_dense, factor_lanes, solve_columns, solve_dense,
+    solve_lanes, subtract_product, total,
+};
+use super::linearised::{Hub, Lane, LaneContact, Linearised, from_basis, to_basis};
+use super::state::{LANES, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
+use crate::ch2_housing::bearing::inertia::Inertia;
+use nalgebra::Quaternion;
+
+/// Most hubs a bearing has: two races and a cage.
+const HUBS: usize = 3;
+
+/// A factored matrix and room to solve with it.
+#[derive(Clone, Debug)]
+pub struct Arrow {
+    ball: Inertia,
+    hub_count: usize,
+    /// hγ.
+    scale: f64,
+    /// LDLᵀ of each block's 6 × 6, upper triangle, reciprocal pivots on the diagonal.
+    factors: Vec<Block>,
+    /// Ball's matrix⁻¹ · coupling to each hub.
+    eliminated: Vec<[Block; HUBS]>,
+    /// Which of them are not zero.
+    coupled: Vec<[bool; HUBS]>,
+    schur: [[f64; MOST]; MOST],
+    balls: Vec<[Lane; 6]>,
+}
+
+impl Arrow {
+    pub fn new(layout: &Layout, ball: Inertia, hub_count: usize) -> Arrow {
+        let blocks = layout.padded / LANES;
+        Arrow {
+            ball,
+            hub_count,
+            scale: 0.0,
+            factors: vec![[[ZERO; 6]; 6]; blocks],
+            eliminated: vec![[[[ZERO; 6]; 6]; HUBS]; blocks],
+            coupled: vec![[false; HUBS]; blocks],
+            schur: [[0.0; MOST]; MOST],
+            balls: vec![[ZERO; 6]; blocks],
+        }
+    }
+
+    /// Factors the matrix for a step with hγ = `scale`.
+    pub fn factor(&mut self, linearised: &Linearised, scale: f64) {
+        self.scale = scale;
+        let count = 6 * self.hub_count;
+        for row in &mut self.schur[..count] {
+            row[..count].fill(0.0);
+        }
+        for (index, hub) in linearised.hubs.iter().enumerate() {
+            for i in 0..6 {
+                self.schur[6 * index + i][6 * index + i] =
+                    hub.inertia[i] + scale * (hub.damping[i] + scale * hub.stiffness[i]);
+            }
+        }
+        add_guides(linearised, scale, &mut self.schur);
+        for (block, contacts) in linearised.contacts.iter().enumerate() {
+            self.factor_block(block, contacts);
+        }
+        factor_dense(&mut self.schur, count);
+    }
+
+    fn factor_block(&mut self, block: usize, contacts: &[LaneContact; 3]) {
+        let scale = self.scale;
+        let factors = &mut self.factors[block];
+        for i in 0..6 {
+            for j in i..6 {
+                factors[i][j] = ZERO;
+            }
+            factors[i][i] = [if i < 3 { self.ball.mass } else { self.ball.axial }; LANES];
+        }
+        let mut couplings = [[[ZERO; 6]; 6]; HUBS];
+        let coupled = &mut self.coupled[block];
+        *coupled = [false; HUBS];
+        for contact in contacts {
+            if contact.rows == 0 {
+                continue;
+            }
+            let pushed = weigh(contact, &contact.on_ball, scale);
+            for i in 0..6 {
+                for j in i..6 {
+                    for r in 0..contact.rows {
+                        add_product(&mut factors[i][j], &contact.on_ball[r][i], &pushed[r][j]);
+                    }
+                }
+            }
+            let Some(hub) = contact.hub else { continue };
+            let pushed = weigh(contact, &contact.on_hub, scale);
+            coupled[hub] = true;
+            for i in 0..6 {
+                for j in 0..6 {
+                    let mut sum = ZERO;
+                    for r in 0..contact.rows {
+                        add_product(&mut sum, &contact.on_ball[r][i], &pushed[r][j]);
+                    }
+                    couplings[hub][i][j] = sum;
+                }
+                for j in i..6 {
+                    let mut sum = ZERO;
+                    for r in 0..contact.rows {
+                        add_product(&mut sum, &contact.on_hub[r][i], &pushed[r][j]);
+                    }
+                    self.schur[6 * hub + i][6 * hub + j] += total(&sum);
+                }
+            }
+        }
+        factor_lanes(factors);
+        for hub in 0..self.hub_count {
+            if !coupled[hub] {
+                continue;
+            }
+            let eliminated = &mut self.eliminated[block][hub];
+            *eliminated = couplings[hub];
+            solve_columns(factors, eliminated);
+        }
+        for row in 0..self.hub_count {
+            for column in row..self.hub_count {
+                if !(coupled[row] && coupled[column]) {
+                    continue;
+                }
+                let eliminated = &self.eliminated[block][column];
+                for i in 0..6 {
+                    let from = if row == column { i } else { 0 };
+                    for j in from..6 {
+                        let mut sum = ZERO;
+                        for k in 0..6 {
+                            add_product(&mut sum, &couplings[row][k][i], &eliminated[k][j]);
+                        }
+                        self.schur[6 * row + i][6 * column + j] -= total(&sum);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Solves (1 − hγ J) w = r for all entries of the state; `at` is the state of the Jacobian.
+    /// Nothing feeds back from the ledger and the orientation of balls: what drives of prescribed
+    /// motions do follows the rest of `w`, their other entries are those of `r`.
+    pub fn solve(
+        &mut self,
+        linearised: &Linearised,
+        layout: &Layout,
+        at: &[f64],
+        r: &[f64],
+        w: &mut [f64],
+    ) {
+        w.copy_from_slice(r);
+        let scale = self.scale;
+        let mut hubs = [0.0; MOST];
+        let mut moved = [[0.0; 6]; HUBS];
+        for (index, hub) in linearised.hubs.iter().enumerate() {
+            moved[index] = displacement(hub, at, r);
+            let rate = to_basis(hub, vector(r, hub.at + VELOCITY), vector(r, hub.at + SPIN));
+            for i in 0..6 {
+                hubs[6 * index + i] =
+                    hub.inertia[i] * rate[i] - scale * hub.stiffness[i] * moved[index][i];
+            }
+        }
+        guide_forces(linearised, scale, &moved, &mut hubs);
+        for (block, contacts) in linearised.contacts.iter().enumerate() {
+            let right = &mut self.balls[block];
+            let lanes = |component: usize| {
+                let from = layout.ball(component) + block * LANES;
+                let mut lane = ZERO;
+                lane.copy_from_slice(&r[from..from + LANES]);
+                lane
+            };
+            let position: [Lane; 3] = [0, 1, 2].map(|i| lanes(POSITION + i));
+            for i in 0..3 {
+                let (force, moment) = (lanes(VELOCITY + i), lanes(SPIN + i));
+                for l in 0..LANES {
+                    right[i][l] = self.ball.mass * force[l];
+                    right[3 + i][l] = self.ball.axial * moment[l];
+                }
+            }
+            for contact in contacts.iter().filter(|contact| contact.rows > 0) {
+                spring_back(contact, scale, &position, &moved, right, &mut hubs);
+            }
+            for hub in 0..self.hub_count {
+                if !self.coupled[block][hub] {
+                    continue;
+                }
+                for j in 0..6 {
+                    let mut sum = ZERO;
+                    for i in 0..6 {
+                        add_product(&mut sum, &self.eliminated[block][hub][i][j], &right[i]);
+                    }
+                    hubs[6 * hub + j] -= total(&sum);
+                }
+            }
+            solve_lanes(&self.factors[block], right);
+        }
+        solve_dense(&self.schur, 6 * self.hub_count, &mut hubs);
+        let rates: [[f64; 6]; HUBS] =
+            std::array::from_fn(|hub| std::array::from_fn(|i| hubs[6 * hub + i]));
+        for (moved, rate) in moved.iter_mut().zip(&rates) {
+            for i in 0..6 {
+                moved[i] += scale * rate[i];
+            }
+        }
+        let mut power = 0.0;
+        for (block, right) in self.balls.iter_mut().enumerate() {
+            for hub in 0..self.hub_count {
+                if !self.coupled[block][hub] {
+                    continue;
+                }
+                for i in 0..6 {
+                    for j in 0..6 {
+                        let change = hubs[6 * hub + j];
+                        for l in 0..LANES {
+                            right[i][l] -= self.eliminated[block][hub][i][j][l] * change;
+                        }
+                    }
+                }
+            }
+            let mut position = [ZERO; 3];
+            for (i, lane) in position.iter_mut().enumerate() {
+                let from = layout.ball(POSITION + i) + block * LANES;
+                for l in 0..LANES {
+                    lane[l] = r[from + l] + scale * right[i][l];
+                }
+            }
+            for contact in &linearised.contacts[block][..2] {
+                if let (4, Some(hub)) = (contact.rows, contact.hub) {
+                    power += drive_power(contact, &position, &moved[hub], right, &rates[hub]);
+                }
+            }
+            // Lanes beyond the last ball stand still.
+            let used = LANES.min(layout.balls - (block * LANES).min(layout.balls));
+            for i in 0..3 {
+                let place = |component: usize| layout.ball(component + i) + block * LANES;
+                let (x, v, s) = (place(POSITION), place(VELOCITY), place(SPIN));
+                w[v..v + used].copy_from_slice(&right[i][..used]);
+                w[s..s + used].copy_from_slice(&right[3 + i][..used]);
+                w[x..x + used].copy_from_slice(&position[i][..used]);
+            }
+        }
+        w[layout.ledger_entry(Ledger::Drives)] += scale * power;
+        for (hub, rate) in linearised.hubs.iter().zip(&rates) {
+            let (linear, turning) = from_basis(hub, rate);
+            let q = [0, 1, 2, 3].map(|i| at[hub.at + ORIENTATION + i]);
+            let turned = quaternion_rate(q, turning);
+            for i in 0..3 {
+                w[hub.at + POSITION + i] = r[hub.at + POSITION + i] + scale * linear[i];
+                w[hub.at + VELOCITY + i] = linear[i];
+                w[hub.at + SPIN + i] = turning[i];
+            }
+            for i in 0..4 {
+                w[hub.at + ORIENTATION + i] = r[hub.at + ORIENTATION + i] + scale * turned[i];
+            }
+        }
+    }
+}
+
+fn vector(of: &[f64], at: usize) -> [f64; 3] {
+    [of[at], of[at + 1], of[at + 2]]
+}
+
+/// Shift and turn of a hub in a vector of rates or increments; prescribed parts push nothing.
+fn displacement(hub: &Hub, at: &[f64], r: &[f64]) -> [f64; 6] {
+    let quaternion = |of: &[f64]| {
+        let from = hub.at + ORIENTATION;
+        Quaternion::new(of[from], of[from + 1], of[from + 2], of[from + 3])
+    };
+    let turn = (quaternion(r) * quaternion(at).conjugate()).imag() * 2.0;
+    let all = to_basis(hub, vector(r, hub.at + POSITION), turn.into());
+    std::array::from_fn(|i| all[i] * hub.free[i])
+}
+
+/// Weights times levers: (h²γ² k + hγ c) along the normal, hγ · slope for the others.
+fn weigh(contact: &LaneContact, lever: &[[Lane; 6]; 4], scale: f64) -> [[Lane; 6]; 4] {
+    let mut pushed = [[ZERO; 6]; 4];
+    let mut normal = ZERO;
+    for l in 0..LANES {
+        normal[l] = scale * (contact.damping[l] + scale * contact.stiffness[l]);
+    }
+    for j in 0..6 {
+        for l in 0..LANES {
+            pushed[0][j][l] = normal[l] * lever[0][j][l];
+        }
+    }
+    if contact.rows == 1 {
+        return pushed;
+    }
+    let [tt, ts, tn, ss, sn, nn] = &contact.slope;
+    for j in 0..6 {
+        for l in 0..LANES {
+            let [t, s, n] = [1, 2, 3].map(|row: usize| scale * lever[row][j][l]);
+            pushed[1][j][l] = tt[l] * t + ts[l] * s + tn[l] * n;
+            pushed[2][j][l] = ts[l] * t + ss[l] * s + sn[l] * n;
+            pushed[3][j][l] = tn[l] * t + sn[l] * s + nn[l] * n;
+        }
+    }
+    pushed
+}
+
+/// What a contact pushes back along its rows for displacements and velocities of ball and hub.
+#[inline(always)]
+fn reaction(
+    contact: &LaneContact,
+    position: &[Lane; 3],
+    moved: &[f64; 6],
+    velocity: Option<(&[Lane; 6], &[f64; 6])>,
+) -> [Lane; 4] {
+    let mut pushes = [ZERO; 4];
+    let mut approach = ZERO;
+    for i in 0..3 {
+        add_product(&mut approach, &contact.on_ball[0][i], &position[i]);
+    }
+    if contact.hub.is_some() {
+        for (row, moved) in contact.on_hub[0].iter().zip(moved) {
+            for l in 0..LANES {
+                approach[l] += row[l] * moved;
+            }
+        }
+    }
+    for l in 0..LANES {
+        pushes[0][l] = contact.stiffness[l] * approach[l];
+    }
+    let mut slid = [ZERO; 3];
+    if contact.rows == 4 {
+        let mut between = *position;
+        if contact.hub.is_some() {
+            for i in 0..3 {
+                for l in 0..LANES {
+                    between[i][l] -= moved[i];
+                }
+            }
+        }
+        for (slid, row) in slid.iter_mut().zip(&contact.carried) {
+            for i in 0..3 {
+                add_product(slid, &row[i], &between[i]);
+            }
+        }
+    }
+    if let Some((ball, hub)) = velocity {
+        let mut closing = ZERO;
+        for i in 0..3 {
+            add_product(&mut closing, &contact.on_ball[0][i], &ball[i]);
+        }
+        for (row, slid) in slid.iter_mut().enumerate() {
+            for i in 0..6 {
+                add_product(slid, &contact.on_ball[1 + row][i], &ball[i]);
+            }
+        }
+        if contact.hub.is_some() {
+            for j in 0..6 {
+                for l in 0..LANES {
+                    closing[l] += contact.on_hub[0][j][l] * hub[j];
+                }
+                for (row, slid) in slid.iter_mut().enumerate() {
+                    for l in 0..LANES {
+                        slid[l] += contact.on_hub[1 + row][j][l] * hub[j];
+                    }
+                }
+            }
+        }
+        for l in 0..LANES {
+            pushes[0][l] += contact.damping[l] * closing[l];
+        }
+    }
+    if contact.rows == 4 {
+        let [tt, ts, tn, ss, sn, nn] = &contact.slope;
+        for l in 0..LANES {
+            let [t, s, n] = [slid[0][l], slid[1][l], slid[2][l]];
+            let follows = |row: usize| contact.per_load[row][l] * pushes[0][l];
+            let along = tt[l] * t + ts[l] * s + tn[l] * n - follows(0);
+            let across = ts[l] * t + ss[l] * s + sn[l] * n - follows(1);
+            let about = tn[l] * t + sn[l] * s + nn[l] * n - follows(2);
+            [pushes[1][l], pushes[2][l], pushes[3][l]] = [along, across, about];
+        }
+    }
+    pushes
+}
+
+/// hγ K r: takes from the right-hand sides what the displacements in them push back.
+fn spring_back(
+    contact: &LaneContact,
+    scale: f64,
+    position: &[Lane; 3],
+    moved: &[[f64; 6]; HUBS],
+    right: &mut [Lane; 6],
+    hubs: &mut [f64; MOST],
+) {
+    let of_hub = &moved[contact.hub.unwrap_or(0)];
+    let mut pushes = reaction(contact, position, of_hub, None);
+    let rows = if contact.rows == 4 { 4 } else { 1 };
+    for (row, push) in pushes.iter_mut().enumerate().take(rows) {
+        for l in 0..LANES {
+            push[l] *= scale;
+        }
+        for i in 0..6 {
+            subtract_product(&mut right[i], &contact.on_ball[row][i], push);
+        }
+    }
+    if let Some(hub) = contact.hub {
+        for j in 0..6 {
+            let mut sum = ZERO;
+            for (row, push) in pushes.iter().enumerate().take(rows) {
+                add_product(&mut sum, &contact.on_hub[row][j], push);
+            }
+            hubs[6 * hub + j] -= total(&sum);
+        }
+    }
+}
+
+/// Change of the power of the drives that hold prescribed velocities.
+fn drive_power(
+    contact: &LaneContact,
+    position: &[Lane; 3],
+    moved: &[f64; 6],
+    ball: &[Lane; 6],
+    hub: &[f64; 6],
+) -> f64 {
+    let pushes = reaction(contact, position, moved, Some((ball, hub)));
+    let mut driven = ZERO;
+    for (row, push) in pushes.iter().enumerate() {
+        add_product(&mut driven, &contact.driven[row], push);
+    }
+    total(&driven)
+}
+
+/// Both ends of the cage on its guiding race: (hub, lever) pairs of the bodies that move.
+fn ends(linearised: &Linearised) -> [Option<usize>; 2] {
+    [linearised.guiding_hub, linearised.cage_hub]
+}
+
+fn add_guides(linearised: &Linearised, scale: f64, schur: &mut [[f64; MOST]; MOST]) {
+    for guide in linearised.guides.iter().filter(|guide| guide.loaded) {
+        let weight =
+            [scale * scale * guide.stiffness, scale * guide.slope[0], scale * guide.slope[1]];
+        let bodies = ends(linearised);
+        for (a, row) in bodies.into_iter().enumerate() {
+            for (b, column) in bodies.into_iter().enumerate() {
+                let (Some(row), Some(column)) = (row, column) else { continue };
+                for i in 0..6 {
+                    for j in 0..6 {
+                        for (r, weight) in weight.iter().enumerate() {
+                            schur[6 * row + i][6 * column + j] +=
+                                guide.levers[a][r][i] * weight * guide.levers[b][r][j];
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn guide_forces(
+    linearised: &Linearised,
+    scale: f64,
+    moved: &[[f64; 6]; HUBS],
+    hubs: &mut [f64; MOST],
+) {
+    for guide in linearised.guides.iter().filter(|guide| guide.loaded) {
+        let mut push = 0.0;
+        for (lever, hub) in guide.levers.iter().zip(ends(linearised)) {
+            let Some(hub) = hub else { continue };
+            push += (0..6).map(|j| lever[0][j] * moved[hub][j]).sum::<f64>();
+        }
+        push *= scale * guide.stiffness;
+        for (lever, hub) in guide.levers.iter().zip(ends(linearised)) {
+            let Some(hub) = hub else { continue };
+            for j in 0..6 {
+                hubs[6 * hub + j] -= lever[0][j] * push;
+            }
+        }
+    }
+}

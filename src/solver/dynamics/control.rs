@@ -1,0 +1,180 @@
+//! Error control: how long a step may be so that the motion of the races comes out as accurately as
+//! was asked for.
+//!
+//! An error of a displacement counts against the largest overlap of a contact so far, that of a
+//! velocity against this displacement times the frequency of the body on its contacts. The largest
+//! of these quotients, over `accuracy` times [`SHARE`], is the norm that an accepted step keeps
+//! below one.
+
+use super::model::DynamicProblem;
+use super::state::{BODY, LANES, Layout, ORIENTATION, POSITION, SPIN, VELOCITY};
+use super::system::System;
+use crate::ch2_housing::bearing::contact::normal_stiffness;
+
+/// A step tried: where it leads, and its estimated error.
+#[derive(Clone, Debug, Default)]
+pub struct Attempt {
+    pub state: Vec<f64>,
+    pub error: Vec<f64>,
+}
+
+impl Attempt {
+    pub fn new(length: usize) -> Attempt {
+        Attempt { state: vec![0.0; length], error: vec![0.0; length] }
+    }
+}
+
+/// Error of one step that is allowed, over the accuracy of the whole run: errors add up, and where
+/// bearings ring without damping for some hundred periods they add up to this.
+pub const SHARE: f64 = 0.02;
+/// The scale of displacements is not below this part of a ball radius: some nanometres.
+const FLOOR: f64 = 1e-6;
+/// Steps are kept this much shorter than the estimate asks for.
+const SAFETY: f64 = 0.9;
+const LEAST_ERROR: f64 = 0.02;
+const SHORTEST: f64 = 0.2;
+const LONGEST: f64 = 2.5;
+
+/// What a run with error control remembers from step to step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Memory {
+    /// Scale of displacements: largest overlap so far, m.
+    pub displacement: f64,
+    /// Norm of the error of the step before.
+    pub previous_error: f64,
+    /// Accepted steps, s; zero before the first.
+    pub smallest: f64,
+    pub largest: f64,
+}
+
+#[derive(Clone, Debug)]
+pub struct Controller {
+    pub memory: Memory,
+    accuracy: f64,
+    /// Order of the error estimate.
+    order: f64,
+    stiffness: f64,
+    layout: Layout,
+    ball: Scale,
+    /// First entry of each race and the cage that moves, with its scales.
+    bodies: Vec<(usize, Scale)>,
+}
+
+/// What makes lengths and displacements of a body comparable.
+#[derive(Clone, Copy, Debug)]
+struct Scale {
+    mass: f64,
+    /// Turns errors of angles into those of displacements, m.
+    arm: f64,
+    /// Its displacements count over so many overlaps.
+    room: f64,
+}
+
+impl Controller {
+    pub fn new(problem: &DynamicProblem, accuracy: f64, order: f64) -> Controller {
+        let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
+        let geometry = &problem.geometry;
+        let race = |mass| Scale { mass, arm: geometry.pitch_radius, room: 1.0 };
+        let mut bodies = vec![(layout.inner(), race(problem.inner.inertia.mass))];
+        if let Some(outer) = &problem.outer {
+            bodies.push((layout.outer(), race(outer.inertia.mass)));
+        }
+        if let Some(cage) = &problem.cage {
+            bodies.push((layout.cage(), Scale { room: 10.0, ..race(cage.inertia.mass) }));
+        }
+        let stiffness = problem.inner_contact.stiffness.min(problem.outer_contact.stiffness);
+        Controller {
+            memory: Memory {
+                displacement: FLOOR * geometry.ball_radius,
+                previous_error: 1.0,
+                smallest: 0.0,
+                largest: 0.0,
+            },
+            accuracy,
+            order,
+            stiffness,
+            layout,
+            ball: Scale { mass: problem.ball.mass, arm: geometry.ball_radius, room: 1.0 },
+            bodies,
+        }
+    }
+
+    /// Takes note of the overlaps that `system` has evaluated last.
+    pub fn see(&mut self, system: &System) {
+        for pair in &system.table.active {
+            let overlap = system.table.contact[*pair].overlap;
+            self.memory.displacement = self.memory.displacement.max(overlap);
+        }
+    }
+
+    /// A first step far below every period.
+    pub fn first_step(&self) -> f64 {
+        libm::cbrt(self.accuracy) / self.frequency(&self.ball)
+    }
+
+    /// Of a body on one contact at the largest overlap, rad/s.
+    fn frequency(&self, scale: &Scale) -> f64 {
+        (normal_stiffness(self.stiffness, self.memory.displacement) / scale.mass).sqrt()
+    }
+
+    /// Norm of the error of an attempt; not above one is good enough.
+    pub fn norm(&self, attempt: &Attempt) -> f64 {
+        let error = &attempt.error;
+        let layout = &self.layout;
+        let largest = |at: usize, count: usize| {
+            error[at..at + count].iter().fold(0.0f64, |largest, e| {
+                // NaN stays.
+                if e.abs() <= largest { largest } else { e.abs() }
+            })
+        };
+        let mut norm = 0.0f64;
+        let mut take = |value: f64| {
+            // NaN comes in and stays.
+            if value > norm || value.is_nan() {
+                norm = value;
+            }
+        };
+        let unit = |scale: &Scale| SHARE * self.accuracy * scale.room * self.memory.displacement;
+        let per = 1.0 / unit(&self.ball);
+        let per_speed = per / self.frequency(&self.ball);
+        for i in 0..3 {
+            for first in (0..layout.balls).step_by(LANES) {
+                let count = LANES.min(layout.balls - first);
+                take(per * largest(layout.ball(POSITION + i) + first, count));
+                take(per_speed * largest(layout.ball(VELOCITY + i) + first, count));
+                take(per_speed * self.ball.arm * largest(layout.ball(SPIN + i) + first, count));
+            }
+        }
+        for (at, scale) in &self.bodies {
+            let per = 1.0 / unit(scale);
+            let per_speed = per / self.frequency(scale);
+            take(per * largest(at + POSITION, 3));
+            take(per * scale.arm * 2.0 * largest(at + ORIENTATION, VELOCITY - ORIENTATION));
+            take(per_speed * largest(at + VELOCITY, SPIN - VELOCITY));
+            take(per_speed * scale.arm * largest(at + SPIN, BODY - SPIN));
+        }
+        norm
+    }
+
+    /// Step to try after an accepted one with error `norm`.
+    pub fn longer(&mut self, step: f64, norm: f64, was_rejected: bool) -> f64 {
+        let memory = &mut self.memory;
+        memory.largest = memory.largest.max(step);
+        memory.smallest = if memory.smallest == 0.0 { step } else { memory.smallest.min(step) };
+        // A step cut short to end at a row has hardly an error, which says nothing of the next.
+        let norm = norm.max(LEAST_ERROR);
+        let factor = SAFETY
+            * libm::pow(norm, -0.7 / self.order)
+            * libm::pow(memory.previous_error, 0.4 / self.order);
+        memory.previous_error = norm;
+        let most = if was_rejected { 1.0 } else { LONGEST };
+        step * factor.clamp(SHORTEST, most)
+    }
+
+    /// Step to try after one was thrown away.
+    pub fn shorter(&self, step: f64, norm: f64) -> f64 {
+        let factor = SAFETY * libm::pow(norm, -1.0 / self.order);
+        // An error that is not a number says nothing but that the step was far too long.
+        if factor.is_finite() { step * factor.clamp(SHORTEST, SAFETY) } else { step * SHORTEST }
+    }
+}

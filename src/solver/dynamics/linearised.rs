@@ -1,0 +1,403 @@
+//! Contacts at one state as springs, dashpots and slopes of friction between a ball and a hub: what
+//! a linearly implicit step takes for the Jacobian.
+//!
+//! In it are, all symmetric: the normal stiffness (Hertz, damping, penalty) of race, pocket and
+//! guide contacts; the slope of traction by slip and spin; the slope of the cage's friction by
+//! sliding; foundations.
+//!
+//! How slip changes as the contact point moves round the bodies, and how traction follows the normal
+//! load, is known too, but only for displacements in a right-hand side: that keeps the matrix
+//! symmetric and moves its slopes by a part hγ · (turning rate) of themselves. Left out are how the
+//! direction of the normal force turns with the bodies, how traction follows the entrainment speed,
+//! the Heathcote moments and gyroscopic moments. A W-method keeps its order without them.
+
+use super::model::Drive;
+use super::model::{DynamicProblem, RaceBody, Rotation};
+use super::race::{RaceNow, directions};
+use super::state::{LANES, POSITION};
+use super::system::{Instant, System};
+use crate::ch2_housing::bearing::cage::{CageContact, Guidance, cage_stiffness};
+use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
+use crate::ch2_housing::bearing::traction::TractionLaw;
+use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
+
+/// One number for each ball of a block.
+pub type Lane = [f64; LANES];
+
+/// Relative motion along n, t, s and spin about n, for each of the six velocities of a body.
+pub type Lever<T> = [[T; 6]; 4];
+
+/// Normal, two tangents, spin about the normal.
+const ROWS: usize = 4;
+
+/// Contacts of a block of balls with one hub, or with the fixed outer race.
+#[derive(Clone, Debug, Default)]
+pub struct LaneContact {
+    pub hub: Option<usize>,
+    /// Rows of the levers in use: 0 without contact, 1 without friction, else 4.
+    pub rows: usize,
+    pub on_ball: Lever<Lane>,
+    pub on_hub: Lever<Lane>,
+    /// Along the normal, N/m and N·s/m.
+    pub stiffness: Lane,
+    pub damping: Lane,
+    /// Negated derivatives of t, s and spin parts: tt, ts, tn, ss, sn, nn.
+    pub slope: [Lane; 6],
+    /// Change of slip along t and s and of spin about n as the ball's centre moves against the
+    /// hub's, 1/s and 1/(m·s): the contact point moves round both bodies.
+    pub carried: [[Lane; 3]; 3],
+    /// Traction along t and s and moment about n that a unit of normal load makes.
+    pub per_load: [Lane; 3],
+    /// Motion along the four rows that the hub's prescribed velocities make.
+    pub driven: [Lane; 4],
+}
+
+/// A contact of the cage with its guiding race.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct GuideContact {
+    pub loaded: bool,
+    /// On the race, on the cage.
+    pub levers: [Lever<f64>; 2],
+    pub stiffness: f64,
+    /// Along both tangents, N·s/m.
+    pub slope: [f64; 2],
+}
+
+/// A body that many balls touch. Its rotations count about `basis`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Hub {
+    /// First of its 13 entries in the state.
+    pub at: usize,
+    /// Axis and the two directions of the tilts.
+    pub basis: [Vec3; 3],
+    /// kg, kg·m².
+    pub inertia: [f64; 6],
+    /// To the ground.
+    pub stiffness: [f64; 6],
+    pub damping: [f64; 6],
+    /// Zero for what is prescribed, else one.
+    pub free: [f64; 6],
+    /// Prescribed velocities, zero for what is free.
+    pub prescribed: [f64; 6],
+}
+
+/// Everything that pushes back at one state.
+#[derive(Clone, Debug, Default)]
+pub struct Linearised {
+    /// Block by block: inner race, outer race, pocket.
+    pub contacts: Vec<[LaneContact; 3]>,
+    pub guides: [GuideContact; 2],
+    /// Inner race; outer race if it moves; cage.
+    pub hubs: Vec<Hub>,
+    pub guiding_hub: Option<usize>,
+    pub cage_hub: Option<usize>,
+}
+
+impl Linearised {
+    pub fn new(system: &System) -> Linearised {
+        let problem = &system.problem;
+        let layout = system.layout;
+        let mut hubs = vec![race_hub(&problem.inner, layout.inner())];
+        let mut outer_hub = None;
+        if let Some(outer) = &problem.outer {
+            outer_hub = Some(hubs.len());
+            hubs.push(race_hub(outer, layout.outer()));
+        }
+        let cage_hub = problem.cage.as_ref().map(|cage| {
+            let (mass, axial, transverse) =
+                (cage.inertia.mass, cage.inertia.axial, cage.inertia.transverse);
+            hubs.push(Hub {
+                at: layout.cage(),
+                inertia: [mass, mass, mass, axial, transverse, transverse],
+                free: [1.0; 6],
+                ..Hub::default()
+            });
+            hubs.len() - 1
+        });
+        let guiding_hub = match system.guidance() {
+            Guidance::InnerRace => Some(0),
+            Guidance::OuterRace => outer_hub,
+            Guidance::Balls => None,
+        };
+        let block =
+            [Some(0), outer_hub, cage_hub].map(|hub| LaneContact { hub, ..LaneContact::default() });
+        Linearised {
+            contacts: vec![block; layout.padded / LANES],
+            guides: [GuideContact::default(); 2],
+            hubs,
+            guiding_hub,
+            cage_hub,
+        }
+    }
+
+    /// Takes up the contacts that `system` has just evaluated, slopes included.
+    pub fn update(&mut self, system: &System, state: &[f64], instant: &Instant) {
+        let races = [&instant.inner, &instant.outer];
+        turn_race(&mut self.hubs[0], &system.problem.inner, races[0]);
+        if let (Some(hub), Some(body)) = (self.contacts[0][1].hub, &system.problem.outer) {
+            turn_race(&mut self.hubs[hub], body, races[1]);
+        }
+        if let (Some(hub), Some(cage)) = (self.cage_hub, &instant.cage) {
+            let ([e2, e3], _) = directions(cage.axis);
+            self.hubs[hub].basis = [cage.axis, e2, e3];
+        }
+        for block in 0..self.contacts.len() {
+            for (side, race) in races.into_iter().enumerate() {
+                let contact = &mut self.contacts[block][side];
+                let hub = contact.hub.map(|hub| &self.hubs[hub]);
+                race_contacts(system, state, race, side, block * LANES, hub, contact);
+            }
+            if let (Some(hub), Some(cage)) = (self.cage_hub, &instant.cage) {
+                let contact = &mut self.contacts[block][2];
+                pockets(system, state, cage.position, block * LANES, &self.hubs[hub], contact);
+            }
+        }
+        self.update_guides(system, instant);
+    }
+
+    fn update_guides(&mut self, system: &System, instant: &Instant) {
+        let (Some(cage_hub), Some(cage)) = (self.cage_hub, &instant.cage) else { return };
+        let Some(body) = &system.problem.cage else { return };
+        let race = match body.contacts.guidance {
+            Guidance::Balls => return,
+            Guidance::InnerRace => &instant.inner,
+            Guidance::OuterRace => &instant.outer,
+        };
+        for (guide, contact) in self.guides.iter_mut().zip(&system.guides) {
+            guide.loaded = contact.normal_load > 0.0;
+            if !guide.loaded {
+                continue;
+            }
+            let (directions, slope) = friction(contact, &system.problem);
+            guide.stiffness = cage_stiffness(&body.contacts.force, contact.penetration);
+            guide.slope = slope;
+            for (row, direction) in directions.into_iter().enumerate() {
+                let lever = |hub: &Hub, centre: Vec3, sign: f64| {
+                    let turning = cross(sub(contact.point, centre), direction);
+                    on_hub(hub, scale(direction, sign), scale(turning, sign))
+                };
+                guide.levers[0][row] = match self.guiding_hub {
+                    Some(hub) => lever(&self.hubs[hub], race.motion.position, 1.0),
+                    None => [0.0; 6],
+                };
+                guide.levers[1][row] = lever(&self.hubs[cage_hub], cage.position, -1.0);
+            }
+        }
+    }
+}
+
+fn race_hub(body: &RaceBody, at: usize) -> Hub {
+    let free = |given: bool| if given { 0.0 } else { 1.0 };
+    let held = |i: usize| free(matches!(body.drives[i], Drive::Motion(_)));
+    let turned = free(matches!(body.rotation, Rotation::Speed(_)));
+    let (mass, axial, transverse) =
+        (body.inertia.mass, body.inertia.axial, body.inertia.transverse);
+    Hub {
+        at,
+        inertia: [mass, mass, mass, axial, transverse, transverse],
+        free: [held(0), held(1), held(2), turned, held(3), held(4)],
+        ..Hub::default()
+    }
+}
+
+/// Directions and foundation of a race where it lies now.
+fn turn_race(hub: &mut Hub, body: &RaceBody, now: &RaceNow) {
+    let [e2, e3] = now.tilt_directions;
+    hub.basis = [now.motion.axis, e2, e3];
+    // ξ turns about e₂ by cos λ, and its moment acts about e₂ over cos λ.
+    let per = 1.0 / (now.cos_lambda * now.cos_lambda);
+    let spread = |of: &[f64; 5]| [of[0], of[1], of[2], 0.0, of[3] * per, of[4]];
+    hub.stiffness = spread(&body.foundation_stiffness);
+    hub.damping = spread(&body.foundation_damping);
+    let rates = to_basis(hub, now.state.velocity, now.state.spin);
+    for i in 0..6 {
+        hub.prescribed[i] = (1.0 - hub.free[i]) * rates[i];
+        hub.stiffness[i] *= hub.free[i];
+        hub.damping[i] *= hub.free[i];
+    }
+}
+
+/// Row of a lever on a hub, what is prescribed left out.
+fn on_hub(hub: &Hub, linear: Vec3, turning: Vec3) -> [f64; 6] {
+    let [a, b, c] = hub.basis.map(|axis| dot(axis, turning));
+    let all = [linear[0], linear[1], linear[2], a, b, c];
+    std::array::from_fn(|i| all[i] * hub.free[i])
+}
+
+/// Relative motion along a row of a lever that the prescribed velocities of the hub make.
+fn driven(hub: &Hub, linear: Vec3, turning: Vec3) -> f64 {
+    let [a, b, c] = hub.basis.map(|axis| dot(axis, turning));
+    let all = [linear[0], linear[1], linear[2], a, b, c];
+    (0..6).map(|i| all[i] * hub.prescribed[i]).sum()
+}
+
+/// Writes one ball's row into the lanes.
+fn put(row: &mut [Lane; 6], lane: usize, values: [f64; 6]) {
+    for (to, value) in row.iter_mut().zip(values) {
+        to[lane] = value;
+    }
+}
+
+fn joined(a: Vec3, b: Vec3) -> [f64; 6] {
+    [a[0], a[1], a[2], b[0], b[1], b[2]]
+}
+
+fn race_contacts(
+    system: &System,
+    state: &[f64],
+    race: &RaceNow,
+    side: usize,
+    first: usize,
+    hub: Option<&Hub>,
+    to: &mut LaneContact,
+) {
+    let System { layout, laws, table, .. } = system;
+    let law = &laws.races[side];
+    to.rows = 0;
+    let rows = if laws.traction == TractionLaw::None { 1 } else { ROWS };
+    for lane in 0..LANES {
+        let ball = first + lane;
+        let pair = side * layout.padded + ball;
+        if ball >= layout.balls || table.load[pair] <= 0.0 {
+            // Nothing pushes back: levers of no consequence.
+            to.stiffness[lane] = 0.0;
+            to.damping[lane] = 0.0;
+            for slope in &mut to.slope {
+                slope[lane] = 0.0;
+            }
+            continue;
+        }
+        to.rows = rows;
+        let contact = &table.contact[pair];
+        let motion = &race.motion;
+        let normal = contact.normal;
+        let elastic = normal_load(law.stiffness, contact.overlap);
+        // K δ^{3/2} (1 + c δ̇).
+        let share = table.load[pair] / elastic;
+        to.stiffness[lane] = share * normal_stiffness(law.stiffness, contact.overlap);
+        to.damping[lane] = elastic * system.damping[pair];
+        let between = sub(layout.ball_vector(state, POSITION, ball), motion.position);
+        put(&mut to.on_ball[0], lane, joined(normal, [0.0; 3]));
+        if let Some(hub) = hub {
+            let (linear, turning) = (scale(normal, -1.0), cross(normal, between));
+            put(&mut to.on_hub[0], lane, on_hub(hub, linear, turning));
+            to.driven[0][lane] = driven(hub, linear, turning);
+        }
+        if rows == 1 {
+            continue;
+        }
+        let load = table.load[pair];
+        for (slope, value) in to.slope.iter_mut().zip(table.slope[pair]) {
+            slope[lane] = load * value;
+        }
+        let here = &table.sliding[pair];
+        let traction = &table.traction[pair];
+        let (along, across) = (here.rolling_direction, here.transverse_direction);
+        to.per_load[0][lane] = dot(traction.force, along) / load;
+        to.per_load[1][lane] = dot(traction.force, across) / load;
+        to.per_load[2][lane] = dot(traction.moment, normal) / load;
+        // As the ball moves by u, n turns by t (t·u) per_radius + s (s·u) per_distance.
+        let per_distance = 1.0 / (contact.overlap + law.room);
+        let per_radius = dot(normal, contact.outward) / dot(between, contact.outward);
+        let reach = laws.ball_radius - 0.5 * contact.overlap;
+        let [about_t, about_s, about_n] = here.relative_spin;
+        let carried = [
+            sub(
+                add_scaled(scale(normal, -0.5 * about_s), -reach * per_distance * about_n, across),
+                cross(along, motion.spin),
+            ),
+            sub(
+                add_scaled(scale(normal, 0.5 * about_t), reach * per_radius * about_n, along),
+                cross(across, motion.spin),
+            ),
+            add_scaled(scale(along, about_t * per_radius), about_s * per_distance, across),
+        ];
+        for (row, values) in to.carried.iter_mut().zip(carried) {
+            for (to, value) in row.iter_mut().zip(values) {
+                to[lane] = value;
+            }
+        }
+        for (row, direction) in [(1, here.rolling_direction), (2, here.transverse_direction)] {
+            put(&mut to.on_ball[row], lane, joined(direction, cross(here.arm_on_ball, direction)));
+            if let Some(hub) = hub {
+                let (linear, turning) =
+                    (scale(direction, -1.0), cross(direction, here.arm_on_race));
+                put(&mut to.on_hub[row], lane, on_hub(hub, linear, turning));
+                to.driven[row][lane] = driven(hub, linear, turning);
+            }
+        }
+        put(&mut to.on_ball[3], lane, joined([0.0; 3], normal));
+        if let Some(hub) = hub {
+            put(&mut to.on_hub[3], lane, on_hub(hub, [0.0; 3], scale(normal, -1.0)));
+            to.driven[3][lane] = driven(hub, [0.0; 3], scale(normal, -1.0));
+        }
+    }
+}
+
+/// Push, direction of sliding and the one across; slope of the friction along the latter two.
+fn friction(contact: &CageContact, problem: &DynamicProblem) -> ([Vec3; 3], [f64; 2]) {
+    let push = contact.push;
+    let speed = norm(contact.slip);
+    let along = if speed > 0.0 {
+        scale(contact.slip, 1.0 / speed)
+    } else {
+        // Nothing slides: any direction across the push.
+        let aside = if push[0] * push[0] < 0.5 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+        let across = cross(push, aside);
+        scale(across, 1.0 / norm(across))
+    };
+    let Some(cage) = &problem.cage else { return ([push, along, cross(push, along)], [0.0; 2]) };
+    let u0 = cage.contacts.regularisation_speed;
+    let square = speed * speed + u0 * u0;
+    let secant = cage.contacts.friction * contact.normal_load / square.sqrt();
+    ([push, along, cross(push, along)], [secant * u0 * u0 / square, secant])
+}
+
+fn pockets(
+    system: &System,
+    state: &[f64],
+    cage: Vec3,
+    first: usize,
+    hub: &Hub,
+    to: &mut LaneContact,
+) {
+    let System { layout, pockets, problem, .. } = system;
+    let Some(body) = &problem.cage else { return };
+    to.rows = 0;
+    for lane in 0..LANES {
+        let ball = first + lane;
+        let contact = pockets.get(ball).filter(|contact| contact.normal_load > 0.0);
+        let Some(contact) = contact else {
+            to.stiffness[lane] = 0.0;
+            for slope in &mut to.slope {
+                slope[lane] = 0.0;
+            }
+            continue;
+        };
+        to.rows = 3;
+        let (directions, slope) = friction(contact, problem);
+        to.stiffness[lane] = cage_stiffness(&body.contacts.force, contact.penetration);
+        to.slope[0][lane] = slope[0];
+        to.slope[3][lane] = slope[1];
+        let arm_on_ball = sub(contact.point, layout.ball_vector(state, POSITION, ball));
+        let arm_on_cage = sub(contact.point, cage);
+        for (row, direction) in directions.into_iter().enumerate() {
+            put(&mut to.on_ball[row], lane, joined(direction, cross(arm_on_ball, direction)));
+            let turning = cross(direction, arm_on_cage);
+            put(&mut to.on_hub[row], lane, on_hub(hub, scale(direction, -1.0), turning));
+        }
+    }
+}
+
+/// Linear and angular part of six numbers of a hub, inertial axes.
+pub fn from_basis(hub: &Hub, six: &[f64; 6]) -> (Vec3, Vec3) {
+    let [a, e2, e3] = hub.basis;
+    let turning = add(add(scale(a, six[3]), scale(e2, six[4])), scale(e3, six[5]));
+    ([six[0], six[1], six[2]], turning)
+}
+
+/// Six numbers of a hub from vectors in inertial axes.
+pub fn to_basis(hub: &Hub, linear: Vec3, turning: Vec3) -> [f64; 6] {
+    let [a, b, c] = hub.basis.map(|axis| dot(axis, turning));
+    [linear[0], linear[1], linear[2], a, b, c]
+}

@@ -1,0 +1,157 @@
+//! Whether the step is still short enough: contacts that are pressed harder swing faster, and their
+//! traction and damping decay faster, than at the start.
+//!
+//! A run above its limit need not fail: traction that overshoots swings to and fro in a limit cycle
+//! that keeps its energy. So the contacts are looked at every few steps, which costs next to
+//! nothing, and the Jacobian where they have become so stiff that the limit may have come down to
+//! the step.
+
+use super::run::{Integrator, Simulation, SimulationError};
+use super::stability::step_limit;
+use super::system::System;
+use crate::ch2_housing::bearing::cage::CageForce;
+use crate::ch2_housing::bearing::contact::normal_load;
+use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient_and_slope};
+
+/// Steps from one look at the contacts to the next.
+pub const LOOK_EVERY: u64 = 16;
+
+/// How far a step may lie above the limit before the run is refused: so much is the limit itself
+/// off from the observed one.
+pub const TOLERATED: f64 = 1.1;
+
+/// What the contacts of an evaluation bind the step by.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stiffness {
+    /// Largest contact stiffness over mass, 1/s².
+    pub oscillation: f64,
+    /// Fastest decay of a slip or of an approach, at the steep onset of traction, 1/s.
+    pub decay: f64,
+}
+
+impl Stiffness {
+    /// By what factor the limit may have come down since `before`.
+    fn growth(&self, before: &Stiffness) -> f64 {
+        let ratio = |now: f64, before: f64| if now > 0.0 { now / before } else { 0.0 };
+        let swings = ratio(self.oscillation, before.oscillation).sqrt();
+        swings.max(ratio(self.decay, before.decay))
+    }
+
+    fn largest(&self, other: &Stiffness) -> Stiffness {
+        Stiffness {
+            oscillation: self.oscillation.max(other.oscillation),
+            decay: self.decay.max(other.decay),
+        }
+    }
+}
+
+/// Stiffness of the contacts as they were evaluated last.
+pub fn stiffness(system: &System) -> Stiffness {
+    let problem = &system.problem;
+    let radius = system.laws.ball_radius;
+    let per_mass = 1.0 / problem.ball.mass;
+    // A force at the surface moves it by force/mass and by turning the ball.
+    let at_surface = per_mass + radius * radius / problem.ball.axial;
+    let mut most = Stiffness::default();
+    for &pair in &system.table.active {
+        let law = &system.laws.races[pair / system.layout.padded];
+        let overlap = system.table.contact[pair].overlap.max(0.0);
+        let elastic = normal_load(law.stiffness, overlap);
+        let slope = match &system.laws.traction {
+            TractionLaw::None => 0.0,
+            law => coefficient_and_slope(law, 0.0, system.table.sliding[pair].entrainment).1,
+        };
+        most = most.largest(&Stiffness {
+            oscillation: 1.5 * law.stiffness * overlap.sqrt() * per_mass,
+            decay: (slope * system.table.load[pair] * at_surface)
+                .max(system.damping[pair] * elastic * per_mass),
+        });
+    }
+    let Some(cage) = &problem.cage else { return most };
+    let of_cage = |load: f64, depth: f64, moved: f64| Stiffness {
+        oscillation: moved
+            * match cage.contacts.force {
+                CageForce::Penalty { stiffness } => stiffness,
+                CageForce::Hertz { stiffness } => 1.5 * stiffness * depth.max(0.0).sqrt(),
+            },
+        decay: cage.contacts.friction * load / cage.contacts.regularisation_speed * moved,
+    };
+    let per_cage = 1.0 / cage.inertia.mass;
+    let pockets = system.pockets.iter().map(|contact| (contact, at_surface + per_cage));
+    let guides = system.guides.iter().map(|contact| (contact, per_cage));
+    for (contact, moved) in pockets.chain(guides).filter(|(contact, _)| contact.normal_load > 0.0) {
+        most = most.largest(&of_cage(contact.normal_load, contact.penetration, moved));
+    }
+    most
+}
+
+/// What is known of the limit so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepWatch {
+    /// Times the Jacobian was asked during the run.
+    pub judged: u64,
+    /// Smallest limit found, s; none where nothing was stiff yet.
+    pub smallest: Option<f64>,
+    /// Stiffest that the contacts were when it was asked.
+    pub stiffest: Stiffness,
+    /// Largest step over limit above one, and when, s.
+    pub exceeded: Option<[f64; 2]>,
+}
+
+impl StepWatch {
+    fn is_due(&self, now: &Stiffness, step: f64) -> bool {
+        let growth = now.growth(&self.stiffest);
+        // Two per cent, so that a step close to its limit does not ask again and again.
+        growth > 1.02 && self.smallest.is_none_or(|limit| limit < growth * step)
+    }
+}
+
+impl Simulation {
+    /// Looks at the contacts of the last evaluation, and at the Jacobian if they ask for it.
+    ///
+    /// # Errors
+    /// A step above the largest stable one.
+    pub fn watch_step(&mut self) -> Result<(), SimulationError> {
+        let now = stiffness(&self.system);
+        if self.step_watch.is_due(&now, self.step_size) { self.judge_step(now) } else { Ok(()) }
+    }
+
+    /// Compares the step with the limit at the present state, whatever the contacts say.
+    ///
+    /// # Errors
+    /// A step above the largest stable one.
+    pub fn judge_step_now(&mut self) -> Result<(), SimulationError> {
+        self.system.evaluate(self.time, &self.state, &mut self.rates);
+        self.judge_step(stiffness(&self.system))
+    }
+
+    fn judge_step(&mut self, now: Stiffness) -> Result<(), SimulationError> {
+        // The limit is that of Runge–Kutta.
+        if self.options.integrator != Integrator::RungeKutta {
+            return Ok(());
+        }
+        // The Jacobian's evaluations are not those of the steps: they are counted as judgements.
+        let work = self.system.work;
+        let limit = step_limit(&mut self.system, self.time, &self.state);
+        self.system.work = work;
+        let watch = &mut self.step_watch;
+        watch.judged += 1;
+        watch.stiffest = watch.stiffest.largest(&now);
+        let Some(limit) = limit else { return Ok(()) };
+        watch.smallest = Some(watch.smallest.map_or(limit.step, |least| least.min(limit.step)));
+        let ratio = self.step_size / limit.step;
+        if ratio > 1.0 && watch.exceeded.is_none_or(|[most, _]| ratio > most) {
+            watch.exceeded = Some([ratio, self.time]);
+        }
+        if ratio <= TOLERATED {
+            return Ok(());
+        }
+        Err(SimulationError::StepTooLong {
+            size: self.step_size,
+            limit: limit.step,
+            reason: limit.reason(),
+            time: self.time,
+            step: self.steps,
+        })
+    }
+}

@@ -1,0 +1,143 @@
+//! Bearings in motion for the cases, and the independent statics at the angles their balls have.
+
+use std::f64::consts::TAU;
+
+use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
+use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
+use bearing_dynamics::ch2_housing::bearing::geometry::Material;
+use bearing_dynamics::ch2_housing::bearing::hertz::HertzError;
+use bearing_dynamics::ch2_housing::bearing::inertia;
+use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
+use bearing_dynamics::solver::dynamics::race::tilts_of;
+use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Stepping};
+use bearing_dynamics::solver::dynamics::state::{BodyState, POSITION, VELOCITY};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::statics::Condition;
+
+use crate::bearings::{self, Hertz, Lengths};
+use crate::oracles::statics::OracleBearing;
+
+/// rad/s in one revolution a minute.
+pub const RPM: f64 = TAU / 60.0;
+
+/// Text of the assumption on the races' inertia, which no table states.
+pub const RACE_INERTIA: (&str, &str, &str) = (
+    "race_inertia",
+    "No table states the races' masses. The inner race is taken as a steel ring of 15 and 22 mm radius, 12 mm \
+     wide. Slow motions do not depend on it.",
+    "0.077 kg",
+);
+
+/// An inner race of [`RACE_INERTIA`] under constant loads.
+pub fn race(loads: [f64; 5], rotation: Rotation) -> RaceBody {
+    RaceBody {
+        inertia: inertia::hollow_cylinder(15e-3, 22e-3, 12e-3, Material::STEEL.density),
+        drives: loads.map(|load| Drive::Load(Profile::Constant(load))),
+        rotation,
+        foundation_stiffness: [0.0; 5],
+        foundation_damping: [0.0; 5],
+    }
+}
+
+/// The bearing with constant loads on an inner race of constant speed (rad/s): outer race fixed, no
+/// cage, no traction, no damping, no gravity.
+pub fn moving(
+    lengths: &Lengths,
+    ball_phase: f64,
+    loads: [f64; 5],
+    speed: f64,
+) -> Result<DynamicProblem, HertzError> {
+    let still = bearings::problem(lengths, Hertz::Fit, ball_phase, loads.map(Condition::Load))?;
+    Ok(DynamicProblem {
+        geometry: still.geometry,
+        inner_contact: still.inner_contact,
+        outer_contact: still.outer_contact,
+        ball: inertia::ball(still.geometry.ball_radius, Material::STEEL.density),
+        inner: race(loads, Rotation::Speed(Profile::Constant(speed))),
+        outer: None,
+        outer_start: [0.0; 5],
+        cage: None,
+        ball_phase,
+        traction: TractionLaw::None,
+        slices: 15,
+        heathcote: false,
+        damping: ContactDamping::None,
+        gravity: [0.0; 3],
+        rotating_load: None,
+        unbalance: 0.0,
+    })
+}
+
+/// Runge–Kutta with a fixed step; the balance of energy is left to the case.
+pub fn fixed_step(step: f64) -> RunOptions {
+    RunOptions {
+        stepping: Stepping::Fixed(step),
+        energy_limit: f64::INFINITY,
+        ..RunOptions::default()
+    }
+}
+
+pub fn run(simulation: &mut Simulation, steps: usize) -> Result<(), SimulationError> {
+    for _ in 0..steps {
+        simulation.step()?;
+    }
+    Ok(())
+}
+
+/// Orbital speed of the balls over the inner race's, by pure rolling.
+pub fn cage_ratio(problem: &DynamicProblem) -> f64 {
+    let g = &problem.geometry;
+    ratios(g.ball_count, g.ball_radius, g.pitch_radius, g.contact_angle).cage
+}
+
+/// Where the balls are about the bearing's axis, and how fast they go round.
+#[derive(Clone, Debug)]
+pub struct BallSet {
+    /// rad, from +Y towards +Z.
+    pub azimuths: Vec<f64>,
+    /// rad/s.
+    pub speeds: Vec<f64>,
+    pub mass: f64,
+}
+
+impl BallSet {
+    pub fn of(simulation: &Simulation) -> BallSet {
+        let layout = simulation.system.layout;
+        let (mut azimuths, mut speeds) = (Vec::new(), Vec::new());
+        for ball in 0..layout.balls {
+            let [_, y, z] = layout.ball_vector(&simulation.state, POSITION, ball);
+            let [_, v, w] = layout.ball_vector(&simulation.state, VELOCITY, ball);
+            azimuths.push(z.atan2(y));
+            speeds.push((y * w - z * v) / (y * y + z * z));
+        }
+        BallSet { azimuths, speeds, mass: simulation.system.problem.ball.mass }
+    }
+
+    /// How far each ball is ahead of its even place behind ball 1, rad.
+    pub fn ahead(&self) -> Vec<f64> {
+        let count = self.azimuths.len() as f64;
+        let off = |(ball, azimuth): (usize, &f64)| {
+            let off = azimuth - self.azimuths[0] - TAU * ball as f64 / count;
+            off - TAU * (off / TAU).round()
+        };
+        self.azimuths.iter().enumerate().map(off).collect()
+    }
+
+    /// The independent solver's bearing with each ball at its angle, under centrifugal force.
+    pub fn oracle(&self, lengths: &Lengths) -> OracleBearing {
+        let mut bearing = bearings::oracle(lengths, Hertz::Fit, self.azimuths[0]);
+        bearing.ahead = self.ahead();
+        let square = self.speeds.iter().map(|speed| speed * speed).sum::<f64>();
+        bearing.centrifugal = self.mass * square / self.speeds.len() as f64;
+        bearing
+    }
+}
+
+/// x, y, z (m) and both tilts (rad) of the inner race.
+pub fn inner_coordinates(simulation: &Simulation) -> [f64; 5] {
+    let inner = BodyState::from_slice(&simulation.state[simulation.system.layout.inner()..]);
+    let [x, y, z] = inner.position;
+    let [tilt_y, tilt_z] = tilts_of(inner.axis());
+    [x, y, z, tilt_y, tilt_z]
+}

@@ -1,0 +1,265 @@
+//! The copy of the sources in which faults are seeded, built and tested.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use sha2::{Digest, Sha256};
+
+use super::list::{Check, Mutant};
+
+/// A check may take minutes on a slow machine; a fault can keep it from ever ending.
+const PATIENCE: Duration = Duration::from_secs(900);
+
+/// What a check came to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Ran {
+    Passed {
+        tests: usize,
+    },
+    Failed,
+    TimedOut,
+    /// What the compiler said.
+    DoesNotBuild(String),
+}
+
+/// `target/mutants` of a repository.
+pub struct Workshop {
+    folder: PathBuf,
+    jobs: usize,
+    /// Contents of every file, by its path from the root.
+    sources: BTreeMap<String, Vec<u8>>,
+}
+
+/// A fault in the copy; dropping it puts the right text back.
+pub struct Fault {
+    path: PathBuf,
+    right: String,
+}
+
+impl Drop for Fault {
+    fn drop(&mut self) {
+        // If this fails, the next workshop puts it right.
+        let _ = fs::write(&self.path, &self.right);
+    }
+}
+
+impl Workshop {
+    /// Copies the sources of `root`; files that are the same already keep their age, so that
+    /// builds go on from the last ones.
+    ///
+    /// # Errors
+    /// In words, when files cannot be read or written.
+    pub fn new(root: &Path, jobs: usize) -> Result<Workshop, String> {
+        let folder = std::path::absolute(root.join("target/mutants")).map_err(|e| e.to_string())?;
+        let mut sources = BTreeMap::new();
+        read_into(root, "", &mut sources)?;
+        let tree = folder.join("tree");
+        fs::create_dir_all(&tree).map_err(|error| said(&tree, &error))?;
+        let mut copied = BTreeMap::new();
+        read_into(&tree, "", &mut copied)?;
+        for gone in copied.keys().filter(|name| !sources.contains_key(*name)) {
+            fs::remove_file(tree.join(gone)).map_err(|error| said(&tree.join(gone), &error))?;
+        }
+        for (name, contents) in &sources {
+            if copied.get(name) != Some(contents) {
+                let path = tree.join(name);
+                let made = path.parent().map_or(Ok(()), fs::create_dir_all);
+                made.and_then(|()| fs::write(&path, contents))
+                    .map_err(|error| said(&path, &error))?;
+            }
+        }
+        Ok(Workshop { folder, jobs, sources })
+    }
+
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Hash of all that a verdict by these checks rests on: the library, the files of the checks
+    /// and `more`.
+    pub fn key(&self, checks: &[Check], more: &str) -> String {
+        let mut hasher = Sha256::new();
+        let matters = |name: &str| {
+            let by_check = |check: &Check| match check {
+                Check::Test { name: test, .. } => {
+                    name == format!("tests/{test}.rs") || name.starts_with("tests/common")
+                }
+                Check::Lib { .. } => false,
+                Check::Case { id } => {
+                    name.starts_with("verification/src/")
+                        && !name.starts_with("verification/src/mutants/")
+                        || name.starts_with(&format!("verification/{id}/"))
+                        || name == format!("golden/{id}.json")
+                }
+            };
+            name.starts_with("src/")
+                || name.starts_with("scenes/")
+                || name.starts_with("Cargo.")
+                || name.starts_with(".cargo/")
+                || checks.iter().any(by_check)
+        };
+        for (name, contents) in self.sources.iter().filter(|(name, _)| matters(name)) {
+            hasher.update(name.as_bytes());
+            hasher.update((contents.len() as u64).to_le_bytes());
+            hasher.update(contents);
+        }
+        for check in checks {
+            hasher.update(check.to_string().as_bytes());
+        }
+        hasher.update(more.as_bytes());
+        hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// Puts a fault into the copy.
+    ///
+    /// # Errors
+    /// When it does not apply.
+    pub fn seed(&self, mutant: &Mutant) -> Result<Fault, String> {
+        let path = self.folder.join("tree").join(&mutant.file);
+        let right = fs::read_to_string(&path).map_err(|error| said(&path, &error))?;
+        let wrong = mutant.seeded(&right)?;
+        let fault = Fault { path, right };
+        fs::write(&fault.path, wrong).map_err(|error| said(&fault.path, &error))?;
+        Ok(fault)
+    }
+
+    /// Builds what a check needs and runs it.
+    ///
+    /// # Errors
+    /// When cargo or the check cannot be started at all.
+    pub fn run(&self, check: &Check) -> Result<Ran, String> {
+        let program = match self.build(check)? {
+            Ok(program) => program,
+            Err(compiler) => return Ok(Ran::DoesNotBuild(compiler)),
+        };
+        let mut command = Command::new(&program);
+        command.current_dir(self.folder.join("tree"));
+        match check {
+            Check::Case { id } => {
+                let out = self.folder.join("verify");
+                let golden = self.folder.join("tree/golden");
+                command.args(["--case", id, "--out"]).arg(out).arg("--golden").arg(golden);
+            }
+            Check::Test { filter, .. } | Check::Lib { filter } => {
+                command.args(filter).arg(format!("--test-threads={}", self.jobs));
+            }
+        }
+        // The same random cases every time, and no snapshot is touched.
+        command.env("PROPTEST_RNG_SEED", "20").env("INSTA_UPDATE", "no");
+        let log = self.folder.join("check.log");
+        let file = fs::File::create(&log).map_err(|error| said(&log, &error))?;
+        let other = file.try_clone().map_err(|error| said(&log, &error))?;
+        let child = command.stdin(Stdio::null()).stdout(file).stderr(other).spawn();
+        let passed = wait(child.map_err(|error| said(&program, &error))?)?;
+        Ok(match passed {
+            None => Ran::TimedOut,
+            Some(false) => Ran::Failed,
+            Some(true) => Ran::Passed { tests: tests_in(&log, check) },
+        })
+    }
+
+    /// The program of a check, or what the compiler said.
+    fn build(&self, check: &Check) -> Result<Result<PathBuf, String>, String> {
+        let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+        let mut command = Command::new(cargo);
+        match check {
+            Check::Test { name, .. } => command.args(["test", "--no-run", "--test", name]),
+            Check::Lib { .. } => command.args(["test", "--no-run", "--lib"]),
+            Check::Case { .. } => {
+                command.args(["build", "--package", "verification", "--bin", "verify"])
+            }
+        };
+        let output = command
+            .current_dir(self.folder.join("tree"))
+            .args(["--release", "--message-format=json-render-diagnostics", "--quiet"])
+            .arg(format!("--jobs={}", self.jobs))
+            // One fault changes one module: what the others compiled to is kept.
+            .env("CARGO_TARGET_DIR", self.folder.join("target"))
+            .env("CARGO_INCREMENTAL", "1")
+            .env("CARGO_PROFILE_RELEASE_DEBUG", "0")
+            .output()
+            .map_err(|error| format!("cargo: {error}"))?;
+        if !output.status.success() {
+            return Ok(Err(String::from_utf8_lossy(&output.stderr).into_owned()));
+        }
+        let wanted = match check {
+            Check::Test { name, .. } => ("test", name.as_str()),
+            Check::Lib { .. } => ("lib", ""),
+            Check::Case { .. } => ("bin", "verify"),
+        };
+        String::from_utf8_lossy(&output.stdout)
+            .lines()
+            .filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok())
+            .find_map(|message| executable(&message, wanted))
+            .map(Ok)
+            .ok_or_else(|| format!("cargo built nothing to run for `{check}`"))
+    }
+}
+
+/// The program that a message of cargo tells of, if it is the one wanted (kind and name).
+fn executable(message: &serde_json::Value, (kind, name): (&str, &str)) -> Option<PathBuf> {
+    let target = &message["target"];
+    let of_kind = target["kind"].as_array()?.iter().any(|k| k == kind);
+    let of_name = name.is_empty() || target["name"] == name;
+    let path = message["executable"].as_str()?;
+    (of_kind && of_name).then(|| path.into())
+}
+
+/// Whether it succeeded; `None` if it was stopped.
+fn wait(mut child: Child) -> Result<Option<bool>, String> {
+    let clock = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().map_err(|error| error.to_string())? {
+            return Ok(Some(status.success()));
+        }
+        if clock.elapsed() > PATIENCE {
+            child.kill().and_then(|()| child.wait()).map_err(|error| error.to_string())?;
+            return Ok(None);
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+/// How many tests a check has run.
+fn tests_in(log: &Path, check: &Check) -> usize {
+    if matches!(check, Check::Case { .. }) {
+        return 1;
+    }
+    let text = fs::read_to_string(log).unwrap_or_default();
+    let count = |line: &str| -> Option<usize> {
+        line.strip_prefix("running ")?.split(' ').next()?.parse().ok()
+    };
+    text.lines().filter_map(count).sum()
+}
+
+/// All files below a folder but what is built and what is hidden (cargo's settings are wanted).
+fn read_into(
+    root: &Path,
+    below: &str,
+    files: &mut BTreeMap<String, Vec<u8>>,
+) -> Result<(), String> {
+    let folder = root.join(below);
+    for entry in fs::read_dir(&folder).map_err(|error| said(&folder, &error))? {
+        let entry = entry.map_err(|error| said(&folder, &error))?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if name == "target" || (name.starts_with('.') && name != ".cargo") {
+            continue;
+        }
+        let path = if below.is_empty() { name } else { format!("{below}/{name}") };
+        let kind = entry.file_type().map_err(|error| said(&folder, &error))?;
+        if kind.is_dir() {
+            read_into(root, &path, files)?;
+        } else if kind.is_file() {
+            let contents = fs::read(root.join(&path)).map_err(|error| said(&folder, &error))?;
+            files.insert(path, contents);
+        }
+    }
+    Ok(())
+}
+
+fn said(path: &Path, error: &dyn std::fmt::Display) -> String {
+    format!("{}: {error}", path.display())
+}

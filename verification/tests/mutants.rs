@@ -1,0 +1,131 @@
+//! The mutation check itself: on a small crate, where what it has to say is known.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use verification::cases;
+use verification::mutants::list::{Check, List};
+
+fn repository() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+}
+
+#[test]
+fn every_fault_of_the_list_applies_and_names_checks_that_exist() {
+    let root = repository();
+    let list = List::read(&root.join("verification/mutants/mutants.toml")).unwrap();
+    list.check_applies(root).unwrap();
+    assert!(list.mutants.len() >= 40, "{} faults", list.mutants.len());
+    let has_test = |text: &str, name: &str| text.contains(&format!("fn {name}("));
+    let library: String = ["ch2_housing/bearing", "solver", "solver/dynamics", "kinematics"]
+        .iter()
+        .flat_map(|folder| fs::read_dir(root.join("src").join(folder)).unwrap())
+        .filter_map(|entry| fs::read_to_string(entry.unwrap().path()).ok())
+        .collect();
+    for check in list.mutants.iter().flat_map(|m| &m.caught_by).chain(&list.fallback) {
+        let there = match check {
+            Check::Test { name, filter } => {
+                let text = fs::read_to_string(root.join(format!("tests/{name}.rs")));
+                text.is_ok_and(|text| filter.as_ref().is_none_or(|name| has_test(&text, name)))
+            }
+            Check::Lib { filter } => filter.as_ref().is_none_or(|name| has_test(&library, name)),
+            Check::Case { id } => cases::find(id).is_some(),
+        };
+        assert!(there, "`{check}` does not exist");
+    }
+}
+
+const LIBRARY: &str = "/// Twice its argument.\npub fn twice(x: f64) -> f64 {\n    2.0 * x\n}\n";
+
+const TESTS: &str =
+    "#[test]\nfn twice_is_a_sum() {\n    assert_eq!(small::twice(1.5), 1.5 + 1.5);\n}\n";
+
+const WRONG_FACTOR: &str = "[[mutant]]\nid = \"wrong_factor\"\nfile = \"src/lib.rs\"\n\
+    find = \"2.0 * x\"\nreplace = \"3.0 * x\"\nbreaks = \"a factor\"\ncaught_by = [\"--test laws\"]\n";
+
+/// A change of a comment: whoever reports this as caught reports anything as caught.
+const HARMLESS: &str = "[[mutant]]\nid = \"harmless\"\nfile = \"src/lib.rs\"\n\
+    find = \"/// Twice\"\nreplace = \"/// Two times\"\nbreaks = \"nothing\"\n\
+    caught_by = [\"--test laws twice_is_a_sum\"]\n";
+
+/// A crate of one function and one test, with a list of faults.
+fn crate_with(mutants: &[&str]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let list = format!("fallback = [\"--lib\"]\n{}", mutants.concat());
+    let manifest = "[package]\nname = \"small\"\nversion = \"0.1.0\"\nedition = \"2021\"\n\
+        [workspace]\n";
+    for (name, text) in [
+        ("Cargo.toml", manifest),
+        ("src/lib.rs", LIBRARY),
+        ("tests/laws.rs", TESTS),
+        ("verification/mutants/mutants.toml", &list),
+    ] {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    folder
+}
+
+fn mutants(root: &Path, more: &[&str]) -> (Option<i32>, String) {
+    let Output { status, stderr, .. } = Command::new(env!("CARGO_BIN_EXE_verify"))
+        .args(["mutants", "--root", root.to_str().unwrap()])
+        .args(more)
+        .output()
+        .unwrap();
+    (status.code(), String::from_utf8_lossy(&stderr).into_owned())
+}
+
+#[test]
+fn a_fault_is_caught_and_a_harmless_change_survives() {
+    let folder = crate_with(&[WRONG_FACTOR, HARMLESS]);
+    let root = folder.path();
+    let (code, said) = mutants(root, &["--only", "wrong_factor"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("wrong_factor … caught by --test laws"), "{said}");
+    // What is caught stays caught and is not built again; what survives fails the check.
+    let (code, said) = mutants(root, &[]);
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("harmless … SURVIVED") && !said.contains("wrong_factor"), "{said}");
+    assert!(said.contains("1 of 2 seeded faults caught"), "{said}");
+    let report = fs::read_to_string(root.join("target/mutants/report.md")).unwrap();
+    assert!(report.contains("1 of 2 caught") && report.contains("1 survived"), "{report}");
+    // The sources were never touched, and the copy has no fault left in it.
+    for place in ["src/lib.rs", "target/mutants/tree/src/lib.rs"] {
+        assert_eq!(fs::read_to_string(root.join(place)).unwrap(), LIBRARY);
+    }
+    // Other sources, other verdicts.
+    fs::write(root.join("src/lib.rs"), format!("{LIBRARY}\n")).unwrap();
+    let (_, said) = mutants(root, &["--only", "wrong_factor"]);
+    assert!(said.contains("wrong_factor … caught"), "{said}");
+}
+
+#[test]
+fn a_list_that_proves_nothing_is_refused() {
+    let gone = WRONG_FACTOR.replace("2.0 * x", "2.0 * y");
+    let broken = WRONG_FACTOR.replace("3.0 * x", "3.0 * nothing");
+    let no_test = HARMLESS.replace("twice_is_a_sum", "no_such_test");
+    let failing = WRONG_FACTOR.replace("--test laws", "--test laws twice");
+    for (mutant, words) in [
+        (gone, "mutant `wrong_factor` no longer applies: its text stands 0 times"),
+        (broken, "mutant `wrong_factor` does not build"),
+        (no_test, "`--test laws no_such_test` runs no test"),
+        (failing, "`--test laws twice` fails without any fault"),
+    ] {
+        let folder = crate_with(&[&mutant]);
+        if words.contains("without any fault") {
+            let tests = TESTS.replace("1.5 + 1.5", "4.0");
+            fs::write(folder.path().join("tests/laws.rs"), tests).unwrap();
+        }
+        let (code, said) = mutants(folder.path(), &[]);
+        assert_eq!(code, Some(2), "{said}");
+        assert!(said.contains(words), "{said}");
+    }
+    let twice = crate_with(&[HARMLESS, HARMLESS]);
+    let (code, said) = mutants(twice.path(), &[]);
+    assert_eq!(code, Some(2));
+    assert!(said.contains("id `harmless` is used twice"), "{said}");
+    let (code, said) = mutants(twice.path(), &["--only", "other"]);
+    assert_eq!(code, Some(2), "{said}");
+}
