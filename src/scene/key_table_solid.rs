@@ -63,7 +63,7 @@ pub(super) const KEYS: &[Key] = &[
         "Unit of the numbers in the file, which neither format states."),
     Key::new("solid.mesh.order", Kind::Integer { low: 1, high: 2 }, Depends("the file's own; required with `generate`"),
         "Elements of 4 nodes (1, the source's) or of 10 (2). 2 puts nodes on the edges of a file's four-node elements.")
-        .hint("1 for four-node, 2 for ten-node tetrahedra"),
+        .hint("1 for four-node, 2 for ten-node tetrahedra").example_of("2"),
     Key::new("solid.mesh.renumber", Kind::Boolean, Default { value: "true", reason: "neighbours in space are neighbours in memory" },
         "Number nodes and elements for speed; fields are then not in the order of the file."),
     Key::new("solid.mesh.repair", Kind::Choices(REPAIRS), Default { value: "none", reason: "nothing is repaired unasked" },

@@ -159,7 +159,7 @@ impl Key {
         match self.kind {
             Kind::Text => "\"...\"".to_string(),
             Kind::Boolean => "true".to_string(),
-            Kind::Integer { .. } => "8".to_string(),
+            Kind::Integer { .. } => or("8").to_string(),
             Kind::Choice(choices) => format!("\"{}\"", choices[0]),
             Kind::Choices(choices) => format!("[\"{}\"]", choices[0]),
             Kind::Number(_) => or("0.3").to_string(),

@@ -6,8 +6,8 @@ use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_solid_mesh::source;
 use crate::scene::solid::{
-    Held, LoadKind, MeshRequest, Probe, ProbeOf, SetLoad, SetPlace, SetRequest, SolidRun,
-    SolidScene, Subject,
+    Held, LoadKind, MeshRequest, MeshSource, Probe, ProbeOf, SetLoad, SetPlace, SetRequest,
+    SolidRun, SolidScene, Subject,
 };
 use crate::scene::units::plain;
 use crate::scene::value::Checked;
@@ -170,6 +170,9 @@ fn mesh_request(reader: &mut Reader) -> Result<MeshRequest, SceneError> {
             true
         }
     };
+    let from_file = matches!(source, MeshSource::File { .. });
+    let cavities = if from_file { reader.number("solid.mesh.cavities") } else { None };
+    let cavities = cavities.unwrap_or(0.0) as usize;
     let repairs = match document.value("solid.mesh.repair") {
         Some(Checked::Choices(names)) => names.clone(),
         _ => Vec::new(),
@@ -181,7 +184,7 @@ fn mesh_request(reader: &mut Reader) -> Result<MeshRequest, SceneError> {
         orient: repairs.contains(&"orient"),
         merge_duplicates: repairs.contains(&"merge-duplicates"),
         drop_unreferenced: repairs.contains(&"drop-unreferenced"),
-        cavities: reader.number("solid.mesh.cavities").unwrap_or(0.0) as usize,
+        cavities,
         largest_aspect: reader.number("solid.mesh.largest_aspect").unwrap_or(1e3),
         sets: document.items("solid.set").map(set).collect::<Result<_, _>>()?,
     })

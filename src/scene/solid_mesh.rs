@@ -43,12 +43,23 @@ pub enum SolidMeshError {
         path.display()
     )]
     Order { path: PathBuf },
+    #[error(
+        "solid.set: the mesh, or an earlier [[solid.set]], already has a set called \"{name}\""
+    )]
+    SetTwice { name: String },
+    #[error(
+        "solid.mesh: {cells:.1e} cells, more than the {MOST_CELLS:.0e} that are made; take fewer"
+    )]
+    TooFine { cells: f64 },
     #[error("solid.set: {source}")]
     Set { source: MeshError },
 }
 
 /// Part of the mesh's size within which nodes lie on the surface of a set.
 const ON_SURFACE: f64 = 1e-6;
+
+/// Hexahedra that a generator may make, six tetrahedra each: some gigabytes.
+const MOST_CELLS: f64 = 1e7;
 
 /// Reads or makes the mesh.
 ///
@@ -85,6 +96,10 @@ pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
         }
         made => {
             let name = "solid.mesh";
+            let cells = cells(made);
+            if cells > MOST_CELLS {
+                return Err(SolidMeshError::TooFine { cells });
+            }
             let solid = generate(made)
                 .map_err(|source| SolidMeshError::Mesh { name: name.to_string(), source })?;
             let (mesh, pulled_back) = of_order(solid, request.order)
@@ -129,6 +144,29 @@ fn of_order(solid: Solid, order: Option<Order>) -> Result<(TetMesh, usize), Mesh
     Ok((elevated.mesh, elevated.pulled_back))
 }
 
+/// About how many hexahedra a generator makes.
+fn cells(source: &MeshSource) -> f64 {
+    let product = |counts: &[usize]| counts.iter().map(|count| *count as f64).product::<f64>();
+    match source {
+        MeshSource::File { .. } => 0.0,
+        MeshSource::Bar { cells, .. } => product(cells),
+        MeshSource::Block(block) => {
+            let fine = block.cells_per_half_width;
+            40.0 * product(&[fine, fine, block.depth_cells])
+        }
+        MeshSource::Ring(_, mesh) => product(&[mesh.around, mesh.radial, mesh.axial]),
+        MeshSource::Shaft { stations, longest_layer, around, radial, .. } => {
+            let length = stations[stations.len() - 1] - stations[0];
+            let layers = length / longest_layer + stations.len() as f64;
+            layers * product(&[*around, radial + around.div_ceil(16)])
+        }
+        MeshSource::Cage(cage, mesh) => {
+            4.0 * product(&[cage.pocket_count, mesh.quarter, mesh.bar, mesh.wall])
+        }
+        MeshSource::Housing(_, mesh) => 2.0 * product(&[mesh.around, mesh.radial, mesh.axial]),
+    }
+}
+
 fn generate(source: &MeshSource) -> Result<Solid, MeshError> {
     match source {
         MeshSource::File { .. } => Err(MeshError::NoElements),
@@ -150,8 +188,7 @@ fn with_sets(mut mesh: TetMesh, request: &MeshRequest) -> Result<TetMesh, SolidM
         let tolerance = set.tolerance.unwrap_or(ON_SURFACE * mesh.size());
         let failed = |source| SolidMeshError::Set { source };
         if mesh.node_sets.contains_key(&set.name) || mesh.surface_sets.contains_key(&set.name) {
-            let why = "the mesh, or an earlier [[solid.set]], has a set of this name";
-            return Err(failed(MeshError::Name { name: set.name.clone(), why }));
+            return Err(SolidMeshError::SetTwice { name: set.name.clone() });
         }
         match set.place {
             SetPlace::Surface(on) => {

@@ -8,7 +8,9 @@ use crate::scene::solid_problem::NamedNodes;
 
 /// Points that are drawn of a curve.
 const POINTS: usize = 1500;
-/// Part of the highest amplitude below which nothing is drawn.
+/// Part of the highest peak of all that the peak of a component must reach to be drawn.
+const LEAST: f64 = 1e-3;
+/// Part of a component's highest amplitude below which nothing is drawn.
 const FLOOR: f64 = 1e-6;
 
 /// `[time, scale · value]` of a column.
@@ -101,10 +103,13 @@ pub fn spectrum_plot(
     title: &str,
     spectra: &[(String, Spectrum)],
 ) -> Result<Option<(String, String)>, PlotError> {
+    let peak = |spectrum: &Spectrum| spectrum.amplitude.iter().copied().fold(0.0, f64::max);
+    let highest = spectra.iter().map(|(_, spectrum)| peak(spectrum)).fold(0.0, f64::max);
     let curves: Vec<Curve> = spectra
         .iter()
+        .filter(|(_, spectrum)| peak(spectrum) > LEAST * highest)
         .map(|(column, spectrum)| {
-            let highest = spectrum.amplitude.iter().copied().fold(0.0, f64::max);
+            let highest = peak(spectrum);
             let bins = spectrum.amplitude.iter().enumerate().skip(1);
             let points = bins
                 .filter(|(_, amplitude)| **amplitude > FLOOR * highest)
