@@ -436,6 +436,34 @@ fn interrupted_killed_and_extended_runs_end_with_the_same_bytes() {
 }
 
 #[test]
+fn a_run_that_fails_says_where_and_keeps_its_state() {
+    let place = Place::new();
+    let numerics = "end = \"1 ms\"\noutput_interval = \"1 us\"\n";
+    let text = format!("{SHORT_RUN}{numerics}").replace("20 MPa", "200 GPa");
+    let scene = place.scene("scene.toml", &text);
+    let out = place.path("out");
+    let output = into_folder("run", &scene, &out, &[]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let message = stderr(&output);
+    assert!(message.contains("t = ") && message.contains("step "), "{message}");
+    assert!(message.contains("the rows so far and the state at the last row"), "{message}");
+    let summary = json(out.join("summary.json"));
+    assert_eq!(summary["complete"], false);
+    assert!(message.contains(summary["stopped_by"].as_str().unwrap()), "{message}");
+    let state = json(out.join("state.json"));
+    assert_eq!(state["stopped"], "failed");
+    assert_eq!(state["time"], summary["time"]["value"]);
+    assert_eq!(summary["output"]["rows"], column(&out, "time").len());
+    // It may be looked at, and a gentler scene may take its folder.
+    succeed(into_folder(
+        "run",
+        &place.scene("g.toml", &format!("{SHORT_RUN}{numerics}")),
+        &out,
+        &[],
+    ));
+}
+
+#[test]
 fn supports_that_move_close_the_ledger() {
     let place = Place::new();
     let scene = place
@@ -607,7 +635,7 @@ fn errors_name_what_is_wrong() {
         (
             "interval beyond the end",
             "run",
-            held("[numerics]\nend = \"1 ms\"\nfields_interval = \"0.5 ms\"\n"),
+            held("[numerics]\nend = \"1 ms\"\nfields_interval = \"2 ms\"\n"),
         ),
         ("bearing's numerics", "run", held(&format!("{numerics}start = \"nominal\"\n"))),
         ("bearing's plot", "run", held(&format!("{numerics}[output]\nplots = [\"polar\"]\n"))),

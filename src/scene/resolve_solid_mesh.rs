@@ -108,7 +108,7 @@ pub(crate) fn source(reader: &mut Reader) -> Result<MeshSource, SceneError> {
             }
             let scene = Path::new(reader.document.name());
             let folder = scene.parent().unwrap_or(Path::new(""));
-            Ok(MeshSource::File { path: folder.join(file), unit })
+            Ok(MeshSource::File { path: folder.join(&file), name: file, unit })
         }
         (None, Some(generator)) => {
             if !reader.is_given("solid.mesh.order") {

@@ -21,6 +21,8 @@ pub enum Subject {
 #[derive(Clone, Debug, PartialEq)]
 pub enum MeshSource {
     File {
+        /// As the scene has it, and from the folder of the command.
+        name: String,
         path: PathBuf,
         unit: LengthUnit,
     },

@@ -72,7 +72,7 @@ pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
     let limits =
         Limits { aspect: request.largest_aspect, cavities: request.cavities, ..Limits::default() };
     let (mesh, pulled_back) = match &request.source {
-        MeshSource::File { path, unit } => {
+        MeshSource::File { path, unit, .. } => {
             let bytes = std::fs::read(path)
                 .map_err(|source| SolidMeshError::File { path: path.clone(), source })?;
             let loaded = match extension(&path.to_string_lossy()).as_str() {

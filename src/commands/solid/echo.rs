@@ -151,8 +151,8 @@ fn mesh(scene: &SolidScene) -> Echo {
 fn source(source: &MeshSource) -> Echo {
     let made = |name: &str, dimensions: String| json!({ "generate": name, "si": dimensions });
     Ok(match source {
-        MeshSource::File { path, unit } => json!({
-            "file": path.display().to_string(),
+        MeshSource::File { name, unit, .. } => json!({
+            "file": name,
             "unit": match unit { LengthUnit::Metre => "m", LengthUnit::Millimetre => "mm" },
         }),
         MeshSource::Bar { size, cells } => {

@@ -24,7 +24,7 @@ fn line(included: bool, name: &str, reason: &str) -> String {
 pub fn lines(scene: &SolidScene, prepared: &Prepared) -> Vec<String> {
     let (problem, mesh) = (&prepared.setup.problem, &prepared.built.mesh);
     let from = match &scene.mesh.source {
-        MeshSource::File { path, .. } => format!("from {}", path.display()),
+        MeshSource::File { name, .. } => format!("from {name}"),
         _ => "generated".to_string(),
     };
     let kind = match mesh.order() {
@@ -36,9 +36,20 @@ pub fn lines(scene: &SolidScene, prepared: &Prepared) -> Vec<String> {
         line(
             !problem.prescribed.is_empty(),
             "supports",
-            &format!("{} components held or moved", problem.prescribed.len()),
+            &match problem.prescribed.len() {
+                0 => "nothing is held".to_string(),
+                count => format!("{count} components held or moved"),
+            },
         ),
-        line(!problem.loads.is_empty(), "loads", &format!("{} loads", problem.loads.len())),
+        line(
+            !problem.loads.is_empty(),
+            "loads",
+            &match problem.loads.len() {
+                0 => "none is given".to_string(),
+                1 => "one, dead".to_string(),
+                count => format!("{count}, dead"),
+            },
+        ),
         line(
             problem.gravity != [0.0; 3],
             "gravity",

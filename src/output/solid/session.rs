@@ -96,6 +96,8 @@ pub struct SolidSession {
     pub turned_over: f64,
     /// Largest energy unaccounted for so far, J.
     pub largest_residual: f64,
+    /// Rows on end whose ledger did not close.
+    pub rows_open: u32,
     /// At the last row on the grid, or before a last row off it.
     sound: Sound,
     /// Threads that step, and the parts they have once there are several.
@@ -111,7 +113,12 @@ pub struct Sound {
     pub checkpoint: SolidCheckpoint,
     pub turned_over: f64,
     pub largest_residual: f64,
+    pub rows_open: u32,
 }
+
+/// A ledger that does not close at this many rows on end fails a run. One alone may be a blow to a
+/// body at rest: what a step leaves of it is much of the little that has been turned over.
+const MOST_ROWS_OPEN: u32 = 5;
 
 /// Where a run stood when its state was kept.
 #[derive(Clone, Debug)]
@@ -122,6 +129,7 @@ pub struct Kept {
     pub first_balance: f64,
     pub turned_over: f64,
     pub largest_residual: f64,
+    pub rows_open: u32,
     /// Rows so far, one after the other.
     pub values: Vec<f64>,
 }
@@ -170,6 +178,7 @@ impl SolidSession {
         session.first_balance = kept.first_balance;
         session.turned_over = kept.turned_over;
         session.largest_residual = kept.largest_residual;
+        session.rows_open = kept.rows_open;
         // A last row off the grid was that of the earlier end.
         let rows = grid.rows_until(kept.checkpoint.steps);
         session.values.extend(kept.values.into_iter().take(rows * session.columns.len()));
@@ -210,6 +219,7 @@ impl SolidSession {
             first_balance: 0.0,
             turned_over: 0.0,
             largest_residual: 0.0,
+            rows_open: 0,
         })
     }
 
@@ -288,9 +298,11 @@ impl SolidSession {
             self.turned_over = self.turned_over.max(energy);
         }
         self.largest_residual = self.largest_residual.max(residual.abs());
-        // Written as it is so that a residual that is not a number is refused as well.
         let closes = residual.abs() <= self.energy_limit * self.turned_over;
-        if !closes {
+        self.rows_open = if closes { 0 } else { self.rows_open + 1 };
+        // Written as it is so that a residual that is not a number is refused as well.
+        let sound = self.rows_open < MOST_ROWS_OPEN && residual.is_finite();
+        if !sound {
             let (turned_over, limit) = (self.turned_over, self.energy_limit);
             return Err(SolidRunError::Energy { residual, turned_over, limit, time, step });
         }
@@ -310,6 +322,7 @@ impl SolidSession {
         self.solid.checkpoint_into(&mut self.sound.checkpoint);
         self.sound.turned_over = self.turned_over;
         self.sound.largest_residual = self.largest_residual;
+        self.sound.rows_open = self.rows_open;
     }
 
     /// Forces of the supports on the nodes at the time of the last ledger, N; zero on free
@@ -361,6 +374,7 @@ impl SolidSession {
             checkpoint: self.solid.checkpoint(),
             turned_over: self.turned_over,
             largest_residual: self.largest_residual,
+            rows_open: self.rows_open,
         }
     }
 

@@ -56,6 +56,8 @@ pub struct SolidStateFile {
     pub first_balance: f64,
     pub turned_over: f64,
     pub largest_residual: f64,
+    /// Rows on end whose ledger did not close.
+    pub rows_open: u32,
     /// Force evaluations and elements in them.
     pub work: [u64; 2],
 }
@@ -286,6 +288,7 @@ pub fn resume(
         first_balance: file.first_balance,
         turned_over: file.turned_over,
         largest_residual: file.largest_residual,
+        rows_open: file.rows_open,
         values: series.data().iter().copied().collect(),
     };
     let session = SolidSession::resume(setup, run, kept, threads)?;
@@ -325,6 +328,7 @@ fn state_file(sound: &Sound, session: &SolidSession, record: &SolidStateRecord) 
         first_balance: session.first_balance,
         turned_over: sound.turned_over,
         largest_residual: sound.largest_residual,
+        rows_open: sound.rows_open,
         work: [checkpoint.work.evaluations, checkpoint.work.elements],
     }
 }
