@@ -328,8 +328,11 @@ pub fn nearest_key(path: &str, name: &str) -> Option<String> {
     // Of several keys with that name, the one whose whole path is most alike.
     let full = dotted(name);
     let found = elsewhere.and_then(|name| {
-        let same_name = KEYS.iter().map(|key| key.path).filter(|path| path.ends_with(name));
-        nearest(&full, same_name, 0.0)
+        let same_name = || KEYS.iter().map(|key| key.path).filter(|path| path.ends_with(name));
+        // One of the same part of the scene, if there is any.
+        let top = |path: &str| path.split('.').next().unwrap_or_default().to_string();
+        let beside = same_name().filter(|path| top(path) == top(&full));
+        nearest(&full, beside, 0.0).or_else(|| nearest(&full, same_name(), 0.0))
     });
     found.map(str::to_string)
 }
