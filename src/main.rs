@@ -6,7 +6,7 @@
 mod commands;
 
 use clap::{Parser, Subcommand};
-use commands::{Outcome, check, compare, pack, plan, run, schema, statics, sweep};
+use commands::{Outcome, check, compare, modes, pack, plan, run, schema, statics, sweep};
 use std::process::ExitCode;
 
 /// Rolling bearings on flexible supports: describe one in a text file, solve it, trust it.
@@ -23,10 +23,12 @@ enum Command {
     Check(check::Arguments),
     /// List what a solution of the scene computes, what it leaves out, and why
     Plan(plan::Arguments),
-    /// The bearing in motion: step through time and write a results folder
+    /// A bearing or a solid in motion: step through time and write a results folder
     Run(run::Arguments),
-    /// Equilibrium, ball loads and stiffness of a bearing
+    /// Equilibrium of a bearing (ball loads, stiffness) or of a solid (displacements, stresses)
     Statics(statics::Arguments),
+    /// Natural frequencies and mode shapes of a solid
+    Modes(modes::Arguments),
     /// Solve a scene for many values of some keys, on all cores; the same command resumes it
     Sweep(sweep::Arguments),
     /// Write a case pack for other programs: scene, expected results, tolerances, hashes
@@ -51,6 +53,7 @@ fn main() -> ExitCode {
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Statics(arguments) => statics::run(&arguments),
+        Command::Modes(arguments) => modes::run(&arguments),
         Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Pack(arguments) => pack::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),

@@ -16,7 +16,7 @@ struct Documented {
 
 #[test]
 fn documented_commands_run() {
-    run_all("README.md", &["check", "plan", "statics", "sweep", "pack", "compare", "schema"]);
+    run_all("README.md", &["check", "plan", "statics", "modes", "run", "sweep", "pack", "compare", "schema"]);
     run_all("docs/scene.md", &[]);
 }
 
@@ -63,8 +63,11 @@ fn copy_scenes(from: &Path, to: &Path) {
     fs::create_dir(to).expect("scenes folder");
     for entry in fs::read_dir(from).expect("scenes") {
         let path = entry.expect("scene").path();
+        let copy = to.join(path.file_name().expect("file name"));
         if path.is_file() {
-            fs::copy(&path, to.join(path.file_name().expect("file name"))).expect("scene copied");
+            fs::copy(&path, copy).expect("scene copied");
+        } else {
+            copy_scenes(&path, &copy);
         }
     }
 }

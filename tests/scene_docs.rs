@@ -24,7 +24,8 @@ fn every_key_is_in_the_schema_and_described() {
     for key in keys::KEYS {
         let mut at = &schema;
         for name in key.path.split('.') {
-            at = &at["properties"][name];
+            let of_list = at.get("items").is_some();
+            at = if of_list { &at["items"]["properties"][name] } else { &at["properties"][name] };
         }
         let description = at["description"].as_str();
         assert!(description.is_some_and(|text| text.starts_with(key.doc)), "{}", key.path);
@@ -40,6 +41,8 @@ fn no_object_of_the_schema_lets_unknown_keys_through() {
             assert_eq!(value["additionalProperties"], Value::Bool(false), "{value}");
             *closed += 1;
             properties.as_object().unwrap().values().for_each(|inner| visit(inner, closed));
+        } else if let Some(items) = value.get("items") {
+            visit(items, closed);
         }
     }
     visit(&schema, &mut closed);

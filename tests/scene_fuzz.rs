@@ -149,7 +149,10 @@ fn vocabulary() -> Vec<String> {
         words.extend(key.path.split('.').map(str::to_string));
         words.insert(format!("\n{} = {}\n", key.path, key.example()));
     }
-    words.extend(keys::TABLES.iter().map(|table| format!("\n[{}]\n", table.path)));
+    words.extend(keys::TABLES.iter().map(|table| match table.list {
+        true => format!("\n[[{}]]\n", table.path),
+        false => format!("\n[{}]\n", table.path),
+    }));
     for key in keys::KEYS {
         if let Kind::Choice(list) | Kind::Choices(list) = key.kind {
             words.extend(list.iter().map(|word| format!("\"{word}\"")));
@@ -173,6 +176,7 @@ fn seeds() -> Vec<(String, Format)> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
     let mut paths: Vec<_> =
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.is_file());
     paths.sort();
     let mut seeds = Vec::new();
     for path in paths {
@@ -367,6 +371,9 @@ fn run(random: &mut Random, bytes: &[u8], format: Format, words: &[String]) -> b
             return false;
         }
     };
+    if let Err(error) = scene::resolve_subject(&document) {
+        check_error(&error);
+    }
     let resolved = scene::resolve(&document);
     match &resolved {
         Ok(scene) => check_scene(scene),

@@ -4,7 +4,7 @@ use super::{CommandResult, Outcome, echo, echo_run, say};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
-use bearing_dynamics::scene::{self, Scene, statics::static_problem};
+use bearing_dynamics::scene::{self, Scene, Subject, statics::static_problem};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -18,7 +18,12 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
-    let scene = scene::read_file(&arguments.scene)?;
+    let scene = match scene::read_subject(&arguments.scene)? {
+        Subject::Solid(solid) => {
+            return super::solid::check::run(&arguments.scene, &solid, arguments.json);
+        }
+        Subject::Bearing(scene) => *scene,
+    };
     static_problem(&scene)?;
     if arguments.json {
         let mut understood = echo::scene(&scene)?;

@@ -165,7 +165,7 @@ fn pairs(points: &[[f64; 2]], x_unit: &str, y_unit: &str) -> Echo {
 }
 
 /// A quantity over time; a constant is a plain quantity.
-fn profile(profile: &Profile, unit: &str) -> Echo {
+pub(super) fn profile(profile: &Profile, unit: &str) -> Echo {
     let value = |name: &str, value: f64| quantity(name, value, unit);
     let second = |name: &str, value: f64| quantity(name, value, "s");
     Ok(match profile {

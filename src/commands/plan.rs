@@ -5,7 +5,7 @@ use super::solve::{lines, plan_lines};
 use super::{CommandResult, Outcome, say};
 use bearing_dynamics::output::dynamics::session::RunRequest;
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
-use bearing_dynamics::scene::{self, CageInRun, Scene, statics::static_problem};
+use bearing_dynamics::scene::{self, CageInRun, Scene, Subject, statics::static_problem};
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Stepping};
 use bearing_dynamics::solver::dynamics::step_watch::TOLERATED;
@@ -19,7 +19,10 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
-    let scene = scene::read_file(&arguments.scene)?;
+    let scene = match scene::read_subject(&arguments.scene)? {
+        Subject::Solid(solid) => return super::solid::plan::run(&solid),
+        Subject::Bearing(scene) => *scene,
+    };
     let planned = match run_options(&scene) {
         Ok(settings) => {
             let problem = dynamic_problem(&scene)?;

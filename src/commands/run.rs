@@ -10,7 +10,7 @@ use bearing_dynamics::output::dynamics::table::RunTable;
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::state::{self, StateFile, StateRecord, Stopped};
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
-use bearing_dynamics::scene::{self, Plot, RunPlot, RunSettings, Scene};
+use bearing_dynamics::scene::{self, Plot, RunPlot, RunSettings, Scene, Subject};
 use bearing_dynamics::solver::channels::ChannelGroup;
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Stepping};
@@ -27,23 +27,23 @@ const STEPS_AT_ONCE: u64 = 50;
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Scene file (.toml or .json) with a [numerics] table
-    scene: PathBuf,
+    pub(super) scene: PathBuf,
     /// Results folder [default: results/<name of the scene>]
     #[arg(long)]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// Go on from the state in the results folder; the scene's end may be later than it was
     #[arg(long)]
-    resume: bool,
+    pub(super) resume: bool,
     /// Discard an unfinished run in the results folder
     #[arg(long, conflicts_with = "resume")]
-    fresh: bool,
-    /// Threads the run may use; a bearing of rigid parts uses one
+    pub(super) fresh: bool,
+    /// Threads the run may use, with the same bits; a bearing of rigid parts uses one
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: u16,
+    pub(super) threads: u16,
     /// Wall time between two states kept on the way, s
     #[arg(long, value_name = "SECONDS", default_value_t = 30,
           value_parser = clap::value_parser!(u64).range(1..))]
-    save_every: u64,
+    pub(super) save_every: u64,
 }
 
 /// How the stepping ended.
@@ -55,7 +55,10 @@ enum End {
 
 pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
-    let scene = scene::read_file(&arguments.scene)?;
+    let scene = match scene::read_subject(&arguments.scene)? {
+        Subject::Solid(solid) => return super::solid::run::run(arguments, &solid, start),
+        Subject::Bearing(scene) => *scene,
+    };
     let settings = run_options(&scene)?;
     let problem = dynamic_problem(&scene)?;
     let request = request(&scene, &settings);

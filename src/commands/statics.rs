@@ -3,7 +3,7 @@
 use super::solve::solve_scene;
 use super::{CommandResult, Outcome, pictures, results_folder, say, table};
 use bearing_dynamics::output::results::write_static_results;
-use bearing_dynamics::scene;
+use bearing_dynamics::scene::{self, Subject};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -22,7 +22,13 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
-    let scene = scene::read_file(&arguments.scene)?;
+    let scene = match scene::read_subject(&arguments.scene)? {
+        Subject::Solid(solid) => {
+            let Arguments { scene, out, dry } = arguments;
+            return super::solid::statics::run(scene, &solid, out, *dry);
+        }
+        Subject::Bearing(scene) => *scene,
+    };
     let solved = solve_scene(&scene, start.elapsed().as_secs_f64())?;
     let table = table::render(&solved.problem, &solved.solution);
     if arguments.dry {

@@ -73,7 +73,7 @@ pub enum Share {
 }
 
 /// Seven-point rule on a triangle (Radon 1948), exact to degree five: barycentric places, weights.
-fn triangle_rule() -> [([f64; 3], f64); 7] {
+pub(super) fn triangle_rule() -> [([f64; 3], f64); 7] {
     let root = 15f64.sqrt();
     let (a, b) = ((6.0 + root) / 21.0, (6.0 - root) / 21.0);
     let (wa, wb) = ((155.0 + root) / 1200.0, (155.0 - root) / 1200.0);

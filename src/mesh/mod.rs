@@ -3,7 +3,7 @@
 //! | Job | Where |
 //! |---|---|
 //! | the mesh and its node order | [`tet_mesh`], [`node_order`] |
-//! | surfaces, adjacency, volumes, areas | [`topology`], [`measure`] |
+//! | surfaces, adjacency, volumes, areas | [`topology`], [`measure`], [`vector_area`] |
 //! | sets by geometry, symmetry planes | [`select`] |
 //! | quality, faults, repairs | [`quality`], [`check`], [`repair`] |
 //! | numbering for speed, mid-side nodes | [`numbering`], [`quadratic`] |
@@ -26,6 +26,7 @@ pub mod select;
 pub mod surface;
 pub mod tet_mesh;
 pub mod topology;
+pub mod vector_area;
 pub mod write;
 
 pub use error::{Fault, MeshError};

@@ -3,6 +3,7 @@
 //! - [`series`]: tables of numbers with named columns and units, as `.csv` and `.npy`
 //! - [`results`]: the results folder of one static solution
 //! - [`dynamics`]: a run, its time series, its results folder, and [`mod@state`] to resume it from
+//! - [`solid`]: fields, series and runs of a flexible solid by itself
 //! - [`mod@spectrum`]: amplitude spectra of time series
 //! - [`plots`]: SVG pictures from plain data
 //! - [`compare`]: where does a candidate depart from a reference, and by how much
@@ -14,6 +15,7 @@ pub mod pack;
 pub mod plots;
 pub mod results;
 pub mod series;
+pub mod solid;
 pub mod spectrum;
 pub mod state;
 

@@ -23,6 +23,8 @@ pub struct Document {
     given: Vec<Option<Given>>,
     /// Tables that occur in the file and where.
     tables: Vec<(&'static str, usize)>,
+    /// Entries of lists of tables, in the order of the file.
+    items: Vec<Item>,
     assumptions: Vec<Assumption>,
     sweep: Vec<SweepAxis>,
 }
@@ -32,6 +34,39 @@ struct Given {
     value: Checked,
     /// `None` for a value that was set after reading.
     offset: Option<usize>,
+}
+
+/// One table of a list of tables.
+#[derive(Clone, Debug)]
+struct Item {
+    table: &'static str,
+    offset: usize,
+    given: Vec<(usize, Given)>,
+}
+
+/// One table of a list of tables, with the document it stands in.
+#[derive(Clone, Copy)]
+pub(crate) struct ItemRef<'d> {
+    document: &'d Document,
+    item: &'d Item,
+}
+
+impl<'d> ItemRef<'d> {
+    /// The checked value of a key of this table by its own name.
+    pub fn value(&self, name: &str) -> Option<&'d Checked> {
+        let path = format!("{}.{name}", self.item.table);
+        let row = keys::find(&path).map(|(row, _)| row)?;
+        self.item.given.iter().find(|(given, _)| *given == row).map(|(_, given)| &given.value)
+    }
+
+    /// An error about a key of this table, or about the table.
+    pub fn error(&self, name: &str, problem: Problem) -> SceneError {
+        let path = format!("{}.{name}", self.item.table);
+        let row = keys::find(&path).map(|(row, _)| row);
+        let own = self.item.given.iter().find(|(given, _)| Some(*given) == row);
+        let offset = own.and_then(|(_, given)| given.offset).unwrap_or(self.item.offset);
+        self.document.source.error(offset, &path, problem)
+    }
 }
 
 impl Document {
@@ -59,6 +94,7 @@ impl Document {
             source: Arc::new(source),
             given: vec![None; KEYS.len()],
             tables: Vec::new(),
+            items: Vec::new(),
             assumptions: Vec::new(),
             sweep: Vec::new(),
         };
@@ -79,21 +115,17 @@ impl Document {
                 !matches!(entry.node.value, Value::Table(_)) || keys::find_table(&full).is_none()
             });
             if let Some((row, key)) = known {
-                let value = value::check(key, &entry.node).map_err(|error| {
-                    let dot = if error.within.is_empty() { "" } else { "." };
-                    let place = format!("{full}{dot}{}", error.within);
-                    self.source.error(error.offset, &place, error.problem)
-                })?;
-                self.given[row] = Some(Given { value, offset: Some(entry.node.offset) });
+                self.given[row] = Some(self.checked(key, &entry.node)?);
                 continue;
             }
             let table = if entry.name.contains('.') { None } else { keys::find_table(&full) };
             let Some(table) = table else {
-                let nearest = keys::nearest_key(path, &entry.name);
-                let allowed = keys::children(path).join(", ");
-                let problem = Problem::UnknownKey { nearest, allowed };
-                return Err(self.source.error(entry.offset, &full, problem));
+                return Err(self.unknown_key(path, &entry));
             };
+            if table.list {
+                self.fill_list(table, &full, &entry)?;
+                continue;
+            }
             let Value::Table(inner) = entry.node.value else {
                 return Err(self.not_a_table(table, &full, &entry.node));
             };
@@ -105,6 +137,60 @@ impl Document {
             }
         }
         Ok(())
+    }
+
+    fn checked(&self, key: &'static Key, node: &Node) -> Result<Given, SceneError> {
+        let value = value::check(key, node).map_err(|error| {
+            let dot = if error.within.is_empty() { "" } else { "." };
+            let place = format!("{}{dot}{}", key.path, error.within);
+            self.source.error(error.offset, &place, error.problem)
+        })?;
+        Ok(Given { value, offset: Some(node.offset) })
+    }
+
+    fn unknown_key(&self, table: &str, entry: &Entry) -> SceneError {
+        let nearest = keys::nearest_key(table, &entry.name);
+        let allowed = keys::children(table).join(", ");
+        let full = if table.is_empty() { String::new() } else { format!("{table}.") };
+        let problem = Problem::UnknownKey { nearest, allowed };
+        self.source.error(entry.offset, &format!("{full}{}", entry.name), problem)
+    }
+
+    /// Takes the tables of a list of tables.
+    fn fill_list(
+        &mut self,
+        table: &'static keys::Table,
+        full: &str,
+        entry: &Entry,
+    ) -> Result<(), SceneError> {
+        let Value::List(tables) = &entry.node.value else {
+            return Err(self.not_a_list(table, full, &entry.node));
+        };
+        for node in tables {
+            let Value::Table(entries) = &node.value else {
+                return Err(self.not_a_list(table, full, node));
+            };
+            let mut given = Vec::new();
+            for entry in entries {
+                let own = format!("{full}.{}", entry.name);
+                let known = if entry.name.contains('.') { None } else { keys::find(&own) };
+                let Some((row, key)) = known else {
+                    return Err(self.unknown_key(full, entry));
+                };
+                given.push((row, self.checked(key, &entry.node)?));
+            }
+            self.items.push(Item { table: table.path, offset: node.offset, given });
+        }
+        Ok(())
+    }
+
+    fn not_a_list(&self, table: &keys::Table, full: &str, node: &Node) -> SceneError {
+        let problem = Problem::WrongKind {
+            expected: format!("a list of tables, [[{full}]]"),
+            found: node.value.description().to_string(),
+            advice: format!("write {}", table.example.replace('\n', " and below it ")),
+        };
+        self.source.error(node.offset, full, problem)
     }
 
     fn not_a_table(&self, table: &keys::Table, full: &str, node: &Node) -> SceneError {
@@ -189,7 +275,9 @@ impl Document {
     /// An unknown key, or a value its key does not accept.
     pub fn set(&mut self, path: &str, text: &str) -> Result<(), SceneError> {
         let (row, key) = self.row(path)?;
-        let value = value::check_bare(key, text)
+        let checked =
+            if key.in_list() { Err(Problem::NotSweepable) } else { value::check_bare(key, text) };
+        let value = checked
             .map_err(|problem| SceneError::new(Place::file(&self.source.name), path, problem))?;
         for rival in key.rivals() {
             if let Some((row, _)) = keys::find(rival.path) {
@@ -237,6 +325,29 @@ impl Document {
         let row = keys::find(path).map(|(row, _)| row);
         debug_assert!(row.is_some(), "{path} is not in the key table");
         row.and_then(|row| self.given[row].as_ref()).map(|given| &given.value)
+    }
+
+    /// The tables of a list of tables, in the order of the file.
+    pub(crate) fn items<'d>(&'d self, table: &'d str) -> impl Iterator<Item = ItemRef<'d>> {
+        let of = self.items.iter().filter(move |item| item.table == table);
+        of.map(|item| ItemRef { document: self, item })
+    }
+
+    /// The first given key or table at or below the path, for instance `solid`.
+    pub(crate) fn first_below(&self, path: &str) -> Option<&'static str> {
+        let below = |known: &str| {
+            known.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        let tables = self.tables.iter().map(|(table, _)| *table);
+        let items = self.items.iter().map(|item| item.table);
+        let keys = KEYS.iter().enumerate().filter(|(row, _)| self.given[*row].is_some());
+        let all = tables.chain(items).chain(keys.map(|(_, key)| key.path));
+        all.into_iter().find(|known| below(known))
+    }
+
+    /// Keys that are given, one of the table's rows each; those of lists of tables are not in it.
+    pub(crate) fn given_keys(&self) -> impl Iterator<Item = &'static Key> {
+        KEYS.iter().enumerate().filter(|(row, _)| self.given[*row].is_some()).map(|(_, key)| key)
     }
 
     /// An error about a key or table: at its value, else at the innermost table that would hold it.

@@ -3,7 +3,7 @@
 //! Reading, the refusal of unknown keys, `docs/scene.md` and the JSON Schema all follow this table.
 
 use crate::scene::units::Dimension::{self, *};
-use crate::scene::{key_table, key_table_dynamics};
+use crate::scene::{key_table, key_table_dynamics, key_table_solid};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -71,6 +71,10 @@ pub enum Kind {
     Either(&'static [Kind]),
     /// A list of pairs: a quantity, strictly increasing, and a plain number.
     Curve(Dimension, Range, Range),
+    /// A list of quantities, strictly increasing.
+    Quantities(Dimension, Range),
+    /// `true` for held at zero, or a profile.
+    TrueOrProfile(Dimension, Range),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,6 +136,11 @@ impl Key {
         self.path.rsplit_once('.').map_or(self.path, |(_, name)| name)
     }
 
+    /// Whether it belongs to a list of tables and so has no single value.
+    pub fn in_list(&self) -> bool {
+        find_table(self.table()).is_some_and(|table| table.list)
+    }
+
     /// The other keys of the same exclusive group.
     pub fn rivals(&'static self) -> impl Iterator<Item = &'static Key> {
         KEYS.iter().filter(|other| {
@@ -150,7 +159,7 @@ impl Key {
         match self.kind {
             Kind::Text => "\"...\"".to_string(),
             Kind::Boolean => "true".to_string(),
-            Kind::Integer { .. } => "8".to_string(),
+            Kind::Integer { .. } => or("8").to_string(),
             Kind::Choice(choices) => format!("\"{}\"", choices[0]),
             Kind::Choices(choices) => format!("[\"{}\"]", choices[0]),
             Kind::Number(_) => or("0.3").to_string(),
@@ -161,6 +170,10 @@ impl Key {
             Kind::Curve(dimension, range, _) => {
                 format!("[[\"{}\", 0.05]]", or(usual(dimension, range)))
             }
+            Kind::Quantities(dimension, range) => {
+                format!("[\"{}\", \"100 {}\"]", or(usual(dimension, range)), range.unit)
+            }
+            Kind::TrueOrProfile(..) => "true".to_string(),
             Kind::Vector(dimension, range) => {
                 format!("[\"0 {0}\", \"0 {0}\", \"{1}\"]", range.unit, or(usual(dimension, range)))
             }
@@ -192,6 +205,7 @@ fn usual(dimension: Dimension, range: Range) -> &'static str {
         TiltDamping => "1 N m s/rad",
         Inertia => "1e-4 kg m^2",
         Unbalance => "9.12e-3 kg m",
+        Rate => "77 1/s",
     }
 }
 
@@ -214,10 +228,21 @@ pub struct Table {
     pub path: &'static str,
     pub doc: &'static str,
     pub example: &'static str,
+    /// Whether it stands any number of times, `[[path]]`.
+    pub list: bool,
 }
 
 pub(super) const fn table(path: &'static str, doc: &'static str, example: &'static str) -> Table {
-    Table { path, doc, example }
+    Table { path, doc, example, list: false }
+}
+
+/// A list of tables.
+pub(super) const fn list_table(
+    path: &'static str,
+    doc: &'static str,
+    example: &'static str,
+) -> Table {
+    Table { path, doc, example, list: true }
 }
 
 /// Every key, in the order of the reference.
@@ -226,32 +251,38 @@ pub static KEYS: &[Key] = &ALL_KEYS;
 /// Every table, in the order of the reference. `assumptions` and `sweep` have keys of the user's.
 pub static TABLES: &[Table] = &ALL_TABLES;
 
-static ALL_KEYS: [Key; key_table::KEYS.len() + key_table_dynamics::KEYS.len()] = {
-    let mut all = [key_table::KEYS[0]; key_table::KEYS.len() + key_table_dynamics::KEYS.len()];
-    let mut i = 0;
-    while i < all.len() {
-        all[i] = match i.checked_sub(key_table::KEYS.len()) {
-            Some(j) => key_table_dynamics::KEYS[j],
-            None => key_table::KEYS[i],
-        };
-        i += 1;
-    }
-    all
-};
+const PARTS: [&[Key]; 3] = [key_table::KEYS, key_table_dynamics::KEYS, key_table_solid::KEYS];
+const TABLE_PARTS: [&[Table]; 3] =
+    [key_table::TABLES, key_table_dynamics::TABLES, key_table_solid::TABLES];
 
-static ALL_TABLES: [Table; key_table::TABLES.len() + key_table_dynamics::TABLES.len()] = {
-    let mut all =
-        [key_table::TABLES[0]; key_table::TABLES.len() + key_table_dynamics::TABLES.len()];
-    let mut i = 0;
-    while i < all.len() {
-        all[i] = match i.checked_sub(key_table::TABLES.len()) {
-            Some(j) => key_table_dynamics::TABLES[j],
-            None => key_table::TABLES[i],
-        };
-        i += 1;
+static ALL_KEYS: [Key; count(&PARTS)] = joined(&PARTS, key_table::KEYS[0]);
+static ALL_TABLES: [Table; count(&TABLE_PARTS)] = joined(&TABLE_PARTS, key_table::TABLES[0]);
+
+const fn count<T>(parts: &[&[T]]) -> usize {
+    let mut sum = 0;
+    let mut part = 0;
+    while part < parts.len() {
+        sum += parts[part].len();
+        part += 1;
+    }
+    sum
+}
+
+/// All rows of the parts in one array, which `first` fills before they come.
+const fn joined<T: Copy, const N: usize>(parts: &[&[T]], first: T) -> [T; N] {
+    let mut all = [first; N];
+    let (mut at, mut part) = (0, 0);
+    while part < parts.len() {
+        let mut i = 0;
+        while i < parts[part].len() {
+            all[at] = parts[part][i];
+            at += 1;
+            i += 1;
+        }
+        part += 1;
     }
     all
-};
+}
 
 static INDEX: LazyLock<HashMap<&'static str, usize>> =
     LazyLock::new(|| KEYS.iter().enumerate().map(|(i, key)| (key.path, i)).collect());
@@ -297,8 +328,11 @@ pub fn nearest_key(path: &str, name: &str) -> Option<String> {
     // Of several keys with that name, the one whose whole path is most alike.
     let full = dotted(name);
     let found = elsewhere.and_then(|name| {
-        let same_name = KEYS.iter().map(|key| key.path).filter(|path| path.ends_with(name));
-        nearest(&full, same_name, 0.0)
+        let same_name = || KEYS.iter().map(|key| key.path).filter(|path| path.ends_with(name));
+        // One of the same part of the scene, if there is any.
+        let top = |path: &str| path.split('.').next().unwrap_or_default().to_string();
+        let beside = same_name().filter(|path| top(path) == top(&full));
+        nearest(&full, beside, 0.0).or_else(|| nearest(&full, same_name(), 0.0))
     });
     found.map(str::to_string)
 }

@@ -22,6 +22,7 @@ pub mod dynamics;
 pub mod error;
 mod key_table;
 mod key_table_dynamics;
+mod key_table_solid;
 pub mod keys;
 mod profile;
 pub mod reference;
@@ -30,8 +31,13 @@ mod resolve_cage;
 mod resolve_contact;
 mod resolve_dynamics;
 mod resolve_geometry;
+mod resolve_solid;
+mod resolve_solid_mesh;
 pub mod resolved;
 pub mod schema;
+pub mod solid;
+pub mod solid_mesh;
+pub mod solid_problem;
 mod source;
 pub mod statics;
 pub mod sweep;
@@ -46,13 +52,24 @@ pub use resolved::{
     Assumption, Cage, CageGuidance, CageInRun, DefaultUsed, Dimensions, Dynamics, Plot,
     RaceDimensions, RunPlot, RunSettings, Scene,
 };
+pub use resolve_solid::resolve_subject;
 pub use schema::json_schema;
+pub use solid::{SolidScene, Subject};
 pub use source::{Format, LARGEST_FILE};
 pub use sweep::{SweepAxis, SweepValues};
 
 use std::path::Path;
 
-/// Reads a scene file; the name's ending (`.toml`, `.json`) tells the format.
+/// Reads a scene file of either kind: a bearing, or a solid by itself.
+///
+/// # Errors
+/// The first thing wrong with the file or its contents, with its place. The solid's mesh is not
+/// read yet: that is [`solid_mesh::build`].
+pub fn read_subject(path: &Path) -> Result<Subject, SceneError> {
+    resolve_subject(&Document::read_file(path)?)
+}
+
+/// Reads a scene file with a bearing; the name's ending (`.toml`, `.json`) tells the format.
 ///
 /// # Errors
 /// The first thing wrong with the file or its contents, with its place.
@@ -60,7 +77,7 @@ pub fn read_file(path: &Path) -> Result<Scene, SceneError> {
     resolve(&Document::read_file(path)?)
 }
 
-/// Reads a scene from text; `name` stands for the file in messages.
+/// Reads a scene with a bearing from text; `name` stands for the file in messages.
 ///
 /// # Errors
 /// The first thing wrong with the text, with its place.

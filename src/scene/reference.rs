@@ -2,6 +2,7 @@
 
 use crate::scene::keys::{KEYS, Key, Kind, Need, TABLES, Table};
 use crate::scene::profile::{FORMS, Member};
+use crate::scene::resolve_solid_mesh::generators;
 use crate::scene::schema::{noun, range_text};
 use crate::scene::units::{Dimension, plain};
 use std::fmt::Write;
@@ -19,6 +20,8 @@ pub fn reference_markdown() -> String {
         "ball_forces",
         "traction",
         "contact_damping",
+        "solid",
+        "modes",
         "numerics",
     ];
     let mut tables: Vec<&Table> = TABLES.iter().collect();
@@ -27,9 +30,15 @@ pub fn reference_markdown() -> String {
         order.iter().position(|name| *name == top).unwrap_or(order.len())
     });
     for table in tables {
-        table_markdown(&mut text, table.path, &format!("`[{}]`", table.path), table.doc);
+        let heading = if table.list {
+            format!("`[[{}]]`", table.path)
+        } else {
+            format!("`[{}]`", table.path)
+        };
+        table_markdown(&mut text, table.path, &heading, table.doc);
         let _ = writeln!(text, "```toml\n{}\n```\n", table.example.replace(" or {", "   # or {"));
     }
+    generators_markdown(&mut text);
     profiles_markdown(&mut text);
     text.push_str(DIMENSIONS_INTRODUCTION);
     text.push_str("| quantity | units | SI value of one unit |\n|---|---|---|\n");
@@ -55,6 +64,17 @@ pub fn reference_markdown() -> String {
     }
     text.push_str(RELATIONS);
     text
+}
+
+fn generators_markdown(text: &mut String) {
+    text.push_str(GENERATORS_INTRODUCTION);
+    text.push_str(
+        "| `generate` | keys of `[solid.mesh]`; those in brackets may be left out |\n|---|---|\n",
+    );
+    for (name, keys) in generators() {
+        let _ = writeln!(text, "| `{name}` | {keys} |");
+    }
+    text.push('\n');
 }
 
 fn profiles_markdown(text: &mut String) {
@@ -131,6 +151,12 @@ fn kind_and_range(key: &Key) -> (String, String) {
         Kind::Curve(dimension, ..) => {
             (format!("list of pairs: {}, number", noun(dimension)), range)
         }
+        Kind::Quantities(dimension, _) => {
+            (format!("list of increasing {}s", noun(dimension)), format!("each {range}"))
+        }
+        Kind::TrueOrProfile(dimension, _) => {
+            (format!("`true`, or {} or profile", noun(dimension)), range)
+        }
         Kind::Vector(dimension, _) => {
             (format!("list of three: {}", noun(dimension)), format!("each {range}"))
         }
@@ -140,7 +166,7 @@ fn kind_and_range(key: &Key) -> (String, String) {
 const INTRODUCTION: &str = "\
 # Scene reference
 
-<!-- Made from the key tables in src/scene/key_table.rs and key_table_dynamics.rs. After changing that table: SCENE_DOCS=write cargo test --release --test scene_docs -->
+<!-- Made from the key tables in src/scene/key_table*.rs. After changing one: SCENE_DOCS=write cargo test --release --test scene_docs -->
 
 A scene is a TOML file, or a JSON file of the same shape. Every dimensional value is a text of a number and a
 unit, `\"20.047 mm\"`: nothing is guessed from a bare number. Unknown keys are refused. `bearing check SCENE` names
@@ -148,6 +174,14 @@ the first thing that is wrong, with file, line and column, the allowed range and
 a JSON Schema for editors.
 
 Axes: X axial, Y lateral, Z up. Ball azimuths run from +Y towards +Z.
+
+";
+
+const GENERATORS_INTRODUCTION: &str = "\
+## Meshes that are made
+Bars begin at the origin and lie along X, shafts at their first station; rings, cages and housings are centred on the
+origin, their axis X. Sets: `x_low` and `x_high`, and `y_low` to `z_high` of bars and blocks; `inner`, `outer` of rings and
+cages; `outer` and `station_N` of shafts; `pocket_N` of cages; `bore` and `fixed` (what the source holds) of housings.
 
 ";
 
@@ -202,6 +236,22 @@ equilibrium moves on, balls roll without slip on the pitch circle, and traction,
 
 **Traction.** `constant`: `coefficient`, `regularisation_speed`. `slide-to-roll`: `b`, `c` (plain numbers), `d`, `entrainment_floor`.
 `slip-speed`: `b`, `c` (s/m), `d`. `table`: `points`. The two curves are (b x - d) exp(-c x) + d, zero at rest; no curve may exceed 2.
+
+## A flexible solid
+A scene with `[solid]` in place of `[bearing]` goes to `check`, `plan`, `statics`, `modes` and `run`; its results are described
+in [results.md](results.md).
+
+**Mesh files.** Physical groups of Gmsh and node, element and surface sets of Abaqus keep their names. The unit of the numbers
+must be given. A mesh with faults (inverted elements, slivers, nodes at one place, cavities, loose parts) is refused with
+the number of them and the worst place.
+
+**Supports and loads.** A node of two held sets may be held by both if they move it alike. A force on a surface is spread in
+proportion to the area that each node carries, on other sets evenly. Loads keep their directions; pressure acts on the
+undeformed area along the undeformed normal and does not follow the body. Statics takes loads and displacements at
+t = 0, and needs a body that cannot move as a whole; modes hold what is held and ignore loads.
+
+**Runs.** They start at rest and undeformed but for `velocity` and `spin`, and end at the whole step nearest to `numerics.end`.
+A step beyond the stability limit is refused with the element that sets it.
 
 ## Sweeps
 Values are a list, `[\"5 um\", \"0 um\"]` or `\"5 um, 0 um\"`, or a range `\"low .. high / count\"` with both ends included. Varying a

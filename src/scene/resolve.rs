@@ -9,7 +9,7 @@ use crate::scene::profile;
 use crate::scene::resolved::{DefaultUsed, Plot, RunPlot, Scene};
 use crate::scene::units::{parse_number, parse_quantity};
 use crate::scene::value::Checked;
-use crate::scene::{resolve_cage, resolve_dynamics, resolve_geometry};
+use crate::scene::{resolve_cage, resolve_dynamics, resolve_geometry, resolve_solid};
 use crate::solver::dynamics::model::Drive;
 use crate::solver::profile::Profile;
 use crate::solver::statics::{COORDINATE_NAMES, Condition};
@@ -19,7 +19,8 @@ use crate::solver::statics::{COORDINATE_NAMES, Condition};
 /// # Errors
 /// The first key, in a fixed order, that is missing or contradicts others.
 pub fn resolve(document: &Document) -> Result<Scene, SceneError> {
-    let mut reader = Reader { document, defaults_used: Vec::new() };
+    resolve_solid::refuse_solid(document)?;
+    let mut reader = Reader::new(document);
     let kind = match reader.required_choice("bearing.kind")? {
         "angular-contact" => BearingKind::AngularContact,
         _ => BearingKind::DeepGroove,
@@ -100,7 +101,15 @@ pub(crate) struct Reader<'d> {
     defaults_used: Vec<DefaultUsed>,
 }
 
-impl Reader<'_> {
+impl<'d> Reader<'d> {
+    pub fn new(document: &'d Document) -> Reader<'d> {
+        Reader { document, defaults_used: Vec::new() }
+    }
+
+    pub fn into_defaults_used(self) -> Vec<DefaultUsed> {
+        self.defaults_used
+    }
+
     pub fn given_number(&self, path: &str) -> Option<f64> {
         match self.document.value(path)? {
             Checked::Number(value) => Some(*value),
@@ -272,7 +281,7 @@ impl Reader<'_> {
     }
 }
 
-fn text(document: &Document, path: &str) -> Option<String> {
+pub(crate) fn text(document: &Document, path: &str) -> Option<String> {
     match document.value(path)? {
         Checked::Text(text) => Some(text.clone()),
         _ => None,

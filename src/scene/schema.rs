@@ -77,10 +77,13 @@ fn table_schema(path: &str) -> Map<String, Value> {
             None => match full.as_str() {
                 "assumptions" => free_table(&full, json!({ "type": "string" })),
                 "sweep" => free_table(&full, sweep_schema()),
+                _ if keys::find_table(&full).is_some_and(|table| table.list) => {
+                    json!({ "type": "array", "items": table_schema(&full) })
+                }
                 _ => Value::Object(table_schema(&full)),
             },
         };
-        if ["bearing", "bearing.inner_race", "bearing.outer_race"].contains(&full.as_str()) {
+        if ["bearing.inner_race", "bearing.outer_race"].contains(&full.as_str()) {
             required.push(json!(name));
         }
         properties.insert(name.to_string(), property);
@@ -94,6 +97,10 @@ fn table_schema(path: &str) -> Map<String, Value> {
     schema.insert("additionalProperties".into(), json!(false));
     if !required.is_empty() {
         schema.insert("required".into(), Value::Array(required));
+    }
+    if path.is_empty() {
+        let one_of = ["bearing", "solid"].map(|part| json!({ "required": [part] }));
+        exclusive.push(json!({ "oneOf": one_of }));
     }
     if path == "bearing" {
         exclusive.push(kinds_schema());
@@ -158,7 +165,7 @@ fn key_or_table_schema(key: &'static Key, path: &str) -> Value {
 
 fn profile_dimensions() -> impl Iterator<Item = Dimension> {
     KEYS.iter().filter_map(|key| match key.kind {
-        Kind::Profile(dimension, _) => Some(dimension),
+        Kind::Profile(dimension, _) | Kind::TrueOrProfile(dimension, _) => Some(dimension),
         _ => None,
     })
 }
@@ -246,6 +253,11 @@ fn key_schema(key: &'static Key) -> Value {
                 "prefixItems": [reference(dimension), number_schema(numbers)] });
             list(&pair, 1, None)
         }
+        Kind::Quantities(dimension, _) => list(&reference(dimension), 1, None),
+        Kind::TrueOrProfile(dimension, _) => {
+            let profile = json!({ "$ref": format!("#/$defs/{}", profile_name(dimension)) });
+            json!({ "anyOf": [{ "type": "boolean" }, profile] })
+        }
         Kind::Quantity(dimension, _) => reference(dimension),
         Kind::Vector(dimension, _) => {
             json!({ "type": "array", "minItems": 3, "maxItems": 3, "items": reference(dimension) })
@@ -274,6 +286,8 @@ pub(crate) fn range_text(key: &Key) -> Option<String> {
         Kind::Number(range)
         | Kind::Quantity(_, range)
         | Kind::Vector(_, range)
+        | Kind::Quantities(_, range)
+        | Kind::TrueOrProfile(_, range)
         | Kind::Profile(_, range) => Some(Range::to_string(&range)),
         Kind::Either(kinds) => {
             let ranges: Vec<String> = kinds

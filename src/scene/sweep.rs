@@ -170,9 +170,13 @@ fn range(key: &'static Key, text: &str, low: &str, rest: &str) -> Result<SweepVa
 
 fn refuse_unsweepable(key: &Key) -> Result<(), Problem> {
     match key.kind {
-        Kind::Text | Kind::Choices(_) | Kind::Vector(..) | Kind::Curve(..) => {
-            Err(Problem::NotSweepable)
-        }
+        _ if key.in_list() => Err(Problem::NotSweepable),
+        Kind::Text
+        | Kind::Choices(_)
+        | Kind::Vector(..)
+        | Kind::Curve(..)
+        | Kind::Quantities(..)
+        | Kind::TrueOrProfile(..) => Err(Problem::NotSweepable),
         _ => Ok(()),
     }
 }

@@ -26,6 +26,7 @@ pub enum Dimension {
     TiltDamping,
     Inertia,
     Unbalance,
+    Rate,
 }
 
 /// How a unit converts to SI.
@@ -147,8 +148,10 @@ const UNBALANCE: &[Unit] = &[
     decimal(&["g mm", "g*mm"], -6),
 ];
 
+const RATE: &[Unit] = &[decimal(&["1/s", "/s", "s^-1"], 0)];
+
 impl Dimension {
-    pub const ALL: [Dimension; 20] = [
+    pub const ALL: [Dimension; 21] = [
         Dimension::Length,
         Dimension::Mass,
         Dimension::Force,
@@ -169,6 +172,7 @@ impl Dimension {
         Dimension::TiltDamping,
         Dimension::Inertia,
         Dimension::Unbalance,
+        Dimension::Rate,
     ];
 
     /// Name with its article, as used in a sentence: "a length".
@@ -194,6 +198,7 @@ impl Dimension {
             Dimension::TiltDamping => "a tilting damping coefficient",
             Dimension::Inertia => "a moment of inertia",
             Dimension::Unbalance => "an unbalance",
+            Dimension::Rate => "a rate",
         }
     }
 
@@ -220,6 +225,7 @@ impl Dimension {
             Dimension::TiltDamping => "N m s/rad",
             Dimension::Inertia => "kg m^2",
             Dimension::Unbalance => "kg m",
+            Dimension::Rate => "1/s",
         }
     }
 
@@ -245,6 +251,7 @@ impl Dimension {
             Dimension::TiltDamping => TILT_DAMPING,
             Dimension::Inertia => INERTIA,
             Dimension::Unbalance => UNBALANCE,
+            Dimension::Rate => RATE,
         }
     }
 

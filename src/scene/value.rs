@@ -23,6 +23,7 @@ pub enum Checked {
     Either(usize, f64),
     /// Pairs of [`Kind::Curve`].
     Curve(Vec<[f64; 2]>),
+    Quantities(Vec<f64>),
 }
 
 /// A problem and where it is: the offset of the element of a list or profile that has it.
@@ -79,6 +80,16 @@ pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
         (Kind::Profile(dimension, range), Value::Table(entries)) => {
             profile::read(key, dimension, range, entries, node.offset).map(Checked::Profile)
         }
+        (Kind::TrueOrProfile(..), Value::Boolean(value)) => Ok(Checked::Boolean(*value)),
+        (Kind::TrueOrProfile(dimension, range), Value::Text(_) | Value::Number(_)) => {
+            quantity(key, &node.value, dimension, range).map(Checked::Number).map_err(here)
+        }
+        (Kind::TrueOrProfile(dimension, range), Value::Table(entries)) => {
+            profile::read(key, dimension, range, entries, node.offset).map(Checked::Profile)
+        }
+        (Kind::Quantities(dimension, range), Value::List(items)) => {
+            quantities(key, items, node.offset, dimension, range)
+        }
         (Kind::Either(kinds), Value::Text(_) | Value::Number(_)) => {
             either(key, kinds, &node.value).map_err(here)
         }
@@ -100,9 +111,11 @@ pub fn check_bare(key: &'static Key, text: &str) -> Result<Checked, Problem> {
             _ => Value::Text(text.to_string()),
         },
         Kind::Either(_) if parse_number(text).is_ok() => Value::Number(text.to_string()),
-        Kind::Vector(..) | Kind::Choices(_) | Kind::Curve(..) => {
-            return Err(Problem::NotSweepable);
-        }
+        Kind::Vector(..)
+        | Kind::Choices(_)
+        | Kind::Curve(..)
+        | Kind::Quantities(..)
+        | Kind::TrueOrProfile(..) => return Err(Problem::NotSweepable),
         Kind::Text | Kind::Choice(_) | Kind::Quantity(..) | Kind::Profile(..) | Kind::Either(_) => {
             Value::Text(text.to_string())
         }
@@ -161,6 +174,29 @@ fn curve(
     Ok(Checked::Curve(points))
 }
 
+/// A list of increasing quantities.
+fn quantities(
+    key: &Key,
+    items: &[Node],
+    offset: usize,
+    dimension: Dimension,
+    range: Range,
+) -> Result<Checked, ValueError> {
+    let mut values: Vec<f64> = Vec::new();
+    for item in items {
+        let value = quantity(key, &item.value, dimension, range).map_err(|p| (item.offset, p))?;
+        if values.last().is_some_and(|last| value <= *last) {
+            let written = shown(&item.value);
+            return Err((item.offset, Problem::NotIncreasing { written }).into());
+        }
+        values.push(value);
+    }
+    if values.is_empty() {
+        return Err((offset, wrong_kind(key, &Value::Other("an empty list"))).into());
+    }
+    Ok(Checked::Quantities(values))
+}
+
 /// A kind in words.
 fn expected(kind: Kind) -> String {
     match kind {
@@ -182,6 +218,15 @@ fn expected(kind: Kind) -> String {
         }
         Kind::Curve(dimension, ..) => {
             format!("a list of pairs, each {} with its unit and a plain number", dimension.name())
+        }
+        Kind::Quantities(dimension, _) => {
+            format!("a list of increasing values with units, each {}", dimension.name())
+        }
+        Kind::TrueOrProfile(dimension, range) => {
+            format!(
+                "true, or {} with its unit, {range}, or a profile of it over time",
+                dimension.name()
+            )
         }
     }
 }

@@ -256,7 +256,7 @@ fn loads_over_azimuth(title: &str, table: &RunTable) -> Result<Vec<(String, Stri
 
 /// At most about `wanted` points: of each stretch the lowest and the highest, in their order, so
 /// that no peak is lost.
-fn thin(points: Vec<[f64; 2]>, wanted: usize) -> Vec<[f64; 2]> {
+pub(crate) fn thin(points: Vec<[f64; 2]>, wanted: usize) -> Vec<[f64; 2]> {
     if points.len() <= wanted {
         return points;
     }

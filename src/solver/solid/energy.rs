@@ -14,6 +14,24 @@ pub struct SolidEnergy {
     pub kinetic: f64,
 }
 
+/// Energy held, and work done since the start, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SolidLedger {
+    pub energy: SolidEnergy,
+    /// Of loads and of drives.
+    pub external_work: f64,
+    /// ≤ 0 but for a body that damping carries along.
+    pub damping_work: f64,
+}
+
+impl SolidLedger {
+    /// Energy held less all work done: what it was at the start, if all is accounted for.
+    pub fn balance(&self) -> f64 {
+        let SolidEnergy { strain, kinetic } = self.energy;
+        strain + kinetic - self.external_work - self.damping_work
+    }
+}
+
 /// ∫W dV from the displacements, J.
 pub fn strain_energy(model: &SolidModel, displacement: &[Node]) -> f64 {
     let problem = &model.problem;

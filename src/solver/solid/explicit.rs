@@ -1,6 +1,6 @@
 //! Explicit steps of a solid: central differences, or Runge–Kutta as in the source.
 
-use super::energy::{SolidEnergy, strain_energy};
+use super::energy::{SolidEnergy, SolidLedger, strain_energy};
 use super::model::{DampedMotion, Prescribed, SolidError, SolidModel, SolidProblem};
 use super::step_limit::{SolidStepLimit, step_limit};
 use super::tet4_blocks::Node;
@@ -51,6 +51,11 @@ pub struct ExplicitSolid {
     stages: Option<Box<Stages>>,
 }
 
+/// Vectors as the force loop reads them.
+pub fn padded(list: Vec<Vec3>) -> Vec<Node> {
+    list.into_iter().map(|v| [v[0], v[1], v[2], 0.0]).collect()
+}
+
 /// Room for the stages of Runge–Kutta.
 struct Stages {
     displacement: Vec<Node>,
@@ -71,11 +76,23 @@ impl ExplicitSolid {
         displacement: Vec<Vec3>,
         velocity: Vec<Vec3>,
     ) -> Result<ExplicitSolid, SolidError> {
-        let pad = |list: Vec<Vec3>| -> Vec<Node> {
-            list.into_iter().map(|v| [v[0], v[1], v[2], 0.0]).collect()
-        };
-        let displacement = pad(displacement);
+        let displacement = padded(displacement);
         let limit = step_limit(&model, &displacement, method);
+        ExplicitSolid::with_limit(model, method, stepping, limit, displacement, padded(velocity))
+    }
+
+    /// As [`ExplicitSolid::new`] where the step limit at the start is known already.
+    ///
+    /// # Errors
+    /// A step beyond the stability limit.
+    pub fn with_limit(
+        model: SolidModel,
+        method: ExplicitMethod,
+        stepping: SolidStepping,
+        limit: SolidStepLimit,
+        displacement: Vec<Node>,
+        velocity: Vec<Node>,
+    ) -> Result<ExplicitSolid, SolidError> {
         let step_size = match stepping {
             SolidStepping::FractionOfLimit(fraction) => fraction * limit.step,
             SolidStepping::Fixed(step) => step,
@@ -88,10 +105,9 @@ impl ExplicitSolid {
                 at: limit.at,
             });
         }
-        let rate = pad(velocity);
         let mut solid = ExplicitSolid::at_rest(model, method, step_size, limit);
         solid.displacement = displacement;
-        solid.rate = rate;
+        solid.rate = velocity;
         solid.impose();
         if method == ExplicitMethod::CentralDifferences {
             // Back by half a step, so that the first full kick ends half a step ahead.
@@ -241,13 +257,15 @@ impl ExplicitSolid {
                 let rest = rigid.velocity(problem.nodes[n], self.displacement[n]);
                 for i in 0..3 {
                     let before = self.rate[n][i];
+                    // A driven component is not braked: its course is given.
                     if per_mass[n][i] != 0.0 {
                         let excess = before - rest[i];
                         let kick = h * self.force[n][i] * per_mass[n][i];
                         self.rate[n][i] = rest[i] + (keep * excess + kick) * per_sum;
+                        let mean = 0.5 * (before + self.rate[n][i]);
+                        self.damping_work[n] -=
+                            h * problem.damping * mass[n] * mean * (mean - rest[i]);
                     }
-                    let mean = 0.5 * (before + self.rate[n][i]);
-                    self.damping_work[n] -= h * problem.damping * mass[n] * mean * (mean - rest[i]);
                     self.displacement[n][i] += h * self.rate[n][i];
                 }
             }
@@ -302,13 +320,13 @@ impl ExplicitSolid {
                 let rest = rigid.velocity(problem.nodes[n], self.displacement[n]);
                 for i in 0..3 {
                     let rate = self.rate[n][i];
-                    let brake = problem.damping * (rate - rest[i]);
-                    self.damping_work[n] -= share * mass[n] * brake * rate;
-                    let acceleration = if per_mass[n][i] == 0.0 {
-                        0.0
-                    } else {
-                        self.force[n][i] * per_mass[n][i] - brake
-                    };
+                    // A driven component is not braked: its course is given.
+                    let mut acceleration = 0.0;
+                    if per_mass[n][i] != 0.0 {
+                        let brake = problem.damping * (rate - rest[i]);
+                        self.damping_work[n] -= share * mass[n] * brake * rate;
+                        acceleration = self.force[n][i] * per_mass[n][i] - brake;
+                    }
                     stages.displacement_sum[n][i] += share * rate;
                     stages.rate_sum[n][i] += share * acceleration;
                     self.displacement[n][i] = stages.displacement[n][i] + ahead * h * rate;
@@ -361,20 +379,48 @@ impl ExplicitSolid {
     /// Energy at `time`, J. For central differences the kinetic part is ½ v(t−h/2)·m·v(t+h/2),
     /// which together with the strain energy is what the method keeps.
     pub fn energy(&mut self) -> SolidEnergy {
+        self.ledger().energy
+    }
+
+    /// Energy held at `time` and the work done until then; leaves the forces of that time in
+    /// [`ExplicitSolid::forces`].
+    ///
+    /// Central differences book the work of each step with the mean of the rates before and after
+    /// it, that is half a step late; what is still to come of it is added here, so that the ledger
+    /// of a linear body closes to rounding.
+    pub fn ledger(&mut self) -> SolidLedger {
         let strain = strain_energy(&self.model, &self.displacement);
         self.evaluate();
         let ahead = match self.method {
             ExplicitMethod::CentralDifferences => self.step_size,
             ExplicitMethod::RungeKutta => 0.0,
         };
-        let mut kinetic = 0.0;
+        let mut loads = vec![[0.0; 4]; self.force.len()];
+        self.model.add_external_forces(self.time, &mut loads);
+        let SolidModel { mass, per_mass, .. } = &self.model;
+        let (mut kinetic, mut external, mut damping) = (0.0, 0.0, 0.0);
         for (n, acceleration) in self.acceleration().into_iter().enumerate() {
             for i in 0..3 {
-                let rate = self.rate[n][i];
-                kinetic += 0.5 * self.model.mass[n] * rate * (rate + ahead * acceleration[i]);
+                let (rate, force) = (self.rate[n][i], self.force[n][i]);
+                kinetic += 0.5 * mass[n] * rate * (rate + ahead * acceleration[i]);
+                external += 0.5 * ahead * loads[n][i] * rate;
+                if per_mass[n][i] == 0.0 {
+                    external -= 0.5 * ahead * force * rate;
+                } else {
+                    damping += 0.5 * ahead * (mass[n] * acceleration[i] - force) * rate;
+                }
             }
         }
-        SolidEnergy { strain, kinetic }
+        SolidLedger {
+            energy: SolidEnergy { strain, kinetic },
+            external_work: self.external_work() + external,
+            damping_work: self.damping_work() + damping,
+        }
+    }
+
+    /// Forces of elements and loads on the nodes as last evaluated, N.
+    pub fn forces(&self) -> &[Node] {
+        &self.force
     }
 }
 

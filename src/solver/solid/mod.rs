@@ -1,5 +1,6 @@
 //! Flexible solids of tetrahedra: what is simulated, explicit steps and the step they can take,
 //! equilibrium, natural modes, stresses.
+pub mod checkpoint;
 pub mod energy;
 pub mod equilibrium;
 pub mod explicit;
@@ -7,6 +8,7 @@ pub mod model;
 pub mod modes;
 pub mod step_limit;
 pub mod stress;
+pub mod support;
 pub mod tangent;
 pub mod team;
 pub mod tet10_blocks;

@@ -1,0 +1,30 @@
+//! `bearing modes SCENE`.
+
+use super::CommandResult;
+use bearing_dynamics::scene::{self, Subject};
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scene file (.toml or .json) with a [solid] table
+    scene: PathBuf,
+    /// Results folder [default: results/<name of the scene>-modes]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Print the frequencies only; write no folder
+    #[arg(long, conflicts_with = "out")]
+    dry: bool,
+}
+
+pub fn run(arguments: &Arguments) -> CommandResult {
+    let Arguments { scene, out, dry } = arguments;
+    match scene::read_subject(scene)? {
+        Subject::Solid(solid) => super::solid::modes::run(scene, &solid, out, *dry),
+        Subject::Bearing(_) => Err(format!(
+            "{}: modes takes a solid by itself, and the scene holds a bearing; `bearing statics` \
+             gives a bearing's stiffness",
+            scene.display()
+        )
+        .into()),
+    }
+}

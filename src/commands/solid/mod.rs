@@ -1,0 +1,94 @@
+//! The commands on a scene with a solid by itself; here what they share.
+
+pub mod check;
+pub mod echo;
+pub mod modes;
+pub mod plan;
+pub mod run;
+pub mod statics;
+
+use bearing_dynamics::output::results::RunRecord;
+use bearing_dynamics::output::solid::fields;
+use bearing_dynamics::output::solid::state::remove_arrays;
+use bearing_dynamics::scene::SolidScene;
+use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build};
+use bearing_dynamics::scene::solid_problem::{SolidSetup, setup};
+use bearing_dynamics::solver::solid::support::{FreeMotions, free_motions};
+use std::error::Error;
+use std::path::Path;
+use std::time::Instant;
+
+/// A scene with its mesh, ready to be solved.
+pub struct Prepared {
+    pub built: BuiltMesh,
+    pub setup: SolidSetup,
+    pub free: FreeMotions,
+    pub mesh_seconds: f64,
+}
+
+pub fn prepare(scene: &SolidScene) -> Result<Prepared, Box<dyn Error>> {
+    let start = Instant::now();
+    let built = build(&scene.mesh)?;
+    let setup = setup(scene, &built.mesh)?;
+    let free = free_motions(&setup.problem);
+    Ok(Prepared { built, setup, free, mesh_seconds: start.elapsed().as_secs_f64() })
+}
+
+pub fn title(scene: &SolidScene) -> String {
+    scene.title.clone().unwrap_or_else(|| "Solid".into())
+}
+
+/// Scene, assumptions, defaults and plan, as every summary has them.
+pub fn record(
+    scene: &SolidScene,
+    plan: Vec<String>,
+    seconds: Vec<(String, f64)>,
+) -> Result<RunRecord, Box<dyn Error>> {
+    let assumptions = scene.assumptions.iter().map(|a| (a.name.clone(), a.text.clone()));
+    let defaults = scene
+        .defaults_used
+        .iter()
+        .map(|used| (used.key.clone(), format!("{} ({})", used.value, used.reason)));
+    Ok(RunRecord {
+        scene: echo::scene(scene)?,
+        plan,
+        assumptions: assumptions.chain(defaults).collect(),
+        threads: 1,
+        seconds,
+        sections: Vec::new(),
+    })
+}
+
+/// Removes what an earlier command left in the folder and this one may not write again; nothing
+/// that this program does not name so.
+pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
+    let mut doomed: Vec<_> = ["summary.json", "state.json", "series.csv", "series.npy"]
+        .into_iter()
+        .chain([fields::LIST, "energies.svg", "spectrum.svg"])
+        .map(|name| folder.join(name))
+        .collect();
+    let inside = |folder: &Path, start: &str, end: &str| {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        let paths = entries.map(|entry| entry.path());
+        let named = paths.filter(|path| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            name.starts_with(start) && name.ends_with(end)
+        });
+        named.collect::<Vec<_>>()
+    };
+    doomed.extend(inside(folder, "probe_", ".svg"));
+    let files = folder.join(fields::FOLDER);
+    for kind in ["fields_", "mode_"] {
+        doomed.extend(inside(&files, kind, ".vtu"));
+    }
+    for path in doomed {
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(format!("cannot replace {}: {error}", path.display()).into());
+            }
+            _ => {}
+        }
+    }
+    remove_arrays(folder, "");
+    Ok(())
+}

@@ -1,0 +1,57 @@
+//! `bearing modes`: natural frequencies and mode shapes of a solid.
+
+use super::{plan, prepare, record, remove_earlier};
+use crate::commands::{CommandResult, Outcome, results_folder, say};
+use bearing_dynamics::output::atomic::write_atomic;
+use bearing_dynamics::output::results::pretty;
+use bearing_dynamics::output::solid::fields::{file_name, write_list, write_mode};
+use bearing_dynamics::output::solid::summary;
+use bearing_dynamics::scene::SolidScene;
+use bearing_dynamics::solver::solid::model::SolidModel;
+use bearing_dynamics::solver::solid::modes::{ModeOptions, modes};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+pub fn run(path: &Path, scene: &SolidScene, out: &Option<PathBuf>, dry: bool) -> CommandResult {
+    let prepared = prepare(scene)?;
+    let (built, setup) = (&prepared.built, &prepared.setup);
+    let start = Instant::now();
+    let model = SolidModel::new(setup.problem.clone())?;
+    let options = ModeOptions { mass: scene.mode_mass, ..ModeOptions::new(scene.mode_count) };
+    let found = modes(&model, &options)?;
+    let seconds = vec![
+        ("mesh".into(), prepared.mesh_seconds),
+        ("solve".into(), start.elapsed().as_secs_f64()),
+    ];
+    let record = record(scene, plan::lines(scene, &prepared), seconds)?;
+    let (summary, series) = summary::modes(&model, built, &found, &record)?;
+    let mut text = "mode        frequency, Hz\n".to_string();
+    for (index, mode) in found.modes.iter().enumerate() {
+        let _ = writeln!(text, "{:>4} {:>20.6}", index + 1, mode.frequency);
+    }
+    say(&text)?;
+    if dry {
+        return Ok(Outcome::Done);
+    }
+    let folder = results_folder(path, out);
+    let folder = if out.is_some() {
+        folder
+    } else {
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        folder.with_file_name(format!("{name}-modes"))
+    };
+    remove_earlier(&folder)?;
+    let mut steps = Vec::new();
+    for (index, mode) in found.modes.iter().enumerate() {
+        let file = file_name("mode", index + 1);
+        write_mode(&folder.join(&file), &built.mesh, &mode.shape)?;
+        steps.push((mode.frequency, file));
+    }
+    write_list(&folder, &steps)?;
+    series.write_csv(&folder.join("series.csv"))?;
+    series.write_npy(&folder.join("series.npy"))?;
+    write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
+    say(&format!("wrote {} files to {}\n", steps.len() + 5, folder.display()))?;
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,91 @@
+//! `bearing statics` of a solid.
+
+use super::{Prepared, plan, prepare, record, remove_earlier};
+use crate::commands::{CommandResult, Outcome, results_folder, say};
+use bearing_dynamics::output::atomic::write_atomic;
+use bearing_dynamics::output::results::pretty;
+use bearing_dynamics::output::solid::fields::{file_name, stresses, write_fields, write_list};
+use bearing_dynamics::output::solid::summary;
+use bearing_dynamics::scene::SolidScene;
+use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solver::solid::model::SolidModel;
+use serde_json::Value;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+pub fn run(path: &Path, scene: &SolidScene, out: &Option<PathBuf>, dry: bool) -> CommandResult {
+    let prepared = prepare(scene)?;
+    let Prepared { built, setup, free, mesh_seconds } = &prepared;
+    if free.count > 0 {
+        return Err(format!(
+            "{}: statics needs a body that is held, and this one is free to move {}; add \
+             [[solid.held]], or let it move with `bearing run`",
+            path.display(),
+            free.names()
+        )
+        .into());
+    }
+    let start = Instant::now();
+    let model = SolidModel::new(setup.problem.clone())?;
+    let solution = equilibrium(&model, 0.0, &EquilibriumOptions::default())?;
+    let solve_seconds = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let stress = stresses(&setup.problem, &solution.displacement);
+    let stress_seconds = start.elapsed().as_secs_f64();
+    let seconds = vec![
+        ("mesh".into(), *mesh_seconds),
+        ("solve".into(), solve_seconds),
+        ("stresses".into(), stress_seconds),
+    ];
+    let record = record(scene, plan::lines(scene, &prepared), seconds)?;
+    let (summary, series) = summary::statics(&model, setup, built, &solution, &stress, &record)?;
+    say(&table(&summary))?;
+    if dry {
+        return Ok(Outcome::Done);
+    }
+    let folder = results_folder(path, out);
+    remove_earlier(&folder)?;
+    let file = file_name("fields", 0);
+    write_fields(&folder.join(&file), &built.mesh, &solution.displacement, None, &stress)?;
+    write_list(&folder, &[(0.0, file)])?;
+    series.write_csv(&folder.join("series.csv"))?;
+    series.write_npy(&folder.join("series.npy"))?;
+    write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
+    say(&format!("wrote 6 files to {}\n", folder.display()))?;
+    Ok(Outcome::Done)
+}
+
+/// What a person wants to see first.
+fn table(summary: &Value) -> String {
+    let number = |at: &Value| at["value"].as_f64().unwrap_or(f64::NAN);
+    let axes = |at: &Value, scale: f64| {
+        let part = |axis: &str| match at[axis]["value"].as_f64() {
+            Some(value) => format!("{:>16.6}", scale * value),
+            None => format!("{:>16}", "-"),
+        };
+        ["x", "y", "z"].map(part).concat()
+    };
+    let mut text = format!("{:<28}{:>16}{:>16}{:>16}\n", "", "x", "y", "z");
+    let mut line = |name: &str, values: String| {
+        let _ = writeln!(text, "{name:<28}{values}");
+    };
+    line("loads, N", axes(&summary["loads"], 1.0));
+    line("reactions, N", axes(&summary["reactions"], 1.0));
+    for (part, unit, scale) in [("supports", "N", 1.0), ("probes", "um", 1e6)] {
+        for (name, entry) in summary[part].as_object().into_iter().flatten() {
+            line(&format!("  {name}, {unit}"), axes(entry, scale));
+        }
+    }
+    let largest = &summary["largest"];
+    let value = |of: &str| number(&largest[of]);
+    let _ = writeln!(
+        text,
+        "largest displacement {:.6} um; von Mises stress up to {:.4} MPa in elements, {:.4} MPa \
+         at nodes",
+        1e6 * value("displacement"),
+        1e-6 * value("von_mises_of_elements"),
+        1e-6 * value("von_mises_of_nodes")
+    );
+    text
+}

@@ -1,0 +1,361 @@
+//! From the given keys to a solid: defaults, and what must hold between keys.
+
+use crate::mesh::{Order, Surface};
+use crate::scene::document::{Document, ItemRef};
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::resolve::{Reader, resolve, text};
+use crate::scene::resolve_solid_mesh::source;
+use crate::scene::solid::{
+    Held, LoadKind, MeshRequest, MeshSource, Probe, ProbeOf, SetLoad, SetPlace, SetRequest,
+    SolidRun, SolidScene, Subject,
+};
+use crate::scene::units::plain;
+use crate::scene::value::Checked;
+use crate::solver::profile::Profile;
+use crate::solver::solid::explicit::{ExplicitMethod, SolidStepping};
+use crate::solver::solid::model::DampedMotion;
+use crate::solver::solid::tangent::MassMatrix;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+/// Steps of an explicit method end a little before its limit, which falls as a body stiffens.
+const STEP_FRACTION: f64 = 0.8;
+
+/// A scene about a bearing, or about a solid.
+///
+/// # Errors
+/// The first key, in a fixed order, that is missing or contradicts others; both in one scene.
+pub fn resolve_subject(document: &Document) -> Result<Subject, SceneError> {
+    let Some(solid) = document.first_below("solid") else {
+        return Ok(Subject::Bearing(Box::new(resolve(document)?)));
+    };
+    const OF_A_BEARING: [&str; 6] =
+        ["bearing", "inner_race", "outer_race", "ball_forces", "traction", "contact_damping"];
+    if let Some(other) = OF_A_BEARING.iter().find_map(|part| document.first_below(part)) {
+        let reason = "a scene holds a bearing or a solid; coupling the two is not there yet";
+        let advice = format!("leave out `{other}`, or `{solid}` and all beside it");
+        return Err(document.error(other, Problem::NotApplicable { reason, advice }));
+    }
+    Ok(Subject::Solid(Box::new(solid_scene(document)?)))
+}
+
+/// What takes a bearing has no use for a solid, and for what belongs to one.
+pub(crate) fn refuse_solid(document: &Document) -> Result<(), SceneError> {
+    const OF_A_SOLID: [&str; 4] = ["solid", "modes", "numerics.method", "numerics.fields_interval"];
+    let Some(key) = OF_A_SOLID.iter().find_map(|part| document.first_below(part)) else {
+        return Ok(());
+    };
+    let (reason, advice) = if key.starts_with("solid") {
+        let commands = "`check`, `plan`, `statics`, `modes` and `run` take a solid by itself";
+        ("this takes a bearing, and the scene holds a solid", commands.to_string())
+    } else {
+        ("only a solid has it, and the scene holds none", "leave it out".to_string())
+    };
+    Err(document.error(key, Problem::NotApplicable { reason, advice }))
+}
+
+fn solid_scene(document: &Document) -> Result<SolidScene, SceneError> {
+    refuse_bearing_keys(document)?;
+    let mut reader = Reader::new(document);
+    let mesh = mesh_request(&mut reader)?;
+    let mut number = |path: &str, usual: f64| reader.number(path).unwrap_or(usual);
+    let youngs_modulus = number("solid.material.youngs_modulus", 210e9);
+    let poisson_ratio = number("solid.material.poisson_ratio", 0.3);
+    let density = number("solid.material.density", 7850.0);
+    let damping = number("solid.damping", 0.0);
+    let spin = number("solid.spin", 0.0);
+    let damped_motion = match reader.choice("solid.damped_motion") {
+        Some("relative-to-rigid") => DampedMotion::RelativeToRigid,
+        _ => DampedMotion::Absolute,
+    };
+    let gravity = vector(&mut reader, "solid.gravity");
+    let velocity = vector(&mut reader, "solid.velocity");
+    let held: Vec<Held> = document.items("solid.held").map(held).collect::<Result<_, _>>()?;
+    let loads: Vec<SetLoad> = document.items("solid.load").map(load).collect::<Result<_, _>>()?;
+    let probes: Vec<Probe> = document.items("solid.probe").map(probe).collect::<Result<_, _>>()?;
+    let mode_count = reader.number("modes.count").unwrap_or(12.0) as usize;
+    let mode_mass = match reader.choice("modes.mass") {
+        Some("lumped") => MassMatrix::Lumped,
+        _ => MassMatrix::Consistent,
+    };
+    let run = run(&mut reader)?;
+    let plots = match document.value("output.plots") {
+        Some(Checked::Choices(names)) => names.clone(),
+        _ => {
+            reader.note("output.plots", "series, spectrum", "usual plots");
+            vec!["series", "spectrum"]
+        }
+    };
+    Ok(SolidScene {
+        title: text(document, "title"),
+        source: text(document, "source"),
+        assumptions: document.assumptions().to_vec(),
+        mesh,
+        youngs_modulus,
+        poisson_ratio,
+        density,
+        damping,
+        damped_motion,
+        gravity,
+        velocity,
+        spin,
+        held,
+        loads,
+        probes,
+        mode_count,
+        mode_mass,
+        run,
+        draw_series: plots.contains(&"series"),
+        draw_spectrum: plots.contains(&"spectrum"),
+        defaults_used: reader.into_defaults_used(),
+    })
+}
+
+/// Keys of runs, plots and sweeps that a solid has no use for.
+fn refuse_bearing_keys(document: &Document) -> Result<(), SceneError> {
+    const SHARED: [&str; 8] = [
+        "title",
+        "source",
+        "numerics.end",
+        "numerics.step",
+        "numerics.step_fraction",
+        "numerics.output_interval",
+        "numerics.energy_limit",
+        "output.plots",
+    ];
+    const OWN: [&str; 4] = ["solid.", "modes.", "numerics.method", "numerics.fields_interval"];
+    let reason = "a solid does not use it";
+    for key in document.given_keys() {
+        let own = OWN.iter().any(|own| key.path.starts_with(own));
+        if !own && !SHARED.contains(&key.path) {
+            let problem = Problem::NotApplicable { reason, advice: "leave it out".to_string() };
+            return Err(document.error(key.path, problem));
+        }
+    }
+    if let Some(Checked::Choices(names)) = document.value("output.plots")
+        && !names.iter().all(|name| ["series", "spectrum"].contains(name))
+    {
+        let advice = "a solid has `series` and `spectrum`".to_string();
+        let reason = "one of these plots is a bearing's";
+        return Err(document.error("output.plots", Problem::NotApplicable { reason, advice }));
+    }
+    if !document.sweep().is_empty() {
+        let problem = Problem::NotApplicable { reason, advice: "leave out [sweep]".to_string() };
+        return Err(document.error("sweep", problem));
+    }
+    Ok(())
+}
+
+/// A given vector, else zero, the default of every vector here.
+fn vector(reader: &mut Reader, path: &str) -> [f64; 3] {
+    match reader.document.value(path) {
+        Some(Checked::Vector(vector)) => *vector,
+        _ => {
+            reader.note_default(path);
+            [0.0; 3]
+        }
+    }
+}
+
+fn mesh_request(reader: &mut Reader) -> Result<MeshRequest, SceneError> {
+    let document = reader.document;
+    let source = source(reader)?;
+    let order = reader.given_number("solid.mesh.order").map(|order| match order as u8 {
+        1 => Order::Linear,
+        _ => Order::Quadratic,
+    });
+    let renumber = match document.value("solid.mesh.renumber") {
+        Some(Checked::Boolean(given)) => *given,
+        _ => {
+            reader.note_default("solid.mesh.renumber");
+            true
+        }
+    };
+    let from_file = matches!(source, MeshSource::File { .. });
+    let cavities = if from_file { reader.number("solid.mesh.cavities") } else { None };
+    let cavities = cavities.unwrap_or(0.0) as usize;
+    let repairs = match document.value("solid.mesh.repair") {
+        Some(Checked::Choices(names)) => names.clone(),
+        _ => Vec::new(),
+    };
+    Ok(MeshRequest {
+        source,
+        order,
+        renumber,
+        orient: repairs.contains(&"orient"),
+        merge_duplicates: repairs.contains(&"merge-duplicates"),
+        drop_unreferenced: repairs.contains(&"drop-unreferenced"),
+        cavities,
+        largest_aspect: reader.number("solid.mesh.largest_aspect").unwrap_or(1e3),
+        sets: document.items("solid.set").map(set).collect::<Result<_, _>>()?,
+    })
+}
+
+fn set(item: ItemRef) -> Result<SetRequest, SceneError> {
+    let name = item_text(item, "name", "name = \"tip\"")?;
+    let given = |key: &str| item.value(key).is_some();
+    let ways = ["plane", "cylinder", "low"];
+    let chosen: Vec<&str> = ways.into_iter().filter(|way| given(way)).collect();
+    let way = match chosen[..] {
+        [way] => way,
+        [] => {
+            let because = ", nothing says where the set is".to_string();
+            let example = "`plane = \"x\"` with `at`, `cylinder`, or `low` and `high`".to_string();
+            return Err(item.error("plane", Problem::Missing { because, example }));
+        }
+        [first, second, ..] => return Err(exclusive(item, second, first)),
+    };
+    for (key, owner) in [("at", "plane"), ("high", "low")] {
+        if given(key) && way != owner {
+            let problem = Problem::NotApplicable {
+                reason: "it belongs to another kind of set",
+                advice: format!("leave it out, or give `{owner}`"),
+            };
+            return Err(item.error(key, problem));
+        }
+    }
+    let place = match (way, item.value(way)) {
+        ("plane", Some(Checked::Choice(axis))) => {
+            let at = item_number(item, "at")
+                .ok_or_else(|| missing(item, "at", " with `plane`", "at = \"0 mm\""))?;
+            let axis = AXES.iter().position(|name| name == axis).unwrap_or(0);
+            SetPlace::Surface(Surface::plane(axis, at))
+        }
+        ("cylinder", Some(Checked::Number(radius))) => SetPlace::Surface(Surface::about_x(*radius)),
+        (_, Some(Checked::Vector(low))) => match item.value("high") {
+            Some(Checked::Vector(high)) => SetPlace::Box { low: *low, high: *high },
+            _ => {
+                let example = "high = [\"1 mm\", \"1 mm\", \"1 mm\"]";
+                return Err(missing(item, "high", " with `low`", example));
+            }
+        },
+        _ => return Err(missing(item, way, "", way)),
+    };
+    Ok(SetRequest { name, place, tolerance: item_number(item, "tolerance") })
+}
+
+fn missing(item: ItemRef, name: &str, because: &str, example: &str) -> SceneError {
+    let (because, example) = (because.to_string(), format!("`{example}`"));
+    item.error(name, Problem::Missing { because, example })
+}
+
+fn exclusive(item: ItemRef, later: &str, earlier: &str) -> SceneError {
+    let advice = format!("keep `{earlier}` or `{later}`");
+    item.error(later, Problem::Exclusive { rival: earlier.to_string(), advice })
+}
+
+fn item_text(item: ItemRef, name: &str, example: &str) -> Result<String, SceneError> {
+    match item.value(name) {
+        Some(Checked::Text(text)) => Ok(text.clone()),
+        _ => Err(missing(item, name, "", example)),
+    }
+}
+
+fn item_number(item: ItemRef, name: &str) -> Option<f64> {
+    match item.value(name)? {
+        Checked::Number(value) => Some(*value),
+        _ => None,
+    }
+}
+
+fn item_profile(item: ItemRef, name: &str) -> Option<Profile> {
+    match item.value(name)? {
+        Checked::Number(value) => Some(Profile::Constant(*value)),
+        Checked::Boolean(true) => Some(Profile::ZERO),
+        Checked::Profile(profile) => Some(profile.clone()),
+        _ => None,
+    }
+}
+
+fn held(item: ItemRef) -> Result<Held, SceneError> {
+    let set = item_text(item, "set", "set = \"x_low\"")?;
+    let motion = AXES.map(|axis| item_profile(item, axis));
+    if motion.iter().all(Option::is_none) {
+        return Err(missing(item, "x", ", nothing is held", "x = true"));
+    }
+    Ok(Held { set, motion })
+}
+
+fn load(item: ItemRef) -> Result<SetLoad, SceneError> {
+    let set = item_text(item, "set", "set = \"x_high\"")?;
+    let axes = AXES.map(|axis| item_profile(item, axis));
+    let along = AXES.into_iter().find(|axis| item.value(axis).is_some());
+    let force = match item.value("force") {
+        Some(Checked::Vector(force)) => Some(*force),
+        _ => None,
+    };
+    let pressure = item_profile(item, "pressure");
+    let kind = match (along, force, pressure) {
+        (Some(_), None, None) => LoadKind::Force(axes),
+        (None, Some(force), None) => {
+            LoadKind::Force(force.map(|f| (f != 0.0).then_some(Profile::Constant(f))))
+        }
+        (None, None, Some(pressure)) => LoadKind::Pressure(pressure),
+        (None, None, None) => return Err(missing(item, "z", ", no load", "z = \"-100 N\"")),
+        (Some(along), Some(_), _) => return Err(exclusive(item, "force", along)),
+        (Some(along), None, Some(_)) => return Err(exclusive(item, "pressure", along)),
+        (None, Some(_), Some(_)) => return Err(exclusive(item, "pressure", "force")),
+    };
+    Ok(SetLoad { set, kind })
+}
+
+fn probe(item: ItemRef) -> Result<Probe, SceneError> {
+    let of = match (item.value("set"), item.value("at")) {
+        (Some(_), Some(_)) => return Err(exclusive(item, "at", "set")),
+        (Some(Checked::Text(set)), None) => ProbeOf::Set(set.clone()),
+        (None, Some(Checked::Vector(place))) => ProbeOf::Place(*place),
+        _ => return Err(missing(item, "set", ", nothing to look at", "set = \"x_high\"")),
+    };
+    let name = match (item.value("name"), &of) {
+        (Some(Checked::Text(name)), _) => name.clone(),
+        (_, ProbeOf::Set(set)) => set.clone(),
+        _ => return Err(missing(item, "name", " with `at`", "name = \"tip\"")),
+    };
+    Ok(Probe { name, of })
+}
+
+fn run(reader: &mut Reader) -> Result<Option<SolidRun>, SceneError> {
+    let Some(end) = reader.given_number("numerics.end") else { return Ok(None) };
+    let method = match reader.choice("numerics.method") {
+        Some("runge-kutta") => ExplicitMethod::RungeKutta,
+        _ => ExplicitMethod::CentralDifferences,
+    };
+    let fraction = reader.given_number("numerics.step_fraction");
+    let stepping = match (reader.given_number("numerics.step"), fraction) {
+        (Some(step), _) => SolidStepping::Fixed(step),
+        (None, Some(fraction)) => SolidStepping::FractionOfLimit(fraction),
+        (None, None) => {
+            let reason = "a part of the largest stable step of a solid";
+            reader.note("numerics.step_fraction", &plain(STEP_FRACTION), reason);
+            SolidStepping::FractionOfLimit(STEP_FRACTION)
+        }
+    };
+    let energy_limit = reader.number("numerics.energy_limit").unwrap_or(0.01);
+    let mut interval = |key: &str, parts: f64, reason: &str| -> Result<(f64, bool), SceneError> {
+        let Some(value) = reader.given_number(key) else {
+            let value = end / parts;
+            reader.note(key, &format!("{} s", plain(value)), reason);
+            return Ok((value, false));
+        };
+        if value <= end {
+            return Ok((value, true));
+        }
+        let (relation, other_name, other) = ("after", "the end of the run", end);
+        let (allowed, advice) = ("up to", "check the units of both");
+        let problem = Problem::WrongTime { value, relation, other_name, other, allowed, advice };
+        Err(reader.document.error(key, problem))
+    };
+    let (output_interval, output_given) =
+        interval("numerics.output_interval", 1000.0, "a thousandth of the run")?;
+    let (fields_interval, fields_given) =
+        interval("numerics.fields_interval", 20.0, "a twentieth of the run")?;
+    Ok(Some(SolidRun {
+        method,
+        stepping,
+        end,
+        output_interval,
+        output_given,
+        fields_interval,
+        fields_given,
+        energy_limit,
+    }))
+}

@@ -1,0 +1,162 @@
+//! A scene with a flexible solid alone, resolved: SI units, defaults filled in, its mesh not read.
+
+use crate::mesh::generate::{Cage, CageMesh, ContactBlock, Housing, HousingMesh, Ring, RingMesh};
+use crate::mesh::read::LengthUnit;
+use crate::mesh::{Order, Surface};
+use crate::scene::resolved::{Assumption, DefaultUsed, Scene};
+use crate::solver::profile::Profile;
+use crate::solver::solid::explicit::{ExplicitMethod, SolidStepping};
+use crate::solver::solid::model::DampedMotion;
+use crate::solver::solid::tangent::MassMatrix;
+use std::path::PathBuf;
+
+/// What a scene is about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Subject {
+    Bearing(Box<Scene>),
+    Solid(Box<SolidScene>),
+}
+
+/// Where the mesh comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MeshSource {
+    File {
+        /// As the scene has it, and from the folder of the command.
+        name: String,
+        path: PathBuf,
+        unit: LengthUnit,
+    },
+    /// Sizes along X, Y, Z and cells.
+    Bar {
+        size: [f64; 3],
+        cells: [usize; 3],
+    },
+    Block(ContactBlock),
+    Ring(Ring, RingMesh),
+    Shaft {
+        radius: f64,
+        stations: Vec<f64>,
+        longest_layer: f64,
+        around: usize,
+        radial: usize,
+    },
+    Cage(Cage, CageMesh),
+    Housing(Housing, HousingMesh),
+}
+
+/// The mesh as the scene asks for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshRequest {
+    pub source: MeshSource,
+    /// `None` leaves a file's own.
+    pub order: Option<Order>,
+    pub renumber: bool,
+    /// Repairs of a file's mesh. Duplicates are joined within the distance that finds them.
+    pub orient: bool,
+    pub merge_duplicates: bool,
+    pub drop_unreferenced: bool,
+    pub cavities: usize,
+    pub largest_aspect: f64,
+    pub sets: Vec<SetRequest>,
+}
+
+/// A set by geometry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetRequest {
+    pub name: String,
+    pub place: SetPlace,
+    /// m; `None` for a part of the mesh's size.
+    pub tolerance: Option<f64>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum SetPlace {
+    Surface(Surface),
+    Box { low: [f64; 3], high: [f64; 3] },
+}
+
+/// A set that is held or moved along some axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Held {
+    pub set: String,
+    /// m.
+    pub motion: [Option<Profile>; 3],
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetLoad {
+    pub set: String,
+    pub kind: LoadKind,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum LoadKind {
+    /// Total force along each axis, N.
+    Force([Option<Profile>; 3]),
+    /// Pa, into the body.
+    Pressure(Profile),
+}
+
+/// Something whose mean displacement is written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    pub name: String,
+    pub of: ProbeOf,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum ProbeOf {
+    Set(String),
+    /// The node nearest to this place, m.
+    Place([f64; 3]),
+}
+
+/// How a run is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolidRun {
+    pub method: ExplicitMethod,
+    pub stepping: SolidStepping,
+    /// s.
+    pub end: f64,
+    /// Time from one row to the next and from one file of fields to the next, s; whether the
+    /// scene gave them, or they follow from the end.
+    pub output_interval: f64,
+    pub output_given: bool,
+    pub fields_interval: f64,
+    pub fields_given: bool,
+    /// Energy unaccounted for over energy turned over at which the run is stopped.
+    pub energy_limit: f64,
+}
+
+/// A resolved scene with a solid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolidScene {
+    pub title: Option<String>,
+    pub source: Option<String>,
+    pub assumptions: Vec<Assumption>,
+    pub defaults_used: Vec<DefaultUsed>,
+    pub mesh: MeshRequest,
+    /// Pa.
+    pub youngs_modulus: f64,
+    pub poisson_ratio: f64,
+    /// kg/m³.
+    pub density: f64,
+    /// 1/s.
+    pub damping: f64,
+    pub damped_motion: DampedMotion,
+    /// m/s².
+    pub gravity: [f64; 3],
+    /// At the start of a run, m/s, and the rotation about X, rad/s.
+    pub velocity: [f64; 3],
+    pub spin: f64,
+    pub held: Vec<Held>,
+    pub loads: Vec<SetLoad>,
+    pub probes: Vec<Probe>,
+    pub mode_count: usize,
+    pub mode_mass: MassMatrix,
+    /// `None` where the scene gives no end.
+    pub run: Option<SolidRun>,
+    /// Whether series and spectra are drawn.
+    pub draw_series: bool,
+    pub draw_spectrum: bool,
+}

@@ -1,0 +1,264 @@
+//! From a scene and its mesh to what the solver takes: sets become nodes, loads become forces.
+
+use crate::ch2_housing::linear_elastic::{ElasticError, LinearElastic};
+use crate::kinematics::vec3::Vec3;
+use crate::mesh::measure::{Share, tributary_areas};
+use crate::mesh::vector_area::vector_areas;
+use crate::mesh::{Face, TetMesh};
+use crate::scene::solid::{LoadKind, ProbeOf, SolidScene};
+use crate::solver::profile::Profile;
+use crate::solver::solid::model::{Load, Prescribed, SolidProblem};
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
+use thiserror::Error;
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SolidSetupError {
+    #[error(transparent)]
+    Material(#[from] ElasticError),
+    #[error("{part}: no set is called \"{set}\"; there are: {}", list(known))]
+    NoSuchSet { part: &'static str, set: String, known: Vec<String> },
+    #[error("{part}: set \"{set}\" has no nodes")]
+    EmptySet { part: &'static str, set: String },
+    #[error(
+        "solid.load: pressure needs a surface, and \"{set}\" is a set of nodes or elements; the \
+         surfaces are: {}",
+        list(known)
+    )]
+    NoSurface { set: String, known: Vec<String> },
+    #[error(
+        "solid.held: sets \"{first}\" and \"{second}\" move the same node ({}) along {axis} in \
+         different ways",
+        place(at)
+    )]
+    HeldTwice { first: String, second: String, axis: &'static str, at: Vec3 },
+    #[error("solid.probe: two probes are called \"{name}\"; give one of them another `name`")]
+    ProbeTwice { name: String },
+}
+
+fn list(names: &[String]) -> String {
+    if names.is_empty() { "none".to_string() } else { names.join(", ") }
+}
+
+fn place(at: &Vec3) -> String {
+    format!("at {:.6}, {:.6}, {:.6} m", at[0], at[1], at[2])
+}
+
+/// Nodes under one name: mean displacements and sums of forces are taken over them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedNodes {
+    /// Letters, digits, `_`, `-` and `.` only, unlike any other of its kind.
+    pub name: String,
+    pub nodes: Vec<u32>,
+}
+
+/// Components held under the name of one set. A component of two sets belongs to the first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Support {
+    pub name: String,
+    /// Node and axis.
+    pub components: Vec<(u32, usize)>,
+}
+
+impl Support {
+    /// The axes along which it holds something, ascending.
+    pub fn axes(&self) -> Vec<usize> {
+        (0..3).filter(|axis| self.components.iter().any(|(_, held)| held == axis)).collect()
+    }
+
+    /// Sum of vectors over its components, for each of its [`axes`](Support::axes).
+    pub fn total(&self, of: &[Vec3]) -> Vec<f64> {
+        let along = |axis: usize| {
+            let own = self.components.iter().filter(move |(_, held)| *held == axis);
+            own.map(|(node, axis)| of[*node as usize][*axis]).sum()
+        };
+        self.axes().into_iter().map(along).collect()
+    }
+}
+
+/// A solid ready to be solved, and what is to be written of it.
+#[derive(Clone, Debug)]
+pub struct SolidSetup {
+    pub problem: SolidProblem,
+    /// Velocities at the start of a run, m/s.
+    pub velocity: Vec<Vec3>,
+    pub probes: Vec<NamedNodes>,
+    /// Supports; their reactions are written.
+    pub supports: Vec<Support>,
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// # Errors
+/// A set that is not there or does not fit its use, supports that contradict each other.
+pub fn setup(scene: &SolidScene, mesh: &TetMesh) -> Result<SolidSetup, SolidSetupError> {
+    let material = LinearElastic::new(scene.youngs_modulus, scene.poisson_ratio)?;
+    let (prescribed, supports) = supports(scene, mesh)?;
+    let mut loads = Vec::new();
+    for load in &scene.loads {
+        loads.extend(set_loads(mesh, &load.set, &load.kind)?);
+    }
+    let problem = SolidProblem {
+        nodes: mesh.nodes.clone(),
+        elements: mesh.elements.clone(),
+        material,
+        density: scene.density,
+        damping: scene.damping,
+        damped_motion: scene.damped_motion,
+        prescribed,
+        loads,
+        gravity: scene.gravity,
+    };
+    let [u, v, w] = scene.velocity;
+    let velocity =
+        mesh.nodes.iter().map(|[_, y, z]| [u, v - scene.spin * z, w + scene.spin * y]).collect();
+    Ok(SolidSetup { problem, velocity, probes: probes(scene, mesh)?, supports })
+}
+
+/// Every set of the mesh, once.
+fn set_names(mesh: &TetMesh) -> Vec<String> {
+    let all = mesh.node_sets.keys().chain(mesh.surface_sets.keys()).chain(mesh.element_sets.keys());
+    all.cloned().collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+/// Nodes of a set of nodes, faces or elements, ascending.
+pub fn nodes_of_set(
+    mesh: &TetMesh,
+    set: &str,
+    part: &'static str,
+) -> Result<Vec<u32>, SolidSetupError> {
+    let nodes = if let Some(nodes) = mesh.node_sets.get(set) {
+        nodes.clone()
+    } else if let Some(faces) = mesh.surface_sets.get(set) {
+        mesh.nodes_of_faces(faces)
+    } else if let Some(elements) = mesh.element_sets.get(set) {
+        let nodes = elements.iter().flat_map(|&element| mesh.elements.nodes(element as usize));
+        nodes.copied().collect::<BTreeSet<_>>().into_iter().collect()
+    } else {
+        let (set, known) = (set.to_string(), set_names(mesh));
+        return Err(SolidSetupError::NoSuchSet { part, set, known });
+    };
+    match nodes.is_empty() {
+        true => Err(SolidSetupError::EmptySet { part, set: set.to_string() }),
+        false => Ok(nodes),
+    }
+}
+
+type Supports = (Vec<Prescribed>, Vec<Support>);
+
+/// Held components. A node of two sets may be held by both if they move it alike.
+fn supports(scene: &SolidScene, mesh: &TetMesh) -> Result<Supports, SolidSetupError> {
+    let mut owner: BTreeMap<(u32, usize), (&str, &Profile)> = BTreeMap::new();
+    let mut named: Vec<Support> = Vec::new();
+    for held in &scene.held {
+        let nodes = nodes_of_set(mesh, &held.set, "solid.held")?;
+        let mut components = Vec::new();
+        for (axis, profile) in held.motion.iter().enumerate() {
+            let Some(profile) = profile else { continue };
+            for &node in &nodes {
+                match owner.entry((node, axis)) {
+                    Entry::Vacant(free) => {
+                        free.insert((&held.set, profile));
+                        components.push((node, axis));
+                    }
+                    Entry::Occupied(taken) if taken.get().1 == profile => {}
+                    Entry::Occupied(taken) => {
+                        return Err(SolidSetupError::HeldTwice {
+                            first: taken.get().0.to_string(),
+                            second: held.set.clone(),
+                            axis: AXES[axis],
+                            at: mesh.nodes[node as usize],
+                        });
+                    }
+                }
+            }
+        }
+        // Two entries for one set, an axis each, are one support.
+        let name = column_name(&held.set);
+        match named.iter_mut().find(|other| other.name == name) {
+            Some(support) => support.components.extend(components),
+            None => named.push(Support { name, components }),
+        }
+    }
+    let prescribed = owner
+        .into_iter()
+        .map(|((node, axis), (_, profile))| Prescribed { node, axis, profile: profile.clone() })
+        .collect();
+    Ok((prescribed, named))
+}
+
+/// Forces of one load: over a surface in proportion to the area, over loose nodes evenly.
+fn set_loads(mesh: &TetMesh, set: &str, kind: &LoadKind) -> Result<Vec<Load>, SolidSetupError> {
+    match kind {
+        LoadKind::Pressure(profile) => {
+            let faces = mesh.surface_sets.get(set).ok_or_else(|| {
+                let known = mesh.surface_sets.keys().cloned().collect();
+                if set_names(mesh).iter().any(|name| name == set) {
+                    SolidSetupError::NoSurface { set: set.to_string(), known }
+                } else {
+                    let (part, set) = ("solid.load", set.to_string());
+                    SolidSetupError::NoSuchSet { part, set, known }
+                }
+            })?;
+            let areas = vector_areas(mesh, faces);
+            let forces = (0..).zip(areas).filter(|(_, area)| *area != [0.0; 3]);
+            let forces = forces.map(|(node, area)| (node, area.map(|a| -a))).collect();
+            Ok(vec![Load { forces, profile: profile.clone() }])
+        }
+        LoadKind::Force(axes) => {
+            let shares = shares(mesh, set)?;
+            let along = |axis: usize, profile: &Profile| {
+                let force = |share: f64| {
+                    let mut force = [0.0; 3];
+                    force[axis] = share;
+                    force
+                };
+                let forces = shares.iter().map(|(node, share)| (*node, force(*share))).collect();
+                Load { forces, profile: profile.clone() }
+            };
+            let given = axes.iter().enumerate();
+            Ok(given.filter_map(|(axis, p)| p.as_ref().map(|p| along(axis, p))).collect())
+        }
+    }
+}
+
+/// Part of a force that each node of a set takes; they sum to one.
+fn shares(mesh: &TetMesh, set: &str) -> Result<Vec<(u32, f64)>, SolidSetupError> {
+    let faces: &[Face] = mesh.surface_sets.get(set).map_or(&[], Vec::as_slice);
+    if faces.is_empty() {
+        let nodes = nodes_of_set(mesh, set, "solid.load")?;
+        let share = 1.0 / nodes.len() as f64;
+        return Ok(nodes.into_iter().map(|node| (node, share)).collect());
+    }
+    let areas = tributary_areas(mesh, faces, Share::Consistent);
+    let total: f64 = areas.iter().sum();
+    let carrying = (0..).zip(areas).filter(|(_, area)| *area != 0.0);
+    Ok(carrying.map(|(node, area)| (node, area / total)).collect())
+}
+
+fn probes(scene: &SolidScene, mesh: &TetMesh) -> Result<Vec<NamedNodes>, SolidSetupError> {
+    let mut probes: Vec<NamedNodes> = Vec::new();
+    for probe in &scene.probes {
+        let nodes = match &probe.of {
+            ProbeOf::Set(set) => nodes_of_set(mesh, set, "solid.probe")?,
+            ProbeOf::Place(at) => {
+                let off = |p: &Vec3| (0..3).map(|i| (p[i] - at[i]) * (p[i] - at[i])).sum::<f64>();
+                let nearest = (0..).zip(&mesh.nodes).min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
+                nearest.map(|(node, _)| vec![node]).unwrap_or_default()
+            }
+        };
+        let name = column_name(&probe.name);
+        if probes.iter().any(|other| other.name == name) {
+            return Err(SolidSetupError::ProbeTwice { name });
+        }
+        probes.push(NamedNodes { name, nodes });
+    }
+    Ok(probes)
+}
+
+/// A name that can head a column of a table.
+fn column_name(name: &str) -> String {
+    let plain = |c: char| if c.is_alphanumeric() || "_-.".contains(c) { c } else { '_' };
+    let name: String = name.trim().chars().map(plain).collect();
+    if name.is_empty() { "set".to_string() } else { name }
+}
