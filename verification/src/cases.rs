@@ -12,6 +12,8 @@ mod bearing_conservation;
 mod cage_slip;
 #[path = "../cage_speed_table_5_4/case.rs"]
 mod cage_speed_table_5_4;
+#[path = "../calculix_comparison/case.rs"]
+mod calculix_comparison;
 #[path = "../hertz_elliptic/case.rs"]
 mod hertz_elliptic;
 #[path = "../kinematic_frequencies/case.rs"]
@@ -42,6 +44,7 @@ pub const CASES: &[Case] = &[
     kinematic_frequencies::CASE,
     cage_slip::CASE,
     cage_speed_table_5_4::CASE,
+    calculix_comparison::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).
