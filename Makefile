@@ -21,11 +21,12 @@ test:
 golden:
 	$(VERIFY) golden --case "$(CASE)" --reason "$(REASON)"
 
-## Kernels under criterion; what an accuracy costs in motion, with a bound on lanes against plain loops.
+## Kernels under criterion; what an accuracy costs in motion; steps of solids, against plain loops and CalculiX (where installed); bounds fail.
 bench:
 	$(CARGO) bench --locked --bench statics --profile release
 	$(CARGO) bench --locked --bench dynamics --profile release
 	$(CARGO) bench --locked --bench solids --profile release
+	$(CARGO) bench --locked --bench calculix --profile release
 
 ## Run time against error, as CSV and SVG in target/pareto.
 pareto:

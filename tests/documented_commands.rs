@@ -16,7 +16,10 @@ struct Documented {
 
 #[test]
 fn documented_commands_run() {
-    run_all("README.md", &["check", "plan", "statics", "modes", "run", "sweep", "pack", "compare", "schema"]);
+    run_all(
+        "README.md",
+        &["check", "plan", "statics", "modes", "run", "sweep", "pack", "compare", "schema"],
+    );
     run_all("docs/scene.md", &[]);
 }
 

@@ -7,9 +7,8 @@ use crate::scene::units::Dimension::{
 };
 use Need::{Default, Depends, Optional, Required};
 
-pub const GENERATORS: &[&str] = &[
-    "bar", "block", "ring", "shaft", "cage", "housing-a", "housing-b", "housing-c", "housing-d",
-];
+pub const GENERATORS: &[&str] =
+    &["bar", "block", "ring", "shaft", "cage", "housing-a", "housing-b", "housing-c", "housing-d"];
 const LENGTH_UNITS: &[&str] = &["m", "mm"];
 const REPAIRS: &[&str] = &["orient", "merge-duplicates", "drop-unreferenced"];
 const DAMPED_MOTIONS: &[&str] = &["absolute", "relative-to-rigid"];
@@ -143,7 +142,6 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("numerics.fields_interval", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("a twentieth of the run"),
         "Time from one file of fields of a solid to the next, rounded to whole rows.").example_of("0.1 ms"),
 ];
-
 
 /// Tables in the order of the reference.
 #[rustfmt::skip]

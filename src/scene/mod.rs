@@ -48,11 +48,11 @@ mod value;
 pub use document::Document;
 pub use error::{Place, Problem, SceneError};
 pub use resolve::resolve;
+pub use resolve_solid::resolve_subject;
 pub use resolved::{
     Assumption, Cage, CageGuidance, CageInRun, DefaultUsed, Dimensions, Dynamics, Plot,
     RaceDimensions, RunPlot, RunSettings, Scene,
 };
-pub use resolve_solid::resolve_subject;
 pub use schema::json_schema;
 pub use solid::{SolidScene, Subject};
 pub use source::{Format, LARGEST_FILE};

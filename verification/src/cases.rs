@@ -8,12 +8,14 @@ use crate::case::{Case, Tier};
 mod axial_load_closed_form;
 #[path = "../bearing_conservation/case.rs"]
 mod bearing_conservation;
+#[path = "../cage_modes_table_5_3/case.rs"]
+mod cage_modes_table_5_3;
 #[path = "../cage_slip/case.rs"]
 mod cage_slip;
 #[path = "../cage_speed_table_5_4/case.rs"]
 mod cage_speed_table_5_4;
-#[path = "../cage_modes_table_5_3/case.rs"]
-mod cage_modes_table_5_3;
+#[path = "../calculix_comparison/case.rs"]
+mod calculix_comparison;
 #[path = "../cantilever_timoshenko/case.rs"]
 mod cantilever_timoshenko;
 #[path = "../free_ring_modes/case.rs"]
@@ -63,6 +65,7 @@ pub const CASES: &[Case] = &[
     cantilever_timoshenko::CASE,
     free_ring_modes::CASE,
     cage_modes_table_5_3::CASE,
+    calculix_comparison::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).
