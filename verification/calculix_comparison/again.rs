@@ -18,7 +18,7 @@ pub fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     context.finding(
         "calculix",
         format!(
-            "ccx was run anew (\"{}\") and agrees with the kept output (\"{version}\") as checked.",
+            "ccx was run anew (\"{}\"); the checks \"run now against kept\" hold it against the kept output (\"{version}\").",
             rerun.version
         ),
     );
