@@ -386,3 +386,21 @@ fn an_error_that_is_not_a_number_is_never_good_enough() {
         assert!(control.norm(&attempt).is_nan(), "entry {at}");
     }
 }
+
+/// Losses of the three methods at the same small steps.
+#[test]
+fn losses_agree_between_the_methods() {
+    let stepping = Stepping::Fixed(1e-6);
+    let lost =
+        [Integrator::RungeKutta, Integrator::DormandPrince, Integrator::Rosenbrock].map(|method| {
+            let simulation = motion(&gentle(), method, stepping, 1e-3, 10).1;
+            [Ledger::Traction, Ledger::ContactDamping].map(|entry| ledger(&simulation, entry))
+        });
+    for other in &lost[1..] {
+        for (reference, found) in lost[0].iter().zip(other) {
+            assert!(*reference < 0.0, "{lost:?}");
+            // The trapezoidal rule of Rosenbrock's losses: (ωh)²/12 with ω of some 1e5 1/s.
+            assert!((found / reference - 1.0).abs() <= 2e-3, "{lost:?}");
+        }
+    }
+}

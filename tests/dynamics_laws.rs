@@ -10,7 +10,7 @@ use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::kinematics::euler::about;
 use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
+use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad, Rotation};
 use bearing_dynamics::solver::dynamics::race::tilts_of;
 use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
 use bearing_dynamics::solver::dynamics::stability::growth;
@@ -253,5 +253,19 @@ fn a_step_grows_as_the_exponential_to_fourth_order() {
     for edge in [Complex::new(0.0, 8f64.sqrt()), Complex::new(-2.785293563405282, 0.0)] {
         assert!((growth(edge) - 1.0).abs() <= 1e-13, "{edge}: {}", growth(edge));
         assert!(growth(edge * 0.99) < 1.0 && growth(edge * 1.01) > 1.0);
+    }
+}
+
+/// From +Y towards +Z, by the integral of its speed.
+#[test]
+fn a_rotating_load_turns_from_y_to_z() {
+    let ramp = Profile::Ramp { from: 0.0, to: 2.0, start: 0.0, duration: 1.0 };
+    let load = RotatingLoad { force: Profile::Constant(3.0), speed: ramp, phase: 0.25 };
+    for t in [0.0, 0.5, 1.0, 2.0] {
+        // ∫ 2t dt up to 1 s, then 2 rad/s.
+        let angle: f64 = 0.25 + if t <= 1.0 { t * t } else { 1.0 + 2.0 * (t - 1.0) };
+        let [x, y, z] = load.force(t);
+        let expected = [3.0 * angle.cos(), 3.0 * angle.sin()];
+        assert!(x == 0.0 && (y - expected[0]).abs() + (z - expected[1]).abs() <= 1e-14, "{t}");
     }
 }
