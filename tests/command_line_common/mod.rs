@@ -102,6 +102,16 @@ pub fn files(folder: &Path) -> Vec<String> {
     names
 }
 
+/// Scenes of a bearing; those of a solid have tests of their own (`solid_command`).
+pub fn bearing_scenes() -> Vec<String> {
+    let mut names = files(&scenes());
+    names.retain(|name| {
+        name.ends_with(".toml") && !read(Path::new(&scene(name))).contains("[solid")
+    });
+    assert!(names.len() >= 8, "{names:?}");
+    names
+}
+
 /// The bearing of Table 4.1 without loads and without a title.
 pub const DEEP_GROOVE: &str = r#"[bearing]
 kind = "deep-groove"
