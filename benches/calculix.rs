@@ -133,7 +133,8 @@ fn main() {
         );
     }
     fs::remove_dir_all(&folder).expect("the temporary folder goes");
-    if !(ratios[0] >= LEAST) {
+    let held = ratios[0] >= LEAST;
+    if !held {
         eprintln!("wanted {WANTED} times CalculiX with large displacements, at least {LEAST}");
         std::process::exit(1);
     }

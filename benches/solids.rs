@@ -113,8 +113,8 @@ impl Plain {
             let strain = (h + h.transpose() + h.transpose() * h) * 0.5;
             let stress = strain * double + Matrix3::identity() * (lambda * strain.trace());
             let forces = (Matrix3::identity() + h) * stress * gradients * -*volume;
-            for n in 0..4 {
-                self.force[nodes[n]] += forces.column(n);
+            for (node, force) in nodes.iter().zip(forces.column_iter()) {
+                self.force[*node] += force;
             }
         }
         for n in 0..self.rate.len() {
@@ -198,7 +198,8 @@ fn main() {
         seconds / count as f64 * speeds[1],
     );
     for (ratio, of_roof) in &ratios[..3] {
-        if !(*ratio >= LEAST_OVER_PLAIN && *of_roof >= LEAST_OF_ROOF) {
+        let held = *ratio >= LEAST_OVER_PLAIN && *of_roof >= LEAST_OF_ROOF;
+        if !held {
             eprintln!(
                 "wanted at least {LEAST_OVER_PLAIN} times the plain loop and {LEAST_OF_ROOF} of the roof"
             );

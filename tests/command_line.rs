@@ -3,8 +3,8 @@
 mod command_line_common;
 
 use command_line_common::{
-    ANGULAR_CONTACT, DEEP_GROOVE, bearing, changed, command, done, files, json, read, refusal,
-    refused, scene, scenes, text, write,
+    ANGULAR_CONTACT, DEEP_GROOVE, bearing, bearing_scenes, changed, command, done, files, json,
+    read, refusal, refused, scene, text, write,
 };
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;

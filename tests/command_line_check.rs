@@ -3,7 +3,7 @@
 mod command_line_common;
 
 use command_line_common::{
-    ANGULAR_CONTACT, DEEP_GROOVE, changed, done, files, json, read, scene, scenes, text, write,
+    ANGULAR_CONTACT, DEEP_GROOVE, bearing_scenes, changed, done, json, read, scene, text, write,
 };
 use serde_json::Value;
 use std::path::Path;
@@ -127,7 +127,7 @@ fn solution(folder: &Path, path: &str) -> (String, Vec<u8>, Value) {
 fn a_scene_in_json_gives_the_bits_of_the_one_in_toml() {
     let root = tempdir().unwrap();
     let mut compared = 0;
-    for name in &bearing_scenes() {
+    for name in bearing_scenes().iter().filter(|name| name.ends_with(".toml")) {
         let path = scene(name);
         let value: Value = toml::from_str(&read(Path::new(&path))).unwrap();
         let same = write(root.path(), "scene.json", &value.to_string());

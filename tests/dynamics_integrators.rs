@@ -404,3 +404,26 @@ fn losses_agree_between_the_methods() {
         }
     }
 }
+
+/// The watchdog lets runs through whose motion is right, with its usual limit.
+#[test]
+fn error_controlled_runs_pass_the_energy_watchdog() {
+    let loads = [0.0, 0.0, -1500.0, 0.0, 0.0];
+    let smooth = bearing(table_4_1(-5e-6), loads, 10_000.0 * RPM);
+    for (name, problem) in [("frictionless, 10 000 rpm", smooth), ("rolling", rolling())] {
+        for accuracy in [1e-2, 1e-3] {
+            let stepping = Stepping::Accuracy(accuracy);
+            let options = RunOptions {
+                integrator: Integrator::Rosenbrock,
+                stepping,
+                ..RunOptions::default()
+            };
+            let mut simulation = Simulation::new(problem.clone(), options).unwrap();
+            for row in 1..=40 {
+                rows_of(&mut simulation, 0.5e-3 * f64::from(row), 1);
+                let snapshot = simulation.snapshot();
+                assert!(snapshot.is_ok(), "{name}, {accuracy}, row {row}: {:?}", snapshot.err());
+            }
+        }
+    }
+}

@@ -40,6 +40,16 @@ pub fn say(text: &str) -> Result<(), Box<dyn Error>> {
     }
 }
 
+/// Refuses to write another kind of results over those of a run, which may be half way.
+pub fn refuse_folder_of_run(folder: &Path) -> Result<(), Box<dyn Error>> {
+    if folder.join("state.json").exists() {
+        let folder = folder.display();
+        let text = format!("{folder} holds a run (state.json); name another folder with --out");
+        return Err(text.into());
+    }
+    Ok(())
+}
+
 /// `results/<name of the scene>` unless a folder was given.
 pub fn results_folder(scene: &Path, given: &Option<PathBuf>) -> PathBuf {
     given.clone().unwrap_or_else(|| {

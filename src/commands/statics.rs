@@ -1,7 +1,7 @@
 //! `bearing statics SCENE`.
 
 use super::solve::solve_scene;
-use super::{CommandResult, Outcome, pictures, results_folder, say, table};
+use super::{CommandResult, Outcome, pictures, refuse_folder_of_run, results_folder, say, table};
 use bearing_dynamics::output::results::write_static_results;
 use bearing_dynamics::scene::{self, Subject};
 use std::error::Error;
@@ -38,6 +38,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     // Nothing computed is lost if the folder cannot be written.
     say(&table)?;
     let folder = results_folder(&arguments.scene, &arguments.out);
+    refuse_folder_of_run(&folder)?;
     let mut record = solved.record;
     remove_earlier(&folder)?;
     let start = Instant::now();

@@ -289,7 +289,8 @@ mod tests {
 
     #[test]
     fn the_rules_integrate_what_they_promise() {
-        let rules: [(u32, Vec<([f64; 4], f64)>); 2] = [
+        type Rule = Vec<([f64; 4], f64)>;
+        let rules: [(u32, Rule); 2] = [
             (2, (0..POINTS).map(|point| (stiffness_rule(point), 0.25)).collect()),
             (5, mass_rule().to_vec()),
         ];

@@ -52,13 +52,16 @@ fn outer_node(mesh: &TetMesh, angle: f64, x: f64) -> Result<u32, CaseError> {
     nearest.copied().ok_or_else(|| CaseError::message("the cage has no outer surface"))
 }
 
+/// A number taken from model and displacements.
+type Measure<'a> = dyn Fn(&SolidModel, &[[f64; 4]]) -> f64 + 'a;
+
 /// Amplitude spectra of `measures` after an impact on `node` along `direction`.
 fn ring_out(
     mut problem: SolidProblem,
     node: u32,
     direction: Vec3,
     duration: f64,
-    measures: &[&dyn Fn(&SolidModel, &[[f64; 4]]) -> f64],
+    measures: &[&Measure],
 ) -> Result<Vec<Spectrum>, CaseError> {
     let profile = Profile::HalfSine { base: 0.0, peak: PEAK, start: 0.0, duration: CONTACT_TIME };
     problem.loads.push(Load { forces: vec![(node, direction)], profile });

@@ -247,7 +247,7 @@ fn step_boundary(
             }
         }
         let size = largest(solid.displacement.iter().flatten().map(|x| x.abs()));
-        Ok(!(size <= 1e-11))
+        Ok(size.is_nan() || size > 1e-11)
     };
     let (mut low, mut high) = (0.5, 1.5);
     for _ in 0..9 {

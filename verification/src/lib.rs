@@ -6,6 +6,8 @@
 //!
 //! `verification/README.md` tells how a case is written and how the report is read.
 #![forbid(unsafe_code)]
+// Indices are the notation of components, as in the equations.
+#![allow(clippy::needless_range_loop)]
 
 pub mod bearings;
 pub mod cage_bearing;

@@ -1,7 +1,7 @@
 //! `bearing modes`: natural frequencies and mode shapes of a solid.
 
 use super::{plan, prepare, record, remove_earlier};
-use crate::commands::{CommandResult, Outcome, results_folder, say};
+use crate::commands::{CommandResult, Outcome, refuse_folder_of_run, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, write_list, write_mode};
@@ -35,6 +35,7 @@ pub fn run(path: &Path, scene: &SolidScene, out: &Option<PathBuf>, dry: bool) ->
         return Ok(Outcome::Done);
     }
     let folder = results_folder(path, out);
+    refuse_folder_of_run(&folder)?;
     let folder = if out.is_some() {
         folder
     } else {

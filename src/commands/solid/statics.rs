@@ -1,7 +1,7 @@
 //! `bearing statics` of a solid.
 
 use super::{Prepared, plan, prepare, record, remove_earlier};
-use crate::commands::{CommandResult, Outcome, results_folder, say};
+use crate::commands::{CommandResult, Outcome, refuse_folder_of_run, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, stresses, write_fields, write_list};
@@ -45,6 +45,7 @@ pub fn run(path: &Path, scene: &SolidScene, out: &Option<PathBuf>, dry: bool) ->
         return Ok(Outcome::Done);
     }
     let folder = results_folder(path, out);
+    refuse_folder_of_run(&folder)?;
     remove_earlier(&folder)?;
     let file = file_name("fields", 0);
     write_fields(&folder.join(&file), &built.mesh, &solution.displacement, None, &stress)?;

@@ -201,7 +201,7 @@ impl SolidSession {
         let rows = grid.rows_until(grid.steps) + 1;
         let mut values = Vec::new();
         let wanted = rows.checked_mul(columns.len());
-        if !wanted.is_some_and(|wanted| values.try_reserve_exact(wanted).is_ok()) {
+        if wanted.is_none_or(|wanted| values.try_reserve_exact(wanted).is_err()) {
             return Err(SolidRunError::Memory { rows, columns: columns.len() });
         }
         Ok(SolidSession {

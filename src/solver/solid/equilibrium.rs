@@ -159,7 +159,7 @@ impl<'a> Newton<'a> {
                     iterations: iteration,
                 });
             }
-            if self.stale || !(largest <= 0.1 * last) {
+            if self.stale || largest > 0.1 * last {
                 self.refactor()?;
             }
             last = largest;

@@ -219,7 +219,7 @@ impl<'a> Krylov<'a> {
         }
         self.masses.multiply(&vector, &mut momentum);
         let length = dot(&vector, &momentum).sqrt();
-        if !(length > 1e-12 * first) {
+        if length.is_nan() || length <= 1e-12 * first {
             return false;
         }
         for (v, m) in vector.iter_mut().zip(&mut momentum) {
