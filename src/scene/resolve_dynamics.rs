@@ -301,7 +301,12 @@ fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
         start,
         integrator,
         stepping,
-        energy_limit: reader.number("numerics.energy_limit").unwrap_or(usual.energy_limit),
+        energy_limit: reader.number("numerics.energy_limit").unwrap_or(match stepping {
+            // Error control watches the steps; the ledger of a drive that holds a speed against stiff
+            // traction is inaccurate in long steps, while the motion is not.
+            Stepping::Accuracy(_) => 1.0,
+            Stepping::Fixed(_) | Stepping::FractionOfLimit(_) => usual.energy_limit,
+        }),
         ..usual
     };
     let output_interval = within(reader, "numerics.output_interval", end)?.unwrap_or_else(|| {
