@@ -193,7 +193,7 @@ pub(super) const KEYS: &[Key] = &[
         "Start at the static equilibrium of the loads at t = 0, or in nominal positions; balls and cage roll either way."),
     quantity("numerics.output_interval", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("a thousandth of the run"),
         "Time from one written row to the next.").example_of("0.1 ms"),
-    Key::new("numerics.energy_limit", Kind::Number(above(0.0, 1.0, "")), Default { value: "0.01; with an `accuracy` 1", reason: "1 % of the energy turned over; error control watches the steps itself" },
+    Key::new("numerics.energy_limit", Kind::Number(above(0.0, 1.0, "")), Default { value: "0.01", reason: "1 % of the energy turned over; with an `accuracy` 1, since error control watches the steps itself" },
         "Energy unaccounted for, as a part of the energy turned over, at which the run is stopped. Turned over is the largest energy in the contacts, all work and losses, and with an `accuracy` also the kinetic energy.").example_of("0.01"),
     Key::new("numerics.integrator", Kind::Choice(INTEGRATORS), Default { value: "rk4", reason: "classical fourth-order Runge-Kutta, as the source" },
         "Time integration: classical Runge-Kutta; Dormand and Prince's explicit method of fifth order; a linearly implicit one that traction and contacts do not bind. The latter two take an `accuracy`."),
