@@ -3,6 +3,7 @@ pub mod ball;
 mod ball_start;
 pub mod channels;
 pub mod dynamics;
+pub mod housing;
 pub mod plan;
 pub mod profile;
 pub mod solid;

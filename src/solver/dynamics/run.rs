@@ -5,6 +5,7 @@ use super::control::{Attempt, Controller};
 use super::dormand_prince::{self, DormandPrince};
 use super::energy::Energy;
 use super::model::DynamicProblem;
+use super::race::RaceLoads;
 use super::rk4::RungeKutta;
 use super::rosenbrock::{self, Rosenbrock};
 use super::stability::{StepLimit, step_limit};
@@ -340,6 +341,12 @@ impl Simulation {
                 integrator.begin(&mut self.system, self.time, &self.state);
             }
         }
+    }
+
+    /// Lets a housing push the outer race from now on; its work goes with that of foundations.
+    pub fn set_housing_load(&mut self, load: RaceLoads) {
+        self.system.housing_load = load;
+        self.take_first_rates();
     }
 
     /// One step; checks what can be checked cheaply.

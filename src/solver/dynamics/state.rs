@@ -23,6 +23,7 @@ pub enum Ledger {
     Traction,
     ContactDamping,
     CageFriction,
+    /// Dashpots of a foundation, or all that a housing does to the outer race.
     Foundation,
     Drives,
 }

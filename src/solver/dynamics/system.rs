@@ -33,6 +33,8 @@ pub struct System {
     /// Profiles are read no later than this, s: in a step that ends at a corner, just before it, so
     /// that no stage sees what comes after. Infinite otherwise.
     pub latest: f64,
+    /// What a housing does to the outer race, about its centre; stays as it is within a step.
+    pub housing_load: RaceLoads,
     fixed_outer: RaceNow,
     ball_force: Vec<Vec3>,
     ball_moment: Vec<Vec3>,
@@ -98,6 +100,7 @@ impl System {
             ball_moment: vec![[0.0; 3]; layout.balls],
             work: Work::default(),
             latest: f64::INFINITY,
+            housing_load: RaceLoads::default(),
             fixed_outer: race::fixed(&problem.outer_start),
             problem,
             layout,
@@ -351,6 +354,11 @@ impl System {
         if let Some(body) = &problem.outer {
             let mut loads = instant.on_outer;
             loads.force = add_scaled(loads.force, body.inertia.mass, problem.gravity);
+            let RaceLoads { force, moment } = self.housing_load;
+            loads.force = add(loads.force, force);
+            loads.moment = add(loads.moment, moment);
+            let BodyState { velocity, spin, .. } = instant.outer.state;
+            ledger[Ledger::Foundation as usize] += dot(force, velocity) + dot(moment, spin);
             self.body_rates(
                 t,
                 body,

@@ -123,7 +123,7 @@ impl ExplicitSolid {
     }
 
     /// Undeformed and still at t = 0, with a step that is not looked at.
-    pub(super) fn at_rest(
+    pub fn at_rest(
         model: SolidModel,
         method: ExplicitMethod,
         step_size: f64,
