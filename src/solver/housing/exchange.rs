@@ -72,7 +72,9 @@ pub enum ExchangeError {
     Foundation,
     #[error("{name} is {value}; it must be between 0 and {most}")]
     Option { name: &'static str, value: f64, most: f64 },
-    #[error("no node of the housing carries a part of the bore's surface; check the set of the bore")]
+    #[error(
+        "no node of the housing carries a part of the bore's surface; check the set of the bore"
+    )]
     NoSeat,
     #[error(
         "the outer race has left its bore at t = {time} s, step {step}: it is {distance:.3e} m off \

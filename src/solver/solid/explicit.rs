@@ -437,6 +437,11 @@ impl ExplicitSolid {
         }
     }
 
+    /// Velocities, m/s; those of central differences are of half a step before `time`.
+    pub fn rates(&self) -> &[Node] {
+        &self.rate
+    }
+
     /// Forces of elements and loads on the nodes as last evaluated, N.
     pub fn forces(&self) -> &[Node] {
         &self.force
