@@ -2,6 +2,7 @@
 
 mod cage;
 mod motion;
+mod solids;
 mod statics;
 mod varying_compliance;
 
@@ -20,4 +21,10 @@ pub const STUDIES: &[Study] = &[
     cage::SLICES,
     cage::HERTZ,
     cage::CONTACT,
+    solids::CANTILEVER_DEFLECTION,
+    solids::CANTILEVER_FREQUENCY,
+    solids::RING_DEFLECTION,
+    solids::RING_FREQUENCY,
+    solids::CAGE_DEFLECTION,
+    solids::CAGE_FREQUENCY,
 ];
