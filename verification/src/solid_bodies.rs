@@ -72,9 +72,7 @@ pub mod thick_ring {
 
     use crate::case::CaseError;
     use crate::oracles::lame::{Ends, ThickRing};
-    use crate::solids::{
-        STEEL, Vec3, constant_load, free_body, mesh_of, prescribe, surface_force,
-    };
+    use crate::solids::{STEEL, Vec3, constant_load, free_body, mesh_of, prescribe, surface_force};
 
     /// m; outer over inner radius 2.
     pub const BODY: Ring = Ring { inner_radius: 0.02, outer_radius: 0.04, width: 5e-3 };

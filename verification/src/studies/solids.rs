@@ -163,11 +163,7 @@ fn falls_short(points: &[&Point]) -> String {
             (nodes(last) * more.powf(1.0 / by_nodes), last.seconds * more.powf(1.0 / by_time));
         format!("{nodes:.0e} nodes and {seconds:.0e} s")
     };
-    let one = if last.error > 1e-2 {
-        format!("{} for 1 %, ", needed(1e-2))
-    } else {
-        String::new()
-    };
+    let one = if last.error > 1e-2 { format!("{} for 1 %, ", needed(1e-2)) } else { String::new() };
     format!(
         "{far}. Its error falls with the power {by_nodes:.2} of the nodes and {by_time:.2} of the time, so that it \
          would take about {one}{} for 0.1 %.",
@@ -266,8 +262,7 @@ fn beam_shape(mesh: &TetMesh) -> Vec<Vec3> {
     let at = |place: &Vec3| {
         let s = ROOT * place[0] / cantilever::LENGTH;
         let deflection = s.cosh() - s.cos() - (s.sinh() - s.sin()) / share;
-        let slope =
-            (s.sinh() + s.sin() - (s.cosh() - s.cos()) / share) * ROOT / cantilever::LENGTH;
+        let slope = (s.sinh() + s.sin() - (s.cosh() - s.cos()) / share) * ROOT / cantilever::LENGTH;
         [-place[2] * slope, 0.0, deflection]
     };
     mesh.nodes.iter().map(at).collect()
@@ -322,7 +317,14 @@ fn cantilever_deflection(context: &mut ParetoContext) -> Result<(), CaseError> {
         }
     }
     conclude(context, "the deflection");
-    context.sentence(reference_sentence(converging, converged, order, "m", timoshenko, "Timoshenko's beam"));
+    context.sentence(reference_sentence(
+        converging,
+        converged,
+        order,
+        "m",
+        timoshenko,
+        "Timoshenko's beam",
+    ));
     Ok(())
 }
 
@@ -373,7 +375,14 @@ fn cantilever_frequency(context: &mut ParetoContext) -> Result<(), CaseError> {
         }
     }
     conclude(context, "the frequency");
-    context.sentence(reference_sentence(converging, converged, order, "Hz", timoshenko, "Timoshenko's beam"));
+    context.sentence(reference_sentence(
+        converging,
+        converged,
+        order,
+        "Hz",
+        timoshenko,
+        "Timoshenko's beam",
+    ));
     context.sentence(explicit_sentence());
     Ok(())
 }
@@ -411,7 +420,10 @@ fn ring_deflection(context: &mut ParetoContext) -> Result<(), CaseError> {
         }
     }
     conclude(context, "the bore's displacement");
-    context.sentence(format!("The {}", cheapest_ways(context.points(), 1, "the hoop stress at the bore")));
+    context.sentence(format!(
+        "The {}",
+        cheapest_ways(context.points(), 1, "the hoop stress at the bore")
+    ));
     context.sentence("Reference: Lamé, ends free; stresses are means over the bore's nodes.");
     Ok(())
 }
@@ -529,11 +541,7 @@ fn hold_lightly(problem: &mut SolidProblem, mesh: &TetMesh) -> Result<(), CaseEr
     prescribe(problem, |place| {
         let still = |held: bool| held.then_some(0.0);
         let [at_right, at_left, at_top] = places.map(|held| held == place);
-        [
-            still(at_right || at_left || at_top),
-            still(at_right),
-            still(at_right || at_left),
-        ]
+        [still(at_right || at_left || at_top), still(at_right), still(at_right || at_left)]
     });
     Ok(())
 }
