@@ -16,6 +16,38 @@ use thiserror::Error;
 use crate::case::CaseError;
 use crate::report::write_atomically;
 
+/// Measures the time of one computation by one thread: by the clock, and what takes longer than a
+/// tenth of a second by the processor time of the thread where the system tells it, so that other
+/// processes lengthen it less.
+pub struct Stopwatch {
+    begun: Instant,
+    processor: Option<f64>,
+}
+
+impl Stopwatch {
+    pub fn start() -> Stopwatch {
+        Stopwatch { processor: processor_seconds(), begun: Instant::now() }
+    }
+
+    /// s.
+    pub fn seconds(&self) -> f64 {
+        // The system books processor time in ticks of some milliseconds.
+        const COARSE: f64 = 0.1;
+        let clock = self.begun.elapsed().as_secs_f64();
+        match (self.processor, processor_seconds()) {
+            (Some(before), Some(now)) if clock > COARSE => clock.min(now - before).max(COARSE),
+            _ => clock,
+        }
+    }
+}
+
+/// Processor time of this thread so far, s.
+fn processor_seconds() -> Option<f64> {
+    let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = text.split(' ').next()?.parse().ok()?;
+    Some(1e-9 * nanoseconds)
+}
+
 /// One study of run time against error.
 #[derive(Clone, Copy, Debug)]
 pub struct Study {
