@@ -3,9 +3,7 @@
 mod solid_command_common;
 
 use serde_json::Value;
-use solid_command_common::{
-    ON_ROLLERS, Place, bar, command, json, number, shipped, stderr, succeed,
-};
+use solid_command_common::{ON_ROLLERS, Place, bar, command, number, shipped, stderr, succeed};
 use std::fs;
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 
 mod solid_command_common;
 
-use solid_command_common::{Place, SHORT_RUN, column, command, into_folder, json, stderr, succeed};
+use solid_command_common::{Place, SHORT_RUN, column, into_folder, json, stderr, succeed};
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
