@@ -289,7 +289,7 @@ mod tests {
     /// The start is no mode of the mesh, yet half a period tells the frequency.
     #[test]
     fn explicit_steps_have_the_frequency_of_their_masses() {
-        let cells = RingMesh { around: 16, radial: 1, axial: 1, radial_growth: 1.0 };
+        let cells = RingMesh { around: 48, radial: 1, axial: 1, radial_growth: 1.0 };
         let solid = ring(&crate::solid_bodies::thin_ring::BODY, &cells).unwrap();
         let mesh = mesh_of(&solid, Order::Quadratic).unwrap();
         let problem = free_body(&mesh, STEEL);
@@ -298,8 +298,9 @@ mod tests {
         let expected = 0.5 * (found.modes[6].frequency + found.modes[7].frequency);
         let shape = ring::oval_shape(&mesh, 0.05);
         let (by_steps, evaluations) = frequency_by_steps(&problem, &shape, expected).unwrap();
-        // This coarse ring is a third off round in its stiffness, so other modes have some share.
-        assert!((by_steps / expected - 1.0).abs() <= 5e-3, "{by_steps} {expected}");
+        println!("{:e} off", by_steps / expected - 1.0);
+        // Other modes have a share of some percent in the start, and count by its square.
+        assert!((by_steps / expected - 1.0).abs() <= 5e-4, "{by_steps} {expected}");
         assert!(evaluations.is_some_and(|count| count > 1000));
     }
 }
