@@ -5,6 +5,7 @@ mod common;
 #[path = "common/dynamics.rs"]
 mod dynamics;
 
+use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::solver::dynamics::contacts::Driver;
@@ -19,7 +20,7 @@ use bearing_dynamics::solver::dynamics::start;
 use bearing_dynamics::solver::dynamics::state::{Layout, Ledger, POSITION, VELOCITY};
 use bearing_dynamics::solver::profile::Profile;
 use common::table_4_1;
-use dynamics::{CONSTANT, RPM, bearing, bits, inner_state, ledger, traction_laws};
+use dynamics::{CONSTANT, GRAVITY, RPM, bearing, bits, cage, inner_state, ledger, traction_laws};
 
 /// Tables 3.5 and 4.1 at 5 µm interference, 1000 rpm, 1500 N down, default friction.
 fn rolling() -> DynamicProblem {
@@ -208,6 +209,11 @@ fn steps_a_hundred_times_the_explicit_limit_are_stable() {
 /// Rows of the history of the blow up to 1.2 ms: later the race, thrown back, loses contacts.
 const BEFORE_LOSS: usize = 20;
 
+/// The same at 10 000 rpm: centrifugal forces, and orbits that turn by some milliradians a step.
+fn fast() -> DynamicProblem {
+    bearing(table_4_1(-5e-6), [0.0, 0.0, -1500.0, 0.0, 0.0], 10_000.0 * RPM)
+}
+
 /// Scenes of different kinds: name, problem, end.
 fn scenes() -> Vec<(&'static str, DynamicProblem, f64)> {
     let mut turning = rolling();
@@ -222,8 +228,18 @@ fn scenes() -> Vec<(&'static str, DynamicProblem, f64)> {
     let mut impact = damped();
     impact.inner.drives[2] =
         Drive::Load(Profile::HalfSine { base: -500.0, peak: -3000.0, start: 5e-4, duration: 1e-3 });
+    let smooth = DynamicProblem { traction: TractionLaw::None, ..fast() };
+    let geometry = table_4_1(-5e-6);
+    let caged = DynamicProblem {
+        cage: Some(cage(&geometry, Pocket::Cylindrical, Guidance::OuterRace)),
+        gravity: GRAVITY,
+        ..rolling()
+    };
     vec![
         ("rolling", rolling(), 5e-3),
+        ("10 000 rpm", smooth, 5e-3),
+        // Long enough for the cage to fall on a ball and be pushed on by it.
+        ("cage", caged, 2e-2),
         ("rotating load", turning, 5e-3),
         ("parting", parting, 5e-3),
         ("impact", impact, 3e-3),
@@ -260,8 +276,8 @@ fn the_accuracy_that_is_asked_for_is_delivered() {
             let error = largest_difference(&found[..whole], &reference[..whole]) / scale;
             let later = largest_difference(&found, &reference) / scale;
             kept &= error <= accuracy && simulation.steps > steps_before;
-            // A tenth of the accuracy when contact is lost, grown.
-            kept &= !thrown || later <= 0.1 * growth * accuracy;
+            // A twentieth of the accuracy when contact is lost, grown.
+            kept &= !thrown || later <= 0.05 * growth * accuracy;
             steps_before = simulation.steps;
             let work = simulation.system.work;
             assert_eq!(work.factorisations, simulation.steps + work.rejected_steps);
@@ -277,7 +293,7 @@ fn the_accuracy_that_is_asked_for_is_delivered() {
 
 #[test]
 fn drivers_give_the_same_bits_and_rejected_steps_leave_no_trace() {
-    let (_, problem, end) = scenes().swap_remove(3);
+    let (_, problem, end) = scenes().pop().unwrap();
     let run = |driver| {
         let stepping = Stepping::Accuracy(1e-3);
         let options = RunOptions {
@@ -405,12 +421,24 @@ fn losses_agree_between_the_methods() {
     }
 }
 
+/// Balls on their orbits and the turning race hold a thousand times the energy of the contacts, and
+/// none of it is lost or made in steps that turn by milliradians.
+#[test]
+fn long_steps_keep_the_energy_of_turning() {
+    for (accuracy, allowed) in [(1e-2, 1e-5), (1e-3, 1e-6)] {
+        let stepping = Stepping::Accuracy(accuracy);
+        let mut simulation = motion(&fast(), Integrator::Rosenbrock, stepping, 2e-2, 20).1;
+        let snapshot = simulation.snapshot().unwrap();
+        let part = snapshot.residual.abs() / snapshot.energy.kinetic;
+        // Measured: 2e-6 and 6e-8; with stages along tangents 9e-4 and 3e-6.
+        assert!(part <= allowed, "{accuracy}: {part:e}");
+    }
+}
+
 /// The watchdog lets runs through whose motion is right, with its usual limit.
 #[test]
 fn error_controlled_runs_pass_the_energy_watchdog() {
-    let loads = [0.0, 0.0, -1500.0, 0.0, 0.0];
-    let smooth = bearing(table_4_1(-5e-6), loads, 10_000.0 * RPM);
-    for (name, problem) in [("frictionless, 10 000 rpm", smooth), ("rolling", rolling())] {
+    for (name, problem) in [("frictionless, 10 000 rpm", fast()), ("rolling", rolling())] {
         for accuracy in [1e-2, 1e-3] {
             let stepping = Stepping::Accuracy(accuracy);
             let options = RunOptions {

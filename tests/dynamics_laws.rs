@@ -62,9 +62,16 @@ fn hunt_and_crossley_lose_alpha_times_the_speed() {
 
 #[test]
 fn an_unbalance_is_a_mass_on_the_race() {
-    // At the race's own Y, pulled outwards with m e Ω² wherever that points, and nothing else.
-    let speed = 300.0;
+    // At the race's own Y, pulled outwards with m e Ω² wherever that points, held back across it while
+    // the race speeds up, and nothing else.
+    let (speed, faster) = (300.0, 2e4);
     let mut problem = bearing(table_4_1(1e-3), [0.0; 5], speed);
+    problem.inner.rotation = Rotation::Speed(Profile::Ramp {
+        from: 0.0,
+        to: 2.0 * speed,
+        start: -speed / faster,
+        duration: 2.0 * speed / faster,
+    });
     let layout = Layout::new(8, false);
     let at = layout.inner();
     for angle in [0.0, 0.4, 2.5, -1.9] {
@@ -78,7 +85,8 @@ fn an_unbalance_is_a_mass_on_the_race() {
             Vector3::from_column_slice(&rates[at + VELOCITY..at + VELOCITY + 3])
                 * problem.inner.inertia.mass
         });
-        let expected = Vector3::new(0.0, angle.cos(), angle.sin()) * (2e-4 * speed * speed);
+        let expected = Vector3::new(0.0, angle.cos(), angle.sin()) * (2e-4 * speed * speed)
+            + Vector3::new(0.0, angle.sin(), -angle.cos()) * (2e-4 * faster);
         let error = (force[1] - force[0] - expected).norm();
         assert!(error <= 1e-13 * expected.norm(), "{angle}: {error} N");
     }

@@ -27,6 +27,7 @@ pub mod pressed_block;
 pub mod published;
 pub mod report;
 pub mod runner;
+pub mod solid_bodies;
 pub mod solids;
 pub mod studies;
 pub mod surface_picture;

@@ -66,21 +66,19 @@ struct Scale {
     mass: f64,
     /// Turns errors of angles into those of displacements, m.
     arm: f64,
-    /// Its displacements count over so many overlaps.
-    room: f64,
 }
 
 impl Controller {
     pub fn new(problem: &DynamicProblem, accuracy: f64, order: f64) -> Controller {
         let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
         let geometry = &problem.geometry;
-        let race = |mass| Scale { mass, arm: geometry.pitch_radius, room: 1.0 };
+        let race = |mass| Scale { mass, arm: geometry.pitch_radius };
         let mut bodies = vec![(layout.inner(), race(problem.inner.inertia.mass))];
         if let Some(outer) = &problem.outer {
             bodies.push((layout.outer(), race(outer.inertia.mass)));
         }
         if let Some(cage) = &problem.cage {
-            bodies.push((layout.cage(), Scale { room: 10.0, ..race(cage.inertia.mass) }));
+            bodies.push((layout.cage(), race(cage.inertia.mass)));
         }
         let stiffness = problem.inner_contact.stiffness.min(problem.outer_contact.stiffness);
         Controller {
@@ -94,7 +92,7 @@ impl Controller {
             order,
             stiffness,
             layout,
-            ball: Scale { mass: problem.ball.mass, arm: geometry.ball_radius, room: 1.0 },
+            ball: Scale { mass: problem.ball.mass, arm: geometry.ball_radius },
             bodies,
         }
     }
@@ -134,8 +132,7 @@ impl Controller {
                 norm = value;
             }
         };
-        let unit = |scale: &Scale| SHARE * self.accuracy * scale.room * self.memory.displacement;
-        let per = 1.0 / unit(&self.ball);
+        let per = 1.0 / (SHARE * self.accuracy * self.memory.displacement);
         let per_speed = per / self.frequency(&self.ball);
         for i in 0..3 {
             for first in (0..layout.balls).step_by(LANES) {
@@ -146,7 +143,6 @@ impl Controller {
             }
         }
         for (at, scale) in &self.bodies {
-            let per = 1.0 / unit(scale);
             let per_speed = per / self.frequency(scale);
             take(per * largest(at + POSITION, 3));
             take(per * scale.arm * 2.0 * largest(at + ORIENTATION, VELOCITY - ORIENTATION));

@@ -7,8 +7,9 @@
 //!
 //! How slip changes as the contact point moves round the bodies, and how traction follows the normal
 //! load, is known too, but only for displacements in a right-hand side: that keeps the matrix
-//! symmetric and moves its slopes by a part hγ · (turning rate) of themselves. Left out are how the
-//! direction of the normal force turns with the bodies, how traction follows the entrainment speed,
+//! symmetric and moves its slopes by a part hγ · (turning rate) of themselves. Orbits turn in frames of
+//! their own ([`super::orbit_frame`]). Left out are how the direction of the normal force turns as a
+//! ball leaves its frame's axes, how traction follows the entrainment speed,
 //! the Heathcote moments and gyroscopic moments. A W-method keeps its order without them.
 
 use super::model::Drive;

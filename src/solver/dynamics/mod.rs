@@ -2,8 +2,8 @@
 //!
 //! `model` says what is simulated, `state` where it lies, `contacts` and `race` turn states into
 //! loads, `system` into rates, `energy` into energies; `rk4`, `dormand_prince` and `rosenbrock`
-//! integrate (the last through `linearised` contacts and the `arrow` matrix), `control` chooses
-//! steps for an accuracy, `run` drives a simulation from start to end.
+//! integrate (the last through `linearised` contacts, the `arrow` matrix and each ball's `orbit_frame`),
+//! `control` chooses steps for an accuracy, `run` drives a simulation from start to end.
 pub mod arrow;
 pub mod checkpoint;
 pub mod contacts;
@@ -14,6 +14,7 @@ pub mod energy;
 pub mod equilibrium;
 pub mod linearised;
 pub mod model;
+pub mod orbit_frame;
 pub mod quasi_static;
 pub mod race;
 pub mod rk4;

@@ -4,12 +4,13 @@
 //!
 //! Sliding dies out within 1e-7 s in a rolling contact, a hundred times faster than anything else
 //! moves, and binds an explicit step. Here contacts and traction are implicit through
-//! [`Linearised`], one matrix a step.
+//! [`Linearised`], one matrix a step, and balls are described in [`OrbitFrames`].
 
 use super::arrow::Arrow;
 use super::contacts::Want;
 use super::control::Attempt;
 use super::linearised::Linearised;
+use super::orbit_frame::OrbitFrames;
 use super::state::Ledger;
 use super::system::System;
 
@@ -45,6 +46,7 @@ pub const ERROR_ORDER: f64 = 3.0;
 pub struct Rosenbrock {
     linearised: Linearised,
     arrow: Arrow,
+    frames: OrbitFrames,
     first: Vec<f64>,
     stages: [Vec<f64>; STAGES],
     stage: Vec<f64>,
@@ -59,6 +61,7 @@ impl Rosenbrock {
         Rosenbrock {
             arrow: Arrow::new(&system.layout, system.problem.ball, linearised.hubs.len()),
             linearised,
+            frames: OrbitFrames::new(&system.layout),
             first: room(),
             stages: std::array::from_fn(|_| room()),
             stage: room(),
@@ -71,6 +74,7 @@ impl Rosenbrock {
     pub fn begin(&mut self, system: &mut System, t: f64, state: &[f64]) {
         let instant = system.evaluate_with(Want::ForcesAndSlopes, t, state, &mut self.first);
         self.linearised.update(system, state, &instant);
+        self.frames.follow(&system.layout, state);
     }
 
     /// Goes on from `state`, reached by an accepted step at `t`.
@@ -103,10 +107,13 @@ impl Rosenbrock {
         state: &[f64],
         to: &mut Attempt,
     ) {
-        let Rosenbrock { linearised, arrow, first, stages, stage, rates, shift } = self;
+        let Rosenbrock { linearised, arrow, frames, first, stages, stage, rates, shift } = self;
+        let layout = system.layout;
         arrow.factor(linearised, GAMMA * step);
         system.work.factorisations += 1;
-        arrow.solve(linearised, &system.layout, state, first, &mut stages[0]);
+        rates.copy_from_slice(first);
+        frames.rates_to_frame(&layout, 0.0, state, rates);
+        arrow.solve(linearised, &layout, state, rates, &mut stages[0]);
         for i in 1..STAGES {
             let (before, rest) = stages.split_at_mut(i);
             stage.copy_from_slice(state);
@@ -115,10 +122,12 @@ impl Rosenbrock {
                 add_scaled(stage, step * ALPHA[i][j], k);
                 add_scaled(shift, GAMMAS[i][j] / GAMMA, k);
             }
-            let time = t + step * ALPHA[i].iter().sum::<f64>();
-            system.evaluate(time, stage, rates);
+            let after = step * ALPHA[i].iter().sum::<f64>();
+            frames.to_inertial(&layout, after, stage);
+            system.evaluate(t + after, stage, rates);
+            frames.rates_to_frame(&layout, after, stage, rates);
             add_scaled(rates, 1.0, shift);
-            arrow.solve(linearised, &system.layout, state, rates, &mut rest[0]);
+            arrow.solve(linearised, &layout, state, rates, &mut rest[0]);
             add_scaled(&mut rest[0], -1.0, shift);
         }
         to.state.copy_from_slice(state);
@@ -127,6 +136,7 @@ impl Rosenbrock {
             add_scaled(&mut to.state, step * WEIGHTS[j], k);
             add_scaled(&mut to.error, step * (WEIGHTS[j] - EMBEDDED[j]), k);
         }
+        frames.to_inertial(&layout, step, &mut to.state);
     }
 }
 

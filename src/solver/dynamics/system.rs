@@ -1,7 +1,7 @@
 //! The equations of motion: state in, rates out.
 
 use super::contacts::{self, ContactLaws, ContactTable, Driver, Want, Work};
-use super::model::{DynamicProblem, RaceBody};
+use super::model::{DynamicProblem, RaceBody, Rotation};
 use super::race::{self, RaceLoads, RaceNow};
 use super::state::{
     BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
@@ -333,11 +333,16 @@ impl System {
             turning = load.force(t);
         }
         if problem.unbalance != 0.0 {
-            // m e Ω² along the race's own Y, which turns with it.
+            // m e Ω² along the race's own Y, which turns with it, and m e dΩ/dt against its Z.
             let state = &instant.inner.state;
-            let direction: Vec3 = (state.orientation * Vector3::y()).into();
+            let direction = |of: Vector3<f64>| -> Vec3 { (state.orientation * of).into() };
             let speed = dot(state.spin, instant.inner.motion.axis);
-            turning = add_scaled(turning, problem.unbalance * speed * speed, direction);
+            let centrifugal = problem.unbalance * speed * speed;
+            turning = add_scaled(turning, centrifugal, direction(Vector3::y()));
+            if let Rotation::Speed(profile) = &problem.inner.rotation {
+                let lagging = problem.unbalance * profile.rate(t);
+                turning = add_scaled(turning, -lagging, direction(Vector3::z()));
+            }
         }
         loads.force = add(loads.force, turning);
         ledger[Ledger::Drives as usize] += dot(turning, instant.inner.state.velocity);

@@ -1,0 +1,62 @@
+//! Frames that turn with each ball's orbit within a step.
+//!
+//! A stage that goes on along the tangent of an orbit of radius R leaves it by s²/2R: micrometres, as
+//! much as a contact is deep. In a frame that turns about X with the ball, and lies along the
+//! inertial axes where the step begins, a rolling ball stands nearly still: z' = Rᵀv − Ω × z, and
+//! the same for what velocity and spin become. Ω is constant within a step, so that any method keeps
+//! its order.
+
+use super::state::{Layout, POSITION, SPIN, VELOCITY};
+
+/// Vectors of a ball that turn; its orientation stays inertial.
+const VECTORS: [usize; 3] = [POSITION, VELOCITY, SPIN];
+
+/// Angular velocities of the balls' frames about X, rad/s.
+#[derive(Clone, Debug)]
+pub struct OrbitFrames {
+    rates: Vec<f64>,
+}
+
+impl OrbitFrames {
+    pub fn new(layout: &Layout) -> OrbitFrames {
+        OrbitFrames { rates: vec![0.0; layout.balls] }
+    }
+
+    /// Takes the angular velocities that the balls have about X.
+    pub fn follow(&mut self, layout: &Layout, state: &[f64]) {
+        for (ball, rate) in self.rates.iter_mut().enumerate() {
+            let [_, y, z] = layout.ball_vector(state, POSITION, ball);
+            let [_, v, w] = layout.ball_vector(state, VELOCITY, ball);
+            let square = y * y + z * z;
+            *rate = if square > 0.0 { (y * w - z * v) / square } else { 0.0 };
+        }
+    }
+
+    /// Vectors of `state` from the frames, `time` after the step began, to inertial axes.
+    pub fn to_inertial(&self, layout: &Layout, time: f64, state: &mut [f64]) {
+        for (ball, rate) in self.rates.iter().enumerate() {
+            let (sin, cos) = libm::sincos(rate * time);
+            for vector in VECTORS {
+                let (at_y, at_z) = (layout.ball(vector + 1) + ball, layout.ball(vector + 2) + ball);
+                let (y, z) = (state[at_y], state[at_z]);
+                state[at_y] = cos * y - sin * z;
+                state[at_z] = sin * y + cos * z;
+            }
+        }
+    }
+
+    /// Rates in inertial axes at `state` in inertial axes to those of the frames' vectors.
+    pub fn rates_to_frame(&self, layout: &Layout, time: f64, state: &[f64], rates: &mut [f64]) {
+        for (ball, rate) in self.rates.iter().enumerate() {
+            let (sin, cos) = libm::sincos(rate * time);
+            for vector in VECTORS {
+                let (at_y, at_z) = (layout.ball(vector + 1) + ball, layout.ball(vector + 2) + ball);
+                // Rᵀ(ẋ − Ω × x).
+                let y = rates[at_y] + rate * state[at_z];
+                let z = rates[at_z] - rate * state[at_y];
+                rates[at_y] = cos * y + sin * z;
+                rates[at_z] = cos * z - sin * y;
+            }
+        }
+    }
+}
