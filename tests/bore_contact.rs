@@ -544,3 +544,77 @@ fn a_node_on_the_axis_is_an_error() {
     let found = equilibrium_in_contact(&model, 0.0, &contact, None, &options);
     assert!(matches!(found, Err(EquilibriumError::NotConverged { .. })), "{found:?}");
 }
+
+/// A cylinder that grows in a ring's bore: pressure by Lamé for the interference less penetration,
+/// at rest and by explicit steps; the growth's work is in the ring and in the springs.
+#[test]
+fn interference_grows_in() {
+    let (inner, outer, growth) = (0.02, 0.03, 4e-6);
+    let shape = Ring { inner_radius: inner, outer_radius: outer, width: 2e-3 };
+    let cells = RingMesh { around: 32, radial: 4, axial: 1, radial_growth: 1.1 };
+    let mesh = ring(&shape, &cells).unwrap().quadratic().unwrap().mesh;
+    let (young, poisson) = (2.1e11, 0.3);
+    let mut problem = SolidProblem {
+        nodes: mesh.nodes.clone(),
+        elements: mesh.elements.clone(),
+        material: LinearElastic::new(young, poisson).unwrap(),
+        density: 7850.0,
+        damping: 3e5,
+        damped_motion: DampedMotion::Absolute,
+        prescribed: Vec::new(),
+        loads: Vec::new(),
+        gravity: [0.0; 3],
+    };
+    for (node, place) in mesh.nodes.iter().enumerate() {
+        let planes = [place[0] + 1e-3, place[1], place[2]];
+        for (axis, off) in planes.into_iter().enumerate() {
+            if off.abs() < 1e-9 {
+                let (node, profile) = (node as u32, Profile::ZERO);
+                problem.prescribed.push(Prescribed { node, axis, profile });
+            }
+        }
+    }
+    let nodes = contact_nodes(&mesh, mesh.surface_set("inner").unwrap());
+    let area: f64 = nodes.iter().map(|node| node.area).sum();
+    let fit = |radius: Profile, stiffness: f64| CylinderContact {
+        path: CylinderPath {
+            start: Pose::identity(),
+            displacement: [Profile::ZERO, Profile::ZERO, Profile::ZERO],
+            radius,
+        },
+        width: 0.01,
+        penalty: Penalty::PerArea(stiffness),
+        nodes: nodes.clone(),
+    };
+    let squares = (inner * inner + outer * outer) / (outer * outer - inner * inner);
+    let lame = |opening: f64| opening * young / (inner * (squares + poisson));
+    let model = SolidModel::new(problem.clone()).unwrap();
+    let options = EquilibriumOptions::default();
+    let ramp = Profile::SmoothRamp { from: inner, to: inner + growth, start: 0.0, duration: 20e-6 };
+    // Times the default: with it penetration is a twentieth of the growth.
+    for factor in [1.0, 30.0] {
+        let contact = fit(ramp.clone(), factor * 2.5e14);
+        let found = equilibrium_in_contact(&model, 1.0, &contact, None, &options).unwrap();
+        let pressure = found.sum.radial_load / area;
+        let penetration = pressure / (factor * 2.5e14);
+        let should = lame(growth - penetration);
+        // A bore of 32 curved sides, four elements through the wall.
+        assert!((pressure / should - 1.0).abs() <= 2e-3, "{pressure} {should}");
+        assert_eq!(found.sum.touching, nodes.len());
+        assert!(norm(found.sum.force) <= 1e-8 * found.sum.radial_load);
+    }
+    let contact = fit(ramp, 2.5e14);
+    let at_rest = equilibrium_in_contact(&model, 1.0, &contact, None, &options).unwrap().sum;
+    let mut solid = explicit(problem, ExplicitMethod::CentralDifferences, &contact);
+    let mut run = ContactRun::new(contact, &solid, f64::INFINITY).unwrap();
+    while solid.time < 80e-6 {
+        run.step(&mut solid).unwrap();
+    }
+    let ratio = run.sum.radial_load / at_rest.radial_load;
+    assert!((ratio - 1.0).abs() <= 1e-3, "{ratio}");
+    let ledger = run.ledger_at(&solid);
+    assert!(ledger.drive > 0.0 && ledger.penalty > 0.0);
+    assert!(ledger.balance().abs() <= 1e-4 * ledger.drive, "{ledger:?}");
+    let body = solid.ledger_with(|t, u, f| run.add_forces(t, u, f));
+    assert!((body.balance() - ledger.on_solid).abs() <= 1e-6 * ledger.on_solid, "{body:?}");
+}
