@@ -27,10 +27,12 @@ fn main() {
     let n: f64 = args[3].parse().unwrap();
     let size: f64 = args[4].parse().unwrap();
     let kappa: f64 = args[5].parse().unwrap();
-    let b = 0.377e-3;
+    let scale: f64 = std::env::var("SCALE").map_or(1.0, |s| s.parse().unwrap());
+    let halved = std::env::var("FULL").is_err();
+    let b = scale * 0.377e-3;
     let r = 35.5e-3;
     let cell = b / n;
-    let shape = BlockShape { order, half_width: size * b, height: size * b, depth: cell, depth_cells: 1, faces: DepthFaces::Held, fine_reach: 1.5 * b, cell, growth: args.get(6).map_or(1.25, |g| g.parse().unwrap()) };
+    let shape = BlockShape { order, halved, half_width: size * b, height: size * b, depth: cell, depth_cells: 1, faces: DepthFaces::Held, fine_reach: 1.5 * b, cell, growth: args.get(6).map_or(1.25, |g| g.parse().unwrap()) };
     let down = b * b / (4.0 * r) * (2.0 * (2.0 * size).ln() - 0.43);
     let penalty = Penalty::PerArea(kappa * STEEL.young / cell);
     if args[1] == "static" {
@@ -40,7 +42,7 @@ fn main() {
         let eq = equilibrium_in_contact(&block.model, 0.0, &c, None, &EquilibriumOptions::default()).unwrap();
         let secs = start.elapsed().as_secs_f64();
         println!("iterations {} factorisations {} residual {:e} deepest {:e} of {:e}", eq.solid.iterations, eq.solid.factorisations, eq.solid.residual, eq.sum.deepest, down);
-        let line = line_contact(&block, &eq.nodes, shape.depth);
+        let line = line_contact(&block, &eq.nodes);
         show("static", &block, &line, &eq.solid.displacement, r, secs);
         if args.len() > 7 { for p in &line.profile { println!("{:.4} {:.1}", p[0]/b, p[1]*1e-6); } }
     } else {
@@ -62,7 +64,7 @@ fn main() {
             if solid.time > next {
                 next += end / 12.0;
                 let f = run.nodal_forces(solid.time, &solid.displacement);
-                let line = line_contact(&block, &f, shape.depth);
+                let line = line_contact(&block, &f);
                 let u: Vec<[f64;3]> = solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect();
                 if line.load > 0.0 { show(&format!("t {:.2e}", solid.time), &block, &line, &u, r, start.elapsed().as_secs_f64()); }
             }

@@ -1,8 +1,7 @@
 //! A rigid cylinder pressed on a block (2.3.2), at rest and by explicit steps; what the cases of line
 //! contact share.
 //!
-//! The cylinder's axis is X, along the block's depth; it moves down Z onto the top at z = 0. The
-//! half at y ≥ 0 is meshed.
+//! The cylinder's axis is X, along the block's depth; it moves down Z onto the top at z = 0.
 
 use bearing_dynamics::ch2_housing::bore_contact::{ContactNode, Penalty, contact_nodes};
 use bearing_dynamics::kinematics::Pose;
@@ -30,6 +29,8 @@ pub enum DepthFaces {
 #[derive(Clone, Copy, Debug)]
 pub struct BlockShape {
     pub order: Order,
+    /// Meshed is the half at y ≥ 0, its plane of symmetry held, or the whole.
+    pub halved: bool,
     /// Half of the width, along Y.
     pub half_width: f64,
     pub height: f64,
@@ -45,6 +46,7 @@ pub struct BlockShape {
 }
 
 pub struct PressedBlock {
+    pub shape: BlockShape,
     pub mesh: TetMesh,
     pub model: SolidModel,
     pub nodes: Vec<ContactNode>,
@@ -63,7 +65,11 @@ pub fn pressed_block(
         all.extend(&beyond(to)?[1..]);
         Ok(all)
     };
-    let y = onwards(shape.half_width)?;
+    let mut y = onwards(shape.half_width)?;
+    if !shape.halved {
+        let mirrored: Vec<f64> = y[1..].iter().rev().map(|y| -y).collect();
+        y = [mirrored, y].concat();
+    }
     let z: Vec<f64> = onwards(shape.height)?.into_iter().rev().map(|z| -z).collect();
     let solid = block([&uniform(0.0, shape.depth, shape.depth_cells), &y, &z])?;
     let mesh = mesh_of(&solid, shape.order)?;
@@ -75,10 +81,10 @@ pub fn pressed_block(
         let bottom = z < small - shape.height;
         let face = x < small || (x > end && shape.faces == DepthFaces::Held);
         let held = |yes: bool| yes.then_some(0.0);
-        [held(bottom || face), held(bottom || y < small), held(bottom)]
+        [held(bottom || face), held(bottom || (shape.halved && y < small)), held(bottom)]
     });
     let nodes = contact_nodes(&mesh, mesh.surface_set("z_high")?);
-    Ok(PressedBlock { model: SolidModel::new(problem)?, mesh, nodes })
+    Ok(PressedBlock { model: SolidModel::new(problem)?, mesh, nodes, shape: *shape })
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -117,7 +123,7 @@ impl PressedBlock {
         let mut by_depth: Vec<[f64; 3]> = Vec::new();
         for (place, stress) in self.mesh.nodes.iter().zip(&stress) {
             let depth = -place[2];
-            if place[1] > across || depth > below {
+            if place[1].abs() > across || depth > below {
                 continue;
             }
             match by_depth.iter_mut().find(|entry| (entry[0] - depth).abs() <= 1e-9) {
@@ -163,13 +169,10 @@ pub struct LineContact {
     pub half_width: f64,
 }
 
-/// Reads nodal forces of the meshed half, of which `depth` is the depth.
-pub fn line_contact(
-    block: &PressedBlock,
-    forces: &[(ContactNode, Vec3)],
-    depth: f64,
-) -> LineContact {
-    let load: f64 = forces.iter().map(|(_, force)| -2.0 * force[2] / depth).sum();
+/// Reads the nodal forces of a block.
+pub fn line_contact(block: &PressedBlock, forces: &[(ContactNode, Vec3)]) -> LineContact {
+    let whole = if block.shape.halved { 2.0 } else { 1.0 };
+    let load: f64 = forces.iter().map(|(_, force)| -whole * force[2] / block.shape.depth).sum();
     let mut rows: Vec<[f64; 3]> = Vec::new();
     let mut add = |y: f64, force: f64, area: f64| match rows
         .iter_mut()
@@ -183,7 +186,7 @@ pub fn line_contact(
     };
     for node in &block.nodes {
         let force = forces.iter().find(|(touching, _)| touching.node == node.node);
-        add(node.place[1], force.map_or(0.0, |(_, force)| -force[2]), node.area);
+        add(node.place[1].abs(), force.map_or(0.0, |(_, force)| -force[2]), node.area);
     }
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let profile: Vec<[f64; 2]> = rows.iter().map(|row| [row[0], row[1] / row[2]]).collect();

@@ -204,7 +204,8 @@ impl<'a> Newton<'a> {
                     forces[node.node as usize][i] += force[i];
                 }
                 stiffest = stiffest.max(stiffness);
-                let stiffness = touch.stiffness(stiffness);
+                // Penetration over radius is all that is left out: some 1e-7 where it matters.
+                let stiffness = touch.normal_stiffness(stiffness);
                 found.push(Touching { node: *node, force, stiffness });
             },
         );
