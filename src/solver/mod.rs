@@ -2,7 +2,9 @@
 pub mod ball;
 mod ball_start;
 pub mod channels;
+pub mod dense;
 pub mod dynamics;
+pub mod housing;
 pub mod plan;
 pub mod profile;
 pub mod solid;

@@ -1,0 +1,11 @@
+//! Bearing and linear housing together, the cheap true way: the housing is condensed onto the
+//! radial motion of its bore, contact is solved there, and bearing and bore share one equilibrium.
+//!
+//! What it takes for granted, against the nonlinear solid with contact: strains so small that the
+//! solid is linear, and motions so small beside the bore's radius that a node keeps its normal
+//! ([`condensed::geometry_error`] measures that). No inertia: [`inertia`] estimates its part.
+pub mod assembly;
+pub mod bore_equilibrium;
+pub mod condensed;
+pub mod inertia;
+pub mod quasi_static;
