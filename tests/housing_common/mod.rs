@@ -8,13 +8,11 @@ use bearing_dynamics::ch2_housing::bearing::hertz::{HertzModel, RaceSide, contac
 use bearing_dynamics::ch2_housing::bore_contact::{ContactNode, contact_nodes};
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::Pose;
-use bearing_dynamics::mesh::generate::housing::{Housing, HousingMesh};
+use bearing_dynamics::mesh::generate::{Housing, HousingMesh};
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, Reach, condense};
 use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::{
-    DampedMotion, Prescribed, SolidModel, SolidProblem,
-};
+use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
 use bearing_dynamics::solver::statics::{Condition, StaticProblem};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
@@ -37,7 +35,8 @@ pub fn mesh_of(housing: &Housing, mesh: &HousingMesh, order: Order) -> TetMesh {
 /// The solid held on its set `fixed`.
 pub fn model_of(mesh: &TetMesh, young: f64) -> SolidModel {
     let held = mesh.nodes_of_faces(mesh.surface_set("fixed").unwrap());
-    let hold = |node: &u32| [0, 1, 2].map(|axis| Prescribed { node: *node, axis, profile: Profile::ZERO });
+    let hold =
+        |node: &u32| [0, 1, 2].map(|axis| Prescribed { node: *node, axis, profile: Profile::ZERO });
     SolidModel::new(SolidProblem {
         nodes: mesh.nodes.clone(),
         elements: mesh.elements.clone(),
@@ -67,7 +66,8 @@ pub fn condensed(housing: &Housing, mesh: &HousingMesh, order: Order, young: f64
 
 /// The bearing of Table 2.2 with −5 µm radial clearance.
 pub fn bearing(conditions: [Condition; 5]) -> StaticProblem {
-    let nominal = BearingGeometry::deep_groove(8, 20.047e-3, 6.013e-3, 31.953e-3, 6.310e-3, 5.953e-3);
+    let nominal =
+        BearingGeometry::deep_groove(8, 20.047e-3, 6.013e-3, 31.953e-3, 6.310e-3, 5.953e-3);
     let geometry = nominal.with_radial_clearance(-5e-6, ClearanceThrough::Ball);
     let steel = Material::STEEL;
     let side = |side| contact(HertzModel::HamrockBrewe, side, &geometry, &steel, &steel).unwrap();

@@ -5,12 +5,16 @@
 //! the race is moved to where the bore balances the load of the last pose, corrected by how the
 //! bearing's load changes with the pose. Where loads drive the inner race it follows the outer one,
 //! that change is next to nothing, and two or three rounds do.
+//!
+//! Statics holds each ball at its azimuth by a cage that takes some 1e-5 of the load, since the inner
+//! race's normals lean a little out of the outer race's meridian planes. Here the cage rides on the
+//! outer race, so that what is put on the inner race arrives at the bore, whole.
 
 use super::bore_equilibrium::{
     BoreError, BoreSearch, BoreState, Fit, RaceLoad, Tether, check_load,
 };
 use super::condensed::placed;
-use crate::kinematics::vec3::Vec3;
+use crate::kinematics::vec3::{Vec3, add};
 use crate::solver::statics::{
     Condition, StaticOptions, StaticProblem, StaticSolution, StaticsError, solve_from,
 };
@@ -106,7 +110,7 @@ impl<'a> AssemblySearch<'a> {
             };
             self.inner = Some(solution.coordinates);
             evaluations += solution.contact_evaluations;
-            let on_outer = self.load_on_outer(bearing, &solution, weight);
+            let on_outer = self.load_on_outer(&problem, &solution, weight);
             let pull = check_load(fit, &on_outer)?;
             let size = Vector4::new(1.0, 1.0, fit.radius, fit.radius);
             let load = pull.component_div(&size).amax().max(ball_load(&solution));
@@ -147,19 +151,27 @@ impl<'a> AssemblySearch<'a> {
         }
     }
 
+    /// Contacts with the balls, weight, and what the cage takes to keep balls at their azimuths.
     fn load_on_outer(
         &self,
-        bearing: &StaticProblem,
+        problem: &StaticProblem,
         solution: &StaticSolution,
         weight: Vec3,
     ) -> RaceLoad {
+        let race = problem.outer_pose.relative_to(&problem.frame);
+        let (mut force, mut moment) = (solution.force_on_outer, solution.moment_on_outer);
+        for ball in &solution.balls {
+            let (sin, cos) = libm::sincos(ball.azimuth);
+            let around = race.orientation * Vector3::new(0.0, -sin, cos);
+            let by_cage = -around * ball.cage_force;
+            force += by_cage;
+            moment += (ball.position - race.position).cross(&by_cage);
+        }
         let bore = self.bore.bore();
-        let turned = |vector: &Vector3<f64>| (bearing.frame.orientation * vector).into();
-        let force: Vec3 = turned(&solution.force_on_outer);
-        let with_weight = [0, 1, 2].map(|i: usize| force[i] + weight[i]);
+        let turned = |vector: Vector3<f64>| Vec3::from(problem.frame.orientation * vector);
         RaceLoad {
-            force: bore.to_nominal(with_weight),
-            moment: bore.to_nominal(turned(&solution.moment_on_outer)),
+            force: bore.to_nominal(add(turned(force), weight)),
+            moment: bore.to_nominal(turned(moment)),
         }
     }
 }

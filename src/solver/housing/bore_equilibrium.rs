@@ -23,19 +23,20 @@ pub const POSE_NAMES: [&str; 4] = ["y", "z", "tilt_y", "tilt_z"];
 /// What acts on the race, in its nominal axes, about its own centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RaceLoad {
-    /// N. The part along X meets [`Axial`].
+    /// N. The parts along and about X meet [`Axial`].
     pub force: Vec3,
-    /// N·m. The part about X has to vanish.
+    /// N·m.
     pub moment: Vec3,
 }
 
-/// What takes a force along the race's axis, which a smooth bore cannot.
+/// What takes a force along the race's axis and a moment about it, which a smooth bore without
+/// friction cannot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Axial {
     /// Something beside the bore, a shoulder or a ring: the named assumption behind all housings.
     #[default]
     Held,
-    /// Nothing: such a force is an error.
+    /// Nothing: they are an error.
     Free,
 }
 
@@ -269,8 +270,10 @@ impl<'a> BoreSearch<'a> {
                 let (travel, force) = (self.pose[worst], left.amax());
                 return Err(BoreError::NotHeld { coordinate: POSE_NAMES[worst], travel, force });
             }
-            if left.amax() > 0.5 * last && left.amax() <= 1e3 * BALANCED * size {
-                // Rounding is what is left.
+            // Rounding is what is left: of the loads, or of gaps (some ulps of the radius).
+            let gaps = 8.0 * f64::EPSILON * fit.radius * self.scale;
+            let rounding = (1e3 * BALANCED * size).max(gaps);
+            if left.amax() > 0.5 * last && left.amax() <= rounding {
                 return Ok(state);
             }
             // A load that the artificial stiffness takes: let it take less.
@@ -451,11 +454,13 @@ pub(super) fn check_load(fit: &Fit, load: &RaceLoad) -> Result<Vector4<f64>, Bor
     let size = norm(*force).max(norm(*moment) / fit.radius);
     // What rounding of a load turned into these axes leaves.
     let nothing = 1e-9 * size;
-    if fit.axial == Axial::Free && force[0].abs() > nothing {
-        return Err(BoreError::AxialForce { force: force[0] });
-    }
-    if moment[0].abs() > 1e-6 * size * fit.radius {
-        return Err(BoreError::AxialMoment { moment: moment[0] });
+    if fit.axial == Axial::Free {
+        if force[0].abs() > nothing {
+            return Err(BoreError::AxialForce { force: force[0] });
+        }
+        if moment[0].abs() > nothing * fit.radius {
+            return Err(BoreError::AxialMoment { moment: moment[0] });
+        }
     }
     Ok(Vector4::new(force[1], force[2], moment[1], moment[2]))
 }
