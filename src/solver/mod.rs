@@ -2,6 +2,7 @@
 pub mod ball;
 mod ball_start;
 pub mod channels;
+pub mod dense;
 pub mod dynamics;
 pub mod housing;
 pub mod plan;

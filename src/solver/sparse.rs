@@ -125,8 +125,14 @@ impl Factor {
 
     /// Solves in place.
     pub fn solve(&self, right: &mut [f64]) {
-        let rows = right.len();
-        self.numeric.solve_in_place(MatMut::from_column_major_slice_mut(right, rows, 1));
+        self.solve_columns(right, 1);
+    }
+
+    /// Solves in place for `columns` right-hand sides, one after the other in `right`. Many at once
+    /// read the factors once.
+    pub fn solve_columns(&self, right: &mut [f64], columns: usize) {
+        let rows = right.len() / columns;
+        self.numeric.solve_in_place(MatMut::from_column_major_slice_mut(right, rows, columns));
     }
 }
 

@@ -1,4 +1,16 @@
-//! A bearing in a flexible housing (2.2.4).
+//! A bearing in a flexible housing (2.2.4), in two ways.
 //!
-//! `exchange` runs both in explicit steps, each at its own rate.
+//! Plain: [`exchange`] takes bearing and solid through explicit steps of their own; they exchange
+//! impulses.
+//!
+//! Cheap, for linear housings and slow loads: the housing is condensed onto the radial motion of its
+//! bore, contact is solved there, and bearing and bore share one equilibrium. What that takes for
+//! granted, against the nonlinear solid with contact: strains so small that the solid is linear,
+//! and motions so small beside the bore's radius that a node keeps its normal
+//! ([`condensed::geometry_error`] measures that). No inertia: [`inertia`] estimates its part.
+pub mod assembly;
+pub mod bore_equilibrium;
+pub mod condensed;
 pub mod exchange;
+pub mod inertia;
+pub mod quasi_static;

@@ -1,0 +1,286 @@
+//! A linear elastic solid condensed onto the radial displacement of the nodes of its bore.
+//!
+//! Contact without friction acts along the normals of the bore and feels displacement along them.
+//! So all that contact needs of the solid is how far node i moves outwards under an outward force
+//! on node j: a dense compliance, one solve of the sparse stiffness for each node.
+
+use crate::ch2_housing::bore_contact::{ContactNode, Frame};
+use crate::kinematics::Pose;
+use crate::kinematics::euler::quaternion;
+use crate::kinematics::vec3::{Vec3, add, dot, scale};
+use crate::solver::dense::DenseSymmetric;
+use crate::solver::solid::model::SolidModel;
+use crate::solver::solid::tangent::{PRESCRIBED, Unknowns, pattern, stiffness};
+use crate::solver::sparse::{Factor, FactorError};
+use nalgebra::Vector3;
+use thiserror::Error;
+
+/// Which nodes of the bore can be touched at all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// Race in the position from which its motion is measured, its axis along its own X.
+    pub nominal: Pose,
+    /// Largest radius of the race, m.
+    pub radius: f64,
+    /// Of the race along its axis, m. Nodes beside it are left out.
+    pub width: f64,
+    /// Largest way that a node of the bore and the race can make towards each other, m: nodes
+    /// farther than that from the race are left out. `None` leaves none out for distance.
+    pub travel: Option<f64>,
+}
+
+/// Part of the width within which a node counts as under the race although it is beside it: what
+/// rounding and the race's tilt do to nodes on its rim.
+const RIM: f64 = 1e-3;
+/// Right-hand sides solved at once.
+const BLOCK: usize = 32;
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum CondenseError {
+    #[error(transparent)]
+    Factor(#[from] FactorError),
+    #[error("the bore has no node under the race ({bore} in all); check its width and position")]
+    NoNodes { bore: usize },
+    #[error(
+        "node {node} has a prescribed displacement of {value:.3e} m; a condensed housing is held at \
+         zero"
+    )]
+    MovedSupport { node: u32, value: f64 },
+    #[error("bore node {node} lies on the race's axis, where there is no radial direction")]
+    OnAxis { node: u32 },
+}
+
+/// A node of the bore that is solved for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoreNode {
+    pub node: u32,
+    /// From the race's nominal centre, in its nominal axes, m.
+    pub arm: Vec3,
+    /// Components of the outward normal on the nominal Y and Z.
+    pub normal: [f64; 2],
+    /// From the race's nominal axis, m.
+    pub distance: f64,
+    /// Its share of the bore, m².
+    pub area: f64,
+}
+
+/// How much there was to solve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sizes {
+    /// Nodes of the bore that carry a share of its surface.
+    pub bore: usize,
+    /// Left out because they lie beside the race.
+    pub beside: usize,
+    /// Left out because they are farther from the race than its travel.
+    pub out_of_reach: usize,
+    pub kept: usize,
+    /// Displacement components of the solid that are free.
+    pub unknowns: usize,
+}
+
+/// A solid as its bore sees it.
+pub struct CondensedBore {
+    pub reach: Reach,
+    pub nodes: Vec<BoreNode>,
+    /// Outward displacement of node i under an outward unit force on node j, m/N.
+    pub compliance: DenseSymmetric,
+    /// Largest difference of its two triangles as solved, over its largest entry.
+    pub asymmetry: f64,
+    /// Outward displacement of the nodes under the solid's own loads and weight, m.
+    pub own: Vec<f64>,
+    pub sizes: Sizes,
+    /// Lumped masses of the solid's nodes, kg.
+    pub mass: Vec<f64>,
+    frame: Frame,
+    factor: Factor,
+    unknowns: Unknowns,
+    own_displacement: Vec<Vec3>,
+}
+
+/// Condenses `model` at zero displacement onto the nodes of `bore` under the race.
+///
+/// # Errors
+/// A solid that is free to move, supports that move, no node under the race.
+pub fn condense(
+    model: &SolidModel,
+    bore: &[ContactNode],
+    reach: &Reach,
+) -> Result<CondensedBore, CondenseError> {
+    for held in &model.problem.prescribed {
+        let value = held.profile.value(0.0);
+        if value != 0.0 || !held.profile.is_zero() {
+            return Err(CondenseError::MovedSupport { node: held.node, value });
+        }
+    }
+    let frame = Frame::new(&reach.nominal);
+    let unknowns = Unknowns::new(model);
+    let mut sizes =
+        Sizes { bore: bore.len(), beside: 0, out_of_reach: 0, kept: 0, unknowns: unknowns.count };
+    let mut nodes = Vec::with_capacity(bore.len());
+    for contact in bore {
+        let arm = frame.seen(contact.place);
+        let distance = (arm[1] * arm[1] + arm[2] * arm[2]).sqrt();
+        if arm[0].abs() > (0.5 + RIM) * reach.width {
+            sizes.beside += 1;
+        } else if reach.travel.is_some_and(|travel| distance - reach.radius > travel) {
+            sizes.out_of_reach += 1;
+        } else if distance == 0.0 {
+            return Err(CondenseError::OnAxis { node: contact.node });
+        } else {
+            let normal = [arm[1] / distance, arm[2] / distance];
+            nodes.push(BoreNode { node: contact.node, arm, normal, distance, area: contact.area });
+        }
+    }
+    sizes.kept = nodes.len();
+    if nodes.is_empty() {
+        return Err(CondenseError::NoNodes { bore: bore.len() });
+    }
+    let mut matrix = pattern(&model.problem, &unknowns);
+    stiffness(model, &unknowns, &vec![[0.0; 3]; model.mass.len()], &mut matrix);
+    let factor = Factor::new(&matrix)?;
+    drop(matrix);
+
+    let count = nodes.len();
+    let outward: Vec<Vec3> = nodes.iter().map(|node| in_world(&frame, node.normal)).collect();
+    let mut compliance = Vec::with_capacity(count * count);
+    for block in (0..count).step_by(BLOCK).map(|start| start..(start + BLOCK).min(count)) {
+        let columns = block.len();
+        let mut right = vec![0.0; columns * unknowns.count];
+        for (column, loaded) in right.chunks_exact_mut(unknowns.count).zip(block) {
+            scatter(&unknowns, nodes[loaded].node, outward[loaded], column);
+        }
+        factor.solve_columns(&mut right, columns);
+        for column in right.chunks_exact(unknowns.count) {
+            let along = |(node, &outward): (&BoreNode, &Vec3)| {
+                dot(gather(&unknowns, node.node, column), outward)
+            };
+            compliance.extend(nodes.iter().zip(&outward).map(along));
+        }
+    }
+    let (compliance, asymmetry) = DenseSymmetric::new(count, compliance);
+
+    let mut forces = vec![[0.0; 4]; model.mass.len()];
+    model.add_static_forces(0.0, &mut forces);
+    let loaded = forces.iter().any(|force| *force != [0.0; 4]);
+    let own_displacement = if loaded {
+        let mut right = vec![0.0; unknowns.count];
+        for (node, force) in (0u32..).zip(&forces) {
+            scatter(&unknowns, node, [force[0], force[1], force[2]], &mut right);
+        }
+        factor.solve(&mut right);
+        (0..model.mass.len() as u32).map(|node| gather(&unknowns, node, &right)).collect()
+    } else {
+        vec![[0.0; 3]; model.mass.len()]
+    };
+    let own = nodes
+        .iter()
+        .zip(&outward)
+        .map(|(node, &outward)| dot(own_displacement[node.node as usize], outward));
+    Ok(CondensedBore {
+        reach: *reach,
+        own: own.collect(),
+        nodes,
+        compliance,
+        asymmetry,
+        sizes,
+        mass: model.mass.clone(),
+        frame,
+        factor,
+        unknowns,
+        own_displacement,
+    })
+}
+
+impl CondensedBore {
+    /// The whole displacement field, m, under outward forces on the bore's nodes (N, in the order of
+    /// `nodes`) and the solid's own loads.
+    pub fn displacement(&self, loads: &[f64]) -> Vec<Vec3> {
+        let by_contact = self.response(loads);
+        by_contact.into_iter().zip(&self.own_displacement).map(|(u, own)| add(u, *own)).collect()
+    }
+
+    /// The same without the solid's own loads.
+    pub fn response(&self, loads: &[f64]) -> Vec<Vec3> {
+        let mut right = vec![0.0; self.unknowns.count];
+        for (node, force) in self.nodal_forces(loads) {
+            scatter(&self.unknowns, node, force, &mut right);
+        }
+        self.factor.solve(&mut right);
+        (0..self.mass.len() as u32).map(|node| gather(&self.unknowns, node, &right)).collect()
+    }
+
+    /// Outward forces on the bore's nodes as vectors in the world, N.
+    pub fn nodal_forces<'a>(&'a self, loads: &'a [f64]) -> impl Iterator<Item = (u32, Vec3)> + 'a {
+        let force = |(node, &load): (&BoreNode, &f64)| {
+            (node.node, scale(in_world(&self.frame, node.normal), load))
+        };
+        self.nodes.iter().zip(loads).map(force)
+    }
+
+    /// World components of a vector in the race's nominal axes.
+    pub fn to_world(&self, vector: Vec3) -> Vec3 {
+        self.reach.nominal.orientation.transform_vector(&Vector3::from(vector)).into()
+    }
+
+    /// Components in the race's nominal axes of a world vector.
+    pub fn to_nominal(&self, vector: Vec3) -> Vec3 {
+        self.reach.nominal.orientation.inverse_transform_vector(&Vector3::from(vector)).into()
+    }
+}
+
+/// How far distances from the race's axis, with every node at its displaced place (m, one vector for
+/// each node of the solid) and the race at its pose (y, z in m, tilts in rad), are from those that
+/// normals kept fixed give: the largest difference over the bore's nodes, m.
+pub fn geometry_error(bore: &CondensedBore, displacement: &[Vec3], pose: &[f64; 4]) -> f64 {
+    let moved = Frame::new(&placed(&bore.reach.nominal, pose));
+    let mut largest = 0.0f64;
+    for node in &bore.nodes {
+        let u = displacement[node.node as usize];
+        let place = add(add(bore.reach.nominal.position.into(), bore.to_world(node.arm)), u);
+        let [_, y, z] = moved.seen(place);
+        let exact = (y * y + z * z).sqrt() - node.distance;
+        let outward = in_world(&bore.frame, node.normal);
+        let kept = dot(u, outward) - race_motion(node, pose);
+        largest = largest.max((exact - kept).abs());
+    }
+    largest
+}
+
+/// Outward motion of the race's surface at a node for small coordinates of the race: y, z (m) and
+/// the tilts about Y and Z (rad).
+pub(super) fn race_motion(node: &BoreNode, pose: &[f64; 4]) -> f64 {
+    let by = lever(node);
+    by[0] * pose[0] + by[1] * pose[1] + by[2] * pose[2] + by[3] * pose[3]
+}
+
+/// Derivatives of [`race_motion`]: the normal, and its moment about the race's Y and Z.
+pub(super) fn lever(node: &BoreNode) -> [f64; 4] {
+    let [ny, nz] = node.normal;
+    [ny, nz, -node.arm[0] * nz, node.arm[0] * ny]
+}
+
+/// The race moved by its coordinates y, z, tilt_y, tilt_z from the nominal pose.
+pub fn placed(nominal: &Pose, pose: &[f64; 4]) -> Pose {
+    let own = Pose {
+        position: Vector3::new(0.0, pose[0], pose[1]),
+        orientation: quaternion(0.0, pose[2], pose[3]),
+    };
+    own.seen_from_parent_of(nominal)
+}
+
+fn in_world(frame: &Frame, [ny, nz]: [f64; 2]) -> Vec3 {
+    add(scale(frame.to_body[1], ny), scale(frame.to_body[2], nz))
+}
+
+/// Adds a force on a node to a right-hand side; held components take it.
+fn scatter(unknowns: &Unknowns, node: u32, force: Vec3, right: &mut [f64]) {
+    for (of, force) in unknowns.of[node as usize].into_iter().zip(force) {
+        if of != PRESCRIBED {
+            right[of] += force;
+        }
+    }
+}
+
+fn gather(unknowns: &Unknowns, node: u32, solution: &[f64]) -> Vec3 {
+    unknowns.of[node as usize].map(|of| if of == PRESCRIBED { 0.0 } else { solution[of] })
+}

@@ -1,0 +1,250 @@
+//! Laws of a bearing and its housing in one equilibrium, and of quasi-static courses.
+
+mod housing_common;
+
+use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
+use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::mesh::Order;
+use bearing_dynamics::solver::dynamics::model::RotatingLoad;
+use bearing_dynamics::solver::housing::assembly::{
+    AssemblyError, AssemblyOptions, AssemblySearch, AssemblyState,
+};
+use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreError, BoreSearch, Fit};
+use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::inertia::{Masses, estimate};
+use bearing_dynamics::solver::housing::quasi_static::{Course, history};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::statics::{self, Condition, StaticProblem};
+use housing_common::*;
+use std::f64::consts::{FRAC_PI_4, TAU};
+
+fn fit(interference: f64) -> Fit {
+    Fit { radius: BORE + interference, penalty: Penalty::default(), axial: Axial::Held }
+}
+
+fn search<'a>(bore: &'a CondensedBore, fit: &Fit) -> AssemblySearch<'a> {
+    AssemblySearch::new(BoreSearch::new(bore, fit.penalty), AssemblyOptions::default())
+}
+
+fn solve(bore: &CondensedBore, fit: &Fit, problem: &StaticProblem) -> AssemblyState {
+    search(bore, fit).solve(problem, fit, [0.0; 3]).unwrap()
+}
+
+fn loads(of: [f64; 5]) -> [Condition; 5] {
+    of.map(Condition::Load)
+}
+
+#[test]
+fn both_races_balance() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    for interference in [-1e-6, 0.0, 1e-5] {
+        let fit = fit(interference);
+        let problem = bearing(loads([20.0, 100.0, -250.0, 0.2, -0.3]));
+        let weight = [0.0, 0.0, -2.0];
+        let state = search(&bore, &fit).solve(&problem, &fit, weight).unwrap();
+        assert!(state.residual <= 1e-9);
+        let should = [20.0, 100.0, -252.0];
+        for i in 0..3 {
+            assert!((state.on_outer.force[i] - should[i]).abs() <= 1e-9 * 250.0);
+        }
+        for i in 0..2 {
+            assert!((state.bore.load[i] - should[1 + i]).abs() <= 1e-8 * 250.0);
+        }
+        // Moments about the outer race's own centre: the inner race's, its force at its offset.
+        let outer = nalgebra::Vector3::new(0.0, state.bore.pose[0], state.bore.pose[1]);
+        let offset = state.bearing.coordinates.fixed_rows::<3>(0) - outer;
+        let force = nalgebra::Vector3::new(20.0, 100.0, -250.0);
+        let shifted = offset.cross(&force);
+        for (i, own) in [0.2, -0.3].into_iter().enumerate() {
+            let moment = own + shifted[1 + i];
+            // The moments on the inner race go with Euler angles of 1e-5 rad.
+            assert!((state.bore.load[2 + i] - moment).abs() <= 1e-5, "{:?}", state.bore.load);
+        }
+    }
+}
+
+/// A bore that does not give way is a fixed outer race.
+#[test]
+fn rigid_housing_is_a_fixed_race() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, 1e7 * YOUNG);
+    let fit = Fit { penalty: Penalty::PerArea(1e22), ..fit(0.0) };
+    let problem = bearing(loads([0.0, 100.0, -250.0, 0.0, 0.0]));
+    let fixed = statics::solve(&problem).unwrap();
+    let held = solve(&bore, &fit, &problem);
+    let size = fixed.coordinates[2].abs();
+    for i in 0..3 {
+        let gap = held.bearing.coordinates[i] - fixed.coordinates[i];
+        assert!(gap.abs() <= 1e-6 * size, "{i}: {gap}");
+    }
+}
+
+/// Loads that drive the inner race make it ride on the outer one: their displacements add up.
+#[test]
+fn displacements_add_up() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    let problem = bearing(loads([0.0, 0.0, -250.0, 0.0, 0.0]));
+    let fixed = statics::solve(&problem).unwrap();
+    let state = solve(&bore, &fit(0.0), &problem);
+    let sum = fixed.coordinates[2] + state.bore.pose[1];
+    assert!((state.bearing.coordinates[2] / sum - 1.0).abs() <= 1e-5);
+    assert!(state.bore.pose[1] < -1e-8 && state.rounds <= 4, "{}", state.rounds);
+}
+
+/// A given displacement of the inner race, where bearing and bore are springs in series.
+#[test]
+fn a_given_displacement_is_shared() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    for interference in [-1e-6, 0.0, 5e-6] {
+        let mut conditions = loads([0.0; 5]);
+        conditions[2] = Condition::Displacement(-1e-5);
+        let state = solve(&bore, &fit(interference), &bearing(conditions));
+        let force = state.bearing.loads[2];
+        assert!(force < -100.0 && state.residual <= 1e-9, "{force}");
+        assert!((state.bore.load[1] / force - 1.0).abs() <= 1e-8);
+        // The same force gives the same displacement.
+        let back = solve(&bore, &fit(interference), &bearing(loads([0.0, 0.0, force, 0.0, 0.0])));
+        assert!((back.bearing.coordinates[2] / -1e-5 - 1.0).abs() <= 1e-7);
+    }
+}
+
+#[test]
+fn an_axial_load_needs_something_that_holds_the_race() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    let problem = bearing(loads([50.0, 0.0, -250.0, 0.0, 0.0]));
+    let free = Fit { axial: Axial::Free, ..fit(0.0) };
+    let error = search(&bore, &free).solve(&problem, &free, [0.0; 3]).unwrap_err();
+    assert!(matches!(error, AssemblyError::Bore(BoreError::AxialForce { .. })), "{error}");
+    assert!((solve(&bore, &fit(0.0), &problem).on_outer.force[0] - 50.0).abs() <= 1e-7);
+}
+
+fn one_turn(points: usize) -> Course {
+    let speed = 50.0 / 60.0 * TAU;
+    Course {
+        times: (0..=points).map(|i| 1.2 * i as f64 / points as f64).collect(),
+        conditions: [0; 5].map(|_| Profile::ZERO),
+        rotating_load: Some(RotatingLoad {
+            force: Profile::Constant(250.0),
+            speed: Profile::Constant(speed),
+            phase: 0.0,
+        }),
+        shaft_speed: Profile::ZERO,
+        interference: Profile::ZERO,
+        weight: [0.0; 3],
+        centrifugal: false,
+    }
+}
+
+/// In a ring, under a load that goes round, the eight balls meet it alike in every eighth of a turn.
+#[test]
+fn a_turning_load_in_a_ring() {
+    let bore = condensed(&RING, &COARSE, Order::Quadratic, YOUNG);
+    let problem = bearing(loads([0.0; 5]));
+    let fit = fit(0.0);
+    let moments = history(&mut search(&bore, &fit), &problem, &fit, &one_turn(8)).unwrap();
+    let radii: Vec<f64> =
+        moments.iter().map(|m| m.state.bore.pose[0].hypot(m.state.bore.pose[1])).collect();
+    for (i, (moment, radius)) in moments.iter().zip(&radii).enumerate() {
+        assert!(moment.state.residual <= 1e-9);
+        // What the mesh's own lack of symmetry leaves.
+        assert!((radius / radii[0] - 1.0).abs() <= 5e-3, "{radii:?}");
+        let direction = libm::atan2(moment.state.bore.pose[1], moment.state.bore.pose[0]);
+        let off = (direction - FRAC_PI_4 * i as f64).rem_euclid(TAU);
+        assert!(off.min(TAU - off) <= 5e-3, "{i}: {off}");
+    }
+    assert!((radii[8] / radii[0] - 1.0).abs() <= 1e-7, "{radii:?}");
+}
+
+/// In steel the path does not know how fast it is gone, and an interference grown in stays.
+#[test]
+fn rate_and_history_do_not_matter() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    let problem = bearing(loads([0.0; 5]));
+    let fit = fit(0.0);
+    let paths = [0.01, 0.1, 1.0].map(|duration| {
+        let mut course = one_turn(1);
+        course.rotating_load = None;
+        let ramp = |from, to, start: f64, length: f64| Profile::Ramp {
+            from,
+            to,
+            start: start * duration,
+            duration: length * duration,
+        };
+        course.interference = ramp(0.0, 1e-6, 0.0, 0.2);
+        course.conditions[2] = ramp(0.0, -250.0, 0.2, 0.8);
+        course.times = (0..=5).map(|i| 0.2 * f64::from(i) * duration).collect();
+        let moments = history(&mut search(&bore, &fit), &problem, &fit, &course).unwrap();
+        moments.iter().map(|moment| moment.state.bore.pose[1]).collect::<Vec<f64>>()
+    });
+    let last = paths[0][5];
+    for path in &paths[1..] {
+        for (one, other) in path.iter().zip(&paths[0]) {
+            assert!((one - other).abs() <= 1e-9 * last.abs(), "{paths:?}");
+        }
+    }
+    let grown = Fit { radius: fit.radius + 1e-6, ..fit };
+    let mut pushed = problem.clone();
+    pushed.conditions[2] = Condition::Load(-250.0);
+    let at_once = solve(&bore, &grown, &pushed);
+    assert!((at_once.bore.pose[1] / last - 1.0).abs() <= 1e-8);
+}
+
+#[test]
+fn balls_roll_with_the_cage() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    let problem = bearing(loads([0.0; 5]));
+    let fit = fit(0.0);
+    let mut course = one_turn(2);
+    course.shaft_speed = Profile::Constant(10.0);
+    course.centrifugal = true;
+    let moments = history(&mut search(&bore, &fit), &problem, &fit, &course).unwrap();
+    let gamma = problem.geometry.ball_radius / problem.geometry.pitch_radius;
+    for moment in &moments {
+        let should = 0.5 * (1.0 - gamma) * 10.0 * moment.time;
+        assert!((moment.ball_phase - should).abs() <= 1e-12);
+    }
+    let sums = moments[0]
+        .state
+        .bearing
+        .balls
+        .iter()
+        .map(|ball| (ball.outer.normal_load, ball.inner.normal_load));
+    assert!(sums.clone().all(|(outer, inner)| outer > inner), "{sums:?}");
+}
+
+/// Heavy bodies swing slowly: on one spring with the square root of stiffness over mass.
+#[test]
+fn inertia_of_races_that_outweigh_the_housing() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    let problem = bearing(loads([0.0, 0.0, -250.0, 0.0, 0.0]));
+    let fit = fit(5e-6);
+    let mut search = search(&bore, &fit);
+    let state = search.solve(&problem, &fit, [0.0; 3]).unwrap();
+    let steel = hollow_cylinder(32e-3, 35.5e-3, 20e-3, 7850.0);
+    let of = |factor: f64| {
+        let mut masses = Masses { inner: steel, outer: steel };
+        masses.inner.mass *= factor;
+        masses.inner.transverse *= factor;
+        estimate(&problem, &search, &state, &masses)
+    };
+    let (one, hundred) = (of(1.0), of(1e4));
+    assert!(one.lowest > 500.0 && one.lowest < 1e5, "{one:?}");
+    assert!(one.housing_share > 0.0, "{one:?}");
+    // The inner race on bearing and housing in series, a matrix of its own.
+    let k = state.bearing.stiffness;
+    let mut soft = k.try_inverse().unwrap();
+    let give = state.bore.stiffness.try_inverse().unwrap();
+    for i in 0..4 {
+        for j in 0..4 {
+            soft[(1 + i, 1 + j)] += give[(i, j)];
+        }
+    }
+    let masses = [1.0, 1.0, 1.0, 0.0, 0.0].map(|m: f64| m * 1e4 * steel.mass);
+    let turning = 1e4 * steel.transverse;
+    let root = nalgebra::Vector5::from_fn(|i, _| if i < 3 { masses[i] } else { turning }.sqrt());
+    let swings = nalgebra::Matrix5::from_fn(|i, j| root[i] * soft[(i, j)] * root[j]);
+    let slowest = swings.symmetric_eigenvalues().max();
+    let should = 1.0 / slowest.sqrt() / TAU;
+    assert!((hundred.lowest / should - 1.0).abs() <= 1e-3, "{} {should}", hundred.lowest);
+    let half = hundred.error_at(0.5 * hundred.lowest);
+    assert!((half - 0.25).abs() <= 1e-12);
+}
