@@ -24,6 +24,8 @@ mod cylinder_on_block_table_2_1;
 mod free_ring_modes;
 #[path = "../hertz_elliptic/case.rs"]
 mod hertz_elliptic;
+#[path = "../housing_settling/case.rs"]
+mod housing_settling;
 #[path = "../kinematic_frequencies/case.rs"]
 mod kinematic_frequencies;
 #[path = "../line_contact_plane_strain/case.rs"]
@@ -72,6 +74,7 @@ pub const CASES: &[Case] = &[
     calculix_comparison::CASE,
     line_contact_plane_strain::CASE,
     cylinder_on_block_table_2_1::CASE,
+    housing_settling::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).

@@ -17,6 +17,7 @@ pub mod check;
 pub mod context;
 pub mod date;
 pub mod golden;
+pub mod housed;
 pub mod judge;
 pub mod machine;
 pub mod motion;
