@@ -9,7 +9,7 @@ use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::control::Attempt;
+use bearing_dynamics::solver::dynamics::control::{Attempt, SHARE};
 use bearing_dynamics::solver::dynamics::dormand_prince as dopri;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
 use bearing_dynamics::solver::dynamics::rosenbrock as ros;
@@ -17,7 +17,9 @@ use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, SimulationError, Stepping,
 };
 use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{Layout, Ledger, POSITION, VELOCITY};
+use bearing_dynamics::solver::dynamics::state::{
+    BODY, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY,
+};
 use bearing_dynamics::solver::profile::Profile;
 use common::table_4_1;
 use dynamics::{CONSTANT, GRAVITY, RPM, bearing, bits, cage, inner_state, ledger, traction_laws};
@@ -384,6 +386,48 @@ fn dormand_prince_delivers_its_accuracy_without_stiff_traction() {
         let attempts = simulation.steps + work.rejected_steps;
         assert_eq!(work.evaluations, 6 * attempts + 2);
         assert_eq!(work.factorisations, 0);
+    }
+}
+
+/// Every error counts by its displacement: velocities over the frequency of the body on a contact at
+/// the largest overlap, angles times the radius at which they are felt.
+#[test]
+fn errors_count_by_the_displacement_they_make() {
+    let geometry = table_4_1(-5e-6);
+    let mut problem = rolling();
+    problem.cage = Some(cage(&geometry, Pocket::Spherical, Guidance::OuterRace));
+    let cage = problem.cage.as_ref().unwrap().inertia;
+    let simulation = started(&problem, Integrator::Rosenbrock, Stepping::Accuracy(1e-3));
+    let control = simulation.control.as_ref().unwrap();
+    let layout = simulation.system.layout;
+    let overlap = control.memory.displacement;
+    let unit = SHARE * 1e-3 * overlap;
+    let hertz = problem.inner_contact.stiffness.min(problem.outer_contact.stiffness);
+    let frequency = |mass: f64| (1.5 * hertz * overlap.sqrt() / mass).sqrt();
+    let ball = (problem.ball.mass, geometry.ball_radius);
+    let hub = |mass| (mass, geometry.pitch_radius);
+    let bodies = [
+        (layout.ball(0) + 3, layout.padded, ball),
+        (layout.inner(), 1, hub(problem.inner.inertia.mass)),
+        (layout.cage(), 1, hub(cage.mass)),
+    ];
+    for (at, stride, (mass, arm)) in bodies {
+        let wanted = |i: usize| match i {
+            POSITION..ORIENTATION => Some(1.0),
+            // A quaternion has half the angle.
+            ORIENTATION..VELOCITY if stride == 1 => Some(2.0 * arm),
+            // The orientation of a ball moves nothing.
+            ORIENTATION..VELOCITY => None,
+            VELOCITY..SPIN => Some(1.0 / frequency(mass)),
+            _ => Some(arm / frequency(mass)),
+        };
+        for i in 0..BODY {
+            let mut attempt = Attempt::new(simulation.state.len());
+            attempt.error[at + i * stride] = -3e-9;
+            let norm = control.norm(&attempt);
+            let expected = wanted(i).unwrap_or(0.0) * 3e-9 / unit;
+            assert!((norm - expected).abs() <= 1e-12 * expected, "{at}, {i}: {norm} {expected}");
+        }
     }
 }
 

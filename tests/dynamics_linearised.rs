@@ -5,6 +5,7 @@
 //! `linearised`). The largest part is how the direction of the normal force turns with the ball:
 //! load over room in the groove, against the stiffness a part δ/(1.5 · room). Bearings here are
 //! loaded so lightly that δ is some 1 µm of a room of 360 µm: 2e-3.
+#![allow(clippy::needless_range_loop)] // indices are the notation of components
 
 mod common;
 #[path = "common/dynamics.rs"]
