@@ -236,7 +236,9 @@ impl Session {
         // Nobody means a step so short.
         let slack = 1e-9 * self.output_interval;
         let corner = next_corner(&self.corners, time).filter(|corner| *corner <= row_time + slack);
-        let at_row = |corner: f64| if corner >= row_time - slack { row_time } else { corner };
+        // Never before the corner, or it would be there to cross again.
+        let at_row =
+            |corner: f64| if corner >= row_time - slack { row_time.max(corner) } else { corner };
         let mut stop = corner.map_or(row_time, at_row);
         let mut left = stop - time;
         let mut step = towards(simulation.step_size, left);
@@ -260,7 +262,7 @@ impl Session {
         if let Some(corner) = crossed {
             simulation.cross_corner(corner);
         }
-        if completes || stop == row_time {
+        if completes || stop >= row_time {
             self.record()?;
         }
         if completes {
