@@ -12,6 +12,7 @@ use bearing_dynamics::solver::dynamics::contacts::Driver;
 use bearing_dynamics::solver::dynamics::control::{Attempt, SHARE};
 use bearing_dynamics::solver::dynamics::dormand_prince as dopri;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
+use bearing_dynamics::solver::dynamics::orbit_frame::OrbitFrames;
 use bearing_dynamics::solver::dynamics::rosenbrock as ros;
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, SimulationError, Stepping,
@@ -22,7 +23,10 @@ use bearing_dynamics::solver::dynamics::state::{
 };
 use bearing_dynamics::solver::profile::Profile;
 use common::table_4_1;
-use dynamics::{CONSTANT, GRAVITY, RPM, bearing, bits, cage, inner_state, ledger, traction_laws};
+use dynamics::{
+    CONSTANT, GRAVITY, Noise, RPM, bearing, bits, cage, inner_state, ledger, traction_laws,
+};
+use nalgebra::{UnitQuaternion, Vector3};
 
 /// Tables 3.5 and 4.1 at 5 µm interference, 1000 rpm, 1500 N down, default friction.
 fn rolling() -> DynamicProblem {
@@ -386,6 +390,42 @@ fn dormand_prince_delivers_its_accuracy_without_stiff_traction() {
         let attempts = simulation.steps + work.rejected_steps;
         assert_eq!(work.evaluations, 6 * attempts + 2);
         assert_eq!(work.factorisations, 0);
+    }
+}
+
+/// Position, velocity and spin of every ball turn, its orientation and all other bodies do not.
+#[test]
+fn frames_turn_with_the_orbits_of_their_balls() {
+    let layout = Layout::new(11, false);
+    let mut noise = Noise(7);
+    let mut random = || (0..layout.len()).map(|_| noise.next()).collect::<Vec<f64>>();
+    let (state, rates) = (random(), random());
+    let mut frames = OrbitFrames::new(&layout);
+    frames.follow(&layout, &state);
+    let time = 0.3;
+    let (mut inertial, mut in_frame) = (state.clone(), rates.clone());
+    frames.to_inertial(&layout, time, &mut inertial);
+    frames.rates_to_frame(&layout, time, &state, &mut in_frame);
+    let mut turning = vec![false; layout.len()];
+    for ball in 0..layout.balls {
+        let of = |list: &[f64], component| Vector3::from(layout.ball_vector(list, component, ball));
+        let (x, v) = (of(&state, POSITION), of(&state, VELOCITY));
+        let omega = Vector3::x() * (x.cross(&v).x / (x.y * x.y + x.z * x.z));
+        let turn = UnitQuaternion::from_scaled_axis(omega * time);
+        for component in [POSITION, VELOCITY, SPIN] {
+            let there = turn * of(&state, component);
+            let rate = of(&rates, component) - omega.cross(&of(&state, component));
+            let error = (of(&inertial, component) - there).norm();
+            let of_rate = (of(&in_frame, component) - turn.inverse() * rate).norm();
+            // Angular velocities of random balls go up to some hundred 1/s.
+            assert!(error <= 1e-12 && of_rate <= 1e-12 * (1.0 + omega.norm()), "{error} {of_rate}");
+            for i in 0..3 {
+                turning[layout.ball(component + i) + ball] = true;
+            }
+        }
+    }
+    for at in (0..layout.len()).filter(|at| !turning[*at]) {
+        assert_eq!((inertial[at], in_frame[at]), (state[at], rates[at]), "{at}");
     }
 }
 
