@@ -4,13 +4,10 @@
 //! chooses its own step, so the first run prints every increment to learn it; then the time of 80
 //! increments is the difference of the least times of two runs that print nothing in between, one thread each.
 
-use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
-use bearing_dynamics::mesh::generate::bar;
-use bearing_dynamics::mesh::numbering::reverse_cuthill_mckee;
-use bearing_dynamics::mesh::tet_mesh::TetMesh;
+mod common;
+
 use bearing_dynamics::mesh::write::write_abaqus;
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel, SolidProblem};
+use common::{cube, least, solid};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -24,26 +21,6 @@ const LEAST: f64 = 60.0;
 const TIMED: f64 = 80.0;
 const BEFORE: f64 = 5.5;
 const ROUNDS: usize = 4;
-
-fn solid(mesh: &TetMesh) -> ExplicitSolid {
-    let start = mesh.nodes.iter().map(|x| [1e-6 * x[1], 2e-7 * x[0], 0.0]).collect();
-    let rest = vec![[0.0; 3]; mesh.nodes.len()];
-    let problem = SolidProblem {
-        nodes: mesh.nodes.clone(),
-        elements: mesh.elements.clone(),
-        material: LinearElastic::new(2.1e11, 0.3).expect("steel"),
-        density: 7800.0,
-        damping: 0.0,
-        damped_motion: DampedMotion::Absolute,
-        prescribed: Vec::new(),
-        loads: Vec::new(),
-        gravity: [0.0; 3],
-    };
-    let model = SolidModel::new(problem).expect("a sound mesh");
-    let stepping = SolidStepping::FractionOfLimit(0.5);
-    ExplicitSolid::new(model, ExplicitMethod::CentralDifferences, stepping, start, rest)
-        .expect("a stable step")
-}
 
 /// Pulls one node for `period` seconds; whole seconds of the program, and its `.dat`.
 fn calculix(folder: &Path, nonlinear: bool, period: f64, print_every: usize) -> (f64, String) {
@@ -83,8 +60,7 @@ fn main() {
             return;
         }
     };
-    let mesh = bar([0.1, 0.1, 0.1], [15; 3]).expect("a cube").mesh;
-    let mesh = reverse_cuthill_mckee(mesh).mesh;
+    let mesh = cube(15);
     let count = mesh.elements.len() as f64;
     let folder = std::env::temp_dir().join(format!("calculix-bench-{}", std::process::id()));
     fs::create_dir(&folder).expect("a temporary folder");
@@ -93,12 +69,9 @@ fn main() {
     let mut solid = solid(&mesh);
     let mut ours = f64::INFINITY;
     let mut measure_ours = || {
-        for _ in 0..6 {
-            const STEPS: usize = 300;
-            let start = Instant::now();
-            (0..STEPS).for_each(|_| solid.step(|_, _, _| {}).expect("stable"));
-            ours = ours.min(start.elapsed().as_secs_f64() / STEPS as f64);
-        }
+        ours = ours.min(least(6, 300, |n| {
+            (0..n).for_each(|_| solid.step(|_, _, _| {}).expect("stable"));
+        }));
         ours
     };
     println!("CalculiX: \"{version}\"; {count} linear tetrahedra, {} nodes", mesh.nodes.len());

@@ -4,17 +4,17 @@
 //! Not a criterion bench: ratios of least times in one run, with bounds that fail. Plain loop and
 //! roof are written here, apart from the library.
 
+mod common;
+
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
-use bearing_dynamics::mesh::generate::bar;
 use bearing_dynamics::mesh::numbering::reverse_cuthill_mckee;
 use bearing_dynamics::mesh::quadratic::elevate;
-use bearing_dynamics::mesh::tet_mesh::{Elements, TetMesh};
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel, SolidProblem};
+use bearing_dynamics::mesh::tet_mesh::Elements;
+use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
 use bearing_dynamics::solver::solid::team::Team;
+use common::{cube, least, solid};
 use nalgebra::{Matrix3, Matrix3x4, Vector3};
 use std::hint::black_box;
-use std::time::Instant;
 
 /// Least acceptable ratios: a regression shows, a busy machine does not. Wanted are 2.5 (AVX-512)
 /// and 2.2 (AVX2) over the plain loop, 0.33 of the roof; measured 2.4 and 0.31 with AVX-512.
@@ -25,43 +25,6 @@ const LEAST_OF_ROOF: f64 = 0.25;
 /// strain 45, stress 13, scaling 6, first Piola–Kirchhoff stress 54, forces 45, the fourth node 9,
 /// sums at the nodes 12.
 const FLOPS: f64 = 238.0;
-
-fn cube(cells: usize) -> TetMesh {
-    let mesh = bar([0.1, 0.1, 0.1], [cells; 3]).expect("a cube").mesh;
-    reverse_cuthill_mckee(mesh).mesh
-}
-
-fn solid(mesh: TetMesh) -> ExplicitSolid {
-    let start = mesh.nodes.iter().map(|x| [1e-7 * x[1] / 0.1, 2e-7 * x[0] * x[2], 0.0]).collect();
-    let rest = vec![[0.0; 3]; mesh.nodes.len()];
-    let problem = SolidProblem {
-        nodes: mesh.nodes,
-        elements: mesh.elements,
-        material: LinearElastic::new(2.1e11, 0.3).expect("steel"),
-        density: 7800.0,
-        damping: 0.0,
-        damped_motion: DampedMotion::Absolute,
-        prescribed: Vec::new(),
-        loads: Vec::new(),
-        gravity: [0.0; 3],
-    };
-    let model = SolidModel::new(problem).expect("a sound mesh");
-    let stepping = SolidStepping::FractionOfLimit(0.5);
-    ExplicitSolid::new(model, ExplicitMethod::CentralDifferences, stepping, start, rest)
-        .expect("a stable step")
-}
-
-/// Least seconds a step over several rounds.
-fn least(rounds: usize, steps: usize, mut step: impl FnMut(usize)) -> f64 {
-    step(steps.min(3));
-    (0..rounds)
-        .map(|_| {
-            let start = Instant::now();
-            step(steps);
-            start.elapsed().as_secs_f64() / steps as f64
-        })
-        .fold(f64::INFINITY, f64::min)
-}
 
 /// The element as nalgebra's matrices write it, one after the other.
 struct Plain {
@@ -154,7 +117,7 @@ fn main() {
     let mut ratios = Vec::new();
     let mut speeds = Vec::new();
     for cells in [8, 13, 20, 44] {
-        let mut solid = solid(cube(cells));
+        let mut solid = solid(&cube(cells));
         let count = solid.model.problem.elements.len();
         let steps = (4_000_000 / count).max(2);
         let mut plain = Plain::new(&solid);
@@ -186,7 +149,7 @@ fn main() {
         speeds[2] / speeds[3]
     );
     let mesh = elevate(&cube(13), &[]).expect("straight edges").mesh;
-    let mut quadratic = solid(reverse_cuthill_mckee(mesh).mesh);
+    let mut quadratic = solid(&reverse_cuthill_mckee(mesh).mesh);
     let count = quadratic.model.problem.elements.len();
     let seconds = least(6, 40, |n| {
         (0..n).for_each(|_| quadratic.step(|_, _, _| {}).expect("stable"));

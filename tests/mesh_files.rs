@@ -8,8 +8,8 @@ use bearing_dynamics::mesh::read::{
     LengthUnit, Loaded, Note, Place, Problem, ReadError, read_abaqus, read_gmsh,
 };
 use bearing_dynamics::mesh::topology::surface;
-use bearing_dynamics::mesh::write::write_abaqus;
-use bearing_dynamics::mesh::{MeshError, Order, TetMesh};
+use bearing_dynamics::mesh::write::{write_abaqus, write_gmsh};
+use bearing_dynamics::mesh::{Face, MeshError, Order, TetMesh};
 use std::f64::consts::PI;
 use std::fs;
 use std::path::PathBuf;
@@ -140,6 +140,60 @@ fn an_input_deck_of_ours_reads_back() {
     let mut mesh = solid.mesh;
     mesh.node_sets.insert("two words".into(), vec![0]);
     assert!(matches!(write_abaqus(&mesh), Err(MeshError::Name { .. })));
+}
+
+#[test]
+fn gmsh_files_of_our_own() {
+    let body = Ring { inner_radius: 0.0312, outer_radius: 0.0371, width: 0.0123 };
+    let cells = RingMesh { around: 9, radial: 2, axial: 2, radial_growth: 1.3 };
+    let solid = ring(&body, &cells).unwrap();
+    for mut mesh in [solid.mesh.clone(), solid.quadratic().unwrap().mesh] {
+        let count = mesh.elements.len() as u32;
+        // Sets that overlap: the corner is in both, as are elements in the middle.
+        mesh.node_sets.insert("some nodes".into(), vec![0, 3, 7]);
+        mesh.node_sets.insert("corner".into(), vec![0]);
+        mesh.element_sets.insert("front".into(), (0..2 * count / 3).collect());
+        mesh.element_sets.insert("back".into(), (count / 3..count).collect());
+        let text = write_gmsh(&mesh).unwrap();
+        let Loaded { mesh: back, notes } = read_gmsh(text.as_bytes(), LengthUnit::Metre).unwrap();
+        assert_eq!(notes, []);
+        assert_eq!((&back.nodes, &back.node_sets), (&mesh.nodes, &mesh.node_sets));
+        // Elements come entity by entity: front alone, back alone, both; sets keep their members.
+        assert_eq!(back.elements.len(), mesh.elements.len());
+        let members = |mesh: &TetMesh, name: &str| {
+            let set = mesh.element_set(name).unwrap();
+            let mut nodes: Vec<_> = set.iter().map(|e| mesh.elements.nodes(*e as usize)).collect();
+            nodes.sort_unstable();
+            nodes.concat()
+        };
+        for name in ["front", "back"] {
+            assert_eq!(members(&back, name), members(&mesh, name));
+        }
+        assert_eq!(back.surface_sets.len(), mesh.surface_sets.len());
+        for (name, faces) in &mesh.surface_sets {
+            let nodes = |mesh: &TetMesh, faces: &[Face]| {
+                let of = |face: &Face| {
+                    let mut nodes: Vec<u32> = mesh.face_nodes(*face).collect();
+                    nodes.sort_unstable();
+                    nodes
+                };
+                let mut faces: Vec<_> = faces.iter().map(of).collect();
+                faces.sort_unstable();
+                faces
+            };
+            assert_eq!(nodes(&back, &back.surface_sets[name]), nodes(&mesh, faces), "{name}");
+        }
+        // What was read can be written and read again without any change.
+        let again = write_gmsh(&back).unwrap();
+        assert_eq!(read_gmsh(again.as_bytes(), LengthUnit::Metre).unwrap().mesh, back);
+    }
+    let refused = |change: fn(&mut TetMesh)| {
+        let mut mesh = solid.mesh.clone();
+        change(&mut mesh);
+        assert!(matches!(write_gmsh(&mesh), Err(MeshError::Name { .. })));
+    };
+    refused(|mesh| drop(mesh.node_sets.insert("a \"quote\"".into(), vec![0])));
+    refused(|mesh| drop(mesh.node_sets.insert("inner".into(), vec![0])));
 }
 
 /// One tetrahedron and its sets, as a person would type them.

@@ -4,6 +4,7 @@
 #[allow(dead_code)]
 mod output_common;
 
+use bearing_dynamics::output::atomic::remove_partials;
 use bearing_dynamics::output::compare::tolerance::ToleranceClass;
 use bearing_dynamics::output::compare::{Options, compare, report};
 use bearing_dynamics::output::pack::{PackError, PackInput, verify_pack, write_pack};
@@ -278,4 +279,27 @@ fn a_pack_does_not_mix_with_other_files() {
         let result = write_pack(root.path(), &input, &solution(), &run());
         assert!(matches!(result, Err(PackError::Foreign { .. })));
     }
+}
+
+/// What a killed process left goes, what another one may be writing stays, and so does the rest.
+#[test]
+fn half_written_files_of_killed_runs_are_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    // Process numbers end at 2²² on Linux; this one runs nowhere.
+    let dead = u32::MAX - 1;
+    let own = std::process::id();
+    let names = [
+        format!(".state.json.{dead}.partial"),
+        format!(".series.npy.{own}.partial"),
+        "notes.partial".to_string(),
+        ".notes.partial".to_string(),
+        format!("state.json.{dead}.partial"),
+    ];
+    for name in &names {
+        fs::write(folder.path().join(name), "half").unwrap();
+    }
+    remove_partials(folder.path());
+    let left = names.iter().filter(|name| folder.path().join(name).exists()).collect::<Vec<_>>();
+    assert_eq!(left, names[1..].iter().collect::<Vec<_>>());
+    remove_partials(&folder.path().join("missing"));
 }

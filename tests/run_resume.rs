@@ -5,6 +5,7 @@ mod run_common;
 use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status};
 use bearing_dynamics::output::dynamics::summary::{RunReport, write_run_results};
 use bearing_dynamics::output::dynamics::table::RunTable;
+use bearing_dynamics::output::journal::JournalError;
 use bearing_dynamics::output::state::{
     self, StateError, StateRecord, Stopped, fingerprint, read, resume, save,
 };
@@ -178,7 +179,10 @@ fn a_state_of_something_else_is_refused() {
     let nowhere = RunRequest { end: f64::NAN, ..wanted.clone() };
     assert!(matches!(try_with(&file, problem.clone(), &nowhere), StateError::Past { .. }));
     let older = state::StateFile { version: "0.0.0".into(), ..file.clone() };
-    assert!(matches!(try_with(&older, problem.clone(), &wanted), StateError::Version { .. }));
+    assert!(matches!(
+        try_with(&older, problem.clone(), &wanted),
+        StateError::Journal(JournalError::Version { .. })
+    ));
     let mut cut = file.clone();
     cut.state.pop();
     assert!(matches!(try_with(&cut, problem.clone(), &wanted), StateError::Damaged { .. }));
@@ -187,7 +191,7 @@ fn a_state_of_something_else_is_refused() {
     // The file itself.
     let text = fs::read_to_string(folder.join(state::STATE)).unwrap();
     fs::write(folder.join(state::STATE), &text[..text.len() / 2]).unwrap();
-    assert!(matches!(read(folder), Err(StateError::Json { .. })));
+    assert!(matches!(read(folder), Err(StateError::Journal(JournalError::Json { .. }))));
 }
 
 #[test]

@@ -1,79 +1,25 @@
 //! Laws of explicit steps of a solid.
 
-use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
+mod solid_common;
+
 use bearing_dynamics::kinematics::vec3::{Vec3, cross};
-use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
+use bearing_dynamics::mesh::tet_mesh::Order;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::energy::strain_energy;
+use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
 use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
 use bearing_dynamics::solver::solid::model::{
     DampedMotion, Load, Prescribed, SolidError, SolidModel, SolidProblem,
 };
+use bearing_dynamics::solver::solid::step_limit::{step_limit, step_limit_within};
+use bearing_dynamics::solver::solid::tangent::MassMatrix;
 use bearing_dynamics::solver::solid::team::Team;
 use proptest::prelude::*;
+use solid_common::{DENSITY, cut_cubes, solid};
 
-const DENSITY: f64 = 7800.0;
-
-/// A block of a × b × c cubes of side 10 mm, cut into six tetrahedra each, its inner nodes shaken.
+/// A block of a × b × c cubes of side 10 mm, all its nodes shaken.
 fn block(cells: [usize; 3], order: Order) -> SolidProblem {
-    let [a, b, c] = cells;
-    let id = |i: usize, j: usize, k: usize| ((i * (b + 1) + j) * (c + 1) + k) as u32;
-    let mut nodes = Vec::new();
-    for i in 0..=a {
-        for j in 0..=b {
-            for k in 0..=c {
-                let shake = |seed: f64| 0.1 * (seed * (1 + i + 7 * j + 31 * k) as f64).sin();
-                nodes.push([
-                    0.01 * (i as f64 + shake(12.9)),
-                    0.01 * (j as f64 + shake(78.2)),
-                    0.01 * (k as f64 + shake(37.7)),
-                ]);
-            }
-        }
-    }
-    let mut linear = Vec::new();
-    for i in 0..a {
-        for j in 0..b {
-            for k in 0..c {
-                let corner = [
-                    id(i, j, k),
-                    id(i + 1, j, k),
-                    id(i + 1, j + 1, k),
-                    id(i, j + 1, k),
-                    id(i, j, k + 1),
-                    id(i + 1, j, k + 1),
-                    id(i + 1, j + 1, k + 1),
-                    id(i, j + 1, k + 1),
-                ];
-                for tet in [
-                    [0, 1, 2, 6],
-                    [0, 2, 3, 6],
-                    [0, 3, 7, 6],
-                    [0, 7, 4, 6],
-                    [0, 4, 5, 6],
-                    [0, 5, 1, 6],
-                ] {
-                    linear.push(tet.map(|n: usize| corner[n]));
-                }
-            }
-        }
-    }
-    let mesh = bearing_dynamics::mesh::TetMesh::new(nodes, Elements::Linear(linear)).unwrap();
-    let mesh = match order {
-        Order::Linear => mesh,
-        Order::Quadratic => bearing_dynamics::mesh::quadratic::elevate(&mesh, &[]).unwrap().mesh,
-    };
-    SolidProblem {
-        nodes: mesh.nodes,
-        elements: mesh.elements,
-        material: LinearElastic::new(2.1e11, 0.3).unwrap(),
-        density: DENSITY,
-        damping: 0.0,
-        damped_motion: DampedMotion::Absolute,
-        prescribed: Vec::new(),
-        loads: Vec::new(),
-        gravity: [0.0; 3],
-    }
+    solid(cut_cubes(cells.map(|n| 0.01 * n as f64), cells, 0.1, |_| true), order)
 }
 
 fn still(problem: &SolidProblem) -> Vec<Vec3> {
@@ -395,4 +341,83 @@ fn threads_change_no_bit() {
             assert!(shared.velocity() == alone.velocity());
         }
     }
+}
+
+/// Without enough products the limit is a bound: safe, said to be one, and not far below the limit.
+#[test]
+fn a_limit_that_does_not_settle_is_a_safe_bound() {
+    for order in [Order::Linear, Order::Quadratic] {
+        let mut problem = block([3, 2, 2], order);
+        let profile = Profile::ZERO;
+        problem.prescribed.push(Prescribed { node: 4, axis: 1, profile });
+        let model = SolidModel::new(problem).unwrap();
+        let moved = pad(&bent(&model.problem, 0.02));
+        let method = ExplicitMethod::CentralDifferences;
+        let settled = step_limit(&model, &moved, method);
+        assert!(!settled.is_bound && settled.products > 8);
+        let bound = step_limit_within(&model, &moved, method, settled.products - 1);
+        assert!(bound.is_bound && bound.products == settled.products - 1);
+        let ratio = bound.step / settled.step;
+        // Rows add sizes where the true forces cancel; in ten-node elements more of them do.
+        assert!(ratio > 0.3 && ratio < 1.0, "{order:?}: {ratio}");
+    }
+}
+
+#[test]
+fn axes_are_three() {
+    for axis in [3, 4, usize::MAX] {
+        let mut problem = block([1, 1, 1], Order::Linear);
+        problem.prescribed.push(Prescribed { node: 0, axis, profile: Profile::ZERO });
+        let refused = SolidModel::new(problem).unwrap_err();
+        assert_eq!(refused, SolidError::NoSuchAxis { node: 0, axis });
+    }
+}
+
+/// A block on the ground under its weight, started from equilibrium: it stays at rest where
+/// gravity pulled at the masses that explicit steps have. Elsewhere nodes swing by what the two loads
+/// differ by in an element: with the square of its size.
+#[test]
+fn a_start_in_equilibrium_under_weight_stays_at_rest() {
+    let size = [0.02, 0.02, 0.02];
+    let mut swings = Vec::new();
+    for (order, gravity, cells) in [
+        (Order::Linear, MassMatrix::Consistent, 2),
+        (Order::Quadratic, MassMatrix::Lumped, 2),
+        (Order::Quadratic, MassMatrix::Consistent, 2),
+        (Order::Quadratic, MassMatrix::Consistent, 4),
+    ] {
+        let mut problem = solid(cut_cubes(size, [cells; 3], 0.0, |_| false), order);
+        problem.gravity = [0.0, 0.0, -9.81];
+        for (node, place) in (0..).zip(&problem.nodes) {
+            if place[2] == 0.0 {
+                let profile = Profile::ZERO;
+                problem.prescribed.extend([0, 1, 2].map(|axis| Prescribed {
+                    node,
+                    axis,
+                    profile: profile.clone(),
+                }));
+            }
+        }
+        let model = SolidModel::new(problem).unwrap();
+        let options = EquilibriumOptions { gravity, ..Default::default() };
+        let start = equilibrium(&model, 0.0, &options).unwrap().displacement;
+        let sag = start.iter().map(|u| u[2].abs()).fold(0.0, f64::max);
+        let still = still(&model.problem);
+        let (method, stepping) =
+            (ExplicitMethod::CentralDifferences, SolidStepping::FractionOfLimit(0.9));
+        let mut run = ExplicitSolid::new(model, method, stepping, start.clone(), still).unwrap();
+        let mut swing = 0.0f64;
+        for _ in 0..200 * cells {
+            run.step(|_, _, _| {}).unwrap();
+            for (now, start) in run.displacement.iter().zip(&start) {
+                swing = swing.max((now[2] - start[2]).abs() / sag);
+            }
+        }
+        swings.push(swing);
+    }
+    println!("swing over sag: {swings:?}");
+    // Unbalanced forces of 1e-10, as equilibrium leaves them.
+    assert!(swings[0] <= 1e-8 && swings[1] <= 1e-8, "{swings:?}");
+    assert!(swings[2] > 0.1 && swings[2] < 1.0, "{swings:?}");
+    assert!(swings[3] < 0.4 * swings[2], "{swings:?}");
 }

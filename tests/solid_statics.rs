@@ -1,79 +1,23 @@
 //! Laws of equilibrium and of natural modes of a solid.
 
+mod solid_common;
+
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::vec3::Vec3;
-use bearing_dynamics::mesh::TetMesh;
-use bearing_dynamics::mesh::quadratic::elevate;
-use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
+use bearing_dynamics::mesh::tet_mesh::Order;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::equilibrium::{
     EquilibriumError, EquilibriumOptions, equilibrium,
 };
-use bearing_dynamics::solver::solid::model::{
-    DampedMotion, Load, Prescribed, SolidModel, SolidProblem,
-};
+use bearing_dynamics::solver::solid::model::{Load, Prescribed, SolidModel, SolidProblem};
 use bearing_dynamics::solver::solid::modes::{ModeOptions, modes};
 use bearing_dynamics::solver::solid::tangent::MassMatrix;
 use bearing_dynamics::solver::sparse::FactorError;
-
-const YOUNG: f64 = 2.1e11;
+use solid_common::{DENSITY, YOUNG, cut_cubes, solid};
 
 /// A bar of cubes with side `size / cells`, its inner nodes shaken when asked.
 fn bar(size: Vec3, cells: [usize; 3], order: Order, shaken: bool) -> SolidProblem {
-    let [a, b, c] = cells;
-    let id = |i: usize, j: usize, k: usize| ((i * (b + 1) + j) * (c + 1) + k) as u32;
-    let mut nodes = Vec::new();
-    for i in 0..=a {
-        for j in 0..=b {
-            for k in 0..=c {
-                let inner = i > 0 && i < a && j > 0 && j < b && k > 0 && k < c;
-                let shake = |seed: f64| {
-                    let by = 0.2 * (seed * (1 + i + 7 * j + 31 * k) as f64).sin();
-                    if shaken && inner { by } else { 0.0 }
-                };
-                nodes.push([
-                    size[0] * (i as f64 + shake(12.9)) / a as f64,
-                    size[1] * (j as f64 + shake(78.2)) / b as f64,
-                    size[2] * (k as f64 + shake(37.7)) / c as f64,
-                ]);
-            }
-        }
-    }
-    const CUT: [[usize; 4]; 6] =
-        [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
-    let mut linear = Vec::new();
-    for i in 0..a {
-        for j in 0..b {
-            for k in 0..c {
-                let corner = [
-                    id(i, j, k),
-                    id(i + 1, j, k),
-                    id(i + 1, j + 1, k),
-                    id(i, j + 1, k),
-                    id(i, j, k + 1),
-                    id(i + 1, j, k + 1),
-                    id(i + 1, j + 1, k + 1),
-                    id(i, j + 1, k + 1),
-                ];
-                linear.extend(CUT.map(|tet| tet.map(|n| corner[n])));
-            }
-        }
-    }
-    let mut mesh = TetMesh::new(nodes, Elements::Linear(linear)).unwrap();
-    if order == Order::Quadratic {
-        mesh = elevate(&mesh, &[]).unwrap().mesh;
-    }
-    SolidProblem {
-        nodes: mesh.nodes,
-        elements: mesh.elements,
-        material: LinearElastic::new(YOUNG, 0.3).unwrap(),
-        density: 7800.0,
-        damping: 0.0,
-        damped_motion: DampedMotion::Absolute,
-        prescribed: Vec::new(),
-        loads: Vec::new(),
-        gravity: [0.0; 3],
-    }
+    solid(cut_cubes(size, cells, 0.2, |inner| shaken && inner), order)
 }
 
 fn hold(problem: &mut SolidProblem, value: impl Fn(Vec3) -> [Option<f64>; 3]) {
@@ -156,7 +100,7 @@ fn a_bar_under_its_own_weight() {
         hold(&mut problem, |x| if x[0] < 1e-9 { [Some(0.0); 3] } else { [None; 3] });
         let model = SolidModel::new(problem).unwrap();
         let found = equilibrium(&model, 0.0, &EquilibriumOptions::default()).unwrap();
-        let per_length = 7800.0 * gravity / YOUNG;
+        let per_length = DENSITY * gravity / YOUNG;
         let scale = 0.5 * per_length * size[0] * size[0];
         for (u, x) in found.displacement.iter().zip(&model.problem.nodes) {
             let exact = [per_length * (size[0] * x[0] - 0.5 * x[0] * x[0]), 0.0, 0.0];
@@ -261,7 +205,7 @@ fn frequencies_of_a_rod() {
     let model = SolidModel::new(problem).unwrap();
     let found = modes(&model, &ModeOptions::new(3)).unwrap();
     for (n, mode) in found.modes.iter().enumerate() {
-        let exact = (n + 1) as f64 * 0.5 / size[0] * (YOUNG / 7800.0f64).sqrt();
+        let exact = (n + 1) as f64 * 0.5 / size[0] * (YOUNG / DENSITY).sqrt();
         // Quadratic elements, 20 along: (π n/20)⁴/1440.
         let bound = (0.157 * (n + 1) as f64).powi(4) / 300.0 + 1e-9;
         assert!((mode.frequency / exact - 1.0).abs() <= bound, "{} {exact}", mode.frequency);

@@ -32,6 +32,34 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     })
 }
 
+/// Removes what killed runs left half written in a folder: the temporary files of [`write_atomic`]
+/// whose process is gone. What cannot be removed stays: it harms nothing.
+///
+/// Where the system does not list processes in `/proc`, only files older than an hour are removed.
+pub fn remove_partials(folder: &Path) {
+    let listed = Path::new("/proc/self").exists();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let Some(process) = writer_of(&name.to_string_lossy()) else { continue };
+        let gone = if listed {
+            !Path::new(&format!("/proc/{process}")).exists()
+        } else {
+            let written = entry.metadata().and_then(|data| data.modified()).ok();
+            let age = written.and_then(|time| time.elapsed().ok());
+            process != std::process::id() && age.is_some_and(|age| age.as_secs() > 3600)
+        };
+        if gone {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// The process that a temporary file of [`write_atomic`] is named after.
+fn writer_of(name: &str) -> Option<u32> {
+    let (_, process) = name.strip_prefix('.')?.strip_suffix(".partial")?.rsplit_once('.')?;
+    process.parse().ok()
+}
+
 fn write_and_sync(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = File::create(path)?;
     file.write_all(bytes)?;

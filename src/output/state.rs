@@ -4,9 +4,9 @@
 //! written before the state, so that it never has fewer rows than the state speaks of; it may
 //! have more, and those are computed again.
 
-use crate::output::atomic::{WriteError, write_atomic};
+use crate::output::atomic::WriteError;
 use crate::output::dynamics::session::{RunRequest, Session, SessionError};
-use crate::output::results::pretty;
+use crate::output::journal::{self, JournalError};
 use crate::output::series::{Series, SeriesError};
 use crate::solver::channels::ChannelGroup;
 use crate::solver::dynamics::checkpoint::Checkpoint;
@@ -23,19 +23,7 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-pub const STATE: &str = "state.json";
-pub const SERIES: &str = "series.npy";
-
-/// Why the run stood still when the state was written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Stopped {
-    /// It did not: written on the way.
-    Running,
-    Interrupted,
-    Failed,
-    Complete,
-}
+pub use crate::output::journal::{SERIES, STATE, Stopped};
 
 /// Content of `state.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -104,15 +92,6 @@ pub struct StepWatchEntry {
 
 #[derive(Debug, Error)]
 pub enum StateError {
-    #[error("cannot read {}: {source}", path.display())]
-    Read { path: PathBuf, source: std::io::Error },
-    #[error("{} is not the state of a run: {source}", path.display())]
-    Json { path: PathBuf, source: serde_json::Error },
-    #[error(
-        "{} was written by version {found}; this is {}, whose bits may differ; start anew (--fresh)",
-        path.display(), env!("CARGO_PKG_VERSION")
-    )]
-    Version { path: PathBuf, found: String },
     #[error(
         "{} belongs to another scene: only end, plots and window may change from one part of a run \
          to the next; choose another --out, or start anew (--fresh)",
@@ -130,6 +109,8 @@ pub enum StateError {
     #[error("{what} is {value}; only finite numbers are kept in a state")]
     NotFinite { what: &'static str, value: f64 },
     #[error(transparent)]
+    Journal(#[from] JournalError),
+    #[error(transparent)]
     Series(#[from] SeriesError),
     #[error(transparent)]
     Session(#[from] SessionError),
@@ -146,7 +127,7 @@ pub fn fingerprint(problem: &DynamicProblem, request: &RunRequest) -> String {
     let groups: Vec<&str> =
         ChannelGroup::ALL.into_iter().filter(|g| channels.contains(g)).map(|g| g.name()).collect();
     let text = format!("{} {problem:?} {options:?} {groups:?}", env!("CARGO_PKG_VERSION"));
-    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+    journal::hexadecimal(Sha256::new_with_prefix(text))
 }
 
 /// Why a state is written, and what the session does not know.
@@ -169,8 +150,7 @@ pub fn save(folder: &Path, session: &Session, record: &StateRecord) -> Result<()
     let file = state_file(&checkpoint, rows, session, record);
     check_finite(&file)?;
     session.recorder.series(session.recorder.rows())?.write_npy(&folder.join(SERIES))?;
-    let value = serde_json::to_value(&file).expect("a state is plain JSON");
-    Ok(write_atomic(&folder.join(STATE), pretty(&value).as_bytes())?)
+    Ok(journal::write(folder, &file)?)
 }
 
 /// Reads `state.json` of a results folder; `None` if there is none.
@@ -178,14 +158,7 @@ pub fn save(folder: &Path, session: &Session, record: &StateRecord) -> Result<()
 /// # Errors
 /// A file that cannot be read or is no state.
 pub fn read(folder: &Path) -> Result<Option<StateFile>, StateError> {
-    let path = folder.join(STATE);
-    match std::fs::read(&path) {
-        Ok(bytes) => serde_json::from_slice(&bytes)
-            .map(Some)
-            .map_err(|source| StateError::Json { path, source }),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(source) => Err(StateError::Read { path, source }),
-    }
+    Ok(journal::read(folder)?)
 }
 
 /// The session that goes on where `file`, read from `folder`, was written.
@@ -200,9 +173,7 @@ pub fn resume(
     request: &RunRequest,
 ) -> Result<Session, StateError> {
     let path = folder.join(STATE);
-    if file.version != env!("CARGO_PKG_VERSION") {
-        return Err(StateError::Version { path, found: file.version.clone() });
-    }
+    journal::check_version(folder, &file.version)?;
     if file.fingerprint != fingerprint(&problem, request) {
         return Err(StateError::Scene { path });
     }

@@ -12,6 +12,7 @@ use crate::case::{Case, CaseError, Tier};
 use crate::check::{Check, Explanation};
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
+use crate::solid_bodies::cage::LITERAL;
 use crate::solids::{STEEL, Vec3, free_body, largest, mesh_of, name_of};
 use crate::surface_picture::{SurfacePicture, surface_picture};
 
@@ -24,16 +25,6 @@ pub const CASE: Case = Case {
     tier: Tier::Full,
     published: include_str!("published.toml"),
     run,
-};
-
-/// Table 5.3; pockets are radial cylinders.
-const LITERAL: Cage = Cage {
-    pocket_count: 11,
-    pocket_radius: 6.5e-3,
-    inner_radius: 29.125e-3,
-    outer_radius: 33.375e-3,
-    width: 18.010e-3,
-    relief: None,
 };
 
 /// The assumption `relieved_rails`.

@@ -9,10 +9,11 @@ use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
 use bearing_dynamics::solver::solid::model::{Load, SolidModel, SolidProblem};
 
-use super::{LITERAL, bending_pairs, lumped_modes};
+use super::{bending_pairs, lumped_modes};
 use crate::case::CaseError;
 use crate::check::Check;
 use crate::context::CaseContext;
+use crate::solid_bodies::cage::LITERAL;
 use crate::solids::{STEEL, Vec3, free_body, mesh_of, prescribe};
 
 /// Coarse: the comparison is with the same mesh's eigenvalues.

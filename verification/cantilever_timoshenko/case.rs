@@ -1,7 +1,6 @@
 //! A clamped beam: tip deflection and bending frequencies against Timoshenko's equations.
 
 use bearing_dynamics::kinematics::strain::von_mises;
-use bearing_dynamics::mesh::generate::bar;
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
 use bearing_dynamics::solver::solid::model::{SolidModel, SolidProblem};
@@ -12,12 +11,9 @@ use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::solids::{
-    STEEL, Vec3, constant_load, free_body, mesh_of, name_of, prescribe, surface_force,
-};
+use crate::solid_bodies::cantilever;
+use crate::solids::{Vec3, constant_load, name_of, prescribe};
 use crate::surface_picture::{SurfacePicture, surface_picture};
-
-mod oracle;
 
 pub const CASE: Case = Case {
     id: "cantilever_timoshenko",
@@ -28,11 +24,6 @@ pub const CASE: Case = Case {
     run,
 };
 
-/// Square section, m; length ten times its side.
-const SIDE: f64 = 0.01;
-const LENGTH: f64 = 0.1;
-/// N; bends the beam by a hundred thousandth of its length, so that it stays linear.
-const FORCE: f64 = 0.5;
 /// Element and cells across the half width.
 const MESHES: [(Order, usize); 5] = [
     (Order::Quadratic, 1),
@@ -48,16 +39,8 @@ struct Answer {
 }
 
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
-    let beam = oracle::Beam {
-        length: LENGTH,
-        area: SIDE * SIDE,
-        inertia: SIDE.powi(4) / 12.0,
-        young: STEEL.young,
-        poisson: STEEL.poisson,
-        density: STEEL.density,
-        shear_coefficient: oracle::shear_coefficient(SIDE, SIDE, STEEL.poisson),
-    };
-    let mut exact = vec![FORCE * beam.tip_deflection()];
+    let beam = cantilever::beam();
+    let mut exact = vec![cantilever::FORCE * beam.tip_deflection()];
     exact.extend(beam.frequencies(3));
     let mut rows = Vec::new();
     for (order, across) in MESHES {
@@ -136,20 +119,8 @@ fn checks(context: &mut CaseContext, found: &[f64], exact: &[f64], nodes: usize)
     );
 }
 
-/// The half of the beam at y ≥ 0, clamped at x = 0.
 fn half_beam(order: Order, across: usize) -> Result<(TetMesh, SolidProblem), CaseError> {
-    let mut solid = bar([LENGTH, 0.5 * SIDE, SIDE], [20 * across.min(2), across, 2 * across])?;
-    for place in &mut solid.mesh.nodes {
-        place[1] += 0.25 * SIDE;
-    }
-    let mesh = mesh_of(&solid, order)?;
-    let mut problem = free_body(&mesh, STEEL);
-    prescribe(&mut problem, |[x, y, z]| {
-        let clamped = x < 1e-9;
-        let diagonal = (y - z.abs()).abs() < 1e-9;
-        [clamped.then_some(0.0), (y < 1e-9).then_some(0.0), (clamped && diagonal).then_some(0.0)]
-    });
-    Ok((mesh, problem))
+    cantilever::half_beam(order, [20 * across.min(2), across, 2 * across])
 }
 
 /// First bending frequency with every component of the end held, Hz.
@@ -163,22 +134,12 @@ fn fully_clamped() -> Result<f64, CaseError> {
     Ok(bending_modes(&problem, &mesh)?[0].frequency)
 }
 
-fn tip_load(mesh: &TetMesh) -> Result<Vec<(u32, Vec3)>, CaseError> {
-    let stress = FORCE / (SIDE * SIDE);
-    Ok(surface_force(mesh, mesh.surface_set("x_high")?, |_, _| [0.0, 0.0, stress]))
-}
-
 fn solve(mesh: &TetMesh, mut problem: SolidProblem) -> Result<Answer, CaseError> {
     let found = bending_modes(&problem, mesh)?;
-    problem.loads.push(constant_load(tip_load(mesh)?));
+    let end = cantilever::tip_load(mesh)?;
+    problem.loads.push(constant_load(end.clone()));
     let bent = equilibrium(&SolidModel::new(problem)?, 0.0, &EquilibriumOptions::default())?;
-    // Mean over the section, as a beam's deflection is.
-    let end = tip_load(mesh)?;
-    let deflection = end
-        .iter()
-        .map(|(node, force)| force[2] * bent.displacement[*node as usize][2])
-        .sum::<f64>()
-        / (0.5 * FORCE);
+    let deflection = cantilever::deflection(&end, &bent.displacement);
     let frequencies = found.iter().map(|mode| mode.frequency).collect();
     Ok(Answer { deflection, frequencies })
 }
@@ -196,7 +157,7 @@ fn bending_modes(problem: &SolidProblem, mesh: &TetMesh) -> Result<Vec<Mode>, Ca
 fn pictures(context: &mut CaseContext) -> Result<(), CaseError> {
     let (mesh, mut problem) = half_beam(Order::Quadratic, 2)?;
     let found = bending_modes(&problem, &mesh)?;
-    problem.loads.push(constant_load(tip_load(&mesh)?));
+    problem.loads.push(constant_load(cantilever::tip_load(&mesh)?));
     let model = SolidModel::new(problem)?;
     let bent = equilibrium(&model, 0.0, &EquilibriumOptions::default())?;
     let stress: Vec<f64> =

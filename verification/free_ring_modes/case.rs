@@ -1,7 +1,7 @@
 //! Free vibration of a ring against a Ritz solution without a mesh, and against the thin ring.
 
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
+use bearing_dynamics::mesh::generate::{RingMesh, ring};
 use bearing_dynamics::solver::solid::model::SolidModel;
 use bearing_dynamics::solver::solid::modes::{Mode, ModeOptions, modes};
 
@@ -9,11 +9,10 @@ use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
+use crate::oracles::ring::Plane;
+use crate::solid_bodies::thin_ring::{self, BODY};
 use crate::solids::{STEEL, Vec3, free_body, largest, mesh_of, name_of};
 use crate::surface_picture::{SurfacePicture, surface_picture};
-
-mod oracle;
-use oracle::Plane;
 
 pub const CASE: Case = Case {
     id: "free_ring_modes",
@@ -24,18 +23,8 @@ pub const CASE: Case = Case {
     run,
 };
 
-/// m: a twentieth of the mean radius thick, so that the thin ring's formula is near.
-const BODY: Ring = Ring { inner_radius: 0.04875, outer_radius: 0.05125, width: 4e-3 };
-
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
-    let exact = oracle::Ring {
-        inner: BODY.inner_radius,
-        outer: BODY.outer_radius,
-        width: BODY.width,
-        young: STEEL.young,
-        poisson: STEEL.poisson,
-        density: STEEL.density,
-    };
+    let exact = thin_ring::exact();
     let families =
         [(2, Plane::In), (3, Plane::In), (2, Plane::OutOf), (3, Plane::OutOf)].map(|(n, plane)| {
             let way = if plane == Plane::In { "in" } else { "out" };

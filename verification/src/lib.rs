@@ -26,6 +26,7 @@ pub mod pareto;
 pub mod published;
 pub mod report;
 pub mod runner;
+pub mod solid_bodies;
 pub mod solids;
 pub mod studies;
 pub mod surface_picture;

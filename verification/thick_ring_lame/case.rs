@@ -1,7 +1,6 @@
 //! A thick ring under inner pressure against Lamé, ends held and free.
 
 use bearing_dynamics::kinematics::strain::{principal, von_mises};
-use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
 use bearing_dynamics::solver::solid::model::SolidModel;
@@ -11,13 +10,10 @@ use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::solids::{
-    STEEL, Vec3, constant_load, free_body, mesh_of, name_of, prescribe, surface_force,
-};
+use crate::oracles::lame::Ends;
+use crate::solid_bodies::thick_ring::{self, BODY};
+use crate::solids::{Vec3, name_of};
 use crate::surface_picture::{SurfacePicture, surface_picture};
-
-mod oracle;
-use oracle::{Ends, ThickRing};
 
 pub const CASE: Case = Case {
     id: "thick_ring_lame",
@@ -27,11 +23,6 @@ pub const CASE: Case = Case {
     published: include_str!("published.toml"),
     run,
 };
-
-/// m; outer over inner radius 2.
-const BODY: Ring = Ring { inner_radius: 0.02, outer_radius: 0.04, width: 5e-3 };
-/// Pa; strains of a few millionths, so that the ring stays linear.
-const PRESSURE: f64 = 2e5;
 
 struct Answer {
     mesh: TetMesh,
@@ -45,13 +36,7 @@ struct Answer {
 }
 
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
-    let exact = ThickRing {
-        inner: BODY.inner_radius,
-        outer: BODY.outer_radius,
-        young: STEEL.young,
-        poisson: STEEL.poisson,
-        pressure: PRESSURE,
-    };
+    let exact = thick_ring::exact();
     let mut rows = Vec::new();
     for (ends, key) in [(Ends::Held, "held"), (Ends::Free, "free")] {
         let should = [
@@ -127,32 +112,12 @@ fn checks(context: &mut CaseContext, key: &str, order: Order, found: [f64; 3], s
 }
 
 fn solve(order: Order, around: usize, radial: usize, ends: Ends) -> Result<Answer, CaseError> {
-    let cells = RingMesh { around, radial, axial: 1, radial_growth: 1.15 };
-    let mesh = mesh_of(&ring(&BODY, &cells)?, order)?;
-    let mut problem = free_body(&mesh, STEEL);
-    let end = 0.5 * BODY.width;
-    prescribe(&mut problem, |[x, y, z]| {
-        let held = match ends {
-            Ends::Held => x.abs() > end - 1e-9,
-            Ends::Free => x < 1e-9 - end,
-        };
-        // Nodes on the planes of symmetry stay on them.
-        let on = |across: f64| (across.abs() < 1e-9).then_some(0.0);
-        [held.then_some(0.0), on(y), on(z)]
-    });
-    let inner = mesh.surface_set("inner")?;
-    problem.loads.push(constant_load(surface_force(&mesh, inner, |_, n| n.map(|n| -PRESSURE * n))));
+    let (mesh, problem) = thick_ring::pressed(order, around, radial, ends)?;
     let model = SolidModel::new(problem)?;
     let found = equilibrium(&model, 0.0, &EquilibriumOptions::default())?;
     let stress = nodal_stresses(&model, &found.displacement);
-    let mean = |set: &str, of: &dyn Fn(usize) -> f64| -> Result<f64, CaseError> {
-        let nodes = mesh.node_set(set)?;
-        Ok(nodes.iter().map(|n| of(*n as usize)).sum::<f64>() / nodes.len() as f64)
-    };
-    let outwards = |n: usize| {
-        let ([_, y, z], u) = (mesh.nodes[n], found.displacement[n]);
-        (u[1] * y + u[2] * z) / y.hypot(z)
-    };
+    let mean = |set: &str, of: &dyn Fn(usize) -> f64| thick_ring::mean(&mesh, set, of);
+    let outwards = |n: usize| thick_ring::outwards(mesh.nodes[n], found.displacement[n]);
     Ok(Answer {
         bore: mean("inner", &outwards)?,
         outside: mean("outer", &outwards)?,

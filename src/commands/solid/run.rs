@@ -110,7 +110,7 @@ pub fn run(arguments: &Arguments, scene: &SolidScene, begun: Instant) -> Command
     ];
     let mut record = record(scene, plan::lines(scene, &prepared), seconds)?;
     record.threads = threads;
-    let stress = stresses(&setup.problem, &session.displacement());
+    let stress = stresses(&session.solid.model, &session.displacement());
     let reason = stopped_by.as_deref();
     let summary = summary::run(&session, &settings, built, &stress, &spectra, reason, &record)?;
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
@@ -184,11 +184,12 @@ fn announcement(
     let limit = &solid.limit;
     let [x, y, z] = limit.at.map(|at| 1e3 * at);
     let mut text = format!(
-        "step {:.4e} s, {:.3} of the stability limit {:.4e} s; the fastest element lies at x {x:.3}, \
+        "step {:.4e} s, {:.3} of the stability limit {:.4e} s{}; the fastest element lies at x {x:.3}, \
          y {y:.3}, z {z:.3} mm\n",
         grid.step_size,
         grid.step_size / limit.step,
-        limit.step
+        limit.step,
+        if limit.is_bound { " (a safe bound: the search for it did not settle)" } else { "" }
     );
     let (interval, asked) = (grid.interval(), settings.output_interval);
     let rounded = if kept.is_none() && (interval / asked - 1.0).abs() > 1e-9 {
@@ -219,7 +220,7 @@ fn write_state_fields(
 ) -> Result<(), Box<dyn Error>> {
     let displacement = session.displacement();
     let velocity = session.solid.velocity();
-    let stress = stresses(&session.solid.model.problem, &displacement);
+    let stress = stresses(&session.solid.model, &displacement);
     let path = folder.join(file_name("fields", index));
     write_fields(&path, mesh, &displacement, Some(&velocity), &stress)?;
     let rows = session.grid.rows_per_fields as usize;

@@ -31,7 +31,7 @@ pub fn run(path: &Path, scene: &SolidScene, out: &Option<PathBuf>, dry: bool) ->
     let solution = equilibrium(&model, 0.0, &EquilibriumOptions::default())?;
     let solve_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let stress = stresses(&setup.problem, &solution.displacement);
+    let stress = stresses(&model, &solution.displacement);
     let stress_seconds = start.elapsed().as_secs_f64();
     let seconds = vec![
         ("mesh".into(), *mesh_seconds),

@@ -5,7 +5,6 @@
 
 use crate::kinematics::vec3::Vec3;
 use crate::output::series::{Column, Series, SeriesError};
-use crate::output::solid::fields::first_inverted;
 use crate::scene::solid::SolidRun;
 use crate::scene::solid_problem::{NamedNodes, SolidSetup, Support};
 use crate::solver::solid::checkpoint::SolidCheckpoint;
@@ -13,6 +12,7 @@ use crate::solver::solid::energy::SolidEnergy;
 use crate::solver::solid::explicit::{ExplicitSolid, SolidStepping, padded};
 use crate::solver::solid::model::{SolidError, SolidModel};
 use crate::solver::solid::step_limit::{SolidStepLimit, step_limit};
+use crate::solver::solid::stress::first_inverted;
 use crate::solver::solid::team::Team;
 use ndarray::Array2;
 use thiserror::Error;
@@ -287,7 +287,7 @@ impl SolidSession {
         if let Some(node) = displacement.iter().position(|u| !u.iter().all(|x| x.is_finite())) {
             return Err(SolidError::NotFinite { node, time, step }.into());
         }
-        if let Some((element, ratio)) = first_inverted(&self.solid.model.problem, &displacement) {
+        if let Some((element, ratio)) = first_inverted(&self.solid.model, &displacement) {
             return Err(SolidError::Inverted { element, ratio, time, step }.into());
         }
         let ledger = self.solid.ledger();

@@ -4,11 +4,11 @@
 //! The arrays are written before `state.json` names them and the older ones are removed after, so
 //! that whatever moment a run is killed at, there is one whole state.
 
-use crate::output::atomic::{WriteError, write_atomic};
-use crate::output::results::pretty;
+use crate::output::atomic::{WriteError, remove_partials, write_atomic};
+use crate::output::journal::{self, JournalError, SERIES, STATE, Stopped};
 use crate::output::series::{Series, SeriesError};
+use crate::output::solid::fields::FOLDER;
 use crate::output::solid::session::{Grid, Kept, SolidRunError, SolidSession, Sound};
-use crate::output::state::{SERIES, STATE, Stopped};
 use crate::scene::solid::SolidRun;
 use crate::scene::solid_problem::SolidSetup;
 use crate::solver::solid::checkpoint::SolidCheckpoint;
@@ -67,6 +67,7 @@ pub struct SolidStateFile {
 pub struct LimitEntry {
     pub step: f64,
     pub frequency: f64,
+    pub is_bound: bool,
     pub element: usize,
     pub element_frequency: f64,
     pub at: [f64; 3],
@@ -75,15 +76,6 @@ pub struct LimitEntry {
 
 #[derive(Debug, Error)]
 pub enum SolidStateError {
-    #[error("cannot read {}: {source}", path.display())]
-    Read { path: PathBuf, source: std::io::Error },
-    #[error("{} is not the state of a solid's run: {source}", path.display())]
-    Json { path: PathBuf, source: serde_json::Error },
-    #[error(
-        "{} was written by version {found}; this is {}, whose bits may differ; start anew (--fresh)",
-        path.display(), env!("CARGO_PKG_VERSION")
-    )]
-    Version { path: PathBuf, found: String },
     #[error(
         "{} belongs to another scene or mesh: only end and plots may change from one part of a run \
          to the next; choose another --out, or start anew (--fresh)",
@@ -100,6 +92,8 @@ pub enum SolidStateError {
     Past { time: f64, end: f64 },
     #[error("cannot encode {}: {source}", path.display())]
     Encode { path: PathBuf, source: ndarray_npy::WriteNpyError },
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     #[error(transparent)]
     Series(#[from] SeriesError),
     #[error(transparent)]
@@ -125,7 +119,7 @@ pub fn fingerprint(setup: &SolidSetup, run: &SolidRun) -> String {
     hash.update(format!("{} {laws:?} {steps:?}", env!("CARGO_PKG_VERSION")));
     hash.update(format!("{:?} {:?}", problem.prescribed, problem.loads));
     hash.update(format!("{:?} {:?}", setup.probes, setup.supports));
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    journal::hexadecimal(hash)
 }
 
 /// Why a state is written, and what the session does not know.
@@ -170,8 +164,8 @@ pub fn save(
         .write_npy(&mut bytes)
         .map_err(|source| SolidStateError::Encode { path: path.clone(), source })?;
     write_atomic(&path, &bytes)?;
-    let value = serde_json::to_value(&file).expect("a state is plain JSON");
-    write_atomic(&folder.join(STATE), pretty(&value).as_bytes())?;
+    journal::write(folder, &file)?;
+    remove_partials(&folder.join(FOLDER));
     remove_arrays(folder, &file.arrays);
     Ok(())
 }
@@ -193,14 +187,7 @@ pub fn remove_arrays(folder: &Path, kept: &str) {
 /// # Errors
 /// A file that cannot be read or is no state of a solid.
 pub fn read(folder: &Path) -> Result<Option<SolidStateFile>, SolidStateError> {
-    let path = folder.join(STATE);
-    match std::fs::read(&path) {
-        Ok(bytes) => serde_json::from_slice(&bytes)
-            .map(Some)
-            .map_err(|source| SolidStateError::Json { path, source }),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(source) => Err(SolidStateError::Read { path, source }),
-    }
+    Ok(journal::read(folder)?)
 }
 
 /// The session that goes on where `file`, read from `folder`, was written.
@@ -216,9 +203,7 @@ pub fn resume(
     threads: usize,
 ) -> Result<SolidSession, SolidStateError> {
     let path = folder.join(STATE);
-    if file.version != env!("CARGO_PKG_VERSION") {
-        return Err(SolidStateError::Version { path, found: file.version.clone() });
-    }
+    journal::check_version(folder, &file.version)?;
     if file.fingerprint != fingerprint(setup, run) {
         return Err(SolidStateError::Scene { path });
     }
@@ -280,6 +265,7 @@ pub fn resume(
         limit: SolidStepLimit {
             step: limit.step,
             frequency: limit.frequency,
+            is_bound: limit.is_bound,
             element: limit.element,
             element_frequency: limit.element_frequency,
             at: limit.at,
@@ -320,6 +306,7 @@ fn state_file(sound: &Sound, session: &SolidSession, record: &SolidStateRecord) 
         limit: LimitEntry {
             step: limit.step,
             frequency: limit.frequency,
+            is_bound: limit.is_bound,
             element: limit.element,
             element_frequency: limit.element_frequency,
             at: limit.at,

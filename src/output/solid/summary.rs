@@ -243,6 +243,7 @@ fn limit_section(limit: &SolidStepLimit) -> Part {
     Ok(json!({
         "step": quantity("step limit", limit.step, "s")?,
         "highest_frequency": quantity("frequency", limit.frequency / TAU, "Hz")?,
+        "is_bound": limit.is_bound,
         "products": limit.products,
         "element": {
             "number": limit.element + 1,

@@ -33,6 +33,7 @@ pub struct Load {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prescribed {
     pub node: u32,
+    /// 0, 1 or 2 for X, Y, Z.
     pub axis: usize,
     /// Displacement over time, m.
     pub profile: Profile,
@@ -69,6 +70,8 @@ pub enum SolidError {
     NoSuchNode { node: u32, count: usize },
     #[error("node {node} belongs to no element, so it has no mass; drop it from the mesh")]
     NoMass { node: usize },
+    #[error("axis {axis} of node {node} is prescribed; axes are 0, 1 and 2")]
+    NoSuchAxis { node: u32, axis: usize },
     #[error("axis {axis} of node {node} is prescribed twice")]
     PrescribedTwice { node: u32, axis: usize },
     #[error(
@@ -114,8 +117,8 @@ pub fn corners<const N: usize>(nodes: &[Vec3], element: &[u32; N]) -> [Vec3; N] 
 
 impl SolidModel {
     /// # Errors
-    /// An element of no volume, a node without mass or out of range, a material constant out of
-    /// range.
+    /// An element of no volume, a node without mass, a node or axis out of range, a component
+    /// prescribed twice, a material constant out of range.
     pub fn new(problem: SolidProblem) -> Result<SolidModel, SolidError> {
         if !(problem.density > 0.0 && problem.density.is_finite()) {
             return Err(SolidError::Density(problem.density));
@@ -165,6 +168,9 @@ impl SolidModel {
             let (node, axis) = (*node, *axis);
             let entry =
                 per_mass.get_mut(node as usize).ok_or(SolidError::NoSuchNode { node, count })?;
+            if axis > 2 {
+                return Err(SolidError::NoSuchAxis { node, axis });
+            }
             if entry[axis] == 0.0 {
                 return Err(SolidError::PrescribedTwice { node, axis });
             }

@@ -1,5 +1,6 @@
 //! The step that explicit methods can take: from the highest frequency of the whole body, found by
-//! Lanczos' power iteration, and the element with the highest frequency of its own.
+//! Lanczos' power iteration, or a bound on it where that does not settle; and the element with the
+//! highest frequency of its own.
 
 use super::explicit::ExplicitMethod;
 use super::model::{SolidModel, corners};
@@ -16,6 +17,9 @@ pub struct SolidStepLimit {
     pub step: f64,
     /// Highest angular frequency of the body, rad/s.
     pub frequency: f64,
+    /// The iteration did not settle: `frequency` is a bound that no frequency of the body exceeds,
+    /// and the step shorter than it need be.
+    pub is_bound: bool,
     /// The element whose own highest frequency is the highest, counted from 0, that frequency
     /// (rad/s; no body is faster than its fastest element), and its centre (m).
     pub element: usize,
@@ -34,20 +38,36 @@ fn reach(method: ExplicitMethod) -> f64 {
     }
 }
 
+/// Products with the stiffness after which [`step_limit`] takes the bound instead. Bodies of this
+/// program's meshes take 8 to some 60.
+const MOST_PRODUCTS: usize = 200;
+
 /// The largest stable step at given displacements.
 pub fn step_limit(
     model: &SolidModel,
     displacement: &[Node],
     method: ExplicitMethod,
 ) -> SolidStepLimit {
+    step_limit_within(model, displacement, method, MOST_PRODUCTS)
+}
+
+/// As [`step_limit`], with at most so many products with the stiffness.
+pub fn step_limit_within(
+    model: &SolidModel,
+    displacement: &[Node],
+    method: ExplicitMethod,
+    most: usize,
+) -> SolidStepLimit {
     let elements = ElementTangents::new(model, displacement);
-    let (frequency, products) = highest_frequency(model, &elements);
+    let (found, products) = highest_frequency(model, &elements, most);
+    let frequency = found.unwrap_or_else(|| frequency_bound(model, &elements));
     let (element, element_frequency) = elements.fastest();
     let nodes = model.problem.elements.corners(element);
     let at = [0, 1, 2]
         .map(|i: usize| nodes.iter().map(|n| 0.25 * model.problem.nodes[*n as usize][i]).sum());
     let step = reach(method) / frequency;
-    SolidStepLimit { step, frequency, element, element_frequency, at, products }
+    let is_bound = found.is_none();
+    SolidStepLimit { step, frequency, is_bound, element, element_frequency, at, products }
 }
 
 /// Everything a product with the tangent stiffness needs.
@@ -160,9 +180,12 @@ fn start_vector() -> [Vec3; 10] {
 }
 
 /// Highest angular frequency of the body, rad/s, by Lanczos' recurrence from a fixed start, ended
-/// when it settles to 1e-4; and the products with the stiffness that it took.
-fn highest_frequency(model: &SolidModel, elements: &ElementTangents) -> (f64, usize) {
-    const MOST: usize = 200;
+/// when it settles (nothing if it does not); and the products with the stiffness that it took.
+fn highest_frequency(
+    model: &SolidModel,
+    elements: &ElementTangents,
+    most: usize,
+) -> (Option<f64>, usize) {
     let root: Vec<[f64; 3]> =
         model.per_mass.iter().map(|m| [m[0].sqrt(), m[1].sqrt(), m[2].sqrt()]).collect();
     let count = root.len();
@@ -180,13 +203,13 @@ fn highest_frequency(model: &SolidModel, elements: &ElementTangents) -> (f64, us
         .collect();
     let length = dot(&now, &now).sqrt();
     if length == 0.0 {
-        return (f64::MIN_POSITIVE, 0);
+        return (Some(f64::MIN_POSITIVE), 0);
     }
     now.iter_mut().flatten().for_each(|v| *v /= length);
     let mut before = vec![[0.0; 3]; count];
     let (mut diagonal, mut beside): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let mut largest = 0.0;
-    for product in 1..=MOST {
+    for product in 1..=most {
         let mut next = vec![[0.0; 3]; count];
         for element in 0..model.problem.elements.len() {
             let nodes = model.problem.elements.nodes(element);
@@ -214,13 +237,46 @@ fn highest_frequency(model: &SolidModel, elements: &ElementTangents) -> (f64, us
         let settled = (found - largest).abs() <= 1e-5 * found && product >= 8;
         largest = found;
         if settled || beta <= 1e-12 * found {
-            return (largest.sqrt(), product);
+            return (Some(largest.sqrt()), product);
         }
         beside.push(beta);
         next.iter_mut().flatten().for_each(|v| *v /= beta);
         before = std::mem::replace(&mut now, next);
     }
-    (largest.sqrt(), MOST)
+    (None, most)
+}
+
+/// An angular frequency, rad/s, that none of the body's exceeds: the square root of the largest sum
+/// of sizes along a row of the inverse mass times the stiffness (Gershgorin), taken element by
+/// element, which can only make it larger.
+fn frequency_bound(model: &SolidModel, elements: &ElementTangents) -> f64 {
+    let mut sums = vec![[0.0; 3]; model.mass.len()];
+    for element in 0..model.problem.elements.len() {
+        let nodes = model.problem.elements.nodes(element);
+        for column in 0..3 * nodes.len() {
+            if model.per_mass[nodes[column / 3] as usize][column % 3] == 0.0 {
+                continue;
+            }
+            let unit = |n: usize, _| {
+                let mut x = [0.0; 3];
+                if n == column / 3 {
+                    x[column % 3] = 1.0;
+                }
+                x
+            };
+            let Product { count, forces } = elements.product(element, unit);
+            for n in 0..count {
+                for i in 0..3 {
+                    sums[nodes[n] as usize][i] += forces[n][i].abs();
+                }
+            }
+        }
+    }
+    // `f64::max` would drop what is not a number.
+    let larger = |most: f64, sum: f64| if most.is_nan() || sum <= most { most } else { sum };
+    let rows = sums.iter().zip(&model.per_mass);
+    let rows = rows.flat_map(|(sum, per_mass)| [0, 1, 2].map(|i: usize| sum[i] * per_mass[i]));
+    rows.fold(f64::MIN_POSITIVE, larger).sqrt()
 }
 
 /// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on the signs of its pivots.

@@ -1,12 +1,41 @@
-//! Cauchy stresses of a deformed solid: where they are computed, and averaged to the nodes.
+//! Cauchy stresses of a deformed solid: where they are computed, over an element, and averaged to
+//! the nodes; and whether an element is turned inside out.
 
-use super::model::{SolidModel, corners};
+use super::model::{SolidModel, SolidProblem, corners};
 use crate::elements::tet4::{Tet4, relative};
-use crate::elements::tet10::{POINTS, Tet10, from_points};
-use crate::kinematics::strain::{Mat3, Sym3, cauchy, green_lagrange};
+use crate::elements::tet10::{Tet10, from_points};
+use crate::kinematics::strain::{Mat3, Sym3, cauchy, green_lagrange, volume_change};
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::node_order::EDGES;
 use crate::mesh::tet_mesh::Elements;
+
+/// Calls `visit` with element, undeformed volume and displacement gradient of every quadrature
+/// point.
+fn each_point(
+    problem: &SolidProblem,
+    displacement: &[Vec3],
+    mut visit: impl FnMut(usize, f64, &Mat3),
+) {
+    let sound = "elements were checked when the model was made";
+    match &problem.elements {
+        Elements::Linear(list) => {
+            for (index, nodes) in list.iter().enumerate() {
+                let tet = Tet4::new(&corners(&problem.nodes, nodes)).expect(sound);
+                let h = tet.displacement_gradient(&relative(&corners(displacement, nodes)));
+                visit(index, tet.volume, &h);
+            }
+        }
+        Elements::Quadratic(list) => {
+            for (index, nodes) in list.iter().enumerate() {
+                let tet = Tet10::new(&corners(&problem.nodes, nodes)).expect(sound);
+                let moved = corners(displacement, nodes);
+                for (p, point) in tet.points.iter().enumerate() {
+                    visit(index, point.volume, &tet.displacement_gradient(p, &moved));
+                }
+            }
+        }
+    }
+}
 
 /// Cauchy stress (2.5) at the quadrature points, Pa, one row an element: the one stress of a
 /// four-node element, or the four of a ten-node element. These are the stresses that the nodal
@@ -15,26 +44,40 @@ use crate::mesh::tet_mesh::Elements;
 /// `displacement` has one vector for each node, m.
 pub fn point_stresses(model: &SolidModel, displacement: &[Vec3]) -> Vec<Vec<Sym3>> {
     let problem = &model.problem;
-    let of = |h: &Mat3| cauchy(h, &problem.material.second_piola_kirchhoff(&green_lagrange(h)));
-    let moved = |node: u32| displacement[node as usize];
-    let sound = "elements were checked when the model was made";
-    match &problem.elements {
-        Elements::Linear(list) => list
-            .iter()
-            .map(|element| {
-                let tet = Tet4::new(&corners(&problem.nodes, element)).expect(sound);
-                vec![of(&tet.displacement_gradient(&relative(&element.map(moved))))]
-            })
-            .collect(),
-        Elements::Quadratic(list) => list
-            .iter()
-            .map(|element| {
-                let tet = Tet10::new(&corners(&problem.nodes, element)).expect(sound);
-                let moved = element.map(moved);
-                (0..POINTS).map(|p| of(&tet.displacement_gradient(p, &moved))).collect()
-            })
-            .collect(),
-    }
+    let mut stresses = vec![Vec::new(); problem.elements.len()];
+    each_point(problem, displacement, |element, _, h| {
+        let second = problem.material.second_piola_kirchhoff(&green_lagrange(h));
+        stresses[element].push(cauchy(h, &second));
+    });
+    stresses
+}
+
+/// Cauchy stress of each element, Pa: the mean over its quadrature points by undeformed volume.
+pub fn element_stresses(model: &SolidModel, displacement: &[Vec3]) -> Vec<Sym3> {
+    let problem = &model.problem;
+    let mut sums = vec![([0.0; 6], 0.0); problem.elements.len()];
+    each_point(problem, displacement, |element, volume, h| {
+        let second = problem.material.second_piola_kirchhoff(&green_lagrange(h));
+        let (sum, whole) = &mut sums[element];
+        *whole += volume;
+        for (sum, s) in sum.iter_mut().zip(cauchy(h, &second)) {
+            *sum += volume * s;
+        }
+    });
+    sums.into_iter().map(|(sum, whole)| sum.map(|s| s / whole)).collect()
+}
+
+/// The first element with a quadrature point that is turned inside out, and its volume ratio there.
+pub fn first_inverted(model: &SolidModel, displacement: &[Vec3]) -> Option<(usize, f64)> {
+    let mut found = None;
+    each_point(&model.problem, displacement, |element, _, h| {
+        let ratio = 1.0 + volume_change(h);
+        let sound = ratio > 0.0;
+        if !sound && found.is_none() {
+            found = Some((element, ratio));
+        }
+    });
+    found
 }
 
 /// Cauchy stress at the nodes, Pa: each element's stress, for ten-node elements continued linearly

@@ -49,7 +49,9 @@ pub fn free_motions(problem: &SolidProblem) -> FreeMotions {
         let row = match held.axis {
             0 => [1.0, 0.0, 0.0, 0.0, z, -y],
             1 => [0.0, 1.0, 0.0, -z, 0.0, x],
-            _ => [0.0, 0.0, 1.0, y, -x, 0.0],
+            2 => [0.0, 0.0, 1.0, y, -x, 0.0],
+            // No model is made of such a problem.
+            _ => continue,
         };
         let row = SVector::<f64, 6>::from(row);
         gram += row * row.transpose();

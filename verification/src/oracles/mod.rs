@@ -8,10 +8,13 @@ pub mod dense;
 pub mod elliptic;
 pub mod hertz;
 pub mod hyperdual;
+pub mod lame;
 pub mod misalignment;
+pub mod ring;
 pub mod rolling;
 pub mod statics;
 #[cfg(test)]
 mod statics_tests;
+pub mod timoshenko;
 pub mod trust_region;
 pub mod uniform_load;

@@ -2,6 +2,7 @@
 
 mod cage;
 mod motion;
+mod solids;
 mod statics;
 mod varying_compliance;
 
@@ -20,4 +21,10 @@ pub const STUDIES: &[Study] = &[
     cage::SLICES,
     cage::HERTZ,
     cage::CONTACT,
+    solids::cantilever::DEFLECTION,
+    solids::cantilever::FREQUENCY,
+    solids::ring::DEFLECTION,
+    solids::ring::FREQUENCY,
+    solids::cage::DEFLECTION,
+    solids::cage::FREQUENCY,
 ];

@@ -1,0 +1,79 @@
+//! What runs of bearings and of solids have in common in the state that they go on from: its names,
+//! why the run stood still, how it is read and written.
+
+use crate::output::atomic::{WriteError, remove_partials, write_atomic};
+use crate::output::results::pretty;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+pub const STATE: &str = "state.json";
+pub const SERIES: &str = "series.npy";
+
+/// Why the run stood still when the state was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stopped {
+    /// It did not: written on the way.
+    Running,
+    Interrupted,
+    Failed,
+    Complete,
+}
+
+#[derive(Debug, Error)]
+pub enum JournalError {
+    #[error("cannot read {}: {source}", path.display())]
+    Read { path: PathBuf, source: std::io::Error },
+    #[error("{} is not the state of such a run: {source}", path.display())]
+    Json { path: PathBuf, source: serde_json::Error },
+    #[error(
+        "{} was written by version {found}; this is {}, whose bits may differ; start anew (--fresh)",
+        path.display(), env!("CARGO_PKG_VERSION")
+    )]
+    Version { path: PathBuf, found: String },
+}
+
+/// Reads `state.json` of a results folder; `None` if there is none.
+///
+/// # Errors
+/// A file that cannot be read, or is the state of something else.
+pub fn read<T: DeserializeOwned>(folder: &Path) -> Result<Option<T>, JournalError> {
+    let path = folder.join(STATE);
+    match std::fs::read(&path) {
+        Ok(bytes) => serde_json::from_slice(&bytes)
+            .map(Some)
+            .map_err(|source| JournalError::Json { path, source }),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(source) => Err(JournalError::Read { path, source }),
+    }
+}
+
+/// Refuses a state of another version.
+///
+/// # Errors
+/// [`JournalError::Version`].
+pub fn check_version(folder: &Path, found: &str) -> Result<(), JournalError> {
+    if found == env!("CARGO_PKG_VERSION") {
+        return Ok(());
+    }
+    Err(JournalError::Version { path: folder.join(STATE), found: found.to_string() })
+}
+
+/// Writes `state.json`, and removes what killed runs left half written in the folder.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write<T: Serialize>(folder: &Path, state: &T) -> Result<(), WriteError> {
+    let value = serde_json::to_value(state).expect("a state is plain JSON");
+    write_atomic(&folder.join(STATE), pretty(&value).as_bytes())?;
+    remove_partials(folder);
+    Ok(())
+}
+
+/// A hash as text.
+pub fn hexadecimal(hash: Sha256) -> String {
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,193 @@
+//! Scenes with a solid that are refused, meshes that are repaired only when asked, and every generator.
+
+mod solid_command_common;
+
+use serde_json::Value;
+use solid_command_common::{ON_ROLLERS, Place, bar, command, number, shipped, stderr, succeed};
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn meshes_from_files_are_repaired_only_when_asked() {
+    let place = Place::new();
+    fs::copy(shipped("meshes/bar.msh"), place.path("bar.msh")).unwrap();
+    // Two corners of the first tetrahedron exchanged turn it inside out.
+    let text = fs::read_to_string(place.path("bar.msh")).unwrap();
+    let at = text.find("\n3 1 4 ").expect("the block of tetrahedra");
+    let line_start = at + 1 + text[at + 1..].find('\n').unwrap() + 1;
+    let line_end = line_start + text[line_start..].find('\n').unwrap();
+    let words: Vec<&str> = text[line_start..line_end].split_whitespace().collect();
+    let turned = [words[0], words[1], words[3], words[2], words[4]].join(" ");
+    let broken = format!("{}{turned}{}", &text[..line_start], &text[line_end..]);
+    fs::write(place.path("broken.msh"), broken).unwrap();
+    let scene = |name: &str, further: &str| {
+        let text = format!("[solid.mesh]\nfile = \"{name}\"\nunit = \"mm\"\n{further}");
+        place.scene("scene.toml", &text)
+    };
+    let output = command("check", &scene("broken.msh", ""), &[]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("1 of 1798 elements are inverted"), "{}", stderr(&output));
+    let said = succeed(command("check", &scene("broken.msh", "repair = [\"orient\"]\n"), &[]));
+    assert!(said.contains("1 elements turned"), "{said}");
+    // In metres it would be a hundred of them: said, not refused.
+    let said = succeed(command(
+        "check",
+        &place.scene("m.toml", "[solid.mesh]\nfile = \"bar.msh\"\nunit = \"m\"\n"),
+        &[],
+    ));
+    assert!(said.contains("as millimetres it would be"), "{said}");
+    // An Abaqus file, its order raised.
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh");
+    fs::copy(data.join("box_o1.inp"), place.path("box.inp")).unwrap();
+    let said = succeed(command("check", &scene("box.inp", "order = 2\n"), &[]));
+    assert!(said.contains("elements of 10"), "{said}");
+}
+
+#[test]
+fn every_generator_makes_a_solid() {
+    let place = Place::new();
+    let cases = [
+        (
+            "block",
+            "half_width = \"0.1 mm\"\ncells = { per_half_width = 2, deep = 1, growth = 1.3 }",
+        ),
+        (
+            "shaft",
+            "radius = \"10 mm\"\nstations = [\"0 mm\", \"30 mm\", \"80 mm\"]\ncells = { along = 8, around = 8, radial = 1 }",
+        ),
+        (
+            "shaft",
+            "radius = \"10 mm\"\nlength = \"80 mm\"\ncells = { along = 8, around = 8, radial = 1 }",
+        ),
+        (
+            "cage",
+            "pockets = 8\npocket_radius = \"6.1 mm\"\ninner_radius = \"24 mm\"\nouter_radius = \"28 mm\"\nwidth = \"16 mm\"\nrelief = { depth = \"0.5 mm\", belt_width = \"13 mm\" }\ncells = { quarter = 2, bar = 1, wall = 1 }",
+        ),
+        (
+            "housing-a",
+            "bore_radius = \"26 mm\"\nside = \"80 mm\"\ndepth = \"15 mm\"\ncells = { around = 16, radial = 2, axial = 1 }",
+        ),
+        (
+            "housing-b",
+            "bore_radius = \"26 mm\"\ndepth = \"15 mm\"\ncells = { around = 16, radial = 2, axial = 1 }",
+        ),
+        (
+            "housing-c",
+            "bore_radius = \"26 mm\"\ndepth = \"15 mm\"\nouter_radius = \"37 mm\"\ncells = { around = 16, radial = 2, axial = 1 }",
+        ),
+        (
+            "housing-d",
+            "bore_radius = \"26 mm\"\nouter_radius = \"37 mm\"\ndepth = \"15 mm\"\ncells = { around = 16, radial = 2, axial = 1, growth = 1.2 }",
+        ),
+    ];
+    for (generator, dimensions) in cases {
+        for order in [1, 2] {
+            let text = format!(
+                "[solid.mesh]\ngenerate = \"{generator}\"\norder = {order}\n{dimensions}\n"
+            );
+            let scene = place.scene("scene.toml", &text);
+            let said = succeed(command("check", &scene, &[]));
+            assert!(said.contains("a valid scene"), "{generator}: {said}");
+            if generator == "shaft" {
+                let summary = succeed(command("check", &scene, &["--json"]));
+                let echo: Value = serde_json::from_str(&summary).unwrap();
+                assert_eq!(number(&echo["mesh"]["high"]["x"]), 0.08);
+            }
+        }
+    }
+}
+
+#[test]
+fn errors_name_what_is_wrong() {
+    let place = Place::new();
+    fs::copy(shipped("meshes/bar.msh"), place.path("bar.msh")).unwrap();
+    fs::write(place.path("half.msh"), &fs::read(place.path("bar.msh")).unwrap()[..20_000]).unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh");
+    fs::copy(data.join("box_o2.inp"), place.path("box_o2.inp")).unwrap();
+    let file = |name: &str| format!("[solid.mesh]\nfile = \"{name}\"\nunit = \"mm\"\n");
+    let held = |further: &str| bar(1, &format!("{ON_ROLLERS}{further}"));
+    let numerics = "[numerics]\nend = \"1 ms\"\n";
+    let cases: &[(&str, &str, String)] = &[
+        ("a bearing too", "check", bar(1, "[bearing]\nkind = \"deep-groove\"\n")),
+        ("conditions of a bearing", "check", bar(1, "[inner_race]\nspeed = \"1 rpm\"\n")),
+        ("no mesh", "check", "[solid]\ndamping = \"1 1/s\"\n".to_string()),
+        ("file and generator", "check", bar(1, "").replace("order", "file = \"a.msh\"\norder")),
+        ("no unit", "check", "[solid.mesh]\nfile = \"bar.msh\"\n".to_string()),
+        ("no such mesh", "check", file("missing.msh")),
+        ("format unknown", "check", file("bar.stl")),
+        ("cut off", "check", file("half.msh")),
+        ("order lowered", "check", format!("{}order = 1\n", file("box_o2.inp"))),
+        ("no order", "check", bar(1, "").replace("order = 1\n", "")),
+        ("no length", "check", bar(1, "").replace("length = \"40 mm\"\n", "")),
+        ("key of another generator", "check", bar(1, "").replace("order", "pockets = 8\norder")),
+        ("size of a file", "check", format!("{}length = \"1 mm\"\n", file("bar.msh"))),
+        ("misspelt", "check", bar(1, "[[solid.held]]\nsets = \"x_low\"\n")),
+        ("not a list", "check", bar(1, "[solid.held]\nset = \"x_low\"\nx = true\n")),
+        ("nothing held", "check", bar(1, "[[solid.held]]\nset = \"x_low\"\n")),
+        ("no such set", "check", bar(1, "[[solid.held]]\nset = \"left\"\nx = true\n")),
+        ("two ways", "check", held("[[solid.held]]\nset = \"z_high\"\nx = \"1 um\"\n")),
+        ("no load", "check", held("[[solid.load]]\nset = \"x_high\"\n")),
+        (
+            "two loads",
+            "check",
+            held("[[solid.load]]\nset = \"x_high\"\nz = \"1 N\"\npressure = \"1 MPa\"\n"),
+        ),
+        (
+            "pressure on nodes",
+            "check",
+            held(
+                "[[solid.set]]\nname = \"corner\"\nlow = [\"0 mm\", \"-5 mm\", \"-5 mm\"]\nhigh = [\"0 mm\", \"-5 mm\", \"-5 mm\"]\n[[solid.load]]\nset = \"corner\"\npressure = \"1 MPa\"\n",
+            ),
+        ),
+        (
+            "empty set",
+            "check",
+            bar(1, "[[solid.set]]\nname = \"cut\"\nplane = \"x\"\nat = \"41 mm\"\n"),
+        ),
+        (
+            "set twice",
+            "check",
+            bar(1, "[[solid.set]]\nname = \"x_low\"\nplane = \"x\"\nat = \"0 mm\"\n"),
+        ),
+        ("set nowhere", "check", bar(1, "[[solid.set]]\nname = \"cut\"\n")),
+        ("plane without place", "check", bar(1, "[[solid.set]]\nname = \"cut\"\nplane = \"x\"\n")),
+        ("probe of nothing", "check", bar(1, "[[solid.probe]]\nname = \"tip\"\n")),
+        ("incompressible", "check", bar(1, "").replace("0.3", "0.5")),
+        (
+            "damping as a time",
+            "check",
+            bar(1, "").replace("[solid.mesh]", "[solid]\ndamping = \"77 s\"\n[solid.mesh]"),
+        ),
+        ("free in statics", "statics", bar(1, "[[solid.held]]\nset = \"x_low\"\nx = true\n")),
+        ("no end", "run", held("")),
+        ("step beyond the limit", "run", held("[numerics]\nend = \"1 ms\"\nstep = \"10 us\"\n")),
+        (
+            "interval beyond the end",
+            "run",
+            held("[numerics]\nend = \"1 ms\"\nfields_interval = \"2 ms\"\n"),
+        ),
+        ("bearing's numerics", "run", held(&format!("{numerics}start = \"nominal\"\n"))),
+        ("bearing's plot", "run", held(&format!("{numerics}[output]\nplots = [\"polar\"]\n"))),
+        ("swept", "sweep", held("[sweep]\n\"solid.damping\" = [\"1 1/s\"]\n")),
+        ("swept by the command", "sweep", held("")),
+        (
+            "too fine",
+            "check",
+            bar(1, "").replace("across = 2", "across = 100000").replace("up = 2", "up = 100000"),
+        ),
+        ("more modes than motions", "modes", bar(1, "[modes]\ncount = 500\n")),
+    ];
+    let mut messages = String::new();
+    for (name, verb, text) in cases {
+        let scene = place.scene("scene.toml", text);
+        let output = command(verb, &scene, &[]).current_dir(&place.folder).output().unwrap();
+        let message = stderr(&output).replace(&format!("{}/", place.folder.path().display()), "");
+        assert_eq!(output.status.code(), Some(2), "{name}: {message}");
+        assert_eq!(message.lines().count(), 1, "{name}: {message}");
+        messages += &format!("{name}\n    {message}");
+    }
+    let modes = command("modes", &shipped("deep_groove_tilt.toml"), &[]).output().unwrap();
+    assert_eq!(modes.status.code(), Some(2));
+    assert!(stderr(&modes).contains("modes takes a solid"), "{}", stderr(&modes));
+    insta::assert_snapshot!(messages);
+}

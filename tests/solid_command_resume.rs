@@ -1,0 +1,154 @@
+//! Runs of a solid that are interrupted, killed, extended or fail.
+
+mod solid_command_common;
+
+use solid_command_common::{Place, SHORT_RUN, column, into_folder, json, stderr, succeed};
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+/// Every file of two folders to the byte, but for wall times.
+fn assert_same_results(expected: &Path, found: &Path) {
+    let names = |folder: &Path| {
+        let list = |folder: PathBuf, before: &str| {
+            let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+            let files = entries.filter(|entry| entry.path().is_file());
+            let names =
+                files.map(|entry| format!("{before}{}", entry.file_name().to_string_lossy()));
+            names.collect::<Vec<_>>()
+        };
+        let mut names = list(folder.to_path_buf(), "");
+        names.extend(list(folder.join("fields"), "fields/"));
+        names.sort();
+        names
+    };
+    assert_eq!(names(expected), names(found));
+    for name in names(expected) {
+        let [a, b] = [expected, found].map(|folder| folder.join(&name));
+        if ["summary.json", "state.json"].contains(&name.as_str()) {
+            let [mut a, mut b] = [a, b].map(json);
+            for tree in [&mut a, &mut b] {
+                assert!(tree.as_object_mut().unwrap().remove("seconds").is_some(), "{name}");
+            }
+            assert_eq!(a.to_string(), b.to_string(), "{name}");
+        } else {
+            assert!(fs::read(a).unwrap() == fs::read(b).unwrap(), "{name} differs");
+        }
+    }
+}
+
+/// Starts a run and waits until it steps.
+fn start(mut command: Command) -> Child {
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stdout.as_mut().unwrap());
+    let mut line = String::new();
+    while !line.contains("a row every") {
+        line.clear();
+        assert!(lines.read_line(&mut line).unwrap() > 0, "it ended before it stepped");
+    }
+    child
+}
+
+fn signal(child: &Child, name: &str) {
+    let id = child.id().to_string();
+    assert!(Command::new("kill").args([name, &id]).status().unwrap().success());
+}
+
+fn wait(mut child: Child) -> (Option<i32>, String) {
+    let mut text = String::new();
+    child.stderr.as_mut().unwrap().read_to_string(&mut text).unwrap();
+    (child.wait().unwrap().code(), text)
+}
+
+#[test]
+fn interrupted_killed_and_extended_runs_end_with_the_same_bytes() {
+    for method in ["central-differences", "runge-kutta"] {
+        let place = Place::new();
+        let numerics = |end: &str| {
+            let fixed = "output_interval = \"10 us\"\nfields_interval = \"0.5 ms\"";
+            format!("{SHORT_RUN}method = \"{method}\"\nend = \"{end}\"\n{fixed}\n")
+        };
+        // A second or so; the end lies off the grid of rows.
+        let scene = place.scene("scene.toml", &numerics("4.003 ms"));
+        let (whole, parts) = (place.path("whole"), place.path("parts"));
+        let child = start(into_folder("run", &scene, &parts, &["--save-every", "1"]));
+        std::thread::sleep(std::time::Duration::from_millis(100));
+        signal(&child, "-TERM");
+        let (code, message) = wait(child);
+        assert_eq!(code, Some(2), "{message}");
+        assert!(
+            message.contains("interrupted at t = ") && message.contains("--resume"),
+            "{message}"
+        );
+        let summary = json(parts.join("summary.json"));
+        assert_eq!(
+            (&summary["complete"], &summary["stopped_by"]),
+            (&false.into(), &"interrupted".into())
+        );
+
+        // Without a word about it nothing is overwritten.
+        let refused = into_folder("run", &scene, &parts, &[]).output().unwrap();
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(stderr(&refused).contains("--resume") && stderr(&refused).contains("--fresh"));
+        assert_eq!(json(parts.join("summary.json")), summary);
+
+        // Killed outright it goes on from the state kept before.
+        let child = start(into_folder("run", &scene, &parts, &["--resume"]));
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        signal(&child, "-KILL");
+        assert_eq!(wait(child).0, None);
+        // As if killed in the middle of a file: gone when the next part has ended.
+        let dead = u32::MAX - 1;
+        for half in ["series.npy", "fields/fields_000001.vtu"] {
+            let path = parts.join(half);
+            let name = path.file_name().unwrap().to_string_lossy();
+            fs::write(path.with_file_name(format!(".{name}.{dead}.partial")), "half").unwrap();
+        }
+        let said = succeed(into_folder("run", &scene, &parts, &["--resume"]));
+        assert!(said.contains("resumed at t = "), "{said}");
+        succeed(into_folder("run", &scene, &whole, &[]));
+        assert_same_results(&whole, &parts);
+
+        // A complete run goes on to a later end.
+        let longer = place.scene("scene.toml", &numerics("5 ms"));
+        succeed(into_folder("run", &longer, &parts, &["--resume"]));
+        succeed(into_folder("run", &longer, &whole, &["--fresh"]));
+        assert_same_results(&whole, &parts);
+
+        // Another scene does not go on from there.
+        let text = numerics("6 ms").replace("20 MPa", "21 MPa");
+        let other = place.scene("other.toml", &text);
+        let refused = into_folder("run", &other, &parts, &["--resume"]).output().unwrap();
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(stderr(&refused).contains("another scene"), "{}", stderr(&refused));
+    }
+}
+
+#[test]
+fn a_run_that_fails_says_where_and_keeps_its_state() {
+    let place = Place::new();
+    let numerics = "end = \"1 ms\"\noutput_interval = \"1 us\"\n";
+    let text = format!("{SHORT_RUN}{numerics}").replace("20 MPa", "200 GPa");
+    let scene = place.scene("scene.toml", &text);
+    let out = place.path("out");
+    let output = into_folder("run", &scene, &out, &[]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let message = stderr(&output);
+    assert!(message.contains("t = ") && message.contains("step "), "{message}");
+    assert!(message.contains("the rows so far and the state at the last row"), "{message}");
+    let summary = json(out.join("summary.json"));
+    assert_eq!(summary["complete"], false);
+    assert!(message.contains(summary["stopped_by"].as_str().unwrap()), "{message}");
+    let state = json(out.join("state.json"));
+    assert_eq!(state["stopped"], "failed");
+    assert_eq!(state["time"], summary["time"]["value"]);
+    assert_eq!(summary["output"]["rows"], column(&out, "time").len());
+    // It may be looked at, and a gentler scene may take its folder.
+    succeed(into_folder(
+        "run",
+        &place.scene("g.toml", &format!("{SHORT_RUN}{numerics}")),
+        &out,
+        &[],
+    ));
+}
