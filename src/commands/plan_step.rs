@@ -1,0 +1,168 @@
+//! What `bearing plan` says of the steps of a run: how long, why, how many, and what would make them
+//! longer.
+
+use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::output::dynamics::session::{RunRequest, whole_steps};
+use bearing_dynamics::solver::dynamics::model::DynamicProblem;
+use bearing_dynamics::solver::dynamics::run::{
+    Integrator, RunOptions, Simulation, SimulationError, Stepping,
+};
+use bearing_dynamics::solver::dynamics::stability::{Cause, StepLimit, step_limit};
+use bearing_dynamics::solver::dynamics::step_watch::TOLERATED;
+use bearing_dynamics::solver::dynamics::system::System;
+
+/// From here on a friction onset that makes steps shorter than contacts need is worth a word.
+const WORTH_A_WORD: f64 = 3.0;
+
+/// The step of a run at its start, and advice where the onset of friction makes it short.
+pub fn step_lines(problem: &DynamicProblem, request: &RunRequest) -> Vec<String> {
+    let options = &request.options;
+    match options.stepping {
+        Stepping::Accuracy(accuracy) => adaptive(problem, request, accuracy),
+        Stepping::Fixed(step) if options.integrator != Integrator::RungeKutta => {
+            vec![note("given step", &format!("{step:.3e} s: {}", steps(request.end, step)))]
+        }
+        // The start is the same; the limit does not depend on the fraction.
+        Stepping::Fixed(step) => {
+            let limited = RunOptions { stepping: Stepping::FractionOfLimit(1.0), ..*options };
+            let (said, advice) = match Simulation::new(problem.clone(), limited) {
+                Ok(mut simulation) => match simulation.limit {
+                    Some(limit) => (against(step, &limit), advice(&mut simulation, &limit)),
+                    None => (NOT_STIFF.into(), None),
+                },
+                Err(SimulationError::NoStep) => (NOT_STIFF.into(), None),
+                Err(error) => (refused(&error), None),
+            };
+            let said = format!("{said}; {}", steps(request.end, step));
+            std::iter::once(note("given step", &said)).chain(advice).collect()
+        }
+        Stepping::FractionOfLimit(fraction) => automatic(problem, request, fraction),
+    }
+}
+
+const NOT_STIFF: &str = "no contact is stiff at the start";
+
+fn note(name: &str, said: &str) -> String {
+    format!("notes {name:<28} {said}")
+}
+
+fn refused(error: &SimulationError) -> String {
+    format!("WARNING: the run will be refused: {error}")
+}
+
+fn steps(end: f64, step: f64) -> String {
+    format!("{} steps to t = {end} s", whole_steps(end, step))
+}
+
+fn against(step: f64, limit: &StepLimit) -> String {
+    let ratio = step / limit.step;
+    let verdict = match ratio {
+        r if r > TOLERATED => "WARNING: too long, the run will be refused",
+        r if r > 1.0 => "WARNING: longer than stable",
+        _ => "stable at the start",
+    };
+    format!(
+        "{step:.3e} s is {ratio:.3} of the largest stable one at the start, {:.3e} s ({}): {verdict}",
+        limit.step,
+        limit.reason()
+    )
+}
+
+fn automatic(problem: &DynamicProblem, request: &RunRequest, fraction: f64) -> Vec<String> {
+    let mut simulation = match Simulation::new(problem.clone(), request.options) {
+        Ok(simulation) => simulation,
+        Err(error) => return vec![note("step", &refused(&error))],
+    };
+    let Some(limit) = simulation.limit else { return vec![note("step", NOT_STIFF)] };
+    let per_row = whole_steps(request.output_interval, simulation.step_size);
+    let step = request.output_interval / per_row as f64;
+    let said = format!(
+        "{step:.3e} s, from {fraction} of the largest stable one at the start, {:.3e} s ({}): {}; \
+         shortened on the way where contacts get stiffer",
+        limit.step,
+        limit.reason(),
+        steps(request.end, step)
+    );
+    std::iter::once(note("step", &said)).chain(advice(&mut simulation, &limit)).collect()
+}
+
+fn adaptive(problem: &DynamicProblem, request: &RunRequest, accuracy: f64) -> Vec<String> {
+    let simulation = match Simulation::new(problem.clone(), request.options) {
+        Ok(simulation) => simulation,
+        Err(error) => return vec![note("step", &refused(&error))],
+    };
+    let overlap = simulation.control.as_ref().map_or(0.0, |control| control.memory.displacement);
+    let said = format!(
+        "adapts so that the motion of the races is good to {accuracy} of the largest overlap of a \
+         contact, at the start {:.3} of {:.4} um; at least a step a row, the first of {:.3e} s",
+        accuracy * 1e6 * overlap,
+        1e6 * overlap,
+        simulation.step_size
+    );
+    vec![note("step", &said)]
+}
+
+/// What would make the step longer, where the onset of friction makes it much shorter than contacts
+/// would.
+fn advice(simulation: &mut Simulation, limit: &StepLimit) -> Option<String> {
+    if limit.cause != Cause::Traction {
+        return None;
+    }
+    let gain = limit_with(simulation, TractionLaw::None)?.step / limit.step;
+    if gain < WORTH_A_WORD {
+        return None;
+    }
+    let mut said = format!(
+        "the onset of friction makes the step {gain:.1} times shorter than contacts would; longer \
+         steps: numerics.integrator = \"rosenbrock\" with numerics.accuracy = 1e-3"
+    );
+    if let Some((key, before, law)) = gentler(simulation, gain)
+        && let Some(longer) = limit_with(simulation, law.0).map(|limit| limit.step)
+    {
+        said += &format!(
+            ", or {key} = \"{} m/s\" ({:.1} times the present one: gentler friction at small slip), \
+             stable up to {longer:.3e} s",
+            law.1,
+            law.1 / before
+        );
+    }
+    Some(note("short step", &said))
+}
+
+fn limit_with(simulation: &Simulation, traction: TractionLaw) -> Option<StepLimit> {
+    let problem = DynamicProblem { traction, ..simulation.system.problem.clone() };
+    let mut system = System::new(problem, RunOptions::default().driver);
+    step_limit(&mut system, simulation.time, &simulation.state)
+}
+
+/// The key whose speed sets the onset, that speed, and the law whose onset is less steep by `gain`
+/// with its speed.
+fn gentler(simulation: &Simulation, gain: f64) -> Option<(&'static str, f64, (TractionLaw, f64))> {
+    match &simulation.system.problem.traction {
+        TractionLaw::SlideToRoll { curve, entrainment_floor } => {
+            // Where parts roll faster than the floor, it is their speed that divides.
+            let table = &simulation.system.table;
+            let rolling = table.active.iter().map(|&pair| table.sliding[pair].entrainment.abs());
+            let floor = two_digits_up(gain * rolling.fold(*entrainment_floor, f64::max));
+            let law = TractionLaw::SlideToRoll { curve: *curve, entrainment_floor: floor };
+            Some(("traction.entrainment_floor", *entrainment_floor, (law, floor)))
+        }
+        TractionLaw::Constant { coefficient, regularisation_speed } => {
+            let speed = two_digits_up(gain * regularisation_speed);
+            let coefficient = *coefficient;
+            let law = TractionLaw::Constant { coefficient, regularisation_speed: speed };
+            Some(("traction.regularisation_speed", *regularisation_speed, (law, speed)))
+        }
+        _ => None,
+    }
+}
+
+/// 0.0371 → 0.038.
+fn two_digits_up(value: f64) -> f64 {
+    let rounded: f64 = format!("{value:.1e}").parse().unwrap_or(value);
+    if rounded >= value {
+        return rounded;
+    }
+    let unit = 10f64.powi(value.log10().floor() as i32 - 1);
+    format!("{:.1e}", rounded + unit).parse().unwrap_or(value)
+}
