@@ -3,6 +3,7 @@
 
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::output::dynamics::session::{RunRequest, whole_steps};
+use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, SimulationError, Stepping,
@@ -13,6 +14,9 @@ use bearing_dynamics::solver::dynamics::system::System;
 
 /// From here on a friction onset that makes steps shorter than contacts need is worth a word.
 const WORTH_A_WORD: f64 = 3.0;
+
+/// A still gentler onset is no small change of the friction law, and not proposed.
+const MOST_GENTLER: f64 = 10.0;
 
 /// The step of a run at its start, and advice where the onset of friction makes it short.
 pub fn step_lines(problem: &DynamicProblem, request: &RunRequest) -> Vec<String> {
@@ -116,15 +120,25 @@ fn advice(simulation: &mut Simulation, limit: &StepLimit) -> Option<String> {
         "the onset of friction makes the step {gain:.1} times shorter than contacts would; longer \
          steps: numerics.integrator = \"rosenbrock\" with numerics.accuracy = 1e-3"
     );
-    if let Some((key, before, law)) = gentler(simulation, gain)
-        && let Some(longer) = limit_with(simulation, law.0).map(|limit| limit.step)
-    {
-        said += &format!(
-            ", or {key} = \"{} m/s\" ({:.1} times the present one: gentler friction at small slip), \
-             stable up to {longer:.3e} s",
-            law.1,
-            law.1 / before
-        );
+    match onset(&simulation.system, gain.min(MOST_GENTLER)) {
+        Onset::Speed { key, before, speed, law } => {
+            if let Some(longer) = limit_with(simulation, law) {
+                said += &format!(
+                    ", or {key} = \"{speed} m/s\", {} times the present one: stable up to {:.3e} s, \
+                     with less friction where parts creep slower than that",
+                    to_digits(speed / before, 2),
+                    longer.step
+                );
+            }
+        }
+        Onset::Rolling(speed) => {
+            said += &format!(
+                "; a larger traction.entrainment_floor helps only above the rolling speed of \
+                 {} m/s",
+                to_digits(speed, 2)
+            );
+        }
+        Onset::Shape => {}
     }
     Some(note("short step", &said))
 }
@@ -135,34 +149,43 @@ fn limit_with(simulation: &Simulation, traction: TractionLaw) -> Option<StepLimi
     step_limit(&mut system, simulation.time, &simulation.state)
 }
 
-/// The key whose speed sets the onset, that speed, and the law whose onset is less steep by `gain`
-/// with its speed.
-fn gentler(simulation: &Simulation, gain: f64) -> Option<(&'static str, f64, (TractionLaw, f64))> {
-    match &simulation.system.problem.traction {
+/// What makes the onset of friction as steep as it is.
+enum Onset {
+    /// A speed of the scene; `speed` and `law` are those with a gentler onset.
+    Speed { key: &'static str, before: f64, speed: f64, law: TractionLaw },
+    /// The speed of rolling, m/s, above the floor of the scene.
+    Rolling(f64),
+    /// The curve itself.
+    Shape,
+}
+
+/// With an onset that is gentler by `factor`, where a speed of the scene makes it.
+fn onset(system: &System, factor: f64) -> Onset {
+    match &system.problem.traction {
         TractionLaw::SlideToRoll { curve, entrainment_floor } => {
-            // Where parts roll faster than the floor, it is their speed that divides.
-            let table = &simulation.system.table;
+            let before = *entrainment_floor;
+            let table = &system.table;
             let rolling = table.active.iter().map(|&pair| table.sliding[pair].entrainment.abs());
-            let floor = two_digits_up(gain * rolling.fold(*entrainment_floor, f64::max));
-            let law = TractionLaw::SlideToRoll { curve: *curve, entrainment_floor: floor };
-            Some(("traction.entrainment_floor", *entrainment_floor, (law, floor)))
+            let rolling = rolling.fold(0.0, f64::max);
+            if rolling > before {
+                return Onset::Rolling(rolling);
+            }
+            let speed = two_digits_up(factor * before);
+            let law = TractionLaw::SlideToRoll { curve: *curve, entrainment_floor: speed };
+            Onset::Speed { key: "traction.entrainment_floor", before, speed, law }
         }
         TractionLaw::Constant { coefficient, regularisation_speed } => {
-            let speed = two_digits_up(gain * regularisation_speed);
-            let coefficient = *coefficient;
+            let (before, coefficient) = (*regularisation_speed, *coefficient);
+            let speed = two_digits_up(factor * before);
             let law = TractionLaw::Constant { coefficient, regularisation_speed: speed };
-            Some(("traction.regularisation_speed", *regularisation_speed, (law, speed)))
+            Onset::Speed { key: "traction.regularisation_speed", before, speed, law }
         }
-        _ => None,
+        _ => Onset::Shape,
     }
 }
 
 /// 0.0371 → 0.038.
 fn two_digits_up(value: f64) -> f64 {
-    let rounded: f64 = format!("{value:.1e}").parse().unwrap_or(value);
-    if rounded >= value {
-        return rounded;
-    }
-    let unit = 10f64.powi(value.log10().floor() as i32 - 1);
-    format!("{:.1e}", rounded + unit).parse().unwrap_or(value)
+    let rounded = to_digits(value, 2);
+    if rounded >= value { rounded } else { to_digits(1.05 * value, 2) }
 }

@@ -23,7 +23,7 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
     if let [Some(x), Some(y), Some(z)] = names.map(|name| table.all(name)) {
         let away = x.iter().zip(&y).zip(&z).map(|((x, y), z)| (x * x + y * y + z * z).sqrt());
         if let Some((row, most)) = largest(away) {
-            let at = time(table, row);
+            let at = table.time(row);
             line("inner race, farthest", format!("{:.6} um at t = {at} s", 1e6 * most));
         }
     }
@@ -35,7 +35,7 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
         })
     });
     if let Some((load, ball, race, row)) = loads.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        let at = time(table, row);
+        let at = table.time(row);
         line("largest ball load", format!("{load:.6} N, ball {ball}, {race} race, at t = {at} s"));
     }
     if let Some((_, most)) =
@@ -59,10 +59,6 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
     }
     line("steps", format!("{} in {seconds:.2} s", simulation.steps));
     text
-}
-
-fn time(table: &RunTable, row: usize) -> f64 {
-    rounded(table.series.data()[(row, 0)])
 }
 
 /// The first largest value and its row.

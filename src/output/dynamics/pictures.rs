@@ -5,6 +5,7 @@ use crate::output::plots::{
     Axis, Curve, OrbitPlot, PlotError, PolarPlot, Style, XyPlot, orbit, polar, xy,
 };
 use crate::output::spectrum::WINDOW;
+use crate::solver::clock::to_digits;
 
 /// A plot a run can be asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,7 +133,7 @@ fn orbits(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
 fn spectra(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
     let spectra = table.spectra();
     let Some((_, first)) = spectra.first() else { return Ok(Vec::new()) };
-    let axis = format!("frequency ({WINDOW} window, bin {} Hz)", four_digits(first.bin_width));
+    let axis = format!("frequency ({WINDOW} window, bin {} Hz)", to_digits(first.bin_width, 4));
     let mut drawn = Vec::new();
     for (body, name) in [("inner", "inner race"), ("outer", "outer race"), ("cage", "cage")] {
         let mut curves = Vec::new();
@@ -289,9 +290,4 @@ mod tests {
         assert!(kept.windows(2).all(|pair| pair[0][0] <= pair[1][0]));
         assert_eq!(thin(points[..10].to_vec(), 1500), points[..10]);
     }
-}
-
-/// A number as people write it.
-fn four_digits(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
 }

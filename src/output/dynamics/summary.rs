@@ -45,7 +45,7 @@ pub fn write_run_results(
     let spectra = if report.spectra { table.spectra() } else { Vec::new() };
     let summary = run_summary(session, table, &spectra, report)?;
     let [csv, npy, json] = ["series.csv", SERIES, "summary.json"].map(|name| folder.join(name));
-    readable_times(&table.series)?.write_csv(&csv)?;
+    readable_times(table)?.write_csv(&csv)?;
     table.series.write_npy(&npy)?;
     let mut written = vec![csv, columns_path(&npy), npy];
     if let Some(series) = spectrum_series(table, &spectra)? {
@@ -59,10 +59,12 @@ pub fn write_run_results(
 }
 
 /// The table with the times of its rows as people write them.
-fn readable_times(series: &Series) -> Result<Series, ResultsError> {
-    let mut data = series.data().clone();
-    data.column_mut(0).mapv_inplace(rounded);
-    Ok(Series::new(series.columns().to_vec(), data)?)
+fn readable_times(table: &RunTable) -> Result<Series, ResultsError> {
+    let mut data = table.series.data().clone();
+    for (row, time) in data.column_mut(0).iter_mut().enumerate() {
+        *time = table.time(row);
+    }
+    Ok(Series::new(table.series.columns().to_vec(), data)?)
 }
 
 /// One row a bin: frequency, then the amplitude of each channel.
@@ -139,7 +141,7 @@ pub fn run_summary(
 }
 
 fn last_time(table: &RunTable) -> f64 {
-    table.series.data().column(0).last().copied().map_or(0.0, rounded)
+    table.series.data().nrows().checked_sub(1).map_or(0.0, |last| table.time(last))
 }
 
 fn step(session: &Session, report: &RunReport) -> Result<Value, ResultsError> {
@@ -235,7 +237,7 @@ fn final_values(table: &RunTable) -> Result<Value, ResultsError> {
     if let Some(last) = table.series.data().nrows().checked_sub(1) {
         for (index, column) in table.series.columns().iter().enumerate() {
             let value = table.series.data()[(last, index)];
-            let value = if index == 0 { rounded(value) } else { value };
+            let value = if index == 0 { table.time(last) } else { value };
             values.insert(column.name.clone(), quantity(&column.name, value, &column.unit)?);
         }
     }
@@ -245,7 +247,6 @@ fn final_values(table: &RunTable) -> Result<Value, ResultsError> {
 /// Mean, extremes and peak-to-peak amplitude of every channel over the window.
 fn window(table: &RunTable) -> Result<Value, ResultsError> {
     let rows = table.window.clone();
-    let times = table.series.data().column(0);
     let mut channels = Map::new();
     for column in &table.series.columns()[1..] {
         let values = table.windowed(&column.name).unwrap_or_default();
@@ -264,8 +265,8 @@ fn window(table: &RunTable) -> Result<Value, ResultsError> {
         );
     }
     Ok(json!({
-        "start": quantity("start", rounded(times[rows.start]), "s")?,
-        "end": quantity("end", rounded(times[rows.end - 1]), "s")?,
+        "start": quantity("start", table.time(rows.start), "s")?,
+        "end": quantity("end", table.time(rows.end - 1), "s")?,
         "rows": rows.len(),
         "channels": channels,
     }))
