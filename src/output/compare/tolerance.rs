@@ -120,7 +120,7 @@ impl Tolerance {
 pub struct GivenTolerance {
     /// Of the channel's scale: its largest |reference|, shared by the components of one vector.
     pub scale_relative: f64,
-    /// Floors, each for the channels of a unit.
+    /// Floors, each for the channels of a unit; others have one for rounding.
     pub floors: Vec<(String, f64)>,
 }
 
@@ -142,7 +142,11 @@ impl GivenTolerance {
     }
 
     pub fn tolerance(&self, unit: &str) -> Tolerance {
-        let floor = self.floors.iter().find(|(of, _)| of == unit).map_or(0.0, |(_, floor)| *floor);
+        // Channels that are zero but for rounding have no scale of their own: a thousandth of the part
+        // of a small but ordinary value is far below what anybody looks at, and above rounding.
+        let least = 1e-3 * self.scale_relative * ordinary_magnitude(unit);
+        let floor =
+            self.floors.iter().find(|(of, _)| of == unit).map_or(least, |(_, floor)| *floor);
         Tolerance { absolute_floor: floor, relative: 0.0, scale_relative: self.scale_relative }
     }
 }
