@@ -98,9 +98,9 @@ fn adaptive(problem: &DynamicProblem, request: &RunRequest, accuracy: f64) -> Ve
     let overlap = simulation.control.as_ref().map_or(0.0, |control| control.memory.displacement);
     let said = format!(
         "adapts so that the motion of the races is good to {accuracy} of the largest overlap of a \
-         contact, at the start {:.3} of {:.4} um; at least a step a row, the first of {:.3e} s",
-        accuracy * 1e6 * overlap,
-        1e6 * overlap,
+         contact, at the start {} of {} um; at least a step a row, the first of {:.3e} s",
+        to_digits(accuracy * 1e6 * overlap, 3),
+        to_digits(1e6 * overlap, 5),
         simulation.step_size
     );
     vec![note("step", &said)]
