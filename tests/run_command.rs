@@ -503,7 +503,7 @@ fn runs_of_different_accuracy_are_compared_with_given_tolerances() {
         out.to_str().unwrap().to_string()
     };
     let fine = folder("fine", "step = \"0.5 us\"");
-    let coarse = folder("coarse", "step = \"4 us\"");
+    let coarse = folder("coarse", "step = \"1 us\"");
     let compare = |further: &[&str]| {
         let output = bearing(&[&["compare", fine.as_str(), coarse.as_str()], further].concat());
         (code(&output), said(&output), stderr(&output))
