@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 /// The cage as far as it is given.
 pub(crate) fn cage(
     reader: &Reader,
-    ball_radius: f64,
+    geometry: &BearingGeometry,
     sizes: &Dimensions,
 ) -> Result<Option<Cage>, SceneError> {
     let guidance = reader.choice_if_given("bearing.cage.guidance").map(|word| match word {
@@ -34,9 +34,9 @@ pub(crate) fn cage(
         return Ok(None);
     }
     if let Some(pocket) = cage.pocket_radius
-        && pocket < ball_radius
+        && pocket < geometry.ball_radius
     {
-        let problem = Problem::BallExceedsPocket { pocket, ball: ball_radius };
+        let problem = Problem::BallExceedsPocket { pocket, ball: geometry.ball_radius };
         return Err(reader.document.error("bearing.cage.pocket_radius", problem));
     }
     if let (Some(inner), Some(outer)) = (cage.inner_radius, cage.outer_radius)
@@ -51,13 +51,18 @@ pub(crate) fn cage(
         };
         return Err(reader.document.error("bearing.cage.inner_radius", problem));
     }
-    hold_against_races(reader, &cage, sizes)?;
+    hold_against_races(reader, &cage, geometry.pitch_radius, sizes)?;
     Ok(Some(cage))
 }
 
 /// The cage lies between the races: inside the shoulders where they are given, else inside the
 /// groove bottoms, which no cage can reach; a race that guides it lies its clearance farther.
-fn hold_against_races(reader: &Reader, cage: &Cage, sizes: &Dimensions) -> Result<(), SceneError> {
+fn hold_against_races(
+    reader: &Reader,
+    cage: &Cage,
+    pitch: f64,
+    sizes: &Dimensions,
+) -> Result<(), SceneError> {
     let shoulder = |race: &str| reader.given_number(&format!("bearing.{race}.shoulder_radius"));
     let sides = [
         (
@@ -82,6 +87,8 @@ fn hold_against_races(reader: &Reader, cage: &Cage, sizes: &Dimensions) -> Resul
     for (key, radius, outward, shoulder, bottom, guide, [relation, of_shoulder, of_bottom]) in sides
     {
         let Some(radius) = radius else { continue };
+        // A shoulder on the wrong side of the balls is a mistake of its own.
+        let shoulder = shoulder.filter(|shoulder| (shoulder - pitch) * outward > 0.0);
         let (other_name, other) = match shoulder {
             Some(shoulder) => (of_shoulder, shoulder),
             None => (of_bottom, bottom),
