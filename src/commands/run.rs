@@ -166,18 +166,20 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
     }
 }
 
+/// Said where `--resume` finds nothing.
+pub(super) fn no_run(folder: &Path) -> String {
+    format!(
+        "{} holds no run to go on with (there is no {}); name the folder of one with --out, or start \
+         anew without --resume",
+        folder.display(),
+        state::STATE
+    )
+}
+
 /// The state to go on from, if that was asked for; what an earlier run left is removed otherwise.
 fn kept_state(arguments: &Arguments, folder: &Path) -> Result<Option<StateFile>, Box<dyn Error>> {
     if arguments.resume {
-        let missing = || {
-            format!(
-                "{} holds no run to go on with (there is no {}); name the folder of one with --out, \
-                 or start anew without --resume",
-                folder.display(),
-                state::STATE
-            )
-        };
-        return Ok(Some(state::read(folder)?.ok_or_else(missing)?));
+        return Ok(Some(state::read(folder)?.ok_or_else(|| no_run(folder))?));
     }
     if !arguments.fresh {
         refuse_folder_of_other(folder)?;
