@@ -3,6 +3,7 @@ pub mod ball;
 mod ball_start;
 pub mod channels;
 pub mod dense;
+pub mod clock;
 pub mod dynamics;
 pub mod housing;
 pub mod plan;
