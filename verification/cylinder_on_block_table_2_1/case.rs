@@ -188,7 +188,7 @@ fn readings(context: &mut CaseContext, slab: &Answers, plane: &Answers) {
     let evidence: Vec<&str> = evidence.iter().map(String::as_str).collect();
     let sources = [("efem", "EFEM"), ("abaqus", "ABAQUS")];
     let reason = "the source's own two solvers differ by up to 3.95 %";
-    for (source, (key, label)) in sources.into_iter().enumerate() {
+    for (key, label) in sources {
         for (i, (name, indentation)) in INDENTATIONS.into_iter().enumerate() {
             let published = format!("{key}_{name}");
             let check = Check::new(
