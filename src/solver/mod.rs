@@ -2,8 +2,8 @@
 pub mod ball;
 mod ball_start;
 pub mod channels;
-pub mod dense;
 pub mod clock;
+pub mod dense;
 pub mod dynamics;
 pub mod housing;
 pub mod plan;
