@@ -4,6 +4,8 @@
 
 use crate::case::{Case, Tier};
 
+#[path = "../assembly_fits_2_4_1/case.rs"]
+mod assembly_fits_2_4_1;
 #[path = "../axial_load_closed_form/case.rs"]
 mod axial_load_closed_form;
 #[path = "../bearing_conservation/case.rs"]
@@ -22,6 +24,8 @@ mod cantilever_timoshenko;
 mod free_ring_modes;
 #[path = "../hertz_elliptic/case.rs"]
 mod hertz_elliptic;
+#[path = "../housing_orbits_2_4_2/case.rs"]
+mod housing_orbits_2_4_2;
 #[path = "../kinematic_frequencies/case.rs"]
 mod kinematic_frequencies;
 #[path = "../misalignment_moment/case.rs"]
@@ -38,6 +42,8 @@ mod solid_elements;
 mod solid_energy_and_steps;
 #[path = "../statics_independent/case.rs"]
 pub mod statics_independent;
+#[path = "../steel_load_rates_2_4_3/case.rs"]
+mod steel_load_rates_2_4_3;
 #[path = "../thick_ring_lame/case.rs"]
 mod thick_ring_lame;
 #[path = "../varying_compliance_dynamics/case.rs"]
@@ -66,6 +72,9 @@ pub const CASES: &[Case] = &[
     free_ring_modes::CASE,
     cage_modes_table_5_3::CASE,
     calculix_comparison::CASE,
+    assembly_fits_2_4_1::CASE,
+    housing_orbits_2_4_2::CASE,
+    steel_load_rates_2_4_3::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).
