@@ -15,7 +15,8 @@ use bearing_dynamics::solver::housing::condensed::{
     CondenseError, CondensedBore, Reach, condense, geometry_error,
 };
 use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::Prescribed;
+use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel};
 use housing_common::*;
 use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;
@@ -222,9 +223,34 @@ fn what_a_condensed_housing_cannot_be_is_an_error() {
     assert!(matches!(error, Some(CondenseError::MovedSupport { .. })));
     let mut loose = model.problem.clone();
     loose.prescribed.clear();
-    let loose = bearing_dynamics::solver::solid::model::SolidModel::new(loose).unwrap();
+    let loose = SolidModel::new(loose).unwrap();
     let error = condense(&loose, &bore_of(&mesh), &reach()).err();
     assert!(matches!(error, Some(CondenseError::Factor(_))));
+}
+
+/// The housing's own weight moves its bore before anything touches.
+#[test]
+fn own_loads_of_the_housing() {
+    let mesh = mesh_of(&RING, &COARSE, Order::Quadratic);
+    let mut problem = model_of(&mesh, YOUNG).problem;
+    problem.gravity = [0.0, 0.0, -9.81e3];
+    let model = SolidModel::new(problem).unwrap();
+    let bore = condense(&model, &bore_of(&mesh), &reach()).unwrap();
+    let none = vec![0.0; bore.nodes.len()];
+    let u = bore.displacement(&none);
+    let should = equilibrium(&model, 0.0, &EquilibriumOptions::default()).unwrap().displacement;
+    let size = largest(should.as_flattened());
+    assert!(far(u.as_flattened(), should.as_flattened()) <= 1e-4 * size, "{size}");
+    assert!(largest(bore.response(&none).as_flattened()) == 0.0);
+    let loose = fit(-1e-6);
+    let state = BoreSearch::new(&bore, loose.penalty).at_pose(&loose, [0.0; 4]).unwrap();
+    for (node, g) in bore.nodes.iter().zip(&state.penetration) {
+        let [_, y, z] = mesh.nodes[node.node as usize];
+        let [_, v, w] = u[node.node as usize];
+        let outward = (v * y + w * z) / y.hypot(z);
+        assert!((g + 1e-6 + outward).abs() <= 1e-9 * size, "{g} {outward}");
+    }
+    assert_eq!(state.touching, 0);
 }
 
 /// The mesh turned with the load gives the same loads turned; the load turned alone, what the mesh's
@@ -330,7 +356,7 @@ fn interference_in_a_ring_is_lames() {
                 problem.prescribed.push(Prescribed { node, axis: 0, profile: Profile::ZERO });
             }
         }
-        let model = bearing_dynamics::solver::solid::model::SolidModel::new(problem).unwrap();
+        let model = SolidModel::new(problem).unwrap();
         let bore = condense(&model, &bore_of(&mesh), &reach()).unwrap();
         let fit = fit(interference);
         let state = solve(&bore, &fit, &RaceLoad::default());
