@@ -209,7 +209,10 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 curves[i].sums,
             )
             .closed_form(0.0, "balance of the rigid outer race")
-            .absolute(1e-9, "statics of the bearing leaves 1e-11 of its ball loads"),
+            .absolute(
+                2e-6,
+                "balls that orbit off centre pull by mω² times 1 µm each; the rest is 1e-11",
+            ),
         );
         context.check(
             Check::new(
@@ -224,11 +227,11 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         );
         context.work(&format!("changes of contact, {name}"), curves[i].changes as u64);
     }
-    for (name, curve) in [("one", one), ("five", five), ("ten", ten)] {
+    for (name, curve) in [("1", one), ("5", five), ("10", ten)] {
         context.check(
             Check::new(
                 &format!("stable_{name}"),
-                &format!("interference of {name}: drift while the race rests, over its sinking"),
+                &format!("interference of {name} µm: drift while the race rests, over its sinking"),
                 "1",
                 curve.drift,
             )
@@ -271,8 +274,8 @@ fn statements(context: &mut CaseContext, curves: &[Curves]) {
         "stiffness in transition over the least with interference",
         k[1] / k[2].min(k[3]).min(k[4]),
         k[2].max(k[3]).max(k[4]) / k[1],
-        0.9,
-        "\"the largest in the interference fit cases\"; 10 % would be seen",
+        0.97,
+        "\"the largest in the interference fit cases\"; a curve 3 % off would be seen",
     );
     let gap = |k: &[f64]| {
         let low = k.iter().fold(f64::INFINITY, |low: f64, k| low.min(*k));
@@ -388,7 +391,8 @@ fn figures(
         "contact",
         pictures.contact,
         "As Fig. 2.14: contact forces and deformation (10000 times enlarged) under 1000 N: interference of 1 µm, \
-         transition, clearance of 1 µm. From left to right contact becomes more concentrated.",
+         transition, clearance of 1 µm. From left to right contact becomes more \
+         concentrated. Of ten-node elements every other column of nodes has more of the surface, and so longer arrows.",
     );
     for (interference, svg) in pictures.stress {
         let (id, name) = if interference < 0.0 {

@@ -17,8 +17,8 @@ pub struct Panel<'a> {
     pub mesh: &'a TetMesh,
     /// Of each node as drawn, already magnified, m.
     pub displacement: Vec<Vec3>,
-    /// Place and force, m and N.
-    pub forces: Vec<(Vec3, Vec3)>,
+    /// Node and force on it, N.
+    pub forces: Vec<(u32, Vec3)>,
 }
 
 const SIDE: f64 = 360.0;
@@ -31,9 +31,9 @@ const LONGEST: f64 = 0.75;
 pub fn contact_picture(panels: &[Panel], columns: usize) -> String {
     let rows = panels.len().div_ceil(columns);
     let (width, height) = (columns as f64 * SIDE, rows as f64 * (SIDE + HEAD) + 30.0);
-    let summed: Vec<_> = panels.iter().map(|panel| along_the_axis(&panel.forces)).collect();
+    let summed: Vec<_> = panels.iter().map(along_the_axis).collect();
     let size = |force: &[f64; 2]| force[0].hypot(force[1]);
-    let strongest = summed.iter().flatten().map(|(_, force)| size(force)).fold(0.0, f64::max);
+    let strongest = summed.iter().flatten().map(|arrow| size(&arrow.force)).fold(0.0, f64::max);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
          font-family=\"sans-serif\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n"
@@ -53,16 +53,29 @@ pub fn contact_picture(panels: &[Panel], columns: usize) -> String {
     svg
 }
 
-/// Forces summed over nodes at the same Y and Z (to 10 nm), as ([y, z], [force on y, on z]).
-fn along_the_axis(forces: &[(Vec3, Vec3)]) -> Vec<([f64; 2], [f64; 2])> {
-    let mut sums: BTreeMap<[i64; 2], ([f64; 2], [f64; 2])> = BTreeMap::new();
-    for ([_, y, z], [_, on_y, on_z]) in forces {
-        let key = [*y, *z].map(|x| (x * 1e8).round() as i64);
-        let sum = sums.entry(key).or_insert(([*y, *z], [0.0; 2]));
-        sum.1[0] += on_y;
-        sum.1[1] += on_z;
+/// A force on all nodes at the same Y and Z.
+struct Arrow {
+    /// Where the front one of them is drawn, its Y and Z, m.
+    tip: [f64; 2],
+    /// On Y and Z, N.
+    force: [f64; 2],
+}
+
+/// Forces summed over nodes whose undeformed Y and Z are the same to 10 nm.
+fn along_the_axis(panel: &Panel) -> Vec<Arrow> {
+    let mut sums: BTreeMap<[i64; 2], (f64, Arrow)> = BTreeMap::new();
+    for (node, [_, on_y, on_z]) in &panel.forces {
+        let ([x, y, z], u) = (panel.mesh.nodes[*node as usize], panel.displacement[*node as usize]);
+        let key = [y, z].map(|x| (x * 1e8).round() as i64);
+        let tip = [y + u[1], z + u[2]];
+        let (front, sum) = sums.entry(key).or_insert((x, Arrow { tip, force: [0.0; 2] }));
+        if x > *front {
+            (*front, sum.tip) = (x, tip);
+        }
+        sum.force[0] += on_y;
+        sum.force[1] += on_z;
     }
-    sums.into_values().collect()
+    sums.into_values().map(|(_, arrow)| arrow).collect()
 }
 
 /// Edges of the front face that belong to one of its faces only, as runs of nodes.
@@ -83,13 +96,7 @@ fn outline(mesh: &TetMesh) -> Vec<Vec<u32>> {
     edges.into_values().filter(|(count, _)| *count == 1).map(|(_, run)| run).collect()
 }
 
-fn draw(
-    svg: &mut String,
-    panel: &Panel,
-    forces: &[([f64; 2], [f64; 2])],
-    strongest: f64,
-    [left, top]: [f64; 2],
-) {
+fn draw(svg: &mut String, panel: &Panel, forces: &[Arrow], strongest: f64, [left, top]: [f64; 2]) {
     let (low, high) = panel.mesh.bounding_box();
     let extent = (high[1] - low[1]).max(high[2] - low[2]);
     let scale = (SIDE - 4.0 * MARGIN) / extent;
@@ -120,15 +127,15 @@ fn draw(
         }
         let _ = writeln!(svg, "<path d=\"{path}\" fill=\"none\" {style}/>");
     }
-    for ([y, z], [on_y, on_z]) in forces {
-        let part = on_y.hypot(*on_z) / strongest;
+    for Arrow { tip: [y, z], force: [on_y, on_z] } in forces {
+        let size = on_y.hypot(*on_z);
+        let part = size / strongest;
         // Written so that no force, and one that is not a number, has no arrow.
         if !(part > 1e-3) {
             continue;
         }
-        let radius = y.hypot(*z);
-        let length = LONGEST * radius * part;
-        let direction = [on_y, on_z].map(|f| f / on_y.hypot(*on_z));
+        let length = LONGEST * y.hypot(*z) * part;
+        let direction = [on_y / size, on_z / size];
         let [x2, y2] = at(*y, *z);
         let [x1, y1] = at(y - length * direction[0], z - length * direction[1]);
         // Blue for small forces, red for large ones.
@@ -139,9 +146,9 @@ fn draw(
             "<path d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\" stroke=\"{colour}\" stroke-width=\"1.3\"/>"
         );
         let (dx, dy) = (direction[0], -direction[1]);
-        let tip = (0.3 * scale * length).clamp(2.0, 7.0);
+        let head = (0.3 * scale * length).clamp(2.0, 7.0);
         let back =
-            |side: f64| [x2 - tip * (dx + side * 0.4 * dy), y2 - tip * (dy - side * 0.4 * dx)];
+            |side: f64| [x2 - head * (dx + side * 0.4 * dy), y2 - head * (dy - side * 0.4 * dx)];
         let ([ax, ay], [bx, by]) = (back(1.0), back(-1.0));
         let _ = writeln!(
             svg,
@@ -160,14 +167,19 @@ mod tests {
         let body = Ring { inner_radius: 0.03, outer_radius: 0.04, width: 0.01 };
         let cells = RingMesh { around: 12, radial: 1, axial: 1, radial_growth: 1.0 };
         let mesh = ring(&body, &cells).unwrap().mesh;
-        let places = [[0.0, 0.03, 0.0], [0.01, 0.03, 0.0], [0.0, 0.0, 0.03], [0.0, -0.03, 0.0]];
-        let forces = [[0.0, 2.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]];
-        let panel = Panel {
-            title: "ring".into(),
-            displacement: vec![[0.0; 3]; mesh.nodes.len()],
-            forces: places.into_iter().zip(forces).collect(),
-            mesh: &mesh,
+        // Front and back of the bore at the same place, another place, and a node without force.
+        let at = |x: f64, y: f64, z: f64| {
+            let far = |p: &Vec3| (p[0] - x).abs() + (p[1] - y).abs() + (p[2] - z).abs();
+            mesh.nodes.iter().position(|p| far(p) < 1e-9).unwrap() as u32
         };
+        let forces = vec![
+            (at(-0.005, 0.03, 0.0), [0.0, 2.0, 0.0]),
+            (at(0.005, 0.03, 0.0), [0.0, 1.0, 0.0]),
+            (at(0.005, 0.0, 0.03), [0.0, 0.0, 1.0]),
+            (at(0.005, -0.03, 0.0), [0.0; 3]),
+        ];
+        let displacement = vec![[0.0; 3]; mesh.nodes.len()];
+        let panel = Panel { title: "ring".into(), displacement, forces, mesh: &mesh };
         assert_eq!(outline(&mesh).len(), 24);
         let svg = contact_picture(&[panel], 1);
         assert_eq!(svg.matches("Z\" fill=").count(), 2);

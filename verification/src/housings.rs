@@ -122,7 +122,7 @@ pub fn sum_of_loads(mesh: &TetMesh, bore: &CondensedBore, state: &BoreState) -> 
 pub fn touched_part(bore: &CondensedBore, state: &BoreState) -> f64 {
     let all: f64 = bore.nodes.iter().map(|node| node.area).sum();
     let pairs = bore.nodes.iter().zip(&state.loads);
-    pairs.filter(|(_, load)| **load > 0.0).map(|(node, _)| node.area).sum::<f64>() / all
+    pairs.map(|(node, load)| if *load > 0.0 { node.area } else { 0.0 }).sum::<f64>() / all
 }
 
 /// A panel of the contact picture: the housing deformed by what its bore carries.
@@ -133,15 +133,10 @@ pub fn panel<'a>(
     state: &BoreState,
     magnification: f64,
 ) -> Panel<'a> {
-    let displacement = bore.displacement(&state.loads);
-    let forces =
-        bore.nodal_forces(&state.loads).map(|(node, force)| (mesh.nodes[node as usize], force));
-    Panel {
-        title,
-        mesh,
-        forces: forces.collect(),
-        displacement: displacement.iter().map(|u| u.map(|x| magnification * x)).collect(),
-    }
+    let displacement: Vec<Vec3> =
+        bore.displacement(&state.loads).iter().map(|u| u.map(|x| magnification * x)).collect();
+    let forces = bore.nodal_forces(&state.loads).collect();
+    Panel { title, mesh, forces, displacement }
 }
 
 /// Distance from the origin of each point.
