@@ -174,6 +174,13 @@ impl Touch {
         [0, 1, 2].map(|i: usize| [0, 1, 2].map(|j: usize| entry(i, j)))
     }
 
+    /// K n nᵀ alone: positive, where the whole would turn a soft solid unstable at a penetration far
+    /// beyond that of equilibrium.
+    pub fn normal_stiffness(&self, stiffness: f64) -> Mat3 {
+        let n = self.normal;
+        [0, 1, 2].map(|i: usize| [0, 1, 2].map(|j: usize| stiffness * n[i] * n[j]))
+    }
+
     /// Derivatives that go with a motion of the cylinder, its centre by c and its axes by the small
     /// rotation θ (inertial frame).
     pub fn coupling(&self, stiffness: f64) -> Coupling {

@@ -20,6 +20,8 @@ mod cage_speed_table_5_4;
 mod calculix_comparison;
 #[path = "../cantilever_timoshenko/case.rs"]
 mod cantilever_timoshenko;
+#[path = "../cylinder_on_block_table_2_1/case.rs"]
+mod cylinder_on_block_table_2_1;
 #[path = "../free_ring_modes/case.rs"]
 mod free_ring_modes;
 #[path = "../hertz_elliptic/case.rs"]
@@ -28,6 +30,8 @@ mod hertz_elliptic;
 mod housing_orbits_2_4_2;
 #[path = "../kinematic_frequencies/case.rs"]
 mod kinematic_frequencies;
+#[path = "../line_contact_plane_strain/case.rs"]
+mod line_contact_plane_strain;
 #[path = "../misalignment_moment/case.rs"]
 mod misalignment_moment;
 #[path = "../rod_wave/case.rs"]
@@ -72,6 +76,8 @@ pub const CASES: &[Case] = &[
     free_ring_modes::CASE,
     cage_modes_table_5_3::CASE,
     calculix_comparison::CASE,
+    line_contact_plane_strain::CASE,
+    cylinder_on_block_table_2_1::CASE,
     assembly_fits_2_4_1::CASE,
     housing_orbits_2_4_2::CASE,
     steel_load_rates_2_4_3::CASE,

@@ -25,6 +25,7 @@ pub mod motion;
 pub mod mutants;
 pub mod oracles;
 pub mod pareto;
+pub mod pressed_block;
 pub mod published;
 pub mod report;
 pub mod runner;

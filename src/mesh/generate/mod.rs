@@ -13,7 +13,7 @@ mod solids;
 pub use cage::{Cage, CageMesh, RailRelief};
 pub use grading::{graded, uniform};
 pub use housing::{Housing, HousingMesh, PillowBlock};
-pub use solids::{ContactBlock, Ring, RingMesh, bar, contact_block, ring, shaft};
+pub use solids::{ContactBlock, Ring, RingMesh, bar, block, contact_block, ring, shaft};
 
 use crate::mesh::error::MeshError;
 use crate::mesh::quadratic::{Elevated, elevate};

@@ -23,6 +23,23 @@ fn cuboid(x: &[f64], y: &[f64], z: &[f64]) -> Result<Solid, MeshError> {
     with_sets(cells.into_mesh()?, &sets, Vec::new())
 }
 
+/// A block with nodes at all products of ascending stations along X, Y and Z, m; they may stand close
+/// where much happens.
+///
+/// Surface and node sets: `x_low`, `x_high` and so on.
+///
+/// # Errors
+/// [`MeshError::Dimension`] for fewer than two stations, or stations that do not ascend.
+pub fn block(stations: [&[f64]; 3]) -> Result<Solid, MeshError> {
+    for along in stations {
+        divisions("cells along the block", along.len().saturating_sub(1), 1)?;
+        for pair in along.windows(2) {
+            between("distance of two stations", pair[1] - pair[0], 0.0, f64::INFINITY)?;
+        }
+    }
+    cuboid(stations[0], stations[1], stations[2])
+}
+
 /// A straight bar from the origin along X, its section centred on the axis: `size` m, `counts` cells
 /// along X, Y and Z.
 ///

@@ -1,8 +1,11 @@
 //! Static equilibrium of a solid by Newton's method.
 
+use super::contact::CylinderContact;
 use super::model::{Prescribed, SolidModel};
-use super::tangent::{PRESCRIBED, Unknowns, pattern, stiffness};
-use crate::kinematics::vec3::Vec3;
+use super::tangent::{PRESCRIBED, Unknowns, add_at_node, pattern, stiffness};
+use crate::ch2_housing::bore_contact::{ContactNode, ContactSum, contact};
+use crate::kinematics::strain::Mat3;
+use crate::kinematics::vec3::{Vec3, norm};
 use crate::solver::sparse::{Factor, FactorError, SymmetricMatrix};
 use thiserror::Error;
 
@@ -58,7 +61,43 @@ pub fn equilibrium(
     t: f64,
     options: &EquilibriumOptions,
 ) -> Result<Equilibrium, EquilibriumError> {
+    Ok(solve(Newton::new(model, t, options))?.finish())
+}
+
+/// A solid pressed by a rigid cylinder.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactEquilibrium {
+    pub solid: Equilibrium,
+    pub sum: ContactSum,
+    /// The nodes that touch and the force on each, N.
+    pub nodes: Vec<(ContactNode, Vec3)>,
+}
+
+/// Equilibrium under the loads, prescribed displacements and cylinder at time `t`, from the
+/// displacements `start` (m, one for each node), or undeformed.
+///
+/// # Errors
+/// As [`equilibrium`].
+pub fn equilibrium_in_contact(
+    model: &SolidModel,
+    t: f64,
+    contact: &CylinderContact,
+    start: Option<&[Vec3]>,
+    options: &EquilibriumOptions,
+) -> Result<ContactEquilibrium, EquilibriumError> {
     let mut newton = Newton::new(model, t, options);
+    if let Some(start) = start {
+        newton.displacement.copy_from_slice(start);
+    }
+    newton.contact = Some(contact);
+    let newton = solve(newton)?;
+    let sum = newton.sum;
+    let nodes = newton.touching.iter().map(|touching| (touching.node, touching.force)).collect();
+    Ok(ContactEquilibrium { solid: newton.finish(), sum, nodes })
+}
+
+fn solve(mut newton: Newton) -> Result<Newton, EquilibriumError> {
+    let options = newton.options;
     let (mut reached, mut step) = (0.0, 1.0);
     while reached < 1.0 {
         let wanted = f64::min(reached + step, 1.0);
@@ -74,7 +113,14 @@ pub fn equilibrium(
             }
         }
     }
-    Ok(newton.finish())
+    Ok(newton)
+}
+
+/// A node under the cylinder.
+struct Touching {
+    node: ContactNode,
+    force: Vec3,
+    stiffness: Mat3,
 }
 
 struct Newton<'a> {
@@ -90,6 +136,10 @@ struct Newton<'a> {
     untouched: bool,
     displacement: Vec<Vec3>,
     external: Vec<[f64; 4]>,
+    contact: Option<&'a CylinderContact>,
+    /// As of the last evaluation of the contact.
+    touching: Vec<Touching>,
+    sum: ContactSum,
     residual: f64,
     iterations: usize,
     factorisations: usize,
@@ -108,6 +158,9 @@ impl<'a> Newton<'a> {
             untouched: true,
             displacement: vec![[0.0; 3]; model.mass.len()],
             external,
+            contact: None,
+            touching: Vec::new(),
+            sum: ContactSum::default(),
             residual: f64::NAN,
             iterations: 0,
             factorisations: 0,
@@ -125,6 +178,38 @@ impl<'a> Newton<'a> {
         forces
     }
 
+    /// Adds the forces of the cylinder, gone a fraction of its way, N. Says whether other nodes touch
+    /// than before, and how large a force rounding may leave.
+    fn add_contact(&mut self, fraction: f64, forces: &mut [[f64; 4]]) -> (bool, f64) {
+        let Some(of) = self.contact else { return (false, 0.0) };
+        let (cylinder, frame) = of.part_way(self.t, fraction);
+        let displacement = &self.displacement;
+        let mut found = Vec::new();
+        let mut stiffest = 0.0f64;
+        self.sum = contact(
+            &cylinder,
+            &frame,
+            of.penalty,
+            &of.nodes,
+            |n| displacement[n as usize],
+            |node, touch, stiffness, force| {
+                for i in 0..3 {
+                    forces[node.node as usize][i] += force[i];
+                }
+                stiffest = stiffest.max(stiffness);
+                // Penetration over radius is all that is left out: some 1e-7 where it matters.
+                let stiffness = touch.normal_stiffness(stiffness);
+                found.push(Touching { node: *node, force, stiffness });
+            },
+        );
+        let same = found.len() == self.touching.len()
+            && found.iter().zip(&self.touching).all(|(a, b)| a.node.node == b.node.node);
+        self.touching = found;
+        // A penetration is a difference of lengths as large as these.
+        let lengths = cylinder.radius + norm(frame.centre);
+        (!same, 8.0 * f64::EPSILON * lengths * stiffest)
+    }
+
     /// Newton iterations at a fraction of the load. The factors of an earlier state are kept as
     /// long as they bring the residual down tenfold a step.
     fn converge(&mut self, fraction: f64) -> Result<(), EquilibriumError> {
@@ -133,24 +218,28 @@ impl<'a> Newton<'a> {
         }
         let mut last = f64::INFINITY;
         for iteration in 0..=self.options.most_iterations {
-            let internal = self.internal();
+            let mut internal = self.internal();
+            let (changed, rounding) = self.add_contact(fraction, &mut internal);
+            self.stale |= changed;
             let mut right = vec![0.0; self.unknowns.count];
-            let (mut largest, mut scale) = (0.0f64, 0.0f64);
+            let (mut largest, mut scale, mut finite) = (0.0f64, 0.0f64, true);
             for (n, of) in self.unknowns.of.iter().enumerate() {
                 for i in 0..3 {
                     scale = scale.max(internal[n][i].abs()).max(self.external[n][i].abs());
                     if of[i] != PRESCRIBED {
                         let unbalanced = internal[n][i] + fraction * self.external[n][i];
                         right[of[i]] = unbalanced;
+                        // `max` would drop what is not a number.
+                        finite &= unbalanced.is_finite();
                         largest = largest.max(unbalanced.abs());
                     }
                 }
             }
             self.residual = if scale > 0.0 { largest / scale } else { 0.0 };
-            if self.residual <= self.options.tolerance {
+            if finite && largest <= f64::max(self.options.tolerance * scale, rounding) {
                 return Ok(());
             }
-            let diverged = !largest.is_finite() || (iteration > 3 && largest > 1e3 * last);
+            let diverged = !finite || (iteration > 3 && largest > 1e3 * last);
             if iteration == self.options.most_iterations || diverged {
                 return Err(EquilibriumError::NotConverged {
                     fraction,
@@ -178,6 +267,10 @@ impl<'a> Newton<'a> {
 
     fn refactor(&mut self) -> Result<(), EquilibriumError> {
         stiffness(self.model, &self.unknowns, &self.displacement, &mut self.matrix);
+        for touching in &self.touching {
+            let Touching { node, stiffness, .. } = touching;
+            add_at_node(&self.unknowns, node.node, stiffness, &mut self.matrix);
+        }
         match &mut self.factor {
             Some(factor) => factor.refactor(&self.matrix)?,
             None => self.factor = Some(Factor::new(&self.matrix)?),
@@ -189,7 +282,12 @@ impl<'a> Newton<'a> {
     }
 
     fn finish(self) -> Equilibrium {
-        let internal = self.internal();
+        let mut internal = self.internal();
+        for Touching { node, force, .. } in &self.touching {
+            for i in 0..3 {
+                internal[node.node as usize][i] += force[i];
+            }
+        }
         let reactions = (0..self.displacement.len())
             .map(|n| {
                 [0, 1, 2].map(|i: usize| {

@@ -363,11 +363,20 @@ impl ExplicitSolid {
 
     /// Velocities at `time`, m/s. Central differences need a force evaluation for it.
     pub fn velocity(&mut self) -> Vec<Vec3> {
+        self.velocity_with(|_, _, _| {})
+    }
+
+    /// The same under the further forces that [`ExplicitSolid::step`] is given.
+    pub fn velocity_with(
+        &mut self,
+        mut contacts: impl FnMut(f64, &[Node], &mut [Node]),
+    ) -> Vec<Vec3> {
         let ahead = match self.method {
             ExplicitMethod::CentralDifferences => 0.5 * self.step_size,
             ExplicitMethod::RungeKutta => 0.0,
         };
         self.evaluate();
+        contacts(self.time, &self.displacement, &mut self.force);
         let acceleration = self.acceleration();
         self.rate
             .iter()
@@ -389,8 +398,18 @@ impl ExplicitSolid {
     /// it, that is half a step late; what is still to come of it is added here, so that the ledger
     /// of a linear body closes to rounding.
     pub fn ledger(&mut self) -> SolidLedger {
+        self.ledger_with(|_, _, _| {})
+    }
+
+    /// The same under the further forces that [`ExplicitSolid::step`] is given. Their work is not in
+    /// it: the balance of the ledger grows by it.
+    pub fn ledger_with(
+        &mut self,
+        mut contacts: impl FnMut(f64, &[Node], &mut [Node]),
+    ) -> SolidLedger {
         let strain = strain_energy(&self.model, &self.displacement);
         self.evaluate();
+        contacts(self.time, &self.displacement, &mut self.force);
         let ahead = match self.method {
             ExplicitMethod::CentralDifferences => self.step_size,
             ExplicitMethod::RungeKutta => 0.0,

@@ -1,6 +1,7 @@
 //! Flexible solids of tetrahedra: what is simulated, explicit steps and the step they can take,
-//! equilibrium, natural modes, stresses.
+//! equilibrium, natural modes, stresses, contact with a rigid cylinder.
 pub mod checkpoint;
+pub mod contact;
 pub mod energy;
 pub mod equilibrium;
 pub mod explicit;

@@ -3,6 +3,7 @@
 use super::model::{SolidModel, SolidProblem, corners};
 use crate::elements::tet4::{Tet4, relative};
 use crate::elements::tet10::{self, Tet10};
+use crate::kinematics::strain::Mat3;
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::tet_mesh::Elements;
 use crate::solver::sparse::{Entry, SymmetricMatrix};
@@ -124,6 +125,23 @@ fn add_element<const N: usize>(
                         matrix.add(Entry { row, column }, values[a][i]);
                     }
                 }
+            }
+        }
+    }
+}
+
+/// Adds a symmetric stiffness that acts on one node alone.
+pub fn add_at_node(
+    unknowns: &Unknowns,
+    node: u32,
+    stiffness: &Mat3,
+    matrix: &mut SymmetricMatrix,
+) {
+    let of = unknowns.of[node as usize];
+    for i in 0..3 {
+        for j in 0..=i {
+            if of[i] != PRESCRIBED && of[j] != PRESCRIBED {
+                matrix.add(Entry { row: of[i], column: of[j] }, stiffness[i][j]);
             }
         }
     }
