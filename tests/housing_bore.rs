@@ -7,9 +7,9 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::kinematics::euler::about;
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::mesh::generate::HousingMesh;
+use bearing_dynamics::mesh::generate::{Housing, HousingMesh, PillowBlock};
 use bearing_dynamics::solver::housing::bore_equilibrium::{
-    Axial, BoreError, BoreSearch, BoreState, Fit, RaceLoad,
+    Axial, BoreError, BoreSearch, BoreState, Fit, RaceLoad, radius_of_fit,
 };
 use bearing_dynamics::solver::housing::condensed::{
     CondenseError, CondensedBore, Reach, condense, geometry_error,
@@ -59,6 +59,7 @@ fn compliance_is_symmetric_and_positive() {
         let areas: f64 = bore.nodes.iter().map(|node| node.area).sum();
         let bore_area = std::f64::consts::TAU * BORE * WIDTH;
         assert!((areas / bore_area - 1.0).abs() <= 5e-3, "{areas} {bore_area}");
+        assert!((radius_of_fit(&bore.nodes, -1e-6) - (BORE - 1e-6)).abs() <= 1e-12);
     }
 }
 
@@ -103,6 +104,23 @@ fn loads_balance_whatever_the_fit() {
             .sum();
         let energy = PART * PART * state.elastic_energy;
         assert!((work / energy - 1.0).abs() <= 1e-5, "{work} {energy}");
+    }
+}
+
+/// In a slender housing, whose bore wraps itself around the race.
+#[test]
+fn nodes_that_carry_nothing_are_clear_of_the_race() {
+    let block = Housing::PillowBlock(PillowBlock::proportioned(BORE, WIDTH));
+    let bore = condensed(&block, &COARSE, Order::Quadratic, YOUNG);
+    let fit = fit(0.0);
+    let mut search = BoreSearch::new(&bore, fit.penalty);
+    for [y, z] in [[250.0, 0.0], [0.0, 250.0], [-200.0, 100.0], [0.0, -250.0]] {
+        let state = search.under_load(&fit, &load(y, z, 0.0, 0.0)).unwrap();
+        let clear = state.loads.iter().zip(&state.penetration).filter(|(load, _)| **load == 0.0);
+        assert!(clear.clone().count() > bore.nodes.len() / 4);
+        // Some ulps of the bore's radius.
+        assert!(clear.map(|(_, g)| *g).all(|g| g <= 1e-16));
+        assert!(state.loads.iter().all(|load| *load >= 0.0));
     }
 }
 
@@ -303,6 +321,12 @@ fn nodes_out_of_reach_are_counted_and_not_missed() {
     let sizes = part.sizes;
     assert!(sizes.out_of_reach > sizes.bore / 2, "{sizes:?}");
     assert_eq!(sizes.kept + sizes.out_of_reach, sizes.bore);
+    for contact in &nodes {
+        let [_, y, z] = contact.place;
+        let gap = y.hypot(z + clearance) - (BORE - clearance);
+        let kept = part.nodes.iter().any(|node| node.node == contact.node);
+        assert_eq!(kept, gap <= 8e-6, "{gap}");
+    }
     let (with_all, with_part) = (solve(&whole, &fit, &on_race), solve(&part, &fit, &on_race));
     assert!(far(&with_all.pose, &with_part.pose) <= 1e-9 * largest(&with_all.pose));
     assert_eq!(with_all.touching, with_part.touching);
