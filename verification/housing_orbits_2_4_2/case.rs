@@ -75,8 +75,8 @@ struct Turn {
     unknowns: usize,
     nodes: usize,
     seconds: f64,
+    rounds: usize,
     changes: usize,
-    evaluations: usize,
 }
 
 /// What a picture of a turn needs, for the four main directions.
@@ -168,8 +168,8 @@ fn turn(
         unknowns: bore.sizes.unknowns,
         nodes: bore.sizes.kept,
         seconds,
+        rounds: moments.iter().map(|moment| moment.state.rounds).sum(),
         changes: moments.iter().map(|moment| moment.state.contact_changes).sum(),
-        evaluations: moments.iter().map(|moment| moment.state.contact_evaluations).sum(),
         outer,
     };
     Ok((turn, drawn))
@@ -263,6 +263,8 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 format!("{:.2}", 1e9 * mean(&radii(&turn.outer))),
                 if variant == FINEST { "–".into() } else { format!("{:.2}", 100.0 * error) },
                 format!("{:.2}", turn.seconds),
+                turn.rounds.to_string(),
+                turn.changes.to_string(),
             ]);
             if variant == LADDER[4] {
                 mesh_check(context, letter, error);
@@ -330,8 +332,6 @@ fn balance_checks(context: &mut CaseContext, letter: char, turn: &Turn) {
         "nm",
         GoldenTolerance { relative: 1e-7, absolute: 0.0 },
     );
-    context.work(&format!("changes of contact, housing {letter}"), turn.changes as u64);
-    context.work(&format!("ball contacts evaluated, housing {letter}"), turn.evaluations as u64);
 }
 
 /// Each statement of the text as a number of one housing, and the same of another one that has to miss
