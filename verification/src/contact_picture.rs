@@ -130,8 +130,8 @@ fn draw(svg: &mut String, panel: &Panel, forces: &[Arrow], strongest: f64, [left
     for Arrow { tip: [y, z], force: [on_y, on_z] } in forces {
         let size = on_y.hypot(*on_z);
         let part = size / strongest;
-        // Written so that no force, and one that is not a number, has no arrow.
-        if !(part > 1e-3) {
+        // Next to no force, and one that is not a number, has no arrow.
+        if part.is_nan() || part <= 1e-3 {
             continue;
         }
         let length = LONGEST * y.hypot(*z) * part;
