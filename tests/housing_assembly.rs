@@ -44,8 +44,8 @@ fn both_races_balance() {
         let state = search(&bore, &fit).solve(&problem, &fit, weight).unwrap();
         assert!(state.residual <= 1e-9);
         let should = [20.0, 100.0, -252.0];
-        for i in 0..3 {
-            assert!((state.on_outer.force[i] - should[i]).abs() <= 1e-9 * 250.0);
+        for (force, should) in state.on_outer.force.into_iter().zip(should) {
+            assert!((force - should).abs() <= 1e-9 * 250.0, "{force} {should}");
         }
         for i in 0..2 {
             assert!((state.bore.load[i] - should[1 + i]).abs() <= 1e-8 * 250.0);

@@ -72,9 +72,9 @@ fn loads_balance_whatever_the_fit() {
     for interference in [-5e-6, -1e-6, 0.0, 1e-6, 1e-5] {
         let state = solve(&bore, &fit(interference), &on_race);
         let wanted = [100.0, -250.0, 0.3, 0.1];
-        for i in 0..4 {
+        for (i, wanted) in wanted.into_iter().enumerate() {
             let scale = if i < 2 { 250.0 } else { 250.0 * BORE };
-            assert!((state.load[i] - wanted[i]).abs() <= 1e-10 * scale, "{:?}", state.load);
+            assert!((state.load[i] - wanted).abs() <= 1e-10 * scale, "{:?}", state.load);
         }
         let penalty = Penalty::default();
         for ((load, g), node) in state.loads.iter().zip(&state.penetration).zip(&bore.nodes) {
