@@ -281,7 +281,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         "Cost and error of one turn of the load in 72 equilibria: error is the largest difference of the outer race's \
          orbit radius from the finest mesh, over its mean; seconds are those of the machine of the report, mesh and \
          condensation included",
-        &["housing, element, cells", "unknowns", "bore nodes", "mean radius, nm", "error, %", "seconds"],
+        &["housing, element, cells", "unknowns", "bore nodes", "mean radius, nm", "error, %", "seconds", "bearings solved", "changes of contact"],
         rows,
     );
     statements(context, &turns, &fixed);
