@@ -5,13 +5,11 @@ use std::time::Instant;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::mesh::generate::{Housing, HousingMesh};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
 use bearing_dynamics::solver::dynamics::start::static_problem;
 use bearing_dynamics::solver::dynamics::state::{BODY, BodyState};
-use bearing_dynamics::solver::housing::assembly::{AssemblyOptions, AssemblySearch, AssemblyState};
-use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreSearch, Fit};
-use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
+use bearing_dynamics::solver::housing::assembly::AssemblyState;
+use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::exchange::{
     ExchangeOptions, HousedBearing, Seat, outer_state,
 };
@@ -20,7 +18,7 @@ use bearing_dynamics::solver::profile::Profile;
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
-use crate::housed::{self, DEPTH, RACE_RADIUS};
+use crate::housings::{self, BORE_RADIUS, WIDTH};
 use crate::motion;
 use crate::solids::name_of;
 
@@ -44,8 +42,8 @@ const END: f64 = 2.5e-3;
 const DAMPING: f64 = 4000.0;
 const CONTACT_DAMPING: f64 = 3.0;
 /// Coarse: the two roads share the mesh, and their difference does not depend on it.
-const LINEAR: HousingMesh = HousingMesh { around: 24, radial: 2, axial: 2, radial_growth: 1.3 };
-const QUADRATIC: HousingMesh = HousingMesh { around: 16, radial: 1, axial: 1, radial_growth: 1.3 };
+const LINEAR: [usize; 3] = [24, 2, 2];
+const QUADRATIC: [usize; 3] = [16, 1, 1];
 
 /// Coordinates y, z of both races, m.
 type Places = [[f64; 2]; 2];
@@ -66,11 +64,9 @@ fn loads(part: f64) -> [f64; 5] {
 }
 
 fn equilibrium(bore: &CondensedBore, problem: &DynamicProblem) -> Result<AssemblyState, CaseError> {
-    let fit = Fit { radius: RACE_RADIUS, penalty: Penalty::default(), axial: Axial::Held };
-    let search = BoreSearch::new(bore, Penalty::default());
-    let mut search = AssemblySearch::new(search, AssemblyOptions::default());
     let held = DynamicProblem { outer: None, ..problem.clone() };
-    Ok(search.solve(&static_problem(&held, 0.0), &fit, [0.0; 3])?)
+    let still = static_problem(&held, 0.0);
+    Ok(housings::search(bore).solve(&still, &housings::fit(0.0), [0.0; 3])?)
 }
 
 fn places(state: &AssemblyState) -> Places {
@@ -78,15 +74,17 @@ fn places(state: &AssemblyState) -> Places {
     [[inner[1], inner[2]], [outer[0], outer[1]]]
 }
 
-fn settle(housing: &Housing, cells: &HousingMesh, order: Order) -> Result<Settled, CaseError> {
-    let body = housed::body(housing, cells, order, DAMPING)?;
+fn settle(letter: char, cells: [usize; 3], order: Order) -> Result<Settled, CaseError> {
+    let mesh = housings::mesh(letter, order, cells)?;
+    let mut model = housings::solid(&mesh)?;
+    model.problem.damping = DAMPING;
     let clock = Instant::now();
-    let bore = condense(&body.model, &body.nodes, &housed::reach())?;
-    let still = equilibrium(&bore, &housed::mounted(loads(1.0), 0.0)?)?;
-    let first = equilibrium(&bore, &housed::mounted(loads(FIRST), 0.0)?)?;
+    let bore = housings::condensed(&mesh, &model)?;
+    let still = equilibrium(&bore, &housings::mounted(loads(1.0))?)?;
+    let first = equilibrium(&bore, &housings::mounted(loads(FIRST))?)?;
     let statics = clock.elapsed().as_secs_f64();
 
-    let mut problem = housed::mounted([0.0; 5], 0.0)?;
+    let mut problem = housings::mounted([0.0; 5])?;
     problem.damping = ContactDamping::HuntCrossley { alpha: CONTACT_DAMPING };
     for (axis, load) in [(1, LOAD[0]), (2, LOAD[1])] {
         let (from, to) = (FIRST * load, load);
@@ -96,18 +94,18 @@ fn settle(housing: &Housing, cells: &HousingMesh, order: Order) -> Result<Settle
     let [y, z, xi, lambda] = first.bore.pose;
     problem.outer_start = [0.0, y, z, xi, lambda];
     let seat = Seat {
-        radius: Profile::Constant(RACE_RADIUS),
-        width: DEPTH,
+        radius: Profile::Constant(BORE_RADIUS),
+        width: WIDTH,
         penalty: Penalty::default(),
-        nodes: body.nodes,
+        nodes: housings::bore_nodes(&mesh)?,
         reach: f64::INFINITY,
     };
     let options =
         ExchangeOptions { solid_fraction: 0.9, seat_phase: 0.5, bearing: motion::fixed_step(2e-6) };
     let displacement = bore.displacement(&first.bore.loads);
-    let elements = body.model.problem.elements.len();
+    let elements = model.problem.elements.len();
     let clock = Instant::now();
-    let mut housed = HousedBearing::new(problem, body.model, seat, displacement, &options)?;
+    let mut housed = HousedBearing::new(problem, model, seat, displacement, &options)?;
     while housed.time() < END {
         housed.exchange()?;
     }
@@ -129,12 +127,7 @@ fn settle(housing: &Housing, cells: &HousingMesh, order: Order) -> Result<Settle
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     let (name, text, default) = motion::RACE_INERTIA;
     context.assumption(name, text, default);
-    context.assumption(
-        "housing_dimensions",
-        "The dimensions of Fig. 2.11 are lost. The bore is the outer race of Table 2.2; housing A is a square of 2.8 bore \
-         radii, B and C have the proportions of the mesh generator.",
-        "generator's",
-    );
+    housings::assumptions(context);
     context.assumption(
         "damping",
         "Damping of the housing and of the ball contacts is raised so that all motion dies out within 2 ms; it does not move \
@@ -143,10 +136,10 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     );
     let mut rows = Vec::new();
     let length = LOAD[0].hypot(LOAD[1]);
-    for (letter, housing) in housed::housings() {
-        for (order, cells) in [(Order::Linear, &LINEAR), (Order::Quadratic, &QUADRATIC)] {
-            let settled = settle(&housing, cells, order)?;
-            let tag = format!("{}_{}", letter.to_lowercase(), name_of(order));
+    for letter in ['A', 'B', 'C'] {
+        for (order, cells) in [(Order::Linear, LINEAR), (Order::Quadratic, QUADRATIC)] {
+            let settled = settle(letter, cells, order)?;
+            let tag = format!("{}_{}", letter.to_ascii_lowercase(), name_of(order));
             let off = |race: usize| {
                 let [ours, theirs] = [settled.moving[race], settled.still[race]];
                 (ours[0] - theirs[0]).hypot(ours[1] - theirs[1]) / theirs[0].hypot(theirs[1])
@@ -194,7 +187,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             context
                 .work(&format!("windows, housing {letter}, {}", name_of(order)), settled.windows);
             rows.push(vec![
-                letter.into(),
+                letter.to_string(),
                 name_of(order).into(),
                 settled.elements.to_string(),
                 format!("{:.2}", 1e9 * settled.still[1][0].hypot(settled.still[1][1])),
