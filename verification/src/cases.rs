@@ -48,6 +48,8 @@ mod solid_elements;
 mod solid_energy_and_steps;
 #[path = "../statics_independent/case.rs"]
 pub mod statics_independent;
+#[path = "../steel_impact_2_4_3/case.rs"]
+mod steel_impact_2_4_3;
 #[path = "../steel_load_rates_2_4_3/case.rs"]
 mod steel_load_rates_2_4_3;
 #[path = "../thick_ring_lame/case.rs"]
@@ -84,6 +86,7 @@ pub const CASES: &[Case] = &[
     assembly_fits_2_4_1::CASE,
     housing_orbits_2_4_2::CASE,
     steel_load_rates_2_4_3::CASE,
+    steel_impact_2_4_3::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).
