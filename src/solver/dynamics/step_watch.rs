@@ -20,6 +20,19 @@ pub const LOOK_EVERY: u64 = 16;
 /// itself off from the observed one.
 pub const TOLERATED: f64 = 1.1;
 
+/// With traction the Jacobian is asked after 16, 32, 64 … steps and then every so many, whatever the
+/// contacts say: a start that rolls with spin keeps slip off the steep onset, to which it comes back
+/// within some tenths of a millisecond. That costs some per cent of the steps.
+const JUDGE_EVERY: u64 = 4096;
+
+/// A step that follows from the limit is shortened once it is this much above its fraction: at the
+/// limit itself nothing decays any more, and the ledger suffers long before.
+const ROOM: f64 = 1.5;
+
+/// Where contacts are damped the limit may come down by this factor more than stiffness and damping
+/// say each: what swings turns into what decays, whose fast root outgrows both.
+const DAMPED: f64 = 1.5;
+
 /// What the contacts of an evaluation bind the step by.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stiffness {
@@ -111,10 +124,12 @@ pub struct Shortened {
 }
 
 impl StepWatch {
-    fn is_due(&self, now: &Stiffness, step: f64) -> bool {
+    /// `bound` is the part of the limit that the step must not exceed.
+    fn is_due(&self, now: &Stiffness, step: f64, bound: f64, damped: bool) -> bool {
         let growth = now.growth(&self.stiffest);
+        let margin = if damped { DAMPED } else { 1.0 } / bound;
         // Two per cent, so that a step close to its limit does not ask again and again.
-        growth > 1.02 && self.smallest.is_none_or(|limit| limit < growth * step)
+        growth > 1.02 && self.smallest.is_none_or(|limit| limit < margin * growth * step)
     }
 }
 
@@ -126,7 +141,20 @@ impl Simulation {
     /// A given step above the largest stable one.
     pub fn watch_step(&mut self) -> Result<Option<f64>, SimulationError> {
         let now = stiffness(&self.system);
-        if self.step_watch.is_due(&now, self.step_size) { self.judge_step(now) } else { Ok(None) }
+        let damped = self.system.damping.iter().any(|damping| *damping > 0.0);
+        let steps = self.steps;
+        let on_schedule = self.system.laws.traction != TractionLaw::None
+            && (steps.is_power_of_two() || steps.is_multiple_of(JUDGE_EVERY));
+        let due = on_schedule || self.step_watch.is_due(&now, self.step_size, self.bound(), damped);
+        if due { self.judge_step(now) } else { Ok(None) }
+    }
+
+    /// The part of the limit that the step must not exceed.
+    fn bound(&self) -> f64 {
+        match self.options.stepping {
+            Stepping::FractionOfLimit(fraction) => (ROOM * fraction).min(1.0),
+            Stepping::Fixed(_) | Stepping::Accuracy(_) => 1.0,
+        }
     }
 
     /// Goes on with a shorter step and keeps account of it.
@@ -165,7 +193,7 @@ impl Simulation {
         watch.smallest = Some(watch.smallest.map_or(limit.step, |least| least.min(limit.step)));
         let ratio = self.step_size / limit.step;
         if let Stepping::FractionOfLimit(fraction) = self.options.stepping {
-            if ratio <= 1.0 {
+            if ratio <= self.bound() {
                 return Ok(None);
             }
             self.limit = Some(limit);
