@@ -224,7 +224,6 @@ impl ExplicitSolid {
         contacts(self.time, &self.displacement, &mut self.force);
         let h = self.step_size;
         let half_damping = 0.5 * h * self.model.problem.damping;
-        let (keep, per_sum) = (1.0 - half_damping, 1.0 / (1.0 + half_damping));
         self.add_load_work(0.5 * h);
         let next = self.time + h;
         for Prescribed { node, axis, profile } in &self.model.problem.prescribed {
@@ -236,7 +235,6 @@ impl ExplicitSolid {
             self.external_work[n] += 0.5 * h * drive * (rate + before);
             self.rate[n][i] = rate;
         }
-        let relative = self.model.problem.damped_motion == DampedMotion::RelativeToRigid;
         if half_damping == 0.0 {
             let nodes = self.rate.iter_mut().zip(&mut self.displacement);
             let pulls = self.force.iter().zip(&self.model.per_mass);
@@ -247,31 +245,44 @@ impl ExplicitSolid {
                 }
             }
         } else {
-            let SolidModel { per_mass, problem, mass, .. } = &self.model;
-            let rigid = if relative {
-                rigid_motion(problem, mass, &self.displacement, &self.rate)
-            } else {
-                RigidMotion::default()
-            };
-            for n in 0..mass.len() {
-                let rest = rigid.velocity(problem.nodes[n], self.displacement[n]);
-                for i in 0..3 {
-                    let before = self.rate[n][i];
-                    // A driven component is not braked: its course is given.
-                    if per_mass[n][i] != 0.0 {
-                        let excess = before - rest[i];
-                        let kick = h * self.force[n][i] * per_mass[n][i];
-                        self.rate[n][i] = rest[i] + (keep * excess + kick) * per_sum;
-                        let mean = 0.5 * (before + self.rate[n][i]);
-                        self.damping_work[n] -=
-                            h * problem.damping * mass[n] * mean * (mean - rest[i]);
-                    }
-                    self.displacement[n][i] += h * self.rate[n][i];
-                }
-            }
+            self.damped_kick(h);
         }
         self.add_load_work(0.5 * h);
         self.time = next;
+    }
+
+    /// Kick and drift with damping. What is left of the body's rigid motion is damped with the mean of
+    /// the velocities before and after the kick; the rigid motion itself takes the whole kick.
+    fn damped_kick(&mut self, h: f64) {
+        let SolidModel { per_mass, problem, mass, .. } = &self.model;
+        let half_damping = 0.5 * h * problem.damping;
+        let per_sum = 1.0 / (1.0 + half_damping);
+        let rigid_before = rigid_motion(problem, mass, &self.displacement, &self.rate);
+        for ((rate, force), per_mass) in self.rate.iter_mut().zip(&self.force).zip(per_mass) {
+            for i in 0..3 {
+                rate[i] += h * force[i] * per_mass[i];
+            }
+        }
+        let rigid = rigid_motion(problem, mass, &self.displacement, &self.rate);
+        for n in 0..mass.len() {
+            let (place, displacement) = (problem.nodes[n], self.displacement[n]);
+            let rest_before = rigid_before.velocity(place, displacement);
+            let rest = rigid.velocity(place, displacement);
+            for i in 0..3 {
+                // A driven component is not braked: its course is given.
+                if per_mass[n][i] != 0.0 {
+                    let before = self.rate[n][i] - h * self.force[n][i] * per_mass[n][i];
+                    let excess = self.rate[n][i] - rest[i];
+                    let braked = excess - half_damping * (before - rest_before[i]);
+                    self.rate[n][i] = rest[i] + braked * per_sum;
+                    let mean = 0.5 * (before + self.rate[n][i]);
+                    let mean_rest = 0.5 * (rest_before[i] + rest[i]);
+                    self.damping_work[n] -=
+                        h * problem.damping * mass[n] * mean * (mean - mean_rest);
+                }
+                self.displacement[n][i] += h * self.rate[n][i];
+            }
+        }
     }
 
     /// Books what loads and gravity, with their forces at `time`, do in `seconds` at the present
