@@ -203,6 +203,33 @@ fn a_step_beyond_the_limit_is_refused() {
     assert!(make(SolidStepping::Fixed(f64::NAN)).is_err());
 }
 
+/// What moves a clamp does the work that the body then holds, its own inertia included.
+#[test]
+fn a_moving_clamp_does_the_work_that_the_body_holds() {
+    // Central differences close to rounding but for strains of 1e-5; Runge–Kutta by its order.
+    for (method, allowed) in
+        [(ExplicitMethod::CentralDifferences, 1e-7), (ExplicitMethod::RungeKutta, 1e-7)]
+    {
+        let mut problem = block([4, 1, 1], Order::Linear);
+        let profile = Profile::SmoothRamp { from: 0.0, to: 1e-6, start: 0.0, duration: 2e-5 };
+        for node in 0..4 {
+            problem.prescribed.push(Prescribed { node, axis: 0, profile: profile.clone() });
+        }
+        let rest = still(&problem);
+        let model = SolidModel::new(problem).unwrap();
+        let stepping = SolidStepping::FractionOfLimit(0.2);
+        let mut solid = ExplicitSolid::new(model, method, stepping, rest.clone(), rest).unwrap();
+        while solid.time < 1e-5 {
+            solid.step(|_, _, _| {}).unwrap();
+        }
+        let ledger = solid.ledger();
+        let held = ledger.energy.strain + ledger.energy.kinetic;
+        let error = (ledger.external_work / held - 1.0).abs();
+        println!("{method:?} {error:e}");
+        assert!(held > 0.0 && error <= allowed, "{method:?}: {error:e}");
+    }
+}
+
 /// Damping of what is left of rigid motion takes nothing from a fall.
 #[test]
 fn a_fall_is_not_braked_by_damping_relative_to_rigid_motion() {
