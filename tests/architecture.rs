@@ -419,7 +419,11 @@ fn nothing_is_unsafe() {
         let lines = unsafe_words(&read(&root().join(path)));
         lines.into_iter().map(|line| format!("{}:{line}", path.display())).collect::<Vec<_>>()
     };
-    assert_none(rust_files("").iter().flat_map(lines_in).collect());
+    // An allocator that counts cannot be written otherwise.
+    let counting = Path::new("tests/no_allocation.rs");
+    let files = rust_files("");
+    let safe = files.iter().filter(|path| *path != counting);
+    assert_none(safe.flat_map(lines_in).collect());
 }
 
 #[test]

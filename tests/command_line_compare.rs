@@ -155,7 +155,7 @@ fn what_cannot_be_compared_is_named() {
 // thousand comparisons, each of which would start a process.
 
 fn compared(reference: &Path, candidate: &Path, class: ToleranceClass) -> Comparison {
-    let options = Options { default_class: Some(class), tolerances: None };
+    let options = Options { default_class: Some(class), ..Options::default() };
     compare(reference, candidate, &options).unwrap()
 }
 

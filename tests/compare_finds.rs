@@ -30,7 +30,7 @@ fn pair() -> (TempDir, PathBuf, PathBuf) {
 }
 
 fn with_class(class: ToleranceClass) -> Options {
-    Options { default_class: Some(class), tolerances: None }
+    Options { default_class: Some(class), ..Options::default() }
 }
 
 fn compared(reference: &Path, candidate: &Path, class: ToleranceClass) -> Comparison {

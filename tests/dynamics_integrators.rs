@@ -9,18 +9,24 @@ use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::control::Attempt;
+use bearing_dynamics::solver::dynamics::control::{Attempt, SHARE};
 use bearing_dynamics::solver::dynamics::dormand_prince as dopri;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
+use bearing_dynamics::solver::dynamics::orbit_frame::OrbitFrames;
 use bearing_dynamics::solver::dynamics::rosenbrock as ros;
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, SimulationError, Stepping,
 };
 use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{Layout, Ledger, POSITION, VELOCITY};
+use bearing_dynamics::solver::dynamics::state::{
+    BODY, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY,
+};
 use bearing_dynamics::solver::profile::Profile;
 use common::table_4_1;
-use dynamics::{CONSTANT, GRAVITY, RPM, bearing, bits, cage, inner_state, ledger, traction_laws};
+use dynamics::{
+    CONSTANT, GRAVITY, Noise, RPM, bearing, bits, cage, inner_state, ledger, traction_laws,
+};
+use nalgebra::{UnitQuaternion, Vector3};
 
 /// Tables 3.5 and 4.1 at 5 µm interference, 1000 rpm, 1500 N down, default friction.
 fn rolling() -> DynamicProblem {
@@ -384,6 +390,84 @@ fn dormand_prince_delivers_its_accuracy_without_stiff_traction() {
         let attempts = simulation.steps + work.rejected_steps;
         assert_eq!(work.evaluations, 6 * attempts + 2);
         assert_eq!(work.factorisations, 0);
+    }
+}
+
+/// Position, velocity and spin of every ball turn, its orientation and all other bodies do not.
+#[test]
+fn frames_turn_with_the_orbits_of_their_balls() {
+    let layout = Layout::new(11, false);
+    let mut noise = Noise(7);
+    let mut random = || (0..layout.len()).map(|_| noise.next()).collect::<Vec<f64>>();
+    let (state, rates) = (random(), random());
+    let mut frames = OrbitFrames::new(&layout);
+    frames.follow(&layout, &state);
+    let time = 0.3;
+    let (mut inertial, mut in_frame) = (state.clone(), rates.clone());
+    frames.to_inertial(&layout, time, &mut inertial);
+    frames.rates_to_frame(&layout, time, &state, &mut in_frame);
+    let mut turning = vec![false; layout.len()];
+    for ball in 0..layout.balls {
+        let of = |list: &[f64], component| Vector3::from(layout.ball_vector(list, component, ball));
+        let (x, v) = (of(&state, POSITION), of(&state, VELOCITY));
+        let omega = Vector3::x() * (x.cross(&v).x / (x.y * x.y + x.z * x.z));
+        let turn = UnitQuaternion::from_scaled_axis(omega * time);
+        for component in [POSITION, VELOCITY, SPIN] {
+            let there = turn * of(&state, component);
+            let rate = of(&rates, component) - omega.cross(&of(&state, component));
+            let error = (of(&inertial, component) - there).norm();
+            let of_rate = (of(&in_frame, component) - turn.inverse() * rate).norm();
+            // Angular velocities of random balls go up to some hundred 1/s.
+            assert!(error <= 1e-12 && of_rate <= 1e-12 * (1.0 + omega.norm()), "{error} {of_rate}");
+            for i in 0..3 {
+                turning[layout.ball(component + i) + ball] = true;
+            }
+        }
+    }
+    for at in (0..layout.len()).filter(|at| !turning[*at]) {
+        assert_eq!((inertial[at], in_frame[at]), (state[at], rates[at]), "{at}");
+    }
+}
+
+/// Every error counts by its displacement: velocities over the frequency of the body on a contact at
+/// the largest overlap, angles times the radius at which they are felt.
+#[test]
+fn errors_count_by_the_displacement_they_make() {
+    let geometry = table_4_1(-5e-6);
+    let mut problem = rolling();
+    problem.cage = Some(cage(&geometry, Pocket::Spherical, Guidance::OuterRace));
+    let cage = problem.cage.as_ref().unwrap().inertia;
+    let simulation = started(&problem, Integrator::Rosenbrock, Stepping::Accuracy(1e-3));
+    let control = simulation.control.as_ref().unwrap();
+    let layout = simulation.system.layout;
+    let overlap = control.memory.displacement;
+    let unit = SHARE * 1e-3 * overlap;
+    let hertz = problem.inner_contact.stiffness.min(problem.outer_contact.stiffness);
+    let frequency = |mass: f64| (1.5 * hertz * overlap.sqrt() / mass).sqrt();
+    let ball = (problem.ball.mass, geometry.ball_radius);
+    let hub = |mass| (mass, geometry.pitch_radius);
+    let bodies = [
+        (layout.ball(0) + 3, layout.padded, ball),
+        (layout.inner(), 1, hub(problem.inner.inertia.mass)),
+        (layout.cage(), 1, hub(cage.mass)),
+    ];
+    for (at, stride, (mass, arm)) in bodies {
+        let wanted = |i: usize| match i {
+            POSITION..ORIENTATION => Some(1.0),
+            // A quaternion has half the angle.
+            ORIENTATION..VELOCITY if stride == 1 => Some(2.0 * arm),
+            // The orientation of a ball moves nothing.
+            ORIENTATION..VELOCITY => None,
+            VELOCITY..SPIN => Some(1.0 / frequency(mass)),
+            _ => Some(arm / frequency(mass)),
+        };
+        for i in 0..BODY {
+            let mut attempt = Attempt::new(simulation.state.len());
+            attempt.error[at + i * stride] = -3e-9;
+            let norm = control.norm(&attempt);
+            let expected = wanted(i).unwrap_or(0.0) * 3e-9 / unit;
+            assert!((norm - expected).abs() <= 1e-12 * expected, "{at}, {i}: {norm} {expected}");
+        }
     }
 }
 

@@ -4,6 +4,7 @@ mod common;
 #[path = "common/dynamics.rs"]
 mod dynamics;
 
+use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
@@ -183,6 +184,67 @@ fn a_started_bearing_moves_with_its_equilibrium() {
         println!("law {law}: {:e} m, from rest {:e} m", rings[0], rings[1]);
         assert!(rings[1] >= 1e-10, "{rings:?}");
         assert!(rings[0] <= most * rings[1], "{rings:?}");
+    }
+}
+
+/// Both races and the balls, against equilibria a moment before and after.
+#[test]
+fn a_start_is_as_fast_as_its_equilibrium_moves() {
+    let speed = 1000.0 * RPM;
+    let geometry = table_4_1(5e-6);
+    let mut problem = bearing(geometry, [20.0, 0.0, -1500.0, 0.0, 0.0], speed);
+    let mut outer = free_race();
+    outer.rotation = Rotation::Speed(Profile::ZERO);
+    outer.foundation_stiffness = [1e7, 2e7, 1.5e7, 1e4, 2e4];
+    problem.outer = Some(outer);
+    problem.outer_start = [0.0, 0.0, 0.0, 2e-3, -1e-3];
+    problem.cage = Some(cage(&geometry, Pocket::Cylindrical, Guidance::OuterRace));
+    // Moves the races far more than the passing of balls.
+    let (phase, turning) = (0.3, 300.0);
+    let rotating = |t: f64| {
+        let force = Profile::Constant(500.0);
+        Some(RotatingLoad { force, speed: Profile::Constant(turning), phase: phase + turning * t })
+    };
+    problem.rotating_load = rotating(0.0);
+    let layout = Layout::new(8, true);
+    let state = start::at_equilibrium(&problem, &layout).unwrap().0;
+    let orbital = speed * ratios(8, geometry.ball_radius, geometry.pitch_radius, 0.0).cage;
+    // The cage turns with the balls, about the outer race's axis.
+    let outer = BodyState::from_slice(&state[layout.outer()..]);
+    let spin = BodyState::from_slice(&state[layout.cage()..]).spin;
+    for i in 0..3 {
+        let expected = outer.spin[i] + orbital * outer.axis()[i];
+        assert!((spin[i] - expected).abs() <= 1e-12 * orbital, "{spin:?}");
+    }
+    let dt = 1e-5;
+    let [after, before] = [dt, -dt].map(|t| {
+        let ball_phase = problem.ball_phase + orbital * t;
+        let moved = DynamicProblem { ball_phase, rotating_load: rotating(t), ..problem.clone() };
+        start::at_equilibrium(&moved, &layout).unwrap().0
+    });
+    let rate = |at: usize| (after[at] - before[at]) / (2.0 * dt);
+    // Races move by some 10 mm/s. Rates of the start come from equilibria 0.1 ms apart: a third of
+    // the square of the load's turn, 3e-4; differences leave (orbital dt)²/6 of the balls' 1 m/s.
+    let tolerance = 1e-5;
+    let mut largest = [0.0f64; 2];
+    for (race, at) in [layout.inner(), layout.outer()].into_iter().enumerate() {
+        for i in 0..3 {
+            let error = state[at + VELOCITY + i] - rate(at + i);
+            largest[race] = largest[race].max(rate(at + i).abs());
+            assert!(error.abs() <= tolerance, "race {race}, {i}: {error:e} of {:e}", rate(at + i));
+        }
+    }
+    println!("races move by {largest:?} m/s");
+    assert!(largest.iter().all(|speed| *speed >= 2e-3), "{largest:?}");
+    let loaded: Vec<usize> =
+        (0..8).filter(|ball| layout.ball_state(&state, *ball).position[2] < -0.01).collect();
+    assert!(loaded.len() >= 2);
+    for ball in loaded {
+        for i in 0..3 {
+            let found = state[layout.ball(VELOCITY + i) + ball];
+            let error = found - rate(layout.ball(i) + ball);
+            assert!(error.abs() <= tolerance, "ball {ball}, {i}: {error:e} of {found:e}");
+        }
     }
 }
 

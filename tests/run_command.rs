@@ -354,10 +354,191 @@ fn what_cannot_be_run_is_said_before_anything_is_written() {
     let text = scene(numerics, "").replace("end = \"1 ms\"\n", "");
     let output = run(&place.scene("b.toml", &text), &out, &[]);
     assert_eq!(code(&output), 2);
-    assert!(stderr(&output).contains("numerics.end"), "{}", stderr(&output));
+    let message = stderr(&output);
+    assert!(message.contains("b.toml:") && message.contains("numerics.end"), "{message}");
+    let plan = bearing(&["plan", place.path("b.toml").to_str().unwrap()]);
+    assert_eq!((code(&plan), stderr(&plan)), (2, message));
+    let text = text.replace("[numerics]\nstep = \"2 us\"", "");
+    let output = run(&place.scene("d.toml", &text), &out, &[]);
+    assert!(stderr(&output).contains("d.toml: numerics.end"), "{}", stderr(&output));
     let text = scene("end = \"1000 s\"\nstep = \"1 ns\"\noutput_interval = \"1 ns\"", "");
     let output = run(&place.scene("c.toml", &text), &out, &[]);
     assert_eq!(code(&output), 2);
     assert!(stderr(&output).contains("do not fit in memory"), "{}", stderr(&output));
     assert!(!out.join("state.json").exists() && !out.join("summary.json").exists());
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn bearing(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_bearing")).args(arguments).output().unwrap()
+}
+
+#[test]
+fn a_run_ends_with_its_key_figures_and_times_are_short() {
+    let place = Place::new();
+    let numerics = "end = \"2 ms\"\nstep = \"2 us\"\noutput_interval = \"10 us\"";
+    let scene = place.scene("scene.toml", &scene(numerics, ""));
+    let out = place.path("out");
+    let output = run(&scene, &out, &[]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let said = said(&output);
+    let summary = json(out.join("summary.json"));
+    // The figures are those of the table.
+    let mean = |axis: &str| {
+        let channel = &summary["window"]["channels"][format!("inner_{axis}")]["mean"];
+        format!("{:.6}", 1e6 * channel["value"].as_f64().unwrap())
+    };
+    let line = ["x", "y", "z"].map(mean).join(", ");
+    for part in [line.as_str(), "largest ball load", "energy unaccounted for", "1000 in "] {
+        assert!(said.contains(part), "{part} is not in {said}");
+    }
+    // 10 µs times a row number, which 1e-5 + 1e-5 + … is not.
+    let series = fs::read_to_string(out.join("series.csv")).unwrap();
+    for (row, line) in series.lines().skip(1).enumerate() {
+        let time = line.split(',').next().unwrap();
+        let parsed: f64 = time.parse().unwrap();
+        assert!(time.len() <= 7, "row {row}: {time}");
+        assert!((parsed - 1e-5 * row as f64).abs() <= 1e-15, "row {row}: {time}");
+    }
+}
+
+#[test]
+fn folders_that_hold_something_else_are_neither_resumed_nor_overwritten() {
+    let place = Place::new();
+    let scene = place.scene("scene.toml", &scene("end = \"0.1 ms\"\nstep = \"2 us\"", ""));
+    let (nowhere, held) = (place.path("nowhere"), place.path("held"));
+    let output = run(&scene, &nowhere, &["--resume"]);
+    assert_eq!(code(&output), 2);
+    let message = stderr(&output);
+    assert!(message.contains("nowhere holds no run") && message.contains("without --resume"));
+    assert!(!nowhere.exists());
+    let paths = [scene.to_str().unwrap(), held.to_str().unwrap()];
+    assert_eq!(code(&bearing(&["statics", paths[0], "--out", paths[1]])), 0);
+    let before = fs::read(held.join("summary.json")).unwrap();
+    let output = run(&scene, &held, &[]);
+    assert_eq!(code(&output), 2);
+    let message = stderr(&output);
+    assert!(message.contains("static solution") && message.contains("--fresh"), "{message}");
+    assert_eq!(fs::read(held.join("summary.json")).unwrap(), before);
+    assert_eq!(code(&run(&scene, &held, &["--resume"])), 2);
+    assert_eq!(code(&run(&scene, &held, &["--fresh"])), 0);
+    assert_eq!(json(held.join("summary.json"))["kind"], "run");
+    assert!(!held.join("load_zone.svg").exists(), "what statics drew is gone");
+}
+
+#[test]
+fn the_plan_says_how_long_the_steps_are_and_what_makes_them_short() {
+    let place = Place::new();
+    let plan = |text: &str| {
+        let path = place.scene("scene.toml", text);
+        let output = bearing(&["plan", path.to_str().unwrap()]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        said(&output)
+    };
+    // Without friction the contacts bind the step.
+    let text = scene("end = \"1 ms\"", "");
+    let free = plan(&text);
+    for part in ["of the largest stable one at the start", "contact", "steps to t = 0.001 s"] {
+        assert!(free.contains(part), "{part} is not in {free}");
+    }
+    assert!(!free.contains("short step"), "{free}");
+    // From rest the floor of the friction law does, and ten times the floor takes ten times the step.
+    let default = text.replace("law = \"none\"", "law = \"slide-to-roll\"").replace(
+        "speed = \"1000 rpm\"",
+        "speed = { ramp = [\"0 rpm\", \"1000 rpm\"], start = \"0 s\", duration = \"1 ms\" }",
+    );
+    let short = plan(&default);
+    for part in
+        ["traction onset", "short step", "rosenbrock", "entrainment_floor = \"0.1 m/s\", 10 times"]
+    {
+        assert!(short.contains(part), "{part} is not in {short}");
+    }
+    let number = |text: &str, before: &str| -> f64 {
+        let rest = text.split(before).nth(1).unwrap_or_else(|| panic!("{before} in {text}"));
+        rest.split(' ').next().unwrap().parse().unwrap()
+    };
+    let limit = number(&short, "one at the start, ");
+    let longer = number(&short, "stable up to ");
+    assert!((longer / limit - 10.0).abs() <= 0.1, "{limit} {longer}");
+    // The step is the one that the run takes.
+    let path = place.scene("scene.toml", &default.replace("\"1 ms\"\n", "\"1 us\"\n"));
+    let output = run(&path, &place.path("out"), &[]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert!(said(&output).contains("traction onset"), "{}", said(&output));
+    let adaptive = plan(&text.replace("[numerics]\n", "[numerics]\nintegrator = \"rosenbrock\"\n"));
+    assert!(adaptive.contains("adapts so that") && adaptive.contains("0.001"), "{adaptive}");
+}
+
+#[test]
+fn check_tells_of_the_motion_of_a_run() {
+    let place = Place::new();
+    let check = |text: &str| {
+        let path = place.scene("scene.toml", text);
+        said(&bearing(&["check", path.to_str().unwrap()]))
+    };
+    let run = scene("end = \"1 ms\"", "");
+    let moving = check(&run.replace("[traction]", "[outer_race]\nmotion = \"5-dof\"\n[traction]"));
+    assert!(moving.contains("to t = 0.001 s by rk4"), "{moving}");
+    assert!(moving.contains("5 of 6 coordinates follow from loads"), "{moving}");
+    assert!(!moving.contains("centrifugal force of the balls is left out"), "{moving}");
+    assert!(!moving.contains("the outer race is fixed"), "{moving}");
+    assert!(check(&run).contains("outer race motion      fixed in space"), "{}", check(&run));
+    // One of statics speaks of statics.
+    let statics = check(&run.replace("[numerics]\nend = \"1 ms\"", ""));
+    assert!(statics.contains("centrifugal force of the balls is left out"), "{statics}");
+}
+
+#[test]
+fn runs_of_different_accuracy_are_compared_with_given_tolerances() {
+    let place = Place::new();
+    let folder = |name: &str, numerics: &str| {
+        let numerics = format!("end = \"1 ms\"\noutput_interval = \"20 us\"\n{numerics}");
+        let path = place.scene(&format!("{name}.toml"), &scene(&numerics, ""));
+        let out = place.path(name);
+        let output = run(&path, &out, &[]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        out.to_str().unwrap().to_string()
+    };
+    let fine = folder("fine", "step = \"0.5 us\"");
+    let coarse = folder("coarse", "step = \"1 us\"");
+    let compare = |further: &[&str]| {
+        let output = bearing(&[&["compare", fine.as_str(), coarse.as_str()], further].concat());
+        (code(&output), said(&output), stderr(&output))
+    };
+    assert_eq!(compare(&[]).0, 1, "their steps differ");
+    let (found, report, _) = compare(&["--rtol", "1e-2", "--atol", "m=1e-8"]);
+    assert_eq!(found, 0, "{report}");
+    let (found, report, _) = compare(&["--rtol", "1e-13"]);
+    assert_eq!(found, 1, "{report}");
+    assert!(report.contains("(given)"), "{report}");
+    for wrong in [&["--rtol", "-1"][..], &["--atol", "m"], &["--rtol", "1", "--class", "mixed"]] {
+        assert_eq!(compare(wrong).0, 2, "{wrong:?}");
+    }
+}
+
+#[test]
+fn a_cage_that_overlaps_a_race_is_refused() {
+    let place = Place::new();
+    let refused = |old: &str, new: &str, parts: &[&str]| {
+        let text = scene("end = \"1 ms\"", "");
+        assert!(text.contains(old));
+        let path = place.scene("scene.toml", &text.replace(old, new));
+        let output = bearing(&["check", path.to_str().unwrap()]);
+        assert_eq!(code(&output), 2);
+        let message = stderr(&output);
+        for part in parts {
+            assert!(message.contains(part), "{part} is not in {message}");
+        }
+    };
+    let outer = ["bearing.cage.outer_radius", "less than", "31.953 mm"];
+    refused("outer_radius = \"28.5 mm\"", "outer_radius = \"32 mm\"", &outer);
+    let inner = ["bearing.cage.inner_radius", "more than", "20.047 mm"];
+    refused("inner_radius = \"23.5 mm\"", "inner_radius = \"20 mm\"", &inner);
+    let land = ["bearing.cage.race_clearance", "less than", "31.953 mm"];
+    refused("race_clearance = \"0.1 mm\"", "race_clearance = \"4 mm\"", &land);
+    let pocket = ["bearing.cage.pocket_radius", "5.95"];
+    refused("pocket_radius = \"6.1 mm\"", "pocket_radius = \"5.9 mm\"", &pocket);
 }

@@ -11,7 +11,7 @@ use bearing_dynamics::output::state::{
 };
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Start, Stepping};
-use run_common::{complete, frictionless, jolted, rattling, request};
+use run_common::{complete, frictionless, jolted, pressed, rattling, request};
 use std::fs;
 use std::path::Path;
 
@@ -131,6 +131,33 @@ fn interrupt(
         }
         finish(&parts, problem, request, session);
         assert_same_files(&whole, &parts);
+    }
+}
+
+#[test]
+fn where_the_step_was_shortened_the_files_are_the_same_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let step = 4e-7;
+    let problem = pressed(step);
+    let mut long = RunRequest { end: 2000.0 * step, ..request(10.0 * step, 20) };
+    long.options.stepping = Stepping::FractionOfLimit(0.5);
+    // Where the step is shortened first, in the middle of a row.
+    let mut session = Session::start(problem.clone(), &long).unwrap();
+    while session.simulation.step_watch.shortened.is_none() {
+        assert_eq!(session.advance(1).unwrap(), Status::Running);
+    }
+    let (at, time) = (session.simulation.steps, session.simulation.time);
+    println!("shortened after step {at}, at t = {time} s");
+    let stops = [vec![at - 1], vec![at], vec![at + 1], vec![at - 16, at + 16], vec![at + 100]];
+    interrupt(folder.path(), "shortened", &problem, &long, &stops);
+    // A run that ends close to there and is extended.
+    for (index, end) in [time - 0.2 * step, time, time + 0.2 * step].into_iter().enumerate() {
+        let short = RunRequest { end, ..long.clone() };
+        let parts = folder.path().join(format!("extended {index}"));
+        finish(&parts, &problem, &short, Session::start(problem.clone(), &short).unwrap());
+        let session = go_on(&parts, &problem, &long);
+        finish(&parts, &problem, &long, session);
+        assert_same_files(&folder.path().join("shortened"), &parts);
     }
 }
 

@@ -4,7 +4,9 @@ use super::{CommandResult, Outcome, echo, echo_run, say};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
-use bearing_dynamics::scene::{self, Scene, Subject, statics::static_problem};
+use bearing_dynamics::scene::{self, CageInRun, Scene, Subject, statics::static_problem};
+use bearing_dynamics::solver::dynamics::run::Stepping;
+use bearing_dynamics::solver::plan::race_freedom;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -25,10 +27,15 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         Subject::Bearing(scene) => *scene,
     };
     static_problem(&scene)?;
+    // A bearing that is to move has to make bodies, too.
+    let in_motion = match scene.dynamics.run {
+        Some(_) => Some(dynamic_problem(&scene)?),
+        None => None,
+    };
     if arguments.json {
         let mut understood = echo::scene(&scene)?;
-        if scene.dynamics.run.is_some() {
-            understood["motion"] = echo_run::motion(&dynamic_problem(&scene)?)?;
+        if let Some(problem) = &in_motion {
+            understood["motion"] = echo_run::motion(problem)?;
         }
         say(&pretty(&understood))?;
     } else {
@@ -82,11 +89,45 @@ fn summary(name: &str, scene: &Scene) -> String {
     }
     line("pitch radius", format!("{:.4} mm", 1e3 * geometry.pitch_radius));
     line("contact angle", format!("{:.4} deg (nominal)", geometry.contact_angle.to_degrees()));
-    for used in &scene.defaults_used {
+    if scene.dynamics.run.is_some() {
+        for (label, value) in motion(scene) {
+            line(label, value);
+        }
+    }
+    for used in echo_run::defaults(scene) {
         line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
     }
     for assumption in &scene.assumptions {
         line("assumption", format!("{}: {}", assumption.name, assumption.text));
     }
     text
+}
+
+/// What moves, and how it is computed.
+fn motion(scene: &Scene) -> Vec<(&'static str, String)> {
+    let dynamics = &scene.dynamics;
+    let mut said = Vec::new();
+    if let Some(run) = &dynamics.run {
+        let stepping = match run.options.stepping {
+            Stepping::Fixed(step) => format!("a step of {step:e} s"),
+            Stepping::FractionOfLimit(part) => format!("{part} of the largest stable step"),
+            Stepping::Accuracy(accuracy) => format!("steps for an accuracy of {accuracy}"),
+        };
+        let method = run.options.integrator.name();
+        said.push(("run", format!("to t = {} s by {method}, {stepping}", run.end)));
+    }
+    let outer = match &dynamics.outer {
+        Some(body) => race_freedom(body),
+        None => "fixed in space".into(),
+    };
+    said.push(("inner race motion", race_freedom(&dynamics.inner)));
+    said.push(("outer race motion", outer));
+    let balls = "six coordinates each; gyroscopic and centrifugal effects by themselves";
+    said.push(("ball motion", balls.into()));
+    let cage = match &dynamics.cage {
+        CageInRun::Body(_) => "a rigid body with six coordinates".into(),
+        CageInRun::LeftOut(reason) => format!("left out: {reason}"),
+    };
+    said.push(("cage motion", cage));
+    said
 }

@@ -1,7 +1,7 @@
 //! `bearing compare REFERENCE CANDIDATE`.
 
 use super::{CommandResult, Outcome, say};
-use bearing_dynamics::output::compare::tolerance::ToleranceClass;
+use bearing_dynamics::output::compare::tolerance::{GivenTolerance, ToleranceClass};
 use bearing_dynamics::output::compare::{Options, compare, report, to_json};
 use bearing_dynamics::output::pack::{MANIFEST, PackError, verify_pack};
 use bearing_dynamics::output::results::pretty;
@@ -20,6 +20,13 @@ pub struct Arguments {
     /// f64-exact, f64-reordered or mixed
     #[arg(long, value_parser = class)]
     class: Option<ToleranceClass>,
+    /// For runs of different accuracy, in place of a class: allow this part of each channel's
+    /// largest value (components of one vector share theirs); how they were stepped is left out
+    #[arg(long, value_name = "PART", conflicts_with = "class")]
+    rtol: Option<f64>,
+    /// Allow this much besides, in channels of the unit; may be given for several units
+    #[arg(long, value_name = "UNIT=VALUE", value_parser = floor, conflicts_with = "class")]
+    atol: Vec<(String, f64)>,
     /// Print the comparison as JSON
     #[arg(long)]
     json: bool,
@@ -28,6 +35,13 @@ pub struct Arguments {
 fn class(name: &str) -> Result<ToleranceClass, String> {
     ToleranceClass::from_name(name)
         .ok_or_else(|| format!("no such class; there are {}", names().join(", ")))
+}
+
+/// `m=1e-9`
+fn floor(text: &str) -> Result<(String, f64), String> {
+    let wrong = || format!("{text:?} is not UNIT=VALUE, as in m=1e-9");
+    let (unit, value) = text.split_once('=').ok_or_else(wrong)?;
+    Ok((unit.trim().to_string(), value.trim().parse().map_err(|_| wrong())?))
 }
 
 fn names() -> Vec<&'static str> {
@@ -48,7 +62,11 @@ fn refuse_corrupt_pack(reference: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
-    let options = Options { default_class: arguments.class, tolerances: None };
+    let given = (arguments.rtol.is_some() || !arguments.atol.is_empty()).then(|| GivenTolerance {
+        scale_relative: arguments.rtol.unwrap_or(0.0),
+        floors: arguments.atol.clone(),
+    });
+    let options = Options { default_class: arguments.class, tolerances: None, given };
     refuse_corrupt_pack(&arguments.reference)?;
     let comparison = compare(&arguments.reference, &arguments.candidate, &options)?;
     say(&if arguments.json { pretty(&to_json(&comparison)) } else { report(&comparison) })?;

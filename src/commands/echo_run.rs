@@ -5,6 +5,7 @@ use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::output::results::{ResultsError, quantity};
+use bearing_dynamics::scene::{DefaultUsed, Scene};
 use bearing_dynamics::solver::dynamics::model::{
     CageBody, Drive, DynamicProblem, RaceBody, Rotation,
 };
@@ -13,6 +14,22 @@ use bearing_dynamics::solver::statics::COORDINATE_NAMES;
 use serde_json::{Map, Value, json};
 
 type Echo = Result<Value, ResultsError>;
+
+/// Defaults in use: for a run those of its motion too, without what they say of statics alone.
+pub fn defaults(scene: &Scene) -> Vec<DefaultUsed> {
+    let mut all = scene.defaults_used.clone();
+    if scene.dynamics.run.is_none() {
+        return all;
+    }
+    // Centrifugal force is no matter of choice where balls have mass and move.
+    all.retain(|used| used.key != "ball_forces.centrifugal");
+    let outer_moves = scene.dynamics.outer.is_some();
+    for used in all.iter_mut().filter(|used| outer_moves && used.key.starts_with("outer_race.")) {
+        used.reason = "where the outer race starts, before loads and foundation move it".into();
+    }
+    all.extend_from_slice(&scene.dynamics.defaults_used);
+    all
+}
 
 /// Bodies, their loads and motions, and the laws between them.
 pub fn motion(problem: &DynamicProblem) -> Echo {

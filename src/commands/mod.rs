@@ -8,7 +8,9 @@ pub mod modes;
 pub mod pack;
 pub mod pictures;
 pub mod plan;
+pub mod plan_step;
 pub mod run;
+pub mod run_figures;
 pub mod schema;
 pub mod solid;
 pub mod solve;
@@ -48,6 +50,23 @@ pub fn refuse_folder_of_run(folder: &Path) -> Result<(), Box<dyn Error>> {
         return Err(text.into());
     }
     Ok(())
+}
+
+/// Refuses to write a run over results of another kind.
+pub fn refuse_folder_of_other(folder: &Path) -> Result<(), Box<dyn Error>> {
+    let summary = std::fs::read(folder.join("summary.json")).unwrap_or_default();
+    let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
+    match summary["kind"].as_str() {
+        None | Some("run") => Ok(()),
+        Some(kind) => {
+            let folder = folder.display();
+            let text = format!(
+                "{folder} holds results of another kind ({kind}); name another folder with --out, \
+                 or write over them (--fresh)"
+            );
+            Err(text.into())
+        }
+    }
 }
 
 /// `results/<name of the scene>` unless a folder was given.

@@ -1,5 +1,6 @@
 //! `bearing plan SCENE`.
 
+use super::plan_step::step_lines;
 use super::run::request;
 use super::solve::{lines, plan_lines};
 use super::{CommandResult, Outcome, say};
@@ -7,8 +8,6 @@ use bearing_dynamics::output::dynamics::session::RunRequest;
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{self, CageInRun, Scene, Subject, statics::static_problem};
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
-use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Stepping};
-use bearing_dynamics::solver::dynamics::step_watch::TOLERATED;
 use bearing_dynamics::solver::plan;
 use std::path::PathBuf;
 
@@ -26,39 +25,15 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let planned = match run_options(&scene) {
         Ok(settings) => {
             let problem = dynamic_problem(&scene)?;
-            let mut lines = dynamic_plan_lines(&scene, &problem, &request(&scene, &settings));
-            lines.extend(step_against_limit(&problem, &settings.options));
+            let request = request(&scene, &settings);
+            let mut lines = dynamic_plan_lines(&scene, &problem, &request);
+            lines.extend(step_lines(&problem, &request));
             lines
         }
         Err(_) => plan_lines(&static_problem(&scene)?),
     };
     say(&planned.iter().map(|line| format!("{line}\n")).collect::<String>())?;
     Ok(Outcome::Done)
-}
-
-/// A given step beside the largest stable one at the start, with a warning where it is longer.
-fn step_against_limit(problem: &DynamicProblem, options: &RunOptions) -> Option<String> {
-    let Stepping::Fixed(step) = options.stepping else { return None };
-    let limited = RunOptions { stepping: Stepping::FractionOfLimit(1.0), ..*options };
-    let said = match Simulation::new(problem.clone(), limited).map(|simulation| simulation.limit) {
-        Ok(Some(limit)) => {
-            let ratio = step / limit.step;
-            let verdict = match ratio {
-                r if r > TOLERATED => "WARNING: too long, the run will be refused",
-                r if r > 1.0 => "WARNING: longer than stable",
-                _ => "stable at the start",
-            };
-            format!(
-                "{step:.3e} s is {ratio:.3} of the largest stable one at the start, {:.3e} s ({}): \
-                 {verdict}",
-                limit.step,
-                limit.reason()
-            )
-        }
-        Ok(None) | Err(SimulationError::NoStep) => "no contact is stiff at the start".into(),
-        Err(error) => format!("WARNING: the run will be refused: {error}"),
-    };
-    Some(format!("notes {:<28} {said}", "given step"))
 }
 
 /// The plan of a run as text, one line a stage.

@@ -1,7 +1,11 @@
 //! `bearing run SCENE`: the bearing in motion, step after step, and the folder it leaves.
 
 use super::plan::dynamic_plan_lines;
-use super::{CommandResult, Outcome, echo, echo_run, results_folder, say};
+use super::run_figures::key_figures;
+use super::{
+    CommandResult, Outcome, echo, echo_run, pictures as static_pictures, refuse_folder_of_other,
+    results_folder, say,
+};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::dynamics::pictures::{Picture, draw};
 use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status};
@@ -12,6 +16,7 @@ use bearing_dynamics::output::state::{self, StateFile, StateRecord, Stopped};
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{self, Plot, RunPlot, RunSettings, Scene, Subject};
 use bearing_dynamics::solver::channels::ChannelGroup;
+use bearing_dynamics::solver::clock::rounded;
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Stepping};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -34,7 +39,7 @@ pub struct Arguments {
     /// Go on from the state in the results folder; the scene's end may be later than it was
     #[arg(long)]
     pub(super) resume: bool,
-    /// Discard an unfinished run in the results folder
+    /// Discard an unfinished run, or results of another kind, in the results folder
     #[arg(long, conflicts_with = "resume")]
     pub(super) fresh: bool,
     /// Threads the run may use, with the same bits; a bearing of rigid parts uses one
@@ -59,7 +64,8 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         Subject::Solid(solid) => return super::solid::run::run(arguments, &solid, start),
         Subject::Bearing(scene) => *scene,
     };
-    let settings = run_options(&scene)?;
+    let settings =
+        run_options(&scene).map_err(|error| format!("{}: {error}", arguments.scene.display()))?;
     let problem = dynamic_problem(&scene)?;
     let request = request(&scene, &settings);
     let folder = results_folder(&arguments.scene, &arguments.out);
@@ -113,6 +119,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         spectra: scene.dynamics.plots.contains(&RunPlot::Spectrum),
     };
     written.extend(write_run_results(&folder, &session, &table, &report)?);
+    say(&key_figures(&session, &table, seconds))?;
     // State beside them.
     say(&format!("wrote {} files to {}\n", written.len() + 1, folder.display()))?;
     outcome(arguments, &folder, &session, end)
@@ -123,9 +130,9 @@ fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) ->
     match end {
         End::Complete => Ok(Outcome::Done),
         End::Interrupted => Err(format!(
-            "interrupted at t = {:.6} s of {} s, after {} steps; what there is so far is in {}. To \
+            "interrupted at t = {} s of {} s, after {} steps; what there is so far is in {}. To \
              go on: bearing run {} --out {} --resume",
-            simulation.time,
+            rounded(simulation.time),
             session.end,
             simulation.steps,
             folder.display(),
@@ -162,22 +169,34 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
 /// The state to go on from, if that was asked for; what an earlier run left is removed otherwise.
 fn kept_state(arguments: &Arguments, folder: &Path) -> Result<Option<StateFile>, Box<dyn Error>> {
     if arguments.resume {
-        return Ok(state::read(folder)?);
+        let missing = || {
+            format!(
+                "{} holds no run to go on with (there is no {}); name the folder of one with --out, \
+                 or start anew without --resume",
+                folder.display(),
+                state::STATE
+            )
+        };
+        return Ok(Some(state::read(folder)?.ok_or_else(missing)?));
+    }
+    if !arguments.fresh {
+        refuse_folder_of_other(folder)?;
     }
     if !arguments.fresh
         && let Some(file) = state::read(folder)?
         && matches!(file.stopped, Stopped::Interrupted | Stopped::Running)
     {
         return Err(format!(
-            "{} holds a run that stands at t = {:.6} s of {} s; go on with it (--resume), discard it \
+            "{} holds a run that stands at t = {} s of {} s; go on with it (--resume), discard it \
              (--fresh), or choose another --out",
             folder.display(),
-            file.time,
+            rounded(file.time),
             file.end
         )
         .into());
     }
-    for name in ["summary.json", state::STATE, state::SERIES, "series.csv", "spectrum.csv"] {
+    let earlier = ["summary.json", state::STATE, state::SERIES, "series.csv", "spectrum.csv"];
+    for name in earlier.into_iter().chain(static_pictures::NAMES) {
         match std::fs::remove_file(folder.join(name)) {
             Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
                 return Err(
@@ -232,7 +251,8 @@ fn announcement(session: &Session, request: &RunRequest, kept: Option<&StateFile
     let mut text = format!("{method}step {:.4e} s: {reason}\n", simulation.step_size);
     if let Some([ratio, time]) = simulation.step_watch.exceeded {
         text += &format!(
-            "WARNING: the step is {ratio:.3} times the largest stable one at t = {time} s\n"
+            "WARNING: the step is {ratio:.3} times the largest stable one at t = {} s\n",
+            rounded(time)
         );
     }
     let (interval, asked) = (session.interval(), request.output_interval);
@@ -252,7 +272,7 @@ fn announcement(session: &Session, request: &RunRequest, kept: Option<&StateFile
 
 fn resumed(kept: Option<&StateFile>) -> String {
     kept.map_or(String::new(), |file| {
-        format!("resumed at t = {:.6} s, step {}\n", file.time, file.steps)
+        format!("resumed at t = {} s, step {}\n", rounded(file.time), file.steps)
     })
 }
 
@@ -347,11 +367,9 @@ fn record(
     request: &RunRequest,
 ) -> Result<RunRecord, Box<dyn Error>> {
     let assumptions = scene.assumptions.iter().map(|a| (a.name.clone(), a.text.clone()));
-    let defaults = scene
-        .defaults_used
-        .iter()
-        .chain(&scene.dynamics.defaults_used)
-        .map(|used| (used.key.clone(), format!("{} ({})", used.value, used.reason)));
+    let defaults = echo_run::defaults(scene)
+        .into_iter()
+        .map(|used| (used.key, format!("{} ({})", used.value, used.reason)));
     Ok(RunRecord {
         scene: echo::scene(scene)?,
         plan: dynamic_plan_lines(scene, problem, request),

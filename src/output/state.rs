@@ -9,6 +9,7 @@ use crate::output::dynamics::session::{RunRequest, Session, SessionError};
 use crate::output::journal::{self, JournalError};
 use crate::output::series::{Series, SeriesError};
 use crate::solver::channels::ChannelGroup;
+use crate::solver::clock::rounded;
 use crate::solver::dynamics::checkpoint::Checkpoint;
 use crate::solver::dynamics::contacts::Work;
 use crate::solver::dynamics::control::Memory;
@@ -16,7 +17,7 @@ use crate::solver::dynamics::energy::Energy;
 use crate::solver::dynamics::model::DynamicProblem;
 use crate::solver::dynamics::run::Stepping;
 use crate::solver::dynamics::stability::{Cause, StepLimit};
-use crate::solver::dynamics::step_watch::{StepWatch, Stiffness};
+use crate::solver::dynamics::step_watch::{Shortened, StepWatch, Stiffness};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -88,6 +89,17 @@ pub struct StepWatchEntry {
     pub stiffest: [f64; 2],
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub exceeded: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub shortened: Option<ShortenedEntry>,
+}
+
+/// See [`Shortened`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ShortenedEntry {
+    pub times: u64,
+    pub from: f64,
+    pub last: f64,
 }
 
 #[derive(Debug, Error)]
@@ -104,7 +116,7 @@ pub enum StateError {
     Damaged { path: PathBuf, what: &'static str },
     #[error("{} has no rows that fit the state beside it", path.display())]
     Rows { path: PathBuf },
-    #[error("the run has already come to {time} s, past its new end of {end} s")]
+    #[error("the run has already come to {} s, past its new end of {end} s", rounded(*time))]
     Past { time: f64, end: f64 },
     #[error("{what} is {value}; only finite numbers are kept in a state")]
     NotFinite { what: &'static str, value: f64 },
@@ -240,6 +252,11 @@ fn state_file(
             smallest: watch.smallest,
             stiffest: [watch.stiffest.oscillation, watch.stiffest.decay],
             exceeded: watch.exceeded,
+            shortened: watch.shortened.map(|Shortened { times, from, last }| ShortenedEntry {
+                times,
+                from,
+                last,
+            }),
         },
         end: session.end,
         output_interval: record.output_interval,
@@ -306,6 +323,10 @@ fn checkpoint(file: &StateFile) -> Checkpoint {
             smallest: file.step_watch.smallest,
             stiffest: Stiffness { oscillation, decay },
             exceeded: file.step_watch.exceeded,
+            shortened: file
+                .step_watch
+                .shortened
+                .map(|ShortenedEntry { times, from, last }| Shortened { times, from, last }),
         },
         state: file.state.clone(),
         damping: file.damping.clone(),
@@ -337,7 +358,8 @@ fn check_finite(file: &StateFile) -> Result<(), StateError> {
     let single = [file.time, file.step_size, file.seconds, file.end, file.output_interval];
     let watch = &file.step_watch;
     let watched = watch.stiffest.into_iter().chain(watch.smallest);
-    let limit = limit.chain(watched).chain(watch.exceeded.into_iter().flatten());
+    let shortened = watch.shortened.into_iter().flat_map(|s| [s.from, s.last]);
+    let limit = limit.chain(watched).chain(watch.exceeded.into_iter().flatten()).chain(shortened);
     let parts: [(&'static str, Vec<f64>); 5] = [
         ("a size of the error control", file.control.into_iter().flatten().collect()),
         (

@@ -21,7 +21,9 @@ pub enum DynamicsError {
          Hint: give `length` in [bearing.cage]"
     )]
     CageLength { length: f64 },
-    #[error("numerics.end: missing. Hint: add `end = \"0.1 s\"` to [numerics]")]
+    #[error(
+        "numerics.end: missing; it makes a scene one of a run. Hint: add a table [numerics] with `end = \"0.1 s\"`"
+    )]
     NoEnd,
 }
 

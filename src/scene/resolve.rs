@@ -26,7 +26,7 @@ pub fn resolve(document: &Document) -> Result<Scene, SceneError> {
         _ => BearingKind::DeepGroove,
     };
     let (geometry, dimensions) = resolve_geometry::geometry(&mut reader, kind)?;
-    let cage = resolve_cage::cage(&reader, geometry.ball_radius)?;
+    let cage = resolve_cage::cage(&reader, &geometry, &dimensions)?;
     let hertz = match reader.choice("bearing.hertz") {
         Some("exact") => HertzModel::Exact,
         _ => HertzModel::HamrockBrewe,

@@ -6,13 +6,17 @@ use crate::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::Reader;
 use crate::scene::resolve_dynamics::{check_inertia, millimetres};
-use crate::scene::resolved::{Cage, CageGuidance, CageInRun};
+use crate::scene::resolved::{Cage, CageGuidance, CageInRun, Dimensions};
 use crate::scene::value::Checked;
 use crate::solver::dynamics::model::CageBody;
 use std::f64::consts::PI;
 
 /// The cage as far as it is given.
-pub(crate) fn cage(reader: &Reader, ball_radius: f64) -> Result<Option<Cage>, SceneError> {
+pub(crate) fn cage(
+    reader: &Reader,
+    geometry: &BearingGeometry,
+    sizes: &Dimensions,
+) -> Result<Option<Cage>, SceneError> {
     let guidance = reader.choice_if_given("bearing.cage.guidance").map(|word| match word {
         "outer-race" => CageGuidance::OuterRace,
         "inner-race" => CageGuidance::InnerRace,
@@ -30,9 +34,9 @@ pub(crate) fn cage(reader: &Reader, ball_radius: f64) -> Result<Option<Cage>, Sc
         return Ok(None);
     }
     if let Some(pocket) = cage.pocket_radius
-        && pocket < ball_radius
+        && pocket < geometry.ball_radius
     {
-        let problem = Problem::BallExceedsPocket { pocket, ball: ball_radius };
+        let problem = Problem::BallExceedsPocket { pocket, ball: geometry.ball_radius };
         return Err(reader.document.error("bearing.cage.pocket_radius", problem));
     }
     if let (Some(inner), Some(outer)) = (cage.inner_radius, cage.outer_radius)
@@ -47,7 +51,72 @@ pub(crate) fn cage(reader: &Reader, ball_radius: f64) -> Result<Option<Cage>, Sc
         };
         return Err(reader.document.error("bearing.cage.inner_radius", problem));
     }
+    hold_against_races(reader, &cage, geometry.pitch_radius, sizes)?;
     Ok(Some(cage))
+}
+
+/// The cage lies between the races: inside the shoulders where they are given, else inside the
+/// groove bottoms, which no cage can reach; a race that guides it lies its clearance farther.
+fn hold_against_races(
+    reader: &Reader,
+    cage: &Cage,
+    pitch: f64,
+    sizes: &Dimensions,
+) -> Result<(), SceneError> {
+    let shoulder = |race: &str| reader.given_number(&format!("bearing.{race}.shoulder_radius"));
+    let sides = [
+        (
+            "bearing.cage.outer_radius",
+            cage.outer_radius,
+            1.0,
+            shoulder("outer_race"),
+            sizes.outer_race.radius,
+            CageGuidance::OuterRace,
+            ["less than", "the outer race's shoulder radius", "the outer race's groove radius"],
+        ),
+        (
+            "bearing.cage.inner_radius",
+            cage.inner_radius,
+            -1.0,
+            shoulder("inner_race"),
+            sizes.inner_race.radius,
+            CageGuidance::InnerRace,
+            ["more than", "the inner race's shoulder radius", "the inner race's groove radius"],
+        ),
+    ];
+    for (key, radius, outward, shoulder, bottom, guide, [relation, of_shoulder, of_bottom]) in sides
+    {
+        let Some(radius) = radius else { continue };
+        // A shoulder on the wrong side of the balls is a mistake of its own.
+        let shoulder = shoulder.filter(|shoulder| (shoulder - pitch) * outward > 0.0);
+        let (other_name, other) = match shoulder {
+            Some(shoulder) => (of_shoulder, shoulder),
+            None => (of_bottom, bottom),
+        };
+        let overlaps = |value: f64, other: f64| (other - value) * outward <= 0.0;
+        if overlaps(radius, other) {
+            let advice = "a cage lies between the races; check radius, not diameter, and unit";
+            let problem =
+                Problem::WrongOrder { value: radius, relation, other_name, other, advice };
+            return Err(reader.document.error(key, problem));
+        }
+        // The race's surface that guides it.
+        let land = radius + outward * cage.race_clearance.unwrap_or(0.0);
+        if cage.guidance == Some(guide) && overlaps(land, bottom) {
+            let advice = "this is the cage's radius and race_clearance together, where the race \
+                          guides it; a race ends at its groove";
+            let value = land;
+            let problem = Problem::WrongOrder {
+                value,
+                relation,
+                other_name: of_bottom,
+                other: bottom,
+                advice,
+            };
+            return Err(reader.document.error("bearing.cage.race_clearance", problem));
+        }
+    }
+    Ok(())
 }
 
 /// The cage of a run, or why there is none.

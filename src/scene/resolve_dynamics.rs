@@ -285,7 +285,12 @@ pub(crate) fn millimetres(metres: f64) -> String {
 }
 
 fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
-    let Some(end) = reader.given_number("numerics.end") else { return Ok(None) };
+    let Some(end) = reader.given_number("numerics.end") else {
+        return match reader.document.first_below("numerics") {
+            Some(_) => Err(reader.missing("numerics.end", " with a [numerics] table")),
+            None => Ok(None),
+        };
+    };
     let usual = RunOptions::default();
     let start = match reader.choice("numerics.start") {
         Some("nominal") => Start::Nominal,

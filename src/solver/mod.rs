@@ -2,6 +2,7 @@
 pub mod ball;
 mod ball_start;
 pub mod channels;
+pub mod clock;
 pub mod dense;
 pub mod dynamics;
 pub mod housing;

@@ -230,7 +230,8 @@ fn free_coordinates(body: &RaceBody) -> usize {
     loads + usize::from(matches!(body.rotation, Rotation::Torque(_)))
 }
 
-fn race_freedom(body: &RaceBody) -> String {
+/// Which of a race's coordinates follow from loads.
+pub fn race_freedom(body: &RaceBody) -> String {
     match free_coordinates(body) {
         6 => "all six coordinates follow from loads".into(),
         free => format!("{free} of 6 coordinates follow from loads, the others are given"),

@@ -121,6 +121,23 @@ pub fn jolted() -> DynamicProblem {
     problem
 }
 
+/// [`frictionless`] with traction that binds the step: it decays in proportion to the load.
+pub fn sliding() -> DynamicProblem {
+    DynamicProblem {
+        traction: TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 0.005 },
+        ..frictionless()
+    }
+}
+
+/// [`sliding`] under a load that grows sixteenfold, after 200 steps and within 2000 of them.
+pub fn pressed(step: f64) -> DynamicProblem {
+    let mut problem = sliding();
+    let (start, duration) = (200.0 * step, 2000.0 * step);
+    let ramp = Profile::Ramp { from: -250.0, to: -4000.0, start, duration };
+    problem.inner.drives[2] = Drive::Load(ramp);
+    problem
+}
+
 /// `rows` output intervals of ten steps and a bit, so that the last step is a shortened one.
 pub fn request(step: f64, rows: usize) -> RunRequest {
     RunRequest {

@@ -1,17 +1,23 @@
 //! Holds the values of one file after another against each other and keeps account.
 
 use crate::output::compare::channels::{Content, Leaf, LeafValue};
-use crate::output::compare::tolerance::{Tolerance, ToleranceClass, ToleranceError, Tolerances};
+use crate::output::compare::tolerance::{
+    GivenTolerance, Tolerance, ToleranceClass, ToleranceError, Tolerances,
+};
 use crate::output::compare::unloaded;
 use crate::output::compare::{
-    ChannelResult, CompareError, Comparison, Divergence, DivergenceKind, Worst, is_ignored_by_name,
+    ChannelResult, CompareError, Comparison, Divergence, DivergenceKind, Options, Worst,
+    is_about_steps, is_ignored_by_name,
 };
 use crate::output::series::Series;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::Path;
 
-/// What the components of one vector have in common: `loads.x` and `loads.y` share `loads.`.
+/// What the components of one vector have in common: `loads.x` and `loads.y` share `loads.`; a mean
+/// or an extreme over time belongs to its channel.
 fn vector_stem(channel: &str) -> &str {
+    const OVER_TIME: [&str; 4] = [".mean", ".smallest", ".largest", ".peak_to_peak"];
+    let channel = OVER_TIME.iter().find_map(|end| channel.strip_suffix(end)).unwrap_or(channel);
     for component in ["tilt_y", "tilt_z", "x", "y", "z"] {
         if let Some(stem) = channel.strip_suffix(component)
             && (stem.is_empty() || stem.ends_with(['.', '_']))
@@ -41,6 +47,7 @@ pub struct Judge<'a> {
     pub file: String,
     tolerances: &'a Tolerances,
     default_class: Option<ToleranceClass>,
+    given: Option<&'a GivenTolerance>,
     /// Names in the tolerances that no channel has used yet.
     unused: BTreeSet<&'a str>,
     earliest_in_file: Option<(Order, Divergence)>,
@@ -52,11 +59,12 @@ pub struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    pub fn new(tolerances: &'a Tolerances, default_class: Option<ToleranceClass>) -> Self {
+    pub fn new(tolerances: &'a Tolerances, options: &'a Options) -> Self {
         Judge {
             file: String::new(),
             tolerances,
-            default_class,
+            default_class: options.default_class,
+            given: options.given.as_ref(),
             unused: tolerances.channels.keys().map(String::as_str).collect(),
             earliest_in_file: None,
             first: None,
@@ -113,11 +121,20 @@ impl<'a> Judge<'a> {
 
     /// Opens a channel, or notes that it is not compared.
     fn open(&mut self, channel: &str, unit: &str) -> Option<Tolerance> {
-        if let Some((used, _)) = self.tolerances.entry(channel) {
+        let named = self.tolerances.entry(channel);
+        if let Some((used, _)) = named {
             self.unused.remove(used);
         }
-        let (class, tolerance) = self.tolerances.of_channel(channel, unit, self.default_class);
-        let tolerance = tolerance.filter(|_| !is_ignored_by_name(channel));
+        let given = self.given.filter(|_| named.is_none());
+        let (class, tolerance) = match given {
+            Some(given) => (GivenTolerance::NAME, Some(given.tolerance(unit))),
+            None => {
+                let of = self.tolerances.of_channel(channel, unit, self.default_class);
+                (of.0.name(), of.1)
+            }
+        };
+        let left_out = is_ignored_by_name(channel) || (given.is_some() && is_about_steps(channel));
+        let tolerance = tolerance.filter(|_| !left_out);
         if tolerance.is_none() {
             self.leave_out(channel);
             return None;

@@ -12,6 +12,9 @@
 //! Two things more are no difference. A `.npy` file that the candidate lacks while both sides have
 //! the `.csv` file of the same name: one form of a table is enough. And, in every class but
 //! `f64-exact`, where a ball that carries nothing in the reference is shown: see [`unloaded`].
+//!
+//! Runs of different accuracy are compared with a [`GivenTolerance`]; what then says how they were
+//! computed is left out as well: see [`is_about_steps`].
 pub mod channels;
 mod judge;
 pub mod report;
@@ -23,7 +26,7 @@ use channels::{Content, name_columns_as};
 use judge::Judge;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
-use tolerance::{ToleranceClass, ToleranceError, Tolerances};
+use tolerance::{GivenTolerance, ToleranceClass, ToleranceError, Tolerances};
 
 pub use report::{report, to_json};
 
@@ -41,6 +44,8 @@ pub struct Options {
     pub default_class: Option<ToleranceClass>,
     /// Used instead of the `tolerances.json` in the reference folder.
     pub tolerances: Option<Tolerances>,
+    /// Numbers in place of a class, for results of different accuracy: goes before both classes.
+    pub given: Option<GivenTolerance>,
 }
 
 #[derive(Debug, Error)]
@@ -85,7 +90,8 @@ pub struct ChannelResult {
     pub file: String,
     pub channel: String,
     pub unit: String,
-    pub class: ToleranceClass,
+    /// Name of its [`ToleranceClass`], or `given` for a [`GivenTolerance`].
+    pub class: &'static str,
     pub checked: usize,
     pub differing: usize,
     /// The largest difference measured by what is allowed; `None` for strings and integers.
@@ -176,8 +182,11 @@ pub fn compare(
         vec![(reference.to_path_buf(), candidate.to_path_buf(), name.unwrap_or_default())]
     };
     tolerances.check()?;
+    if let Some(given) = &options.given {
+        given.check()?;
+    }
 
-    let mut judge = Judge::new(&tolerances, options.default_class);
+    let mut judge = Judge::new(&tolerances, options);
     for (reference_file, candidate_file, name) in pairs {
         judge.file = name;
         let expected = channels::read(&reference_file)?;
@@ -240,4 +249,16 @@ pub fn is_ignored_by_name(channel: &str) -> bool {
     parts.clone().any(|part| part.starts_with(IGNORED_PREFIX))
         || channel == PROGRAM_NAME
         || parts.next_back().is_some_and(|last| IGNORED_NAMES.contains(&last))
+}
+
+/// A channel that says how a run was stepped and not where the bearing went: it differs between runs
+/// of different accuracy.
+pub fn is_about_steps(channel: &str) -> bool {
+    const SECTIONS: [&str; 4] = ["step", "work", "plan", "assumptions"];
+    const LAST: [&str; 3] = ["steps_per_row", "energy_residual", "largest_residual"];
+    let mut parts = channel.split('.').map(|part| part.trim_end_matches("[]"));
+    let of_residual = parts.clone().any(|part| LAST.contains(&part));
+    of_residual
+        || channel == "scene.title"
+        || parts.next().is_some_and(|first| SECTIONS.contains(&first))
 }

@@ -34,7 +34,7 @@ fn equal(text: &mut String, comparison: &Comparison) {
                 name(&channel.channel, &channel.unit),
                 worst.place,
                 worst.ratio,
-                channel.class.name()
+                channel.class
             ),
         );
     }
@@ -66,7 +66,7 @@ fn different(text: &mut String, comparison: &Comparison, first: &Divergence) {
             "  {}, {} ({}): {} differences",
             channel.file,
             name(&channel.channel, &channel.unit),
-            channel.class.name(),
+            channel.class,
             channel.differing,
         );
         if let Some(worst) = channel.worst.as_ref().filter(|worst| worst.ratio > 0.0) {
@@ -122,7 +122,7 @@ fn channel_json(channel: &ChannelResult) -> Value {
         "file": channel.file,
         "channel": channel.channel,
         "unit": channel.unit,
-        "class": channel.class.name(),
+        "class": channel.class,
         "checked": channel.checked,
         "differing": channel.differing,
         "worst": channel.worst.as_ref().map(|worst| json!({

@@ -115,6 +115,42 @@ impl Tolerance {
     }
 }
 
+/// Numbers in place of a class.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GivenTolerance {
+    /// Of the channel's scale: its largest |reference|, shared by the components of one vector.
+    pub scale_relative: f64,
+    /// Floors, each for the channels of a unit; others have one for rounding.
+    pub floors: Vec<(String, f64)>,
+}
+
+impl GivenTolerance {
+    pub const NAME: &'static str = "given";
+
+    /// # Errors
+    /// A negative or non-finite number.
+    pub fn check(&self) -> Result<(), ToleranceError> {
+        let relative = ("all", "relative", self.scale_relative);
+        let floors = self.floors.iter().map(|(unit, floor)| (unit.as_str(), "absolute", *floor));
+        for (channel, number, value) in std::iter::once(relative).chain(floors) {
+            if !(value.is_finite() && value >= 0.0) {
+                let channel = channel.to_string();
+                return Err(ToleranceError::Number { channel, number, value });
+            }
+        }
+        Ok(())
+    }
+
+    pub fn tolerance(&self, unit: &str) -> Tolerance {
+        // Channels that are zero but for rounding have no scale of their own: a thousandth of the part
+        // of a small but ordinary value is far below what anybody looks at, and above rounding.
+        let least = 1e-3 * self.scale_relative * ordinary_magnitude(unit);
+        let floor =
+            self.floors.iter().find(|(of, _)| of == unit).map_or(least, |(_, floor)| *floor);
+        Tolerance { absolute_floor: floor, relative: 0.0, scale_relative: self.scale_relative }
+    }
+}
+
 /// `tolerances.json`, as a case pack ships it.
 ///
 /// ```json

@@ -5,6 +5,7 @@ use crate::output::plots::{
     Axis, Curve, OrbitPlot, PlotError, PolarPlot, Style, XyPlot, orbit, polar, xy,
 };
 use crate::output::spectrum::WINDOW;
+use crate::solver::clock::to_digits;
 
 /// A plot a run can be asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,7 +133,7 @@ fn orbits(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
 fn spectra(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
     let spectra = table.spectra();
     let Some((_, first)) = spectra.first() else { return Ok(Vec::new()) };
-    let axis = format!("frequency ({WINDOW} window, bin {:.4e} Hz)", first.bin_width);
+    let axis = format!("frequency ({WINDOW} window, bin {} Hz)", to_digits(first.bin_width, 4));
     let mut drawn = Vec::new();
     for (body, name) in [("inner", "inner race"), ("outer", "outer race"), ("cage", "cage")] {
         let mut curves = Vec::new();

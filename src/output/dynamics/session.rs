@@ -2,7 +2,8 @@
 //!
 //! With a fixed step the step does not change on the way but where loads or given motions have a
 //! corner: steps end there, and the way from one row to the next is divided evenly between its
-//! corners. With error control steps follow from the state, from what the control remembers and
+//! corners. A step that follows from the stability limit is shortened where the limit comes down to
+//! it; what is left to the next row is divided evenly as well. With error control steps follow from the state, from what the control remembers and
 //! from the time of the next row or corner. Either way the next step follows from what is kept, so
 //! that a run that was interrupted goes on with the same bits. The very last step is shortened to
 //! end at the end.
@@ -62,7 +63,8 @@ pub struct Session {
     pub simulation: Simulation,
     pub recorder: Recorder,
     pub end: f64,
-    /// Steps from one row to the next; zero with error control, where steps end at the rows' times.
+    /// Steps from one row to the next, of the present size; zero with error control, where steps
+    /// end at the rows' times.
     pub steps_per_row: u64,
     pub status: Status,
     /// Before the step that completed or failed, and the rows at that time.
@@ -92,21 +94,19 @@ impl Session {
             return Err(SessionError::Interval(interval));
         }
         let mut simulation = Simulation::new(problem, request.options)?;
-        let steps = interval / simulation.step_size;
         let steps_per_row = match request.options.stepping {
-            // A ratio that is whole but for rounding is whole.
             Stepping::FractionOfLimit(_) => {
-                let steps = (steps * (1.0 - 1e-12)).ceil().max(1.0);
-                simulation.step_size = interval / steps;
+                let steps = whole_steps(interval, simulation.step_size);
+                simulation.step_size = interval / steps as f64;
                 steps
             }
-            Stepping::Fixed(_) => {
+            Stepping::Fixed(step) => {
                 simulation.judge_step_now()?;
-                steps.round().max(1.0)
+                (interval / step).round().max(1.0) as u64
             }
-            Stepping::Accuracy(_) => 0.0,
+            Stepping::Accuracy(_) => 0,
         };
-        let mut session = Session::new(simulation, request, steps_per_row as u64)?;
+        let mut session = Session::new(simulation, request, steps_per_row)?;
         session.record()?;
         Ok(session)
     }
@@ -186,8 +186,14 @@ impl Session {
 
     /// The step against what the contacts have become, every few steps.
     fn watch(&mut self) -> Result<(), SimulationError> {
-        if self.simulation.steps.is_multiple_of(LOOK_EVERY) {
-            self.simulation.watch_step()?;
+        if !self.simulation.steps.is_multiple_of(LOOK_EVERY) {
+            return Ok(());
+        }
+        let shorter = self.simulation.watch_step()?;
+        // A complete run goes on, if at all, from before its last step.
+        if let Some(step) = shorter.filter(|_| self.status == Status::Running) {
+            self.steps_per_row = whole_steps(self.output_interval, step);
+            self.simulation.shorten_step(self.output_interval / self.steps_per_row as f64);
         }
         Ok(())
     }
@@ -206,8 +212,11 @@ impl Session {
         let row_end = row_start + self.interval();
         // Rounding of times is far below this, and nobody means a step so short.
         let slack = 1e-6 * step;
-        if next_corner(&self.corners, row_start).is_some_and(|corner| corner <= row_end + slack) {
-            return self.step_between_corners(row_end, slack);
+        let corner = next_corner(&self.corners, row_start);
+        // A row in which the step was shortened is no whole number of steps.
+        let was_shortened = self.simulation.step_watch.shortened.is_some();
+        if was_shortened || corner.is_some_and(|corner| corner <= row_end + slack) {
+            return self.step_to_stop(row_end, slack);
         }
         let left = self.end - self.simulation.time;
         // A last step that is whole but for rounding of the time is taken whole, so that no step
@@ -236,7 +245,9 @@ impl Session {
         // Nobody means a step so short.
         let slack = 1e-9 * self.output_interval;
         let corner = next_corner(&self.corners, time).filter(|corner| *corner <= row_time + slack);
-        let at_row = |corner: f64| if corner >= row_time - slack { row_time } else { corner };
+        // Never before the corner, or it would be there to cross again.
+        let at_row =
+            |corner: f64| if corner >= row_time - slack { row_time.max(corner) } else { corner };
         let mut stop = corner.map_or(row_time, at_row);
         let mut left = stop - time;
         let mut step = towards(simulation.step_size, left);
@@ -260,7 +271,7 @@ impl Session {
         if let Some(corner) = crossed {
             simulation.cross_corner(corner);
         }
-        if completes || stop == row_time {
+        if completes || stop >= row_time {
             self.record()?;
         }
         if completes {
@@ -269,9 +280,9 @@ impl Session {
         Ok(())
     }
 
-    /// A step on the way to a row with corners before it: an equal part of what is left to the next
-    /// corner or row, whatever the end of the run is.
-    fn step_between_corners(&mut self, row_end: f64, slack: f64) -> Result<(), SimulationError> {
+    /// A step on the way to a corner or a row: an equal part of what is left, whatever the end of
+    /// the run is.
+    fn step_to_stop(&mut self, row_end: f64, slack: f64) -> Result<(), SimulationError> {
         let simulation = &mut self.simulation;
         let time = simulation.time;
         let corner = next_corner(&self.corners, time).filter(|corner| *corner <= row_end + slack);
@@ -330,6 +341,12 @@ impl Session {
         let whole = (last - self.interval()).abs() <= 1e-3 * slack;
         if whole { rows } else { rows - 1 }
     }
+}
+
+/// Steps no longer than `step` that make an interval.
+pub fn whole_steps(interval: f64, step: f64) -> u64 {
+    // A ratio that is whole but for rounding is whole.
+    (interval / step * (1.0 - 1e-12)).ceil().max(1.0) as u64
 }
 
 /// A step no longer than `step` on the way to a row that is `left` away: there if it can be

@@ -8,6 +8,7 @@ use crate::output::results::{ResultsError, RunRecord, insert_record, pretty, qua
 use crate::output::series::{Column, Series, columns_path};
 use crate::output::spectrum::{LEAKAGE, Spectrum, WINDOW, peaks};
 use crate::output::state::SERIES;
+use crate::solver::clock::rounded;
 use crate::solver::dynamics::run::{Integrator, Stepping};
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
@@ -44,7 +45,7 @@ pub fn write_run_results(
     let spectra = if report.spectra { table.spectra() } else { Vec::new() };
     let summary = run_summary(session, table, &spectra, report)?;
     let [csv, npy, json] = ["series.csv", SERIES, "summary.json"].map(|name| folder.join(name));
-    table.series.write_csv(&csv)?;
+    readable_times(table)?.write_csv(&csv)?;
     table.series.write_npy(&npy)?;
     let mut written = vec![csv, columns_path(&npy), npy];
     if let Some(series) = spectrum_series(table, &spectra)? {
@@ -55,6 +56,15 @@ pub fn write_run_results(
     write_atomic(&json, pretty(&summary).as_bytes())?;
     written.push(json);
     Ok(written)
+}
+
+/// The table with the times of its rows as people write them.
+fn readable_times(table: &RunTable) -> Result<Series, ResultsError> {
+    let mut data = table.series.data().clone();
+    for (row, time) in data.column_mut(0).iter_mut().enumerate() {
+        *time = table.time(row);
+    }
+    Ok(Series::new(table.series.columns().to_vec(), data)?)
 }
 
 /// One row a bin: frequency, then the amplitude of each channel.
@@ -131,7 +141,7 @@ pub fn run_summary(
 }
 
 fn last_time(table: &RunTable) -> f64 {
-    table.series.data().column(0).last().copied().unwrap_or(0.0)
+    table.series.data().nrows().checked_sub(1).map_or(0.0, |last| table.time(last))
 }
 
 fn step(session: &Session, report: &RunReport) -> Result<Value, ResultsError> {
@@ -158,9 +168,19 @@ fn step(session: &Session, report: &RunReport) -> Result<Value, ResultsError> {
     let reason = match (&simulation.limit, report.stepping) {
         (Some(limit), Some(Stepping::FractionOfLimit(fraction))) => {
             step.insert("stability_limit".into(), quantity("limit", limit.step, "s")?);
+            let watch = &simulation.step_watch;
+            let when = match watch.shortened {
+                None => "at the start".into(),
+                Some(shortened) => {
+                    step.insert("shortened".into(), json!(shortened.times));
+                    step.insert("largest".into(), quantity("step", shortened.from, "s")?);
+                    step.insert("smallest".into(), quantity("step", size, "s")?);
+                    format!("at t = {} s, where it was last shortened", rounded(shortened.last))
+                }
+            };
             format!(
-                "{fraction} of the stability limit at the start, shortened to a whole number of \
-                 steps an output interval; {}",
+                "{fraction} of the stability limit {when}, shortened to a whole number of steps an \
+                 output interval; {}",
                 limit.reason()
             )
         }
@@ -175,7 +195,8 @@ fn step(session: &Session, report: &RunReport) -> Result<Value, ResultsError> {
     }
     if let Some([ratio, time]) = watch.exceeded {
         let warning = format!(
-            "the step is {ratio:.3} times the largest stable one at t = {time} s; take a shorter one"
+            "the step is {ratio:.3} times the largest stable one at t = {} s; take a shorter one",
+            rounded(time)
         );
         step.insert("warning".into(), json!(warning));
     }
@@ -216,6 +237,7 @@ fn final_values(table: &RunTable) -> Result<Value, ResultsError> {
     if let Some(last) = table.series.data().nrows().checked_sub(1) {
         for (index, column) in table.series.columns().iter().enumerate() {
             let value = table.series.data()[(last, index)];
+            let value = if index == 0 { table.time(last) } else { value };
             values.insert(column.name.clone(), quantity(&column.name, value, &column.unit)?);
         }
     }
@@ -225,7 +247,6 @@ fn final_values(table: &RunTable) -> Result<Value, ResultsError> {
 /// Mean, extremes and peak-to-peak amplitude of every channel over the window.
 fn window(table: &RunTable) -> Result<Value, ResultsError> {
     let rows = table.window.clone();
-    let times = table.series.data().column(0);
     let mut channels = Map::new();
     for column in &table.series.columns()[1..] {
         let values = table.windowed(&column.name).unwrap_or_default();
@@ -244,8 +265,8 @@ fn window(table: &RunTable) -> Result<Value, ResultsError> {
         );
     }
     Ok(json!({
-        "start": quantity("start", times[rows.start], "s")?,
-        "end": quantity("end", times[rows.end - 1], "s")?,
+        "start": quantity("start", table.time(rows.start), "s")?,
+        "end": quantity("end", table.time(rows.end - 1), "s")?,
         "rows": rows.len(),
         "channels": channels,
     }))

@@ -3,6 +3,7 @@
 use crate::output::dynamics::session::Session;
 use crate::output::series::{Series, SeriesError};
 use crate::output::spectrum::{Spectrum, spectrum};
+use crate::solver::clock::to_digits;
 use std::ops::Range;
 
 /// All rows of a run, and which of them means and spectra are taken over.
@@ -34,6 +35,14 @@ impl RunTable {
         let times = series.data().column(0);
         let start = times.iter().position(|time| *time >= from).map_or(end, |row| row.min(end));
         Ok(RunTable { series, interval, window: start..end })
+    }
+
+    /// Time of a row as people write it, s: of rows on the grid by their number, so that the rounding
+    /// of many steps does not show.
+    pub fn time(&self, row: usize) -> f64 {
+        let on_grid = row as f64 * self.interval;
+        let time = self.series.data()[(row, 0)];
+        to_digits(if (time - on_grid).abs() <= 1e-6 * self.interval { on_grid } else { time }, 12)
     }
 
     /// Values of a channel in the window, or `None` if it is not recorded.

@@ -14,6 +14,7 @@ use super::state::{BODY, LEDGER, Layout, Ledger, POSITION};
 use super::step_watch::{StepWatch, Stiffness, stiffness};
 use super::system::{Instant, System};
 use crate::kinematics::vec3::{add_scaled, dot, norm, sub};
+use crate::solver::clock::rounded;
 use crate::solver::statics::StaticsError;
 use thiserror::Error;
 
@@ -31,7 +32,8 @@ pub enum Start {
 pub enum Stepping {
     /// As given, s.
     Fixed(f64),
-    /// This fraction of the stability limit of Runge–Kutta at the start.
+    /// This fraction of the stability limit of Runge–Kutta at the start, and again where the limit
+    /// has come down to the step.
     FractionOfLimit(f64),
     /// As long as keeps the error of the races' motion below this part of the largest overlap.
     Accuracy(f64),
@@ -105,8 +107,9 @@ pub enum SimulationError {
     )]
     FractionOfOther(&'static str),
     #[error(
-        "no step is short enough at t = {time} s, step {step}: the error of one of {size:.3e} s is \
-         still {error:.3e} of what the accuracy allows"
+        "no step is short enough at t = {at} s, step {step}: the error of one of {size:.3e} s is \
+         still {error:.3e} of what the accuracy allows",
+        at = rounded(*time)
     )]
     StepVanished { time: f64, step: u64, size: f64, error: f64 },
     #[error(
@@ -115,22 +118,28 @@ pub enum SimulationError {
     )]
     NoStep,
     #[error(
-        "the step of {size:.3e} s is longer than the largest stable one, {limit:.3e} s at t = {time} s, \
+        "the step of {size:.3e} s is longer than the largest stable one, {limit:.3e} s at t = {at} s, \
          step {step} ({reason}): what swings would grow, or what slides swing to and fro; take a \
-         shorter step (numerics.step or numerics.step_fraction)"
+         shorter step (numerics.step), or leave it out for one that follows from the limit",
+        at = rounded(*time)
     )]
     StepTooLong { size: f64, limit: f64, reason: String, time: f64, step: u64 },
-    #[error("{body} has a value that is not finite at t = {time} s, step {step}")]
+    #[error(
+        "{body} has a value that is not finite at t = {at} s, step {step}",
+        at = rounded(*time)
+    )]
     NotFinite { body: String, time: f64, step: u64 },
     #[error(
-        "ball {ball} has left its races at t = {time} s, step {step}: it is {distance:.3e} m from \
-         the pitch circle, farther than its radius of {ball_radius:.3e} m"
+        "ball {ball} has left its races at t = {at} s, step {step}: it is {distance:.3e} m from \
+         the pitch circle, farther than its radius of {ball_radius:.3e} m",
+        at = rounded(*time)
     )]
     BallOutside { ball: usize, time: f64, step: u64, distance: f64, ball_radius: f64 },
     #[error(
         "energy is lost or made: {residual:.3e} J of {turned_over:.3e} J are unaccounted for at \
-         t = {time} s, step {step} (limit {limit}); take a smaller step or accuracy (numerics.step, \
-         numerics.accuracy), or allow more (numerics.energy_limit)"
+         t = {at} s, step {step} (limit {limit}); take a smaller step or accuracy (numerics.step, \
+         numerics.accuracy), or allow more (numerics.energy_limit)",
+        at = rounded(*time)
     )]
     Energy { residual: f64, turned_over: f64, time: f64, step: u64, limit: f64 },
 }
@@ -143,7 +152,7 @@ pub struct Simulation {
     /// Of the next step, s.
     pub step_size: f64,
     pub steps: u64,
-    /// What limits the step, where it was asked for.
+    /// What limits a step that follows from it, at the start or where it was last shortened.
     pub limit: Option<StepLimit>,
     /// How the step compares with what the contacts allow since.
     pub step_watch: StepWatch,

@@ -4,9 +4,9 @@
 //! A run above its limit need not fail: traction that overshoots swings to and fro in a limit cycle
 //! that keeps its energy. So the contacts are looked at every few steps, which costs next to
 //! nothing, and the Jacobian where they have become so stiff that the limit may have come down to
-//! the step.
+//! the step. A step that was given is refused then; one that follows from the limit is shortened.
 
-use super::run::{Integrator, Simulation, SimulationError};
+use super::run::{Integrator, Simulation, SimulationError, Stepping};
 use super::stability::step_limit;
 use super::system::System;
 use crate::ch2_housing::bearing::cage::CageForce;
@@ -16,8 +16,8 @@ use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient_and_slope};
 /// Steps from one look at the contacts to the next.
 pub const LOOK_EVERY: u64 = 16;
 
-/// How far a step may lie above the limit before the run is refused: so much is the limit itself
-/// off from the observed one.
+/// How far a given step may lie above the limit before the run is refused: so much is the limit
+/// itself off from the observed one.
 pub const TOLERATED: f64 = 1.1;
 
 /// What the contacts of an evaluation bind the step by.
@@ -96,6 +96,18 @@ pub struct StepWatch {
     pub stiffest: Stiffness,
     /// Largest step over limit above one, and when, s.
     pub exceeded: Option<[f64; 2]>,
+    /// Of a step that follows from the limit only.
+    pub shortened: Option<Shortened>,
+}
+
+/// How the limit has come down on a step that follows from it. The present step is the shortest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shortened {
+    pub times: u64,
+    /// Step at the start, s.
+    pub from: f64,
+    /// When the last time was, s.
+    pub last: f64,
 }
 
 impl StepWatch {
@@ -107,28 +119,40 @@ impl StepWatch {
 }
 
 impl Simulation {
-    /// Looks at the contacts of the last evaluation, and at the Jacobian if they ask for it.
+    /// Looks at the contacts of the last evaluation, and at the Jacobian if they ask for it. Returns
+    /// the step to go on with, where the present one follows from the limit and has come above it.
     ///
     /// # Errors
-    /// A step above the largest stable one.
-    pub fn watch_step(&mut self) -> Result<(), SimulationError> {
+    /// A given step above the largest stable one.
+    pub fn watch_step(&mut self) -> Result<Option<f64>, SimulationError> {
         let now = stiffness(&self.system);
-        if self.step_watch.is_due(&now, self.step_size) { self.judge_step(now) } else { Ok(()) }
+        if self.step_watch.is_due(&now, self.step_size) { self.judge_step(now) } else { Ok(None) }
+    }
+
+    /// Goes on with a shorter step and keeps account of it.
+    pub fn shorten_step(&mut self, step: f64) {
+        let earlier = self.step_watch.shortened;
+        self.step_watch.shortened = Some(Shortened {
+            times: earlier.map_or(0, |earlier| earlier.times) + 1,
+            from: earlier.map_or(self.step_size, |earlier| earlier.from),
+            last: self.time,
+        });
+        self.step_size = step;
     }
 
     /// Compares the step with the limit at the present state, whatever the contacts say.
     ///
     /// # Errors
-    /// A step above the largest stable one.
-    pub fn judge_step_now(&mut self) -> Result<(), SimulationError> {
+    /// A given step above the largest stable one.
+    pub fn judge_step_now(&mut self) -> Result<Option<f64>, SimulationError> {
         self.system.evaluate(self.time, &self.state, &mut self.rates);
         self.judge_step(stiffness(&self.system))
     }
 
-    fn judge_step(&mut self, now: Stiffness) -> Result<(), SimulationError> {
+    fn judge_step(&mut self, now: Stiffness) -> Result<Option<f64>, SimulationError> {
         // The limit is that of Runge–Kutta.
         if self.options.integrator != Integrator::RungeKutta {
-            return Ok(());
+            return Ok(None);
         }
         // The Jacobian's evaluations are not those of the steps: they are counted as judgements.
         let work = self.system.work;
@@ -137,14 +161,21 @@ impl Simulation {
         let watch = &mut self.step_watch;
         watch.judged += 1;
         watch.stiffest = watch.stiffest.largest(&now);
-        let Some(limit) = limit else { return Ok(()) };
+        let Some(limit) = limit else { return Ok(None) };
         watch.smallest = Some(watch.smallest.map_or(limit.step, |least| least.min(limit.step)));
         let ratio = self.step_size / limit.step;
+        if let Stepping::FractionOfLimit(fraction) = self.options.stepping {
+            if ratio <= 1.0 {
+                return Ok(None);
+            }
+            self.limit = Some(limit);
+            return Ok(Some(fraction * limit.step));
+        }
         if ratio > 1.0 && watch.exceeded.is_none_or(|[most, _]| ratio > most) {
             watch.exceeded = Some([ratio, self.time]);
         }
         if ratio <= TOLERATED {
-            return Ok(());
+            return Ok(None);
         }
         Err(SimulationError::StepTooLong {
             size: self.step_size,

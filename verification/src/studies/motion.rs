@@ -283,7 +283,9 @@ pub fn limit(problem: &DynamicProblem, window: Window) -> Result<f64, CaseError>
     let mut simulation = Simulation::new(problem.clone(), options)?;
     while simulation.time < window.end {
         simulation.step()?;
-        simulation.watch_step()?;
+        if let Some(step) = simulation.watch_step()? {
+            simulation.shorten_step(step);
+        }
     }
     simulation.step_watch.smallest.ok_or_else(|| CaseError::message("no step limit"))
 }

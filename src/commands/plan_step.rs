@@ -1,0 +1,191 @@
+//! What `bearing plan` says of the steps of a run: how long, why, how many, and what would make them
+//! longer.
+
+use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::output::dynamics::session::{RunRequest, whole_steps};
+use bearing_dynamics::solver::clock::to_digits;
+use bearing_dynamics::solver::dynamics::model::DynamicProblem;
+use bearing_dynamics::solver::dynamics::run::{
+    Integrator, RunOptions, Simulation, SimulationError, Stepping,
+};
+use bearing_dynamics::solver::dynamics::stability::{Cause, StepLimit, step_limit};
+use bearing_dynamics::solver::dynamics::step_watch::TOLERATED;
+use bearing_dynamics::solver::dynamics::system::System;
+
+/// From here on a friction onset that makes steps shorter than contacts need is worth a word.
+const WORTH_A_WORD: f64 = 3.0;
+
+/// A still gentler onset is no small change of the friction law, and not proposed.
+const MOST_GENTLER: f64 = 10.0;
+
+/// The step of a run at its start, and advice where the onset of friction makes it short.
+pub fn step_lines(problem: &DynamicProblem, request: &RunRequest) -> Vec<String> {
+    let options = &request.options;
+    match options.stepping {
+        Stepping::Accuracy(accuracy) => adaptive(problem, request, accuracy),
+        Stepping::Fixed(step) if options.integrator != Integrator::RungeKutta => {
+            vec![note("given step", &format!("{step:.3e} s: {}", steps(request.end, step)))]
+        }
+        // The start is the same; the limit does not depend on the fraction.
+        Stepping::Fixed(step) => {
+            let limited = RunOptions { stepping: Stepping::FractionOfLimit(1.0), ..*options };
+            let (said, advice) = match Simulation::new(problem.clone(), limited) {
+                Ok(mut simulation) => match simulation.limit {
+                    Some(limit) => (against(step, &limit), advice(&mut simulation, &limit)),
+                    None => (NOT_STIFF.into(), None),
+                },
+                Err(SimulationError::NoStep) => (NOT_STIFF.into(), None),
+                Err(error) => (refused(&error), None),
+            };
+            let said = format!("{said}; {}", steps(request.end, step));
+            std::iter::once(note("given step", &said)).chain(advice).collect()
+        }
+        Stepping::FractionOfLimit(fraction) => automatic(problem, request, fraction),
+    }
+}
+
+const NOT_STIFF: &str = "no contact is stiff at the start";
+
+fn note(name: &str, said: &str) -> String {
+    format!("notes {name:<28} {said}")
+}
+
+fn refused(error: &SimulationError) -> String {
+    format!("WARNING: the run will be refused: {error}")
+}
+
+fn steps(end: f64, step: f64) -> String {
+    format!("{} steps to t = {end} s", whole_steps(end, step))
+}
+
+fn against(step: f64, limit: &StepLimit) -> String {
+    let ratio = step / limit.step;
+    let verdict = match ratio {
+        r if r > TOLERATED => "WARNING: too long, the run will be refused",
+        r if r > 1.0 => "WARNING: longer than stable",
+        _ => "stable at the start",
+    };
+    format!(
+        "{step:.3e} s is {ratio:.3} of the largest stable one at the start, {:.3e} s ({}): {verdict}",
+        limit.step,
+        limit.reason()
+    )
+}
+
+fn automatic(problem: &DynamicProblem, request: &RunRequest, fraction: f64) -> Vec<String> {
+    let mut simulation = match Simulation::new(problem.clone(), request.options) {
+        Ok(simulation) => simulation,
+        Err(error) => return vec![note("step", &refused(&error))],
+    };
+    let Some(limit) = simulation.limit else { return vec![note("step", NOT_STIFF)] };
+    let per_row = whole_steps(request.output_interval, simulation.step_size);
+    let step = request.output_interval / per_row as f64;
+    let said = format!(
+        "{step:.3e} s, from {fraction} of the largest stable one at the start, {:.3e} s ({}): {}; \
+         shortened on the way where contacts get stiffer",
+        limit.step,
+        limit.reason(),
+        steps(request.end, step)
+    );
+    std::iter::once(note("step", &said)).chain(advice(&mut simulation, &limit)).collect()
+}
+
+fn adaptive(problem: &DynamicProblem, request: &RunRequest, accuracy: f64) -> Vec<String> {
+    let simulation = match Simulation::new(problem.clone(), request.options) {
+        Ok(simulation) => simulation,
+        Err(error) => return vec![note("step", &refused(&error))],
+    };
+    let overlap = simulation.control.as_ref().map_or(0.0, |control| control.memory.displacement);
+    let said = format!(
+        "adapts so that the motion of the races is good to {accuracy} of the largest overlap of a \
+         contact, at the start {} of {} um; at least a step a row, the first of {:.3e} s",
+        to_digits(accuracy * 1e6 * overlap, 3),
+        to_digits(1e6 * overlap, 5),
+        simulation.step_size
+    );
+    vec![note("step", &said)]
+}
+
+/// What would make the step longer, where the onset of friction makes it much shorter than contacts
+/// would.
+fn advice(simulation: &mut Simulation, limit: &StepLimit) -> Option<String> {
+    if limit.cause != Cause::Traction {
+        return None;
+    }
+    let gain = limit_with(simulation, TractionLaw::None)?.step / limit.step;
+    if gain < WORTH_A_WORD {
+        return None;
+    }
+    let mut said = format!(
+        "the onset of friction makes the step {gain:.1} times shorter than contacts would; longer \
+         steps: numerics.integrator = \"rosenbrock\" with numerics.accuracy = 1e-3"
+    );
+    match onset(&simulation.system, gain.min(MOST_GENTLER)) {
+        Onset::Speed { key, before, speed, law } => {
+            if let Some(longer) = limit_with(simulation, law) {
+                said += &format!(
+                    ", or {key} = \"{speed} m/s\", {} times the present one: stable up to {:.3e} s, \
+                     with less friction where parts creep slower than that",
+                    to_digits(speed / before, 2),
+                    longer.step
+                );
+            }
+        }
+        Onset::Rolling(speed) => {
+            said += &format!(
+                "; a larger traction.entrainment_floor helps only above the rolling speed of \
+                 {} m/s",
+                to_digits(speed, 2)
+            );
+        }
+        Onset::Shape => {}
+    }
+    Some(note("short step", &said))
+}
+
+fn limit_with(simulation: &Simulation, traction: TractionLaw) -> Option<StepLimit> {
+    let problem = DynamicProblem { traction, ..simulation.system.problem.clone() };
+    let mut system = System::new(problem, RunOptions::default().driver);
+    step_limit(&mut system, simulation.time, &simulation.state)
+}
+
+/// What makes the onset of friction as steep as it is.
+enum Onset {
+    /// A speed of the scene; `speed` and `law` are those with a gentler onset.
+    Speed { key: &'static str, before: f64, speed: f64, law: TractionLaw },
+    /// The speed of rolling, m/s, above the floor of the scene.
+    Rolling(f64),
+    /// The curve itself.
+    Shape,
+}
+
+/// With an onset that is gentler by `factor`, where a speed of the scene makes it.
+fn onset(system: &System, factor: f64) -> Onset {
+    match &system.problem.traction {
+        TractionLaw::SlideToRoll { curve, entrainment_floor } => {
+            let before = *entrainment_floor;
+            let table = &system.table;
+            let rolling = table.active.iter().map(|&pair| table.sliding[pair].entrainment.abs());
+            let rolling = rolling.fold(0.0, f64::max);
+            if rolling > before {
+                return Onset::Rolling(rolling);
+            }
+            let speed = two_digits_up(factor * before);
+            let law = TractionLaw::SlideToRoll { curve: *curve, entrainment_floor: speed };
+            Onset::Speed { key: "traction.entrainment_floor", before, speed, law }
+        }
+        TractionLaw::Constant { coefficient, regularisation_speed } => {
+            let (before, coefficient) = (*regularisation_speed, *coefficient);
+            let speed = two_digits_up(factor * before);
+            let law = TractionLaw::Constant { coefficient, regularisation_speed: speed };
+            Onset::Speed { key: "traction.regularisation_speed", before, speed, law }
+        }
+        _ => Onset::Shape,
+    }
+}
+
+/// 0.0371 → 0.038.
+fn two_digits_up(value: f64) -> f64 {
+    let rounded = to_digits(value, 2);
+    if rounded >= value { rounded } else { to_digits(1.05 * value, 2) }
+}

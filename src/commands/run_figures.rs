@@ -1,0 +1,69 @@
+//! The few numbers of a run that `bearing run` ends with.
+
+use bearing_dynamics::output::dynamics::session::Session;
+use bearing_dynamics::output::dynamics::table::RunTable;
+use bearing_dynamics::solver::clock::rounded;
+use std::fmt::Write;
+
+/// Where the inner race was, the largest load of a ball, what is missing of the energy, and the
+/// effort; of what was recorded. A mean is one over the window, an extreme one over all rows.
+pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String {
+    let mut text = String::new();
+    let mut line = |label: &str, value: String| {
+        let _ = writeln!(text, "{label:<22} {value}");
+    };
+    let names = ["inner_x", "inner_y", "inner_z"];
+    if let [Some(x), Some(y), Some(z)] = names.map(|name| table.windowed(name))
+        && !x.is_empty()
+    {
+        let mean = [x, y, z].map(|values| 1e6 * values.iter().sum::<f64>() / values.len() as f64);
+        let [x, y, z] = mean.map(|value| format!("{value:.6}"));
+        line("inner race, mean", format!("{x}, {y}, {z} um (x, y, z over the window)"));
+    }
+    if let [Some(x), Some(y), Some(z)] = names.map(|name| table.all(name)) {
+        let away = x.iter().zip(&y).zip(&z).map(|((x, y), z)| (x * x + y * y + z * z).sqrt());
+        if let Some((row, most)) = largest(away) {
+            let at = table.time(row);
+            line("inner race, farthest", format!("{:.6} um at t = {at} s", 1e6 * most));
+        }
+    }
+    let balls = 1..=session.simulation.system.problem.geometry.ball_count;
+    let loads = balls.flat_map(|ball| {
+        ["inner", "outer"].into_iter().filter_map(move |race| {
+            let (row, load) = largest(table.all(&format!("ball_{ball}_{race}_load"))?)?;
+            Some((load, ball, race, row))
+        })
+    });
+    if let Some((load, ball, race, row)) = loads.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        let at = table.time(row);
+        line("largest ball load", format!("{load:.6} N, ball {ball}, {race} race, at t = {at} s"));
+    }
+    if let Some((_, most)) =
+        table.all("energy_residual").and_then(|values| largest(values.into_iter().map(f64::abs)))
+    {
+        line("energy unaccounted for", format!("{most:.3e} J at most"));
+    }
+    let simulation = &session.simulation;
+    if let Some(shortened) = simulation.step_watch.shortened {
+        line(
+            "step",
+            format!(
+                "shortened {} times where contacts got stiffer, from {:.4e} s to {:.4e} s, last at \
+                 t = {} s",
+                shortened.times,
+                shortened.from,
+                simulation.step_size,
+                rounded(shortened.last)
+            ),
+        );
+    }
+    line("steps", format!("{} in {seconds:.2} s", simulation.steps));
+    text
+}
+
+/// The first largest value and its row.
+fn largest(values: impl IntoIterator<Item = f64>) -> Option<(usize, f64)> {
+    values.into_iter().enumerate().fold(None, |found: Option<(usize, f64)>, (row, value)| {
+        if found.is_none_or(|(_, most)| value > most) { Some((row, value)) } else { found }
+    })
+}

@@ -1,0 +1,190 @@
+//! Steps take no memory from the heap: room is made once, before the first.
+
+mod common;
+#[path = "common/dynamics.rs"]
+mod dynamics;
+
+use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
+use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
+use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
+use bearing_dynamics::mesh::TetMesh;
+use bearing_dynamics::mesh::quadratic::elevate;
+use bearing_dynamics::mesh::tet_mesh::Elements;
+use bearing_dynamics::solver::dynamics::contacts::Driver;
+use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
+use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
+use common::table_4_1;
+use dynamics::*;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+/// The system's allocator, with a count for each thread of what it is asked for.
+struct Counting;
+
+thread_local! {
+    static COUNT: Cell<u64> = const { Cell::new(0) };
+}
+
+fn count() {
+    // Threads that are ending have no count any more.
+    let _ = COUNT.try_with(|count| count.set(count.get() + 1));
+}
+
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// How often `work` asks for memory.
+fn allocations(work: impl FnOnce()) -> u64 {
+    let before = COUNT.get();
+    work();
+    COUNT.get() - before
+}
+
+#[test]
+fn the_count_sees_what_is_allocated() {
+    assert_eq!(allocations(|| drop(std::hint::black_box(vec![1.0]))), 1);
+    assert_eq!(allocations(|| drop(std::hint::black_box(vec![0u8; 100]))), 1);
+    let mut growing = vec![1.0];
+    assert_eq!(allocations(|| growing.reserve(100)), 1);
+}
+
+/// Everything that a bearing can have: traction, cage, a moving outer race, damping with a memory,
+/// loads of every kind.
+fn full() -> DynamicProblem {
+    let geometry = table_4_1(-5e-6);
+    let mut problem = bearing(geometry, [50.0, 0.0, -1500.0, 0.0, 0.0], 1000.0 * RPM);
+    problem.inner.drives[1] =
+        Drive::Load(Profile::Table { points: vec![[0.0, 0.0], [1e-4, 20.0], [1.0, 50.0]] });
+    problem.inner.drives[4] = Drive::Motion(Profile::Harmonic {
+        mean: 0.0,
+        amplitude: 1e-5,
+        frequency: 50.0,
+        phase: 0.0,
+    });
+    let mut outer = free_race();
+    outer.foundation_stiffness = [1e8, 1e8, 1e8, 1e5, 1e5];
+    outer.foundation_damping = [1e3, 1e3, 1e3, 1.0, 1.0];
+    let turning = Profile::Constant(50.0 * RPM);
+    DynamicProblem {
+        outer: Some(outer),
+        cage: Some(cage(&geometry, Pocket::Cylindrical, Guidance::OuterRace)),
+        traction: traction_laws().swap_remove(2),
+        heathcote: true,
+        damping: ContactDamping::LankaraniNikravesh { restitution: 0.8, slowest: 0.1 },
+        gravity: GRAVITY,
+        rotating_load: Some(RotatingLoad {
+            force: Profile::Constant(100.0),
+            speed: turning,
+            phase: 0.3,
+        }),
+        unbalance: 1e-4,
+        ..problem
+    }
+}
+
+#[test]
+fn steps_of_a_bearing_allocate_nothing() {
+    let tables = DynamicProblem { traction: traction_laws().swap_remove(4), ..full() };
+    let bare = bearing(table_4_1(-5e-6), [0.0, 0.0, -1500.0, 0.0, 0.0], 1000.0 * RPM);
+    let integrators = [
+        (Integrator::RungeKutta, Stepping::FractionOfLimit(0.5)),
+        (Integrator::DormandPrince, Stepping::Fixed(1e-7)),
+        (Integrator::DormandPrince, Stepping::Accuracy(1e-3)),
+        (Integrator::Rosenbrock, Stepping::Fixed(1e-6)),
+        (Integrator::Rosenbrock, Stepping::Accuracy(1e-3)),
+    ];
+    for (name, problem) in [("full", full()), ("table", tables), ("bare", bare)] {
+        for (integrator, stepping) in integrators {
+            for driver in [Driver::Plain, Driver::Lanes] {
+                let options = RunOptions {
+                    integrator,
+                    stepping,
+                    driver,
+                    energy_limit: f64::INFINITY,
+                    ..RunOptions::default()
+                };
+                let mut simulation = Simulation::new(problem.clone(), options).unwrap();
+                simulation.step().unwrap();
+                let count = allocations(|| {
+                    for _ in 0..50 {
+                        simulation.step().unwrap();
+                    }
+                    // Too long: with error control it is thrown away and tried again.
+                    if matches!(stepping, Stepping::Accuracy(_)) {
+                        simulation.step_by(1e-4).unwrap();
+                    }
+                });
+                assert_eq!(count, 0, "{name}, {integrator:?}, {stepping:?}, {driver:?}");
+                let rejected = simulation.system.work.rejected_steps;
+                assert!(rejected > 0 || !matches!(stepping, Stepping::Accuracy(_)));
+            }
+        }
+    }
+}
+
+/// A cube of six tetrahedra, held at one face, loaded and damped.
+fn cube(quadratic: bool) -> SolidModel {
+    let corner = |i: usize| [(i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2 & 1) as f64];
+    let nodes = (0..8).map(|i| corner(i).map(|x| 0.01 * x)).collect();
+    let tets = [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
+    let mesh = TetMesh::new(nodes, Elements::Linear(tets.to_vec())).unwrap();
+    let mesh = if quadratic { elevate(&mesh, &[]).unwrap().mesh } else { mesh };
+    let held = |node| (0..3).map(move |axis| Prescribed { node, axis, profile: Profile::ZERO });
+    SolidModel::new(SolidProblem {
+        nodes: mesh.nodes,
+        elements: mesh.elements,
+        material: LinearElastic::new(2.1e11, 0.3).unwrap(),
+        density: 7800.0,
+        damping: 100.0,
+        damped_motion: DampedMotion::Absolute,
+        prescribed: (0..4).flat_map(held).collect(),
+        loads: Vec::new(),
+        gravity: GRAVITY,
+    })
+    .unwrap()
+}
+
+#[test]
+fn explicit_steps_of_a_solid_allocate_nothing() {
+    for quadratic in [false, true] {
+        for method in [ExplicitMethod::CentralDifferences, ExplicitMethod::RungeKutta] {
+            let model = cube(quadratic);
+            let still = vec![[0.0; 3]; model.problem.nodes.len()];
+            let stepping = SolidStepping::FractionOfLimit(0.5);
+            let mut solid =
+                ExplicitSolid::new(model, method, stepping, still.clone(), still).unwrap();
+            solid.step(|_, _, _| {}).unwrap();
+            let count = allocations(|| {
+                for _ in 0..20 {
+                    solid.step(|_, _, forces| forces[7][0] += 10.0).unwrap();
+                }
+            });
+            assert_eq!(count, 0, "{method:?}, quadratic: {quadratic}");
+            assert!(solid.displacement[7][0] > 0.0);
+        }
+    }
+}
