@@ -102,11 +102,12 @@ pub struct HousedBearing {
     /// Nodes tested so far, and how often they were sorted by reach.
     pub tested: u64,
     pub sorts: u64,
-    near: Vec<ContactNode>,
-    far: Vec<(ContactNode, Vec3)>,
-    sorted_at: (Cylinder, Frame),
-    first_bearing: f64,
-    first: f64,
+    pub(super) near: Vec<ContactNode>,
+    pub(super) far: Vec<(ContactNode, Vec3)>,
+    pub(super) sorted_at: (Cylinder, Frame),
+    /// What the ledgers of the bearing and of both held at the start, J.
+    pub(super) first_bearing: f64,
+    pub(super) first: f64,
 }
 
 /// Everything at the present time.
@@ -221,10 +222,34 @@ impl HousedBearing {
             first: 0.0,
         };
         housed.sort();
-        let start = housed.balance()?;
-        housed.first_bearing = start.bearing.ledger[Ledger::Foundation as usize];
-        housed.first = start.residual;
+        housed.count_from_here()?;
         Ok(housed)
+    }
+
+    /// Balances energy from the present state on.
+    fn count_from_here(&mut self) -> Result<(), ExchangeError> {
+        self.first_bearing = 0.0;
+        let start = self.balance()?;
+        self.first_bearing = start.bearing.ledger[Ledger::Foundation as usize];
+        // The balance counts from there.
+        self.first = start.residual - self.first_bearing;
+        Ok(())
+    }
+
+    /// Shortens windows and steps so that a whole number of windows makes `interval` (s), before the
+    /// first exchange; returns how many.
+    ///
+    /// # Errors
+    /// As [`HousedBearing::snapshot`].
+    pub fn divide(&mut self, interval: f64) -> Result<u64, ExchangeError> {
+        // A ratio that is whole but for rounding is whole.
+        let windows = (interval / self.window * (1.0 - 1e-12)).ceil().max(1.0);
+        self.window = interval / windows;
+        self.solid.step_size = self.window / self.solid_steps as f64;
+        self.solid.time = 0.5 * self.solid.step_size;
+        self.sort();
+        self.count_from_here()?;
+        Ok(windows as u64)
     }
 
     /// Present time: that of the bearing and of the housing's velocities, s.
@@ -285,7 +310,8 @@ impl HousedBearing {
         (Cylinder { radius, width: self.seat.width }, frame)
     }
 
-    fn sort(&mut self) {
+    /// Sorts the nodes of the bore into those that are tested and those out of reach.
+    pub(super) fn sort(&mut self) {
         let (cylinder, frame) = self.ahead();
         let displacement = &self.solid.displacement;
         let at = |n: u32| moved(displacement, n);
