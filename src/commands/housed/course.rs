@@ -97,7 +97,6 @@ pub fn run(arguments: &Arguments, scene: &HousedScene) -> CommandResult {
         write_bore(&folder, &bore_nodes(setup, &bore, &moment.state))?;
     }
     let inertia = inertia_estimate(scene, setup, &bore).ok().flatten();
-    let inertia = inertia.filter(|estimate| estimate.lowest > 0.0 && estimate.lowest.is_finite());
     if let Some(estimate) = &inertia {
         sections.push(("inertia".into(), inertia_section(estimate, &excitations(scene))?));
     }

@@ -23,12 +23,14 @@ use bearing_dynamics::scene::housing_problem::{HousingSetup, setup};
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build};
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{DefaultUsed, RunSettings};
+use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::run::RunOptions;
 use bearing_dynamics::solver::housing::assembly::{AssemblyOptions, AssemblySearch, AssemblyState};
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
 use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, HousedBearing, Seat};
 use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate};
+use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::support::free_motions;
 use bearing_dynamics::solver::statics::{Condition, StaticProblem};
 use std::error::Error;
@@ -115,10 +117,26 @@ pub fn inertia_estimate(
     setup: &HousingSetup,
     bore: &CondensedBore,
 ) -> Fallible<Option<InertiaEstimate>> {
-    let Some(masses) = masses(scene) else { return Ok(None) };
     let mut search = search(scene, bore);
     let (problem, state) = equilibrium_at(scene, setup, &mut search, most_loaded(scene))?;
-    Ok(Some(estimate(&problem, &search, &state, &masses)))
+    Ok(estimate_at(scene, &problem, &search, &state))
+}
+
+/// About an equilibrium. Along the axis, where the bearing is soft and nothing drives it, the inner
+/// race counts as held. Nothing for a race that nothing holds.
+pub fn estimate_at(
+    scene: &HousedScene,
+    problem: &StaticProblem,
+    search: &AssemblySearch,
+    state: &AssemblyState,
+) -> Option<InertiaEstimate> {
+    let mut problem = problem.clone();
+    let along = &scene.bearing.dynamics.inner.drives[0];
+    if matches!(along, Drive::Load(Profile::Constant(_))) {
+        problem.conditions[0] = Condition::Displacement(state.bearing.coordinates[0]);
+    }
+    let found = estimate(&problem, search, state, &masses(scene)?);
+    Some(found).filter(|found| found.lowest > 0.0 && found.lowest.is_finite())
 }
 
 /// Bearing, housing and seat for explicit steps.

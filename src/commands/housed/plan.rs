@@ -124,7 +124,9 @@ fn quasi_static_line(
     };
     let estimate = match inertia_estimate(scene, &prepared.setup, bore) {
         Ok(Some(estimate)) => estimate,
-        Ok(None) => return Ok(line("notes", name, "no outer race that moves")),
+        Ok(None) => {
+            return Ok(line("notes", name, "nothing holds the outer race under the largest load"));
+        }
         Err(error) if !chosen => {
             return Ok(line("notes", name, &format!("not possible: {error}")));
         }
@@ -163,7 +165,10 @@ pub fn verdict(scene: &HousedScene, estimate: &InertiaEstimate) -> String {
 }
 
 pub fn percent(part: f64) -> String {
-    format!("{} %", to_digits(100.0 * part, 2))
+    match part {
+        part if part > 1.0 => "more than the whole".into(),
+        part => format!("{} %", to_digits(100.0 * part, 2)),
+    }
 }
 
 /// Windows of the explicit way, and about how long they take here.

@@ -1,12 +1,13 @@
 //! `bearing statics` of a bearing in its housing: one equilibrium at t = 0.
 
 use super::{
-    Prepared, condensed, equilibrium_at, plan, prepare, record, remove_earlier, search, write_bore,
+    Prepared, condensed, equilibrium_at, estimate_at, plan, prepare, record, remove_earlier,
+    search, write_bore,
 };
 use crate::commands::{
     CommandResult, Outcome, pictures, refuse_folder_of_run, results_folder, say, table,
 };
-use bearing_dynamics::output::housed::course::{bore_nodes, masses, outer_place};
+use bearing_dynamics::output::housed::course::{bore_nodes, outer_place};
 use bearing_dynamics::output::housed::fields::write_housing_fields;
 use bearing_dynamics::output::housed::rows::SeatRow;
 use bearing_dynamics::output::housed::summary::{
@@ -20,7 +21,6 @@ use bearing_dynamics::scene::housing_problem::excitations;
 use bearing_dynamics::solver::housing::assembly::AssemblyState;
 use bearing_dynamics::solver::housing::bore_equilibrium::POSE_NAMES;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::inertia::estimate;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -34,7 +34,7 @@ pub fn run(path: &Path, scene: &HousedScene, out: &Option<PathBuf>, dry: bool) -
     let start = Instant::now();
     let mut search = search(scene, &bore);
     let (problem, state) = equilibrium_at(scene, setup, &mut search, 0.0)?;
-    let inertia = masses(scene).map(|masses| estimate(&problem, &search, &state, &masses));
+    let inertia = estimate_at(scene, &problem, &search, &state);
     let solve_seconds = start.elapsed().as_secs_f64();
     let displacement = bore.displacement(&state.bore.loads);
     let stress = stresses(&setup.model, &displacement);
@@ -42,8 +42,6 @@ pub fn run(path: &Path, scene: &HousedScene, out: &Option<PathBuf>, dry: bool) -
 
     say(&table::render(&problem, &state.bearing))?;
     say(&housing_table(&bore, &state, largest))?;
-    // A race that nothing holds has no frequency.
-    let inertia = inertia.filter(|estimate| estimate.lowest > 0.0 && estimate.lowest.is_finite());
     if let Some(estimate) = &inertia {
         say(&format!("note: {}\n", plan::verdict(scene, estimate)))?;
     }

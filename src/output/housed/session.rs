@@ -226,6 +226,7 @@ impl HousedSession {
             snapshot.bearing.ledger[Ledger::Foundation as usize],
             solid.external_work,
             solid.damping_work,
+            snapshot.growth_work,
             residual,
         ]);
         self.values.extend(self.housed.impulse);
@@ -301,6 +302,7 @@ fn columns() -> Vec<Column> {
         "work_housing_on_outer",
         "work_on_housing",
         "work_housing_damping",
+        "work_fit",
         "energy_coupled_residual",
     ] {
         columns.push(Column::new(name, "J"));

@@ -13,7 +13,9 @@ use crate::output::state::{self as bearing_state, StateError, StateFile, StateRe
 use crate::solver::channels::ChannelGroup;
 use crate::solver::dynamics::model::DynamicProblem;
 use crate::solver::housing::checkpoint::{HousedCheckpoint, Windows};
-use crate::solver::housing::exchange::{ExchangeError, ExchangeOptions, HousedBearing, Seat};
+use crate::solver::housing::exchange::{
+    ExchangeError, ExchangeOptions, Growth, HousedBearing, Seat,
+};
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::SolidWork;
 use crate::solver::solid::model::SolidModel;
@@ -48,6 +50,8 @@ pub struct HousingEntry {
     pub exchanges: u64,
     /// N·s.
     pub impulse: [f64; 3],
+    /// Work (J), radius (m) and load (N) of an interference that grows in.
+    pub growth: [f64; 3],
     pub tested: u64,
     pub sorts: u64,
     /// J.
@@ -173,6 +177,7 @@ pub fn save(
         limit: LimitEntry::of(&windows.limit),
         exchanges: checkpoint.exchanges,
         impulse: checkpoint.impulse,
+        growth: [checkpoint.growth.work, checkpoint.growth.radius, checkpoint.growth.load],
         tested: checkpoint.tested,
         sorts: checkpoint.sorts,
         first: checkpoint.first,
@@ -183,7 +188,8 @@ pub fn save(
     };
     let sums =
         [watch.turned_over, watch.largest_residual, checkpoint.first[0], checkpoint.first[1]];
-    if !sums.iter().chain(&checkpoint.impulse).all(|value| value.is_finite()) {
+    if !sums.iter().chain(&checkpoint.impulse).chain(&housing.growth).all(|value| value.is_finite())
+    {
         let path = folder.join(STATE);
         return Err(HousedStateError::Damaged { path, what: "a value that is not finite" });
     }
@@ -259,6 +265,11 @@ pub fn resume(
         },
         exchanges: housing.exchanges,
         impulse: housing.impulse,
+        growth: Growth {
+            work: housing.growth[0],
+            radius: housing.growth[1],
+            load: housing.growth[2],
+        },
         tested: housing.tested,
         sorts: housing.sorts,
         first: housing.first,

@@ -1,6 +1,6 @@
 //! Everything that a bearing and its housing in explicit steps need to go on with the same bits.
 
-use super::exchange::{ExchangeError, ExchangeOptions, HousedBearing, Seat};
+use super::exchange::{ExchangeError, ExchangeOptions, Growth, HousedBearing, Seat};
 use crate::ch2_housing::bore_contact::{ContactSum, Cylinder, Frame};
 use crate::kinematics::Pose;
 use crate::kinematics::vec3::Vec3;
@@ -20,6 +20,7 @@ pub struct HousedCheckpoint {
     pub exchanges: u64,
     /// On the outer race since the start, N·s.
     pub impulse: Vec3,
+    pub growth: Growth,
     pub tested: u64,
     pub sorts: u64,
     /// What the ledgers of the bearing and of both held at the start, J.
@@ -44,6 +45,7 @@ impl HousedBearing {
         self.solid.checkpoint_into(&mut checkpoint.solid);
         checkpoint.exchanges = self.exchanges;
         checkpoint.impulse = self.impulse;
+        checkpoint.growth = self.growth;
         checkpoint.tested = self.tested;
         checkpoint.sorts = self.sorts;
         checkpoint.first = [self.first_bearing, self.first];
@@ -85,6 +87,7 @@ impl HousedBearing {
             exchanges: checkpoint.exchanges,
             contact: ContactSum::default(),
             impulse: checkpoint.impulse,
+            growth: checkpoint.growth,
             tested: checkpoint.tested,
             sorts: 0,
             near: Vec::new(),

@@ -99,6 +99,8 @@ pub struct HousedBearing {
     pub contact: ContactSum,
     /// On the outer race since the start, N·s.
     pub impulse: Vec3,
+    /// Of an interference that grows in.
+    pub growth: Growth,
     /// Nodes tested so far, and how often they were sorted by reach.
     pub tested: u64,
     pub sorts: u64,
@@ -110,6 +112,24 @@ pub struct HousedBearing {
     pub(super) first: f64,
 }
 
+/// Work that growth of the race's radius does against the contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Growth {
+    /// Since the start, J.
+    pub work: f64,
+    /// When the contact was last evaluated, m, and what it resisted growth with, N.
+    pub radius: f64,
+    pub load: f64,
+}
+
+impl Growth {
+    /// With the contact as it is at a later radius: the trapezium between the two.
+    fn to(self, radius: f64, load: f64) -> Growth {
+        let work = self.work + 0.5 * (self.load + load) * (radius - self.radius);
+        Growth { work, radius, load }
+    }
+}
+
 /// Everything at the present time.
 #[derive(Clone, Copy, Debug)]
 pub struct HousedSnapshot {
@@ -117,6 +137,8 @@ pub struct HousedSnapshot {
     pub outer: BodyState,
     pub solid: SolidLedger,
     pub contact: ContactSum,
+    /// Of an interference that grew in, J.
+    pub growth_work: f64,
     /// Energy unaccounted for in both together, J.
     pub residual: f64,
     /// Energy held in both and all work and losses, J: what the residual is a part of.
@@ -213,6 +235,7 @@ impl HousedBearing {
             exchanges: 0,
             contact: ContactSum::default(),
             impulse: [0.0; 3],
+            growth: Growth { radius: cylinder.radius, ..Growth::default() },
             tested: 0,
             sorts: 0,
             near: Vec::new(),
@@ -221,6 +244,7 @@ impl HousedBearing {
             first_bearing: 0.0,
             first: 0.0,
         };
+        housed.growth.radius = housed.ahead().0.radius;
         housed.sort();
         housed.count_from_here()?;
         Ok(housed)
@@ -247,6 +271,10 @@ impl HousedBearing {
         self.window = interval / windows;
         self.solid.step_size = self.window / self.solid_steps as f64;
         self.solid.time = 0.5 * self.solid.step_size;
+        // Where the contact is looked at first, it has not grown yet.
+        self.growth = Growth::default();
+        let (cylinder, _) = self.ahead();
+        self.growth.radius = cylinder.radius;
         self.sort();
         self.count_from_here()?;
         Ok(windows as u64)
@@ -270,7 +298,7 @@ impl HousedBearing {
         let mut impulse = RaceLoads::default();
         for k in 0..self.solid_steps {
             let pose = pose_after(&race, (k as f64 + 0.5) * step);
-            let HousedBearing { solid, seat, near, contact: last, .. } = self;
+            let HousedBearing { solid, seat, near, contact: last, growth, .. } = self;
             let frame = Frame::new(&pose);
             solid.step(|t, displacement, forces| {
                 let cylinder = Cylinder { radius: seat.radius.value(t), width: seat.width };
@@ -281,6 +309,7 @@ impl HousedBearing {
                         sum[i] += force[i];
                     }
                 });
+                *growth = growth.to(cylinder.radius, last.radial_load);
             })?;
             self.tested += self.contact.tested as u64;
             impulse.force = add_scaled(impulse.force, step, self.contact.force);
@@ -403,17 +432,21 @@ impl HousedBearing {
         let ahead = 0.5 * self.solid.step_size;
         let power = dot(touching.force, outer.velocity) + dot(touching.moment, outer.spin);
         let on_race = bearing.ledger[Ledger::Foundation as usize] - self.first_bearing;
+        let growth_work = self.growth.to(cylinder.radius, touching.radial_load).work;
         let held = solid.energy.strain + solid.energy.kinetic + touching.energy;
         let residual = bearing.residual + on_race + ahead * power + held
             - solid.external_work
-            - solid.damping_work;
+            - solid.damping_work
+            - growth_work;
         let work: f64 = bearing.ledger.iter().map(|entry| entry.abs()).sum();
         let turned_over = bearing.energy.contact
             + held
             + work
             + solid.external_work.abs()
-            + solid.damping_work.abs();
-        Ok(HousedSnapshot { bearing, outer, solid, contact: touching, residual, turned_over })
+            + solid.damping_work.abs()
+            + growth_work.abs();
+        let contact = touching;
+        Ok(HousedSnapshot { bearing, outer, solid, contact, growth_work, residual, turned_over })
     }
 }
 
