@@ -132,7 +132,8 @@ fn a_fit_grows_in() {
     let out = place.path("out");
     succeed(into_folder("run", &place.scene("scene.toml", &text), &out, &[]));
     let pressure = column(&out.join("series.csv"), "bore_peak_pressure");
-    assert_eq!(pressure[0], 0.0, "{pressure:?}");
+    // Rounding of radii.
+    assert!(pressure[0] <= 1e-9 * pressure[2], "{pressure:?}");
     // Half way at half time, then it stays.
     assert!((pressure[1] / pressure[2] - 0.5).abs() <= 1e-3, "{pressure:?}");
     assert!((pressure[3] / pressure[2] - 1.0).abs() <= 1e-9, "{pressure:?}");

@@ -15,9 +15,9 @@ use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use thiserror::Error;
 
-/// Part of the width by which a seat is wider than the race: nodes on its rim, but for rounding,
-/// are under it.
-const RIM: f64 = 1e-6;
+/// Part of the width by which a seat is wider than the race, as in a condensed housing: a node on the
+/// rim stays under the race when the bore swells along its axis by some nanometres.
+const RIM: f64 = 2e-3;
 /// Part of the race's radius by which the bore may differ from it, and be out of round or centre.
 const FAR_OFF: f64 = 0.05;
 

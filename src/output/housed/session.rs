@@ -183,7 +183,10 @@ impl HousedSession {
             if !self.housed.exchanges.is_multiple_of(self.grid.windows_per_row) {
                 continue;
             }
-            self.housed.bearing.watch_step().map_err(ExchangeError::from)?;
+            let shorter = self.housed.bearing.watch_step().map_err(ExchangeError::from)?;
+            if let Some(step) = shorter {
+                self.housed.bearing.shorten_step(step);
+            }
             self.record()?;
             self.keep();
             let row = self.housed.exchanges / self.grid.windows_per_row;

@@ -233,7 +233,7 @@ pub fn run_summary(
             "window": quantity("window", housed.window, "s")?,
             "housing": quantity("step", housed.solid.step_size, "s")?,
             "housing_steps_a_window": housed.solid_steps,
-            "bearing": quantity("step", housed.bearing.step_size.min(housed.window), "s")?,
+            "bearing_at_most": quantity("step", housed.bearing.step_size.min(housed.window), "s")?,
             "housing_limit": limit_section(&housed.solid.limit)?,
         }),
     );

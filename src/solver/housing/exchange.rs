@@ -271,6 +271,10 @@ impl HousedBearing {
         self.window = interval / windows;
         self.solid.step_size = self.window / self.solid_steps as f64;
         self.solid.time = 0.5 * self.solid.step_size;
+        // No step of the bearing is longer than its window, whatever it might be by itself.
+        if self.bearing.control.is_none() {
+            self.bearing.step_size = self.bearing.step_size.min(self.window);
+        }
         // Where the contact is looked at first, it has not grown yet.
         self.growth = Growth::default();
         let (cylinder, _) = self.ahead();
