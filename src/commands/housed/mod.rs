@@ -200,6 +200,10 @@ pub fn defaults(scene: &HousedScene) -> Vec<DefaultUsed> {
         "numerics.energy_limit",
     ];
     let mut all = echo_run::defaults(&scene.bearing);
+    for used in all.iter_mut().filter(|used| used.reason.starts_with("where the outer race starts"))
+    {
+        used.reason = "where the outer race starts, before loads and the housing move it".into();
+    }
     if scene.housing.method == HousingMethod::QuasiStatic {
         all.retain(|used| !OF_MOTION.iter().any(|part| used.key.starts_with(part)));
     }
