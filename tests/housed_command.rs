@@ -87,6 +87,23 @@ fn statics_balances_bearing_and_housing() {
 }
 
 #[test]
+fn weights_rest_on_the_housing() {
+    let place = Place::new();
+    let gravity = "[ball_forces]\ngravity = [\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]\n\
+                   [inner_race.inertia]\nmass = \"2 kg\"\naxial = \"1e-4 kg m^2\"\ntransverse = \"1e-4 kg m^2\"\n\
+                   [outer_race.inertia]\nmass = \"3 kg\"\naxial = \"1e-3 kg m^2\"\ntransverse = \"1e-3 kg m^2\"\n";
+    let scene = place.scene("scene.toml", &scene_text("fit.radial = \"2 um\"", gravity));
+    let out = place.path("out");
+    succeed(into_folder("statics", &scene, &out, &[]));
+    let force = value(&json(out.join("summary.json"))["housing"]["force_on_outer"]["z"]);
+    // Eight steel balls; their size follows from the clearance.
+    let radius: f64 = 0.5 * (31.953e-3 - 20.047e-3 + 4e-6);
+    let balls = 8.0 * 7850.0 * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+    let expected = 250.0 + 9.81 * (2.0 + 3.0 + balls);
+    assert!((force / expected - 1.0).abs() <= 1e-6, "{force} {expected}");
+}
+
+#[test]
 fn equilibria_over_time_are_those_of_statics() {
     let place = Place::new();
     let run = "[numerics]\nend = \"1 ms\"\noutput_interval = \"0.25 ms\"\n";

@@ -132,6 +132,12 @@ fn cases() -> Vec<Case> {
             &["outer_race.x.load", "axial = \"free\""],
         ),
         (
+            "a nominal start",
+            changed("fit.radial = \"1 um\"", "method = \"explicit\"")
+                .replace("end = \"1 ms\"", "end = \"1 ms\"\nstart = \"nominal\""),
+            &["numerics.start", "starts in equilibrium"],
+        ),
+        (
             "a probe of a housing",
             good() + "[[solid.probe]]\nset = \"bore\"\n",
             &["solid.probe", "a housing does not use it"],

@@ -11,6 +11,7 @@ use crate::scene::solid::Subject;
 use crate::scene::units::plain;
 use crate::scene::value::Checked;
 use crate::solver::dynamics::model::{Drive, RaceBody, Rotation};
+use crate::solver::dynamics::run::Start;
 use crate::solver::housing::bore_equilibrium::Axial;
 use crate::solver::profile::Profile;
 use crate::solver::statics::COORDINATE_NAMES;
@@ -296,6 +297,12 @@ fn rest(
     bearing: &mut Scene,
     housing: &HousingSettings,
 ) -> Result<(), SceneError> {
+    let nominal =
+        bearing.dynamics.run.as_ref().is_some_and(|run| run.options.start == Start::Nominal);
+    if nominal && housing.method == HousingMethod::Explicit {
+        let reason = "in a housing the bearing starts in equilibrium";
+        return not_applicable(document, "numerics.start", reason, "leave it out");
+    }
     let start = bearing.outer_race[0];
     let Some(RaceBody { drives, .. }) = &mut bearing.dynamics.outer else { return Ok(()) };
     let mut said = vec!["outer_race.foundation"];

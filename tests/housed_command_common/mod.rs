@@ -7,7 +7,7 @@ pub mod solids;
 use std::fs;
 use std::path::Path;
 
-pub use solids::{Place, command, into_folder, json, number, shipped, stderr, succeed};
+pub use solids::{Place, command, into_folder, json, shipped, stderr, succeed};
 
 pub const BEARING: &str = r#"title = "A bearing in a ring"
 [assumptions]

@@ -194,7 +194,7 @@ fn timed(
     let (tested, out_of_reach) = housed.counts();
     let start = Instant::now();
     let mut done = 0u64;
-    while start.elapsed() < TIMED {
+    while start.elapsed() < TIMED && done < all {
         for _ in 0..10 {
             housed.exchange()?;
         }

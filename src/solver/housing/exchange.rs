@@ -364,7 +364,7 @@ impl HousedBearing {
         // Half the seat is gone, or the race hangs in the wall.
         for (way, distance, allowed) in [
             ("along the axis", (along - start[0]).abs(), 0.5 * cylinder.width),
-            ("across it", (across - start[1]).hypot(up - start[2]), 0.1 * cylinder.radius),
+            ("across it", libm::hypot(across - start[1], up - start[2]), 0.1 * cylinder.radius),
         ] {
             if !(distance <= allowed) {
                 return Err(ExchangeError::LeftBore { way, distance, allowed, time, step });
