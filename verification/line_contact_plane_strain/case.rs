@@ -251,8 +251,8 @@ fn checks(
 ) {
     let line = &answer.line;
     let origin = "Hertz, rigid cylinder on a half space in plane strain, under the load found";
-    let mesh = "what the mesh and a block of this size leave; the issue is a contact law, whose own \
-                errors (sign, area, radius) are tens of percent";
+    let mesh = "what the mesh, the contact's own softness and a block of this size leave; a wrong area or radius \
+                is off by more";
     let two = 0.02;
     context.check(
         Check::new(&format!("{key}_peak"), &format!("{key}: peak pressure"), "Pa", line.peak)

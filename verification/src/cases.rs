@@ -4,6 +4,8 @@
 
 use crate::case::{Case, Tier};
 
+#[path = "../assembly_fits_2_4_1/case.rs"]
+mod assembly_fits_2_4_1;
 #[path = "../axial_load_closed_form/case.rs"]
 mod axial_load_closed_form;
 #[path = "../bearing_conservation/case.rs"]
@@ -24,6 +26,10 @@ mod cylinder_on_block_table_2_1;
 mod free_ring_modes;
 #[path = "../hertz_elliptic/case.rs"]
 mod hertz_elliptic;
+#[path = "../housing_orbits_2_4_2/case.rs"]
+mod housing_orbits_2_4_2;
+#[path = "../housing_settling/case.rs"]
+mod housing_settling;
 #[path = "../kinematic_frequencies/case.rs"]
 mod kinematic_frequencies;
 #[path = "../line_contact_plane_strain/case.rs"]
@@ -42,6 +48,10 @@ mod solid_elements;
 mod solid_energy_and_steps;
 #[path = "../statics_independent/case.rs"]
 pub mod statics_independent;
+#[path = "../steel_impact_2_4_3/case.rs"]
+mod steel_impact_2_4_3;
+#[path = "../steel_load_rates_2_4_3/case.rs"]
+mod steel_load_rates_2_4_3;
 #[path = "../thick_ring_lame/case.rs"]
 mod thick_ring_lame;
 #[path = "../varying_compliance_dynamics/case.rs"]
@@ -72,6 +82,11 @@ pub const CASES: &[Case] = &[
     calculix_comparison::CASE,
     line_contact_plane_strain::CASE,
     cylinder_on_block_table_2_1::CASE,
+    housing_settling::CASE,
+    assembly_fits_2_4_1::CASE,
+    housing_orbits_2_4_2::CASE,
+    steel_load_rates_2_4_3::CASE,
+    steel_impact_2_4_3::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).

@@ -4,7 +4,7 @@ use super::{
     Prepared, parts, plan, prepare, record, remove_earlier, request, run_settings, run_table,
     started, write_bore,
 };
-use crate::commands::run::{Arguments, missing_state, pictures, refuse_unfinished};
+use crate::commands::run::{Arguments, no_run, pictures, refuse_unfinished};
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::housed::fields::write_housing_fields;
@@ -150,7 +150,7 @@ fn kept_state(
     folder: &Path,
 ) -> Result<Option<HousedStateFile>, Box<dyn Error>> {
     if arguments.resume {
-        return Ok(Some(state::read(folder)?.ok_or_else(|| missing_state(folder))?));
+        return Ok(Some(state::read(folder)?.ok_or_else(|| no_run(folder))?));
     }
     refuse_unfinished(arguments, folder)?;
     remove_earlier(folder)?;

@@ -1,7 +1,7 @@
 //! `bearing run` of a solid: step after step, and the folder it leaves.
 
 use super::{Prepared, plan, prepare, record, remove_earlier, title};
-use crate::commands::run::Arguments;
+use crate::commands::run::{Arguments, no_run};
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::mesh::TetMesh;
 use bearing_dynamics::output::atomic::write_atomic;
@@ -156,7 +156,7 @@ fn kept_state(
     folder: &Path,
 ) -> Result<Option<SolidStateFile>, Box<dyn Error>> {
     if arguments.resume {
-        return Ok(state::read(folder)?);
+        return Ok(Some(state::read(folder)?.ok_or_else(|| no_run(folder))?));
     }
     if !arguments.fresh
         && let Some(file) = state::read(folder)?

@@ -143,12 +143,14 @@ impl Arrow {
 
     /// Solves (1 − hγ J) w = r for all entries of the state; `at` is the state of the Jacobian.
     /// Nothing feeds back from the ledger and the orientation of balls: what drives of prescribed
-    /// motions do follows the rest of `w`, their other entries are those of `r`.
+    /// motions do follows the rest of `w`, their other entries are those of `r`. `drift` is how
+    /// frames carry the balls besides, component by component: contacts close by it.
     pub fn solve(
         &mut self,
         linearised: &Linearised,
         layout: &Layout,
         at: &[f64],
+        drift: &[f64],
         r: &[f64],
         w: &mut [f64],
     ) {
@@ -174,6 +176,7 @@ impl Arrow {
                 lane
             };
             let position: [Lane; 3] = [0, 1, 2].map(|i| lanes(POSITION + i));
+            let drift = lanes_of(drift, layout, block);
             for i in 0..3 {
                 let (force, moment) = (lanes(VELOCITY + i), lanes(SPIN + i));
                 for l in 0..LANES {
@@ -182,7 +185,7 @@ impl Arrow {
                 }
             }
             for contact in contacts.iter().filter(|contact| contact.rows > 0) {
-                spring_back(contact, scale, &position, &moved, right, &mut hubs);
+                spring_back(contact, scale, [&position, &drift], &moved, right, &mut hubs);
             }
             for hub in 0..self.hub_count {
                 if !self.coupled[block][hub] {
@@ -228,9 +231,11 @@ impl Arrow {
                     lane[l] = r[from + l] + scale * right[i][l];
                 }
             }
+            let drift = lanes_of(drift, layout, block);
             for contact in &linearised.contacts[block][..2] {
                 if let (4, Some(hub)) = (contact.rows, contact.hub) {
-                    power += drive_power(contact, &position, &moved[hub], right, &rates[hub]);
+                    let at = [&position, &drift];
+                    power += drive_power(contact, at, &moved[hub], right, &rates[hub]);
                 }
             }
             // Lanes beyond the last ball stand still.
@@ -258,6 +263,16 @@ impl Arrow {
             }
         }
     }
+}
+
+/// Three components of a block's balls.
+fn lanes_of(values: &[f64], layout: &Layout, block: usize) -> [Lane; 3] {
+    let mut lanes = [ZERO; 3];
+    for (i, lane) in lanes.iter_mut().enumerate() {
+        let from = i * layout.padded + block * LANES;
+        lane.copy_from_slice(&values[from..from + LANES]);
+    }
+    lanes
 }
 
 fn vector(of: &[f64], at: usize) -> [f64; 3] {
@@ -302,11 +317,12 @@ fn weigh(contact: &LaneContact, lever: &[[Lane; 6]; 4], scale: f64) -> [[Lane; 6
     pushed
 }
 
-/// What a contact pushes back along its rows for displacements and velocities of ball and hub.
+/// What a contact pushes back along its rows for displacements and velocities of ball and hub. The
+/// drift of a frame closes contacts; sliding turns with the frame and does not change by it.
 #[inline(always)]
 fn reaction(
     contact: &LaneContact,
-    position: &[Lane; 3],
+    [position, drift]: [&[Lane; 3]; 2],
     moved: &[f64; 6],
     velocity: Option<(&[Lane; 6], &[f64; 6])>,
 ) -> [Lane; 4] {
@@ -314,6 +330,7 @@ fn reaction(
     let mut approach = ZERO;
     for i in 0..3 {
         add_product(&mut approach, &contact.on_ball[0][i], &position[i]);
+        add_product(&mut approach, &contact.on_ball[0][i], &drift[i]);
     }
     if contact.hub.is_some() {
         for (row, moved) in contact.on_hub[0].iter().zip(moved) {
@@ -385,13 +402,13 @@ fn reaction(
 fn spring_back(
     contact: &LaneContact,
     scale: f64,
-    position: &[Lane; 3],
+    at: [&[Lane; 3]; 2],
     moved: &[[f64; 6]; HUBS],
     right: &mut [Lane; 6],
     hubs: &mut [f64; MOST],
 ) {
     let of_hub = &moved[contact.hub.unwrap_or(0)];
-    let mut pushes = reaction(contact, position, of_hub, None);
+    let mut pushes = reaction(contact, at, of_hub, None);
     let rows = if contact.rows == 4 { 4 } else { 1 };
     for (row, push) in pushes.iter_mut().enumerate().take(rows) {
         for l in 0..LANES {
@@ -415,12 +432,12 @@ fn spring_back(
 /// Change of the power of the drives that hold prescribed velocities.
 fn drive_power(
     contact: &LaneContact,
-    position: &[Lane; 3],
+    at: [&[Lane; 3]; 2],
     moved: &[f64; 6],
     ball: &[Lane; 6],
     hub: &[f64; 6],
 ) -> f64 {
-    let pushes = reaction(contact, position, moved, Some((ball, hub)));
+    let pushes = reaction(contact, at, moved, Some((ball, hub)));
     let mut driven = ZERO;
     for (row, push) in pushes.iter().enumerate() {
         add_product(&mut driven, &contact.driven[row], push);

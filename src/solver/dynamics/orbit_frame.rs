@@ -32,6 +32,17 @@ impl OrbitFrames {
         }
     }
 
+    /// Writes `time` times the velocities at which the frames carry the balls of `state`, component
+    /// by component. To a frame the races and the pockets go round the other way; that is a change
+    /// with time which a linearly implicit step has to know, since contacts close by it.
+    pub fn drift(&self, layout: &Layout, time: f64, state: &[f64], to: &mut [f64]) {
+        for (ball, rate) in self.rates.iter().enumerate() {
+            let [_, y, z] = layout.ball_vector(state, POSITION, ball);
+            to[layout.padded + ball] = -time * rate * z;
+            to[2 * layout.padded + ball] = time * rate * y;
+        }
+    }
+
     /// Vectors of `state` from the frames, `time` after the step began, to inertial axes.
     pub fn to_inertial(&self, layout: &Layout, time: f64, state: &mut [f64]) {
         for (ball, rate) in self.rates.iter().enumerate() {

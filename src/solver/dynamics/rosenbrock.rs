@@ -52,6 +52,7 @@ pub struct Rosenbrock {
     stage: Vec<f64>,
     rates: Vec<f64>,
     shift: Vec<f64>,
+    drift: Vec<f64>,
 }
 
 impl Rosenbrock {
@@ -67,6 +68,7 @@ impl Rosenbrock {
             stage: room(),
             rates: room(),
             shift: room(),
+            drift: vec![0.0; 3 * system.layout.padded],
         }
     }
 
@@ -107,13 +109,15 @@ impl Rosenbrock {
         state: &[f64],
         to: &mut Attempt,
     ) {
-        let Rosenbrock { linearised, arrow, frames, first, stages, stage, rates, shift } = self;
+        let Rosenbrock { linearised, arrow, frames, first, stages, stage, rates, shift, drift } =
+            self;
         let layout = system.layout;
         arrow.factor(linearised, GAMMA * step);
         system.work.factorisations += 1;
         rates.copy_from_slice(first);
         frames.rates_to_frame(&layout, 0.0, state, rates);
-        arrow.solve(linearised, &layout, state, rates, &mut stages[0]);
+        frames.drift(&layout, 1.0, state, drift);
+        arrow.solve(linearised, &layout, state, drift, rates, &mut stages[0]);
         for i in 1..STAGES {
             let (before, rest) = stages.split_at_mut(i);
             stage.copy_from_slice(state);
@@ -127,7 +131,9 @@ impl Rosenbrock {
             system.evaluate(t + after, stage, rates);
             frames.rates_to_frame(&layout, after, stage, rates);
             add_scaled(rates, 1.0, shift);
-            arrow.solve(linearised, &layout, state, rates, &mut rest[0]);
+            // Time goes on at rate 1 in every stage.
+            frames.drift(&layout, 1.0 + GAMMAS[i].iter().sum::<f64>() / GAMMA, state, drift);
+            arrow.solve(linearised, &layout, state, drift, rates, &mut rest[0]);
             add_scaled(&mut rest[0], -1.0, shift);
         }
         to.state.copy_from_slice(state);

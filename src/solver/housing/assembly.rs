@@ -111,9 +111,15 @@ impl<'a> AssemblySearch<'a> {
             self.inner = Some(solution.coordinates);
             evaluations += solution.contact_evaluations;
             let on_outer = self.load_on_outer(&problem, &solution, weight);
-            let pull = check_load(fit, &on_outer)?;
             let size = Vector4::new(1.0, 1.0, fit.radius, fit.radius);
+            let mut pull = check_load(fit, &on_outer)?;
             let load = pull.component_div(&size).amax().max(ball_load(&solution));
+            for i in 0..4 {
+                // Below what statics leaves there is no load: it would drive a loose race about.
+                if pull[i].abs() <= 10.0 * self.options.statics.tolerance * load * size[i] {
+                    pull[i] = 0.0;
+                }
+            }
             let mut resisted = Matrix4::zeros();
             if let Some(bore) = held.take() {
                 let left = (pull - Vector4::from(bore.load)).component_div(&size).amax();

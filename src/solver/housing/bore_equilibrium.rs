@@ -265,7 +265,7 @@ impl<'a> BoreSearch<'a> {
             let travel = self.pose.component_mul(&metres);
             let worst = travel.iamax();
             // Nothing that a bore holds moves by a hundredth of its radius.
-            let lost = !(travel.amax() <= 1e-2 * metres[2]);
+            let lost = travel.amax().is_nan() || travel.amax() > 1e-2 * metres[2];
             if lost {
                 let (travel, force) = (self.pose[worst], left.amax());
                 return Err(BoreError::NotHeld { coordinate: POSE_NAMES[worst], travel, force });
@@ -354,12 +354,12 @@ impl<'a> BoreSearch<'a> {
             let wrong: Vec<usize> = (0..count)
                 .filter(|&i| {
                     if inside[i] {
-                        !(loads[i] >= -1e-12 * largest)
+                        loads[i].is_nan() || loads[i] < -1e-12 * largest
                     } else {
                         let motion: f64 =
                             self.levers[i].iter().zip(pose.iter()).map(|(b, q)| b * q).sum();
                         let g = overlap[i] + motion - moves[i];
-                        !(g <= rounding.max(1e-12 * largest * self.softness[i]))
+                        g.is_nan() || g > rounding.max(1e-12 * largest * self.softness[i])
                     }
                 })
                 .collect();
@@ -424,7 +424,7 @@ impl<'a> BoreSearch<'a> {
             let motion = norm([0.0, pose[0], pose[1]])
                 + largest(&outward)
                 + norm([0.0, pose[2], pose[3]]) * 0.5 * bore.reach.width;
-            if !(motion <= travel) {
+            if motion.is_nan() || motion > travel {
                 return Err(BoreError::BeyondReach { motion, travel });
             }
         }

@@ -31,7 +31,7 @@ pub struct Reach {
 
 /// Part of the width within which a node counts as under the race although it is beside it: what
 /// rounding and the race's tilt do to nodes on its rim.
-const RIM: f64 = 1e-3;
+pub(super) const RIM: f64 = 1e-3;
 /// Right-hand sides solved at once.
 const BLOCK: usize = 32;
 

@@ -7,6 +7,7 @@
 //! the race gets too, with the other sign. Drift, kick, drift: of second order, and an elastic
 //! contact between the two neither makes nor loses energy in the long run.
 
+use super::condensed::RIM;
 use crate::ch2_housing::bore_contact::{
     ContactNode, ContactSum, Cylinder, Frame, Penalty, contact, split_by_reach,
 };
@@ -145,6 +146,13 @@ pub struct HousedSnapshot {
     pub turned_over: f64,
 }
 
+impl Seat {
+    /// The race at time `t`, with room for nodes on its rim.
+    fn race(&self, t: f64) -> Cylinder {
+        Cylinder { radius: self.radius.value(t), width: (1.0 + 2.0 * RIM) * self.width }
+    }
+}
+
 fn moved(displacement: &[Node], node: u32) -> Vec3 {
     let u = &displacement[node as usize];
     [u[0], u[1], u[2]]
@@ -155,7 +163,7 @@ fn seat_stiffness(seat: &Seat, centre: f64) -> [f64; 2] {
     let mut sums = [0.0; 2];
     for node in &seat.nodes {
         let along = node.place[0] - centre;
-        if along.abs() > 0.5 * seat.width {
+        if along.abs() > (0.5 + RIM) * seat.width {
             continue;
         }
         let stiffness = seat.penalty.of_node(node.area);
@@ -225,7 +233,7 @@ impl HousedBearing {
         solid.displacement = displacement;
         solid.time = 0.5 * step;
         let frame = Frame::new(&pose_after(&outer_state(&bearing), 0.0));
-        let cylinder = Cylinder { radius: seat.radius.value(0.0), width: seat.width };
+        let cylinder = seat.race(0.0);
         let mut housed = HousedBearing {
             bearing,
             solid,
@@ -305,7 +313,7 @@ impl HousedBearing {
             let HousedBearing { solid, seat, near, contact: last, growth, .. } = self;
             let frame = Frame::new(&pose);
             solid.step(|t, displacement, forces| {
-                let cylinder = Cylinder { radius: seat.radius.value(t), width: seat.width };
+                let cylinder = seat.race(t);
                 let at = |n: u32| moved(displacement, n);
                 *last = contact(&cylinder, &frame, seat.penalty, near, at, |node, _, _, force| {
                     let sum = &mut forces[node.node as usize];
@@ -339,8 +347,7 @@ impl HousedBearing {
     fn ahead(&self) -> (Cylinder, Frame) {
         let race = outer_state(&self.bearing);
         let frame = Frame::new(&pose_after(&race, 0.5 * self.solid.step_size));
-        let radius = self.seat.radius.value(self.solid.time);
-        (Cylinder { radius, width: self.seat.width }, frame)
+        (self.seat.race(self.solid.time), frame)
     }
 
     /// Sorts the nodes of the bore into those that are tested and those out of reach.

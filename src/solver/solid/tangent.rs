@@ -131,12 +131,7 @@ fn add_element<const N: usize>(
 }
 
 /// Adds a symmetric stiffness that acts on one node alone.
-pub fn add_at_node(
-    unknowns: &Unknowns,
-    node: u32,
-    stiffness: &Mat3,
-    matrix: &mut SymmetricMatrix,
-) {
+pub fn add_at_node(unknowns: &Unknowns, node: u32, stiffness: &Mat3, matrix: &mut SymmetricMatrix) {
     let of = unknowns.of[node as usize];
     for i in 0..3 {
         for j in 0..=i {
