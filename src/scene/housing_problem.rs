@@ -126,7 +126,9 @@ pub fn setup(scene: &HousedScene, mesh: &TetMesh) -> Result<HousingSetup, Housin
     }
     let farthest = distances.iter().copied().fold(0.0, f64::max);
     let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
-    if !(farthest - nearest <= FAR_OFF * radius) {
+    // Written as it is so that a place that is not a number is refused as well.
+    let round = farthest - nearest <= FAR_OFF * radius;
+    if !round {
         return Err(HousingSetupError::NotRound { bore, nearest, farthest });
     }
     let interference = match scene.housing.fit {
@@ -134,7 +136,8 @@ pub fn setup(scene: &HousedScene, mesh: &TetMesh) -> Result<HousingSetup, Housin
         FitSize::OuterRadius(race) => race - radius,
     };
     let limit = 0.01 * radius;
-    if !(interference <= limit) {
+    let fits = interference <= limit;
+    if !fits {
         return Err(HousingSetupError::FitTooLarge { interference, limit });
     }
     let model = SolidModel::new(solid.problem.clone())?;

@@ -150,16 +150,16 @@ pub fn verdict(scene: &HousedScene, estimate: &InertiaEstimate) -> String {
         cause.what,
         to_digits(cause.frequency, 4)
     );
-    said += match (chosen, error) {
-        (true, error) if !(error <= TOO_MUCH) => {
+    // An error that is not a number is one.
+    let (small, bearable) = (error <= WORTH_A_WORD, error <= TOO_MUCH);
+    said += match (chosen, small, bearable) {
+        (true, _, false) => {
             "; WARNING: not allowed for more than a rough look, write method = \"explicit\" in [housing]"
         }
-        (true, error) if !(error <= WORTH_A_WORD) => {
-            "; WARNING: method = \"explicit\" in [housing] has inertia"
-        }
-        (false, error) if !(error <= TOO_MUCH) => "; not allowed: inertia counts here",
-        (false, _) => "; method = \"quasi-static\" in [housing] takes it",
-        _ => "",
+        (true, false, true) => "; WARNING: method = \"explicit\" in [housing] has inertia",
+        (true, true, true) => "",
+        (false, _, false) => "; not allowed: inertia counts here",
+        (false, _, true) => "; method = \"quasi-static\" in [housing] takes it",
     };
     said
 }
