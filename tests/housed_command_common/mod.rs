@@ -7,6 +7,7 @@ pub mod solids;
 use std::fs;
 use std::path::Path;
 
+#[allow(unused_imports)]
 pub use solids::{Place, command, into_folder, json, shipped, stderr, succeed};
 
 pub const BEARING: &str = r#"title = "A bearing in a ring"
