@@ -44,6 +44,10 @@ fn every_shipped_scene_resolves_and_cites_its_source() {
                 assert!(source.contains("Table"), "{}: {source}", path.display());
             }
             Subject::Solid(scene) => assert!(scene.source.is_some(), "{}", path.display()),
+            Subject::Housed(scene) => {
+                let source = scene.bearing.source.expect("every shipped scene names its source");
+                assert!(source.contains("section"), "{}: {source}", path.display());
+            }
         }
         count += 1;
     }

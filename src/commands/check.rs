@@ -24,6 +24,9 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         Subject::Solid(solid) => {
             return super::solid::check::run(&arguments.scene, &solid, arguments.json);
         }
+        Subject::Housed(housed) => {
+            return super::housed::check::run(&arguments.scene, &housed, arguments.json);
+        }
         Subject::Bearing(scene) => *scene,
     };
     static_problem(&scene)?;
@@ -45,11 +48,28 @@ pub fn run(arguments: &Arguments) -> CommandResult {
 }
 
 fn summary(name: &str, scene: &Scene) -> String {
-    let (geometry, sizes) = (&scene.geometry, &scene.dimensions);
     let mut text = format!("{name}: a valid scene\n");
     let mut line = |label: &str, value: String| {
         let _ = writeln!(text, "  {label:<22} {value}");
     };
+    bearing_lines(scene, &mut line);
+    if scene.dynamics.run.is_some() {
+        for (label, value) in motion(scene) {
+            line(label, value);
+        }
+    }
+    for used in echo_run::defaults(scene) {
+        line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
+    }
+    for assumption in &scene.assumptions {
+        line("assumption", format!("{}: {}", assumption.name, assumption.text));
+    }
+    text
+}
+
+/// Title and geometry, a line each.
+pub fn bearing_lines(scene: &Scene, line: &mut impl FnMut(&str, String)) {
+    let (geometry, sizes) = (&scene.geometry, &scene.dimensions);
     if let Some(title) = &scene.title {
         line("title", title.clone());
     }
@@ -89,18 +109,6 @@ fn summary(name: &str, scene: &Scene) -> String {
     }
     line("pitch radius", format!("{:.4} mm", 1e3 * geometry.pitch_radius));
     line("contact angle", format!("{:.4} deg (nominal)", geometry.contact_angle.to_degrees()));
-    if scene.dynamics.run.is_some() {
-        for (label, value) in motion(scene) {
-            line(label, value);
-        }
-    }
-    for used in echo_run::defaults(scene) {
-        line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
-    }
-    for assumption in &scene.assumptions {
-        line("assumption", format!("{}: {}", assumption.name, assumption.text));
-    }
-    text
 }
 
 /// What moves, and how it is computed.

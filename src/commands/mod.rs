@@ -4,6 +4,7 @@ pub mod check;
 pub mod compare;
 pub mod echo;
 pub mod echo_run;
+pub mod housed;
 pub mod modes;
 pub mod pack;
 pub mod pictures;
@@ -18,6 +19,7 @@ pub mod statics;
 pub mod sweep;
 pub mod table;
 
+use bearing_dynamics::solver::clock::rounded;
 use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -67,6 +69,25 @@ pub fn refuse_folder_of_other(folder: &Path) -> Result<(), Box<dyn Error>> {
             Err(text.into())
         }
     }
+}
+
+/// Refuses to write over a run of any kind that stands half way.
+pub fn refuse_folder_half_way(folder: &Path) -> Result<(), Box<dyn Error>> {
+    let state = std::fs::read(folder.join("state.json")).unwrap_or_default();
+    let state: serde_json::Value = serde_json::from_slice(&state).unwrap_or_default();
+    // That of a bearing in its housing lies a level deeper.
+    let of = if state["bearing"].is_object() { &state["bearing"] } else { &state };
+    if !matches!(of["stopped"].as_str(), Some("running" | "interrupted")) {
+        return Ok(());
+    }
+    let (time, end) = (of["time"].as_f64().unwrap_or(0.0), &of["end"]);
+    Err(format!(
+        "{} holds a run that stands at t = {} s of {end} s; go on with it (--resume), discard it \
+         (--fresh), or choose another --out",
+        folder.display(),
+        rounded(time)
+    )
+    .into())
 }
 
 /// `results/<name of the scene>` unless a folder was given.

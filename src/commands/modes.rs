@@ -20,7 +20,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let Arguments { scene, out, dry } = arguments;
     match scene::read_subject(scene)? {
         Subject::Solid(solid) => super::solid::modes::run(scene, &solid, out, *dry),
-        Subject::Bearing(_) => Err(format!(
+        Subject::Bearing(_) | Subject::Housed(_) => Err(format!(
             "{}: modes takes a solid by itself, and the scene holds a bearing; `bearing statics` \
              gives a bearing's stiffness",
             scene.display()

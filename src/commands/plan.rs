@@ -20,9 +20,10 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> CommandResult {
     let scene = match scene::read_subject(&arguments.scene)? {
         Subject::Solid(solid) => return super::solid::plan::run(&solid),
+        Subject::Housed(housed) => return super::housed::plan::run(&housed),
         Subject::Bearing(scene) => *scene,
     };
-    let planned = match run_options(&scene) {
+    let mut planned = match run_options(&scene) {
         Ok(settings) => {
             let problem = dynamic_problem(&scene)?;
             let request = request(&scene, &settings);
@@ -32,6 +33,10 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         }
         Err(_) => plan_lines(&static_problem(&scene)?),
     };
+    if scene.rigid_housing {
+        let reason = "housing.method = rigid: the outer race is fixed, no mesh is read";
+        planned.push(format!("skips {:<28} {reason}", "housing"));
+    }
     say(&planned.iter().map(|line| format!("{line}\n")).collect::<String>())?;
     Ok(Outcome::Done)
 }

@@ -3,8 +3,8 @@
 use super::plan::dynamic_plan_lines;
 use super::run_figures::key_figures;
 use super::{
-    CommandResult, Outcome, echo, echo_run, pictures as static_pictures, refuse_folder_of_other,
-    results_folder, say,
+    CommandResult, Outcome, echo, echo_run, pictures as static_pictures, refuse_folder_half_way,
+    refuse_folder_of_other, results_folder, say,
 };
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::dynamics::pictures::{Picture, draw};
@@ -14,6 +14,7 @@ use bearing_dynamics::output::dynamics::table::RunTable;
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::state::{self, StateFile, StateRecord, Stopped};
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
+use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::scene::{self, Plot, RunPlot, RunSettings, Scene, Subject};
 use bearing_dynamics::solver::channels::ChannelGroup;
 use bearing_dynamics::solver::clock::rounded;
@@ -62,6 +63,12 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
     let scene = match scene::read_subject(&arguments.scene)? {
         Subject::Solid(solid) => return super::solid::run::run(arguments, &solid, start),
+        Subject::Housed(housed) => {
+            return match housed.housing.method {
+                HousingMethod::QuasiStatic => super::housed::course::run(arguments, &housed),
+                HousingMethod::Explicit => super::housed::explicit::run(arguments, &housed, start),
+            };
+        }
         Subject::Bearing(scene) => *scene,
     };
     let settings =
@@ -176,27 +183,21 @@ pub(super) fn no_run(folder: &Path) -> String {
     )
 }
 
+/// Unless it is discarded, an unfinished run stays, and so do results of another kind.
+pub fn refuse_unfinished(arguments: &Arguments, folder: &Path) -> Result<(), Box<dyn Error>> {
+    if arguments.fresh {
+        return Ok(());
+    }
+    refuse_folder_of_other(folder)?;
+    refuse_folder_half_way(folder)
+}
+
 /// The state to go on from, if that was asked for; what an earlier run left is removed otherwise.
 fn kept_state(arguments: &Arguments, folder: &Path) -> Result<Option<StateFile>, Box<dyn Error>> {
     if arguments.resume {
         return Ok(Some(state::read(folder)?.ok_or_else(|| no_run(folder))?));
     }
-    if !arguments.fresh {
-        refuse_folder_of_other(folder)?;
-    }
-    if !arguments.fresh
-        && let Some(file) = state::read(folder)?
-        && matches!(file.stopped, Stopped::Interrupted | Stopped::Running)
-    {
-        return Err(format!(
-            "{} holds a run that stands at t = {} s of {} s; go on with it (--resume), discard it \
-             (--fresh), or choose another --out",
-            folder.display(),
-            rounded(file.time),
-            file.end
-        )
-        .into());
-    }
+    refuse_unfinished(arguments, folder)?;
     let earlier = ["summary.json", state::STATE, state::SERIES, "series.csv", "spectrum.csv"];
     for name in earlier.into_iter().chain(static_pictures::NAMES) {
         match std::fs::remove_file(folder.join(name)) {
@@ -332,7 +333,7 @@ fn progress_bar(session: &Session) -> ProgressBar {
     bar
 }
 
-fn pictures(
+pub fn pictures(
     folder: &Path,
     scene: &Scene,
     table: &RunTable,

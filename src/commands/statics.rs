@@ -27,6 +27,10 @@ pub fn run(arguments: &Arguments) -> CommandResult {
             let Arguments { scene, out, dry } = arguments;
             return super::solid::statics::run(scene, &solid, out, *dry);
         }
+        Subject::Housed(housed) => {
+            let Arguments { scene, out, dry } = arguments;
+            return super::housed::statics::run(scene, &housed, out, *dry);
+        }
         Subject::Bearing(scene) => *scene,
     };
     let solved = solve_scene(&scene, start.elapsed().as_secs_f64())?;

@@ -4,6 +4,7 @@
 //! - [`results`]: the results folder of one static solution
 //! - [`dynamics`]: a run, its time series, its results folder, and [`mod@state`] to resume it from
 //! - [`solid`]: fields, series and runs of a flexible solid by itself
+//! - [`housed`]: a bearing in a flexible housing
 //! - [`journal`]: what the states of both kinds of runs share
 //! - [`mod@spectrum`]: amplitude spectra of time series
 //! - [`plots`]: SVG pictures from plain data
@@ -12,6 +13,7 @@
 pub mod atomic;
 pub mod compare;
 pub mod dynamics;
+pub mod housed;
 pub mod journal;
 pub mod pack;
 pub mod plots;

@@ -159,7 +159,8 @@ pub struct StateRecord {
 /// A number that is not finite (the state there stays), a file that cannot be written.
 pub fn save(folder: &Path, session: &Session, record: &StateRecord) -> Result<(), StateError> {
     let (checkpoint, rows) = session.resumable();
-    let file = state_file(&checkpoint, rows, session, record);
+    let span = (session.end, session.steps_per_row);
+    let file = state_file(&checkpoint, rows, span, record);
     check_finite(&file)?;
     session.recorder.series(session.recorder.rows())?.write_npy(&folder.join(SERIES))?;
     Ok(journal::write(folder, &file)?)
@@ -224,10 +225,11 @@ pub fn resume(
     Ok(session)
 }
 
-fn state_file(
+/// A checkpoint as it is written; `span` is the end of the run (s) and the steps of a row.
+pub(crate) fn state_file(
     checkpoint: &Checkpoint,
     rows: usize,
-    session: &Session,
+    span: (f64, u64),
     record: &StateRecord,
 ) -> StateFile {
     let energy = &checkpoint.first_energy;
@@ -258,9 +260,9 @@ fn state_file(
                 last,
             }),
         },
-        end: session.end,
+        end: span.0,
         output_interval: record.output_interval,
-        steps_per_row: session.steps_per_row,
+        steps_per_row: span.1,
         rows,
         seconds: record.seconds,
         state: checkpoint.state.clone(),
@@ -294,7 +296,7 @@ fn cause(name: &str) -> Option<Cause> {
     Cause::ALL.into_iter().find(|cause| cause.name() == name)
 }
 
-fn checkpoint(file: &StateFile) -> Checkpoint {
+pub(crate) fn checkpoint(file: &StateFile) -> Checkpoint {
     let [oscillation, decay] = file.step_watch.stiffest;
     let [kinetic, contact, cage_contact, gravity, foundation] = file.first_energy;
     let [
@@ -353,7 +355,7 @@ fn checkpoint(file: &StateFile) -> Checkpoint {
 }
 
 /// JSON has no way to write NaN and infinity.
-fn check_finite(file: &StateFile) -> Result<(), StateError> {
+pub(crate) fn check_finite(file: &StateFile) -> Result<(), StateError> {
     let limit = file.limit.iter().flat_map(|l| [l.step, l.eigenvalue[0], l.eigenvalue[1]]);
     let single = [file.time, file.step_size, file.seconds, file.end, file.output_interval];
     let watch = &file.step_watch;

@@ -237,6 +237,11 @@ pub enum Problem {
     DisplacementTooLarge { displacement: f64, ball: f64 },
 
     #[error(
+        "the fit of {} is more than a hundredth of the outer race's radius. Allowed: {} to {}. Hint: check its unit",
+        um(*.fit), um(-*.limit), um(*.limit)
+    )]
+    FitTooLarge { fit: f64, limit: f64 },
+    #[error(
         "a moment of inertia of {axial} kg m^2 about the axis is more than twice that across it ({transverse} kg m^2), \
          which no body has. Allowed: up to {} kg m^2. Hint: were the two exchanged?", 2.0 * *.transverse
     )]

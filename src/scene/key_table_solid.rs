@@ -146,7 +146,7 @@ pub(super) const KEYS: &[Key] = &[
 /// Tables in the order of the reference.
 #[rustfmt::skip]
 pub(super) const TABLES: &[Table] = &[
-    table("solid", "A flexible solid by itself, in place of a bearing; the two are not coupled yet.", "[solid]\ndamping = \"77 1/s\""),
+    table("solid", "A flexible solid: by itself in place of a bearing, or with one as its housing (`[housing]`).", "[solid]\ndamping = \"77 1/s\""),
     table("solid.material", "Linear elastic (St. Venant-Kirchhoff).",
         "[solid.material]\nyoungs_modulus = \"210 GPa\"\npoisson_ratio = 0.3\ndensity = \"7850 kg/m^3\""),
     table("solid.mesh", "Tetrahedra from a file or from a generator. Faults are refused, not repaired, unless `repair` says so.",

@@ -3,7 +3,7 @@
 //! Reading, the refusal of unknown keys, `docs/scene.md` and the JSON Schema all follow this table.
 
 use crate::scene::units::Dimension::{self, *};
-use crate::scene::{key_table, key_table_dynamics, key_table_solid};
+use crate::scene::{key_table, key_table_dynamics, key_table_housing, key_table_solid};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -199,6 +199,7 @@ fn usual(dimension: Dimension, range: Range) -> &'static str {
         Speed => "0.01 m/s",
         InverseSpeed => "0.1 s/m",
         Stiffness => "1e8 N/m",
+        StiffnessPerArea => "2.5e14 N/m^3",
         HertzStiffness => "1e10 N/m^1.5",
         TiltStiffness => "1e4 N m/rad",
         Damping => "1000 N s/m",
@@ -251,9 +252,14 @@ pub static KEYS: &[Key] = &ALL_KEYS;
 /// Every table, in the order of the reference. `assumptions` and `sweep` have keys of the user's.
 pub static TABLES: &[Table] = &ALL_TABLES;
 
-const PARTS: [&[Key]; 3] = [key_table::KEYS, key_table_dynamics::KEYS, key_table_solid::KEYS];
-const TABLE_PARTS: [&[Table]; 3] =
-    [key_table::TABLES, key_table_dynamics::TABLES, key_table_solid::TABLES];
+const PARTS: [&[Key]; 4] =
+    [key_table::KEYS, key_table_dynamics::KEYS, key_table_solid::KEYS, key_table_housing::KEYS];
+const TABLE_PARTS: [&[Table]; 4] = [
+    key_table::TABLES,
+    key_table_dynamics::TABLES,
+    key_table_solid::TABLES,
+    key_table_housing::TABLES,
+];
 
 static ALL_KEYS: [Key; count(&PARTS)] = joined(&PARTS, key_table::KEYS[0]);
 static ALL_TABLES: [Table; count(&TABLE_PARTS)] = joined(&TABLE_PARTS, key_table::TABLES[0]);

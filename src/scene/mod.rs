@@ -20,8 +20,11 @@
 pub mod document;
 pub mod dynamics;
 pub mod error;
+pub mod housing;
+pub mod housing_problem;
 mod key_table;
 mod key_table_dynamics;
+mod key_table_housing;
 mod key_table_solid;
 pub mod keys;
 mod profile;
@@ -31,6 +34,7 @@ mod resolve_cage;
 mod resolve_contact;
 mod resolve_dynamics;
 mod resolve_geometry;
+mod resolve_housing;
 mod resolve_solid;
 mod resolve_solid_mesh;
 pub mod resolved;
@@ -46,6 +50,7 @@ pub mod units;
 mod value;
 
 pub use document::Document;
+pub use housing::HousedScene;
 pub use error::{Place, Problem, SceneError};
 pub use resolve::resolve;
 pub use resolve_solid::resolve_subject;
@@ -60,7 +65,7 @@ pub use sweep::{SweepAxis, SweepValues};
 
 use std::path::Path;
 
-/// Reads a scene file of either kind: a bearing, or a solid by itself.
+/// Reads a scene file of any kind: a bearing, a solid by itself, or a bearing in a housing.
 ///
 /// # Errors
 /// The first thing wrong with the file or its contents, with its place. The solid's mesh is not

@@ -20,6 +20,7 @@ pub fn reference_markdown() -> String {
         "ball_forces",
         "traction",
         "contact_damping",
+        "housing",
         "solid",
         "modes",
         "numerics",
@@ -252,6 +253,22 @@ t = 0, and needs a body that cannot move as a whole; modes hold what is held and
 
 **Runs.** They start at rest and undeformed but for `velocity` and `spin`, and end at the whole step nearest to `numerics.end`.
 A step beyond the stability limit is refused with the element that sets it.
+
+## A bearing in a housing
+A scene with a bearing, `[solid]` and `[housing]` goes to `check`, `plan`, `statics` and `run`. The outer race (`motion = \"5-dof\"`) sits
+in a surface of the solid about X; contact is (2.16) to (2.19), without friction, so that something beside the bore holds the race
+along its axis unless `axial = \"free\"`. The solid is held, and has no velocity, spin, probes or modes here.
+
+**Methods.** `quasi-static` condenses the linear housing onto its bore and solves one equilibrium of bearing and bore a row, balls
+going round as in pure rolling; traction, cage, damping and inertia are left out, and `plan` and `run` say what inertia would
+change. It takes constant loads on outer race and solid, and no torque or unbalance. `explicit` moves both in steps of their own that exchange
+impulses. `rigid` fixes the outer race: the solid's mesh is not even read. `plan` says what the other way would cost.
+
+**Fit.** `fit` is the interference; with `outer_radius` it is the difference to the mean radius of the bore's nodes. In a run it grows in over
+`fit_ramp`; a clearance is there from the start. `statics` has the whole fit, and the loads of t = 0. Weights of both races count with
+`ball_forces.gravity`. A bore that is more than 5 % off the race's outer radius or out of round is refused: was its unit mm or m?
+
+**Runs** end at the row nearest to `numerics.end`. Fields are written at the end, and every `numerics.fields_interval` if that is given.
 
 ## Sweeps
 Values are a list, `[\"5 um\", \"0 um\"]` or `\"5 um, 0 um\"`, or a range `\"low .. high / count\"` with both ends included. Varying a

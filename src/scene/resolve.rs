@@ -20,6 +20,11 @@ use crate::solver::statics::{COORDINATE_NAMES, Condition};
 /// The first key, in a fixed order, that is missing or contradicts others.
 pub fn resolve(document: &Document) -> Result<Scene, SceneError> {
     resolve_solid::refuse_solid(document)?;
+    resolve_bearing(document)
+}
+
+/// The bearing of a scene that may hold a solid as well.
+pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> {
     let mut reader = Reader::new(document);
     let kind = match reader.required_choice("bearing.kind")? {
         "angular-contact" => BearingKind::AngularContact,
@@ -90,6 +95,7 @@ pub fn resolve(document: &Document) -> Result<Scene, SceneError> {
         centrifugal,
         dynamics,
         plots,
+        rigid_housing: false,
         sweep: document.sweep().to_vec(),
         defaults_used,
     })

@@ -4,6 +4,7 @@ use crate::mesh::{Order, Surface};
 use crate::scene::document::{Document, ItemRef};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::{Reader, resolve, text};
+use crate::scene::resolve_housing;
 use crate::scene::resolve_solid_mesh::source;
 use crate::scene::solid::{
     Held, LoadKind, MeshRequest, MeshSource, Probe, ProbeOf, SetLoad, SetPlace, SetRequest,
@@ -20,19 +21,23 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// Steps of an explicit method end a little before its limit, which falls as a body stiffens.
 const STEP_FRACTION: f64 = 0.8;
 
-/// A scene about a bearing, or about a solid.
+/// A scene about a bearing, about a solid, or about a bearing in a housing.
 ///
 /// # Errors
-/// The first key, in a fixed order, that is missing or contradicts others; both in one scene.
+/// The first key, in a fixed order, that is missing or contradicts others; a bearing and a solid
+/// without `[housing]`.
 pub fn resolve_subject(document: &Document) -> Result<Subject, SceneError> {
+    if document.first_below("housing").is_some() {
+        return resolve_housing::housed(document);
+    }
     let Some(solid) = document.first_below("solid") else {
         return Ok(Subject::Bearing(Box::new(resolve(document)?)));
     };
     const OF_A_BEARING: [&str; 6] =
         ["bearing", "inner_race", "outer_race", "ball_forces", "traction", "contact_damping"];
     if let Some(other) = OF_A_BEARING.iter().find_map(|part| document.first_below(part)) {
-        let reason = "a scene holds a bearing or a solid; coupling the two is not there yet";
-        let advice = format!("leave out `{other}`, or `{solid}` and all beside it");
+        let reason = "a bearing and a solid in one scene are coupled by a [housing] table";
+        let advice = format!("add it, or leave out `{other}`, or `{solid}` and all beside it");
         return Err(document.error(other, Problem::NotApplicable { reason, advice }));
     }
     Ok(Subject::Solid(Box::new(solid_scene(document)?)))
@@ -40,11 +45,15 @@ pub fn resolve_subject(document: &Document) -> Result<Subject, SceneError> {
 
 /// What takes a bearing has no use for a solid, and for what belongs to one.
 pub(crate) fn refuse_solid(document: &Document) -> Result<(), SceneError> {
-    const OF_A_SOLID: [&str; 4] = ["solid", "modes", "numerics.method", "numerics.fields_interval"];
+    const OF_A_SOLID: [&str; 5] =
+        ["housing", "solid", "modes", "numerics.method", "numerics.fields_interval"];
     let Some(key) = OF_A_SOLID.iter().find_map(|part| document.first_below(part)) else {
         return Ok(());
     };
-    let (reason, advice) = if key.starts_with("solid") {
+    let (reason, advice) = if key.starts_with("housing") {
+        let commands = "`check`, `plan`, `statics` and `run` take a bearing in a housing";
+        ("this takes a bearing alone, and the scene has a housing", commands.to_string())
+    } else if key.starts_with("solid") {
         let commands = "`check`, `plan`, `statics`, `modes` and `run` take a solid by itself";
         ("this takes a bearing, and the scene holds a solid", commands.to_string())
     } else {
@@ -56,7 +65,52 @@ pub(crate) fn refuse_solid(document: &Document) -> Result<(), SceneError> {
 fn solid_scene(document: &Document) -> Result<SolidScene, SceneError> {
     refuse_bearing_keys(document)?;
     let mut reader = Reader::new(document);
-    let mesh = mesh_request(&mut reader)?;
+    let mut scene = body(&mut reader)?;
+    scene.mode_count = reader.number("modes.count").unwrap_or(12.0) as usize;
+    scene.mode_mass = match reader.choice("modes.mass") {
+        Some("lumped") => MassMatrix::Lumped,
+        _ => MassMatrix::Consistent,
+    };
+    scene.run = run(&mut reader)?;
+    let plots = match document.value("output.plots") {
+        Some(Checked::Choices(names)) => names.clone(),
+        _ => {
+            reader.note("output.plots", "series, spectrum", "usual plots");
+            vec!["series", "spectrum"]
+        }
+    };
+    scene.draw_series = plots.contains(&"series");
+    scene.draw_spectrum = plots.contains(&"spectrum");
+    scene.defaults_used = reader.into_defaults_used();
+    Ok(scene)
+}
+
+/// The solid that is a bearing's housing.
+pub(crate) fn housing_solid(document: &Document) -> Result<SolidScene, SceneError> {
+    const OF_A_FREE_SOLID: [&str; 6] = [
+        "solid.velocity",
+        "solid.spin",
+        "solid.damped_motion",
+        "solid.probe",
+        "modes",
+        "numerics.method",
+    ];
+    if let Some(key) = OF_A_FREE_SOLID.iter().find_map(|part| document.first_below(part)) {
+        let reason = "a housing does not use it";
+        let problem = Problem::NotApplicable { reason, advice: "leave it out".to_string() };
+        return Err(document.error(key, problem));
+    }
+    let mut reader = Reader::new(document);
+    let mut scene = body(&mut reader)?;
+    scene.defaults_used = reader.into_defaults_used();
+    scene.defaults_used.retain(|used| !OF_A_FREE_SOLID.contains(&used.key.as_str()));
+    Ok(scene)
+}
+
+/// What a solid is by itself or as a housing; without modes, run and plots.
+fn body(reader: &mut Reader) -> Result<SolidScene, SceneError> {
+    let document = reader.document;
+    let mesh = mesh_request(reader)?;
     let mut number = |path: &str, usual: f64| reader.number(path).unwrap_or(usual);
     let youngs_modulus = number("solid.material.youngs_modulus", 210e9);
     let poisson_ratio = number("solid.material.poisson_ratio", 0.3);
@@ -67,24 +121,11 @@ fn solid_scene(document: &Document) -> Result<SolidScene, SceneError> {
         Some("relative-to-rigid") => DampedMotion::RelativeToRigid,
         _ => DampedMotion::Absolute,
     };
-    let gravity = vector(&mut reader, "solid.gravity");
-    let velocity = vector(&mut reader, "solid.velocity");
+    let gravity = vector(reader, "solid.gravity");
+    let velocity = vector(reader, "solid.velocity");
     let held: Vec<Held> = document.items("solid.held").map(held).collect::<Result<_, _>>()?;
     let loads: Vec<SetLoad> = document.items("solid.load").map(load).collect::<Result<_, _>>()?;
     let probes: Vec<Probe> = document.items("solid.probe").map(probe).collect::<Result<_, _>>()?;
-    let mode_count = reader.number("modes.count").unwrap_or(12.0) as usize;
-    let mode_mass = match reader.choice("modes.mass") {
-        Some("lumped") => MassMatrix::Lumped,
-        _ => MassMatrix::Consistent,
-    };
-    let run = run(&mut reader)?;
-    let plots = match document.value("output.plots") {
-        Some(Checked::Choices(names)) => names.clone(),
-        _ => {
-            reader.note("output.plots", "series, spectrum", "usual plots");
-            vec!["series", "spectrum"]
-        }
-    };
     Ok(SolidScene {
         title: text(document, "title"),
         source: text(document, "source"),
@@ -101,12 +142,12 @@ fn solid_scene(document: &Document) -> Result<SolidScene, SceneError> {
         held,
         loads,
         probes,
-        mode_count,
-        mode_mass,
-        run,
-        draw_series: plots.contains(&"series"),
-        draw_spectrum: plots.contains(&"spectrum"),
-        defaults_used: reader.into_defaults_used(),
+        mode_count: 0,
+        mode_mass: MassMatrix::Consistent,
+        run: None,
+        draw_series: false,
+        draw_spectrum: false,
+        defaults_used: Vec::new(),
     })
 }
 

@@ -162,6 +162,9 @@ pub struct Scene {
     /// What a run needs besides.
     pub dynamics: Dynamics,
 
+    /// Whether a housing is there and counts as rigid, so that nothing of it is read.
+    pub rigid_housing: bool,
+
     pub plots: Vec<Plot>,
     /// What a sweep varies unless it is told otherwise.
     pub sweep: Vec<SweepAxis>,

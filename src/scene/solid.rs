@@ -3,6 +3,7 @@
 use crate::mesh::generate::{Cage, CageMesh, ContactBlock, Housing, HousingMesh, Ring, RingMesh};
 use crate::mesh::read::LengthUnit;
 use crate::mesh::{Order, Surface};
+use crate::scene::housing::HousedScene;
 use crate::scene::resolved::{Assumption, DefaultUsed, Scene};
 use crate::solver::profile::Profile;
 use crate::solver::solid::explicit::{ExplicitMethod, SolidStepping};
@@ -15,6 +16,7 @@ use std::path::PathBuf;
 pub enum Subject {
     Bearing(Box<Scene>),
     Solid(Box<SolidScene>),
+    Housed(Box<HousedScene>),
 }
 
 /// Where the mesh comes from.

@@ -20,6 +20,7 @@ pub enum Dimension {
     Speed,
     InverseSpeed,
     Stiffness,
+    StiffnessPerArea,
     HertzStiffness,
     TiltStiffness,
     Damping,
@@ -124,6 +125,11 @@ const STIFFNESS: &[Unit] = &[
     decimal(&["N/mm"], 3),
     decimal(&["kN/mm", "N/um", "N/\u{b5}m", "N/\u{3bc}m"], 6),
 ];
+const STIFFNESS_PER_AREA: &[Unit] = &[
+    decimal(&["N/m^3", "N/m\u{b3}", "Pa/m"], 0),
+    decimal(&["N/mm^3", "N/mm\u{b3}", "MPa/mm"], 9),
+    decimal(&["MPa/um", "MPa/\u{b5}m", "MPa/\u{3bc}m"], 12),
+];
 const HERTZ_STIFFNESS: &[Unit] = &[
     decimal(&["N/m^1.5", "N/m^(3/2)"], 0),
     // 1000^1.5.
@@ -151,7 +157,7 @@ const UNBALANCE: &[Unit] = &[
 const RATE: &[Unit] = &[decimal(&["1/s", "/s", "s^-1"], 0)];
 
 impl Dimension {
-    pub const ALL: [Dimension; 21] = [
+    pub const ALL: [Dimension; 22] = [
         Dimension::Length,
         Dimension::Mass,
         Dimension::Force,
@@ -166,6 +172,7 @@ impl Dimension {
         Dimension::Speed,
         Dimension::InverseSpeed,
         Dimension::Stiffness,
+        Dimension::StiffnessPerArea,
         Dimension::HertzStiffness,
         Dimension::TiltStiffness,
         Dimension::Damping,
@@ -192,6 +199,7 @@ impl Dimension {
             Dimension::Speed => "a speed",
             Dimension::InverseSpeed => "an inverse speed",
             Dimension::Stiffness => "a stiffness",
+            Dimension::StiffnessPerArea => "a stiffness per area",
             Dimension::HertzStiffness => "a Hertz stiffness",
             Dimension::TiltStiffness => "a tilting stiffness",
             Dimension::Damping => "a damping coefficient",
@@ -219,6 +227,7 @@ impl Dimension {
             Dimension::Speed => "m/s",
             Dimension::InverseSpeed => "s/m",
             Dimension::Stiffness => "N/m",
+            Dimension::StiffnessPerArea => "N/m^3",
             Dimension::HertzStiffness => "N/m^1.5",
             Dimension::TiltStiffness => "N m/rad",
             Dimension::Damping => "N s/m",
@@ -245,6 +254,7 @@ impl Dimension {
             Dimension::Speed => SPEED,
             Dimension::InverseSpeed => INVERSE_SPEED,
             Dimension::Stiffness => STIFFNESS,
+            Dimension::StiffnessPerArea => STIFFNESS_PER_AREA,
             Dimension::HertzStiffness => HERTZ_STIFFNESS,
             Dimension::TiltStiffness => TILT_STIFFNESS,
             Dimension::Damping => DAMPING,

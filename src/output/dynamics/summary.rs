@@ -213,7 +213,7 @@ fn output(session: &Session, table: &RunTable) -> Result<Value, ResultsError> {
 }
 
 /// The ledger at the last row: where the energy is, what went in and out, what is missing.
-fn energy(table: &RunTable) -> Result<Option<Value>, ResultsError> {
+pub(crate) fn energy(table: &RunTable) -> Result<Option<Value>, ResultsError> {
     let Some(last) = table.series.data().nrows().checked_sub(1) else { return Ok(None) };
     let mut terms = Map::new();
     for (index, column) in table.series.columns().iter().enumerate() {
@@ -232,7 +232,7 @@ fn energy(table: &RunTable) -> Result<Option<Value>, ResultsError> {
     Ok(Some(Value::Object(terms)))
 }
 
-fn final_values(table: &RunTable) -> Result<Value, ResultsError> {
+pub(crate) fn final_values(table: &RunTable) -> Result<Value, ResultsError> {
     let mut values = Map::new();
     if let Some(last) = table.series.data().nrows().checked_sub(1) {
         for (index, column) in table.series.columns().iter().enumerate() {
@@ -245,7 +245,7 @@ fn final_values(table: &RunTable) -> Result<Value, ResultsError> {
 }
 
 /// Mean, extremes and peak-to-peak amplitude of every channel over the window.
-fn window(table: &RunTable) -> Result<Value, ResultsError> {
+pub(crate) fn window(table: &RunTable) -> Result<Value, ResultsError> {
     let rows = table.window.clone();
     let mut channels = Map::new();
     for column in &table.series.columns()[1..] {

@@ -54,6 +54,21 @@ pub fn write_fields(
     velocity: Option<&[Vec3]>,
     stresses: &Stresses,
 ) -> Result<(), FieldError> {
+    write_fields_and(path, mesh, displacement, velocity, stresses, &[])
+}
+
+/// The same with further fields of the nodes.
+///
+/// # Errors
+/// As [`write_fields`].
+pub fn write_fields_and(
+    path: &Path,
+    mesh: &TetMesh,
+    displacement: &[Vec3],
+    velocity: Option<&[Vec3]>,
+    stresses: &Stresses,
+    further: &[Field],
+) -> Result<(), FieldError> {
     let mut points =
         vec![Field { name: "displacement", components: 3, values: displacement.as_flattened() }];
     if let Some(velocity) = velocity {
@@ -61,6 +76,7 @@ pub fn write_fields(
     }
     let nodal = &stresses.node_von_mises;
     points.push(Field { name: "von_mises_nodal", components: 1, values: nodal });
+    points.extend_from_slice(further);
     let cells = [
         Field { name: "von_mises", components: 1, values: &stresses.cell_von_mises },
         Field { name: "cauchy_stress", components: 6, values: stresses.cell.as_flattened() },

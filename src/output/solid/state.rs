@@ -74,6 +74,32 @@ pub struct LimitEntry {
     pub products: usize,
 }
 
+impl LimitEntry {
+    pub(crate) fn of(limit: &SolidStepLimit) -> LimitEntry {
+        LimitEntry {
+            step: limit.step,
+            frequency: limit.frequency,
+            is_bound: limit.is_bound,
+            element: limit.element,
+            element_frequency: limit.element_frequency,
+            at: limit.at,
+            products: limit.products,
+        }
+    }
+
+    pub(crate) fn to_limit(self) -> SolidStepLimit {
+        SolidStepLimit {
+            step: self.step,
+            frequency: self.frequency,
+            is_bound: self.is_bound,
+            element: self.element,
+            element_frequency: self.element_frequency,
+            at: self.at,
+            products: self.products,
+        }
+    }
+}
+
 #[derive(Debug, Error)]
 pub enum SolidStateError {
     #[error(
@@ -148,13 +174,25 @@ pub fn save(
     let checkpoint = &sound.checkpoint;
     let file = state_file(&sound, session, record);
     session.series()?.write_npy(&folder.join(SERIES))?;
-    let path = folder.join(&file.arrays);
+    write_arrays(&folder.join(&file.arrays), checkpoint)?;
+    journal::write(folder, &file)?;
+    remove_partials(&folder.join(FOLDER));
+    remove_arrays(folder, &file.arrays);
+    Ok(())
+}
+
+/// Writes a checkpoint's nodes, one row each.
+pub(crate) fn write_arrays(
+    path: &Path,
+    checkpoint: &SolidCheckpoint,
+) -> Result<(), SolidStateError> {
     let mut values = Vec::with_capacity(WIDTH * checkpoint.rate.len());
     for (n, (u, v)) in checkpoint.displacement.iter().zip(&checkpoint.rate).enumerate() {
         values.extend([u[0], u[1], u[2], v[0], v[1], v[2]]);
         values.extend([checkpoint.external_work[n], checkpoint.damping_work[n]]);
     }
     if !values.iter().all(|value| value.is_finite()) {
+        let path = path.to_path_buf();
         return Err(SolidStateError::Damaged { path, what: "a value that is not finite" });
     }
     let table = Array2::from_shape_vec((checkpoint.rate.len(), WIDTH), values)
@@ -162,12 +200,38 @@ pub fn save(
     let mut bytes = Vec::new();
     table
         .write_npy(&mut bytes)
-        .map_err(|source| SolidStateError::Encode { path: path.clone(), source })?;
-    write_atomic(&path, &bytes)?;
-    journal::write(folder, &file)?;
-    remove_partials(&folder.join(FOLDER));
-    remove_arrays(folder, &file.arrays);
-    Ok(())
+        .map_err(|source| SolidStateError::Encode { path: path.to_path_buf(), source })?;
+    Ok(write_atomic(path, &bytes)?)
+}
+
+/// Reads what [`write_arrays`] wrote for so many nodes; `file` is named in `folder`. Time, steps and
+/// work stay zero.
+pub(crate) fn read_arrays(
+    folder: &Path,
+    file: &str,
+    nodes: usize,
+) -> Result<SolidCheckpoint, SolidStateError> {
+    let damaged = |what| SolidStateError::Damaged { path: folder.join(STATE), what };
+    if file.contains(['/', '\\']) {
+        return Err(damaged("its arrays lie elsewhere"));
+    }
+    let arrays = Series::read_npy(&folder.join(file))?;
+    if arrays.data().dim() != (nodes, WIDTH) {
+        return Err(damaged("its arrays have another shape than the mesh asks for"));
+    }
+    arrays.check_finite()?;
+    let part = |from: usize| {
+        let row = |row: ndarray::ArrayView1<f64>| [row[from], row[from + 1], row[from + 2], 0.0];
+        arrays.data().rows().into_iter().map(row).collect()
+    };
+    let column = |at: usize| arrays.data().column(at).to_vec();
+    Ok(SolidCheckpoint {
+        displacement: part(0),
+        rate: part(3),
+        external_work: column(6),
+        damping_work: column(7),
+        ..SolidCheckpoint::default()
+    })
 }
 
 /// Removes arrays of states that are not `kept`. What cannot be removed stays: it harms nothing.
@@ -225,20 +289,7 @@ pub fn resume(
     if !ahead {
         return Err(SolidStateError::Past { time: file.time, end: run.end });
     }
-    if file.arrays.contains(['/', '\\']) {
-        return Err(damaged("its arrays lie elsewhere"));
-    }
-    let arrays = Series::read_npy(&folder.join(&file.arrays))?;
-    let nodes = setup.problem.nodes.len();
-    if arrays.data().dim() != (nodes, WIDTH) {
-        return Err(damaged("its arrays have another shape than the mesh asks for"));
-    }
-    arrays.check_finite()?;
-    let part = |from: usize| {
-        let row = |row: ndarray::ArrayView1<f64>| [row[from], row[from + 1], row[from + 2], 0.0];
-        arrays.data().rows().into_iter().map(row).collect()
-    };
-    let column = |at: usize| arrays.data().column(at).to_vec();
+    let arrays = read_arrays(folder, &file.arrays, setup.problem.nodes.len())?;
     let series = Series::read_npy(&folder.join(SERIES))?;
     let grid = Grid {
         step_size: file.step_size,
@@ -250,27 +301,15 @@ pub fn resume(
     if series.data().nrows() < rows {
         return Err(damaged("it has fewer rows beside it than it speaks of"));
     }
-    let limit = file.limit;
     let kept = Kept {
         checkpoint: SolidCheckpoint {
             time: file.time,
             steps: file.steps,
-            displacement: part(0),
-            rate: part(3),
-            external_work: column(6),
-            damping_work: column(7),
             work: SolidWork { evaluations: file.work[0], elements: file.work[1] },
+            ..arrays
         },
         grid,
-        limit: SolidStepLimit {
-            step: limit.step,
-            frequency: limit.frequency,
-            is_bound: limit.is_bound,
-            element: limit.element,
-            element_frequency: limit.element_frequency,
-            at: limit.at,
-            products: limit.products,
-        },
+        limit: file.limit.to_limit(),
         first_balance: file.first_balance,
         turned_over: file.turned_over,
         largest_residual: file.largest_residual,
@@ -285,7 +324,7 @@ pub fn resume(
 }
 
 fn state_file(sound: &Sound, session: &SolidSession, record: &SolidStateRecord) -> SolidStateFile {
-    let (limit, checkpoint) = (&session.solid.limit, &sound.checkpoint);
+    let checkpoint = &sound.checkpoint;
     SolidStateFile {
         program: "bearing-dynamics".into(),
         version: env!("CARGO_PKG_VERSION").into(),
@@ -303,15 +342,7 @@ fn state_file(sound: &Sound, session: &SolidSession, record: &SolidStateRecord) 
         rows: session.grid.rows_until(checkpoint.steps),
         seconds: record.seconds,
         arrays: format!("state-{}.npy", checkpoint.steps),
-        limit: LimitEntry {
-            step: limit.step,
-            frequency: limit.frequency,
-            is_bound: limit.is_bound,
-            element: limit.element,
-            element_frequency: limit.element_frequency,
-            at: limit.at,
-            products: limit.products,
-        },
+        limit: LimitEntry::of(&session.solid.limit),
         first_balance: session.first_balance,
         turned_over: sound.turned_over,
         largest_residual: sound.largest_residual,

@@ -107,7 +107,7 @@ fn head(kind: &str, model: &SolidModel, built: &BuiltMesh, record: &RunRecord) -
 }
 
 /// Largest displacement and von Mises stresses, with their places.
-fn extremes(mesh: &TetMesh, displacement: &[Vec3], stresses: &Stresses) -> Part {
+pub(crate) fn extremes(mesh: &TetMesh, displacement: &[Vec3], stresses: &Stresses) -> Part {
     let largest = |values: &mut dyn Iterator<Item = f64>| {
         let mut best = (0, 0.0);
         for (index, value) in values.enumerate() {
@@ -239,7 +239,7 @@ pub fn modes(
     Ok((summary, Series::new(columns.to_vec(), data)?))
 }
 
-fn limit_section(limit: &SolidStepLimit) -> Part {
+pub(crate) fn limit_section(limit: &SolidStepLimit) -> Part {
     Ok(json!({
         "step": quantity("step limit", limit.step, "s")?,
         "highest_frequency": quantity("frequency", limit.frequency / TAU, "Hz")?,

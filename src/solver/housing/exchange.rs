@@ -100,14 +100,35 @@ pub struct HousedBearing {
     pub contact: ContactSum,
     /// On the outer race since the start, N·s.
     pub impulse: Vec3,
+    /// Of an interference that grows in.
+    pub growth: Growth,
     /// Nodes tested so far, and how often they were sorted by reach.
     pub tested: u64,
     pub sorts: u64,
-    near: Vec<ContactNode>,
-    far: Vec<(ContactNode, Vec3)>,
-    sorted_at: (Cylinder, Frame),
-    first_bearing: f64,
-    first: f64,
+    pub(super) near: Vec<ContactNode>,
+    pub(super) far: Vec<(ContactNode, Vec3)>,
+    pub(super) sorted_at: (Cylinder, Frame),
+    /// What the ledgers of the bearing and of both held at the start, J.
+    pub(super) first_bearing: f64,
+    pub(super) first: f64,
+}
+
+/// Work that growth of the race's radius does against the contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Growth {
+    /// Since the start, J.
+    pub work: f64,
+    /// When the contact was last evaluated, m, and what it resisted growth with, N.
+    pub radius: f64,
+    pub load: f64,
+}
+
+impl Growth {
+    /// With the contact as it is at a later radius: the trapezium between the two.
+    fn to(self, radius: f64, load: f64) -> Growth {
+        let work = self.work + 0.5 * (self.load + load) * (radius - self.radius);
+        Growth { work, radius, load }
+    }
 }
 
 /// Everything at the present time.
@@ -117,6 +138,8 @@ pub struct HousedSnapshot {
     pub outer: BodyState,
     pub solid: SolidLedger,
     pub contact: ContactSum,
+    /// Of an interference that grew in, J.
+    pub growth_work: f64,
     /// Energy unaccounted for in both together, J.
     pub residual: f64,
     /// Energy held in both and all work and losses, J: what the residual is a part of.
@@ -220,6 +243,7 @@ impl HousedBearing {
             exchanges: 0,
             contact: ContactSum::default(),
             impulse: [0.0; 3],
+            growth: Growth { radius: cylinder.radius, ..Growth::default() },
             tested: 0,
             sorts: 0,
             near: Vec::new(),
@@ -228,11 +252,44 @@ impl HousedBearing {
             first_bearing: 0.0,
             first: 0.0,
         };
+        housed.growth.radius = housed.ahead().0.radius;
         housed.sort();
-        let start = housed.balance()?;
-        housed.first_bearing = start.bearing.ledger[Ledger::Foundation as usize];
-        housed.first = start.residual;
+        housed.count_from_here()?;
         Ok(housed)
+    }
+
+    /// Balances energy from the present state on.
+    fn count_from_here(&mut self) -> Result<(), ExchangeError> {
+        self.first_bearing = 0.0;
+        let start = self.balance()?;
+        self.first_bearing = start.bearing.ledger[Ledger::Foundation as usize];
+        // The balance counts from there.
+        self.first = start.residual - self.first_bearing;
+        Ok(())
+    }
+
+    /// Shortens windows and steps so that a whole number of windows makes `interval` (s), before the
+    /// first exchange; returns how many.
+    ///
+    /// # Errors
+    /// As [`HousedBearing::snapshot`].
+    pub fn divide(&mut self, interval: f64) -> Result<u64, ExchangeError> {
+        // A ratio that is whole but for rounding is whole.
+        let windows = (interval / self.window * (1.0 - 1e-12)).ceil().max(1.0);
+        self.window = interval / windows;
+        self.solid.step_size = self.window / self.solid_steps as f64;
+        self.solid.time = 0.5 * self.solid.step_size;
+        // No step of the bearing is longer than its window, whatever it might be by itself.
+        if self.bearing.control.is_none() {
+            self.bearing.step_size = self.bearing.step_size.min(self.window);
+        }
+        // Where the contact is looked at first, it has not grown yet.
+        self.growth = Growth::default();
+        let (cylinder, _) = self.ahead();
+        self.growth.radius = cylinder.radius;
+        self.sort();
+        self.count_from_here()?;
+        Ok(windows as u64)
     }
 
     /// Present time: that of the bearing and of the housing's velocities, s.
@@ -253,7 +310,7 @@ impl HousedBearing {
         let mut impulse = RaceLoads::default();
         for k in 0..self.solid_steps {
             let pose = pose_after(&race, (k as f64 + 0.5) * step);
-            let HousedBearing { solid, seat, near, contact: last, .. } = self;
+            let HousedBearing { solid, seat, near, contact: last, growth, .. } = self;
             let frame = Frame::new(&pose);
             solid.step(|t, displacement, forces| {
                 let cylinder = seat.race(t);
@@ -264,6 +321,7 @@ impl HousedBearing {
                         sum[i] += force[i];
                     }
                 });
+                *growth = growth.to(cylinder.radius, last.radial_load);
             })?;
             self.tested += self.contact.tested as u64;
             impulse.force = add_scaled(impulse.force, step, self.contact.force);
@@ -292,7 +350,8 @@ impl HousedBearing {
         (self.seat.race(self.solid.time), frame)
     }
 
-    fn sort(&mut self) {
+    /// Sorts the nodes of the bore into those that are tested and those out of reach.
+    pub(super) fn sort(&mut self) {
         let (cylinder, frame) = self.ahead();
         let displacement = &self.solid.displacement;
         let at = |n: u32| moved(displacement, n);
@@ -312,7 +371,7 @@ impl HousedBearing {
         // Half the seat is gone, or the race hangs in the wall.
         for (way, distance, allowed) in [
             ("along the axis", (along - start[0]).abs(), 0.5 * cylinder.width),
-            ("across it", (across - start[1]).hypot(up - start[2]), 0.1 * cylinder.radius),
+            ("across it", libm::hypot(across - start[1], up - start[2]), 0.1 * cylinder.radius),
         ] {
             if !(distance <= allowed) {
                 return Err(ExchangeError::LeftBore { way, distance, allowed, time, step });
@@ -384,17 +443,21 @@ impl HousedBearing {
         let ahead = 0.5 * self.solid.step_size;
         let power = dot(touching.force, outer.velocity) + dot(touching.moment, outer.spin);
         let on_race = bearing.ledger[Ledger::Foundation as usize] - self.first_bearing;
+        let growth_work = self.growth.to(cylinder.radius, touching.radial_load).work;
         let held = solid.energy.strain + solid.energy.kinetic + touching.energy;
         let residual = bearing.residual + on_race + ahead * power + held
             - solid.external_work
-            - solid.damping_work;
+            - solid.damping_work
+            - growth_work;
         let work: f64 = bearing.ledger.iter().map(|entry| entry.abs()).sum();
         let turned_over = bearing.energy.contact
             + held
             + work
             + solid.external_work.abs()
-            + solid.damping_work.abs();
-        Ok(HousedSnapshot { bearing, outer, solid, contact: touching, residual, turned_over })
+            + solid.damping_work.abs()
+            + growth_work.abs();
+        let contact = touching;
+        Ok(HousedSnapshot { bearing, outer, solid, contact, growth_work, residual, turned_over })
     }
 }
 

@@ -10,6 +10,7 @@
 //! ([`condensed::geometry_error`] measures that). No inertia: [`inertia`] estimates its part.
 pub mod assembly;
 pub mod bore_equilibrium;
+pub mod checkpoint;
 pub mod condensed;
 pub mod exchange;
 pub mod inertia;

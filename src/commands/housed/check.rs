@@ -1,0 +1,85 @@
+//! `bearing check` of a bearing in its housing.
+
+use super::{condensed, defaults, echo, mesh_text, prepare};
+use crate::commands::check::bearing_lines;
+use crate::commands::{CommandResult, Outcome, say};
+use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::output::housed::summary::seat_section;
+use bearing_dynamics::output::results::pretty;
+use bearing_dynamics::output::solid::summary::mesh_section;
+use bearing_dynamics::scene::dynamics::dynamic_problem;
+use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
+use bearing_dynamics::scene::statics::static_problem;
+use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
+use bearing_dynamics::solver::solid::support::free_motions;
+use std::fmt::Write;
+use std::path::Path;
+
+pub fn run(path: &Path, scene: &HousedScene, json: bool) -> CommandResult {
+    let prepared = prepare(scene)?;
+    static_problem(&scene.bearing)?;
+    dynamic_problem(&scene.bearing)?;
+    let setup = &prepared.setup;
+    if scene.housing.method == HousingMethod::QuasiStatic {
+        setup.check_constant()?;
+        // What cannot be condensed cannot be run.
+        if free_motions(&setup.solid.problem).count > 0 {
+            condensed(&prepared)?;
+        }
+    }
+    if json {
+        let mut echo = echo::scene(scene)?;
+        echo["seat"] = seat_section(setup)?;
+        echo["mesh"] = mesh_section(&prepared.built)?;
+        say(&pretty(&echo))?;
+        return Ok(Outcome::Done);
+    }
+    let mut text = format!("{}: a valid scene\n", path.display());
+    let mut line = |label: &str, value: String| {
+        let _ = writeln!(text, "  {label:<22} {value}");
+    };
+    bearing_lines(&scene.bearing, &mut line);
+    line("housing", format!("{}; {}", mesh_text(&prepared.built), echo::method(scene)));
+    let mass: f64 = setup.model.mass.iter().sum();
+    let held = setup.solid.problem.prescribed.len();
+    line("housing mass", format!("{mass:.6} kg; {held} components held"));
+    let um = 1e6 * setup.interference;
+    let kind = match um {
+        um if um > 0.0 => "interference",
+        um if um < 0.0 => "clearance",
+        _ => "transition",
+    };
+    line(
+        "seat",
+        format!(
+            "bore radius {:.4} mm, {} nodes, {:.4} mm wide; {kind} {:+.4} um radial = {:+.4} um \
+             diametral",
+            1e3 * setup.bore_radius,
+            setup.nodes.len(),
+            1e3 * setup.width,
+            um,
+            2.0 * um
+        ),
+    );
+    let stiffness = match scene.housing.penalty {
+        Penalty::PerArea(stiffness) => format!("{stiffness:e} N/m^3, by area"),
+        Penalty::PerNode(stiffness) => format!("{stiffness:e} N/m for each node"),
+    };
+    line("seat stiffness", stiffness);
+    let axial = match scene.housing.axial {
+        Axial::Held => "held beside the bore",
+        Axial::Free => "free",
+    };
+    line("outer race, axially", axial.into());
+    if let Some(run) = &scene.bearing.dynamics.run {
+        line("run", format!("to t = {} s, a row every {} s", run.end, run.output_interval));
+    }
+    for used in defaults(scene) {
+        line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
+    }
+    for assumption in &scene.bearing.assumptions {
+        line("assumption", format!("{}: {}", assumption.name, assumption.text));
+    }
+    say(&text)?;
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,287 @@
+//! The commands on a scene with a bearing in a flexible housing; here what they share.
+
+pub mod check;
+pub mod course;
+pub mod echo;
+pub mod explicit;
+pub mod plan;
+pub mod statics;
+
+use super::echo_run;
+use bearing_dynamics::mesh::Order;
+use bearing_dynamics::output::dynamics::table::RunTable;
+use bearing_dynamics::output::housed::course::{masses, on_inner, on_outer};
+use bearing_dynamics::output::housed::fields::{BoreNodeState, bore_series};
+use bearing_dynamics::output::housed::state::{HousedParts, HousedRequest};
+use bearing_dynamics::output::results::RunRecord;
+use bearing_dynamics::output::series::Series;
+use bearing_dynamics::output::solid::fields::LIST;
+use bearing_dynamics::output::solid::state::remove_arrays;
+use bearing_dynamics::scene::dynamics::dynamic_problem;
+use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
+use bearing_dynamics::scene::housing_problem::{HousingSetup, setup};
+use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build};
+use bearing_dynamics::scene::statics::static_problem;
+use bearing_dynamics::scene::{DefaultUsed, RunSettings};
+use bearing_dynamics::solver::dynamics::model::Drive;
+use bearing_dynamics::solver::dynamics::run::RunOptions;
+use bearing_dynamics::solver::housing::assembly::{AssemblyOptions, AssemblySearch, AssemblyState};
+use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
+use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
+use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, HousedBearing, Seat};
+use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::support::free_motions;
+use bearing_dynamics::solver::statics::{Condition, StaticProblem};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+type Fallible<T> = Result<T, Box<dyn Error>>;
+
+/// Part of the race's radius beyond which nodes of the bore count as out of reach until something
+/// has moved: many times what races move in their seats.
+const REACH: f64 = 2e-3;
+
+pub struct Prepared {
+    pub built: BuiltMesh,
+    pub setup: HousingSetup,
+    pub mesh_seconds: f64,
+}
+
+pub fn prepare(scene: &HousedScene) -> Fallible<Prepared> {
+    let start = Instant::now();
+    let built = build(&scene.solid.mesh)?;
+    let setup = setup(scene, &built.mesh)?;
+    Ok(Prepared { built, setup, mesh_seconds: start.elapsed().as_secs_f64() })
+}
+
+/// The housing condensed onto the nodes of its bore under the race.
+pub fn condensed(prepared: &Prepared) -> Fallible<CondensedBore> {
+    let setup = &prepared.setup;
+    let free = free_motions(&setup.solid.problem);
+    if free.count > 0 {
+        return Err(format!(
+            "an equilibrium needs a housing that is held, and this one is free to move {}; add \
+             [[solid.held]]",
+            free.names()
+        )
+        .into());
+    }
+    Ok(condense(&setup.model, &setup.nodes, &setup.reach())?)
+}
+
+pub fn search<'b>(scene: &HousedScene, bore: &'b CondensedBore) -> AssemblySearch<'b> {
+    let bore = BoreSearch::new(bore, scene.housing.penalty);
+    AssemblySearch::new(bore, AssemblyOptions::default())
+}
+
+/// The bearing in equilibrium at time `t`, under all loads that it has then.
+pub fn bearing_at(scene: &HousedScene, t: f64) -> Fallible<StaticProblem> {
+    let problem = static_problem(&scene.bearing)?;
+    Ok(StaticProblem { conditions: on_inner(scene, t), ..problem })
+}
+
+/// Equilibrium of both at time `t`, the race grown into its fit.
+pub fn equilibrium_at(
+    scene: &HousedScene,
+    setup: &HousingSetup,
+    search: &mut AssemblySearch,
+    t: f64,
+) -> Fallible<(StaticProblem, AssemblyState)> {
+    let problem = bearing_at(scene, t)?;
+    let state = search.solve(&problem, &setup.fit(scene), on_outer(scene, t))?;
+    Ok((problem, state))
+}
+
+/// When the radial load on the inner race is largest.
+pub fn most_loaded(scene: &HousedScene) -> f64 {
+    let Some(run) = &scene.bearing.dynamics.run else { return 0.0 };
+    let load = |t: f64| {
+        let on_axis = |condition: &Condition| match condition {
+            Condition::Load(load) => load.abs(),
+            // A displacement of a micrometre takes some hundred newtons.
+            Condition::Displacement(way) => 1e8 * way.abs(),
+        };
+        let conditions = on_inner(scene, t);
+        on_axis(&conditions[1]).max(on_axis(&conditions[2]))
+    };
+    const LOOKS: u32 = 400;
+    let times = (0..=LOOKS).map(|i| run.end * f64::from(i) / f64::from(LOOKS));
+    times.max_by(|a, b| load(*a).total_cmp(&load(*b))).unwrap_or(0.0)
+}
+
+/// What leaving out inertia costs, about the equilibrium under the largest load.
+pub fn inertia_estimate(
+    scene: &HousedScene,
+    setup: &HousingSetup,
+    bore: &CondensedBore,
+) -> Fallible<Option<InertiaEstimate>> {
+    let mut search = search(scene, bore);
+    let (problem, state) = equilibrium_at(scene, setup, &mut search, most_loaded(scene))?;
+    Ok(estimate_at(scene, &problem, &search, &state))
+}
+
+/// About an equilibrium. Along the axis, where the bearing is soft and nothing drives it, the inner
+/// race counts as held. Nothing for a race that nothing holds.
+pub fn estimate_at(
+    scene: &HousedScene,
+    problem: &StaticProblem,
+    search: &AssemblySearch,
+    state: &AssemblyState,
+) -> Option<InertiaEstimate> {
+    let mut problem = problem.clone();
+    let along = &scene.bearing.dynamics.inner.drives[0];
+    if matches!(along, Drive::Load(Profile::Constant(_))) {
+        problem.conditions[0] = Condition::Displacement(state.bearing.coordinates[0]);
+    }
+    let found = estimate(&problem, search, state, &masses(scene)?);
+    Some(found).filter(|found| found.lowest > 0.0 && found.lowest.is_finite())
+}
+
+/// Bearing, housing and seat for explicit steps.
+pub fn parts(
+    scene: &HousedScene,
+    setup: &HousingSetup,
+    run: &RunSettings,
+) -> Fallible<HousedParts> {
+    let housing = &scene.housing;
+    let seat = Seat {
+        radius: setup.radius(scene),
+        width: setup.seat_width(),
+        penalty: housing.penalty,
+        nodes: setup.nodes.clone(),
+        reach: REACH * setup.bore_radius,
+    };
+    let options = ExchangeOptions {
+        solid_fraction: housing.step_fraction,
+        seat_phase: housing.window_phase,
+        // Both together are balanced, not the bearing alone.
+        bearing: RunOptions { energy_limit: f64::INFINITY, ..run.options },
+    };
+    let problem = dynamic_problem(&scene.bearing)?;
+    Ok(HousedParts { problem, model: setup.model.clone(), seat, options })
+}
+
+pub fn request(scene: &HousedScene, run: &RunSettings) -> HousedRequest {
+    HousedRequest {
+        end: run.end,
+        output_interval: run.output_interval,
+        fields_interval: scene.housing.fields_interval,
+        channels: run.channels.clone(),
+        energy_limit: run.options.energy_limit,
+    }
+}
+
+/// At the start, windows that divide the rows; returns how many a row has.
+pub fn started(parts: HousedParts, interval: f64) -> Fallible<(HousedBearing, u64)> {
+    let HousedParts { problem, model, seat, options } = parts;
+    let still = vec![[0.0; 3]; model.mass.len()];
+    let mut housed = HousedBearing::new(problem, model, seat, still, &options)?;
+    let windows = housed.divide(interval)?;
+    Ok((housed, windows))
+}
+
+pub fn run_settings(path: &Path, scene: &HousedScene) -> Fallible<RunSettings> {
+    let missing = || format!("{}: a run needs `end` in [numerics]", path.display());
+    Ok(scene.bearing.dynamics.run.clone().ok_or_else(missing)?)
+}
+
+/// Defaults in use for bearing, seat and housing; of a course of equilibria without what only
+/// motion needs.
+pub fn defaults(scene: &HousedScene) -> Vec<DefaultUsed> {
+    const OF_MOTION: [&str; 7] = [
+        "traction",
+        "contact_damping",
+        "numerics.start",
+        "numerics.integrator",
+        "numerics.step_fraction",
+        "numerics.accuracy",
+        "numerics.energy_limit",
+    ];
+    let mut all = echo_run::defaults(&scene.bearing);
+    for used in all.iter_mut().filter(|used| used.reason.starts_with("where the outer race starts"))
+    {
+        used.reason = "where the outer race starts, before loads and the housing move it".into();
+    }
+    if scene.housing.method == HousingMethod::QuasiStatic {
+        all.retain(|used| !OF_MOTION.iter().any(|part| used.key.starts_with(part)));
+    }
+    all.extend_from_slice(&scene.housing.defaults_used);
+    all.extend_from_slice(&scene.solid.defaults_used);
+    all
+}
+
+/// Scene, assumptions, defaults and plan, as every summary has them.
+pub fn record(
+    scene: &HousedScene,
+    plan: Vec<String>,
+    seconds: Vec<(String, f64)>,
+) -> Fallible<RunRecord> {
+    let assumptions = scene.bearing.assumptions.iter().map(|a| (a.name.clone(), a.text.clone()));
+    let defaults = defaults(scene)
+        .into_iter()
+        .map(|used| (used.key, format!("{} ({})", used.value, used.reason)));
+    Ok(RunRecord {
+        scene: echo::scene(scene)?,
+        plan,
+        assumptions: assumptions.chain(defaults).collect(),
+        threads: 1,
+        seconds,
+        sections: Vec::new(),
+    })
+}
+
+pub fn title(scene: &HousedScene) -> String {
+    scene.bearing.title.clone().unwrap_or_else(|| "Bearing in its housing".into())
+}
+
+/// Nodes and elements as a person counts them.
+pub fn mesh_text(built: &BuiltMesh) -> String {
+    let mesh = &built.mesh;
+    let nodes_each = if mesh.order() == Order::Linear { 4 } else { 10 };
+    format!("{} nodes, {} elements of {nodes_each}", mesh.nodes.len(), mesh.elements.len())
+}
+
+/// Rows at equal intervals with the window that starts at a time.
+pub fn run_table(series: Series, interval: f64, window_start: f64) -> RunTable {
+    // A start that lies on a row but for rounding takes that row.
+    let from = window_start - 1e-6 * interval;
+    let times = series.data().column(0);
+    let rows = times.len();
+    let start = times.iter().position(|time| *time >= from).unwrap_or(rows);
+    RunTable { series, interval, window: start..rows }
+}
+
+/// Writes the table of the bore's nodes.
+pub fn write_bore(folder: &Path, bore: &[BoreNodeState]) -> Fallible<PathBuf> {
+    let path = folder.join("bore.csv");
+    bore_series(bore)?.write_csv(&path)?;
+    Ok(path)
+}
+
+/// Removes what an earlier command left in the folder and this one may not write again.
+pub fn remove_earlier(folder: &Path) -> Fallible<()> {
+    const NAMES: [&str; 8] = [
+        "summary.json",
+        "state.json",
+        "series.csv",
+        "series.npy",
+        "spectrum.csv",
+        "bore.csv",
+        LIST,
+        "load_zone.svg",
+    ];
+    super::solid::remove_earlier(folder)?;
+    for name in NAMES {
+        let path = folder.join(name);
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(format!("cannot replace {}: {error}", path.display()).into());
+            }
+            _ => {}
+        }
+    }
+    remove_arrays(folder, "");
+    Ok(())
+}

@@ -1,0 +1,227 @@
+//! `bearing plan` of a bearing in its housing: what the scene's method does, and what the other one
+//! would cost.
+
+use super::{
+    Prepared, bearing_at, condensed, inertia_estimate, mesh_text, parts, prepare, request, started,
+};
+use crate::commands::plan::dynamic_plan_lines;
+use crate::commands::run::request as bearing_request;
+use crate::commands::solve::plan_lines;
+use crate::commands::{CommandResult, Outcome, say};
+use bearing_dynamics::output::housed::summary::largest_error;
+use bearing_dynamics::scene::RunSettings;
+use bearing_dynamics::scene::dynamics::dynamic_problem;
+use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
+use bearing_dynamics::scene::housing_problem::excitations;
+use bearing_dynamics::solver::clock::to_digits;
+use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::inertia::InertiaEstimate;
+use std::error::Error;
+use std::time::{Duration, Instant};
+
+/// Errors of leaving out inertia above which the plan warns, and above which it says no.
+const WORTH_A_WORD: f64 = 0.01;
+const TOO_MUCH: f64 = 0.1;
+/// How long windows are timed for an estimate of the wall time.
+const TIMED: Duration = Duration::from_millis(300);
+
+pub fn run(scene: &HousedScene) -> CommandResult {
+    let prepared = prepare(scene)?;
+    let mut lines = lines(scene, &prepared)?;
+    let bore = match prepared.setup.check_constant() {
+        Ok(()) => condensed(&prepared).map_err(|error| error.to_string()),
+        Err(error) => Err(error.to_string()),
+    };
+    if let Ok(bore) = &bore {
+        lines.push(condensed_line(scene, bore));
+    }
+    lines.push(quasi_static_line(scene, &prepared, bore.as_ref())?);
+    if let Some(run) = &scene.bearing.dynamics.run {
+        lines.push(explicit_line(scene, &prepared, run));
+    }
+    say(&lines.iter().map(|line| format!("{line}\n")).collect::<String>())?;
+    Ok(Outcome::Done)
+}
+
+fn line(mark: &str, name: &str, said: &str) -> String {
+    format!("{mark} {name:<28} {said}")
+}
+
+/// One line a stage, from the scene and its mesh alone.
+pub fn lines(scene: &HousedScene, prepared: &Prepared) -> Result<Vec<String>, Box<dyn Error>> {
+    let setup = &prepared.setup;
+    let of_bearing = match (scene.housing.method, &scene.bearing.dynamics.run) {
+        (HousingMethod::Explicit, Some(run)) => {
+            let problem = dynamic_problem(&scene.bearing)?;
+            let request = bearing_request(&scene.bearing, run);
+            dynamic_plan_lines(&scene.bearing, &problem, &request)
+        }
+        _ => plan_lines(&bearing_at(scene, 0.0)?),
+    };
+    // What these say of a bearing alone.
+    const ALONE: [&str; 2] = ["outer race motion", "flexible bodies"];
+    let mut lines: Vec<String> = of_bearing
+        .into_iter()
+        .filter(|line| !ALONE.iter().any(|name| line[6..].starts_with(name)))
+        .collect();
+    lines.push(line("does ", "housing mesh", &mesh_text(&prepared.built)));
+    let held = setup.solid.problem.prescribed.len();
+    lines.push(line("does ", "housing supports", &format!("{held} components held")));
+    lines.push(line(
+        if setup.solid.problem.damping == 0.0 { "skips" } else { "does " },
+        "housing damping",
+        match (setup.solid.problem.damping == 0.0, scene.housing.method) {
+            (true, _) => "none is given",
+            (false, HousingMethod::Explicit) => "mass-proportional",
+            (false, HousingMethod::QuasiStatic) => {
+                "in explicit steps; nothing moves in an equilibrium"
+            }
+        },
+    ));
+    lines.push(match scene.housing.method {
+        HousingMethod::QuasiStatic => line(
+            "does ",
+            "quasi-static housing",
+            "condensed onto its bore; bearing and bore in one equilibrium after the other",
+        ),
+        HousingMethod::Explicit => line(
+            "does ",
+            "explicit housing",
+            "bearing and housing in steps of their own, which exchange impulses",
+        ),
+    });
+    Ok(lines)
+}
+
+fn condensed_line(scene: &HousedScene, bore: &CondensedBore) -> String {
+    let sizes = bore.sizes;
+    let mark = match scene.housing.method {
+        HousingMethod::QuasiStatic => "does ",
+        HousingMethod::Explicit => "notes",
+    };
+    line(
+        mark,
+        "condensed bore",
+        &format!(
+            "{} unknowns onto {} of {} bore nodes; {} beside the race and {} out of reach are left \
+             out",
+            sizes.unknowns, sizes.kept, sizes.bore, sizes.beside, sizes.out_of_reach
+        ),
+    )
+}
+
+/// Whether equilibria will do, with the error of leaving out inertia.
+fn quasi_static_line(
+    scene: &HousedScene,
+    prepared: &Prepared,
+    bore: Result<&CondensedBore, &String>,
+) -> Result<String, Box<dyn Error>> {
+    let chosen = scene.housing.method == HousingMethod::QuasiStatic;
+    let name = if chosen { "inertia left out" } else { "quasi-static instead" };
+    let bore = match bore {
+        Ok(bore) => bore,
+        Err(error) => return Ok(line("notes", name, &format!("not possible: {error}"))),
+    };
+    let estimate = match inertia_estimate(scene, &prepared.setup, bore) {
+        Ok(Some(estimate)) => estimate,
+        Ok(None) => {
+            return Ok(line("notes", name, "nothing holds the outer race under the largest load"));
+        }
+        Err(error) if !chosen => {
+            return Ok(line("notes", name, &format!("not possible: {error}")));
+        }
+        Err(error) => return Err(error),
+    };
+    Ok(line("notes", name, &verdict(scene, &estimate)))
+}
+
+/// The error estimate in words.
+pub fn verdict(scene: &HousedScene, estimate: &InertiaEstimate) -> String {
+    let excitations = excitations(scene);
+    let mut said = format!("lowest natural frequency about {} Hz", to_digits(estimate.lowest, 4));
+    let chosen = scene.housing.method == HousingMethod::QuasiStatic;
+    let Some((error, cause)) = largest_error(estimate, &excitations) else {
+        said += ", and nothing drives it at a frequency of its own";
+        return said;
+    };
+    said += &format!(
+        "; error of {} of the displacement that goes with {} ({} Hz)",
+        percent(error),
+        cause.what,
+        to_digits(cause.frequency, 4)
+    );
+    // An error that is not a number is one.
+    let (small, bearable) = (error <= WORTH_A_WORD, error <= TOO_MUCH);
+    said += match (chosen, small, bearable) {
+        (true, _, false) => {
+            "; WARNING: not allowed for more than a rough look, write method = \"explicit\" in [housing]"
+        }
+        (true, false, true) => "; WARNING: method = \"explicit\" in [housing] has inertia",
+        (true, true, true) => "",
+        (false, _, false) => "; not allowed: inertia counts here",
+        (false, _, true) => "; method = \"quasi-static\" in [housing] takes it",
+    };
+    said
+}
+
+pub fn percent(part: f64) -> String {
+    match part {
+        part if part > 1.0 => "more than the whole".into(),
+        part => format!("{} %", to_digits(100.0 * part, 2)),
+    }
+}
+
+/// Windows of the explicit way, and about how long they take here.
+fn explicit_line(scene: &HousedScene, prepared: &Prepared, run: &RunSettings) -> String {
+    let chosen = scene.housing.method == HousingMethod::Explicit;
+    let name = if chosen { "step" } else { "explicit instead" };
+    match timed(scene, prepared, run) {
+        Ok(said) => line("notes", name, &said),
+        Err(error) => line("notes", name, &format!("not possible: {error}")),
+    }
+}
+
+fn timed(
+    scene: &HousedScene,
+    prepared: &Prepared,
+    run: &RunSettings,
+) -> Result<String, Box<dyn Error>> {
+    let request = request(scene, run);
+    let parts = parts(scene, &prepared.setup, run)?;
+    let (mut housed, windows) = started(parts, run.output_interval)?;
+    let grid = request.grid(run.output_interval, windows);
+    let all = grid.rows * windows;
+    let (tested, out_of_reach) = housed.counts();
+    let start = Instant::now();
+    let mut done = 0u64;
+    while start.elapsed() < TIMED && done < all {
+        for _ in 0..10 {
+            housed.exchange()?;
+        }
+        done += 10;
+    }
+    let seconds = start.elapsed().as_secs_f64() / done as f64 * all as f64;
+    Ok(format!(
+        "{all} windows of {:.3e} s to t = {} s, each {} of the housing (limit {:.3e} s) and steps of \
+         the bearing up to {:.3e} s; {tested} bore nodes tested, {out_of_reach} out of reach; about {} \
+         of wall time here",
+        housed.window,
+        run.end,
+        steps(housed.solid_steps),
+        housed.solid.limit.step,
+        housed.bearing.step_size,
+        duration(seconds)
+    ))
+}
+
+fn steps(count: usize) -> String {
+    if count == 1 { "one step".into() } else { format!("{count} steps") }
+}
+
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{} s", to_digits(s, 2)),
+        s if s < 7200.0 => format!("{} min", to_digits(s / 60.0, 2)),
+        s => format!("{} h", to_digits(s / 3600.0, 2)),
+    }
+}

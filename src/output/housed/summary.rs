@@ -1,0 +1,264 @@
+//! Parts of `summary.json` that a housing adds.
+
+use crate::kinematics::vec3::Vec3;
+use crate::mesh::TetMesh;
+use crate::output::dynamics::summary::{energy, final_values, window};
+use crate::output::dynamics::table::RunTable;
+use crate::output::housed::course::{HousedCourse, outer_place};
+use crate::output::housed::rows::SeatRow;
+use crate::output::housed::session::HousedSession;
+use crate::output::results::{ResultsError, RunRecord, insert_record, quantity};
+use crate::output::solid::fields::Stresses;
+use crate::output::solid::summary::{extremes, limit_section, mesh_section};
+use crate::scene::housing_problem::{Excitation, HousingSetup};
+use crate::scene::solid_mesh::BuiltMesh;
+use crate::solver::housing::assembly::AssemblyState;
+use crate::solver::housing::bore_equilibrium::POSE_NAMES;
+use crate::solver::housing::condensed::{CondensedBore, geometry_error};
+use crate::solver::housing::inertia::InertiaEstimate;
+use serde_json::{Map, Value, json};
+
+type Part = Result<Value, ResultsError>;
+
+/// Fit, width and mesh.
+///
+/// # Errors
+/// A value that is not finite.
+pub fn seat_section(setup: &HousingSetup) -> Part {
+    Ok(json!({
+        "bore_radius": quantity("bore radius", setup.bore_radius, "m")?,
+        "interference": quantity("interference", setup.interference, "m")?,
+        "width": quantity("width", setup.width, "m")?,
+        "bore_nodes": setup.nodes.len(),
+    }))
+}
+
+/// How slow everything is against what the housing holds: what leaving out inertia costs.
+///
+/// # Errors
+/// A value that is not finite.
+pub fn inertia_section(estimate: &InertiaEstimate, excitations: &[Excitation]) -> Part {
+    let mut driven = Map::new();
+    for excitation in excitations {
+        driven.insert(
+            excitation.what.clone(),
+            json!({
+                "frequency": quantity("frequency", excitation.frequency, "Hz")?,
+                "error": quantity("error", estimate.error_at(excitation.frequency), "1")?,
+            }),
+        );
+    }
+    Ok(json!({
+        "lowest_frequency": quantity("frequency", estimate.lowest, "Hz")?,
+        "housing_over_race": quantity("kinetic energy", estimate.housing_share, "1")?,
+        "error_of_what_drives": driven,
+    }))
+}
+
+/// The largest of these errors, and what causes it.
+pub fn largest_error<'e>(
+    estimate: &InertiaEstimate,
+    excitations: &'e [Excitation],
+) -> Option<(f64, &'e Excitation)> {
+    let errors = excitations.iter().map(|e| (estimate.error_at(e.frequency), e));
+    errors.max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// An equilibrium in a condensed housing.
+///
+/// # Errors
+/// A value that is not finite.
+pub fn equilibrium_section(
+    setup: &HousingSetup,
+    bore: &CondensedBore,
+    state: &AssemblyState,
+    displacement: &[Vec3],
+) -> Part {
+    let sizes = bore.sizes;
+    let seat = SeatRow::of_equilibrium(bore, &state.bore);
+    let names = ["x", "y", "z", "tilt_y", "tilt_z"];
+    let mut outer = Map::new();
+    for (i, (name, value)) in names.iter().zip(outer_place(bore, state)).enumerate() {
+        let (value, unit) = if i < 3 { (value, "m") } else { (value.to_degrees(), "deg") };
+        outer.insert((*name).into(), quantity(name, value, unit)?);
+    }
+    let mut stiffness = Map::new();
+    for (i, row) in POSE_NAMES.iter().enumerate() {
+        let mut entries = Map::new();
+        for (j, column) in POSE_NAMES.iter().enumerate() {
+            let unit = match (i < 2, j < 2) {
+                (true, true) => "N/m",
+                (true, false) => "N/rad",
+                (false, true) => "N m/m",
+                (false, false) => "N m/rad",
+            };
+            let value = state.bore.stiffness[(i, j)];
+            entries.insert((*column).into(), quantity("stiffness", value, unit)?);
+        }
+        stiffness.insert((*row).into(), Value::Object(entries));
+    }
+    let vector = |of: Vec3, unit: &str| -> Part {
+        let part = |i: usize| quantity("component", of[i], unit);
+        Ok(json!({ "x": part(0)?, "y": part(1)?, "z": part(2)? }))
+    };
+    let geometry = geometry_error(bore, displacement, &state.bore.pose);
+    Ok(json!({
+        "seat": seat_section(setup)?,
+        "outer_race": outer,
+        "force_on_outer": vector(seat.force, "N")?,
+        "moment_on_outer": vector(seat.moment, "N m")?,
+        "support_stiffness": stiffness,
+        "nodes_touching": seat.touching,
+        "deepest_penetration": quantity("penetration", seat.deepest, "m")?,
+        "peak_pressure": quantity("pressure", seat.peak_pressure, "Pa")?,
+        "energy": {
+            "housing": quantity("energy", state.bore.elastic_energy, "J")?,
+            "seat": quantity("energy", state.bore.contact_energy, "J")?,
+        },
+        "condensed": {
+            "unknowns": sizes.unknowns,
+            "bore_nodes": sizes.bore,
+            "kept": sizes.kept,
+            "beside_the_race": sizes.beside,
+            "out_of_reach": sizes.out_of_reach,
+            "asymmetry": quantity("asymmetry", bore.asymmetry, "1")?,
+            "error_of_fixed_normals": quantity("geometry error", geometry, "m")?,
+        },
+        "solver": {
+            "rounds": state.rounds,
+            "contact_changes": state.contact_changes,
+            "residual": quantity("residual", state.residual, "1")?,
+        },
+    }))
+}
+
+/// Largest displacement and stresses, and the mesh they are of.
+///
+/// # Errors
+/// A value that is not finite.
+pub fn field_sections(
+    built: &BuiltMesh,
+    displacement: &[Vec3],
+    stresses: &Stresses,
+) -> Result<Vec<(String, Value)>, ResultsError> {
+    let mesh: &TetMesh = &built.mesh;
+    Ok(vec![
+        ("mesh".into(), mesh_section(built)?),
+        ("largest".into(), extremes(mesh, displacement, stresses)?),
+    ])
+}
+
+fn head(
+    method: &str,
+    complete: bool,
+    end: f64,
+    stopped_by: Option<&str>,
+) -> Result<Map<String, Value>, ResultsError> {
+    let mut summary = Map::new();
+    summary.insert("kind".into(), json!("run"));
+    summary.insert("housing_method".into(), json!(method));
+    summary.insert("complete".into(), json!(complete));
+    if let Some(reason) = stopped_by {
+        summary.insert("stopped_by".into(), json!(reason));
+    }
+    summary.insert("end".into(), quantity("end", end, "s")?);
+    Ok(summary)
+}
+
+fn tail(mut summary: Map<String, Value>, table: &RunTable, record: &RunRecord) -> Part {
+    let last = table.series.data().column(0).last().copied().unwrap_or(0.0);
+    summary.insert("time".into(), quantity("time", last, "s")?);
+    summary.insert(
+        "output".into(),
+        json!({
+            "interval": quantity("interval", table.interval, "s")?,
+            "rows": table.series.data().nrows(),
+        }),
+    );
+    summary.insert("final".into(), final_values(table)?);
+    if table.window.is_empty() {
+        let note = "the run has not come to the window yet";
+        summary.insert("window".into(), json!({ "rows": 0, "note": note }));
+    } else {
+        summary.insert("window".into(), window(table)?);
+    }
+    insert_record(&mut summary, record)?;
+    Ok(Value::Object(summary))
+}
+
+/// Summary of a course of equilibria.
+///
+/// # Errors
+/// A value that is not finite.
+pub fn course_summary(
+    course: &HousedCourse,
+    end: f64,
+    table: &RunTable,
+    stopped_by: Option<&str>,
+    record: &RunRecord,
+) -> Part {
+    let complete = course.rows() >= course.count && stopped_by.is_none();
+    let mut summary = head("quasi-static", complete, end, stopped_by)?;
+    summary.insert(
+        "work".into(),
+        json!({
+            "equilibria": course.rows(),
+            "rounds": course.rounds,
+            "contact_changes": course.contact_changes,
+        }),
+    );
+    let residual = quantity("residual", course.largest_residual, "1")?;
+    summary.insert("largest_unbalanced_part_of_load".into(), residual);
+    tail(summary, table, record)
+}
+
+/// Summary of a run in explicit steps.
+///
+/// # Errors
+/// A value that is not finite.
+pub fn run_summary(
+    session: &HousedSession,
+    end: f64,
+    table: &RunTable,
+    stopped_by: Option<&str>,
+    record: &RunRecord,
+) -> Part {
+    let housed = &session.housed;
+    let complete = session.is_complete() && stopped_by.is_none();
+    let mut summary = head("explicit", complete, end, stopped_by)?;
+    let (tested, out_of_reach) = housed.counts();
+    summary.insert(
+        "step".into(),
+        json!({
+            "window": quantity("window", housed.window, "s")?,
+            "housing": quantity("step", housed.solid.step_size, "s")?,
+            "housing_steps_a_window": housed.solid_steps,
+            "bearing_at_most": quantity("step", housed.bearing.step_size.min(housed.window), "s")?,
+            "housing_limit": limit_section(&housed.solid.limit)?,
+        }),
+    );
+    summary.insert(
+        "work".into(),
+        json!({
+            "windows": housed.exchanges,
+            "housing_steps": housed.solid.steps,
+            "bearing_steps": housed.bearing.steps,
+            "elements_evaluated": housed.solid.work.elements,
+            "bearing_evaluations": housed.bearing.system.work.evaluations,
+            "bore_nodes_in_reach": tested,
+            "bore_nodes_out_of_reach": out_of_reach,
+            "bore_node_tests": housed.tested,
+            "sorts_by_reach": housed.sorts,
+        }),
+    );
+    if let Some(mut ledger) = energy(table)? {
+        let watch = session.watch;
+        ledger["turned_over"] = quantity("energy", watch.turned_over, "J")?;
+        ledger["largest_residual"] = quantity("energy", watch.largest_residual, "J")?;
+        let part =
+            if watch.turned_over > 0.0 { watch.largest_residual / watch.turned_over } else { 0.0 };
+        ledger["largest_residual_part"] = quantity("part", part, "1")?;
+        summary.insert("energy".into(), ledger);
+    }
+    tail(summary, table, record)
+}

@@ -1,0 +1,53 @@
+//! A scene with a bearing in a flexible housing, resolved; the housing's mesh is not read.
+
+use crate::ch2_housing::bore_contact::Penalty;
+use crate::scene::resolved::{DefaultUsed, Scene};
+use crate::scene::solid::SolidScene;
+use crate::solver::housing::bore_equilibrium::Axial;
+
+/// How bearing and housing are solved together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HousingMethod {
+    /// One equilibrium after the other, the housing condensed onto its bore.
+    QuasiStatic,
+    /// Both in explicit steps that exchange impulses.
+    Explicit,
+}
+
+/// Size of the outer race in its bore.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FitSize {
+    /// Radial interference, m; negative is clearance.
+    Interference(f64),
+    /// Radius of the race, m.
+    OuterRadius(f64),
+}
+
+/// What `[housing]` says, SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HousingSettings {
+    pub method: HousingMethod,
+    /// Surface set of the solid.
+    pub bore: String,
+    pub fit: FitSize,
+    /// Time over which an interference grows in, s.
+    pub fit_ramp: Option<f64>,
+    /// Of the seat, m; `None`: as wide as the bore.
+    pub width: Option<f64>,
+    pub axial: Axial,
+    pub penalty: Penalty,
+    /// Steps of the housing over their limit, and phase of the seat in a window.
+    pub step_fraction: f64,
+    pub window_phase: f64,
+    /// Time between files of fields in a run, s; `None`: at its end only.
+    pub fields_interval: Option<f64>,
+    pub defaults_used: Vec<DefaultUsed>,
+}
+
+/// A bearing and the housing of its outer race. The solid has no run of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HousedScene {
+    pub bearing: Scene,
+    pub housing: HousingSettings,
+    pub solid: SolidScene,
+}

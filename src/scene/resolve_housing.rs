@@ -1,0 +1,322 @@
+//! From the given keys to a bearing in a housing: defaults, and what must hold between keys.
+
+use crate::ch2_housing::bore_contact::Penalty;
+use crate::scene::document::{Assumption, Document};
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::housing::{FitSize, HousedScene, HousingMethod, HousingSettings};
+use crate::scene::resolve::{Reader, resolve_bearing, text};
+use crate::scene::resolve_solid::housing_solid;
+use crate::scene::resolved::Scene;
+use crate::scene::solid::Subject;
+use crate::scene::units::plain;
+use crate::scene::value::Checked;
+use crate::solver::dynamics::model::{Drive, RaceBody, Rotation};
+use crate::solver::dynamics::run::Start;
+use crate::solver::housing::bore_equilibrium::Axial;
+use crate::solver::profile::Profile;
+use crate::solver::statics::COORDINATE_NAMES;
+
+/// Part of the outer race's radius that a fit may have: ten times what is ever pressed in.
+const LARGEST_FIT: f64 = 0.01;
+
+/// A scene with `[housing]`.
+///
+/// # Errors
+/// The first key, in a fixed order, that is missing or contradicts others.
+pub(crate) fn housed(document: &Document) -> Result<Subject, SceneError> {
+    let mut bearing = resolve_bearing(document)?;
+    let mut reader = Reader::new(document);
+    let method = reader.choice("housing.method").unwrap_or("quasi-static");
+    if method == "rigid" {
+        // Mistakes in it are found whatever the method is.
+        if document.first_below("solid").is_some() {
+            housing_solid(document)?;
+        }
+        refuse_drives(document, &bearing)?;
+        bearing.dynamics.outer = None;
+        bearing.dynamics.defaults_used.retain(|used| !used.key.starts_with("outer_race."));
+        bearing.rigid_housing = true;
+        bearing.assumptions.push(Assumption {
+            name: "housing.method = rigid".into(),
+            text: "the outer race is fixed; the housing's mesh is not even read".into(),
+        });
+        return Ok(Subject::Bearing(Box::new(bearing)));
+    }
+    let method = match method {
+        "explicit" => HousingMethod::Explicit,
+        _ => HousingMethod::QuasiStatic,
+    };
+    if document.first_below("solid").is_none() {
+        let because = ", a housing is a solid".to_string();
+        let example = "a [solid.mesh] table, or method = \"rigid\" to [housing]".to_string();
+        return Err(document.error("solid", Problem::Missing { because, example }));
+    }
+    refuse_motion(document, &reader)?;
+    let solid = housing_solid(document)?;
+    let end = bearing.dynamics.run.as_ref().map(|run| run.end);
+    let housing = settings(&mut reader, &bearing, method, end)?;
+    if method == HousingMethod::QuasiStatic {
+        refuse_inertia(document, &bearing)?;
+    }
+    rest(document, &mut bearing, &housing)?;
+    let mut housing = housing;
+    housing.defaults_used = reader.into_defaults_used();
+    Ok(Subject::Housed(Box::new(HousedScene { bearing, housing, solid })))
+}
+
+fn not_applicable<T>(
+    document: &Document,
+    key: &str,
+    reason: &'static str,
+    advice: &str,
+) -> Result<T, SceneError> {
+    let problem = Problem::NotApplicable { reason, advice: advice.to_string() };
+    Err(document.error(key, problem))
+}
+
+/// The race must be free to move, and nothing else may hold it.
+fn refuse_motion(document: &Document, reader: &Reader) -> Result<(), SceneError> {
+    let key = "outer_race.motion";
+    match reader.choice_if_given(key) {
+        Some("5-dof") => {}
+        Some("6-dof") => {
+            let reason = "the seat has no friction, so nothing would keep the race from turning";
+            return not_applicable(document, key, reason, "write motion = \"5-dof\"");
+        }
+        _ => {
+            let reason = "a fixed outer race does not move in its housing";
+            let advice =
+                "write motion = \"5-dof\" in [outer_race], or method = \"rigid\" in [housing]";
+            return not_applicable(document, key, reason, advice);
+        }
+    }
+    if let Some(key) = document.first_below("outer_race.foundation") {
+        let reason = "the outer race rests on a foundation or in a housing, not in both";
+        return not_applicable(document, key, reason, "leave out [housing], or the foundation");
+    }
+    Ok(())
+}
+
+/// Loads and motions of an outer race that a rigid housing fixes.
+fn refuse_drives(document: &Document, bearing: &Scene) -> Result<(), SceneError> {
+    let Some(outer) = &bearing.dynamics.outer else { return Ok(()) };
+    for (name, drive) in COORDINATE_NAMES.iter().zip(&outer.drives) {
+        let moves =
+            matches!(drive, Drive::Motion(profile) if !matches!(profile, Profile::Constant(_)));
+        if moves {
+            let key = drive_key(name, false);
+            let reason = "a rigid housing fixes the outer race";
+            return not_applicable(
+                document,
+                &key,
+                reason,
+                "leave it out, or choose another method",
+            );
+        }
+    }
+    Ok(())
+}
+
+fn drive_key(name: &str, load: bool) -> String {
+    let tilt = name.starts_with("tilt");
+    let kind = match (tilt, load) {
+        (true, true) => "moment",
+        (true, false) => "tilt",
+        (false, true) => "load",
+        (false, false) => "displacement",
+    };
+    format!("outer_race.{name}.{kind}")
+}
+
+fn settings(
+    reader: &mut Reader,
+    bearing: &Scene,
+    method: HousingMethod,
+    end: Option<f64>,
+) -> Result<HousingSettings, SceneError> {
+    let document = reader.document;
+    let bore = text(document, "housing.bore").unwrap_or_else(|| {
+        reader.note_default("housing.bore");
+        "bore".to_string()
+    });
+    let fit = fit(reader, bearing)?;
+    let grows = match fit {
+        FitSize::Interference(interference) => interference > 0.0,
+        FitSize::OuterRadius(_) => true,
+    };
+    let fit_ramp = reader.given_number("housing.fit_ramp").or_else(|| {
+        let ramp = 0.1 * end.filter(|_| grows && method == HousingMethod::Explicit)?;
+        let reason = "an interference grows in over a tenth of the run, as in section 2.4.1";
+        reader.note("housing.fit_ramp", &format!("{} s", plain(ramp)), reason);
+        Some(ramp)
+    });
+    let width = reader.given_number("housing.width").or_else(|| {
+        let length = bearing.dimensions.length;
+        let (value, reason) = match length {
+            Some(length) => (format!("{} mm", plain(1e3 * length)), "the bearing's length"),
+            None => ("that of the bore".to_string(), "neither it nor `bearing.length` is given"),
+        };
+        reader.note("housing.width", &value, reason);
+        length
+    });
+    let axial = match reader.choice("housing.axial") {
+        Some("free") => Axial::Free,
+        _ => Axial::Held,
+    };
+    let penalty = match document.value("housing.contact.stiffness") {
+        Some(Checked::Either(0, stiffness)) => Penalty::PerArea(*stiffness),
+        Some(Checked::Either(_, stiffness)) => Penalty::PerNode(*stiffness),
+        _ => {
+            reader.note_default("housing.contact.stiffness");
+            Penalty::default()
+        }
+    };
+    let (mut step_fraction, mut window_phase) = (0.8, 0.25);
+    for (key, value) in
+        [("housing.step_fraction", &mut step_fraction), ("housing.window_phase", &mut window_phase)]
+    {
+        if method == HousingMethod::Explicit {
+            *value = reader.number(key).unwrap_or(*value);
+        } else if reader.is_given(key) {
+            let reason = "only `explicit` has such steps";
+            return not_applicable(
+                document,
+                key,
+                reason,
+                "leave it out, or write method = \"explicit\"",
+            );
+        }
+    }
+    let fields_interval = reader.given_number("numerics.fields_interval");
+    if let (Some(interval), Some(end)) = (fields_interval, end)
+        && interval > end
+    {
+        let problem = Problem::WrongTime {
+            value: interval,
+            relation: "after",
+            other_name: "the end of the run",
+            other: end,
+            allowed: "up to",
+            advice: "check the units of both",
+        };
+        return Err(document.error("numerics.fields_interval", problem));
+    }
+    Ok(HousingSettings {
+        method,
+        bore,
+        fit,
+        fit_ramp,
+        width,
+        axial,
+        penalty,
+        step_fraction,
+        window_phase,
+        fields_interval,
+        defaults_used: Vec::new(),
+    })
+}
+
+/// What of the fit is given; a transition fit without any.
+fn fit(reader: &mut Reader, bearing: &Scene) -> Result<FitSize, SceneError> {
+    let document = reader.document;
+    let groove = bearing.dimensions.outer_race.radius;
+    let radial = reader.given_number("housing.fit.radial").map(|fit| ("housing.fit.radial", fit));
+    let diametral = reader
+        .given_number("housing.fit.diametral")
+        .map(|fit| ("housing.fit.diametral", 0.5 * fit));
+    let radius = reader.given_number("housing.outer_radius");
+    match (radial.or(diametral), radius) {
+        (Some((key, _)), Some(_)) => {
+            let advice = "keep the fit or the radius; each follows from the other".to_string();
+            Err(document
+                .error(key, Problem::Exclusive { rival: "housing.outer_radius".into(), advice }))
+        }
+        (Some((key, fit)), None) => {
+            let limit = LARGEST_FIT * groove;
+            if fit.abs() <= limit {
+                return Ok(FitSize::Interference(fit));
+            }
+            Err(document.error(key, Problem::FitTooLarge { fit, limit }))
+        }
+        (None, Some(radius)) => {
+            if radius > groove {
+                return Ok(FitSize::OuterRadius(radius));
+            }
+            let problem = Problem::WrongOrder {
+                value: radius,
+                relation: "more than",
+                other_name: "the outer race's groove bottom",
+                other: groove,
+                advice: "it is the outside of the race",
+            };
+            Err(document.error("housing.outer_radius", problem))
+        }
+        (None, None) => {
+            reader.note("housing.fit", "{ radial = 0 um }", "a transition fit");
+            Ok(FitSize::Interference(0.0))
+        }
+    }
+}
+
+/// What a course of equilibria cannot have.
+fn refuse_inertia(document: &Document, bearing: &Scene) -> Result<(), SceneError> {
+    const ADVICE: &str = "leave it out, or write method = \"explicit\" in [housing]";
+    let Some(outer) = &bearing.dynamics.outer else { return Ok(()) };
+    for (i, (name, drive)) in COORDINATE_NAMES.iter().zip(&outer.drives).enumerate() {
+        match drive {
+            Drive::Motion(_) if i > 0 => {
+                let reason = "in equilibrium the housing says where the outer race is";
+                return not_applicable(document, &drive_key(name, false), reason, ADVICE);
+            }
+            Drive::Load(load) if i > 2 && !load.is_zero() => {
+                let reason = "a quasi-static outer race takes forces, not moments";
+                return not_applicable(document, &drive_key(name, true), reason, ADVICE);
+            }
+            Drive::Load(load) if !matches!(load, Profile::Constant(_)) => {
+                let reason = "a quasi-static outer race takes constant loads";
+                return not_applicable(document, &drive_key(name, true), reason, ADVICE);
+            }
+            _ => {}
+        }
+    }
+    if matches!(bearing.dynamics.inner.rotation, Rotation::Torque(_)) {
+        let reason = "without inertia no speed follows from a torque";
+        return not_applicable(document, "inner_race.torque", reason, "give inner_race.speed");
+    }
+    if bearing.dynamics.unbalance != 0.0 {
+        let reason = "an unbalance is inertia";
+        return not_applicable(document, "inner_race.unbalance", reason, ADVICE);
+    }
+    Ok(())
+}
+
+/// Holds the race along its axis where something beside the bore does, and leaves out what was said
+/// of a race that nothing holds.
+fn rest(
+    document: &Document,
+    bearing: &mut Scene,
+    housing: &HousingSettings,
+) -> Result<(), SceneError> {
+    let nominal =
+        bearing.dynamics.run.as_ref().is_some_and(|run| run.options.start == Start::Nominal);
+    if nominal && housing.method == HousingMethod::Explicit {
+        let reason = "in a housing the bearing starts in equilibrium";
+        return not_applicable(document, "numerics.start", reason, "leave it out");
+    }
+    let start = bearing.outer_race[0];
+    let Some(RaceBody { drives, .. }) = &mut bearing.dynamics.outer else { return Ok(()) };
+    let mut said = vec!["outer_race.foundation"];
+    if housing.axial == Axial::Held {
+        if let Drive::Load(load) = &drives[0] {
+            if !load.is_zero() && housing.method == HousingMethod::Explicit {
+                let reason = "something beside the bore holds the race along its axis";
+                let advice = "leave it out, or write axial = \"free\" in [housing]";
+                return not_applicable(document, "outer_race.x.load", reason, advice);
+            }
+            drives[0] = Drive::Motion(Profile::Constant(start));
+            said.push("outer_race.x");
+        }
+    }
+    bearing.dynamics.defaults_used.retain(|used| !said.contains(&used.key.as_str()));
+    Ok(())
+}

@@ -1,0 +1,69 @@
+//! A small bearing in a coarse ring.
+#![allow(dead_code)]
+
+#[path = "../solid_command_common/mod.rs"]
+pub mod solids;
+
+use std::fs;
+use std::path::Path;
+
+#[allow(unused_imports)]
+pub use solids::{Place, command, into_folder, json, shipped, stderr, succeed};
+
+pub const BEARING: &str = r#"title = "A bearing in a ring"
+[assumptions]
+ring = "as coarse as a test needs"
+[bearing]
+kind = "deep-groove"
+balls = 8
+length = "20 mm"
+clearance = { radial = "-4 um" }
+[bearing.inner_race]
+radius = "20.047 mm"
+groove_radius = "6.013 mm"
+[bearing.outer_race]
+radius = "31.953 mm"
+groove_radius = "6.310 mm"
+outer_radius = "35.527 mm"
+"#;
+
+pub const RACES: &str = r#"[inner_race]
+z = { load = "-250 N" }
+tilt_y = { tilt = "0 deg" }
+tilt_z = { tilt = "0 deg" }
+[outer_race]
+motion = "5-dof"
+[traction]
+law = "none"
+"#;
+
+pub const RING: &str = r#"[solid]
+damping = "77 1/s"
+[solid.mesh]
+generate = "housing-d"
+bore_radius = "35.527 mm"
+outer_radius = "50 mm"
+depth = "20 mm"
+cells = { around = 24, radial = 1, axial = 2 }
+order = 1
+[[solid.held]]
+set = "fixed"
+x = true
+y = true
+z = true
+"#;
+
+/// A scene of these parts, with `[housing]` and what else is given.
+pub fn scene_text(housing: &str, further: &str) -> String {
+    format!("{BEARING}{RACES}[housing]\n{housing}\n{RING}{further}\n")
+}
+
+/// A column of a `.csv` file.
+pub fn column(path: &Path, name: &str) -> Vec<f64> {
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    let header = lines.next().unwrap();
+    let at = header.split(',').position(|head| head.starts_with(&format!("{name} [")));
+    let at = at.unwrap_or_else(|| panic!("{name} is not in {header}"));
+    lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap()).collect()
+}
