@@ -5,7 +5,6 @@
 //! built from the sources that lie on disk. Only what a case *recorded* is kept; its judgement,
 //! by published numbers and golden values, is made anew in every run.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -117,8 +116,12 @@ impl Cache {
     pub fn take(&self, case: &Case) -> Option<Run> {
         let key = self.key(case).ok()??;
         let text = fs::read_to_string(self.path(case, &key)).ok()?;
-        let Entry { sha256, kept } = serde_json::from_str(&text).ok()?;
-        let sound = kept.format == FORMAT
+        let entry: Entry = serde_json::from_str(&text).ok()?;
+        // Byte for byte what was written: a misspelt name of an absent field would read as well.
+        let as_written = serde_json::to_string(&entry).ok()? == text;
+        let Entry { sha256, kept } = entry;
+        let sound = as_written
+            && kept.format == FORMAT
             && kept.case == case.id
             && kept.key == key
             && sha256 == hash(&kept).ok()?;
@@ -161,18 +164,19 @@ impl Cache {
     fn forget_old(&self, id: &str) {
         let is_record = |name: &str| {
             let key = name.strip_prefix(id).and_then(|rest| rest.strip_prefix('-'));
-            key.is_some_and(|key| key.len() == "sha256".len() + 63 && key.ends_with(".json"))
+            key.and_then(|key| key.strip_suffix(".json")).is_some_and(|key| key.len() == 64)
         };
         let Ok(entries) = fs::read_dir(&self.folder) else { return };
-        let mut records: BTreeMap<(SystemTime, PathBuf), ()> = BTreeMap::new();
+        let mut records = Vec::new();
         for entry in entries.flatten() {
             if is_record(&entry.file_name().to_string_lossy()) {
                 let age = entry.metadata().and_then(|facts| facts.modified());
-                records.insert((age.unwrap_or(SystemTime::UNIX_EPOCH), entry.path()), ());
+                records.push((age.unwrap_or(SystemTime::UNIX_EPOCH), entry.path()));
             }
         }
+        records.sort();
         let surplus = records.len().saturating_sub(RECORDS_PER_CASE);
-        for ((_, path), ()) in records.into_iter().take(surplus) {
+        for (_, path) in records.into_iter().take(surplus) {
             let _ = fs::remove_file(path);
         }
     }

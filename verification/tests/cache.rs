@@ -268,7 +268,7 @@ fn a_report_from_the_cache_differs_by_its_note_alone() {
         "computed at {date}, taken from the cache: same case, code and inputs; judged anew"
     );
     for (before, after) in before.iter().zip(&after) {
-        assert!(after.contains(&note), "{after}");
+        assert!(after.contains(&note), "no note in a form");
         assert!(!before.contains("taken from the cache"));
         let lines = |text: &str| text.lines().map(String::from).collect::<Vec<_>>();
         let added: Vec<String> =
@@ -279,6 +279,7 @@ fn a_report_from_the_cache_differs_by_its_note_alone() {
     // Without what is said of the cache, byte for byte the same.
     let told = [
         ", < 0.001 s of them in earlier runs (1 case from the cache)".to_string(),
+        ", &lt; 0.001 s of them in earlier runs (1 case from the cache)".to_string(),
         format!("*{note}*\n\n"),
         format!("<p class=\"meta cached\">{note}</p>\n"),
         " (cached)".to_string(),
