@@ -1,19 +1,25 @@
 //! A check as a case states it: our number, what it is held against, how closely and why.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::golden::GoldenTolerance;
+use crate::number;
 
 /// What our number is held against.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Reference {
     /// An entry of the case's `published.toml`, by id; its value is looked up after the run.
     Published(String),
     /// Anything the case can compute or cite itself, with a word on where it comes from.
-    Computed { kind: ReferenceKind, value: f64, origin: String },
+    Computed {
+        kind: ReferenceKind,
+        #[serde(with = "number")]
+        value: f64,
+        origin: String,
+    },
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ReferenceKind {
     /// Printed in the source.
@@ -27,22 +33,28 @@ pub enum ReferenceKind {
 }
 
 /// How closely our number must agree. The error is ours − reference.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Tolerance {
     /// |error| ≤ tolerance · |reference|.
-    Relative(f64),
+    Relative(#[serde(with = "number")] f64),
     /// |error| ≤ tolerance, in the check's unit.
-    Absolute(f64),
+    Absolute(#[serde(with = "number")] f64),
     /// |error| ≤ half of the last printed place (`rounding` of the published value).
     Printed,
     /// ours ≥ reference + margin, in the check's unit.
-    AtLeast { margin: f64 },
+    AtLeast {
+        #[serde(with = "number")]
+        margin: f64,
+    },
     /// ours ≤ reference − margin, in the check's unit.
-    AtMost { margin: f64 },
+    AtMost {
+        #[serde(with = "number")]
+        margin: f64,
+    },
 }
 
 /// Why a published number differs from ours, and what shows it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Explanation {
     /// What the published number is instead.
     pub text: String,
@@ -80,12 +92,13 @@ impl Explanation {
 ///     .relative(0.005, "three printed digits; clearance identified to 0.1 µm")
 ///     .golden(GoldenTolerance::REORDERED);
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[must_use = "hand it to CaseContext::check"]
 pub struct Check {
     pub id: String,
     pub quantity: String,
     pub unit: String,
+    #[serde(with = "number")]
     pub ours: f64,
     pub reference: Option<Reference>,
     pub tolerance: Option<Tolerance>,

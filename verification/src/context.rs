@@ -1,12 +1,12 @@
 //! What a case may do: record. Nothing recorded is judged until the case has finished.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::check::Check;
 use crate::golden::{GoldenTolerance, GoldenValue};
 
 /// Something the source leaves out and this program had to choose.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Assumption {
     pub name: String,
     pub text: String,
@@ -14,7 +14,7 @@ pub struct Assumption {
     pub default: String,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
     pub name: String,
     /// A complete `<svg>` element.
@@ -22,13 +22,13 @@ pub struct Figure {
     pub caption: String,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     pub id: String,
     pub text: String,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Table {
     pub id: String,
     pub title: String,
@@ -37,14 +37,14 @@ pub struct Table {
 }
 
 /// A count of work done, the same on every machine.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Work {
     pub name: String,
     pub count: u64,
 }
 
 /// All that a case has recorded.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CaseContext {
     pub(crate) checks: Vec<Check>,
     pub(crate) assumptions: Vec<Assumption>,

@@ -11,14 +11,16 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::date;
+use crate::{date, number};
 
 /// Allowed difference: `absolute + relative · |expected|`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GoldenTolerance {
+    #[serde(with = "number")]
     pub relative: f64,
     /// Floor in the value's unit, for values that may be near zero.
+    #[serde(with = "number")]
     pub absolute: f64,
 }
 
@@ -46,6 +48,7 @@ impl GoldenTolerance {
 #[serde(deny_unknown_fields)]
 pub struct GoldenValue {
     pub name: String,
+    #[serde(with = "number")]
     pub value: f64,
     pub unit: String,
     pub tolerance: GoldenTolerance,

@@ -10,6 +10,7 @@
 #![allow(clippy::needless_range_loop)]
 
 pub mod bearings;
+pub mod cache;
 pub mod cage_bearing;
 pub mod case;
 pub mod cases;
@@ -23,6 +24,7 @@ pub mod judge;
 pub mod machine;
 pub mod motion;
 pub mod mutants;
+mod number;
 pub mod oracles;
 pub mod pareto;
 pub mod pressed_block;
@@ -31,5 +33,6 @@ pub mod report;
 pub mod runner;
 pub mod solid_bodies;
 pub mod solids;
+pub mod sources;
 pub mod studies;
 pub mod surface_picture;

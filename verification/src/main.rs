@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use verification::cache::Cache;
 use verification::case::{Case, Tier};
 use verification::machine::{self, Machine};
 use verification::report::{CaseReport, CaseStatus, Report};
@@ -28,6 +29,12 @@ struct Arguments {
     /// Folder of the golden files.
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
+    /// Folder of what long cases have computed; used while case, code and inputs are the same.
+    #[arg(long, value_name = "DIR", default_value = "target/verify-cache")]
+    cache: PathBuf,
+    /// Compute long cases anew whatever the cache holds.
+    #[arg(long)]
+    no_cache: bool,
 }
 
 #[derive(Subcommand)]
@@ -116,16 +123,25 @@ fn verify(arguments: &Arguments) -> Result<bool, String> {
             .map_err(|error| format!("{}: {error}", arguments.out.display()))
     };
     save(&report)?;
+    let cache = match arguments.no_cache {
+        true => Cache::none(),
+        false => Cache::open(&arguments.cache),
+    };
     for (index, case) in selected.iter().enumerate() {
         eprint!("case {}/{} {} … ", index + 1, selected.len(), case.id);
-        let run = runner::compute(case.run);
+        let (run, kept) = runner::run(case, &cache);
         let outcome = runner::assess(case, &run, &golden_folder);
+        let cached =
+            outcome.cached.as_ref().map_or(String::new(), |cached| format!("; {}", cached.note));
         eprintln!(
-            "{} ({} checks, {:.2} s)",
+            "{} ({} checks, {:.2} s{cached})",
             outcome.status.word(),
             outcome.checks.len(),
             run.seconds
         );
+        if let Err(reason) = kept {
+            eprintln!("    not cached: {reason}");
+        }
         if outcome.status != CaseStatus::Passed {
             for failure in outcome.failures().iter().take(8) {
                 eprintln!("    {failure}");
@@ -136,10 +152,15 @@ fn verify(arguments: &Arguments) -> Result<bool, String> {
         save(&report)?;
     }
     let held = report.cases.iter().filter(|case| case.status == CaseStatus::Passed).count();
+    let (cached, before) = report.cached();
+    let cached = match cached {
+        0 => String::new(),
+        count => format!(" (and {before:.1} s in earlier runs: {count} from the cache)"),
+    };
     eprintln!(
-        "{held} of {} cases passed in {:.1} s; report: {}",
+        "{held} of {} cases passed in {:.1} s{cached}; report: {}",
         report.cases.len(),
-        report.seconds(),
+        report.seconds() - before,
         arguments.out.join("report.html").display()
     );
     Ok(report.passed())

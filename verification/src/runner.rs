@@ -5,12 +5,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Instant;
 
+use crate::cache::Cache;
 use crate::case::{Case, Computation};
 use crate::context::CaseContext;
 use crate::golden::{self, GoldenValue};
 use crate::judge::{self, Verdict};
 use crate::published::Published;
-use crate::report::{CaseReport, CaseStatus, GoldenReport, GoldenStatus};
+use crate::report::{Cached, CaseReport, CaseStatus, GoldenReport, GoldenStatus};
 
 /// What a case recorded, how it ended and how long it took.
 #[derive(Clone, Debug)]
@@ -18,7 +19,26 @@ pub struct Run {
     pub record: CaseContext,
     /// The error or the panic that ended it early.
     pub error: Option<String>,
+    /// Of the computation, whenever it was.
     pub seconds: f64,
+    /// When it was computed, if it was not now but comes from the cache.
+    pub computed: Option<String>,
+}
+
+/// A case's run: from the cache where the case is a long one and nothing has changed, else
+/// computed, and kept for the next time.
+///
+/// # Errors
+/// Beside the run, why it could not be kept.
+pub fn run(case: &Case, cache: &Cache) -> (Run, Result<(), String>) {
+    match cache.take(case) {
+        Some(run) => (run, Ok(())),
+        None => {
+            let run = compute(case.run);
+            let kept = cache.keep(case, &run);
+            (run, kept)
+        }
+    }
 }
 
 /// Compute a case. The text of its published numbers does not come in here.
@@ -32,7 +52,7 @@ pub fn compute(computation: Computation) -> Run {
         Ok(Err(error)) => Some(error.to_string()),
         Err(payload) => Some(format!("panicked: {}", panic_message(payload.as_ref()))),
     };
-    Run { record, error, seconds }
+    Run { record, error, seconds, computed: None }
 }
 
 fn panic_message(payload: &(dyn Any + Send)) -> &str {
@@ -73,6 +93,7 @@ pub fn assess(case: &Case, run: &Run, golden_folder: &Path) -> CaseReport {
         tier: case.tier,
         status: CaseStatus::Passed,
         seconds: Some(run.seconds),
+        cached: run.computed.clone().map(Cached::computed),
         error: run.error.clone(),
         problems,
         worst_ratio: worst(checks.iter().filter_map(|check| check.ratio)),

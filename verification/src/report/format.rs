@@ -2,6 +2,7 @@
 
 use crate::check::ReferenceKind;
 use crate::judge::{CheckReport, ToleranceOn};
+use crate::report::Report;
 
 /// `digits` significant digits, in plain notation where that is short.
 pub fn significant(value: f64, digits: usize) -> String {
@@ -129,6 +130,19 @@ pub fn seconds(value: Option<f64>) -> String {
         None => "–".into(),
         Some(value) if value < 0.001 => "< 0.001".into(),
         Some(value) => significant(value, if value < 10.0 { 2 } else { 3 }),
+    }
+}
+
+/// The seconds of all computations, and how many of them passed in earlier runs.
+pub fn seconds_in_all(report: &Report) -> String {
+    let all = format!("{} s", seconds(Some(report.seconds())));
+    match report.cached() {
+        (0, _) => all,
+        (count, before) => format!(
+            "{all}, {} s of them in earlier runs ({} from the cache)",
+            seconds(Some(before)),
+            counted(count, "case")
+        ),
     }
 }
 

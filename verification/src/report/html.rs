@@ -56,10 +56,10 @@ fn write_machine(out: &mut String, report: &Report) -> std::fmt::Result {
         (
             "Extent",
             format!(
-                "{}, {}, {} s",
+                "{}, {}, {}",
                 format::counted(report.cases.len(), "case"),
                 format::counted(checks, "check"),
-                format::seconds(Some(report.seconds()))
+                format::seconds_in_all(report)
             ),
         ),
     ];
@@ -86,7 +86,7 @@ fn write_summary(out: &mut String, report: &Report) -> std::fmt::Result {
             out,
             "<tr><td><a href=\"#{}\">{}</a></td><td>{}</td><td class=\"number\">{}</td>\
              <td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>\
-             <td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td></tr>",
+             <td class=\"number\">{}{}</td><td class=\"number\">{}</td><td>{}</td></tr>",
             escape(&case.id),
             escape(&case.title),
             escape(&case.section),
@@ -95,6 +95,7 @@ fn write_summary(out: &mut String, report: &Report) -> std::fmt::Result {
             counted[2],
             case.checks.len() - counted.iter().sum::<usize>(),
             format::seconds(case.seconds),
+            if case.cached.is_some() { "<small>cached</small>" } else { "" },
             optional(case.worst_ratio, 2),
             case_chip(case.status),
         )?;
@@ -170,6 +171,9 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
         format::seconds(case.seconds),
         id = escape(&case.id),
     )?;
+    if let Some(cached) = &case.cached {
+        writeln!(out, "<p class=\"meta cached\">{}</p>", escape(&cached.note))?;
+    }
     let failures = case.failures();
     if !failures.is_empty() {
         writeln!(out, "<ul class=\"failures\">")?;

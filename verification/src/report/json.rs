@@ -8,7 +8,7 @@ use crate::case::Tier;
 use crate::context::{Assumption, Finding, Table, Work};
 use crate::judge::CheckReport;
 use crate::machine::Machine;
-use crate::report::{CaseReport, CaseStatus, GoldenReport, Report, figure_file};
+use crate::report::{Cached, CaseReport, CaseStatus, GoldenReport, Report, figure_file};
 
 #[derive(Serialize)]
 struct Document<'a> {
@@ -29,6 +29,7 @@ struct CaseEntry<'a> {
     tier: Tier,
     status: CaseStatus,
     seconds: Option<f64>,
+    cached: &'a Option<Cached>,
     worst_error_over_tolerance: Option<f64>,
     error: &'a Option<String>,
     problems: &'a [String],
@@ -71,6 +72,7 @@ fn entry(case: &CaseReport) -> CaseEntry<'_> {
         tier: case.tier,
         status: case.status,
         seconds: case.seconds,
+        cached: &case.cached,
         worst_error_over_tolerance: case.worst_ratio,
         error: &case.error,
         problems: &case.problems,

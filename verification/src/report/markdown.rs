@@ -23,7 +23,7 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
     let machine = &report.machine;
     writeln!(
         out,
-        "{} · {} · {} cores · {} · version {} · commit {} · threads used: {} · {} s in all\n",
+        "{} · {} · {} cores · {} · version {} · commit {} · threads used: {} · in all {}\n",
         machine.date,
         machine.cpu,
         machine.cores,
@@ -31,7 +31,7 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
         machine.crate_version,
         machine.commit.as_deref().unwrap_or("unknown"),
         machine.threads.map_or("?".into(), |count| count.to_string()),
-        format::seconds(Some(report.seconds())),
+        format::seconds_in_all(report),
     )?;
     writeln!(out, "{HOW_TO_READ}\n")?;
 
@@ -44,7 +44,7 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
     for case in &report.cases {
         writeln!(
             out,
-            "| [{}](#{}) | {} | **{}** | {} | {} | {} | {} | {} | {} |",
+            "| [{}](#{}) | {} | **{}** | {} | {} | {} | {} | {}{} | {} |",
             cell(&case.title),
             case.id,
             cell(&case.section),
@@ -54,6 +54,7 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
             case.count(Status::ReproducedUnderAssumption),
             case.count(Status::Explained),
             format::seconds(case.seconds),
+            if case.cached.is_some() { " (cached)" } else { "" },
             optional(case.worst_ratio, 2),
         )?;
     }
@@ -128,6 +129,9 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
         case.status.word(),
         format::seconds(case.seconds)
     )?;
+    if let Some(cached) = &case.cached {
+        writeln!(out, "*{}*\n", cached.note)?;
+    }
     for failure in case.failures() {
         writeln!(out, "- **failed:** {failure}")?;
     }

@@ -59,6 +59,23 @@ pub struct GoldenReport {
     pub last_reason: Option<Reason>,
 }
 
+/// Says that a case's numbers were computed in an earlier run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Cached {
+    /// Date and time.
+    pub computed: String,
+    pub note: String,
+}
+
+impl Cached {
+    pub fn computed(date: String) -> Cached {
+        let note = format!(
+            "computed at {date}, taken from the cache: same case, code and inputs; judged anew"
+        );
+        Cached { computed: date, note }
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseReport {
     pub id: String,
@@ -66,7 +83,10 @@ pub struct CaseReport {
     pub section: String,
     pub tier: Tier,
     pub status: CaseStatus,
+    /// Of the computation; of the one in the past where it comes from the cache.
     pub seconds: Option<f64>,
+    /// Set where nothing was computed in this run.
+    pub cached: Option<Cached>,
     /// The error or panic that ended the case.
     pub error: Option<String>,
     /// Misuses: unused published values, ids used twice…
@@ -92,6 +112,7 @@ impl CaseReport {
             tier: case.tier,
             status: CaseStatus::NotRun,
             seconds: None,
+            cached: None,
             error: None,
             problems: Vec::new(),
             worst_ratio: None,
@@ -160,8 +181,15 @@ impl Report {
         self.cases.iter().all(|case| case.status != CaseStatus::NotRun)
     }
 
+    /// What all computations took, those in the past as well.
     pub fn seconds(&self) -> f64 {
         self.cases.iter().filter_map(|case| case.seconds).sum()
+    }
+
+    /// How many cases come from the cache, and the seconds of their computations.
+    pub fn cached(&self) -> (usize, f64) {
+        let cached = self.cases.iter().filter(|case| case.cached.is_some());
+        (cached.clone().count(), cached.filter_map(|case| case.seconds).sum())
     }
 
     /// Write `report.json`, `report.html`, `report.md` and the figures into `folder`. Each file
