@@ -227,7 +227,9 @@ fn a_nearly_incompressible_bar_is_solved_to_rounding() {
         let forces = nodes.iter().map(|&node| (node, [0.0, 0.0, share])).collect();
         problem.loads.push(Load { forces, profile: Profile::Constant(-3000.0) });
         let model = SolidModel::new(problem).unwrap();
-        let options = EquilibriumOptions { rounding, ..Default::default() };
+        // Load steps do not help against rounding.
+        let smallest_load_step = 1.0;
+        let options = EquilibriumOptions { rounding, smallest_load_step, ..Default::default() };
         let found = equilibrium(&model, 0.0, &options)?;
         let reaction: f64 = found.reactions.iter().map(|force| force[2]).sum();
         let sag = nodes.iter().map(|&n| found.displacement[n as usize][2]).sum::<f64>() * share;
@@ -235,12 +237,12 @@ fn a_nearly_incompressible_bar_is_solved_to_rounding() {
     };
     let usual = EquilibriumOptions::default();
     // Without the allowance there is no end to it.
-    let error = solve(0.4999, usual.tolerance).unwrap_err();
+    let error = solve(0.49999, usual.tolerance).unwrap_err();
     assert!(matches!(error, EquilibriumError::NotConverged { .. }), "{error}");
-    let (residual, reaction, sag) = solve(0.4999, usual.rounding).unwrap();
+    let (residual, reaction, sag) = solve(0.49999, usual.rounding).unwrap();
     assert!(residual > usual.tolerance && residual <= usual.rounding, "{residual}");
-    // 561 nodes and more may each lack that part of the largest nodal force.
-    assert!((reaction / 3000.0 - 1.0).abs() <= 1e-5, "{reaction}");
+    // The unbalanced forces are rounding, and of either sign.
+    assert!((reaction / 3000.0 - 1.0).abs() <= 1e-6, "{reaction}");
     // It bends as at ν = 0.49, but for some locking.
     let (usual_residual, _, other) = solve(0.49, usual.rounding).unwrap();
     assert!(usual_residual <= usual.tolerance, "{usual_residual}");
