@@ -29,7 +29,7 @@ impl Default for EquilibriumOptions {
             // Rounding of nodal forces of stiff elements under small loads leaves about 1e-11.
             tolerance: 1e-10,
             // Towards ν = 1/2 the stresses of an element grow as 1/(1 − 2ν) while their sum at a node
-            // does not, and rounding leaves so much more: 2e-10 at ν = 0.4999. 1e-8 of the load is
+            // does not, and rounding leaves so much more: 7e-10 of a bent bar at ν = 0.49999. 1e-8 is
             // still far below what meshes are good to.
             rounding: 1e-8,
             most_iterations: 30,
