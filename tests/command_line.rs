@@ -25,7 +25,12 @@ fn every_scene_of_the_repository_goes_through_every_command() {
         assert!(printed.contains("inner race ") && printed.contains("stiffness"), "{printed}");
         let dry = done(&["statics", &path, "--dry"]);
         assert_eq!(printed.rsplit_once("wrote ").unwrap().0, dry);
-        assert!(done(&["pack", &path, "--out", &pack]).starts_with("wrote 9 files to "));
+        let packed = done(&["pack", &path, "--out", &pack]);
+        assert!(packed.starts_with("wrote 9 files to "));
+        // A pack is one of statics, and says so where the scene has a run.
+        let written = read(Path::new(&path));
+        let has_run = ["[numerics]", "\"numerics\""].iter().any(|key| written.contains(key));
+        assert_eq!(packed.contains("its run is not packed"), has_run, "{packed}");
         assert!(done(&["compare", &pack, &results]).starts_with("equal: "));
     }
 }

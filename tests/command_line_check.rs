@@ -5,7 +5,7 @@ mod command_line_common;
 use command_line_common::{
     ANGULAR_CONTACT, DEEP_GROOVE, bearing_scenes, changed, done, json, read, scene, text, write,
 };
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::path::Path;
 use tempfile::tempdir;
 
@@ -166,4 +166,41 @@ fn the_motion_of_a_run_is_echoed() {
     let understood = echo(root.path(), &text("cage_600rpm.toml"));
     insta::assert_snapshot!(serde_json::to_string_pretty(&understood["motion"]).unwrap());
     assert!(echo(root.path(), &text("deep_groove_tilt.toml"))["motion"].is_null());
+}
+
+#[test]
+fn numerics_output_assumptions_and_defaults_are_echoed() {
+    let root = tempdir().unwrap();
+    let text = |name| std::fs::read_to_string(scene(name)).unwrap();
+    // Numbers are those of the scene's text.
+    let echoed = echo(root.path(), &text("settling_by_accuracy.toml"));
+    assert_eq!(number(&echoed, "/numerics/end", "s"), 0.2);
+    assert_eq!(echoed["numerics"]["integrator"], "dormand-prince");
+    assert_eq!(number(&echoed, "/numerics/accuracy", "1"), 1e-4);
+    let echoed = echo(root.path(), &text("settling.toml"));
+    assert_eq!(number(&echoed, "/numerics/step", "s"), 1e-6);
+    assert_eq!(number(&echoed, "/output/window_start", "s"), 0.1);
+    assert_eq!(echoed["output"]["plots"], json!(["series"]));
+    assert!(echoed["output"]["channels"].as_array().unwrap().contains(&json!("races")));
+    for name in ["settling.toml", "varying_compliance.toml", "cage_600rpm.toml", "bar_impact.toml"]
+    {
+        // As many of either as the text for people has, and the same.
+        let path = scene(name);
+        let said = done(&["check", &path]);
+        let echoed: Value = serde_json::from_str(&done(&["check", &path, "--json"])).unwrap();
+        let [assumptions, defaults] =
+            ["assumptions", "defaults"].map(|part| echoed[part].as_array().unwrap().clone());
+        let lines = |label: &str| said.lines().filter(|l| l.trim().starts_with(label)).count();
+        assert_eq!(assumptions.len(), lines("assumption "), "{name}");
+        assert_eq!(defaults.len(), lines("default "), "{name}");
+        for used in &defaults {
+            let [key, value] = ["key", "value"].map(|part| used[part].as_str().unwrap());
+            assert!(said.contains(&format!("{key} = {value} (")), "{name}: {key}");
+        }
+        assert!(echoed["output"]["plots"].is_array(), "{name}");
+    }
+    // Statics has its own plots, and no numerics.
+    let echoed = echo(root.path(), &text("deep_groove_tilt.toml"));
+    assert!(echoed["numerics"].is_null());
+    assert_eq!(echoed["output"]["plots"], json!(["polar", "moment-tilt"]));
 }

@@ -491,3 +491,14 @@ fn the_record_has_what_a_reader_needs() {
     assert_eq!(record["threads"], 2);
     assert!(record["seconds"].as_f64().unwrap() > 0.0);
 }
+
+#[test]
+fn a_sweep_of_a_scene_with_a_run_says_that_it_is_one_of_statics() {
+    let root = tempdir().unwrap();
+    let out = text(&root.path().join("sweep"));
+    let vary = ["--vary", "bearing.ball_phase=0 deg, 5 deg", "--out", &out];
+    for (name, has_run) in [("settling.toml", true), ("deep_groove_tilt.toml", false)] {
+        let said = done(&[&["sweep", &scene(name), "--fresh"], &vary[..]].concat());
+        assert_eq!(said.contains("its run is not swept"), has_run, "{said}");
+    }
+}

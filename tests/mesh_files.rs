@@ -46,7 +46,7 @@ fn a_box_from_gmsh_in_every_form() {
     for order in [1, 2] {
         for form in FORMS {
             let name = file("box", order, form);
-            let Loaded { mesh, notes } = read(&name);
+            let Loaded { mesh, notes, .. } = read(&name);
             assert_eq!(notes, [], "{name}");
             sound(&mesh, &name);
             let (nodes, kind) =
@@ -155,7 +155,8 @@ fn gmsh_files_of_our_own() {
         mesh.element_sets.insert("front".into(), (0..2 * count / 3).collect());
         mesh.element_sets.insert("back".into(), (count / 3..count).collect());
         let text = write_gmsh(&mesh).unwrap();
-        let Loaded { mesh: back, notes } = read_gmsh(text.as_bytes(), LengthUnit::Metre).unwrap();
+        let Loaded { mesh: back, notes, .. } =
+            read_gmsh(text.as_bytes(), LengthUnit::Metre).unwrap();
         assert_eq!(notes, []);
         assert_eq!((&back.nodes, &back.node_sets), (&mesh.nodes, &mesh.node_sets));
         // Elements come entity by entity: front alone, back alone, both; sets keep their members.
@@ -231,7 +232,7 @@ fn deck(from: &str, to: &str) -> ReadError {
 
 #[test]
 fn a_typed_input_deck() {
-    let Loaded { mesh, notes } = read_abaqus(DECK.as_bytes(), LengthUnit::Metre).unwrap();
+    let Loaded { mesh, notes, numbers } = read_abaqus(DECK.as_bytes(), LengthUnit::Metre).unwrap();
     assert_eq!(mesh.node_set("everything").unwrap(), [0, 1, 2, 3]);
     assert_eq!(mesh.node_set("base").unwrap(), [0, 1, 2]);
     assert_eq!(mesh.node_set("more").unwrap(), [0, 1, 2, 3]);
@@ -239,6 +240,7 @@ fn a_typed_input_deck() {
     let floor = mesh.surface_set("floor").unwrap();
     assert_eq!((floor.len(), mesh.node_set("floor").unwrap()), (1, &[0, 1, 2][..]));
     let said: Vec<String> = notes.iter().map(Note::to_string).collect();
+    assert_eq!((numbers.nodes, numbers.elements), (vec![1, 2, 3, 7], vec![11]));
     assert_eq!(said, ["*ELASTIC was skipped (1 times)", "*MATERIAL was skipped (1 times)"]);
 }
 

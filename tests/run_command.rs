@@ -517,6 +517,12 @@ fn runs_of_different_accuracy_are_compared_with_given_tolerances() {
     for wrong in [&["--rtol", "-1"][..], &["--atol", "m"], &["--rtol", "1", "--class", "mixed"]] {
         assert_eq!(compare(wrong).0, 2, "{wrong:?}");
     }
+    for unit in ["mm/s", "parsecs"] {
+        let (found, _, message) = compare(&["--rtol", "1e-2", "--atol", &format!("{unit}=1e9")]);
+        assert_eq!(found, 2, "{unit}");
+        assert!(message.contains(&format!("the unit {unit:?}")), "{message}");
+        assert!(message.contains("there are: ") && message.contains(" m/s,"), "{message}");
+    }
 }
 
 #[test]

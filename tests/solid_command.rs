@@ -267,3 +267,17 @@ fn paraview_opens_fields_and_modes() {
     let velocity = found[2]["point_data"]["velocity"][2][0].as_f64().unwrap();
     assert!(velocity > 0.0 && velocity < 100.0, "{velocity}");
 }
+
+#[test]
+fn times_of_a_run_are_written_as_people_write_them() {
+    let place = Place::new();
+    let numerics =
+        "[numerics]\nend = \"0.4 ms\"\nstep = \"0.1 us\"\noutput_interval = \"0.1 ms\"\n";
+    let scene = place.scene("scene.toml", &bar(1, &format!("{ON_ROLLERS}{numerics}")));
+    let said = succeed(into_folder("run", &scene, &place.path("out"), &[]));
+    // 4000 × 1e-7 and 4000 additions of it are both something else.
+    assert!(4000.0 * 1e-7 != 0.0004 && (0..4000).fold(0.0, |t, _| t + 1e-7) != 0.0004);
+    assert!(said.contains("4000 steps to t = 0.0004 s,"), "{said}");
+    assert_eq!(column(&place.path("out"), "time"), [0.0, 0.0001, 0.0002, 0.0003, 0.0004]);
+    assert_eq!(number(&json(place.path("out/summary.json"))["time"]), 0.0004);
+}

@@ -104,6 +104,10 @@ fn errors_name_what_is_wrong() {
     fs::write(place.path("half.msh"), &fs::read(place.path("bar.msh")).unwrap()[..20_000]).unwrap();
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh");
     fs::copy(data.join("box_o2.inp"), place.path("box_o2.inp")).unwrap();
+    // One tetrahedron that is turned (label 11), one beside it, and a node of no element.
+    let deck = "*Node\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n7, 0, 0, 1.00000012\n8, 0, 0, -1\n90, 5, 5, 5\n\
+                *Element, type=C3D4\n21, 1, 3, 2, 8\n11, 1, 3, 2, 7\n";
+    fs::write(place.path("deck.inp"), deck).unwrap();
     let file = |name: &str| format!("[solid.mesh]\nfile = \"{name}\"\nunit = \"mm\"\n");
     let held = |further: &str| bar(1, &format!("{ON_ROLLERS}{further}"));
     let numerics = "[numerics]\nend = \"1 ms\"\n";
@@ -116,6 +120,12 @@ fn errors_name_what_is_wrong() {
         ("no such mesh", "check", file("missing.msh")),
         ("format unknown", "check", file("bar.stl")),
         ("cut off", "check", file("half.msh")),
+        ("faults of a deck", "check", file("deck.inp")),
+        (
+            "bore too large",
+            "check",
+            "[solid.mesh]\ngenerate = \"housing-a\"\nbore_radius = \"35.5 mm\"\nside = \"60 mm\"\ndepth = \"20 mm\"\norder = 1\ncells = { around = 32, radial = 2, axial = 2 }\n".to_string(),
+        ),
         ("order lowered", "check", format!("{}order = 1\n", file("box_o2.inp"))),
         ("no order", "check", bar(1, "").replace("order = 1\n", "")),
         ("no length", "check", bar(1, "").replace("length = \"40 mm\"\n", "")),
@@ -143,6 +153,11 @@ fn errors_name_what_is_wrong() {
             "empty set",
             "check",
             bar(1, "[[solid.set]]\nname = \"cut\"\nplane = \"x\"\nat = \"41 mm\"\n"),
+        ),
+        (
+            "set inside",
+            "check",
+            bar(1, "[[solid.set]]\nname = \"middle\"\nplane = \"x\"\nat = \"20 mm\"\n"),
         ),
         (
             "set twice",
@@ -185,6 +200,15 @@ fn errors_name_what_is_wrong() {
         assert_eq!(output.status.code(), Some(2), "{name}: {message}");
         assert_eq!(message.lines().count(), 1, "{name}: {message}");
         messages += &format!("{name}\n    {message}");
+    }
+    // What `plan` says of a step beyond the limit.
+    let scene = place.scene("scene.toml", &held("[numerics]\nend = \"1 ms\"\nstep = \"10 us\"\n"));
+    let said = succeed(command("plan", &scene, &[]));
+    let line = said.lines().last().unwrap();
+    for part in
+        ["given step", "6.114e-7 s", "WARNING: too long, the run will be refused", "100 steps"]
+    {
+        assert!(line.contains(part), "{part} is not in {line}");
     }
     let modes = command("modes", &shipped("deep_groove_tilt.toml"), &[]).output().unwrap();
     assert_eq!(modes.status.code(), Some(2));

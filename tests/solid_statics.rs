@@ -211,3 +211,40 @@ fn frequencies_of_a_rod() {
         assert!((mode.frequency / exact - 1.0).abs() <= bound, "{} {exact}", mode.frequency);
     }
 }
+
+/// Near ν = 1/2 rounding keeps the residual above the tolerance, by how little is said.
+#[test]
+fn a_nearly_incompressible_bar_is_solved_to_rounding() {
+    let size = [0.1, 0.01, 0.01];
+    let solve = |poisson_ratio: f64, rounding: f64| {
+        let mut problem = bar(size, [20, 2, 2], Order::Quadratic, false);
+        problem.material = LinearElastic::new(70e9, poisson_ratio).unwrap();
+        hold(&mut problem, |x| [(x[0] < 1e-9).then_some(0.0); 3]);
+        let end = |x: &Vec3| x[0] > size[0] - 1e-9;
+        let nodes = (0..).zip(&problem.nodes).filter(|(_, x)| end(x)).map(|(node, _)| node);
+        let nodes: Vec<u32> = nodes.collect();
+        let share = 1.0 / nodes.len() as f64;
+        let forces = nodes.iter().map(|&node| (node, [0.0, 0.0, share])).collect();
+        problem.loads.push(Load { forces, profile: Profile::Constant(-3000.0) });
+        let model = SolidModel::new(problem).unwrap();
+        // Load steps do not help against rounding.
+        let smallest_load_step = 1.0;
+        let options = EquilibriumOptions { rounding, smallest_load_step, ..Default::default() };
+        let found = equilibrium(&model, 0.0, &options)?;
+        let reaction: f64 = found.reactions.iter().map(|force| force[2]).sum();
+        let sag = nodes.iter().map(|&n| found.displacement[n as usize][2]).sum::<f64>() * share;
+        Ok::<_, EquilibriumError>((found.residual, reaction, sag))
+    };
+    let usual = EquilibriumOptions::default();
+    // Without the allowance there is no end to it.
+    let error = solve(0.49999, usual.tolerance).unwrap_err();
+    assert!(matches!(error, EquilibriumError::NotConverged { .. }), "{error}");
+    let (residual, reaction, sag) = solve(0.49999, usual.rounding).unwrap();
+    assert!(residual > usual.tolerance && residual <= usual.rounding, "{residual}");
+    // The unbalanced forces are rounding, and of either sign.
+    assert!((reaction / 3000.0 - 1.0).abs() <= 1e-6, "{reaction}");
+    // It bends as at ν = 0.49, but for some locking.
+    let (usual_residual, _, other) = solve(0.49, usual.rounding).unwrap();
+    assert!(usual_residual <= usual.tolerance, "{usual_residual}");
+    assert!((sag / other - 1.0).abs() <= 0.05, "{sag} {other}");
+}

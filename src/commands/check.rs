@@ -40,6 +40,13 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         if let Some(problem) = &in_motion {
             understood["motion"] = echo_run::motion(problem)?;
         }
+        if let Some(run) = &scene.dynamics.run {
+            understood["numerics"] = echo_run::numerics(run)?;
+        }
+        understood["output"] = echo_run::output(&scene)?;
+        for (name, notes) in echo_run::notes(&scene.assumptions, &echo_run::defaults(&scene)) {
+            understood[name] = notes;
+        }
         say(&pretty(&understood))?;
     } else {
         say(&summary(&arguments.scene.display().to_string(), &scene))?;

@@ -5,10 +5,11 @@ use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::output::results::{ResultsError, quantity};
-use bearing_dynamics::scene::{DefaultUsed, Scene};
+use bearing_dynamics::scene::{Assumption, DefaultUsed, Plot, RunPlot, RunSettings, Scene};
 use bearing_dynamics::solver::dynamics::model::{
     CageBody, Drive, DynamicProblem, RaceBody, Rotation,
 };
+use bearing_dynamics::solver::dynamics::run::{Start, Stepping};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::COORDINATE_NAMES;
 use serde_json::{Map, Value, json};
@@ -29,6 +30,61 @@ pub fn defaults(scene: &Scene) -> Vec<DefaultUsed> {
     }
     all.extend_from_slice(&scene.dynamics.defaults_used);
     all
+}
+
+/// Assumptions and defaults in use, for `check`.
+pub fn notes(assumptions: &[Assumption], defaults: &[DefaultUsed]) -> [(&'static str, Value); 2] {
+    let assumption = |a: &Assumption| json!({ "name": a.name, "text": a.text });
+    let default =
+        |used: &DefaultUsed| json!({ "key": used.key, "value": used.value, "reason": used.reason });
+    [
+        ("assumptions", assumptions.iter().map(assumption).collect()),
+        ("defaults", defaults.iter().map(default).collect()),
+    ]
+}
+
+/// How a run is computed, under the keys of the scene.
+pub fn numerics(run: &RunSettings) -> Echo {
+    let options = &run.options;
+    let (name, value, unit) = match options.stepping {
+        Stepping::Fixed(step) => ("step", step, "s"),
+        Stepping::FractionOfLimit(part) => ("step_fraction", part, "1"),
+        Stepping::Accuracy(accuracy) => ("accuracy", accuracy, "1"),
+    };
+    Ok(json!({
+        "end": quantity("end", run.end, "s")?,
+        "integrator": options.integrator.name(),
+        name: quantity(name, value, unit)?,
+        "start": match options.start {
+            Start::Equilibrium => "equilibrium",
+            Start::Nominal => "nominal",
+        },
+        "output_interval": quantity("output_interval", run.output_interval, "s")?,
+        "energy_limit": quantity("energy_limit", options.energy_limit, "1")?,
+    }))
+}
+
+/// What is written: of a run its columns, window and plots; otherwise the plots of statics.
+pub fn output(scene: &Scene) -> Echo {
+    let Some(run) = &scene.dynamics.run else {
+        let plots = scene.plots.iter().map(|plot| match plot {
+            Plot::LoadZone => "load-zone",
+            Plot::Polar => "polar",
+            Plot::MomentTilt => "moment-tilt",
+        });
+        return Ok(json!({ "plots": plots.collect::<Vec<_>>() }));
+    };
+    let plots = scene.dynamics.plots.iter().map(|plot| match plot {
+        RunPlot::Orbit => "orbit",
+        RunPlot::Spectrum => "spectrum",
+        RunPlot::Series => "series",
+        RunPlot::SlipSpin => "slip-spin",
+    });
+    Ok(json!({
+        "plots": plots.collect::<Vec<_>>(),
+        "channels": run.channels.iter().map(|group| group.name()).collect::<Vec<_>>(),
+        "window_start": quantity("window_start", run.window_start, "s")?,
+    }))
 }
 
 /// Bodies, their loads and motions, and the laws between them.

@@ -34,7 +34,12 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let stem = path.file_stem().unwrap_or(path.as_os_str());
     let folder = arguments.out.clone().unwrap_or_else(|| Path::new("packs").join(stem));
     let manifest = write_pack(&folder, &input, &solved.solution, &solved.record)?;
-    say(&format!("wrote {} files to {}\n", manifest.sha256.len() + 1, folder.display()))?;
+    let of_run = match scene.dynamics.run {
+        Some(_) => ": the statics of this scene; its run is not packed",
+        None => "",
+    };
+    let files = manifest.sha256.len() + 1;
+    say(&format!("wrote {files} files to {}{of_run}\n", folder.display()))?;
     Ok(Outcome::Done)
 }
 

@@ -103,7 +103,7 @@ fn inverted(mesh: &TetMesh) -> Option<Fault> {
     worst(mesh, bad).map(|(count, element, value)| Fault::Inverted {
         count,
         of: mesh.elements.len(),
-        element,
+        element: element.into(),
         at: centre(mesh, element),
         volume: -value,
     })
@@ -119,7 +119,7 @@ fn folded(mesh: &TetMesh) -> Option<Fault> {
     };
     worst(mesh, bad).map(|(count, element, value)| Fault::Folded {
         count,
-        element,
+        element: element.into(),
         at: centre(mesh, element),
         ratio: -value,
     })
@@ -133,7 +133,7 @@ fn slivers(mesh: &TetMesh, limit: f64) -> Option<Fault> {
     };
     worst(mesh, bad).map(|(count, element, aspect)| Fault::Sliver {
         count,
-        element,
+        element: element.into(),
         at: centre(mesh, element),
         aspect,
         limit,
@@ -154,7 +154,10 @@ fn mid_sides(mesh: &TetMesh) -> Option<Fault> {
             }
         }
     }
-    found.map(|(count, element, node, off)| Fault::MidSide { count, element, node, off })
+    found.map(|(count, element, node, off)| {
+        let [element, node] = [element, node].map(u64::from);
+        Fault::MidSide { count, element, node, off }
+    })
 }
 
 fn duplicates(mesh: &TetMesh, tolerance: f64) -> Option<Fault> {
@@ -162,8 +165,8 @@ fn duplicates(mesh: &TetMesh, tolerance: f64) -> Option<Fault> {
     let pairs = || (0..mesh.nodes.len() as u32).filter(|&node| first_at[node as usize] != node);
     pairs().next().map(|second| Fault::DuplicateNodes {
         count: pairs().count(),
-        first: first_at[second as usize],
-        second,
+        first: first_at[second as usize].into(),
+        second: second.into(),
         at: mesh.nodes[second as usize],
         tolerance,
     })
@@ -176,7 +179,7 @@ fn unreferenced(mesh: &TetMesh) -> Option<Fault> {
     }
     let first = used.iter().position(|&used| !used)?;
     let count = used.iter().filter(|&&used| !used).count();
-    Some(Fault::UnreferencedNodes { count, first: first as u32 })
+    Some(Fault::UnreferencedNodes { count, first: first as u64 })
 }
 
 /// Whether two faces with the same corners run through them in the same direction.
@@ -195,7 +198,7 @@ fn overlapping(mesh: &TetMesh, faces: &[([u32; 3], Face)], turned: bool) -> Opti
     let groups = || faces.chunk_by(|a, b| a.0 == b.0).filter(wrong);
     groups().next().map(|owners| Fault::Overlapping {
         count: groups().count(),
-        element: owners[0].1.element,
+        element: owners[0].1.element.into(),
         at: centre(mesh, owners[0].1.element),
     })
 }
@@ -228,6 +231,7 @@ fn boundary(mesh: &TetMesh, faces: &[([u32; 3], Face)], cavities: usize) -> Vec<
     }
     if let Some((first, second)) = first_open {
         let at = ((mesh.point(first) + mesh.point(second)) / 2.0).into();
+        let [first, second] = [first, second].map(u64::from);
         found.push(Fault::NonManifold { count: open, first, second, at });
     }
     // Volume behind each closed part by the divergence theorem: negative for a cavity. Measured
@@ -266,8 +270,8 @@ fn bodies(mesh: &TetMesh, faces: &[([u32; 3], Face)], allowed: usize) -> Option<
     let roots: Vec<u32> = all.filter(|&element| parts.root(element) == element).collect();
     (roots.len() > allowed && roots.len() > 1).then(|| Fault::SeveralBodies {
         count: roots.len(),
-        first: roots[0],
-        second: roots[1],
+        first: roots[0].into(),
+        second: roots[1].into(),
     })
 }
 

@@ -19,11 +19,22 @@ pub enum MeshError {
     #[error("no {kind} set is called \"{name}\"; there are: {}", list(known))]
     NoSuchSet { kind: &'static str, name: String, known: Vec<String> },
     #[error(
-        "set \"{name}\" ({region}) matches nothing: the nearest node is {nearest:e} m away; move the region or widen its tolerance"
+        "set \"{name}\" ({region}) matches nothing: the nearest node is {:e} m away; move the region or widen its tolerance",
+        six_digits(*nearest)
     )]
     EmptySet { name: String, region: String, nearest: f64 },
-    #[error("{what} = {value} is outside {allowed}")]
-    Dimension { what: &'static str, value: f64, allowed: String },
+    #[error(
+        "set \"{name}\" ({region}) matches nothing: a plane or cylinder selects the surface of the mesh only, and none of its faces lies there ({nodes} nodes do); for nodes inside take a box, `low` and `high`"
+    )]
+    NoSurfaceThere { name: String, region: String, nodes: usize },
+    #[error("{what} = {}{unit} is outside {allowed}", six_digits(*value))]
+    Dimension {
+        what: &'static str,
+        value: f64,
+        /// As it follows a number: `" m"`, or nothing.
+        unit: &'static str,
+        allowed: String,
+    },
     #[error(
         "cell {cell} of block {block} is turned inside out: these dimensions leave no room for this mesh"
     )]
@@ -38,53 +49,101 @@ pub enum MeshError {
     Name { name: String, why: &'static str },
 }
 
+/// A number to six digits, enough to find a place by.
+pub(crate) fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+/// A place as messages have it: `(0.02, 0, -0.005) m`.
+pub(crate) fn place(at: &[f64; 3]) -> String {
+    let [x, y, z] = at.map(six_digits);
+    format!("({x}, {y}, {z}) m")
+}
+
 fn list(names: &[String]) -> String {
     if names.is_empty() { "none".to_string() } else { names.join(", ") }
 }
 
-/// A defect of a mesh found by [`check`](crate::mesh::check::check).
+/// A defect of a mesh found by [`check`](crate::mesh::check::check). Elements and nodes are counted
+/// from 0, or have the numbers of a file after [`Fault::renumbered`].
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum Fault {
     #[error(
-        "{count} of {of} elements are inverted or flat (worst: element {element} near {at:?}, volume {volume:e} m³); where the whole mesh is turned, the repair `orient` helps"
+        "{count} of {of} elements are inverted or flat (worst: element {element} near {}, volume {volume:.5e} m³); where the whole mesh is turned, the repair `orient` helps",
+        place(at)
     )]
-    Inverted { count: usize, of: usize, element: u32, at: [f64; 3], volume: f64 },
+    Inverted { count: usize, of: usize, element: u64, at: [f64; 3], volume: f64 },
     #[error(
-        "{count} elements have a folded side although their corners are in order (worst: element {element} near {at:?}, least Jacobian {ratio:e} of the mean); move the mid-side nodes or refine there"
+        "{count} elements have a folded side although their corners are in order (worst: element {element} near {}, least Jacobian {ratio:.5e} of the mean); move the mid-side nodes or refine there",
+        place(at)
     )]
-    Folded { count: usize, element: u32, at: [f64; 3], ratio: f64 },
+    Folded { count: usize, element: u64, at: [f64; 3], ratio: f64 },
     #[error(
-        "{count} elements are slivers beyond aspect {limit} (worst: element {element} near {at:?}, aspect {aspect:.4e}); remesh there"
+        "{count} elements are slivers beyond aspect {limit} (worst: element {element} near {}, aspect {aspect:.4e}); remesh there",
+        place(at)
     )]
-    Sliver { count: usize, element: u32, at: [f64; 3], aspect: f64, limit: f64 },
+    Sliver { count: usize, element: u64, at: [f64; 3], aspect: f64, limit: f64 },
     #[error(
         "{count} mid-side nodes lie far from their edges (first: node {node} of element {element}, off by {off:.3} of the edge); is this another program's node order?"
     )]
-    MidSide { count: usize, element: u32, node: u32, off: f64 },
+    MidSide { count: usize, element: u64, node: u64, off: f64 },
     #[error(
-        "{count} pairs of nodes share a place within {tolerance:e} m (first: {first} and {second} at {at:?}); the repair `merge_duplicates` joins them"
+        "{count} pairs of nodes share a place within {tolerance:.5e} m (first: {first} and {second} at {}); the repair `merge-duplicates` joins them",
+        place(at)
     )]
-    DuplicateNodes { count: usize, first: u32, second: u32, at: [f64; 3], tolerance: f64 },
+    DuplicateNodes { count: usize, first: u64, second: u64, at: [f64; 3], tolerance: f64 },
     #[error(
-        "{count} nodes belong to no element (first: {first}); the repair `drop_unreferenced` removes them"
+        "{count} nodes belong to no element (first: {first}); the repair `drop-unreferenced` removes them"
     )]
-    UnreferencedNodes { count: usize, first: u32 },
+    UnreferencedNodes { count: usize, first: u64 },
     #[error(
-        "{count} faces are shared by more than two elements or lie on the same side of two (first: element {element} near {at:?}); elements overlap there"
+        "{count} faces are shared by more than two elements or lie on the same side of two (first: element {element} near {}); elements overlap there",
+        place(at)
     )]
-    Overlapping { count: usize, element: u32, at: [f64; 3] },
+    Overlapping { count: usize, element: u64, at: [f64; 3] },
     #[error(
-        "the surface is not closed like a solid's: {count} edges are shared by other than two of its faces (first: nodes {first} and {second} near {at:?})"
+        "the surface is not closed like a solid's: {count} edges are shared by other than two of its faces (first: nodes {first} and {second} near {})",
+        place(at)
     )]
-    NonManifold { count: usize, first: u32, second: u32, at: [f64; 3] },
+    NonManifold { count: usize, first: u64, second: u64, at: [f64; 3] },
     #[error(
-        "the mesh encloses {count} cavities (first: {faces} faces near {at:?}, {volume:e} m³); elements may be missing there"
+        "the mesh encloses {count} cavities (first: {faces} faces near {}, {volume:.5e} m³); elements may be missing there",
+        place(at)
     )]
     Cavity { count: usize, faces: usize, at: [f64; 3], volume: f64 },
     #[error(
         "the mesh falls into {count} bodies that share no face (elements {first} and {second}); join them or read them one by one"
     )]
-    SeveralBodies { count: usize, first: u32, second: u32 },
+    SeveralBodies { count: usize, first: u64, second: u64 },
     #[error("{kind} set \"{name}\" is empty")]
     EmptySet { kind: &'static str, name: String },
+}
+
+impl Fault {
+    /// With other numbers of elements and nodes: those of the file that they came from.
+    pub fn renumbered(
+        mut self,
+        element_number: impl Fn(u64) -> u64,
+        node_number: impl Fn(u64) -> u64,
+    ) -> Fault {
+        match &mut self {
+            Fault::Inverted { element, .. }
+            | Fault::Folded { element, .. }
+            | Fault::Sliver { element, .. }
+            | Fault::Overlapping { element, .. } => *element = element_number(*element),
+            Fault::MidSide { element, node, .. } => {
+                (*element, *node) = (element_number(*element), node_number(*node));
+            }
+            Fault::DuplicateNodes { first, second, .. }
+            | Fault::NonManifold { first, second, .. } => {
+                (*first, *second) = (node_number(*first), node_number(*second));
+            }
+            Fault::UnreferencedNodes { first, .. } => *first = node_number(*first),
+            Fault::SeveralBodies { first, second, .. } => {
+                (*first, *second) = (element_number(*first), element_number(*second));
+            }
+            Fault::Cavity { .. } | Fault::EmptySet { .. } => {}
+        }
+        self
+    }
 }

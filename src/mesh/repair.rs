@@ -92,8 +92,9 @@ fn merge(mesh: &mut TetMesh, tolerance: f64) -> Result<usize, MeshError> {
     });
     if let Some(element) = collapsed {
         return Err(MeshError::Dimension {
-            what: "tolerance for merging, m,",
+            what: "tolerance for merging",
             value: tolerance,
+            unit: " m",
             allowed: format!("0 to the shortest edge: element {element} would collapse"),
         });
     }

@@ -1,6 +1,6 @@
 //! Sets by geometry: nodes in a box or on a surface, boundary faces on a surface.
 
-use crate::mesh::error::MeshError;
+use crate::mesh::error::{MeshError, place, six_digits};
 use crate::mesh::measure::face_normal;
 use crate::mesh::surface::Surface;
 use crate::mesh::tet_mesh::{Face, TetMesh};
@@ -32,8 +32,10 @@ impl Region {
 impl fmt::Display for Region {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Region::Box { low, high } => write!(f, "box {low:?} to {high:?}"),
-            Region::On { surface, tolerance } => write!(f, "{surface}, within {tolerance:e} m"),
+            Region::Box { low, high } => write!(f, "box {} to {}", place(low), place(high)),
+            Region::On { surface, tolerance } => {
+                write!(f, "{surface}, within {:e} m", six_digits(*tolerance))
+            }
         }
     }
 }
@@ -77,7 +79,8 @@ impl TetMesh {
     /// Adds the surface set `name` from faces of `boundary`, and the node set of its nodes.
     ///
     /// # Errors
-    /// [`MeshError::EmptySet`] with the distance of the nearest node.
+    /// [`MeshError::EmptySet`] with the distance of the nearest node, [`MeshError::NoSurfaceThere`]
+    /// where only nodes lie on `surface`.
     pub fn add_surface_set(
         &mut self,
         name: &str,
@@ -87,7 +90,14 @@ impl TetMesh {
     ) -> Result<usize, MeshError> {
         let faces = faces_on(self, boundary, surface, tolerance);
         if faces.is_empty() {
-            return Err(self.empty_set(name, &Region::On { surface: *surface, tolerance }));
+            let region = Region::On { surface: *surface, tolerance };
+            return Err(match nodes_in(self, &region).len() {
+                0 => self.empty_set(name, &region),
+                nodes => {
+                    let (name, region) = (name.to_string(), region.to_string());
+                    MeshError::NoSurfaceThere { name, region, nodes }
+                }
+            });
         }
         let count = faces.len();
         self.node_sets.insert(name.to_string(), self.nodes_of_faces(&faces));
@@ -115,6 +125,7 @@ impl TetMesh {
             return Err(MeshError::Dimension {
                 what: "extent behind the symmetry plane",
                 value: high.min(-low),
+                unit: " m",
                 allowed: format!("0 to {tolerance:e} m: the mesh must lie on one side"),
             });
         }

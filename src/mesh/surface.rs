@@ -1,5 +1,6 @@
 //! Planes, cylinders and cones that nodes may lie on.
 
+use crate::mesh::error::{place, six_digits};
 use nalgebra::Vector3;
 use std::fmt;
 
@@ -106,13 +107,15 @@ impl fmt::Display for Surface {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Surface::Plane { point, normal } => {
-                write!(f, "plane through {point:?} square to {normal:?}")
+                write!(f, "plane through {} square to {normal:?}", place(point))
             }
             Surface::Cylinder { point, axis, radius } => {
-                write!(f, "cylinder of radius {radius} m about {axis:?} through {point:?}")
+                let radius = six_digits(*radius);
+                write!(f, "cylinder of radius {radius} m about {axis:?} through {}", place(point))
             }
             Surface::Cone { point, axis, radius, slope } => {
-                write!(f, "cone of radius {radius} m at {point:?} and slope {slope} along {axis:?}")
+                let (radius, point) = (six_digits(*radius), place(point));
+                write!(f, "cone of radius {radius} m at {point} and slope {slope} along {axis:?}")
             }
         }
     }

@@ -5,7 +5,7 @@ use crate::mesh::generate::{Solid, bar, contact_block, ring, shaft};
 use crate::mesh::numbering::reverse_cuthill_mckee;
 use crate::mesh::quadratic::elevate;
 use crate::mesh::quality::{Quality, quality};
-use crate::mesh::read::{ReadError, read_abaqus, read_gmsh};
+use crate::mesh::read::{FileNumbers, ReadError, read_abaqus, read_gmsh};
 use crate::mesh::repair::{Repair, Repaired, repair};
 use crate::mesh::select::Region;
 use crate::mesh::topology::surface;
@@ -88,10 +88,14 @@ pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
                 merge_duplicates: request.merge_duplicates.then_some(tolerance),
                 drop_unreferenced: request.drop_unreferenced,
             };
+            let places = loaded.mesh.nodes.clone();
             let (mesh, done) = repair(loaded.mesh, &wanted).map_err(|e| in_mesh(path, e))?;
             repaired = done;
             let name = path.display().to_string();
-            check(&mesh, &limits).map_err(|faults| SolidMeshError::Faults { name, faults })?;
+            check(&mesh, &limits).map_err(|faults| {
+                let faults = in_numbers_of_file(faults, &mesh, &places, &loaded.numbers);
+                SolidMeshError::Faults { name, faults }
+            })?;
             from_file(mesh, request.order, path)?
         }
         made => {
@@ -116,6 +120,24 @@ pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
 
 fn in_mesh(path: &Path, source: MeshError) -> SolidMeshError {
     SolidMeshError::Mesh { name: path.display().to_string(), source }
+}
+
+/// Faults by the numbers that the file has for elements and nodes; `places` are those of its nodes.
+fn in_numbers_of_file(
+    faults: Faults,
+    mesh: &TetMesh,
+    places: &[[f64; 3]],
+    numbers: &FileNumbers,
+) -> Faults {
+    let element = |index: u64| numbers.elements[index as usize];
+    let node = |index: u64| {
+        let index = index as usize;
+        // Repairs drop nodes and move none: those that are left are found by their places.
+        let first = || places.iter().position(|place| *place == mesh.nodes[index]);
+        let read = if places.len() == mesh.nodes.len() { Some(index) } else { first() };
+        read.map_or(index as u64, |read| numbers.nodes[read])
+    };
+    Faults(faults.0.into_iter().map(|fault| fault.renumbered(element, node)).collect())
 }
 
 /// A file's mesh in the order that is asked for.

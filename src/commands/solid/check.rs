@@ -1,13 +1,14 @@
 //! `bearing check` of a solid: mesh, sets, supports and loads as understood.
 
 use super::{echo, prepare};
-use crate::commands::{CommandResult, Outcome, say};
+use crate::commands::{CommandResult, Outcome, echo_run, say};
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::session::sum;
 use bearing_dynamics::output::solid::summary::mesh_section;
 use bearing_dynamics::scene::SolidScene;
 use bearing_dynamics::solver::solid::model::SolidModel;
+use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -17,6 +18,12 @@ pub fn run(path: &Path, scene: &SolidScene, json: bool) -> CommandResult {
     if json {
         let mut echo = echo::scene(scene)?;
         echo["mesh"] = mesh_section(&prepared.built)?;
+        let drawn = [(scene.draw_series, "series"), (scene.draw_spectrum, "spectrum")];
+        let drawn: Vec<&str> = drawn.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
+        echo["output"] = json!({ "plots": drawn });
+        for (name, notes) in echo_run::notes(&scene.assumptions, &scene.defaults_used) {
+            echo[name] = notes;
+        }
         say(&pretty(&echo))?;
         return Ok(Outcome::Done);
     }

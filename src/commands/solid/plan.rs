@@ -3,21 +3,56 @@
 use super::{Prepared, prepare};
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::output::solid::session::Grid;
 use bearing_dynamics::scene::SolidScene;
-use bearing_dynamics::scene::solid::MeshSource;
-use bearing_dynamics::solver::solid::explicit::ExplicitMethod;
-use bearing_dynamics::solver::solid::model::DampedMotion;
+use bearing_dynamics::scene::solid::{MeshSource, SolidRun};
+use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, SolidStepping};
+use bearing_dynamics::solver::solid::model::{DampedMotion, SolidError, SolidModel};
+use bearing_dynamics::solver::solid::step_limit::step_limit;
 use bearing_dynamics::solver::solid::tangent::MassMatrix;
 
 pub fn run(scene: &SolidScene) -> CommandResult {
     let prepared = prepare(scene)?;
-    say(&lines(scene, &prepared).iter().map(|line| format!("{line}\n")).collect::<String>())?;
+    let mut lines = lines(scene, &prepared);
+    if let Some(run) = &scene.run {
+        lines.push(step_line(&prepared, run)?);
+    }
+    say(&lines.iter().map(|line| format!("{line}\n")).collect::<String>())?;
     Ok(Outcome::Done)
 }
 
 fn line(included: bool, name: &str, reason: &str) -> String {
     let mark = if included { "does " } else { "skips" };
     format!("{mark} {name:<28} {reason}")
+}
+
+/// The step of a run, what limits it, and how many there are; as the run finds them.
+fn step_line(prepared: &Prepared, run: &SolidRun) -> Result<String, SolidError> {
+    let model = SolidModel::new(prepared.setup.problem.clone())?;
+    let still = vec![[0.0; 4]; model.mass.len()];
+    let limit = step_limit(&model, &still, run.method);
+    let grid = Grid::new(run, &limit);
+    let ratio = grid.step_size / limit.step;
+    let [x, y, z] = limit.at.map(|at| 1e3 * at);
+    let bound =
+        if limit.is_bound { " (a safe bound: the search for it did not settle)" } else { "" };
+    let (name, verdict) = match run.stepping {
+        SolidStepping::Fixed(_) if ratio > 1.0 => {
+            ("given step", ": WARNING: too long, the run will be refused")
+        }
+        SolidStepping::Fixed(_) => ("given step", ""),
+        SolidStepping::FractionOfLimit(_) => ("step", ""),
+    };
+    let said = format!(
+        "{:.3e} s is {ratio:.3} of the stability limit {:.3e} s{bound}{verdict}; the fastest element \
+         is {} at x {x:.3}, y {y:.3}, z {z:.3} mm; {} steps to t = {} s",
+        grid.step_size,
+        limit.step,
+        limit.element + 1,
+        grid.steps,
+        run.end
+    );
+    Ok(format!("notes {name:<28} {said}"))
 }
 
 /// One line a stage.

@@ -14,6 +14,7 @@ use bearing_dynamics::output::solid::summary;
 use bearing_dynamics::output::state::Stopped;
 use bearing_dynamics::scene::SolidScene;
 use bearing_dynamics::scene::solid::SolidRun;
+use bearing_dynamics::solver::clock::rounded;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::error::Error;
 use std::path::Path;
@@ -100,7 +101,7 @@ pub fn run(arguments: &Arguments, scene: &SolidScene, begun: Instant) -> Command
     for (name, svg) in &plots {
         write_atomic(&folder.join(name), svg.as_bytes())?;
     }
-    series.write_csv(&folder.join("series.csv"))?;
+    session.readable_series()?.write_csv(&folder.join("series.csv"))?;
     series.write_npy(&folder.join("series.npy"))?;
     let seconds = vec![
         ("read".into(), read_seconds),
@@ -132,9 +133,9 @@ fn outcome(
     match end {
         End::Complete => Ok(Outcome::Done),
         End::Interrupted => Err(format!(
-            "interrupted at t = {:.6e} s of {} s, after {} steps; what there is so far is in {}. To \
+            "interrupted at t = {} s of {} s, after {} steps; what there is so far is in {}. To \
              go on: bearing run {} --out {} --resume",
-            session.solid.time,
+            rounded(session.solid.time),
             settings.end,
             session.solid.steps,
             folder.display(),
@@ -163,10 +164,10 @@ fn kept_state(
         && matches!(file.stopped, Stopped::Interrupted | Stopped::Running)
     {
         return Err(format!(
-            "{} holds a run that stands at t = {:.6e} s of {} s; go on with it (--resume), discard \
+            "{} holds a run that stands at t = {} s of {} s; go on with it (--resume), discard \
              it (--fresh), or choose another --out",
             folder.display(),
-            file.time,
+            rounded(file.time),
             file.end
         )
         .into());
@@ -192,21 +193,21 @@ fn announcement(
         if limit.is_bound { " (a safe bound: the search for it did not settle)" } else { "" }
     );
     let (interval, asked) = (grid.interval(), settings.output_interval);
-    let rounded = if kept.is_none() && (interval / asked - 1.0).abs() > 1e-9 {
+    let off = if kept.is_none() && (interval / asked - 1.0).abs() > 1e-9 {
         format!(" ({asked} s asked for, rounded to whole steps)")
     } else {
         String::new()
     };
     text += &format!(
-        "{} steps to t = {} s, a row every {} steps = {interval:.4e} s{rounded}, fields every {} \
+        "{} steps to t = {} s, a row every {} steps = {interval:.4e} s{off}, fields every {} \
          rows\n",
         grid.steps,
-        grid.steps as f64 * grid.step_size,
+        rounded(grid.steps as f64 * grid.step_size),
         grid.steps_per_row,
         grid.rows_per_fields
     );
     if let Some(file) = kept {
-        text += &format!("resumed at t = {:.6e} s, step {}\n", file.time, file.steps);
+        text += &format!("resumed at t = {} s, step {}\n", rounded(file.time), file.steps);
     }
     text
 }
@@ -225,7 +226,7 @@ fn write_state_fields(
     write_fields(&path, mesh, &displacement, Some(&velocity), &stress)?;
     let rows = session.grid.rows_per_fields as usize;
     let files: Vec<(f64, String)> = (0..=index)
-        .map(|index| (session.row(index * rows)[0], file_name("fields", index)))
+        .map(|index| (session.row_time(index * rows), file_name("fields", index)))
         .collect();
     write_list(folder, &files)?;
     Ok(())

@@ -107,6 +107,9 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         if record.threads == 1 { "" } else { "s" },
         folder.join("sweep.csv").display()
     ))?;
+    if grid.scene(&document, 0).is_ok_and(|scene| scene.dynamics.run.is_some()) {
+        say("the statics of this scene at each point; its run is not swept\n")?;
+    }
     let failures: Vec<_> = chunks.iter().flat_map(|chunk| &chunk.failures).collect();
     match failures.first() {
         None => Ok(Outcome::Done),

@@ -1,7 +1,7 @@
 //! Stations along a line: even, or growing from one end.
 
 use crate::mesh::error::MeshError;
-use crate::mesh::generate::{between, divisions};
+use crate::mesh::generate::{between, divisions, ratio_between};
 
 /// `count` + 1 evenly spaced stations from `from` to `to`, both ends exact.
 pub fn uniform(from: f64, to: f64, count: usize) -> Vec<f64> {
@@ -20,7 +20,7 @@ pub fn uniform(from: f64, to: f64, count: usize) -> Vec<f64> {
 /// steps than can be meant.
 pub fn graded(from: f64, to: f64, first: f64, growth: f64) -> Result<Vec<f64>, MeshError> {
     between("first step", first, 0.0, f64::INFINITY)?;
-    between("growth of steps", growth, 0.999_999, 100.0)?;
+    ratio_between("growth of steps", growth, 0.999_999, 100.0)?;
     let length = (to - from).abs();
     between("length to be divided", length, 0.0, f64::INFINITY)?;
     divisions("number of first steps in the length", (length / first).ceil() as usize, 0)?;

@@ -9,7 +9,9 @@ use crate::mesh::generate::grading::uniform;
 use crate::mesh::generate::hexahedra::Hexahedra;
 use crate::mesh::generate::outline::{Path, Point, between as part_way, on_circle};
 use crate::mesh::generate::solids::geometric;
-use crate::mesh::generate::{Ring, RingMesh, Solid, between, divisions, ring, with_sets};
+use crate::mesh::generate::{
+    Ring, RingMesh, Solid, between, divisions, ratio_between, ring, with_sets,
+};
 use crate::mesh::surface::Surface;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -82,7 +84,7 @@ impl Housing {
         divisions("cells around the bore", mesh.around, 8)?;
         divisions("radial cells", mesh.radial, 1)?;
         divisions("axial cells", mesh.axial, 1)?;
-        between("growth of radial steps", mesh.radial_growth, 0.01, 100.0)?;
+        ratio_between("growth of radial steps", mesh.radial_growth, 0.01, 100.0)?;
         match *self {
             Housing::Annulus { bore_radius, outer_radius, depth } => {
                 let shape = Ring { inner_radius: bore_radius, outer_radius, width: depth };

@@ -15,7 +15,7 @@ pub use grading::{graded, uniform};
 pub use housing::{Housing, HousingMesh, PillowBlock};
 pub use solids::{ContactBlock, Ring, RingMesh, bar, block, contact_block, ring, shaft};
 
-use crate::mesh::error::MeshError;
+use crate::mesh::error::{MeshError, six_digits};
 use crate::mesh::quadratic::{Elevated, elevate};
 use crate::mesh::surface::Surface;
 use crate::mesh::tet_mesh::TetMesh;
@@ -61,12 +61,32 @@ fn with_sets(
     Ok(Solid { mesh, curved })
 }
 
-/// Refuses a dimension that is not above `low` and below `high`.
+/// Refuses a length (m) that is not above `low` and below `high`.
 fn between(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), MeshError> {
+    within(what, value, low, high, " m")
+}
+
+/// As [`between`] of a ratio.
+fn ratio_between(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), MeshError> {
+    within(what, value, low, high, "")
+}
+
+fn within(
+    what: &'static str,
+    value: f64,
+    low: f64,
+    high: f64,
+    unit: &'static str,
+) -> Result<(), MeshError> {
     if value > low && value < high {
         return Ok(());
     }
-    Err(MeshError::Dimension { what, value, allowed: format!("{low} to {high} (both excluded)") })
+    let [least, most] = [low, high].map(six_digits);
+    let allowed = match high.is_finite() {
+        true => format!("{least} to {most}{unit} (both excluded)"),
+        false => format!("what is above {least}{unit}"),
+    };
+    Err(MeshError::Dimension { what, value, unit, allowed })
 }
 
 /// Refuses a count outside `low..=MOST_DIVISIONS`.
@@ -76,5 +96,5 @@ fn divisions(what: &'static str, count: usize, low: usize) -> Result<(), MeshErr
         return Ok(());
     }
     let allowed = format!("{low} to {MOST_DIVISIONS}");
-    Err(MeshError::Dimension { what, value: count as f64, allowed })
+    Err(MeshError::Dimension { what, value: count as f64, unit: "", allowed })
 }

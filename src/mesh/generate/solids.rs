@@ -3,7 +3,7 @@
 use crate::mesh::error::MeshError;
 use crate::mesh::generate::grading::{graded, joined, uniform};
 use crate::mesh::generate::hexahedra::Hexahedra;
-use crate::mesh::generate::{Solid, between, divisions, with_sets};
+use crate::mesh::generate::{Solid, between, divisions, ratio_between, with_sets};
 use crate::mesh::select::Region;
 use crate::mesh::surface::Surface;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, PI, TAU};
@@ -122,7 +122,7 @@ pub fn ring(ring: &Ring, mesh: &RingMesh) -> Result<Solid, MeshError> {
     divisions("cells around", mesh.around, 3)?;
     divisions("radial cells", mesh.radial, 1)?;
     divisions("axial cells", mesh.axial, 1)?;
-    between("growth of radial steps", mesh.radial_growth, 0.01, 100.0)?;
+    ratio_between("growth of radial steps", mesh.radial_growth, 0.01, 100.0)?;
     let radii = geometric(ring.inner_radius, ring.outer_radius, mesh.radial, mesh.radial_growth);
     let x = uniform(-0.5 * ring.width, 0.5 * ring.width, mesh.axial);
     let mut cells = Hexahedra::default();
@@ -170,7 +170,7 @@ pub fn shaft(
     divisions("radial cells", radial, 1)?;
     if !around.is_multiple_of(8) {
         let (what, allowed) = ("cells around the shaft", "the multiples of 8".to_string());
-        return Err(MeshError::Dimension { what, value: around as f64, allowed });
+        return Err(MeshError::Dimension { what, value: around as f64, unit: "", allowed });
     }
     divisions("stations of the shaft", stations.len(), 2)?;
     let mut runs = Vec::new();

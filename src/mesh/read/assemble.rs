@@ -3,7 +3,7 @@
 use crate::mesh::error::MeshError;
 use crate::mesh::read::error::{Problem, ReadError};
 use crate::mesh::read::source::Source;
-use crate::mesh::read::{LengthUnit, Loaded, Note, size_note};
+use crate::mesh::read::{FileNumbers, LengthUnit, Loaded, Note, size_note};
 use crate::mesh::tet_mesh::{Elements, Face, TetMesh};
 use crate::mesh::topology::sorted_faces;
 use std::collections::{BTreeMap, HashMap};
@@ -211,7 +211,14 @@ impl RawMesh {
         }
         let ignored = self.ignored.into_iter().map(|(what, count)| Note::Ignored { what, count });
         let notes = size_note(&mesh, unit).into_iter().chain(ignored).collect();
-        Ok(Loaded { mesh, notes })
+        let mut numbers = FileNumbers {
+            nodes: vec![0; mesh.nodes.len()],
+            elements: self.tets.iter().map(|tet| tet.tag).collect(),
+        };
+        for (tag, index) in self.node_index {
+            numbers.nodes[index as usize] = tag;
+        }
+        Ok(Loaded { mesh, notes, numbers })
     }
 
     /// Elements by node indices, the first N nodes of each.

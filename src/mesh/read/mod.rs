@@ -42,6 +42,14 @@ impl LengthUnit {
 pub struct Loaded {
     pub mesh: TetMesh,
     pub notes: Vec<Note>,
+    pub numbers: FileNumbers,
+}
+
+/// Numbers of the file's own, in the order of the mesh: Gmsh's tags, Abaqus' labels.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FileNumbers {
+    pub nodes: Vec<u64>,
+    pub elements: Vec<u64>,
 }
 
 /// Something in a file that is no error and perhaps not meant.

@@ -126,7 +126,7 @@ pub fn write_pvd(steps: &[(f64, &str)]) -> Result<String, MeshError> {
         check_name(file)?;
         if !time.is_finite() {
             let allowed = "the finite numbers".to_string();
-            return Err(MeshError::Dimension { what: "time", value: time, allowed });
+            return Err(MeshError::Dimension { what: "time", value: time, unit: "", allowed });
         }
         text += &format!("    <DataSet timestep=\"{time}\" part=\"0\" file=\"{file}\"/>\n");
     }

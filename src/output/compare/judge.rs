@@ -86,6 +86,7 @@ impl<'a> Judge<'a> {
         if let Some(channel) = self.unused.first() {
             return Err(ToleranceError::Unused { channel: channel.to_string() }.into());
         }
+        self.refuse_unused_units()?;
         let checked = self.channels.iter().map(|channel| channel.checked).sum();
         if checked == 0 && self.differing == 0 {
             return Err(CompareError::NothingToCompare { reference: reference.to_path_buf() });
@@ -99,6 +100,19 @@ impl<'a> Judge<'a> {
             ignored: self.ignored,
             only_in_candidate: self.only_in_candidate,
         })
+    }
+
+    /// A floor for a unit that no channel has: misspelt, or of another scale (`mm` for `m`).
+    fn refuse_unused_units(&self) -> Result<(), ToleranceError> {
+        let units: BTreeSet<&str> = self.channels.iter().map(|c| c.unit.as_str()).collect();
+        for (unit, _) in self.given.iter().flat_map(|given| &given.floors) {
+            if !units.contains(unit.as_str()) {
+                let known = units.iter().filter(|unit| !unit.is_empty());
+                let known = known.map(|unit| unit.to_string()).collect();
+                return Err(ToleranceError::UnusedUnit { unit: unit.clone(), known });
+            }
+        }
+        Ok(())
     }
 
     /// Ticks off the tolerances that a file makes use of.

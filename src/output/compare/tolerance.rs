@@ -206,6 +206,11 @@ pub enum ToleranceError {
     IgnoredByDefault,
     #[error("tolerances name {channel:?}, which is no channel of the reference")]
     Unused { channel: String },
+    #[error(
+        "an absolute tolerance is given for the unit {unit:?}, which no compared channel has; there \
+         are: {}", known.join(", ")
+    )]
+    UnusedUnit { unit: String, known: Vec<String> },
 }
 
 impl Tolerances {

@@ -7,6 +7,7 @@ use crate::kinematics::vec3::Vec3;
 use crate::output::series::{Column, Series, SeriesError};
 use crate::scene::solid::SolidRun;
 use crate::scene::solid_problem::{NamedNodes, SolidSetup, Support};
+use crate::solver::clock::{rounded, to_digits};
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::energy::SolidEnergy;
 use crate::solver::solid::explicit::{ExplicitSolid, SolidStepping, padded};
@@ -22,8 +23,9 @@ pub enum SolidRunError {
     #[error(transparent)]
     Solid(#[from] SolidError),
     #[error(
-        "{residual:.3e} J are unaccounted for at t = {time} s, step {step}, more than {limit} of \
-         the {turned_over:.3e} J turned over; take a smaller step"
+        "{residual:.3e} J are unaccounted for at t = {} s, step {step}, more than {limit} of \
+         the {turned_over:.3e} J turned over; take a smaller step",
+        rounded(*time)
     )]
     Energy { residual: f64, turned_over: f64, limit: f64, time: f64, step: u64 },
     #[error("{rows} rows of {columns} columns do not fit in memory; take a longer output interval")]
@@ -349,6 +351,15 @@ impl SolidSession {
         &self.values[row * width..(row + 1) * width]
     }
 
+    /// Time of a row as people write it, s: of rows on the grid by their number, so that the rounding
+    /// of many steps does not show.
+    pub fn row_time(&self, row: usize) -> f64 {
+        let time = self.row(row)[0];
+        let on_grid = row as f64 * self.grid.interval();
+        let is_on_grid = (time - on_grid).abs() <= 1e-6 * self.grid.interval();
+        to_digits(if is_on_grid { on_grid } else { time }, 12)
+    }
+
     pub fn columns(&self) -> &[Column] {
         &self.columns
     }
@@ -358,10 +369,25 @@ impl SolidSession {
     /// # Errors
     /// Names of probes and supports that are alike.
     pub fn series(&self) -> Result<Series, SeriesError> {
-        let shape = (self.rows(), self.columns.len());
-        let data = Array2::from_shape_vec(shape, self.values.clone())
-            .expect("every row gives one value per column");
+        Series::new(self.columns.clone(), self.data())
+    }
+
+    /// As [`SolidSession::series`], with the times of its rows as people write them.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn readable_series(&self) -> Result<Series, SeriesError> {
+        let mut data = self.data();
+        for (row, time) in data.column_mut(0).iter_mut().enumerate() {
+            *time = self.row_time(row);
+        }
         Series::new(self.columns.clone(), data)
+    }
+
+    fn data(&self) -> Array2<f64> {
+        let shape = (self.rows(), self.columns.len());
+        Array2::from_shape_vec(shape, self.values.clone())
+            .expect("every row gives one value per column")
     }
 
     /// What a later run goes on from: the present state; after a failure that of the last row, and

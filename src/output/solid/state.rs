@@ -11,6 +11,7 @@ use crate::output::solid::fields::FOLDER;
 use crate::output::solid::session::{Grid, Kept, SolidRunError, SolidSession, Sound};
 use crate::scene::solid::SolidRun;
 use crate::scene::solid_problem::SolidSetup;
+use crate::solver::clock::rounded;
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::SolidWork;
 use crate::solver::solid::step_limit::SolidStepLimit;
@@ -114,7 +115,7 @@ pub enum SolidStateError {
     Interval { path: PathBuf, what: &'static str, kept: f64, asked: f64 },
     #[error("{} holds a damaged state: {what}", path.display())]
     Damaged { path: PathBuf, what: &'static str },
-    #[error("the run has already come to {time} s, past its new end of {end} s")]
+    #[error("the run has already come to {} s, past its new end of {end} s", rounded(*time))]
     Past { time: f64, end: f64 },
     #[error("cannot encode {}: {source}", path.display())]
     Encode { path: PathBuf, source: ndarray_npy::WriteNpyError },

@@ -11,6 +11,7 @@ use crate::output::spectrum::{LEAKAGE, Spectrum, WINDOW, peaks};
 use crate::scene::solid::SolidRun;
 use crate::scene::solid_mesh::BuiltMesh;
 use crate::scene::solid_problem::SolidSetup;
+use crate::solver::clock::rounded;
 use crate::solver::solid::energy::strain_energy;
 use crate::solver::solid::equilibrium::Equilibrium;
 use crate::solver::solid::explicit::{ExplicitMethod, SolidStepping, padded};
@@ -273,7 +274,7 @@ pub fn run(
     if let Some(reason) = stopped_by {
         summary["stopped_by"] = json!(reason);
     }
-    summary["time"] = quantity("time", solid.time, "s")?;
+    summary["time"] = quantity("time", rounded(solid.time), "s")?;
     let chosen = match settings.stepping {
         SolidStepping::Fixed(_) => "given".to_string(),
         SolidStepping::FractionOfLimit(part) => format!("{part} of the limit, in whole rows"),

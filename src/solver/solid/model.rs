@@ -8,6 +8,7 @@ use crate::elements::tet4::Tet4;
 use crate::elements::tet10::{self, Tet10};
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::tet_mesh::Elements;
+use crate::solver::clock::rounded;
 use crate::solver::profile::Profile;
 use thiserror::Error;
 
@@ -79,11 +80,12 @@ pub enum SolidError {
          {} at {}; take a smaller step or a coarser mesh there", element + 1, place(at)
     )]
     Step { step: f64, limit: f64, element: usize, at: Vec3 },
-    #[error("node {node} has a value that is not finite at t = {time} s, step {step}")]
+    #[error("node {node} has a value that is not finite at t = {} s, step {step}", rounded(*time))]
     NotFinite { node: usize, time: f64, step: u64 },
     #[error(
-        "element {} is turned inside out at t = {time} s, step {step} (volume ratio {ratio:.3})",
-        element + 1
+        "element {} is turned inside out at t = {} s, step {step} (volume ratio {ratio:.3})",
+        element + 1,
+        rounded(*time)
     )]
     Inverted { element: usize, ratio: f64, time: f64, step: u64 },
 }
