@@ -32,7 +32,7 @@ pub const CASE: Case = Case {
 /// 2.3.2.
 const RADIUS: f64 = 35.5e-3;
 const STEEL: Material = Material { young: 210e9, poisson: 0.3, density: 7850.0 };
-/// µm, with the name in `published.toml`.
+/// µm, with the name in the published data.
 const INDENTATIONS: [(&str, f64); 6] =
     [("0p5", 0.5), ("1", 1.0), ("2", 2.0), ("3", 3.0), ("4", 4.0), ("5", 5.0)];
 /// The largest half contact width, which sizes the block; not stated. m.
