@@ -50,8 +50,8 @@ pub mod units;
 mod value;
 
 pub use document::Document;
-pub use housing::HousedScene;
 pub use error::{Place, Problem, SceneError};
+pub use housing::HousedScene;
 pub use resolve::resolve;
 pub use resolve_solid::resolve_subject;
 pub use resolved::{

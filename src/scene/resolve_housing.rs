@@ -306,16 +306,16 @@ fn rest(
     let start = bearing.outer_race[0];
     let Some(RaceBody { drives, .. }) = &mut bearing.dynamics.outer else { return Ok(()) };
     let mut said = vec!["outer_race.foundation"];
-    if housing.axial == Axial::Held {
-        if let Drive::Load(load) = &drives[0] {
-            if !load.is_zero() && housing.method == HousingMethod::Explicit {
-                let reason = "something beside the bore holds the race along its axis";
-                let advice = "leave it out, or write axial = \"free\" in [housing]";
-                return not_applicable(document, "outer_race.x.load", reason, advice);
-            }
-            drives[0] = Drive::Motion(Profile::Constant(start));
-            said.push("outer_race.x");
+    if housing.axial == Axial::Held
+        && let Drive::Load(load) = &drives[0]
+    {
+        if !load.is_zero() && housing.method == HousingMethod::Explicit {
+            let reason = "something beside the bore holds the race along its axis";
+            let advice = "leave it out, or write axial = \"free\" in [housing]";
+            return not_applicable(document, "outer_race.x.load", reason, advice);
         }
+        drives[0] = Drive::Motion(Profile::Constant(start));
+        said.push("outer_race.x");
     }
     bearing.dynamics.defaults_used.retain(|used| !said.contains(&used.key.as_str()));
     Ok(())

@@ -212,7 +212,7 @@ impl HousedBearing {
         }
         let [shift, tilt] = seat_stiffness(&seat, problem.outer_start[0]);
         let square = (shift / outer.inertia.mass).max(tilt / outer.inertia.transverse);
-        if !(square > 0.0) {
+        if square.is_nan() || square <= 0.0 {
             return Err(ExchangeError::NoSeat);
         }
         let longest = options.seat_phase / square.sqrt();
@@ -373,7 +373,7 @@ impl HousedBearing {
             ("along the axis", (along - start[0]).abs(), 0.5 * cylinder.width),
             ("across it", libm::hypot(across - start[1], up - start[2]), 0.1 * cylinder.radius),
         ] {
-            if !(distance <= allowed) {
+            if distance.is_nan() || distance > allowed {
                 return Err(ExchangeError::LeftBore { way, distance, allowed, time, step });
             }
         }

@@ -152,7 +152,7 @@ impl ContactRun {
         reach: f64,
     ) -> Result<ContactRun, ContactError> {
         let limit = contact.step_limit(&solid.model, &solid.limit).step;
-        if !(solid.step_size <= limit) {
+        if solid.step_size.is_nan() || solid.step_size > limit {
             return Err(ContactError::Step { step: solid.step_size, limit });
         }
         let sorted_at = contact.at(solid.time);
