@@ -1,4 +1,6 @@
 //! Laws of the contact between a rigid cylinder and a solid.
+// Rows and columns of small matrices read best by their indices.
+#![allow(clippy::needless_range_loop)]
 
 use bearing_dynamics::ch2_housing::bore_contact::{
     ContactNode, Cylinder, Frame, Penalty, contact, contact_nodes, split_by_reach, touch,
@@ -40,7 +42,7 @@ fn bore(seed: u64, pose: &Pose) -> Vec<ContactNode> {
     };
     (0..40)
         .map(|node| {
-            let (angle, r) = (6.28 * random(), 35.5e-3 + 40e-6 * (random() - 0.5));
+            let (angle, r) = (std::f64::consts::TAU * random(), 35.5e-3 + 40e-6 * (random() - 0.5));
             let own = Vector3::new(24e-3 * (random() - 0.5), r * angle.cos(), r * angle.sin());
             let place = pose.point_to_parent(&own).into();
             ContactNode { node, place, area: 1e-6 * (0.5 + random()) }

@@ -1,7 +1,6 @@
 //! A step that is or becomes too long does not spoil a run: one that was given is refused, one that
 //! follows from the limit is shortened.
 
-mod common;
 #[path = "common/dynamics.rs"]
 mod dynamics;
 mod run_common;
@@ -17,8 +16,8 @@ use bearing_dynamics::solver::dynamics::run::{Simulation, SimulationError, Stepp
 use bearing_dynamics::solver::dynamics::stability::step_limit;
 use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::profile::Profile;
-use common::table_4_1;
 use dynamics::{RPM, bearing, traction_laws};
+use run_common::common::{self, table_4_1};
 use run_common::{pressed, request, sliding};
 
 /// The largest stable step at the start.
