@@ -196,11 +196,11 @@ impl Touch {
 }
 
 /// How one node's force f, and force −f and moment −w × f on the cylinder about its centre, change
-/// when node or cylinder move. [f] is the matrix of f ×, w the arm, k the stiffness.
+/// when node or cylinder move. \[f\] is the matrix of f ×, w the arm, k the stiffness.
 ///
 /// | | node's place | centre | rotation |
 /// |---|---|---|---|
-/// | force on the node | −k | k | `by_turn` = −[f] − k\[w\] |
+/// | force on the node | −k | k | `by_turn` = −\[f\] − k\[w\] |
 /// | force on the cylinder | k | −k | −`by_turn` |
 /// | moment on the cylinder | `moment_by_node` = \[f\] + \[w\]k | −`moment_by_node` | `moment_by_turn` = −\[w\]`by_turn` |
 #[derive(Clone, Copy, Debug, PartialEq)]
