@@ -19,6 +19,7 @@ pub mod contact_picture;
 pub mod context;
 pub mod date;
 pub mod golden;
+pub mod housing_turn;
 pub mod housings;
 pub mod judge;
 pub mod machine;

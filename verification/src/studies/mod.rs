@@ -1,6 +1,7 @@
 //! Studies of run time against error.
 
 mod cage;
+mod housing;
 mod motion;
 mod solids;
 mod statics;
@@ -27,4 +28,6 @@ pub const STUDIES: &[Study] = &[
     solids::ring::FREQUENCY,
     solids::cage::DEFLECTION,
     solids::cage::FREQUENCY,
+    housing::ORBIT,
+    housing::STIFFNESS,
 ];
