@@ -29,7 +29,7 @@ pub const POINTS: usize = 72;
 const RUN_UP: f64 = 0.125;
 /// Windows of the exchange, as the phase of the outer race on its seat in one of them, and steps of
 /// the housing as a part of their limit.
-const SEAT_PHASE: f64 = 1.0;
+const SEAT_PHASE: f64 = 0.5;
 const SOLID_FRACTION: f64 = 0.9;
 
 /// 250 N that start along +Y, come to their speed smoothly, and look at even angles from then on.

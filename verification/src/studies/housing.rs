@@ -54,7 +54,7 @@ const MESHES: [Mesh; 8] = [
 const FINEST: Mesh = (Order::Quadratic, [48, 3, 3]);
 /// Meshes that explicit steps can afford.
 const COARSE: [Mesh; 3] = [MESHES[0], MESHES[1], MESHES[4]];
-/// s a turn of the explicit runs, of 1.2 s: inertia has not yet a part in three digits.
+/// s a turn of the explicit runs, of 1.2 s: inertia makes about a hundredth of the radius.
 const FAST_TURN: f64 = 20e-3;
 
 /// A variant is repeated until it has taken so many seconds, or so many times.
