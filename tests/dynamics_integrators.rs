@@ -404,8 +404,9 @@ fn frames_turn_with_the_orbits_of_their_balls() {
     frames.follow(&layout, &state);
     let time = 0.3;
     let (mut inertial, mut in_frame) = (state.clone(), rates.clone());
-    frames.to_inertial(&layout, time, &mut inertial);
-    frames.rates_to_frame(&layout, time, &state, &mut in_frame);
+    frames.turn(time);
+    frames.to_inertial(&layout, &mut inertial);
+    frames.rates_to_frame(&layout, &state, &mut in_frame);
     let mut turning = vec![false; layout.len()];
     for ball in 0..layout.balls {
         let of = |list: &[f64], component| Vector3::from(layout.ball_vector(list, component, ball));

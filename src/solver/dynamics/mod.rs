@@ -12,6 +12,7 @@ pub mod dormand_prince;
 pub mod elimination;
 pub mod energy;
 pub mod equilibrium;
+pub mod failure;
 pub mod linearised;
 pub mod model;
 pub mod orbit_frame;

@@ -15,20 +15,30 @@ const VECTORS: [usize; 3] = [POSITION, VELOCITY, SPIN];
 #[derive(Clone, Debug)]
 pub struct OrbitFrames {
     rates: Vec<f64>,
+    /// Sine and cosine of the angles turned when [`OrbitFrames::turn`] was last called.
+    turned: Vec<(f64, f64)>,
 }
 
 impl OrbitFrames {
     pub fn new(layout: &Layout) -> OrbitFrames {
-        OrbitFrames { rates: vec![0.0; layout.balls] }
+        OrbitFrames { rates: vec![0.0; layout.balls], turned: vec![(0.0, 1.0); layout.balls] }
     }
 
-    /// Takes the angular velocities that the balls have about X.
+    /// Takes the angular velocities that the balls have about X; the frames lie along inertial axes.
     pub fn follow(&mut self, layout: &Layout, state: &[f64]) {
         for (ball, rate) in self.rates.iter_mut().enumerate() {
             let [_, y, z] = layout.ball_vector(state, POSITION, ball);
             let [_, v, w] = layout.ball_vector(state, VELOCITY, ball);
             let square = y * y + z * z;
             *rate = if square > 0.0 { (y * w - z * v) / square } else { 0.0 };
+        }
+        self.turned.fill((0.0, 1.0));
+    }
+
+    /// Turns the frames to where they are `time` after the step began.
+    pub fn turn(&mut self, time: f64) {
+        for (turned, rate) in self.turned.iter_mut().zip(&self.rates) {
+            *turned = libm::sincos(rate * time);
         }
     }
 
@@ -43,10 +53,9 @@ impl OrbitFrames {
         }
     }
 
-    /// Vectors of `state` from the frames, `time` after the step began, to inertial axes.
-    pub fn to_inertial(&self, layout: &Layout, time: f64, state: &mut [f64]) {
-        for (ball, rate) in self.rates.iter().enumerate() {
-            let (sin, cos) = libm::sincos(rate * time);
+    /// Vectors of `state` from the frames as they are turned to inertial axes.
+    pub fn to_inertial(&self, layout: &Layout, state: &mut [f64]) {
+        for (ball, (sin, cos)) in self.turned.iter().enumerate() {
             for vector in VECTORS {
                 let (at_y, at_z) = (layout.ball(vector + 1) + ball, layout.ball(vector + 2) + ball);
                 let (y, z) = (state[at_y], state[at_z]);
@@ -57,9 +66,8 @@ impl OrbitFrames {
     }
 
     /// Rates in inertial axes at `state` in inertial axes to those of the frames' vectors.
-    pub fn rates_to_frame(&self, layout: &Layout, time: f64, state: &[f64], rates: &mut [f64]) {
-        for (ball, rate) in self.rates.iter().enumerate() {
-            let (sin, cos) = libm::sincos(rate * time);
+    pub fn rates_to_frame(&self, layout: &Layout, state: &[f64], rates: &mut [f64]) {
+        for (ball, (rate, (sin, cos))) in self.rates.iter().zip(&self.turned).enumerate() {
             for vector in VECTORS {
                 let (at_y, at_z) = (layout.ball(vector + 1) + ball, layout.ball(vector + 2) + ball);
                 // Rᵀ(ẋ − Ω × x).

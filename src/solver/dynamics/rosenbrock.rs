@@ -115,7 +115,8 @@ impl Rosenbrock {
         arrow.factor(linearised, GAMMA * step);
         system.work.factorisations += 1;
         rates.copy_from_slice(first);
-        frames.rates_to_frame(&layout, 0.0, state, rates);
+        frames.turn(0.0);
+        frames.rates_to_frame(&layout, state, rates);
         frames.drift(&layout, 1.0, state, drift);
         arrow.solve(linearised, &layout, state, drift, rates, &mut stages[0]);
         for i in 1..STAGES {
@@ -127,9 +128,10 @@ impl Rosenbrock {
                 add_scaled(shift, GAMMAS[i][j] / GAMMA, k);
             }
             let after = step * ALPHA[i].iter().sum::<f64>();
-            frames.to_inertial(&layout, after, stage);
+            frames.turn(after);
+            frames.to_inertial(&layout, stage);
             system.evaluate(t + after, stage, rates);
-            frames.rates_to_frame(&layout, after, stage, rates);
+            frames.rates_to_frame(&layout, stage, rates);
             add_scaled(rates, 1.0, shift);
             // Time goes on at rate 1 in every stage.
             frames.drift(&layout, 1.0 + GAMMAS[i].iter().sum::<f64>() / GAMMA, state, drift);
@@ -142,7 +144,8 @@ impl Rosenbrock {
             add_scaled(&mut to.state, step * WEIGHTS[j], k);
             add_scaled(&mut to.error, step * (WEIGHTS[j] - EMBEDDED[j]), k);
         }
-        frames.to_inertial(&layout, step, &mut to.state);
+        frames.turn(step);
+        frames.to_inertial(&layout, &mut to.state);
     }
 }
 

@@ -14,9 +14,8 @@ use super::state::{BODY, LEDGER, Layout, Ledger, POSITION};
 use super::step_watch::{StepWatch, Stiffness, stiffness};
 use super::system::{Instant, System};
 use crate::kinematics::vec3::{add_scaled, dot, norm, sub};
-use crate::solver::clock::rounded;
-use crate::solver::statics::StaticsError;
-use thiserror::Error;
+
+pub use super::failure::SimulationError;
 
 /// Where a simulation starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,62 +85,6 @@ impl Default for RunOptions {
             energy_limit: 0.01,
         }
     }
-}
-
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum SimulationError {
-    #[error(transparent)]
-    Start(#[from] StaticsError),
-    #[error("the step is {0} s; it must be positive and finite")]
-    Step(f64),
-    #[error("the accuracy is {0}; it must be positive and finite")]
-    Accuracy(f64),
-    #[error(
-        "Runge-Kutta of fourth order has no estimate of its error and takes no accuracy; give a step \
-         (numerics.step, numerics.step_fraction) or another integrator (rosenbrock, dormand-prince)"
-    )]
-    NoErrorEstimate,
-    #[error(
-        "a fraction of the stability limit is a step for Runge-Kutta of fourth order only; give \
-         {0} an accuracy or a step (numerics.accuracy, numerics.step)"
-    )]
-    FractionOfOther(&'static str),
-    #[error(
-        "no step is short enough at t = {at} s, step {step}: the error of one of {size:.3e} s is \
-         still {error:.3e} of what the accuracy allows",
-        at = rounded(*time)
-    )]
-    StepVanished { time: f64, step: u64, size: f64, error: f64 },
-    #[error(
-        "no contact is stiff at the start, so no step follows from it; give a step \
-         (numerics.step)"
-    )]
-    NoStep,
-    #[error(
-        "the step of {size:.3e} s is longer than the largest stable one, {limit:.3e} s at t = {at} s, \
-         step {step} ({reason}): what swings would grow, or what slides swing to and fro; take a \
-         shorter step (numerics.step), or leave it out for one that follows from the limit",
-        at = rounded(*time)
-    )]
-    StepTooLong { size: f64, limit: f64, reason: String, time: f64, step: u64 },
-    #[error(
-        "{body} has a value that is not finite at t = {at} s, step {step}",
-        at = rounded(*time)
-    )]
-    NotFinite { body: String, time: f64, step: u64 },
-    #[error(
-        "ball {ball} has left its races at t = {at} s, step {step}: it is {distance:.3e} m from \
-         the pitch circle, farther than its radius of {ball_radius:.3e} m",
-        at = rounded(*time)
-    )]
-    BallOutside { ball: usize, time: f64, step: u64, distance: f64, ball_radius: f64 },
-    #[error(
-        "energy is lost or made: {residual:.3e} J of {turned_over:.3e} J are unaccounted for at \
-         t = {at} s, step {step} (limit {limit}); take a smaller step or accuracy (numerics.step, \
-         numerics.accuracy), or allow more (numerics.energy_limit)",
-        at = rounded(*time)
-    )]
-    Energy { residual: f64, turned_over: f64, time: f64, step: u64, limit: f64 },
 }
 
 /// A simulation under way.

@@ -19,6 +19,7 @@ use crate::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Snap
 use crate::solver::dynamics::start;
 use crate::solver::dynamics::state::{BODY, BodyState, Layout, Ledger};
 use crate::solver::profile::Profile;
+use crate::solver::solid::contact::{closed_limit, moved, press};
 use crate::solver::solid::energy::SolidLedger;
 use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid};
 use crate::solver::solid::model::{SolidError, SolidModel};
@@ -153,11 +154,6 @@ impl Seat {
     }
 }
 
-fn moved(displacement: &[Node], node: u32) -> Vec3 {
-    let u = &displacement[node as usize];
-    [u[0], u[1], u[2]]
-}
-
 /// ΣK of a seat for a shift of the race, N/m, and ΣKx² for a tilt, N·m/rad, all nodes touching.
 fn seat_stiffness(seat: &Seat, centre: f64) -> [f64; 2] {
     let mut sums = [0.0; 2];
@@ -171,17 +167,6 @@ fn seat_stiffness(seat: &Seat, centre: f64) -> [f64; 2] {
         sums[1] += stiffness * along * along;
     }
     sums
-}
-
-/// The largest stable step of a solid whose contact is closed at every node, s: by Weyl's bound its
-/// highest frequency squared is at most the body's own plus the largest K/m.
-fn solid_limit(model: &SolidModel, seat: &Seat, step: f64, frequency: f64) -> f64 {
-    let added = seat
-        .nodes
-        .iter()
-        .map(|node| seat.penalty.of_node(node.area) / model.mass[node.node as usize])
-        .fold(0.0, f64::max);
-    step * frequency / (frequency * frequency + added).sqrt()
 }
 
 impl HousedBearing {
@@ -220,7 +205,7 @@ impl HousedBearing {
             displacement.into_iter().map(|u| [u[0], u[1], u[2], 0.0]).collect();
         let method = ExplicitMethod::CentralDifferences;
         let limit = step_limit(&model, &displacement, method);
-        let stable = solid_limit(&model, &seat, limit.step, limit.frequency);
+        let stable = closed_limit(&model, &seat.nodes, seat.penalty, &limit).step;
         let mut step = (options.solid_fraction * stable).min(longest);
         let state = held_start(&problem)?;
         let bearing = Simulation::from_state(problem, options.bearing, state, 0.0)?;
@@ -314,13 +299,7 @@ impl HousedBearing {
             let frame = Frame::new(&pose);
             solid.step(|t, displacement, forces| {
                 let cylinder = seat.race(t);
-                let at = |n: u32| moved(displacement, n);
-                *last = contact(&cylinder, &frame, seat.penalty, near, at, |node, _, _, force| {
-                    let sum = &mut forces[node.node as usize];
-                    for i in 0..3 {
-                        sum[i] += force[i];
-                    }
-                });
+                *last = press(&cylinder, &frame, seat.penalty, near, displacement, forces);
                 *growth = growth.to(cylinder.radius, last.radial_load);
             })?;
             self.tested += self.contact.tested as u64;
@@ -432,13 +411,7 @@ impl HousedBearing {
         let HousedBearing { solid, seat, near, .. } = self;
         let mut touching = ContactSum::default();
         let solid = solid.ledger_with(|_, displacement, forces| {
-            let at = |n: u32| moved(displacement, n);
-            touching = contact(&cylinder, &frame, seat.penalty, near, at, |node, _, _, force| {
-                let sum = &mut forces[node.node as usize];
-                for i in 0..3 {
-                    sum[i] += force[i];
-                }
-            });
+            touching = press(&cylinder, &frame, seat.penalty, near, displacement, forces);
         });
         let ahead = 0.5 * self.solid.step_size;
         let power = dot(touching.force, outer.velocity) + dot(touching.moment, outer.spin);

@@ -53,21 +53,52 @@ impl CylinderContact {
         (Cylinder { radius, width: self.width }, frame)
     }
 
-    /// The step limit of a solid with this contact closed at every node: by Weyl's bound its highest
-    /// frequency squared is at most the body's own plus the largest K/m.
+    /// See [`closed_limit`].
     pub fn step_limit(&self, model: &SolidModel, of_solid: &SolidStepLimit) -> SolidStepLimit {
-        let of_node = |node: &ContactNode| {
-            let per_mass = model.per_mass[node.node as usize];
-            self.penalty.of_node(node.area) * per_mass[0].max(per_mass[1]).max(per_mass[2])
-        };
-        let added = self.nodes.iter().map(of_node).fold(0.0, f64::max);
-        let frequency = (of_solid.frequency * of_solid.frequency + added).sqrt();
-        SolidStepLimit {
-            step: of_solid.step * of_solid.frequency / frequency,
-            frequency,
-            ..*of_solid
-        }
+        closed_limit(model, &self.nodes, self.penalty, of_solid)
     }
+}
+
+/// The step limit of a solid whose contact is closed at every one of `nodes`: by Weyl's bound its
+/// highest frequency squared is at most the body's own plus the largest K/m.
+pub fn closed_limit(
+    model: &SolidModel,
+    nodes: &[ContactNode],
+    penalty: Penalty,
+    of_solid: &SolidStepLimit,
+) -> SolidStepLimit {
+    let of_node = |node: &ContactNode| {
+        let per_mass = model.per_mass[node.node as usize];
+        penalty.of_node(node.area) * per_mass[0].max(per_mass[1]).max(per_mass[2])
+    };
+    let added = nodes.iter().map(of_node).fold(0.0, f64::max);
+    let frequency = (of_solid.frequency * of_solid.frequency + added).sqrt();
+    SolidStepLimit { step: of_solid.step * of_solid.frequency / frequency, frequency, ..*of_solid }
+}
+
+/// Contact of a cylinder with nodes that are displaced by `displacement` (m, for each node of the
+/// solid); adds its forces to theirs, N.
+pub fn press(
+    cylinder: &Cylinder,
+    frame: &Frame,
+    penalty: Penalty,
+    nodes: &[ContactNode],
+    displacement: &[Node],
+    forces: &mut [Node],
+) -> ContactSum {
+    let moved = |n: u32| moved(displacement, n);
+    contact(cylinder, frame, penalty, nodes, moved, |node, _, _, force| {
+        let sum = &mut forces[node.node as usize];
+        for i in 0..3 {
+            sum[i] += force[i];
+        }
+    })
+}
+
+/// Displacement of a node, m.
+pub fn moved(displacement: &[Node], node: u32) -> Vec3 {
+    let u = &displacement[node as usize];
+    [u[0], u[1], u[2]]
 }
 
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -137,10 +168,6 @@ struct Snapshot {
     sum: ContactSum,
 }
 
-fn vector(u: &Node) -> Vec3 {
-    [u[0], u[1], u[2]]
-}
-
 impl ContactRun {
     /// Nodes are tested while they may be within `reach` (m) of touching; infinite to test all always.
     ///
@@ -207,21 +234,15 @@ impl ContactRun {
     /// Adds the contact's forces on the nodes, N.
     pub fn add_forces(&mut self, t: f64, displacement: &[Node], forces: &mut [Node]) {
         let (cylinder, frame) = self.contact.at(t);
-        let moved = |n: u32| vector(&displacement[n as usize]);
         let penalty = self.contact.penalty;
-        self.sum = contact(&cylinder, &frame, penalty, &self.near, moved, |node, _, _, force| {
-            let sum = &mut forces[node.node as usize];
-            for i in 0..3 {
-                sum[i] += force[i];
-            }
-        });
+        self.sum = press(&cylinder, &frame, penalty, &self.near, displacement, forces);
         self.tested += self.sum.tested as u64;
     }
 
     /// Nodes that touch now, with the force on each, N.
     pub fn nodal_forces(&self, t: f64, displacement: &[Node]) -> Vec<(ContactNode, Vec3)> {
         let (cylinder, frame) = self.contact.at(t);
-        let moved = |n: u32| vector(&displacement[n as usize]);
+        let moved = |n: u32| moved(displacement, n);
         let mut found = Vec::new();
         contact(&cylinder, &frame, self.contact.penalty, &self.near, moved, |node, _, _, force| {
             found.push((*node, force));
@@ -248,7 +269,7 @@ impl ContactRun {
 
     fn snapshot(&self, t: f64, displacement: &[Node]) -> Snapshot {
         let (cylinder, frame) = self.contact.at(t);
-        let moved = |n: u32| vector(&displacement[n as usize]);
+        let moved = |n: u32| moved(displacement, n);
         let displacements = self.near.iter().map(|node| moved(node.node)).collect();
         let mut forces = vec![[0.0; 3]; self.near.len()];
         let mut at = 0;
@@ -277,7 +298,7 @@ impl ContactRun {
         let by_nodes = self
             .far
             .iter()
-            .map(|(node, then)| norm(sub(vector(&displacement[node.node as usize]), *then)))
+            .map(|(node, then)| norm(sub(moved(displacement, node.node), *then)))
             .fold(0.0, f64::max);
         let by_cylinder = norm(sub(frame.centre, self.sorted_at.1.centre));
         let moved = by_nodes + by_cylinder + (cylinder.radius - self.sorted_at.0.radius).max(0.0);
@@ -293,7 +314,7 @@ impl ContactRun {
 
     fn sort(&mut self, t: f64, displacement: &[Node]) {
         let (cylinder, frame) = self.contact.at(t);
-        let moved = |n: u32| vector(&displacement[n as usize]);
+        let moved = |n: u32| moved(displacement, n);
         let (near, far) = split_by_reach(&cylinder, &frame, &self.contact.nodes, moved, self.reach);
         self.near = near;
         self.far = far.into_iter().map(|node| (node, moved(node.node))).collect();

@@ -1,11 +1,11 @@
 //! Explicit steps of a solid: central differences, or Runge–Kutta as in the source.
 
 use super::energy::{SolidEnergy, SolidLedger, strain_energy};
-use super::model::{DampedMotion, Prescribed, SolidError, SolidModel, SolidProblem};
+use super::model::{Prescribed, SolidError, SolidModel};
+use super::rigid_motion::{RigidMotion, rigid_motion};
 use super::step_limit::{SolidStepLimit, step_limit};
 use super::tet4_blocks::Node;
-use crate::kinematics::vec3::{Vec3, add, cross, sub};
-use nalgebra::{Matrix3, Vector3};
+use crate::kinematics::vec3::Vec3;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExplicitMethod {
@@ -457,49 +457,4 @@ impl ExplicitSolid {
     pub fn forces(&self) -> &[Node] {
         &self.force
     }
-}
-
-/// A body's mean motion: that of a rigid body with the same momenta.
-#[derive(Clone, Copy, Debug, Default)]
-struct RigidMotion {
-    centre: Vec3,
-    translation: Vec3,
-    spin: Vec3,
-}
-
-impl RigidMotion {
-    fn velocity(&self, place: Vec3, displacement: Node) -> Vec3 {
-        let now = add(place, [displacement[0], displacement[1], displacement[2]]);
-        add(self.translation, cross(self.spin, sub(now, self.centre)))
-    }
-}
-
-/// The motion that damping leaves alone; none in an absolute frame.
-fn rigid_motion(
-    problem: &SolidProblem,
-    mass: &[f64],
-    displacement: &[Node],
-    rate: &[Node],
-) -> RigidMotion {
-    if problem.damped_motion == DampedMotion::Absolute {
-        return RigidMotion::default();
-    }
-    let vector = |v: &Node| Vector3::new(v[0], v[1], v[2]);
-    let place = |n: usize| Vector3::from(problem.nodes[n]) + vector(&displacement[n]);
-    let total: f64 = mass.iter().sum();
-    let mut centre = Vector3::zeros();
-    let mut translation = Vector3::zeros();
-    for (n, mass) in mass.iter().enumerate() {
-        centre += place(n) * (mass / total);
-        translation += vector(&rate[n]) * (mass / total);
-    }
-    let mut inertia = Matrix3::zeros();
-    let mut angular_momentum = Vector3::zeros();
-    for (n, &mass) in mass.iter().enumerate() {
-        let arm = place(n) - centre;
-        inertia += (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * mass;
-        angular_momentum += arm.cross(&vector(&rate[n])) * mass;
-    }
-    let spin = inertia.try_inverse().map_or(Vector3::zeros(), |inverse| inverse * angular_momentum);
-    RigidMotion { centre: centre.into(), translation: translation.into(), spin: spin.into() }
 }

@@ -7,6 +7,7 @@ pub mod equilibrium;
 pub mod explicit;
 pub mod model;
 pub mod modes;
+pub mod rigid_motion;
 pub mod step_limit;
 pub mod stress;
 pub mod support;

@@ -149,10 +149,10 @@ fn falls_short(points: &[&Point]) -> String {
     }
     let needed =
         |limit: f64| format!("{:.0e}", nodes(last) * (last.error / limit).powf(1.0 / order));
-    let one = if last.error > 1e-2 {
-        format!("{} nodes for 1 % and ", needed(1e-2))
-    } else {
+    let one = if last.error <= 1e-2 {
         String::new()
+    } else {
+        format!("{} nodes for 1 % and ", needed(1e-2))
     };
     format!(
         "{far}. Its error falls with the power {order:.2} of the nodes: at that rate it takes {one}{} nodes for 0.1 %.",
