@@ -1,14 +1,15 @@
 //! Forces of many quadratic tetrahedra, as [`super::tet4_blocks`] does it for linear ones.
 
-use super::tet4_blocks::{LANES, Node};
+use super::tet4_blocks::{LANES, Node, to_lanes, to_nodes};
 use crate::ch2_housing::linear_elastic::LinearElastic;
 use crate::elements::tet10::{POINTS, Point, Tet10};
+use wide::f64x4;
 
 /// [`LANES`] elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
-    /// First to tenth node, lane.
-    pub nodes: [[u32; LANES]; 10],
+    /// Lane, first to tenth node.
+    pub nodes: [[u32; 10]; LANES],
     points: [BlockPoint; POINTS],
 }
 
@@ -26,12 +27,10 @@ pub fn blocks(elements: impl ExactSizeIterator<Item = (Tet10, [u32; 10])>) -> Ve
     for (index, (element, nodes)) in elements.enumerate() {
         let lane = index % LANES;
         if lane == 0 {
-            blocks.push(Block { nodes: nodes.map(|n| [n; LANES]), points: [empty; POINTS] });
+            blocks.push(Block { nodes: [nodes; LANES], points: [empty; POINTS] });
         }
         let block = blocks.last_mut().expect("pushed at lane 0");
-        for n in 0..10 {
-            block.nodes[n][lane] = nodes[n];
-        }
+        block.nodes[lane] = nodes;
         for (to, from) in block.points.iter_mut().zip(&element.points) {
             to.volume[lane] = from.volume;
             for n in 0..10 {
@@ -54,12 +53,8 @@ pub fn add_forces(
     for block in blocks {
         let mut moved = [[[0.0; LANES]; 3]; 10];
         for n in 0..10 {
-            for lane in 0..LANES {
-                let at = displacement[block.nodes[n][lane] as usize];
-                for i in 0..3 {
-                    moved[n][i][lane] = at[i];
-                }
-            }
+            let of = block.nodes.each_ref();
+            moved[n] = to_lanes(of.map(|nodes| f64x4::new(displacement[nodes[n] as usize])));
         }
         let mut force = [[[0.0; LANES]; 3]; 10];
         for point in &block.points {
@@ -84,13 +79,12 @@ pub fn add_forces(
                 }
             }
         }
+        let force = force.map(to_nodes);
         // Element after element, as the plain loop adds them.
-        for lane in 0..LANES {
-            for n in 0..10 {
-                let sum = &mut forces[block.nodes[n][lane] as usize];
-                for i in 0..3 {
-                    sum[i] += force[n][i][lane];
-                }
+        for (lane, nodes) in block.nodes.iter().enumerate() {
+            for (node, add) in nodes.iter().zip(&force) {
+                let sum = &mut forces[*node as usize];
+                *sum = (f64x4::new(*sum) + add[lane]).to_array();
             }
         }
     }
