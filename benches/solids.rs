@@ -87,26 +87,30 @@ impl Plain {
     }
 }
 
-/// Multiplications and additions a second without fused operations, all in registers.
+#[cfg(target_feature = "avx512f")]
+type Widest = wide::f64x8;
+#[cfg(not(target_feature = "avx512f"))]
+type Widest = wide::f64x4;
+
+/// Multiplications and additions a second without fused operations, all in registers of the widest
+/// kind: as many chains as keep every port busy and still fit into 16 registers.
 fn roof() -> f64 {
     const CHAINS: usize = 12;
-    const LANES: usize = 8;
+    let lanes = size_of::<Widest>() / size_of::<f64>();
     let rounds = 2_000_000;
-    let mut values = [[1.0f64; LANES]; CHAINS];
-    let factor = black_box(0.999_999);
-    let add = black_box(1e-7);
+    let mut values = [Widest::splat(1.0); CHAINS];
+    let factor = Widest::splat(black_box(0.999_999));
+    let add = Widest::splat(black_box(1e-7));
     let seconds = least(8, 1, |_| {
         let mut now = values;
         for _ in 0..rounds {
             for chain in &mut now {
-                for value in chain {
-                    *value = *value * factor + add;
-                }
+                *chain = *chain * factor + add;
             }
         }
         values = black_box(now);
     });
-    (rounds * CHAINS * LANES * 2) as f64 / seconds
+    (rounds * CHAINS * lanes * 2) as f64 / seconds
 }
 
 fn main() {

@@ -4,34 +4,20 @@
 //! written, or one error of one line. `MESH_FUZZ_INPUTS=1000000 cargo test --release --test
 //! mesh_fuzz` runs a million.
 
+mod fuzz_common;
+
 use bearing_dynamics::mesh::check::{Limits, faults};
 use bearing_dynamics::mesh::quality::quality;
 use bearing_dynamics::mesh::read::{LengthUnit, read_abaqus, read_gmsh};
 use bearing_dynamics::mesh::repair::{Repair, repair};
 use bearing_dynamics::mesh::write::write_vtu;
+use fuzz_common::Random;
 use std::fs;
 use std::panic::catch_unwind;
 use std::path::PathBuf;
 
 const USUAL_INPUTS: usize = 6_000;
 const SEED: u64 = 0x3e54_f11e_5eed_0001;
-
-/// SplitMix64 (Steele, Lea and Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, bound: usize) -> usize {
-        (self.next() % bound.max(1) as u64) as usize
-    }
-}
 
 const WORDS: &[&str] = &[
     "0",

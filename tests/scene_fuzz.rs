@@ -3,6 +3,8 @@
 //! No input may panic; each either resolves to a scene of usable numbers or gives one error that
 //! names the file. `SCENE_FUZZ_INPUTS=1000000 cargo test --release --test scene_fuzz` runs a million.
 
+mod fuzz_common;
+
 use bearing_dynamics::ch2_housing::bearing::traction::coefficient;
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::keys::{self, Kind};
@@ -12,32 +14,12 @@ use bearing_dynamics::solver::dynamics::model::{Drive, Rotation};
 use bearing_dynamics::solver::dynamics::run::Stepping;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::Condition;
+use fuzz_common::Random;
 use std::collections::HashSet;
 use std::panic::catch_unwind;
 
 const USUAL_INPUTS: usize = 20_000;
 const SEED: u64 = 0x5ce2_e5ee_d000_0001;
-
-/// SplitMix64 (Steele, Lea and Flood 2014): small, seeded, good enough to choose mutations.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, bound: usize) -> usize {
-        (self.next() % bound.max(1) as u64) as usize
-    }
-
-    fn pick<'t, T: ?Sized>(&mut self, from: &[&'t T]) -> &'t T {
-        from[self.below(from.len())]
-    }
-}
 
 /// Numbers at the edges of doubles, integers, ranges and syntax.
 const NUMBERS: &[&str] = &[

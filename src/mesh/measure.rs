@@ -73,7 +73,7 @@ pub enum Share {
 }
 
 /// Seven-point rule on a triangle (Radon 1948), exact to degree five: barycentric places, weights.
-pub(super) fn triangle_rule() -> [([f64; 3], f64); 7] {
+fn triangle_rule() -> [([f64; 3], f64); 7] {
     let root = 15f64.sqrt();
     let (a, b) = ((6.0 + root) / 21.0, (6.0 - root) / 21.0);
     let (wa, wb) = ((155.0 + root) / 1200.0, (155.0 - root) / 1200.0);
@@ -89,10 +89,10 @@ pub(super) fn triangle_rule() -> [([f64; 3], f64); 7] {
     ]
 }
 
-/// ∫ Nᵢ dA and ∫ Nᵢ² dA over a six-node face (corners a, b, c, middles ab, bc, ca).
-fn curved_face(points: [Vector3<f64>; 6]) -> [[f64; 2]; 6] {
-    let mut sums = [[0.0; 2]; 6];
-    for ([u, v, w], weight) in triangle_rule() {
+/// Shape functions and outward vector area (times its weight) at the places of [`triangle_rule`] on a
+/// six-node face (corners a, b, c, middles ab, bc, ca).
+pub(super) fn curved_face(points: &[Vector3<f64>; 6]) -> [([f64; 6], Vector3<f64>); 7] {
+    triangle_rule().map(|([u, v, w], weight)| {
         let shape = [
             u * (2.0 * u - 1.0),
             v * (2.0 * v - 1.0),
@@ -104,7 +104,15 @@ fn curved_face(points: [Vector3<f64>; 6]) -> [[f64; 2]; 6] {
         let by_u = points[0] * (4.0 * u - 1.0) + points[3] * (4.0 * v) + points[5] * (4.0 * w);
         let by_v = points[1] * (4.0 * v - 1.0) + points[3] * (4.0 * u) + points[4] * (4.0 * w);
         let by_w = points[2] * (4.0 * w - 1.0) + points[4] * (4.0 * v) + points[5] * (4.0 * u);
-        let area = 0.5 * weight * (by_v - by_u).cross(&(by_w - by_u)).norm();
+        (shape, (by_v - by_u).cross(&(by_w - by_u)) * (0.5 * weight))
+    })
+}
+
+/// ∫ Nᵢ dA and ∫ Nᵢ² dA over a six-node face.
+fn curved_shares(points: &[Vector3<f64>; 6]) -> [[f64; 2]; 6] {
+    let mut sums = [[0.0; 2]; 6];
+    for (shape, vector_area) in curved_face(points) {
+        let area = vector_area.norm();
         for (sum, value) in sums.iter_mut().zip(shape) {
             sum[0] += value * area;
             sum[1] += value * value * area;
@@ -125,7 +133,7 @@ fn face_integrals(mesh: &TetMesh, face: Face) -> [[f64; 2]; 6] {
             for (point, node) in points.iter_mut().zip(mesh.face_nodes(face)) {
                 *point = mesh.point(node);
             }
-            curved_face(points)
+            curved_shares(&points)
         }
     }
 }

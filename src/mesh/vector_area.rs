@@ -1,6 +1,6 @@
 //! What part of a surface's vector area each node carries: minus the nodal forces of unit pressure.
 
-use crate::mesh::measure::{face_normal, triangle_rule};
+use crate::mesh::measure::{curved_face, face_normal};
 use crate::mesh::tet_mesh::{Face, Order, TetMesh};
 use nalgebra::Vector3;
 
@@ -16,7 +16,7 @@ pub fn vector_areas(mesh: &TetMesh, faces: &[Face]) -> Vec<[f64; 3]> {
                 let share = face_normal(mesh, face) / 6.0;
                 [share, share, share, Vector3::zeros(), Vector3::zeros(), Vector3::zeros()]
             }
-            Order::Quadratic => curved_face(mesh, face),
+            Order::Quadratic => curved_shares(mesh, face),
         };
         for (node, share) in mesh.face_nodes(face).zip(shares) {
             for i in 0..3 {
@@ -28,25 +28,13 @@ pub fn vector_areas(mesh: &TetMesh, faces: &[Face]) -> Vec<[f64; 3]> {
 }
 
 /// The same for the corners and then the middles of one six-node face.
-fn curved_face(mesh: &TetMesh, face: Face) -> [Vector3<f64>; 6] {
+fn curved_shares(mesh: &TetMesh, face: Face) -> [Vector3<f64>; 6] {
     let mut points = [Vector3::zeros(); 6];
     for (point, node) in points.iter_mut().zip(mesh.face_nodes(face)) {
         *point = mesh.point(node);
     }
     let mut sums = [Vector3::zeros(); 6];
-    for ([u, v, w], weight) in triangle_rule() {
-        let shape = [
-            u * (2.0 * u - 1.0),
-            v * (2.0 * v - 1.0),
-            w * (2.0 * w - 1.0),
-            4.0 * u * v,
-            4.0 * v * w,
-            4.0 * w * u,
-        ];
-        let by_u = points[0] * (4.0 * u - 1.0) + points[3] * (4.0 * v) + points[5] * (4.0 * w);
-        let by_v = points[1] * (4.0 * v - 1.0) + points[3] * (4.0 * u) + points[4] * (4.0 * w);
-        let by_w = points[2] * (4.0 * w - 1.0) + points[4] * (4.0 * v) + points[5] * (4.0 * u);
-        let area = (by_v - by_u).cross(&(by_w - by_u)) * (0.5 * weight);
+    for (shape, area) in curved_face(&points) {
         for (sum, value) in sums.iter_mut().zip(shape) {
             *sum += area * value;
         }

@@ -9,8 +9,9 @@ use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::Integrator::{DormandPrince, Rosenbrock};
 use bearing_dynamics::solver::statics::Condition;
 
-use super::motion::{LABELS, Measures, Method, Variant, Window, errors, follow, limit, measure};
-use super::motion::{best_errors, from_first_to_last, sentences, sweep_rk4};
+use super::motion::sentences;
+use super::motion::{LABELS, Measures, Method, Variant, Window, errors, follow, measure};
+use super::motion_sweeps::{sweep_hertz, sweep_methods, sweep_rk4, sweep_slices};
 use crate::bearings::{self, ANGULAR_CONTACT, Hertz};
 use crate::cage_bearing::rolling;
 use crate::case::CaseError;
@@ -112,17 +113,12 @@ fn integrator(context: &mut ParetoContext) -> Result<(), CaseError> {
     let controlled = accuracies.map(|accuracy| Method::accurate(Rosenbrock, accuracy));
     let explicit = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
         .map(|accuracy| Method::accurate(DormandPrince, accuracy));
-    for (series, methods, reference) in [
+    let series = [
         ("rosenbrock, fixed step", &fixed[..], &by_explicit),
-        ("rosenbrock, error control", &controlled, &by_explicit),
-        ("dormand-prince, error control", &explicit, &by_rk4),
-    ] {
-        for &method in methods {
-            let name = method.variant();
-            let variant = Variant { series, name, problem: &problem, method, limit: None };
-            measure(context, &variant, WINDOW, reference, MEASURES)?;
-        }
-    }
+        ("rosenbrock, error control", &controlled[..], &by_explicit),
+        ("dormand-prince, error control", &explicit[..], &by_rk4),
+    ];
+    sweep_methods(context, &problem, &series, WINDOW, MEASURES)?;
     sentences(context, MEASURES, "The", |_| true);
     let [displacement, swing, ..] = errors(&by_explicit, &by_rk4);
     context.sentence(format!(
@@ -134,22 +130,7 @@ fn integrator(context: &mut ParetoContext) -> Result<(), CaseError> {
 
 fn slices(context: &mut ParetoContext) -> Result<(), CaseError> {
     let sliced = |slices| problem().map(|problem| DynamicProblem { slices, ..problem });
-    let many = sliced(151)?;
-    let fine = CALM.fitting(0.5 * limit(&many, CALM)?);
-    let reference = follow(&many, Method::rk4(fine), CALM)?;
-    for slices in [5, 7, 9, 11, 15, 21, 31, 45] {
-        let variant = Variant {
-            series: "dormand-prince, accuracy 1e-4",
-            name: format!("{slices} slices"),
-            problem: &sliced(slices)?,
-            method: Method::accurate(DormandPrince, 1e-4),
-            limit: None,
-        };
-        measure(context, &variant, CALM, &reference, SLICES_MEASURES)?;
-    }
-    sentences(context, SLICES_MEASURES, "The", |_| true);
-    let spread = from_first_to_last(context.points());
-    context.sentence(spread);
+    sweep_slices(context, sliced, CALM, SLICES_MEASURES)?;
     context.sentence(
         "Reference: 151 slices by rk4 at half its limit. The 5 ms before the cage strikes.",
     );
@@ -163,18 +144,7 @@ fn hertz(context: &mut ParetoContext) -> Result<(), CaseError> {
         let (inner_contact, outer_contact) = (still.inner_contact, still.outer_contact);
         Ok(DynamicProblem { inner_contact, outer_contact, ..problem()? })
     };
-    let reference = follow(&with(Hertz::Exact)?, converged(), CALM)?;
-    for (series, model) in [("hamrock-brewe", Hertz::Fit), ("exact", Hertz::Exact)] {
-        for step in [1e-6, 5e-6, 20e-6] {
-            let method = Method::rosenbrock(step);
-            let name = method.variant();
-            let variant = Variant { series, name, problem: &with(model)?, method, limit: None };
-            measure(context, &variant, CALM, &reference, MEASURES)?;
-        }
-    }
-    sentences(context, MEASURES, "The", |_| true);
-    let off = best_errors(context.points(), MEASURES, "hamrock-brewe");
-    context.sentence(format!("Hamrock and Brewe's fit is off by {off}, at any step."));
+    sweep_hertz(context, with, converged(), CALM, MEASURES)?;
     context.sentence(
         "Steps of rosenbrock; reference: the exact contact by dormand-prince at 1e-7. The 5 ms before the cage \
          strikes.",

@@ -3,6 +3,7 @@
 mod cage;
 mod housing;
 mod motion;
+mod motion_sweeps;
 mod solids;
 mod statics;
 mod varying_compliance;

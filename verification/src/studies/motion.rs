@@ -318,34 +318,6 @@ pub fn from_first_to_last(points: &[Point]) -> String {
     }
 }
 
-/// Runge–Kutta at fractions of its limit, below and beyond it, with the boundary marked.
-pub fn sweep_rk4(
-    context: &mut ParetoContext,
-    series: &str,
-    problem: &DynamicProblem,
-    fractions: &[f64],
-    window: Window,
-    reference: &History,
-    measures: Measures,
-) -> Result<f64, CaseError> {
-    let limit = limit(problem, window)?;
-    let mut seconds_a_step = f64::INFINITY;
-    for fraction in fractions {
-        let step = window.fitting(fraction * limit);
-        let method = Method::rk4(step);
-        let name = format!("{}, {:.2} of the limit", method.variant(), step / limit);
-        let variant = Variant { series, name, problem, method, limit: Some(limit) };
-        let found = measure(context, &variant, window, reference, measures)?;
-        if found.ended.is_none() {
-            // The time of a run whose steps all are as long.
-            seconds_a_step = seconds_a_step.min(found.seconds * step / window.end);
-        }
-    }
-    let name = format!("{series}: limit of {:.3} µs", 1e6 * limit);
-    context.boundary(&name, seconds_a_step * window.end / limit);
-    Ok(limit)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

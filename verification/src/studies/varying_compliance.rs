@@ -11,8 +11,9 @@ use bearing_dynamics::solver::dynamics::run::Integrator::{DormandPrince, Rosenbr
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::Condition;
 
-use super::motion::{LABELS, Measures, Method, Variant, Window, errors, follow, limit, measure};
-use super::motion::{best_errors, from_first_to_last, sentences, sweep_rk4};
+use super::motion::sentences;
+use super::motion::{LABELS, Measures, Method, Window, errors, follow, limit};
+use super::motion_sweeps::{sweep_hertz, sweep_methods, sweep_rk4, sweep_slices};
 use crate::bearings::{self, DEEP_GROOVE, Hertz};
 use crate::case::CaseError;
 use crate::motion::{RPM, moving};
@@ -109,17 +110,12 @@ fn integrator(context: &mut ParetoContext) -> Result<(), CaseError> {
     let accuracies = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
     let controlled = accuracies.map(|accuracy| Method::accurate(Rosenbrock, accuracy));
     let explicit = accuracies.map(|accuracy| Method::accurate(DormandPrince, accuracy));
-    for (series, methods, reference) in [
+    let series = [
         ("rosenbrock, fixed step", &fixed[..], &by_rk4),
-        ("rosenbrock, error control", &controlled, &by_rk4),
-        ("dormand-prince, error control", &explicit, &by_rosenbrock),
-    ] {
-        for &method in methods {
-            let name = method.variant();
-            let variant = Variant { series, name, problem: &problem, method, limit: None };
-            measure(context, &variant, WINDOW, reference, MEASURES)?;
-        }
-    }
+        ("rosenbrock, error control", &controlled[..], &by_rk4),
+        ("dormand-prince, error control", &explicit[..], &by_rosenbrock),
+    ];
+    sweep_methods(context, &problem, &series, WINDOW, MEASURES)?;
     sentences(context, MEASURES, "The", |_| true);
     let [displacement, swing, ..] = errors(&by_rosenbrock, &by_rk4);
     context.sentence(format!(
@@ -131,22 +127,7 @@ fn integrator(context: &mut ParetoContext) -> Result<(), CaseError> {
 
 fn slices(context: &mut ParetoContext) -> Result<(), CaseError> {
     let sliced = |slices| problem(DEFAULT).map(|problem| DynamicProblem { slices, ..problem });
-    let converged = sliced(151)?;
-    let fine = SHORT.fitting(0.5 * limit(&converged, SHORT)?);
-    let reference = follow(&converged, Method::rk4(fine), SHORT)?;
-    for slices in [5, 7, 9, 11, 15, 21, 31, 45] {
-        let variant = Variant {
-            series: "dormand-prince, accuracy 1e-4",
-            name: format!("{slices} slices"),
-            problem: &sliced(slices)?,
-            method: Method::accurate(DormandPrince, 1e-4),
-            limit: None,
-        };
-        measure(context, &variant, SHORT, &reference, SLICES_MEASURES)?;
-    }
-    sentences(context, SLICES_MEASURES, "The", |_| true);
-    let spread = from_first_to_last(context.points());
-    context.sentence(spread);
+    sweep_slices(context, sliced, SHORT, SLICES_MEASURES)?;
     context.sentence("Reference: 151 slices by rk4 at half its limit. A window of 2 ms.");
     Ok(())
 }
@@ -159,18 +140,7 @@ fn hertz(context: &mut ParetoContext) -> Result<(), CaseError> {
         Ok(DynamicProblem { inner_contact, outer_contact, ..problem(DEFAULT)? })
     };
     let exact = Method::accurate(DormandPrince, 1e-5);
-    let reference = follow(&with(Hertz::Exact)?, exact, WINDOW)?;
-    for (series, model) in [("hamrock-brewe", Hertz::Fit), ("exact", Hertz::Exact)] {
-        for step in [1e-6, 5e-6, 20e-6] {
-            let method = Method::rosenbrock(step);
-            let name = method.variant();
-            let variant = Variant { series, name, problem: &with(model)?, method, limit: None };
-            measure(context, &variant, WINDOW, &reference, MEASURES)?;
-        }
-    }
-    sentences(context, MEASURES, "The", |_| true);
-    let off = best_errors(context.points(), MEASURES, "hamrock-brewe");
-    context.sentence(format!("Hamrock and Brewe's fit is off by {off}, at any step."));
+    sweep_hertz(context, with, exact, WINDOW, MEASURES)?;
     context
         .sentence("Steps of rosenbrock; reference: the exact contact by dormand-prince at 1e-5.");
     Ok(())
