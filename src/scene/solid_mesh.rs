@@ -43,7 +43,9 @@ pub enum SolidMeshError {
     Mesh { path: PathBuf, source: MeshError },
     #[error("{key}: {source}")]
     Made { key: String, source: MeshError },
-    #[error("solid.mesh: these dimensions and cells do not make a sound mesh, change them: {faults}")]
+    #[error(
+        "solid.mesh: these dimensions and cells do not make a sound mesh, change them: {faults}"
+    )]
     MadeFaults { faults: Faults },
     #[error(
         "solid.mesh.order: {} has ten-node elements, from which no four-node ones are made; leave \
@@ -75,10 +77,7 @@ impl SolidMeshError {
             SolidMeshError::MadeFaults { .. } => About::key("solid.mesh"),
             SolidMeshError::Order { .. } => About::key("solid.mesh.order"),
             SolidMeshError::TooFine { .. } => About::key("solid.mesh.cells"),
-            SolidMeshError::SetTwice { index, .. } => {
-                About::Item { table: "solid.set", index: *index, key: "name" }
-            }
-            SolidMeshError::Set { index, .. } => {
+            SolidMeshError::SetTwice { index, .. } | SolidMeshError::Set { index, .. } => {
                 About::Item { table: "solid.set", index: *index, key: "name" }
             }
         })
