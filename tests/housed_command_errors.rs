@@ -156,7 +156,46 @@ fn cases() -> Vec<Case> {
             "a load that varies",
             good()
                 + "[[solid.load]]\nset = \"x_high\"\nz = { ramp = [\"0 N\", \"1 N\"], duration = \"1 ms\" }\n",
-            &["solid.load", "constant loads", "explicit"],
+            &["scene.toml:44:7: solid.load", "constant loads", "explicit"],
+        ),
+        (
+            "a support that moves",
+            changed("y = true", "y = { ramp = [\"0 um\", \"1 um\"], duration = \"1 ms\" }"),
+            &["scene.toml:38:5: solid.held.y", "held at zero", "explicit"],
+        ),
+        (
+            "a bore wider than its ring",
+            changed("bore_radius = \"35.527 mm\"", "bore_radius = \"53.527 mm\""),
+            &["scene.toml:30:15: solid.mesh.bore_radius", "0.053527 m", "0 to 0.05 m"],
+        ),
+        (
+            "a ring of two cells",
+            changed("around = 24", "around = 2"),
+            &["scene.toml:33:20: solid.mesh.cells.around", "8 to 100000"],
+        ),
+        (
+            "a set that is not there",
+            changed("set = \"fixed\"", "set = \"foot\""),
+            &["scene.toml:36:7: solid.held.set", "\"foot\"", "bore, fixed"],
+        ),
+        (
+            "a set that matches nothing",
+            good() + "[[solid.set]]\nname = \"cut\"\nplane = \"x\"\nat = \"12 mm\"\n",
+            &["scene.toml:44:8: solid.set", "\"cut\"", "matches nothing"],
+        ),
+        (
+            "another bearing's housing",
+            changed("bore_radius = \"35.527 mm\"", "bore_radius = \"26 mm\""),
+            &["scene.toml:24:2: housing.bore", "26.0000 mm"],
+        ),
+        (
+            "a mesh that is not there",
+            changed(
+                "generate = \"housing-d\"\nbore_radius = \"35.527 mm\"\nouter_radius = \"50 mm\"\n\
+                     depth = \"20 mm\"\ncells = { around = 24, radial = 1, axial = 2 }\n",
+                "file = \"missing.msh\"\nunit = \"mm\"\n",
+            ),
+            &["solid.mesh.file: cannot read", "missing.msh", "scene.toml:29:8"],
         ),
     ]
 }

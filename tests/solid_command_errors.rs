@@ -110,6 +110,20 @@ fn errors_name_what_is_wrong() {
     fs::write(place.path("deck.inp"), deck).unwrap();
     let file = |name: &str| format!("[solid.mesh]\nfile = \"{name}\"\nunit = \"mm\"\n");
     let held = |further: &str| bar(1, &format!("{ON_ROLLERS}{further}"));
+    let made = |name: &str, further: &str| {
+        format!("[solid.mesh]\ngenerate = \"{name}\"\norder = 1\n{further}\n")
+    };
+    let ring = |sizes: &str, around: u32| {
+        made("ring", &format!("{sizes}\ncells = {{ around = {around}, radial = 2, axial = 2 }}"))
+    };
+    let cage = |width: &str, relief: &str, quarter: u32| {
+        made(
+            "cage",
+            &format!(
+                "pockets = 8\npocket_radius = \"6.1 mm\"\ninner_radius = \"24 mm\"\nouter_radius = \"28 mm\"\nwidth = \"{width}\"\nrelief = {{ depth = \"{relief}\", belt_width = \"13 mm\" }}\ncells = {{ quarter = {quarter}, bar = 1, wall = 1 }}"
+            ),
+        )
+    };
     let numerics = "[numerics]\nend = \"1 ms\"\n";
     let cases: &[(&str, &str, String)] = &[
         ("a bearing too", "check", bar(1, "[bearing]\nkind = \"deep-groove\"\n")),
@@ -126,6 +140,33 @@ fn errors_name_what_is_wrong() {
             "check",
             "[solid.mesh]\ngenerate = \"housing-a\"\nbore_radius = \"35.5 mm\"\nside = \"60 mm\"\ndepth = \"20 mm\"\norder = 1\ncells = { around = 32, radial = 2, axial = 2 }\n".to_string(),
         ),
+        (
+            "radii exchanged",
+            "check",
+            ring("inner_radius = \"25 mm\"\nouter_radius = \"20 mm\"\nwidth = \"10 mm\"", 24),
+        ),
+        (
+            "two cells around",
+            "check",
+            ring("inner_radius = \"20 mm\"\nouter_radius = \"25 mm\"\nwidth = \"10 mm\"", 2),
+        ),
+        (
+            "flat cells",
+            "check",
+            ring("inner_radius = \"20 mm\"\nouter_radius = \"20.001 mm\"\nwidth = \"10 mm\"", 24),
+        ),
+        ("pockets that touch", "check", cage("11 mm", "0.5 mm", 2)),
+        ("belt wider than the cage", "check", cage("12.4 mm", "0.5 mm", 2)),
+        ("relief through the wall", "check", cage("16 mm", "5 mm", 2)),
+        ("one cell for a quarter", "check", cage("16 mm", "0.5 mm", 1)),
+        ("shaft not in eighths", "check", made("shaft", "radius = \"10 mm\"\nlength = \"80 mm\"\ncells = { along = 8, around = 12, radial = 1 }")),
+        ("shrinking steps", "check", made("block", "half_width = \"0.1 mm\"\ncells = { per_half_width = 2, deep = 1, growth = 0.5 }")),
+        ("neck wider than the annulus", "check", made("housing-b", "bore_radius = \"26 mm\"\nneck_width = \"80 mm\"\ndepth = \"15 mm\"\ncells = { around = 16, radial = 2, axial = 1 }")),
+        ("base too high by its default", "check", made("housing-c", "bore_radius = \"26 mm\"\ncentre_height = \"27 mm\"\ndepth = \"15 mm\"\ncells = { around = 16, radial = 2, axial = 1 }")),
+        ("bore wider than the annulus", "check", made("housing-d", "bore_radius = \"26 mm\"\nouter_radius = \"20 mm\"\ndepth = \"15 mm\"\ncells = { around = 16, radial = 2, axial = 1 }")),
+        ("load on no set", "check", held("[[solid.load]]\nset = \"x_high\"\nz = \"1 N\"\n[[solid.load]]\nset = \"tip\"\nz = \"1 N\"\n")),
+        ("probe of no set", "check", held("[[solid.probe]]\nset = \"tip\"\n")),
+        ("probes alike", "check", held("[[solid.probe]]\nset = \"y_low\"\nname = \"end\"\n")),
         ("order lowered", "check", format!("{}order = 1\n", file("box_o2.inp"))),
         ("no order", "check", bar(1, "").replace("order = 1\n", "")),
         ("no length", "check", bar(1, "").replace("length = \"40 mm\"\n", "")),

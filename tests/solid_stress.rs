@@ -4,9 +4,10 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::strain::{Sym3, full, principal, von_mises};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::generate::bar;
-use bearing_dynamics::mesh::tet_mesh::Order;
+use bearing_dynamics::mesh::node_order::EDGES;
+use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
 use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel, SolidProblem};
-use bearing_dynamics::solver::solid::stress::{nodal_stresses, point_stresses};
+use bearing_dynamics::solver::solid::stress::{element_stresses, nodal_stresses, point_stresses};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 const YOUNG: f64 = 2.1e11;
@@ -102,6 +103,94 @@ fn stresses_of_pure_bending() {
     let coarse = worst([6, 4, 4], Order::Linear);
     let fine = worst([12, 8, 8], Order::Linear);
     assert!(fine <= 0.7 * coarse && fine <= 0.15, "{coarse} {fine}");
+}
+
+/// Two elements of very different volume on one face, each under a uniform stress of its own: shared
+/// nodes have the mean by volume, the others their element's.
+#[test]
+fn nodes_average_stresses_by_volume() {
+    let corners: [Vec3; 5] = [
+        [0.0; 3],
+        [0.02, 0.001, 0.0],
+        [0.003, 0.03, 0.001],
+        [0.004, 0.005, 0.01],
+        [0.006, 0.007, -0.08],
+    ];
+    let linear = [[0, 1, 2, 3], [0, 2, 1, 4]];
+    // The same on the face z = 0 of both, whatever they do along its normal.
+    let base = Matrix3::new(0.01, 0.004, 0.0, -0.002, 0.006, 0.0, 0.003, 0.001, 0.0);
+    let across = [Vector3::new(0.002, -0.003, 0.02), Vector3::new(-0.01, 0.004, -0.006)];
+    let normal = {
+        let edge = |n: usize| Vector3::from(corners[n]) - Vector3::from(corners[0]);
+        edge(1).cross(&edge(2)).normalize()
+    };
+    let gradients = across.map(|a| base + a * normal.transpose());
+    let stress = gradients.map(|h| {
+        let f = Matrix3::identity() + h;
+        let strain = (f.transpose() * f - Matrix3::identity()) * 0.5;
+        let (lambda, mu) = (YOUNG * POISSON / (1.3 * 0.4), YOUNG / 2.6);
+        let s = Matrix3::identity() * (lambda * strain.trace()) + strain * (2.0 * mu);
+        let t = f * s * f.transpose() / f.determinant();
+        [t.m11, t.m22, t.m33, t.m12, t.m23, t.m13]
+    });
+    let volume = linear.map(|nodes: [u32; 4]| {
+        let at = nodes.map(|n| Vector3::from(corners[n as usize]));
+        (at[1] - at[0]).cross(&(at[2] - at[0])).dot(&(at[3] - at[0])) / 6.0
+    });
+    assert!(volume[0] > 0.0 && volume[1] > 7.0 * volume[0], "{volume:?}");
+    let mean: Sym3 = std::array::from_fn(|i| {
+        (volume[0] * stress[0][i] + volume[1] * stress[1][i]) / (volume[0] + volume[1])
+    });
+
+    for order in [Order::Linear, Order::Quadratic] {
+        // Nodes between corners, each once, and which elements each node belongs to.
+        let (mut nodes, mut owners) = (corners.to_vec(), vec![vec![0, 1]; 3]);
+        owners.extend([vec![0], vec![1]]);
+        let mut quadratic = [[0u32; 10]; 2];
+        let mut middles: Vec<[u32; 2]> = Vec::new();
+        for (element, own) in linear.iter().enumerate() {
+            quadratic[element][..4].copy_from_slice(own);
+            for (middle, [a, b]) in EDGES.into_iter().enumerate() {
+                let mut edge = [own[a], own[b]];
+                edge.sort_unstable();
+                let at = middles.iter().position(|known| *known == edge).unwrap_or_else(|| {
+                    middles.push(edge);
+                    let [a, b] = edge.map(|n| corners[n as usize]);
+                    nodes.push(std::array::from_fn(|i| 0.5 * (a[i] + b[i])));
+                    owners.push(Vec::new());
+                    middles.len() - 1
+                });
+                quadratic[element][4 + middle] = 5 + at as u32;
+                owners[5 + at].push(element);
+            }
+        }
+        let elements = match order {
+            Order::Linear => {
+                nodes.truncate(5);
+                Elements::Linear(linear.to_vec())
+            }
+            Order::Quadratic => Elements::Quadratic(quadratic.to_vec()),
+        };
+        let displacement: Vec<Vec3> = nodes
+            .iter()
+            .zip(&owners)
+            .map(|(x, owners)| (gradients[owners[0]] * Vector3::from(*x)).into())
+            .collect();
+        let problem = SolidProblem { nodes, elements, ..model([1, 1, 1], order).problem };
+        let model = SolidModel::new(problem).unwrap();
+        // Rounding as in a uniform deformation.
+        for (own, exact) in element_stresses(&model, &displacement).iter().zip(&stress) {
+            let error = off([own].into_iter(), exact);
+            assert!(error <= 1e-11, "{order:?}: {error}");
+        }
+        let at_nodes = nodal_stresses(&model, &displacement);
+        assert_eq!(at_nodes.len(), if order == Order::Linear { 5 } else { 14 });
+        for (node, (found, owners)) in at_nodes.iter().zip(&owners).enumerate() {
+            let exact = if owners.len() == 2 { mean } else { stress[owners[0]] };
+            let error = off([found].into_iter(), &exact);
+            assert!(error <= 1e-11, "{order:?}, node {node}: {error}");
+        }
+    }
 }
 
 #[test]

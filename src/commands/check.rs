@@ -4,7 +4,9 @@ use super::{CommandResult, Outcome, echo, echo_run, say};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
-use bearing_dynamics::scene::{self, CageInRun, Scene, Subject, statics::static_problem};
+use bearing_dynamics::scene::{
+    CageInRun, Document, Scene, Subject, resolve_subject, statics::static_problem,
+};
 use bearing_dynamics::solver::dynamics::run::Stepping;
 use bearing_dynamics::solver::plan::race_freedom;
 use std::fmt::Write;
@@ -20,12 +22,13 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
-    let scene = match scene::read_subject(&arguments.scene)? {
+    let document = Document::read_file(&arguments.scene)?;
+    let scene = match resolve_subject(&document)? {
         Subject::Solid(solid) => {
-            return super::solid::check::run(&arguments.scene, &solid, arguments.json);
+            return super::solid::check::run(&arguments.scene, &document, &solid, arguments.json);
         }
         Subject::Housed(housed) => {
-            return super::housed::check::run(&arguments.scene, &housed, arguments.json);
+            return super::housed::check::run(&arguments.scene, &document, &housed, arguments.json);
         }
         Subject::Bearing(scene) => *scene,
     };

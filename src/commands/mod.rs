@@ -19,6 +19,8 @@ pub mod statics;
 pub mod sweep;
 pub mod table;
 
+use bearing_dynamics::scene::Document;
+use bearing_dynamics::scene::about::About;
 use bearing_dynamics::solver::clock::rounded;
 use std::error::Error;
 use std::io::Write;
@@ -41,6 +43,18 @@ pub fn say(text: &str) -> Result<(), Box<dyn Error>> {
             Err(format!("cannot write to standard output: {error}").into())
         }
         _ => Ok(()),
+    }
+}
+
+/// An error that shows only with the mesh, with its place in the scene where it has one.
+pub fn placed(
+    document: &Document,
+    about: Option<About>,
+    error: impl Error + 'static,
+) -> Box<dyn Error> {
+    match about {
+        Some(about) => format!("{}: {error}", document.place_of(&about)).into(),
+        None => error.into(),
     }
 }
 

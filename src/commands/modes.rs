@@ -1,7 +1,7 @@
 //! `bearing modes SCENE`.
 
 use super::CommandResult;
-use bearing_dynamics::scene::{self, Subject};
+use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -18,8 +18,9 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> CommandResult {
     let Arguments { scene, out, dry } = arguments;
-    match scene::read_subject(scene)? {
-        Subject::Solid(solid) => super::solid::modes::run(scene, &solid, out, *dry),
+    let document = Document::read_file(scene)?;
+    match resolve_subject(&document)? {
+        Subject::Solid(solid) => super::solid::modes::run(scene, &document, &solid, out, *dry),
         Subject::Bearing(_) | Subject::Housed(_) => Err(format!(
             "{}: modes takes a solid by itself, and the scene holds a bearing; `bearing statics` \
              gives a bearing's stiffness",

@@ -6,7 +6,9 @@ use super::solve::{lines, plan_lines};
 use super::{CommandResult, Outcome, say};
 use bearing_dynamics::output::dynamics::session::RunRequest;
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
-use bearing_dynamics::scene::{self, CageInRun, Scene, Subject, statics::static_problem};
+use bearing_dynamics::scene::{
+    CageInRun, Document, Scene, Subject, resolve_subject, statics::static_problem,
+};
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::plan;
 use std::path::PathBuf;
@@ -18,9 +20,10 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
-    let scene = match scene::read_subject(&arguments.scene)? {
-        Subject::Solid(solid) => return super::solid::plan::run(&solid),
-        Subject::Housed(housed) => return super::housed::plan::run(&housed),
+    let document = Document::read_file(&arguments.scene)?;
+    let scene = match resolve_subject(&document)? {
+        Subject::Solid(solid) => return super::solid::plan::run(&document, &solid),
+        Subject::Housed(housed) => return super::housed::plan::run(&document, &housed),
         Subject::Bearing(scene) => *scene,
     };
     let mut planned = match run_options(&scene) {

@@ -15,7 +15,9 @@ use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::state::{self, StateFile, StateRecord, Stopped};
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::housing::HousingMethod;
-use bearing_dynamics::scene::{self, Plot, RunPlot, RunSettings, Scene, Subject};
+use bearing_dynamics::scene::{
+    Document, Plot, RunPlot, RunSettings, Scene, Subject, resolve_subject,
+};
 use bearing_dynamics::solver::channels::ChannelGroup;
 use bearing_dynamics::solver::clock::rounded;
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
@@ -61,12 +63,19 @@ enum End {
 
 pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
-    let scene = match scene::read_subject(&arguments.scene)? {
-        Subject::Solid(solid) => return super::solid::run::run(arguments, &solid, start),
+    let document = Document::read_file(&arguments.scene)?;
+    let scene = match resolve_subject(&document)? {
+        Subject::Solid(solid) => {
+            return super::solid::run::run(arguments, &document, &solid, start);
+        }
         Subject::Housed(housed) => {
             return match housed.housing.method {
-                HousingMethod::QuasiStatic => super::housed::course::run(arguments, &housed),
-                HousingMethod::Explicit => super::housed::explicit::run(arguments, &housed, start),
+                HousingMethod::QuasiStatic => {
+                    super::housed::course::run(arguments, &document, &housed)
+                }
+                HousingMethod::Explicit => {
+                    super::housed::explicit::run(arguments, &document, &housed, start)
+                }
             };
         }
         Subject::Bearing(scene) => *scene,

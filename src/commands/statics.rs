@@ -3,7 +3,7 @@
 use super::solve::solve_scene;
 use super::{CommandResult, Outcome, pictures, refuse_folder_of_run, results_folder, say, table};
 use bearing_dynamics::output::results::write_static_results;
-use bearing_dynamics::scene::{self, Subject};
+use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -22,14 +22,15 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
-    let scene = match scene::read_subject(&arguments.scene)? {
+    let document = Document::read_file(&arguments.scene)?;
+    let scene = match resolve_subject(&document)? {
         Subject::Solid(solid) => {
             let Arguments { scene, out, dry } = arguments;
-            return super::solid::statics::run(scene, &solid, out, *dry);
+            return super::solid::statics::run(scene, &document, &solid, out, *dry);
         }
         Subject::Housed(housed) => {
             let Arguments { scene, out, dry } = arguments;
-            return super::housed::statics::run(scene, &housed, out, *dry);
+            return super::housed::statics::run(scene, &document, &housed, out, *dry);
         }
         Subject::Bearing(scene) => *scene,
     };

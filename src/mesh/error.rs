@@ -39,6 +39,10 @@ pub enum MeshError {
         "cell {cell} of block {block} is turned inside out: these dimensions leave no room for this mesh"
     )]
     Tangled { block: usize, cell: usize },
+    #[error(
+        "joining nodes within {tolerance:.5e} m would collapse element {element}, two of whose nodes lie so close; take the element out, or remesh there"
+    )]
+    Collapsed { element: u64, tolerance: f64 },
     #[error("the mesh has mid-side nodes already")]
     AlreadyQuadratic,
     #[error("field \"{field}\" has {found} values where {expected} are needed")]

@@ -27,8 +27,7 @@ pub struct Repaired {
 /// Merges, then turns, then drops, as far as asked.
 ///
 /// # Errors
-/// [`MeshError::Dimension`] where merging would collapse an element: the tolerance is larger than
-/// the mesh is fine.
+/// [`MeshError::Collapsed`] where merging would join two nodes of one element.
 pub fn repair(mesh: TetMesh, wanted: &Repair) -> Result<(TetMesh, Repaired), MeshError> {
     let mut mesh = mesh;
     let mut done = Repaired::default();
@@ -91,12 +90,7 @@ fn merge(mesh: &mut TetMesh, tolerance: f64) -> Result<usize, MeshError> {
         (1..nodes.len()).any(|i| nodes[..i].contains(&nodes[i]))
     });
     if let Some(element) = collapsed {
-        return Err(MeshError::Dimension {
-            what: "tolerance for merging",
-            value: tolerance,
-            unit: " m",
-            allowed: format!("0 to the shortest edge: element {element} would collapse"),
-        });
+        return Err(MeshError::Collapsed { element: element as u64, tolerance });
     }
     Ok(keep_nodes(mesh, |node| first_at[node] == node as u32))
 }

@@ -1,5 +1,6 @@
 //! A scene as a person wrote it: every given key, checked against the key table, with its place.
 
+use crate::scene::about::About;
 use crate::scene::error::{Place, Problem, SceneError};
 use crate::scene::keys::{self, KEYS, Key};
 use crate::scene::source::{self, Format, Source};
@@ -62,10 +63,15 @@ impl<'d> ItemRef<'d> {
     /// An error about a key of this table, or about the table.
     pub fn error(&self, name: &str, problem: Problem) -> SceneError {
         let path = format!("{}.{name}", self.item.table);
+        self.document.source.error(self.offset(name), &path, problem)
+    }
+
+    /// Where a key of this table has its value; of one that is not given, where the table begins.
+    fn offset(&self, name: &str) -> usize {
+        let path = format!("{}.{name}", self.item.table);
         let row = keys::find(&path).map(|(row, _)| row);
         let own = self.item.given.iter().find(|(given, _)| Some(*given) == row);
-        let offset = own.and_then(|(_, given)| given.offset).unwrap_or(self.item.offset);
-        self.document.source.error(offset, &path, problem)
+        own.and_then(|(_, given)| given.offset).unwrap_or(self.item.offset)
     }
 }
 
@@ -352,6 +358,21 @@ impl Document {
 
     /// An error about a key or table: at its value, else at the innermost table that would hold it.
     pub(crate) fn error(&self, path: &str, problem: Problem) -> SceneError {
+        SceneError::new(self.place_of_key(path), path, problem)
+    }
+
+    /// Where the part of the scene stands that a later error is about.
+    pub fn place_of(&self, about: &About) -> Place {
+        match about {
+            About::Key(path) => self.place_of_key(path),
+            About::Item { table, index, key } => match self.items(table).nth(*index) {
+                Some(item) => self.source.place(item.offset(key)),
+                None => self.place_of_key(table),
+            },
+        }
+    }
+
+    fn place_of_key(&self, path: &str) -> Place {
         let own = keys::find(path).and_then(|(row, _)| self.given[row].as_ref());
         let place = match own {
             Some(given) => given.offset.map(|offset| self.source.place(offset)),
@@ -364,6 +385,6 @@ impl Document {
                 tables.max_by_key(|(table, _)| table.len()).map(|&(_, at)| self.source.place(at))
             }
         };
-        SceneError::new(place.unwrap_or_else(|| Place::file(&self.source.name)), path, problem)
+        place.unwrap_or_else(|| Place::file(&self.source.name))
     }
 }

@@ -2,8 +2,10 @@
 
 use crate::ch2_housing::bore_contact::{ContactNode, Frame, contact_nodes};
 use crate::kinematics::{Pose, euler};
-use crate::mesh::TetMesh;
+use crate::scene::about::About;
 use crate::scene::housing::{FitSize, HousedScene};
+use crate::scene::solid::{LoadKind, SetLoad};
+use crate::scene::solid_mesh::BuiltMesh;
 use crate::scene::solid_problem::{SolidSetup, SolidSetupError, setup as solid_setup};
 use crate::scene::statics::kinematic_ratios;
 use crate::solver::dynamics::model::{Drive, Rotation};
@@ -58,7 +60,33 @@ pub enum HousingSetupError {
         "solid.load: the condensed housing of `quasi-static` takes constant loads; write method = \
          \"explicit\" in [housing]"
     )]
-    VaryingLoad,
+    VaryingLoad { index: usize },
+    #[error(
+        "solid.held.{axis}: the condensed housing of `quasi-static` is held at zero; write \
+         {axis} = true, or method = \"explicit\" in [housing]"
+    )]
+    MovedSupport { index: usize, axis: &'static str },
+}
+
+impl HousingSetupError {
+    /// Part of the scene that it is about; of a model that cannot be set up none.
+    pub fn about(&self) -> Option<About> {
+        Some(match self {
+            HousingSetupError::Solid(error) => error.about(),
+            HousingSetupError::Model(_) => return None,
+            HousingSetupError::NoBore { .. }
+            | HousingSetupError::FarFromTheRace { .. }
+            | HousingSetupError::NotRound { .. } => About::key("housing.bore"),
+            HousingSetupError::BesideTheRace { .. } => About::key("housing.width"),
+            HousingSetupError::FitTooLarge { .. } => About::key("housing.outer_radius"),
+            HousingSetupError::VaryingLoad { index } => {
+                About::Item { table: "solid.load", index: *index, key: "set" }
+            }
+            HousingSetupError::MovedSupport { index, axis: key } => {
+                About::Item { table: "solid.held", index: *index, key }
+            }
+        })
+    }
 }
 
 fn list(names: &[String]) -> String {
@@ -84,8 +112,9 @@ pub struct HousingSetup {
 
 /// # Errors
 /// A set that is not there, a bore that is not about the race, a model that cannot be set up.
-pub fn setup(scene: &HousedScene, mesh: &TetMesh) -> Result<HousingSetup, HousingSetupError> {
-    let solid = solid_setup(&scene.solid, mesh)?;
+pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, HousingSetupError> {
+    let mesh = &built.mesh;
+    let solid = solid_setup(&scene.solid, built)?;
     let bore = scene.housing.bore.clone();
     let faces = mesh.surface_sets.get(&bore).ok_or_else(|| HousingSetupError::NoBore {
         bore: bore.clone(),
@@ -140,7 +169,7 @@ pub fn setup(scene: &HousedScene, mesh: &TetMesh) -> Result<HousingSetup, Housin
     if !fits {
         return Err(HousingSetupError::FitTooLarge { interference, limit });
     }
-    let model = SolidModel::new(solid.problem.clone())?;
+    let model = SolidModel::labelled(solid.problem.clone(), solid.labels.clone())?;
     Ok(HousingSetup { solid, model, nodes, bore_radius: radius, interference, width, nominal })
 }
 
@@ -175,18 +204,29 @@ impl HousingSetup {
             axial: scene.housing.axial,
         }
     }
+}
 
-    /// What a condensed housing cannot have.
-    ///
-    /// # Errors
-    /// [`HousingSetupError::VaryingLoad`].
-    pub fn check_constant(&self) -> Result<(), HousingSetupError> {
-        let constant = |profile: &Profile| matches!(profile, Profile::Constant(_));
-        match self.solid.problem.loads.iter().all(|load| constant(&load.profile)) {
-            true => Ok(()),
-            false => Err(HousingSetupError::VaryingLoad),
+/// What a condensed housing cannot have.
+///
+/// # Errors
+/// [`HousingSetupError::VaryingLoad`], [`HousingSetupError::MovedSupport`].
+pub fn check_constant(scene: &HousedScene) -> Result<(), HousingSetupError> {
+    let constant = |profile: &Profile| matches!(profile, Profile::Constant(_));
+    let varies = |load: &SetLoad| match &load.kind {
+        LoadKind::Pressure(profile) => !constant(profile),
+        LoadKind::Force(axes) => !axes.iter().flatten().all(constant),
+    };
+    if let Some(index) = scene.solid.loads.iter().position(varies) {
+        return Err(HousingSetupError::VaryingLoad { index });
+    }
+    for (index, held) in scene.solid.held.iter().enumerate() {
+        for (axis, motion) in ["x", "y", "z"].into_iter().zip(&held.motion) {
+            if motion.as_ref().is_some_and(|motion| !motion.is_zero()) {
+                return Err(HousingSetupError::MovedSupport { index, axis });
+            }
         }
     }
+    Ok(())
 }
 
 /// Something that drives bearing and housing, and its frequency.

@@ -17,6 +17,7 @@
 //! assert!((scene.geometry.ball_radius - 5.9555e-3).abs() <= 1e-15);
 //! # Ok::<(), scene::SceneError>(())
 //! ```
+pub mod about;
 pub mod document;
 pub mod dynamics;
 pub mod error;

@@ -69,6 +69,50 @@ const PILLOW_BLOCK: &[&str] = &[
 const GENERAL: &[&str] =
     &["file", "generate", "unit", "order", "renumber", "repair", "cavities", "largest_aspect"];
 
+/// What generators call their dimensions in errors, and the key below `solid.mesh` for it.
+const KEY_OF_DIMENSION: &[(&str, &str)] = &[
+    ("inner radius", "inner_radius"),
+    ("outer radius", "outer_radius"),
+    ("width", "width"),
+    ("half contact width", "half_width"),
+    ("radius of the shaft", "radius"),
+    ("stations of the shaft", "stations"),
+    ("distance of two stations", "stations"),
+    ("longest layer", "cells.along"),
+    ("layers between two stations", "cells.along"),
+    ("pockets", "pockets"),
+    ("pocket radius", "pocket_radius"),
+    ("relief of the rails", "relief.depth"),
+    ("width of the belt", "relief.belt_width"),
+    ("bore radius", "bore_radius"),
+    ("side of the housing", "side"),
+    ("depth", "depth"),
+    ("centre height", "centre_height"),
+    ("base width", "base_width"),
+    ("base height", "base_height"),
+    ("neck width", "neck_width"),
+    ("fillet radius", "fillet_radius"),
+    ("cells around", "cells.around"),
+    ("cells around the bore", "cells.around"),
+    ("cells around the shaft", "cells.around"),
+    ("radial cells", "cells.radial"),
+    ("axial cells", "cells.axial"),
+    ("cells along a quarter of a pocket", "cells.quarter"),
+    ("cells across half a bar", "cells.bar"),
+    ("cells through the wall", "cells.wall"),
+    ("cells per half contact width", "cells.per_half_width"),
+    ("number of first steps in the length", "cells.per_half_width"),
+    ("cells along the depth", "cells.deep"),
+    ("growth of radial steps", "cells.growth"),
+    ("growth of steps", "cells.growth"),
+];
+
+/// The key below `solid.mesh` of what a generator names in an error; nothing for what follows from
+/// several.
+pub(crate) fn key_of_dimension(what: &str) -> Option<&'static str> {
+    KEY_OF_DIMENSION.iter().find(|(known, _)| *known == what).map(|(_, key)| *key)
+}
+
 /// The generators and what each takes, for the reference.
 pub(crate) fn generators() -> impl Iterator<Item = (&'static str, String)> {
     KEYS_OF.iter().map(|(name, keys)| {
@@ -286,4 +330,45 @@ fn pillow_block(reader: &mut Reader, bore_radius: f64, depth: f64) -> PillowBloc
         }
     }
     block
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every dimension that a generator may refuse leads to a key of a scene.
+    #[test]
+    fn dimensions_of_generators_are_keys() {
+        for (_, key) in KEY_OF_DIMENSION {
+            assert!(crate::scene::keys::find(&format!("solid.mesh.{key}")).is_some(), "{key}");
+        }
+        // These have three sizes, are not made from scenes, or follow from others that are checked.
+        const NO_KEY: [&str; 5] = [
+            "size of the bar",
+            "cells along the bar",
+            "cells along the block",
+            "first step",
+            "length to be divided",
+        ];
+        let sources = [
+            include_str!("../mesh/generate/cage.rs"),
+            include_str!("../mesh/generate/grading.rs"),
+            include_str!("../mesh/generate/housing.rs"),
+            include_str!("../mesh/generate/solids.rs"),
+        ];
+        let mut seen = 0;
+        for call in sources.iter().flat_map(|text| text.split("between(\"").skip(1)) {
+            seen += named(call, &NO_KEY);
+        }
+        for call in sources.iter().flat_map(|text| text.split("divisions(\"").skip(1)) {
+            seen += named(call, &NO_KEY);
+        }
+        assert!(seen > 30, "{seen}");
+    }
+
+    fn named(call: &str, no_key: &[&str]) -> usize {
+        let what = call.split('"').next().unwrap_or_default();
+        assert!(key_of_dimension(what).is_some() || no_key.contains(&what), "{what}");
+        1
+    }
 }

@@ -5,13 +5,15 @@ use crate::mesh::generate::{Solid, bar, contact_block, ring, shaft};
 use crate::mesh::numbering::reverse_cuthill_mckee;
 use crate::mesh::quadratic::elevate;
 use crate::mesh::quality::{Quality, quality};
-use crate::mesh::read::{FileNumbers, ReadError, read_abaqus, read_gmsh};
+use crate::mesh::read::{ReadError, read_abaqus, read_gmsh};
 use crate::mesh::repair::{Repair, Repaired, repair};
 use crate::mesh::select::Region;
 use crate::mesh::topology::surface;
 use crate::mesh::{MeshError, Order, TetMesh};
-use crate::scene::resolve_solid_mesh::extension;
+use crate::scene::about::About;
+use crate::scene::resolve_solid_mesh::{extension, key_of_dimension};
 use crate::scene::solid::{MeshRequest, MeshSource, SetPlace};
+use crate::solver::solid::labels::Labels;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -19,6 +21,8 @@ use thiserror::Error;
 #[derive(Clone, Debug)]
 pub struct BuiltMesh {
     pub mesh: TetMesh,
+    /// What messages call its elements and nodes: as the file does.
+    pub labels: Labels,
     pub quality: Quality,
     pub repaired: Repaired,
     /// Mid-side nodes that had to stay off a curved surface.
@@ -33,10 +37,16 @@ pub enum SolidMeshError {
     File { path: PathBuf, source: std::io::Error },
     #[error("{}: {source}", path.display())]
     Read { path: PathBuf, source: ReadError },
-    #[error("{name}: {faults}")]
-    Faults { name: String, faults: Faults },
-    #[error("{name}: {source}")]
-    Mesh { name: String, source: MeshError },
+    #[error("{}: {faults}", path.display())]
+    Faults { path: PathBuf, faults: Faults },
+    #[error("{}: {source}", path.display())]
+    Mesh { path: PathBuf, source: MeshError },
+    #[error("{key}: {source}")]
+    Made { key: String, source: MeshError },
+    #[error(
+        "solid.mesh: these dimensions and cells do not make a sound mesh, change them: {faults}"
+    )]
+    MadeFaults { faults: Faults },
     #[error(
         "solid.mesh.order: {} has ten-node elements, from which no four-node ones are made; leave \
          `order` out, or save the mesh with elements of first order",
@@ -44,15 +54,34 @@ pub enum SolidMeshError {
     )]
     Order { path: PathBuf },
     #[error(
-        "solid.set: the mesh, or an earlier [[solid.set]], already has a set called \"{name}\""
+        "solid.set.name: the mesh, or an earlier [[solid.set]], already has a set called \"{name}\""
     )]
-    SetTwice { name: String },
+    SetTwice { index: usize, name: String },
     #[error(
-        "solid.mesh: {cells:.1e} cells, more than the {MOST_CELLS:.0e} that are made; take fewer"
+        "solid.mesh.cells: {cells:.1e} cells, more than the {MOST_CELLS:.0e} that are made; take fewer"
     )]
     TooFine { cells: f64 },
     #[error("solid.set: {source}")]
-    Set { source: MeshError },
+    Set { index: usize, source: MeshError },
+}
+
+impl SolidMeshError {
+    /// Part of the scene that it is about; nothing where the fault is inside a mesh file.
+    pub fn about(&self) -> Option<About> {
+        Some(match self {
+            SolidMeshError::Read { .. }
+            | SolidMeshError::Faults { .. }
+            | SolidMeshError::Mesh { .. } => return None,
+            SolidMeshError::File { .. } => About::key("solid.mesh.file"),
+            SolidMeshError::Made { key, .. } => About::key(key),
+            SolidMeshError::MadeFaults { .. } => About::key("solid.mesh"),
+            SolidMeshError::Order { .. } => About::key("solid.mesh.order"),
+            SolidMeshError::TooFine { .. } => About::key("solid.mesh.cells"),
+            SolidMeshError::SetTwice { index, .. } | SolidMeshError::Set { index, .. } => {
+                About::Item { table: "solid.set", index: *index, key: "name" }
+            }
+        })
+    }
 }
 
 /// Part of the mesh's size within which nodes lie on the surface of a set.
@@ -69,6 +98,7 @@ const MOST_CELLS: f64 = 1e7;
 pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
     let mut notes = Vec::new();
     let mut repaired = Repaired::default();
+    let mut labels = Labels::default();
     let limits =
         Limits { aspect: request.largest_aspect, cavities: request.cavities, ..Limits::default() };
     let (mesh, pulled_back) = match &request.source {
@@ -89,55 +119,81 @@ pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
                 drop_unreferenced: request.drop_unreferenced,
             };
             let places = loaded.mesh.nodes.clone();
-            let (mesh, done) = repair(loaded.mesh, &wanted).map_err(|e| in_mesh(path, e))?;
+            labels.elements = loaded.numbers.elements;
+            let (mesh, done) = repair(loaded.mesh, &wanted)
+                .map_err(|error| in_mesh(path, named_in_file(error, &labels)))?;
             repaired = done;
-            let name = path.display().to_string();
+            labels.nodes = labels_of_nodes(&mesh, &places, &loaded.numbers.nodes);
             check(&mesh, &limits).map_err(|faults| {
-                let faults = in_numbers_of_file(faults, &mesh, &places, &loaded.numbers);
-                SolidMeshError::Faults { name, faults }
+                let faults = named(faults, &labels);
+                SolidMeshError::Faults { path: path.clone(), faults }
             })?;
-            from_file(mesh, request.order, path)?
+            let (mesh, pulled_back) = from_file(mesh, request.order, path)?;
+            // Nodes put on edges come last, and the file has none of them.
+            labels.nodes.resize(mesh.nodes.len(), None);
+            (mesh, pulled_back)
         }
         made => {
-            let name = "solid.mesh";
             let cells = cells(made);
             if cells > MOST_CELLS {
                 return Err(SolidMeshError::TooFine { cells });
             }
-            let solid = generate(made)
-                .map_err(|source| SolidMeshError::Mesh { name: name.to_string(), source })?;
-            let (mesh, pulled_back) = of_order(solid, request.order)
-                .map_err(|source| SolidMeshError::Mesh { name: name.to_string(), source })?;
-            check(&mesh, &limits)
-                .map_err(|faults| SolidMeshError::Faults { name: name.to_string(), faults })?;
+            let failed = |source: MeshError| {
+                let dimension = match &source {
+                    MeshError::Dimension { what, .. } => key_of_dimension(what),
+                    _ => None,
+                };
+                let key = format!("solid.mesh.{}", dimension.unwrap_or("generate"));
+                SolidMeshError::Made { key, source }
+            };
+            let solid = generate(made).map_err(failed)?;
+            let (mesh, pulled_back) = of_order(solid, request.order).map_err(failed)?;
+            check(&mesh, &limits).map_err(|faults| {
+                let faults = named(faults, &labels);
+                SolidMeshError::MadeFaults { faults }
+            })?;
             (mesh, pulled_back)
         }
     };
     let mesh = with_sets(mesh, request)?;
-    let mesh = if request.renumber { reverse_cuthill_mckee(mesh).mesh } else { mesh };
-    Ok(BuiltMesh { quality: quality(&mesh), mesh, repaired, pulled_back, notes })
+    let (mesh, labels) = match request.renumber {
+        true => {
+            let renumbered = reverse_cuthill_mckee(mesh);
+            let labels = labels.renumbered(&renumbered.element, &renumbered.node);
+            (renumbered.mesh, labels)
+        }
+        false => (mesh, labels),
+    };
+    Ok(BuiltMesh { quality: quality(&mesh), mesh, labels, repaired, pulled_back, notes })
 }
 
 fn in_mesh(path: &Path, source: MeshError) -> SolidMeshError {
-    SolidMeshError::Mesh { name: path.display().to_string(), source }
+    SolidMeshError::Mesh { path: path.to_path_buf(), source }
 }
 
-/// Faults by the numbers that the file has for elements and nodes; `places` are those of its nodes.
-fn in_numbers_of_file(
-    faults: Faults,
-    mesh: &TetMesh,
-    places: &[[f64; 3]],
-    numbers: &FileNumbers,
-) -> Faults {
-    let element = |index: u64| numbers.elements[index as usize];
-    let node = |index: u64| {
-        let index = index as usize;
-        // Repairs drop nodes and move none: those that are left are found by their places.
-        let first = || places.iter().position(|place| *place == mesh.nodes[index]);
-        let read = if places.len() == mesh.nodes.len() { Some(index) } else { first() };
-        read.map_or(index as u64, |read| numbers.nodes[read])
-    };
+/// Faults by the numbers that messages have for elements and nodes.
+fn named(faults: Faults, labels: &Labels) -> Faults {
+    let element = |index: u64| labels.element(index as usize);
+    let node = |index: u64| labels.node(index as usize).unwrap_or(index + 1);
     Faults(faults.0.into_iter().map(|fault| fault.renumbered(element, node)).collect())
+}
+
+/// A repair that fails, with the number that the file has for the element.
+fn named_in_file(error: MeshError, labels: &Labels) -> MeshError {
+    match error {
+        MeshError::Collapsed { element, tolerance } => {
+            MeshError::Collapsed { element: labels.element(element as usize), tolerance }
+        }
+        other => other,
+    }
+}
+
+/// The file's numbers of the nodes that repairs have left. They drop nodes, and neither move nor
+/// reorder any: those that are left are found one after the other by their places.
+fn labels_of_nodes(mesh: &TetMesh, places: &[[f64; 3]], numbers: &[u64]) -> Vec<Option<u64>> {
+    let mut read = places.iter().zip(numbers);
+    let next = |place: &[f64; 3]| read.find(|(at, _)| *at == place).map(|(_, number)| *number);
+    mesh.nodes.iter().map(next).collect()
 }
 
 /// A file's mesh in the order that is asked for.
@@ -206,11 +262,11 @@ fn generate(source: &MeshSource) -> Result<Solid, MeshError> {
 /// Sets by geometry, beside those the mesh has.
 fn with_sets(mut mesh: TetMesh, request: &MeshRequest) -> Result<TetMesh, SolidMeshError> {
     let boundary = if request.sets.is_empty() { Vec::new() } else { surface(&mesh) };
-    for set in &request.sets {
+    for (index, set) in request.sets.iter().enumerate() {
         let tolerance = set.tolerance.unwrap_or(ON_SURFACE * mesh.size());
-        let failed = |source| SolidMeshError::Set { source };
+        let failed = |source| SolidMeshError::Set { index, source };
         if mesh.node_sets.contains_key(&set.name) || mesh.surface_sets.contains_key(&set.name) {
-            return Err(SolidMeshError::SetTwice { name: set.name.clone() });
+            return Err(SolidMeshError::SetTwice { index, name: set.name.clone() });
         }
         match set.place {
             SetPlace::Surface(on) => {

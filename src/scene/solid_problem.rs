@@ -5,35 +5,60 @@ use crate::kinematics::vec3::Vec3;
 use crate::mesh::measure::{Share, tributary_areas};
 use crate::mesh::vector_area::vector_areas;
 use crate::mesh::{Face, TetMesh};
+use crate::scene::about::About;
 use crate::scene::solid::{LoadKind, ProbeOf, SolidScene};
+use crate::scene::solid_mesh::BuiltMesh;
 use crate::solver::profile::Profile;
+use crate::solver::solid::labels::Labels;
 use crate::solver::solid::model::{Load, Prescribed, SolidProblem};
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
 
+/// What of a scene does not fit its mesh; `index` counts the tables of a list from 0.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SolidSetupError {
     #[error(transparent)]
     Material(#[from] ElasticError),
-    #[error("{part}: no set is called \"{set}\"; there are: {}", list(known))]
-    NoSuchSet { part: &'static str, set: String, known: Vec<String> },
-    #[error("{part}: set \"{set}\" has no nodes")]
-    EmptySet { part: &'static str, set: String },
+    #[error("{part}.set: no set is called \"{set}\"; there are: {}", list(known))]
+    NoSuchSet { part: &'static str, index: usize, set: String, known: Vec<String> },
+    #[error("{part}.set: set \"{set}\" has no nodes")]
+    EmptySet { part: &'static str, index: usize, set: String },
     #[error(
-        "solid.load: pressure needs a surface, and \"{set}\" is a set of nodes or elements; the \
+        "solid.load.set: pressure needs a surface, and \"{set}\" is a set of nodes or elements; the \
          surfaces are: {}",
         list(known)
     )]
-    NoSurface { set: String, known: Vec<String> },
+    NoSurface { index: usize, set: String, known: Vec<String> },
     #[error(
-        "solid.held: sets \"{first}\" and \"{second}\" move the same node ({}) along {axis} in \
+        "solid.held.{axis}: sets \"{first}\" and \"{second}\" move the same node ({}) along {axis} in \
          different ways",
         place(at)
     )]
-    HeldTwice { first: String, second: String, axis: &'static str, at: Vec3 },
-    #[error("solid.probe: two probes are called \"{name}\"; give one of them another `name`")]
-    ProbeTwice { name: String },
+    HeldTwice { index: usize, first: String, second: String, axis: &'static str, at: Vec3 },
+    #[error("solid.probe.name: two probes are called \"{name}\"; give one of them another `name`")]
+    ProbeTwice { index: usize, name: String },
+}
+
+impl SolidSetupError {
+    pub fn about(&self) -> About {
+        match *self {
+            SolidSetupError::Material(_) => About::key("solid.material"),
+            SolidSetupError::NoSuchSet { part: table, index, .. }
+            | SolidSetupError::EmptySet { part: table, index, .. } => {
+                About::Item { table, index, key: "set" }
+            }
+            SolidSetupError::NoSurface { index, .. } => {
+                About::Item { table: "solid.load", index, key: "set" }
+            }
+            SolidSetupError::HeldTwice { index, axis: key, .. } => {
+                About::Item { table: "solid.held", index, key }
+            }
+            SolidSetupError::ProbeTwice { index, .. } => {
+                About::Item { table: "solid.probe", index, key: "name" }
+            }
+        }
+    }
 }
 
 fn list(names: &[String]) -> String {
@@ -80,6 +105,7 @@ impl Support {
 #[derive(Clone, Debug)]
 pub struct SolidSetup {
     pub problem: SolidProblem,
+    pub labels: Labels,
     /// Velocities at the start of a run, m/s.
     pub velocity: Vec<Vec3>,
     pub probes: Vec<NamedNodes>,
@@ -91,12 +117,13 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// # Errors
 /// A set that is not there or does not fit its use, supports that contradict each other.
-pub fn setup(scene: &SolidScene, mesh: &TetMesh) -> Result<SolidSetup, SolidSetupError> {
+pub fn setup(scene: &SolidScene, built: &BuiltMesh) -> Result<SolidSetup, SolidSetupError> {
+    let mesh = &built.mesh;
     let material = LinearElastic::new(scene.youngs_modulus, scene.poisson_ratio)?;
     let (prescribed, supports) = supports(scene, mesh)?;
     let mut loads = Vec::new();
-    for load in &scene.loads {
-        loads.extend(set_loads(mesh, &load.set, &load.kind)?);
+    for (index, load) in scene.loads.iter().enumerate() {
+        loads.extend(set_loads(mesh, index, &load.set, &load.kind)?);
     }
     let problem = SolidProblem {
         nodes: mesh.nodes.clone(),
@@ -112,7 +139,8 @@ pub fn setup(scene: &SolidScene, mesh: &TetMesh) -> Result<SolidSetup, SolidSetu
     let [u, v, w] = scene.velocity;
     let velocity =
         mesh.nodes.iter().map(|[_, y, z]| [u, v - scene.spin * z, w + scene.spin * y]).collect();
-    Ok(SolidSetup { problem, velocity, probes: probes(scene, mesh)?, supports })
+    let (labels, probes) = (built.labels.clone(), probes(scene, mesh)?);
+    Ok(SolidSetup { problem, labels, velocity, probes, supports })
 }
 
 /// Every set of the mesh, once.
@@ -122,10 +150,11 @@ fn set_names(mesh: &TetMesh) -> Vec<String> {
 }
 
 /// Nodes of a set of nodes, faces or elements, ascending.
-pub fn nodes_of_set(
+fn nodes_of_set(
     mesh: &TetMesh,
     set: &str,
     part: &'static str,
+    index: usize,
 ) -> Result<Vec<u32>, SolidSetupError> {
     let nodes = if let Some(nodes) = mesh.node_sets.get(set) {
         nodes.clone()
@@ -136,10 +165,10 @@ pub fn nodes_of_set(
         nodes.copied().collect::<BTreeSet<_>>().into_iter().collect()
     } else {
         let (set, known) = (set.to_string(), set_names(mesh));
-        return Err(SolidSetupError::NoSuchSet { part, set, known });
+        return Err(SolidSetupError::NoSuchSet { part, index, set, known });
     };
     match nodes.is_empty() {
-        true => Err(SolidSetupError::EmptySet { part, set: set.to_string() }),
+        true => Err(SolidSetupError::EmptySet { part, index, set: set.to_string() }),
         false => Ok(nodes),
     }
 }
@@ -150,8 +179,8 @@ type Supports = (Vec<Prescribed>, Vec<Support>);
 fn supports(scene: &SolidScene, mesh: &TetMesh) -> Result<Supports, SolidSetupError> {
     let mut owner: BTreeMap<(u32, usize), (&str, &Profile)> = BTreeMap::new();
     let mut named: Vec<Support> = Vec::new();
-    for held in &scene.held {
-        let nodes = nodes_of_set(mesh, &held.set, "solid.held")?;
+    for (index, held) in scene.held.iter().enumerate() {
+        let nodes = nodes_of_set(mesh, &held.set, "solid.held", index)?;
         let mut components = Vec::new();
         for (axis, profile) in held.motion.iter().enumerate() {
             let Some(profile) = profile else { continue };
@@ -164,6 +193,7 @@ fn supports(scene: &SolidScene, mesh: &TetMesh) -> Result<Supports, SolidSetupEr
                     Entry::Occupied(taken) if taken.get().1 == profile => {}
                     Entry::Occupied(taken) => {
                         return Err(SolidSetupError::HeldTwice {
+                            index,
                             first: taken.get().0.to_string(),
                             second: held.set.clone(),
                             axis: AXES[axis],
@@ -188,16 +218,21 @@ fn supports(scene: &SolidScene, mesh: &TetMesh) -> Result<Supports, SolidSetupEr
 }
 
 /// Forces of one load: over a surface in proportion to the area, over loose nodes evenly.
-fn set_loads(mesh: &TetMesh, set: &str, kind: &LoadKind) -> Result<Vec<Load>, SolidSetupError> {
+fn set_loads(
+    mesh: &TetMesh,
+    index: usize,
+    set: &str,
+    kind: &LoadKind,
+) -> Result<Vec<Load>, SolidSetupError> {
     match kind {
         LoadKind::Pressure(profile) => {
             let faces = mesh.surface_sets.get(set).ok_or_else(|| {
                 let known = mesh.surface_sets.keys().cloned().collect();
                 if set_names(mesh).iter().any(|name| name == set) {
-                    SolidSetupError::NoSurface { set: set.to_string(), known }
+                    SolidSetupError::NoSurface { index, set: set.to_string(), known }
                 } else {
                     let (part, set) = ("solid.load", set.to_string());
-                    SolidSetupError::NoSuchSet { part, set, known }
+                    SolidSetupError::NoSuchSet { part, index, set, known }
                 }
             })?;
             let areas = vector_areas(mesh, faces);
@@ -206,7 +241,7 @@ fn set_loads(mesh: &TetMesh, set: &str, kind: &LoadKind) -> Result<Vec<Load>, So
             Ok(vec![Load { forces, profile: profile.clone() }])
         }
         LoadKind::Force(axes) => {
-            let shares = shares(mesh, set)?;
+            let shares = shares(mesh, index, set)?;
             let along = |axis: usize, profile: &Profile| {
                 let force = |share: f64| {
                     let mut force = [0.0; 3];
@@ -223,10 +258,10 @@ fn set_loads(mesh: &TetMesh, set: &str, kind: &LoadKind) -> Result<Vec<Load>, So
 }
 
 /// Part of a force that each node of a set takes; they sum to one.
-fn shares(mesh: &TetMesh, set: &str) -> Result<Vec<(u32, f64)>, SolidSetupError> {
+fn shares(mesh: &TetMesh, index: usize, set: &str) -> Result<Vec<(u32, f64)>, SolidSetupError> {
     let faces: &[Face] = mesh.surface_sets.get(set).map_or(&[], Vec::as_slice);
     if faces.is_empty() {
-        let nodes = nodes_of_set(mesh, set, "solid.load")?;
+        let nodes = nodes_of_set(mesh, set, "solid.load", index)?;
         let share = 1.0 / nodes.len() as f64;
         return Ok(nodes.into_iter().map(|node| (node, share)).collect());
     }
@@ -238,9 +273,9 @@ fn shares(mesh: &TetMesh, set: &str) -> Result<Vec<(u32, f64)>, SolidSetupError>
 
 fn probes(scene: &SolidScene, mesh: &TetMesh) -> Result<Vec<NamedNodes>, SolidSetupError> {
     let mut probes: Vec<NamedNodes> = Vec::new();
-    for probe in &scene.probes {
+    for (index, probe) in scene.probes.iter().enumerate() {
         let nodes = match &probe.of {
-            ProbeOf::Set(set) => nodes_of_set(mesh, set, "solid.probe")?,
+            ProbeOf::Set(set) => nodes_of_set(mesh, set, "solid.probe", index)?,
             ProbeOf::Place(at) => {
                 let off = |p: &Vec3| (0..3).map(|i| (p[i] - at[i]) * (p[i] - at[i])).sum::<f64>();
                 let nearest = (0..).zip(&mesh.nodes).min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
@@ -249,7 +284,7 @@ fn probes(scene: &SolidScene, mesh: &TetMesh) -> Result<Vec<NamedNodes>, SolidSe
         };
         let name = column_name(&probe.name);
         if probes.iter().any(|other| other.name == name) {
-            return Err(SolidSetupError::ProbeTwice { name });
+            return Err(SolidSetupError::ProbeTwice { index, name });
         }
         probes.push(NamedNodes { name, nodes });
     }

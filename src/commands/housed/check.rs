@@ -1,12 +1,14 @@
 //! `bearing check` of a bearing in its housing.
 
-use super::{condensed, defaults, echo, mesh_text, prepare};
+use super::{condensed, defaults, echo, mesh_text, prepare, refuse_moving};
 use crate::commands::check::bearing_lines;
+use crate::commands::solid::mesh_notes;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::output::housed::summary::seat_section;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::summary::mesh_section;
+use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
 use bearing_dynamics::scene::statics::static_problem;
@@ -15,13 +17,13 @@ use bearing_dynamics::solver::solid::support::free_motions;
 use std::fmt::Write;
 use std::path::Path;
 
-pub fn run(path: &Path, scene: &HousedScene, json: bool) -> CommandResult {
-    let prepared = prepare(scene)?;
+pub fn run(path: &Path, document: &Document, scene: &HousedScene, json: bool) -> CommandResult {
+    let prepared = prepare(document, scene)?;
     static_problem(&scene.bearing)?;
     dynamic_problem(&scene.bearing)?;
     let setup = &prepared.setup;
     if scene.housing.method == HousingMethod::QuasiStatic {
-        setup.check_constant()?;
+        refuse_moving(document, scene)?;
         // What cannot be condensed cannot be run.
         if free_motions(&setup.solid.problem).count > 0 {
             condensed(&prepared)?;
@@ -40,6 +42,9 @@ pub fn run(path: &Path, scene: &HousedScene, json: bool) -> CommandResult {
     };
     bearing_lines(&scene.bearing, &mut line);
     line("housing", format!("{}; {}", mesh_text(&prepared.built), echo::method(scene)));
+    for note in mesh_notes(&prepared.built) {
+        line("note", note);
+    }
     let mass: f64 = setup.model.mass.iter().sum();
     let held = setup.solid.problem.prescribed.len();
     line("housing mass", format!("{mass:.6} kg; {held} components held"));

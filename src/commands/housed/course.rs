@@ -3,10 +3,11 @@
 //! It takes seconds, so that it keeps no state: an interrupted one is started again.
 
 use super::{
-    Prepared, condensed, inertia_estimate, plan, prepare, record, remove_earlier, run_settings,
-    run_table, search, title, write_bore,
+    Prepared, condensed, inertia_estimate, plan, prepare, record, refuse_moving, remove_earlier,
+    run_settings, run_table, search, title, write_bore,
 };
 use crate::commands::run::{Arguments, pictures, refuse_unfinished};
+use crate::commands::solid::say_mesh_notes;
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::housed::course::{HousedCourse, bore_nodes};
@@ -16,6 +17,7 @@ use bearing_dynamics::output::housed::summary::{
 };
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, stresses, write_list};
+use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::scene::housing_problem::excitations;
 use bearing_dynamics::scene::statics::static_problem;
@@ -37,7 +39,7 @@ enum End {
     Failed(CourseError),
 }
 
-pub fn run(arguments: &Arguments, scene: &HousedScene) -> CommandResult {
+pub fn run(arguments: &Arguments, document: &Document, scene: &HousedScene) -> CommandResult {
     if arguments.resume {
         return Err("a quasi-static run takes seconds and keeps no state; start it anew without \
                     --resume"
@@ -46,9 +48,9 @@ pub fn run(arguments: &Arguments, scene: &HousedScene) -> CommandResult {
     let settings = run_settings(&arguments.scene, scene)?;
     let folder = results_folder(&arguments.scene, &arguments.out);
     refuse_unfinished(arguments, &folder)?;
-    let prepared = prepare(scene)?;
+    let prepared = prepare(document, scene)?;
     let Prepared { built, setup, mesh_seconds } = &prepared;
-    setup.check_constant()?;
+    refuse_moving(document, scene)?;
     let interrupted = Arc::new(AtomicBool::new(false));
     let flag = interrupted.clone();
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))?;
@@ -65,6 +67,7 @@ pub fn run(arguments: &Arguments, scene: &HousedScene) -> CommandResult {
         settings.output_interval,
         &settings.channels,
     );
+    say_mesh_notes(built)?;
     say(&format!(
         "{} unknowns condensed onto {} bore nodes in {condense_seconds:.2} s\n{} equilibria to t = {} s, \
          a row every {:.4e} s\n",

@@ -5,6 +5,7 @@ use super::{
     started, write_bore,
 };
 use crate::commands::run::{Arguments, no_run, pictures, refuse_unfinished};
+use crate::commands::solid::say_mesh_notes;
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::housed::fields::write_housing_fields;
@@ -14,6 +15,7 @@ use bearing_dynamics::output::housed::summary::{field_sections, run_summary, sea
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, stresses, write_list};
 use bearing_dynamics::output::state::{StateRecord, Stopped};
+use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::solver::clock::rounded;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -34,11 +36,16 @@ enum End {
     Failed(HousedRunError),
 }
 
-pub fn run(arguments: &Arguments, scene: &HousedScene, begun: Instant) -> CommandResult {
+pub fn run(
+    arguments: &Arguments,
+    document: &Document,
+    scene: &HousedScene,
+    begun: Instant,
+) -> CommandResult {
     let settings = run_settings(&arguments.scene, scene)?;
     let folder = results_folder(&arguments.scene, &arguments.out);
     let kept = kept_state(arguments, &folder)?;
-    let prepared = prepare(scene)?;
+    let prepared = prepare(document, scene)?;
     let Prepared { built, setup, .. } = &prepared;
     let parts = parts(scene, setup, &settings)?;
     let request = request(scene, &settings);
@@ -60,6 +67,7 @@ pub fn run(arguments: &Arguments, scene: &HousedScene, begun: Instant) -> Comman
         output_interval: kept.map_or(request.output_interval, |file| file.output_interval),
         seconds: kept.map_or(0.0, |file| file.seconds),
     };
+    say_mesh_notes(built)?;
     say(&announcement(&session))?;
     if let Some(file) = kept {
         say(&format!("resumed at t = {} s, row {}\n", rounded(file.time), file.rows))?;
@@ -177,7 +185,7 @@ fn announcement(session: &HousedSession) -> String {
     let [x, y, z] = limit.at.map(|at| 1e3 * at);
     let (tested, out_of_reach) = housed.counts();
     format!(
-        "window {:.4e} s, {} of the housing in it; limit of the housing {:.4e} s, its fastest element \
+        "window {:.4e} s, {} of the housing in it; limit of the housing {:.4e} s, its fastest element, {}, \
          at x {x:.3}, y {y:.3}, z {z:.3} mm; bearing steps up to {:.4e} s\n\
          {tested} bore nodes in reach, {out_of_reach} out of it\n\
          {} windows to t = {} s, a row every {} windows = {:.4e} s\n",
@@ -188,6 +196,7 @@ fn announcement(session: &HousedSession) -> String {
             format!("{} steps", housed.solid_steps)
         },
         limit.step,
+        housed.solid.model.labels.element(limit.element),
         housed.bearing.step_size,
         session.windows(),
         rounded(session.windows() as f64 * housed.window),

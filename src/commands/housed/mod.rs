@@ -7,7 +7,7 @@ pub mod explicit;
 pub mod plan;
 pub mod statics;
 
-use super::echo_run;
+use super::{echo_run, placed};
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::dynamics::table::RunTable;
 use bearing_dynamics::output::housed::course::{masses, on_inner, on_outer};
@@ -19,10 +19,10 @@ use bearing_dynamics::output::solid::fields::LIST;
 use bearing_dynamics::output::solid::state::remove_arrays;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
-use bearing_dynamics::scene::housing_problem::{HousingSetup, setup};
+use bearing_dynamics::scene::housing_problem::{HousingSetup, check_constant, setup};
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build};
 use bearing_dynamics::scene::statics::static_problem;
-use bearing_dynamics::scene::{DefaultUsed, RunSettings};
+use bearing_dynamics::scene::{DefaultUsed, Document, RunSettings};
 use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::run::RunOptions;
 use bearing_dynamics::solver::housing::assembly::{AssemblyOptions, AssemblySearch, AssemblyState};
@@ -49,11 +49,17 @@ pub struct Prepared {
     pub mesh_seconds: f64,
 }
 
-pub fn prepare(scene: &HousedScene) -> Fallible<Prepared> {
+/// Reads or makes the mesh; the document says where in the scene an error stands.
+pub fn prepare(document: &Document, scene: &HousedScene) -> Fallible<Prepared> {
     let start = Instant::now();
-    let built = build(&scene.solid.mesh)?;
-    let setup = setup(scene, &built.mesh)?;
+    let built = build(&scene.solid.mesh).map_err(|error| placed(document, error.about(), error))?;
+    let setup = setup(scene, &built).map_err(|error| placed(document, error.about(), error))?;
     Ok(Prepared { built, setup, mesh_seconds: start.elapsed().as_secs_f64() })
+}
+
+/// What a condensed housing cannot have.
+pub fn refuse_moving(document: &Document, scene: &HousedScene) -> Fallible<()> {
+    check_constant(scene).map_err(|error| placed(document, error.about(), error))
 }
 
 /// The housing condensed onto the nodes of its bore under the race.

@@ -6,13 +6,15 @@ use super::{
 };
 use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::run::request as bearing_request;
+use crate::commands::solid::mesh_notes;
 use crate::commands::solve::plan_lines;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::housed::summary::largest_error;
+use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::RunSettings;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
-use bearing_dynamics::scene::housing_problem::excitations;
+use bearing_dynamics::scene::housing_problem::{check_constant, excitations};
 use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::inertia::InertiaEstimate;
@@ -25,10 +27,12 @@ const TOO_MUCH: f64 = 0.1;
 /// How long windows are timed for an estimate of the wall time.
 const TIMED: Duration = Duration::from_millis(300);
 
-pub fn run(scene: &HousedScene) -> CommandResult {
-    let prepared = prepare(scene)?;
+pub fn run(document: &Document, scene: &HousedScene) -> CommandResult {
+    let prepared = prepare(document, scene)?;
     let mut lines = lines(scene, &prepared)?;
-    let bore = match prepared.setup.check_constant() {
+    let notes = mesh_notes(&prepared.built);
+    lines.extend(notes.iter().map(|note| line("notes", "housing mesh", note)));
+    let bore = match check_constant(scene) {
         Ok(()) => condensed(&prepared).map_err(|error| error.to_string()),
         Err(error) => Err(error.to_string()),
     };

@@ -4,6 +4,7 @@ use super::{
     Prepared, condensed, equilibrium_at, estimate_at, plan, prepare, record, remove_earlier,
     search, write_bore,
 };
+use crate::commands::solid::say_mesh_notes;
 use crate::commands::{
     CommandResult, Outcome, pictures, refuse_folder_of_run, results_folder, say, table,
 };
@@ -15,6 +16,7 @@ use bearing_dynamics::output::housed::summary::{
 };
 use bearing_dynamics::output::results::write_static_results;
 use bearing_dynamics::output::solid::fields::{file_name, stresses, write_list};
+use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::Plot;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::scene::housing_problem::excitations;
@@ -25,8 +27,14 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-pub fn run(path: &Path, scene: &HousedScene, out: &Option<PathBuf>, dry: bool) -> CommandResult {
-    let prepared = prepare(scene)?;
+pub fn run(
+    path: &Path,
+    document: &Document,
+    scene: &HousedScene,
+    out: &Option<PathBuf>,
+    dry: bool,
+) -> CommandResult {
+    let prepared = prepare(document, scene)?;
     let Prepared { built, setup, mesh_seconds } = &prepared;
     let start = Instant::now();
     let bore = condensed(&prepared)?;
@@ -40,6 +48,7 @@ pub fn run(path: &Path, scene: &HousedScene, out: &Option<PathBuf>, dry: bool) -
     let stress = stresses(&setup.model, &displacement);
     let largest = stress.cell_von_mises.iter().copied().fold(0.0, f64::max);
 
+    say_mesh_notes(built)?;
     say(&table::render(&problem, &state.bearing))?;
     say(&housing_table(&bore, &state, largest))?;
     if let Some(estimate) = &inertia {

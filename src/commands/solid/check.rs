@@ -1,20 +1,21 @@
 //! `bearing check` of a solid: mesh, sets, supports and loads as understood.
 
-use super::{echo, prepare};
+use super::{echo, mesh_notes, prepare};
 use crate::commands::{CommandResult, Outcome, echo_run, say};
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::session::sum;
 use bearing_dynamics::output::solid::summary::mesh_section;
-use bearing_dynamics::scene::SolidScene;
+use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::model::SolidModel;
 use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
 
-pub fn run(path: &Path, scene: &SolidScene, json: bool) -> CommandResult {
-    let prepared = prepare(scene)?;
-    let model = SolidModel::new(prepared.setup.problem.clone())?;
+pub fn run(path: &Path, document: &Document, scene: &SolidScene, json: bool) -> CommandResult {
+    let prepared = prepare(document, scene)?;
+    let model =
+        SolidModel::labelled(prepared.setup.problem.clone(), prepared.setup.labels.clone())?;
     if json {
         let mut echo = echo::scene(scene)?;
         echo["mesh"] = mesh_section(&prepared.built)?;
@@ -56,18 +57,8 @@ pub fn run(path: &Path, scene: &SolidScene, json: bool) -> CommandResult {
             1e3 * quality.longest_edge
         ),
     );
-    let repaired = &prepared.built.repaired;
-    if *repaired != Default::default() {
-        line(
-            "repaired",
-            format!(
-                "{} elements turned, {} nodes joined, {} nodes dropped",
-                repaired.turned_elements, repaired.merged_nodes, repaired.dropped_nodes
-            ),
-        );
-    }
-    for note in &prepared.built.notes {
-        line("note", note.clone());
+    for note in mesh_notes(&prepared.built) {
+        line("note", note);
     }
     let sets: Vec<String> =
         mesh.node_sets.iter().map(|(name, nodes)| format!("{name} ({})", nodes.len())).collect();

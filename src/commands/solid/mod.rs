@@ -7,12 +7,14 @@ pub mod plan;
 pub mod run;
 pub mod statics;
 
+use super::{placed, say};
+use bearing_dynamics::mesh::repair::Repaired;
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::solid::fields;
 use bearing_dynamics::output::solid::state::remove_arrays;
-use bearing_dynamics::scene::SolidScene;
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build};
 use bearing_dynamics::scene::solid_problem::{SolidSetup, setup};
+use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::support::{FreeMotions, free_motions};
 use std::error::Error;
 use std::path::Path;
@@ -26,12 +28,31 @@ pub struct Prepared {
     pub mesh_seconds: f64,
 }
 
-pub fn prepare(scene: &SolidScene) -> Result<Prepared, Box<dyn Error>> {
+/// Reads or makes the mesh; the document says where in the scene an error stands.
+pub fn prepare(document: &Document, scene: &SolidScene) -> Result<Prepared, Box<dyn Error>> {
     let start = Instant::now();
-    let built = build(&scene.mesh)?;
-    let setup = setup(scene, &built.mesh)?;
+    let built = build(&scene.mesh).map_err(|error| placed(document, error.about(), error))?;
+    let setup =
+        setup(scene, &built).map_err(|error| placed(document, Some(error.about()), error))?;
     let free = free_motions(&setup.problem);
     Ok(Prepared { built, setup, free, mesh_seconds: start.elapsed().as_secs_f64() })
+}
+
+/// What was repaired as asked, and what a person should know about the file.
+pub fn mesh_notes(built: &BuiltMesh) -> Vec<String> {
+    let repaired = &built.repaired;
+    let done = (*repaired != Repaired::default()).then(|| {
+        format!(
+            "repaired: {} elements turned, {} nodes joined, {} nodes dropped",
+            repaired.turned_elements, repaired.merged_nodes, repaired.dropped_nodes
+        )
+    });
+    done.into_iter().chain(built.notes.iter().cloned()).collect()
+}
+
+/// Says these before results.
+pub fn say_mesh_notes(built: &BuiltMesh) -> Result<(), Box<dyn Error>> {
+    mesh_notes(built).iter().try_for_each(|note| say(&format!("note: {note}\n")))
 }
 
 pub fn title(scene: &SolidScene) -> String {

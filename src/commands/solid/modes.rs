@@ -1,23 +1,29 @@
 //! `bearing modes`: natural frequencies and mode shapes of a solid.
 
-use super::{plan, prepare, record, remove_earlier};
+use super::{plan, prepare, record, remove_earlier, say_mesh_notes};
 use crate::commands::{CommandResult, Outcome, refuse_folder_of_run, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, write_list, write_mode};
 use bearing_dynamics::output::solid::summary;
-use bearing_dynamics::scene::SolidScene;
+use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::model::SolidModel;
 use bearing_dynamics::solver::solid::modes::{ModeOptions, modes};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-pub fn run(path: &Path, scene: &SolidScene, out: &Option<PathBuf>, dry: bool) -> CommandResult {
-    let prepared = prepare(scene)?;
+pub fn run(
+    path: &Path,
+    document: &Document,
+    scene: &SolidScene,
+    out: &Option<PathBuf>,
+    dry: bool,
+) -> CommandResult {
+    let prepared = prepare(document, scene)?;
     let (built, setup) = (&prepared.built, &prepared.setup);
     let start = Instant::now();
-    let model = SolidModel::new(setup.problem.clone())?;
+    let model = SolidModel::labelled(setup.problem.clone(), setup.labels.clone())?;
     let options = ModeOptions { mass: scene.mode_mass, ..ModeOptions::new(scene.mode_count) };
     let found = modes(&model, &options)?;
     let seconds = vec![
@@ -26,6 +32,7 @@ pub fn run(path: &Path, scene: &SolidScene, out: &Option<PathBuf>, dry: bool) ->
     ];
     let record = record(scene, plan::lines(scene, &prepared), seconds)?;
     let (summary, series) = summary::modes(&model, built, &found, &record)?;
+    say_mesh_notes(built)?;
     let mut text = "mode        frequency, Hz\n".to_string();
     for (index, mode) in found.modes.iter().enumerate() {
         let _ = writeln!(text, "{:>4} {:>20.6}", index + 1, mode.frequency);

@@ -1,19 +1,21 @@
 //! `bearing plan` of a solid: what each of its commands would do.
 
-use super::{Prepared, prepare};
+use super::{Prepared, mesh_notes, prepare};
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::solid::session::Grid;
-use bearing_dynamics::scene::SolidScene;
 use bearing_dynamics::scene::solid::{MeshSource, SolidRun};
+use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, SolidStepping};
 use bearing_dynamics::solver::solid::model::{DampedMotion, SolidError, SolidModel};
 use bearing_dynamics::solver::solid::step_limit::step_limit;
 use bearing_dynamics::solver::solid::tangent::MassMatrix;
 
-pub fn run(scene: &SolidScene) -> CommandResult {
-    let prepared = prepare(scene)?;
+pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
+    let prepared = prepare(document, scene)?;
     let mut lines = lines(scene, &prepared);
+    let notes = mesh_notes(&prepared.built);
+    lines.extend(notes.iter().map(|note| format!("notes {:<28} {note}", "mesh")));
     if let Some(run) = &scene.run {
         lines.push(step_line(&prepared, run)?);
     }
@@ -28,7 +30,8 @@ fn line(included: bool, name: &str, reason: &str) -> String {
 
 /// The step of a run, what limits it, and how many there are; as the run finds them.
 fn step_line(prepared: &Prepared, run: &SolidRun) -> Result<String, SolidError> {
-    let model = SolidModel::new(prepared.setup.problem.clone())?;
+    let model =
+        SolidModel::labelled(prepared.setup.problem.clone(), prepared.setup.labels.clone())?;
     let still = vec![[0.0; 4]; model.mass.len()];
     let limit = step_limit(&model, &still, run.method);
     let grid = Grid::new(run, &limit);
@@ -48,7 +51,7 @@ fn step_line(prepared: &Prepared, run: &SolidRun) -> Result<String, SolidError> 
          is {} at x {x:.3}, y {y:.3}, z {z:.3} mm; {} steps to t = {} s",
         grid.step_size,
         limit.step,
-        limit.element + 1,
+        model.labels.element(limit.element),
         grid.steps,
         run.end
     );

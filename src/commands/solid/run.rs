@@ -1,6 +1,6 @@
 //! `bearing run` of a solid: step after step, and the folder it leaves.
 
-use super::{Prepared, plan, prepare, record, remove_earlier, title};
+use super::{Prepared, plan, prepare, record, remove_earlier, say_mesh_notes, title};
 use crate::commands::run::{Arguments, no_run};
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::mesh::TetMesh;
@@ -12,8 +12,8 @@ use bearing_dynamics::output::solid::session::{Progress, SolidRunError, SolidSes
 use bearing_dynamics::output::solid::state::{self, SolidStateFile, SolidStateRecord};
 use bearing_dynamics::output::solid::summary;
 use bearing_dynamics::output::state::Stopped;
-use bearing_dynamics::scene::SolidScene;
 use bearing_dynamics::scene::solid::SolidRun;
+use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::clock::rounded;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::error::Error;
@@ -32,12 +32,17 @@ enum End {
     Failed(SolidRunError),
 }
 
-pub fn run(arguments: &Arguments, scene: &SolidScene, begun: Instant) -> CommandResult {
+pub fn run(
+    arguments: &Arguments,
+    document: &Document,
+    scene: &SolidScene,
+    begun: Instant,
+) -> CommandResult {
     let Some(settings) = scene.run else {
         let scene = arguments.scene.display();
         return Err(format!("{scene}: a run needs `end` in [numerics]").into());
     };
-    let prepared = prepare(scene)?;
+    let prepared = prepare(document, scene)?;
     let Prepared { built, setup, .. } = &prepared;
     let folder = results_folder(&arguments.scene, &arguments.out);
     let kept = kept_state(arguments, &folder)?;
@@ -64,6 +69,7 @@ pub fn run(arguments: &Arguments, scene: &SolidScene, begun: Instant) -> Command
         fields_interval: kept.map_or(settings.fields_interval, |file| file.fields_interval),
         seconds: kept.map_or(0.0, |file| file.seconds),
     };
+    say_mesh_notes(built)?;
     say(&announcement(&session, &settings, kept))?;
 
     let start = Instant::now();
@@ -185,12 +191,13 @@ fn announcement(
     let limit = &solid.limit;
     let [x, y, z] = limit.at.map(|at| 1e3 * at);
     let mut text = format!(
-        "step {:.4e} s, {:.3} of the stability limit {:.4e} s{}; the fastest element lies at x {x:.3}, \
+        "step {:.4e} s, {:.3} of the stability limit {:.4e} s{}; the fastest element, {}, lies at x {x:.3}, \
          y {y:.3}, z {z:.3} mm\n",
         grid.step_size,
         grid.step_size / limit.step,
         limit.step,
-        if limit.is_bound { " (a safe bound: the search for it did not settle)" } else { "" }
+        if limit.is_bound { " (a safe bound: the search for it did not settle)" } else { "" },
+        solid.model.labels.element(limit.element)
     );
     let (interval, asked) = (grid.interval(), settings.output_interval);
     let off = if kept.is_none() && (interval / asked - 1.0).abs() > 1e-9 {

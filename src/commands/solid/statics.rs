@@ -1,12 +1,12 @@
 //! `bearing statics` of a solid.
 
-use super::{Prepared, plan, prepare, record, remove_earlier};
+use super::{Prepared, plan, prepare, record, remove_earlier, say_mesh_notes};
 use crate::commands::{CommandResult, Outcome, refuse_folder_of_run, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, stresses, write_fields, write_list};
 use bearing_dynamics::output::solid::summary;
-use bearing_dynamics::scene::SolidScene;
+use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
 use bearing_dynamics::solver::solid::model::SolidModel;
 use serde_json::Value;
@@ -14,8 +14,14 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-pub fn run(path: &Path, scene: &SolidScene, out: &Option<PathBuf>, dry: bool) -> CommandResult {
-    let prepared = prepare(scene)?;
+pub fn run(
+    path: &Path,
+    document: &Document,
+    scene: &SolidScene,
+    out: &Option<PathBuf>,
+    dry: bool,
+) -> CommandResult {
+    let prepared = prepare(document, scene)?;
     let Prepared { built, setup, free, mesh_seconds } = &prepared;
     if free.count > 0 {
         return Err(format!(
@@ -27,7 +33,7 @@ pub fn run(path: &Path, scene: &SolidScene, out: &Option<PathBuf>, dry: bool) ->
         .into());
     }
     let start = Instant::now();
-    let model = SolidModel::new(setup.problem.clone())?;
+    let model = SolidModel::labelled(setup.problem.clone(), setup.labels.clone())?;
     let solution = equilibrium(&model, 0.0, &EquilibriumOptions::default())?;
     let solve_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
@@ -40,6 +46,7 @@ pub fn run(path: &Path, scene: &SolidScene, out: &Option<PathBuf>, dry: bool) ->
     ];
     let record = record(scene, plan::lines(scene, &prepared), seconds)?;
     let (summary, series) = summary::statics(&model, setup, built, &solution, &stress, &record)?;
+    say_mesh_notes(built)?;
     say(&table(&summary))?;
     if dry {
         return Ok(Outcome::Done);

@@ -87,6 +87,7 @@ impl Housing {
         ratio_between("growth of radial steps", mesh.radial_growth, 0.01, 100.0)?;
         match *self {
             Housing::Annulus { bore_radius, outer_radius, depth } => {
+                between("bore radius", bore_radius, 0.0, outer_radius)?;
                 let shape = Ring { inner_radius: bore_radius, outer_radius, width: depth };
                 let HousingMesh { around, radial, axial, radial_growth } = *mesh;
                 let mut solid = ring(&shape, &RingMesh { around, radial, axial, radial_growth })?;

@@ -201,10 +201,10 @@ impl HousedSession {
         let (time, window) = (self.housed.time(), self.housed.exchanges);
         let displacement = self.displacement();
         if let Some(node) = displacement.iter().position(|u| !u.iter().all(|x| x.is_finite())) {
-            return Err(SolidError::NotFinite { node, time, step: window }.into());
+            return Err(self.housed.solid.model.not_finite(node, time, window).into());
         }
         if let Some((element, ratio)) = first_inverted(&self.housed.solid.model, &displacement) {
-            return Err(SolidError::Inverted { element, ratio, time, step: window }.into());
+            return Err(self.housed.solid.model.inverted(element, ratio, time, window).into());
         }
         let snapshot = self.housed.snapshot()?;
         let residual = snapshot.residual;

@@ -234,7 +234,7 @@ pub fn run_summary(
             "housing": quantity("step", housed.solid.step_size, "s")?,
             "housing_steps_a_window": housed.solid_steps,
             "bearing_at_most": quantity("step", housed.bearing.step_size.min(housed.window), "s")?,
-            "housing_limit": limit_section(&housed.solid.limit)?,
+            "housing_limit": limit_section(&housed.solid.limit, &housed.solid.model.labels)?,
         }),
     );
     summary.insert(

@@ -146,7 +146,7 @@ impl SolidSession {
         run: &SolidRun,
         threads: usize,
     ) -> Result<SolidSession, SolidRunError> {
-        let model = SolidModel::new(setup.problem.clone())?;
+        let model = SolidModel::labelled(setup.problem.clone(), setup.labels.clone())?;
         let still = vec![[0.0; 4]; model.mass.len()];
         let limit = step_limit(&model, &still, run.method);
         let grid = Grid::new(run, &limit);
@@ -171,7 +171,7 @@ impl SolidSession {
         kept: Kept,
         threads: usize,
     ) -> Result<SolidSession, SolidRunError> {
-        let model = SolidModel::new(setup.problem.clone())?;
+        let model = SolidModel::labelled(setup.problem.clone(), setup.labels.clone())?;
         let steps = (run.end / kept.grid.step_size).round().max(1.0) as u64;
         let grid = Grid { steps, ..kept.grid };
         let mut session = SolidSession::at_start(setup, run, model, kept.limit, grid)?;
@@ -287,10 +287,10 @@ impl SolidSession {
         let (time, step) = (self.solid.time, self.solid.steps);
         let displacement = self.displacement();
         if let Some(node) = displacement.iter().position(|u| !u.iter().all(|x| x.is_finite())) {
-            return Err(SolidError::NotFinite { node, time, step }.into());
+            return Err(self.solid.model.not_finite(node, time, step).into());
         }
         if let Some((element, ratio)) = first_inverted(&self.solid.model, &displacement) {
-            return Err(SolidError::Inverted { element, ratio, time, step }.into());
+            return Err(self.solid.model.inverted(element, ratio, time, step).into());
         }
         let ledger = self.solid.ledger();
         let SolidEnergy { strain, kinetic } = ledger.energy;

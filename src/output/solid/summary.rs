@@ -15,6 +15,7 @@ use crate::solver::clock::rounded;
 use crate::solver::solid::energy::strain_energy;
 use crate::solver::solid::equilibrium::Equilibrium;
 use crate::solver::solid::explicit::{ExplicitMethod, SolidStepping, padded};
+use crate::solver::solid::labels::Labels;
 use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::modes::Modes;
 use crate::solver::solid::step_limit::SolidStepLimit;
@@ -59,7 +60,7 @@ pub fn mesh_section(built: &BuiltMesh) -> Part {
         "volume": quantity("volume", built.quality.total_volume, "m^3")?,
         "low": vector("low", low, "m")?,
         "high": vector("high", high, "m")?,
-        "quality": quality_section(&built.quality)?,
+        "quality": quality_section(&built.quality, &built.labels)?,
         "sets": sets,
         "repaired": {
             "turned_elements": repaired.turned_elements,
@@ -71,10 +72,10 @@ pub fn mesh_section(built: &BuiltMesh) -> Part {
     }))
 }
 
-fn quality_section(quality: &Quality) -> Part {
+fn quality_section(quality: &Quality, labels: &Labels) -> Part {
     let worst = |name: &str, worst: Worst, factor: f64, unit: &str| -> Part {
         let mut entry = quantity(name, worst.value * factor, unit)?;
-        entry["element"] = json!(worst.element + 1);
+        entry["element"] = json!(labels.element(worst.element as usize));
         Ok(entry)
     };
     let degrees = 360.0 / TAU;
@@ -240,14 +241,14 @@ pub fn modes(
     Ok((summary, Series::new(columns.to_vec(), data)?))
 }
 
-pub(crate) fn limit_section(limit: &SolidStepLimit) -> Part {
+pub(crate) fn limit_section(limit: &SolidStepLimit, labels: &Labels) -> Part {
     Ok(json!({
         "step": quantity("step limit", limit.step, "s")?,
         "highest_frequency": quantity("frequency", limit.frequency / TAU, "Hz")?,
         "is_bound": limit.is_bound,
         "products": limit.products,
         "element": {
-            "number": limit.element + 1,
+            "number": labels.element(limit.element),
             "highest_frequency": quantity("frequency", limit.element_frequency / TAU, "Hz")?,
             "at": vector("place", limit.at, "m")?,
         },
@@ -287,7 +288,7 @@ pub fn run(
         "size": quantity("step", grid.step_size, "s")?,
         "chosen": chosen,
         "of_limit": quantity("step over limit", grid.step_size / solid.limit.step, "1")?,
-        "limit": limit_section(&solid.limit)?,
+        "limit": limit_section(&solid.limit, &model.labels)?,
     });
     summary["work"] = json!({
         "steps": solid.steps,

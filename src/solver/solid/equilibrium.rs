@@ -1,7 +1,8 @@
 //! Static equilibrium of a solid by Newton's method.
 
 use super::contact::CylinderContact;
-use super::model::{Prescribed, SolidModel};
+use super::model::{Prescribed, SolidModel, centre, place};
+use super::stress::first_inverted;
 use super::tangent::{MassMatrix, PRESCRIBED, Unknowns, add_at_node, pattern, stiffness};
 use crate::ch2_housing::bore_contact::{ContactNode, ContactSum, contact};
 use crate::kinematics::strain::Mat3;
@@ -48,6 +49,12 @@ pub enum EquilibriumError {
          of {scale:.3e} N after {iterations} iterations; apply less load"
     )]
     NotConverged { fraction: f64, residual: f64, scale: f64, iterations: usize },
+    #[error(
+        "no equilibrium found: at {fraction} of the load element {element} at {} is turned inside out \
+         (volume ratio {ratio:.3}); apply less load",
+        place(at)
+    )]
+    Inverted { fraction: f64, element: u64, at: Vec3, ratio: f64 },
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +72,7 @@ pub struct Equilibrium {
 /// Equilibrium under the loads and prescribed displacements at time `t`.
 ///
 /// # Errors
-/// A body that is free to move, or no convergence.
+/// A body that is free to move, no convergence, or only with an element turned inside out.
 pub fn equilibrium(
     model: &SolidModel,
     t: f64,
@@ -112,7 +119,7 @@ fn solve(mut newton: Newton) -> Result<Newton, EquilibriumError> {
     while reached < 1.0 {
         let wanted = f64::min(reached + step, 1.0);
         let before = newton.displacement.clone();
-        match newton.converge(wanted) {
+        match newton.converge(wanted).and_then(|()| newton.refuse_inverted(wanted)) {
             Ok(()) => reached = wanted,
             Err(error) if 0.5 * step < options.smallest_load_step => return Err(error),
             Err(EquilibriumError::Factor(error)) if newton.untouched => return Err(error.into()),
@@ -180,6 +187,18 @@ impl<'a> Newton<'a> {
             model,
             options,
             t,
+        }
+    }
+
+    /// Forces may balance on an element that is turned inside out: no state of a body.
+    fn refuse_inverted(&self, fraction: f64) -> Result<(), EquilibriumError> {
+        match first_inverted(self.model, &self.displacement) {
+            None => Ok(()),
+            Some((index, ratio)) => {
+                let at = centre(&self.model.problem, index);
+                let element = self.model.labels.element(index);
+                Err(EquilibriumError::Inverted { fraction, element, at, ratio })
+            }
         }
     }
 

@@ -101,7 +101,7 @@ impl ExplicitSolid {
             return Err(SolidError::Step {
                 step: step_size,
                 limit: limit.step,
-                element: limit.element,
+                element: model.labels.element(limit.element),
                 at: limit.at,
             });
         }
@@ -368,7 +368,7 @@ impl ExplicitSolid {
         }
         match self.displacement.iter().position(|u| !(u[0] + u[1] + u[2]).is_finite()) {
             None => Ok(()),
-            Some(node) => Err(SolidError::NotFinite { node, time: self.time, step: self.steps }),
+            Some(node) => Err(self.model.not_finite(node, self.time, self.steps)),
         }
     }
 

@@ -1,5 +1,6 @@
 //! A flexible solid as plain data, and with everything precomputed.
 
+use super::labels::{Labels, node_text};
 use super::tet4_blocks::Node;
 use super::{tet4_blocks, tet10_blocks};
 use crate::ch2_housing::linear_elastic::LinearElastic;
@@ -59,38 +60,45 @@ pub struct SolidProblem {
     pub gravity: Vec3,
 }
 
+/// What cannot be set up or went wrong; elements and nodes by their [`Labels`], `at` undeformed, m.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SolidError {
-    #[error("element {}: {source}; check the mesh", element + 1)]
-    Element { element: usize, source: ElementError },
+    #[error("element {element} at {}: {source}; check the mesh", place(at))]
+    Element { element: u64, at: Vec3, source: ElementError },
     #[error("density is {0} kg/m3; it must be positive and finite")]
     Density(f64),
     #[error("damping is {0} 1/s; it must be zero or positive, and finite")]
     Damping(f64),
     #[error("node {node} does not exist: the mesh has {count} nodes")]
     NoSuchNode { node: u32, count: usize },
-    #[error("node {node} belongs to no element, so it has no mass; drop it from the mesh")]
-    NoMass { node: usize },
+    #[error("{} belongs to no element, so it has no mass; drop it from the mesh", node_text(node))]
+    NoMass { node: Option<u64> },
     #[error("axis {axis} of node {node} is prescribed; axes are 0, 1 and 2")]
     NoSuchAxis { node: u32, axis: usize },
     #[error("axis {axis} of node {node} is prescribed twice")]
     PrescribedTwice { node: u32, axis: usize },
     #[error(
         "the step of {step:.3e} s is beyond the stability limit of {limit:.3e} s, set by element \
-         {} at {}; take a smaller step or a coarser mesh there", element + 1, place(at)
+         {element} at {}; take a smaller step or a coarser mesh there",
+        place(at)
     )]
-    Step { step: f64, limit: f64, element: usize, at: Vec3 },
-    #[error("node {node} has a value that is not finite at t = {} s, step {step}", rounded(*time))]
-    NotFinite { node: usize, time: f64, step: u64 },
+    Step { step: f64, limit: f64, element: u64, at: Vec3 },
     #[error(
-        "element {} is turned inside out at t = {} s, step {step} (volume ratio {ratio:.3})",
-        element + 1,
+        "{} at {} has a value that is not finite at t = {} s, step {step}",
+        node_text(node),
+        place(at),
         rounded(*time)
     )]
-    Inverted { element: usize, ratio: f64, time: f64, step: u64 },
+    NotFinite { node: Option<u64>, at: Vec3, time: f64, step: u64 },
+    #[error(
+        "element {element} at {} is turned inside out at t = {} s, step {step} (volume ratio {ratio:.3})",
+        place(at),
+        rounded(*time)
+    )]
+    Inverted { element: u64, at: Vec3, ratio: f64, time: f64, step: u64 },
 }
 
-fn place(at: &Vec3) -> String {
+pub(super) fn place(at: &Vec3) -> String {
     format!("({:.6}, {:.6}, {:.6}) m", at[0], at[1], at[2])
 }
 
@@ -105,6 +113,8 @@ pub enum Blocks {
 #[derive(Clone, Debug)]
 pub struct SolidModel {
     pub problem: SolidProblem,
+    /// What messages call elements and nodes.
+    pub labels: Labels,
     pub blocks: Blocks,
     /// Lumped mass of each node, kg.
     pub mass: Vec<f64>,
@@ -117,11 +127,25 @@ pub fn corners<const N: usize>(nodes: &[Vec3], element: &[u32; N]) -> [Vec3; N] 
     element.map(|node| nodes[node as usize])
 }
 
+/// The mean of an element's undeformed corners, m.
+pub fn centre(problem: &SolidProblem, element: usize) -> Vec3 {
+    let nodes = problem.elements.corners(element);
+    [0, 1, 2].map(|i: usize| nodes.iter().map(|n| 0.25 * problem.nodes[*n as usize][i]).sum())
+}
+
 impl SolidModel {
     /// # Errors
     /// An element of no volume, a node without mass, a node or axis out of range, a component
     /// prescribed twice, a material constant out of range.
     pub fn new(problem: SolidProblem) -> Result<SolidModel, SolidError> {
+        SolidModel::labelled(problem, Labels::default())
+    }
+
+    /// As [`SolidModel::new`], with names for elements and nodes.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn labelled(problem: SolidProblem, labels: Labels) -> Result<SolidModel, SolidError> {
         if !(problem.density > 0.0 && problem.density.is_finite()) {
             return Err(SolidError::Density(problem.density));
         }
@@ -134,7 +158,10 @@ impl SolidModel {
             return Err(SolidError::NoSuchNode { node, count });
         }
         let mut mass = vec![0.0; count];
-        let at = |element| move |source| SolidError::Element { element, source };
+        let at = |index: usize| {
+            let (element, at) = (labels.element(index), centre(&problem, index));
+            move |source| SolidError::Element { element, at, source }
+        };
         let blocks = match &problem.elements {
             Elements::Linear(list) => {
                 let mut built = Vec::with_capacity(list.len());
@@ -162,7 +189,7 @@ impl SolidModel {
             }
         };
         if let Some(node) = mass.iter().position(|m| *m == 0.0) {
-            return Err(SolidError::NoMass { node });
+            return Err(SolidError::NoMass { node: labels.node(node) });
         }
         let mut per_mass: Vec<Node> =
             mass.iter().map(|m| [1.0 / m, 1.0 / m, 1.0 / m, 0.0]).collect();
@@ -183,7 +210,19 @@ impl SolidModel {
                 return Err(SolidError::NoSuchNode { node: *node, count });
             }
         }
-        Ok(SolidModel { problem, blocks, mass, per_mass })
+        Ok(SolidModel { problem, labels, blocks, mass, per_mass })
+    }
+
+    /// A value at a node that is not finite.
+    pub fn not_finite(&self, node: usize, time: f64, step: u64) -> SolidError {
+        let at = self.problem.nodes[node];
+        SolidError::NotFinite { node: self.labels.node(node), at, time, step }
+    }
+
+    /// An element turned inside out, with its volume ratio.
+    pub fn inverted(&self, element: usize, ratio: f64, time: f64, step: u64) -> SolidError {
+        let at = centre(&self.problem, element);
+        SolidError::Inverted { element: self.labels.element(element), at, ratio, time, step }
     }
 
     /// Adds the forces of all elements on the nodes, N.

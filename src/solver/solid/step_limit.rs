@@ -3,7 +3,7 @@
 //! highest frequency of its own.
 
 use super::explicit::ExplicitMethod;
-use super::model::{SolidModel, corners};
+use super::model::{SolidModel, centre, corners};
 use super::tet4_blocks::Node;
 use crate::elements::tet4::{Tet4, relative};
 use crate::elements::tet10::{self, Tet10};
@@ -62,9 +62,7 @@ pub fn step_limit_within(
     let (found, products) = highest_frequency(model, &elements, most);
     let frequency = found.unwrap_or_else(|| frequency_bound(model, &elements));
     let (element, element_frequency) = elements.fastest();
-    let nodes = model.problem.elements.corners(element);
-    let at = [0, 1, 2]
-        .map(|i: usize| nodes.iter().map(|n| 0.25 * model.problem.nodes[*n as usize][i]).sum());
+    let at = centre(&model.problem, element);
     let step = reach(method) / frequency;
     let is_bound = found.is_none();
     SolidStepLimit { step, frequency, is_bound, element, element_frequency, at, products }

@@ -7,6 +7,7 @@
 //! nodes do not move by themselves.
 
 use super::explicit::{ExplicitMethod, ExplicitSolid};
+use super::labels::Labels;
 use super::model::{DampedMotion, Load, Prescribed, SolidError, SolidModel, SolidProblem};
 use super::tet4_blocks::Node;
 use crate::mesh::tet_mesh::Elements;
@@ -232,7 +233,11 @@ fn part(solid: &ExplicitSolid, owned: Range<usize>) -> (Part, Vec<usize>) {
         loads: problem.loads.iter().map(of).collect(),
         ..problem.clone()
     };
-    let mut model = SolidModel::new(problem).expect("the whole was checked");
+    let labels = Labels {
+        elements: touching.iter().map(|e| whole.labels.element(*e as usize)).collect(),
+        nodes: all().map(|node| whole.labels.node(node)).collect(),
+    };
+    let mut model = SolidModel::labelled(problem, labels).expect("the whole was checked");
     for (place, node) in all().enumerate() {
         model.mass[place] = whole.mass[node];
         model.per_mass[place] = if mine(node as u32) { whole.per_mass[node] } else { [0.0; 4] };
