@@ -1,8 +1,8 @@
 //! `bearing check` of a bearing in its housing.
 
 use super::{condensed, defaults, echo, mesh_text, prepare};
-use crate::commands::check::bearing_lines;
-use crate::commands::{CommandResult, Outcome, say};
+use crate::commands::check::{bearing_lines, bodies, stepping};
+use crate::commands::{CommandResult, Outcome, echo_run, say};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::output::housed::summary::seat_section;
 use bearing_dynamics::output::results::pretty;
@@ -31,6 +31,10 @@ pub fn run(path: &Path, scene: &HousedScene, json: bool) -> CommandResult {
         let mut echo = echo::scene(scene)?;
         echo["seat"] = seat_section(setup)?;
         echo["mesh"] = mesh_section(&prepared.built)?;
+        echo["output"] = echo_run::output(&scene.bearing)?;
+        for (name, notes) in echo_run::notes(&scene.bearing.assumptions, &defaults(scene)) {
+            echo[name] = notes;
+        }
         say(&pretty(&echo))?;
         return Ok(Outcome::Done);
     }
@@ -71,8 +75,8 @@ pub fn run(path: &Path, scene: &HousedScene, json: bool) -> CommandResult {
         Axial::Free => "free",
     };
     line("outer race, axially", axial.into());
-    if let Some(run) = &scene.bearing.dynamics.run {
-        line("run", format!("to t = {} s, a row every {} s", run.end, run.output_interval));
+    for (label, value) in motion(scene) {
+        line(label, value);
     }
     for used in defaults(scene) {
         line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
@@ -82,4 +86,37 @@ pub fn run(path: &Path, scene: &HousedScene, json: bool) -> CommandResult {
     }
     say(&text)?;
     Ok(Outcome::Done)
+}
+
+/// What a run computes, and how.
+fn motion(scene: &HousedScene) -> Vec<(&'static str, String)> {
+    let Some(run) = &scene.bearing.dynamics.run else { return Vec::new() };
+    let (end, interval) = (run.end, run.output_interval);
+    let fields = match scene.housing.fields_interval {
+        Some(interval) => format!("every {interval} s"),
+        None => "at the end".into(),
+    };
+    let mut said = match scene.housing.method {
+        HousingMethod::QuasiStatic => vec![
+            ("run", format!("to t = {end} s, an equilibrium every {interval} s")),
+            ("motion", "none but along the equilibria: inertia is left out".into()),
+        ],
+        HousingMethod::Explicit => {
+            let windows = format!(
+                "windows of {} of the seat's phase; the housing by central differences, {} of the \
+                 largest stable step; the bearing by {}",
+                scene.housing.window_phase,
+                scene.housing.step_fraction,
+                stepping(run)
+            );
+            let mut said = vec![
+                ("run", format!("to t = {end} s, a row every {interval} s")),
+                ("steps", windows),
+            ];
+            said.extend(bodies(&scene.bearing));
+            said
+        }
+    };
+    said.push(("fields", fields));
+    said
 }
