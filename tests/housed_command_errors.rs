@@ -221,8 +221,9 @@ fn other_commands_say_what_they_take() {
     let place = Place::new();
     let scene = place.scene("scene.toml", &good());
     for (name, further, part) in [
-        ("modes", &[][..], "takes a solid by itself"),
-        ("sweep", &["--vary", "bearing.balls=8,9"][..], "a bearing alone"),
+        ("modes", &[][..], "[solid] tables alone into a scene of their own"),
+        ("pack", &[][..], "`statics`, `sweep` and `run` take a bearing in a housing"),
+        ("sweep", &["--vary", "housing.method=rigid,explicit"][..], "sweep the two by themselves"),
     ] {
         let output = command(name, &scene, further).output().unwrap();
         assert_eq!(output.status.code(), Some(2));

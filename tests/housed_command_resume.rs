@@ -1,67 +1,11 @@
 //! Explicit runs of a bearing in its housing that are interrupted, killed, extended or fail.
 
 mod housed_command_common;
+mod resume_common;
 
 use housed_command_common::*;
-use std::fs;
-use std::io::{BufRead, BufReader, Read};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use resume_common::{assert_same_results, signal, start, wait};
 use std::time::Duration;
-
-/// Every file of two folders to the byte, but for wall times.
-fn assert_same_results(expected: &Path, found: &Path) {
-    let names = |folder: &Path| {
-        let list = |folder: PathBuf, before: &str| {
-            let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
-            let files = entries.filter(|entry| entry.path().is_file());
-            let names =
-                files.map(|entry| format!("{before}{}", entry.file_name().to_string_lossy()));
-            names.collect::<Vec<_>>()
-        };
-        let mut names = list(folder.to_path_buf(), "");
-        names.extend(list(folder.join("fields"), "fields/"));
-        names.sort();
-        names
-    };
-    assert_eq!(names(expected), names(found));
-    for name in names(expected) {
-        let [a, b] = [expected, found].map(|folder| folder.join(&name));
-        if name == "summary.json" || name == "state.json" {
-            let [mut a, mut b] = [a, b].map(json);
-            for tree in [&mut a, &mut b] {
-                let tree = if name == "state.json" { &mut tree["bearing"] } else { tree };
-                assert!(tree.as_object_mut().unwrap().remove("seconds").is_some(), "{name}");
-            }
-            assert_eq!(a.to_string(), b.to_string(), "{name}");
-        } else {
-            assert!(fs::read(a).unwrap() == fs::read(b).unwrap(), "{name} differs");
-        }
-    }
-}
-
-/// Starts a run and waits until it steps.
-fn start(mut command: Command) -> Child {
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let mut lines = BufReader::new(child.stdout.as_mut().unwrap());
-    let mut line = String::new();
-    while !line.contains("a row every") {
-        line.clear();
-        assert!(lines.read_line(&mut line).unwrap() > 0, "it ended before it stepped");
-    }
-    child
-}
-
-fn signal(child: &Child, name: &str) {
-    let id = child.id().to_string();
-    assert!(Command::new("kill").args([name, &id]).status().unwrap().success());
-}
-
-fn wait(mut child: Child) -> (Option<i32>, String) {
-    let mut text = String::new();
-    child.stderr.as_mut().unwrap().read_to_string(&mut text).unwrap();
-    (child.wait().unwrap().code(), text)
-}
 
 /// A blow; the rows lie on a grid that windows divide.
 fn blow(end: &str, further: &str) -> String {

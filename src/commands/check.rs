@@ -5,7 +5,7 @@ use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::{
-    CageInRun, Document, Scene, Subject, resolve_subject, statics::static_problem,
+    CageInRun, Document, RunSettings, Scene, Subject, resolve_subject, statics::static_problem,
 };
 use bearing_dynamics::solver::dynamics::run::Stepping;
 use bearing_dynamics::solver::plan::race_freedom;
@@ -126,14 +126,26 @@ fn motion(scene: &Scene) -> Vec<(&'static str, String)> {
     let dynamics = &scene.dynamics;
     let mut said = Vec::new();
     if let Some(run) = &dynamics.run {
-        let stepping = match run.options.stepping {
-            Stepping::Fixed(step) => format!("a step of {step:e} s"),
-            Stepping::FractionOfLimit(part) => format!("{part} of the largest stable step"),
-            Stepping::Accuracy(accuracy) => format!("steps for an accuracy of {accuracy}"),
-        };
-        let method = run.options.integrator.name();
-        said.push(("run", format!("to t = {} s by {method}, {stepping}", run.end)));
+        said.push(("run", format!("to t = {} s by {}", run.end, stepping(run))));
     }
+    said.extend(bodies(scene));
+    said
+}
+
+/// Integrator of the bearing and its steps.
+pub fn stepping(run: &RunSettings) -> String {
+    let steps = match run.options.stepping {
+        Stepping::Fixed(step) => format!("a step of {step:e} s"),
+        Stepping::FractionOfLimit(part) => format!("{part} of the largest stable step"),
+        Stepping::Accuracy(accuracy) => format!("steps for an accuracy of {accuracy}"),
+    };
+    format!("{}, {steps}", run.options.integrator.name())
+}
+
+/// How each body moves in steps.
+pub fn bodies(scene: &Scene) -> Vec<(&'static str, String)> {
+    let dynamics = &scene.dynamics;
+    let mut said = Vec::new();
     let outer = match &dynamics.outer {
         Some(body) => race_freedom(body),
         None => "fixed in space".into(),

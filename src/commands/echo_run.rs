@@ -66,22 +66,26 @@ pub fn numerics(run: &RunSettings) -> Echo {
 
 /// What is written: of a run its columns, window and plots; otherwise the plots of statics.
 pub fn output(scene: &Scene) -> Echo {
-    let Some(run) = &scene.dynamics.run else {
-        let plots = scene.plots.iter().map(|plot| match plot {
-            Plot::LoadZone => "load-zone",
-            Plot::Polar => "polar",
-            Plot::MomentTilt => "moment-tilt",
-        });
-        return Ok(json!({ "plots": plots.collect::<Vec<_>>() }));
+    let of_statics = |plot: &Plot| match plot {
+        Plot::LoadZone => "load-zone",
+        Plot::Polar => "polar",
+        Plot::MomentTilt => "moment-tilt",
     };
-    let plots = scene.dynamics.plots.iter().map(|plot| match plot {
+    let Some(run) = &scene.dynamics.run else {
+        let plots: Vec<&str> = scene.plots.iter().map(of_statics).collect();
+        return Ok(json!({ "plots": plots }));
+    };
+    let of_run = |plot: &RunPlot| match plot {
         RunPlot::Orbit => "orbit",
         RunPlot::Spectrum => "spectrum",
         RunPlot::Series => "series",
         RunPlot::SlipSpin => "slip-spin",
-    });
+    };
+    // Loads over azimuth are drawn of either.
+    let polar = scene.plots.iter().filter(|plot| **plot == Plot::Polar).map(of_statics);
+    let plots: Vec<&str> = scene.dynamics.plots.iter().map(of_run).chain(polar).collect();
     Ok(json!({
-        "plots": plots.collect::<Vec<_>>(),
+        "plots": plots,
         "channels": run.channels.iter().map(|group| group.name()).collect::<Vec<_>>(),
         "window_start": quantity("window_start", run.window_start, "s")?,
     }))

@@ -21,7 +21,14 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let document = Document::read_file(scene)?;
     match resolve_subject(&document)? {
         Subject::Solid(solid) => super::solid::modes::run(scene, &document, &solid, out, *dry),
-        Subject::Bearing(_) | Subject::Housed(_) => Err(format!(
+        Subject::Housed(_) => Err(format!(
+            "{}: modes takes a solid by itself, and the scene holds a bearing in a housing; write the \
+             [solid] tables alone into a scene of their own for the housing's modes, or look at \
+             `bearing plan` for the lowest frequency of bearing and housing",
+            scene.display()
+        )
+        .into()),
+        Subject::Bearing(_) => Err(format!(
             "{}: modes takes a solid by itself, and the scene holds a bearing; `bearing statics` \
              gives a bearing's stiffness",
             scene.display()

@@ -170,7 +170,7 @@ pub(super) const KEYS: &[Key] = &[
 
     Key::new("output.plots", Kind::Choices(PLOTS),
         Default { value: "load-zone, polar", reason: "usual plots" },
-        "Plots to draw; `[]` for none. Statics draws `load-zone`, `polar` and `moment-tilt`, a run the others (default `orbit`, `series`)."),
+        "Plots to draw; `[]` for none. Statics draws `load-zone`, `polar` and `moment-tilt` (in a housing `load-zone` only; equilibria over time have no `polar` and no `slip-spin`), a run `polar` and the others (default `orbit`, `series`, `polar`)."),
 ];
 
 const MATERIAL_EXAMPLE: &str =

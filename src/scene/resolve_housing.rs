@@ -6,10 +6,11 @@ use crate::scene::error::{Problem, SceneError};
 use crate::scene::housing::{FitSize, HousedScene, HousingMethod, HousingSettings};
 use crate::scene::resolve::{Reader, resolve_bearing, text};
 use crate::scene::resolve_solid::housing_solid;
-use crate::scene::resolved::Scene;
+use crate::scene::resolved::{Plot, RunPlot, Scene};
 use crate::scene::solid::Subject;
 use crate::scene::units::plain;
 use crate::scene::value::Checked;
+use crate::solver::channels::ChannelGroup;
 use crate::solver::dynamics::model::{Drive, RaceBody, Rotation};
 use crate::solver::dynamics::run::Start;
 use crate::solver::housing::bore_equilibrium::Axial;
@@ -59,6 +60,7 @@ pub(crate) fn housed(document: &Document) -> Result<Subject, SceneError> {
         refuse_inertia(document, &bearing)?;
     }
     rest(document, &mut bearing, &housing)?;
+    output(document, &reader, &mut bearing, method)?;
     let mut housing = housing;
     housing.defaults_used = reader.into_defaults_used();
     Ok(Subject::Housed(Box::new(HousedScene { bearing, housing, solid })))
@@ -318,5 +320,53 @@ fn rest(
         said.push("outer_race.x");
     }
     bearing.dynamics.defaults_used.retain(|used| !said.contains(&used.key.as_str()));
+    Ok(())
+}
+
+/// Plots and columns that there can be: statics draws the load zone only, since the other plots move
+/// the bearing on and the housing with it; equilibria have neither cage nor slip.
+fn output(
+    document: &Document,
+    reader: &Reader,
+    bearing: &mut Scene,
+    method: HousingMethod,
+) -> Result<(), SceneError> {
+    let steps = bearing.dynamics.run.is_some() && method == HousingMethod::Explicit;
+    let drawn = |plot: &Plot| match plot {
+        Plot::LoadZone => true,
+        // A run in steps has its own.
+        Plot::Polar => steps,
+        Plot::MomentTilt => false,
+    };
+    let in_run = |plot: &RunPlot| steps || *plot != RunPlot::SlipSpin;
+    let all = bearing.plots.iter().all(drawn) && bearing.dynamics.plots.iter().all(in_run);
+    if reader.is_given("output.plots") && !all {
+        let reason = "in a housing statics draws `load-zone`, equilibria over time `orbit`, \
+                      `series` and `spectrum`";
+        let advice = "leave the others out, or write method = \"explicit\" in [housing] for `polar` \
+                      and `slip-spin`";
+        return not_applicable(document, "output.plots", reason, advice);
+    }
+    bearing.plots.retain(drawn);
+    bearing.dynamics.plots.retain(in_run);
+    let Some(run) = &mut bearing.dynamics.run else { return Ok(()) };
+    if method == HousingMethod::Explicit {
+        return Ok(());
+    }
+    use ChannelGroup::{Energy, Forces, Loads, Races};
+    // Those of both bodies are always there.
+    let mut channels = vec![Races, Forces, Energy];
+    if reader.is_given("output.channels")
+        && !run.channels.iter().all(|group| *group == Loads || channels.contains(group))
+    {
+        let reason = "equilibria have `races`, `loads`, `forces` and `energy`";
+        let advice = "leave the others out, or write method = \"explicit\" in [housing]";
+        return not_applicable(document, "output.channels", reason, advice);
+    }
+    if run.channels.contains(&Loads) {
+        channels.push(Loads);
+    }
+    channels.sort();
+    run.channels = channels;
     Ok(())
 }

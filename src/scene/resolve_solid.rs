@@ -51,7 +51,7 @@ pub(crate) fn refuse_solid(document: &Document) -> Result<(), SceneError> {
         return Ok(());
     };
     let (reason, advice) = if key.starts_with("housing") {
-        let commands = "`check`, `plan`, `statics` and `run` take a bearing in a housing";
+        let commands = "`check`, `plan`, `statics`, `sweep` and `run` take a bearing in a housing";
         ("this takes a bearing alone, and the scene has a housing", commands.to_string())
     } else if key.starts_with("solid") {
         let commands = "`check`, `plan`, `statics`, `modes` and `run` take a solid by itself";

@@ -1,9 +1,9 @@
 //! `bearing check` of a bearing in its housing.
 
 use super::{condensed, defaults, echo, mesh_text, prepare, refuse_moving};
-use crate::commands::check::bearing_lines;
+use crate::commands::check::{bearing_lines, bodies, stepping};
 use crate::commands::solid::mesh_notes;
-use crate::commands::{CommandResult, Outcome, say};
+use crate::commands::{CommandResult, Outcome, echo_run, say};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::output::housed::summary::seat_section;
 use bearing_dynamics::output::results::pretty;
@@ -33,6 +33,10 @@ pub fn run(path: &Path, document: &Document, scene: &HousedScene, json: bool) ->
         let mut echo = echo::scene(scene)?;
         echo["seat"] = seat_section(setup)?;
         echo["mesh"] = mesh_section(&prepared.built)?;
+        echo["output"] = echo_run::output(&scene.bearing)?;
+        for (name, notes) in echo_run::notes(&scene.bearing.assumptions, &defaults(scene)) {
+            echo[name] = notes;
+        }
         say(&pretty(&echo))?;
         return Ok(Outcome::Done);
     }
@@ -76,8 +80,8 @@ pub fn run(path: &Path, document: &Document, scene: &HousedScene, json: bool) ->
         Axial::Free => "free",
     };
     line("outer race, axially", axial.into());
-    if let Some(run) = &scene.bearing.dynamics.run {
-        line("run", format!("to t = {} s, a row every {} s", run.end, run.output_interval));
+    for (label, value) in motion(scene) {
+        line(label, value);
     }
     for used in defaults(scene) {
         line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
@@ -87,4 +91,37 @@ pub fn run(path: &Path, document: &Document, scene: &HousedScene, json: bool) ->
     }
     say(&text)?;
     Ok(Outcome::Done)
+}
+
+/// What a run computes, and how.
+fn motion(scene: &HousedScene) -> Vec<(&'static str, String)> {
+    let Some(run) = &scene.bearing.dynamics.run else { return Vec::new() };
+    let (end, interval) = (run.end, run.output_interval);
+    let fields = match scene.housing.fields_interval {
+        Some(interval) => format!("every {interval} s"),
+        None => "at the end".into(),
+    };
+    let mut said = match scene.housing.method {
+        HousingMethod::QuasiStatic => vec![
+            ("run", format!("to t = {end} s, an equilibrium every {interval} s")),
+            ("motion", "none but along the equilibria: inertia is left out".into()),
+        ],
+        HousingMethod::Explicit => {
+            let windows = format!(
+                "windows of {} of the seat's phase; the housing by central differences, {} of the \
+                 largest stable step; the bearing by {}",
+                scene.housing.window_phase,
+                scene.housing.step_fraction,
+                stepping(run)
+            );
+            let mut said = vec![
+                ("run", format!("to t = {end} s, a row every {interval} s")),
+                ("steps", windows),
+            ];
+            said.extend(bodies(&scene.bearing));
+            said
+        }
+    };
+    said.push(("fields", fields));
+    said
 }

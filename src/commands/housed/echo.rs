@@ -3,6 +3,7 @@
 use crate::commands::{echo, echo_run, solid};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::output::results::{ResultsError, quantity};
+use bearing_dynamics::scene::RunSettings;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{FitSize, HousedScene, HousingMethod};
 use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
@@ -24,6 +25,24 @@ pub fn scene(scene: &HousedScene) -> Result<Value, Box<dyn Error>> {
     if scene.bearing.dynamics.run.is_some() {
         echo["motion"] = echo_run::motion(&dynamic_problem(&scene.bearing)?)?;
     }
+    if let Some(run) = &scene.bearing.dynamics.run {
+        echo["numerics"] = numerics(scene, run)?;
+    }
+    Ok(echo)
+}
+
+/// How a run is computed; of a course of equilibria what has a meaning without steps.
+fn numerics(scene: &HousedScene, run: &RunSettings) -> Result<Value, ResultsError> {
+    let mut echo = match scene.housing.method {
+        HousingMethod::Explicit => echo_run::numerics(run)?,
+        HousingMethod::QuasiStatic => json!({
+            "end": quantity("end", run.end, "s")?,
+            "output_interval": quantity("output_interval", run.output_interval, "s")?,
+        }),
+    };
+    if let Some(interval) = scene.housing.fields_interval {
+        echo["fields_interval"] = quantity("fields_interval", interval, "s")?;
+    }
     Ok(echo)
 }
 
@@ -44,11 +63,8 @@ fn housing(scene: &HousedScene) -> Result<Value, ResultsError> {
             echo.insert("outer_radius".into(), quantity("outer radius", 1e3 * radius, "mm")?);
         }
     }
-    for (name, value, unit) in [
-        ("fit_ramp", housing.fit_ramp, "s"),
-        ("width", housing.width, "m"),
-        ("fields_interval", housing.fields_interval, "s"),
-    ] {
+    for (name, value, unit) in [("fit_ramp", housing.fit_ramp, "s"), ("width", housing.width, "m")]
+    {
         if let Some(value) = value {
             echo.insert(name.into(), quantity(name, value, unit)?);
         }

@@ -174,7 +174,8 @@ pub fn request(scene: &HousedScene, run: &RunSettings) -> HousedRequest {
         end: run.end,
         output_interval: run.output_interval,
         fields_interval: scene.housing.fields_interval,
-        channels: run.channels.clone(),
+        // With those that a plot needs.
+        channels: super::run::request(&scene.bearing, run).channels,
         energy_limit: run.options.energy_limit,
     }
 }

@@ -1,7 +1,9 @@
 //! The points of a sweep: a grid over the varied keys, the last one fastest.
 
 use bearing_dynamics::scene::statics::static_problem;
-use bearing_dynamics::scene::{Document, Scene, SceneError, SweepAxis, keys, resolve};
+use bearing_dynamics::scene::{
+    Document, SceneError, Subject, SweepAxis, keys, resolve, resolve_subject,
+};
 use sha2::{Digest, Sha256};
 use std::error::Error;
 use std::ops::Range;
@@ -84,15 +86,19 @@ impl Grid {
         indices
     }
 
-    /// The scene of a point.
-    pub fn scene(&self, document: &Document, point: usize) -> Result<Scene, SceneError> {
+    /// The scene of a point: a bearing alone, or in its housing.
+    pub fn scene(&self, document: &Document, point: usize) -> Result<Subject, SceneError> {
         let mut document = document.clone();
         for (axis, index) in self.axes.iter().zip(self.indices(point)) {
             if let Some(value) = axis.value(index) {
                 document.set(axis.key, &value)?;
             }
         }
-        resolve(&document)
+        match resolve_subject(&document)? {
+            // Refused, with the reason.
+            Subject::Solid(_) => Ok(Subject::Bearing(Box::new(resolve(&document)?))),
+            other => Ok(other),
+        }
     }
 
     /// Refuses a sweep none of whose points describes a bearing, with what is wrong at the first.
@@ -100,18 +106,29 @@ impl Grid {
     pub fn check(&self, document: &Document) -> Result<(), Box<dyn Error>> {
         const LOOKS: usize = 1000;
         let problem = |point| -> Result<(), Box<dyn Error>> {
-            static_problem(&self.scene(document, point)?)?;
+            match self.scene(document, point)? {
+                Subject::Housed(scene) => static_problem(&scene.bearing)?,
+                Subject::Bearing(scene) => static_problem(&scene)?,
+                Subject::Solid(_) => return Ok(()),
+            };
             Ok(())
         };
+        if self.axes.iter().any(|axis| axis.key == "housing.method") {
+            let text = "housing.method: statics of a flexible housing is one for all methods, and a \
+                        rigid one has another table; sweep the two by themselves";
+            return Err(text.into());
+        }
         let Err(first) = problem(0) else { return Ok(()) };
         let mut others = (0..self.len()).step_by(self.len().div_ceil(LOOKS)).skip(1);
         if others.any(|point| problem(point).is_ok()) { Ok(()) } else { Err(first) }
     }
 
-    /// Identifies scene, axes, program version and mode; a journal belongs to one of them.
-    pub fn fingerprint(&self, document: &Document, cold: bool) -> String {
+    /// Identifies scene, axes, program version and mode; a journal belongs to one of them. `mesh` is
+    /// the content of a file that the scene names.
+    pub fn fingerprint(&self, document: &Document, mesh: &[u8], cold: bool) -> String {
         let mut hash = Sha256::new();
         hash.update(document.text());
+        hash.update(mesh);
         hash.update(format!("{:?} {cold} {}", self.axes, env!("CARGO_PKG_VERSION")));
         hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }

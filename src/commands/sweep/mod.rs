@@ -6,12 +6,13 @@
 //! journal, from which the same command resumes.
 
 mod grid;
+mod housed;
 mod journal;
 mod point;
 mod report;
 
 use super::{CommandResult, Outcome, results_folder, say};
-use bearing_dynamics::scene::Document;
+use bearing_dynamics::scene::{Document, Subject};
 use grid::Grid;
 use indicatif::{ProgressBar, ProgressStyle};
 use journal::{Chunk, Journal};
@@ -24,6 +25,8 @@ use std::time::Instant;
 
 /// Points in a chunk: enough for warm starts to pay, few enough to lose little when interrupted.
 const CHUNK: usize = 64;
+/// The same with a housing, where a point takes a hundred times as long.
+const HOUSED_CHUNK: usize = 16;
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -54,8 +57,12 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     // A scene that cannot be solved at all is said before anything is written.
     grid.check(&document)?;
     let folder = sweep_folder(arguments);
-    let fingerprint = grid.fingerprint(&document, arguments.cold);
-    let journal = Journal::open(&folder, &fingerprint, grid.chunks(CHUNK), arguments.fresh)?;
+    let first = grid.scene(&document, 0);
+    let mesh = first.as_ref().map_or(Ok(Vec::new()), housed::mesh_file)?;
+    let housed = matches!(first, Ok(Subject::Housed(_))) || housed::is_housed(&document);
+    let size = if housed { HOUSED_CHUNK } else { CHUNK };
+    let fingerprint = grid.fingerprint(&document, &mesh, arguments.cold);
+    let journal = Journal::open(&folder, &fingerprint, grid.chunks(size), arguments.fresh)?;
     let resumed = journal.finished();
     report::remove_earlier(&folder)?;
 
@@ -71,8 +78,8 @@ pub fn run(arguments: &Arguments) -> CommandResult {
             if interrupted.load(Ordering::Relaxed) {
                 return Ok(());
             }
-            let chunk = solve_chunk(&document, &grid, index, arguments.cold);
-            progress.inc(grid.chunk_range(index, CHUNK).len() as u64);
+            let chunk = solve_chunk(&document, &grid, index, size, arguments.cold);
+            progress.inc(grid.chunk_range(index, size).len() as u64);
             journal.append(chunk)?;
             Ok(())
         })
@@ -86,6 +93,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         threads: pool.current_num_threads(),
         seconds: start.elapsed().as_secs_f64(),
         complete: done == grid.len(),
+        housed,
     };
     report::write(&folder, &document, &grid, &chunks, &record)?;
     if !record.complete {
@@ -107,8 +115,13 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         if record.threads == 1 { "" } else { "s" },
         folder.join("sweep.csv").display()
     ))?;
-    if grid.scene(&document, 0).is_ok_and(|scene| scene.dynamics.run.is_some()) {
-        say("the statics of this scene at each point; its run is not swept\n")?;
+    let runs = first.is_ok_and(|first| match first {
+        Subject::Bearing(scene) => scene.dynamics.run.is_some(),
+        Subject::Housed(scene) => scene.bearing.dynamics.run.is_some(),
+        Subject::Solid(_) => false,
+    });
+    if runs {
+        say("the statics of this scene at each point, at t = 0; its run is not swept\n")?;
     }
     let failures: Vec<_> = chunks.iter().flat_map(|chunk| &chunk.failures).collect();
     match failures.first() {
@@ -146,11 +159,11 @@ fn progress_bar(grid: &Grid, resumed: usize) -> ProgressBar {
     bar
 }
 
-fn solve_chunk(document: &Document, grid: &Grid, index: usize, cold: bool) -> Chunk {
+fn solve_chunk(document: &Document, grid: &Grid, index: usize, size: usize, cold: bool) -> Chunk {
     let mut chunk = Chunk { index, rows: Vec::new(), failures: Vec::new() };
-    let mut neighbour = None;
-    for point in grid.chunk_range(index, CHUNK) {
-        match point::solve(document, grid, point, neighbour.as_ref()) {
+    let (mut neighbour, mut housing) = (None, None);
+    for point in grid.chunk_range(index, size) {
+        match point::solve(document, grid, point, neighbour.as_ref(), &mut housing) {
             Ok(solved) => {
                 chunk.rows.push(solved.row);
                 neighbour = if cold { None } else { solved.start_for_neighbour };

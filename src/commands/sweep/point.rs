@@ -1,10 +1,11 @@
 //! One point of a sweep and its row of the table.
 
 use super::grid::Grid;
+use super::housed::{self, Kept};
 use bearing_dynamics::output::Column;
 use bearing_dynamics::output::results::load_zone_of;
-use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::statics::static_problem;
+use bearing_dynamics::scene::{Document, Subject};
 use bearing_dynamics::solver::statics::{
     COORDINATE_NAMES, Determinacy, StaticOptions, StaticSolution, solve_from,
 };
@@ -16,19 +17,30 @@ pub struct Solved {
     pub start_for_neighbour: Option<SVector<f64, 5>>,
 }
 
+/// A point's scene solved, from a neighbour's solution or, in a housing, with a neighbour's housing.
 pub fn solve(
     document: &Document,
     grid: &Grid,
     point: usize,
     neighbour: Option<&SVector<f64, 5>>,
+    housing: &mut Option<Kept>,
 ) -> Result<Solved, String> {
-    let scene = grid.scene(document, point).map_err(|error| error.to_string())?;
-    let problem = static_problem(&scene).map_err(|error| error.to_string())?;
-    let solution = solve_from(&problem, neighbour, &StaticOptions::default())
-        .map_err(|error| error.to_string())?;
+    let text = |error: &dyn std::fmt::Display| error.to_string();
+    let scene = match grid.scene(document, point).map_err(|error| text(&error))? {
+        Subject::Housed(scene) => {
+            let row = housed::row(&scene, housing).map_err(|error| text(&error))?;
+            let row = [start_of_row(grid, point), row].concat();
+            return Ok(Solved { row, start_for_neighbour: None });
+        }
+        Subject::Bearing(scene) => *scene,
+        Subject::Solid(_) => return Err("a solid by itself is not swept".into()),
+    };
+    let problem = static_problem(&scene).map_err(|error| text(&error))?;
+    let solution =
+        solve_from(&problem, neighbour, &StaticOptions::default()).map_err(|error| text(&error))?;
     let determinate = solution.determinacy == Determinacy::Determinate;
     Ok(Solved {
-        row: row(grid, point, &solution),
+        row: [start_of_row(grid, point), of_bearing(&solution)].concat(),
         start_for_neighbour: determinate.then_some(solution.coordinates),
     })
 }
@@ -54,8 +66,8 @@ const RESULTS: [(&str, &str); 17] = [
     ("free_directions", "1"),
 ];
 
-/// Header of the table: point, varied keys, position, results.
-pub fn columns(grid: &Grid) -> Vec<Column> {
+/// Header of the table: point, varied keys, position, results, and what a housing adds.
+pub fn columns(grid: &Grid, housed: bool) -> Vec<Column> {
     let mut columns = vec![Column::new("point", "1")];
     for axis in &grid.axes {
         columns.push(Column::new(axis.key, super::report::unit_of(axis)));
@@ -63,15 +75,21 @@ pub fn columns(grid: &Grid) -> Vec<Column> {
     for (i, name) in COORDINATE_NAMES.iter().enumerate() {
         columns.push(Column::new(*name, if i < 3 { "um" } else { "deg" }));
     }
-    columns.extend(RESULTS.iter().map(|(name, unit)| Column::new(*name, *unit)));
+    let further: &[(&str, &str)] = if housed { &housed::RESULTS } else { &[] };
+    let results = RESULTS.iter().chain(further);
+    columns.extend(results.map(|(name, unit)| Column::new(*name, *unit)));
     columns
 }
 
-fn row(grid: &Grid, point: usize, solution: &StaticSolution) -> Vec<f64> {
-    let mut row = vec![point as f64];
-    for (axis, index) in grid.axes.iter().zip(grid.indices(point)) {
-        row.push(super::report::number_of(axis, index));
-    }
+fn start_of_row(grid: &Grid, point: usize) -> Vec<f64> {
+    let varied = grid.axes.iter().zip(grid.indices(point));
+    let varied = varied.map(|(axis, index)| super::report::number_of(axis, index));
+    std::iter::once(point as f64).chain(varied).collect()
+}
+
+/// Position and results of a bearing.
+pub fn of_bearing(solution: &StaticSolution) -> Vec<f64> {
+    let mut row = Vec::new();
     let q = &solution.coordinates;
     row.extend((0..3).map(|i| 1e6 * q[i]));
     row.extend((3..5).map(|i| q[i].to_degrees()));

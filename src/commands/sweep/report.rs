@@ -17,6 +17,8 @@ pub struct Record {
     pub threads: usize,
     pub seconds: f64,
     pub complete: bool,
+    /// With the columns of a housing.
+    pub housed: bool,
 }
 
 /// The unit in which an axis is written: that of its first value, or `choice` for words.
@@ -72,7 +74,7 @@ pub fn write(
     chunks: &[Chunk],
     record: &Record,
 ) -> Result<(), Box<dyn Error>> {
-    let columns = columns(grid);
+    let columns = columns(grid, record.housed);
     let width = columns.len();
     let flat: Vec<f64> = chunks.iter().flat_map(|chunk| &chunk.rows).flatten().copied().collect();
     let table = Array2::from_shape_vec((flat.len() / width, width), flat)?;

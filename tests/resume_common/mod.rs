@@ -1,0 +1,67 @@
+//! Runs of the command that are interrupted, and folders that must be the same.
+#![allow(dead_code)]
+
+use serde_json::Value;
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+/// Every file of two folders to the byte, but for wall times.
+pub fn assert_same_results(expected: &Path, found: &Path) {
+    let names = |folder: &Path| {
+        let list = |folder: PathBuf, before: &str| {
+            let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+            let files = entries.filter(|entry| entry.path().is_file());
+            let names =
+                files.map(|entry| format!("{before}{}", entry.file_name().to_string_lossy()));
+            names.collect::<Vec<_>>()
+        };
+        let mut names = list(folder.to_path_buf(), "");
+        names.extend(list(folder.join("fields"), "fields/"));
+        names.sort();
+        names
+    };
+    assert_eq!(names(expected), names(found));
+    for name in names(expected) {
+        let [a, b] = [expected, found].map(|folder| folder.join(&name));
+        if ["summary.json", "state.json"].contains(&name.as_str()) {
+            let [a, b] = [a, b].map(|path| without_seconds(&path));
+            assert_eq!(a.to_string(), b.to_string(), "{name}");
+        } else {
+            assert!(fs::read(a).unwrap() == fs::read(b).unwrap(), "{name} differs");
+        }
+    }
+}
+
+fn without_seconds(path: &Path) -> Value {
+    let mut tree: Value = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
+    // The state of a bearing in its housing has that of the bearing as a part.
+    let housed = tree["housing"]["arrays"].is_string();
+    let of = if housed { &mut tree["bearing"] } else { &mut tree };
+    assert!(of.as_object_mut().unwrap().remove("seconds").is_some(), "{}", path.display());
+    tree
+}
+
+/// Starts a run and waits until it steps.
+pub fn start(mut command: Command) -> Child {
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stdout.as_mut().unwrap());
+    let mut line = String::new();
+    while !line.contains("a row every") {
+        line.clear();
+        assert!(lines.read_line(&mut line).unwrap() > 0, "it ended before it stepped");
+    }
+    child
+}
+
+pub fn signal(child: &Child, name: &str) {
+    let id = child.id().to_string();
+    assert!(Command::new("kill").args([name, &id]).status().unwrap().success());
+}
+
+pub fn wait(mut child: Child) -> (Option<i32>, String) {
+    let mut text = String::new();
+    child.stderr.as_mut().unwrap().read_to_string(&mut text).unwrap();
+    (child.wait().unwrap().code(), text)
+}
