@@ -7,12 +7,13 @@
 //! - Acceleration that is slow against 1/ω: |δ| = |ẍ|/ω², for a turning load (f/f_n)² of its swing, a second power of the
 //!   speed. One that sets in suddenly swings to twice that.
 //! - A velocity that jumps by Δv leaves a ringing of Δv/ω, a first power, which only damping takes
-//!   away. It jumps at the start, where explicit steps begin at rest, and each time a node of the bore
-//!   enters or leaves contact: the race is held by another stiffness from then on, so that the
-//!   course has a kink there.
+//!   away. It jumps at the start, where explicit steps begin at rest, at corners of the loads, and each time
+//!   a node of the bore enters or leaves contact: the race is held by another stiffness from then
+//!   on, so that the course has a kink there.
 //!
 //! Ringings add at most as their sizes, and like their squares if their phases fall at random. Each is counted
-//! with the size that it has where it arises.
+//! with the size that it has where it arises. Left out: the balls' mass, modes of the housing that its
+//! static shapes do not hold, what loads do that jump themselves, and how balls without a cage stray.
 
 use super::assembly::{AssemblySearch, AssemblyState};
 use super::inertia::{Coordinates, Masses, Mode, housing_mass, modes};
@@ -27,6 +28,8 @@ pub struct CourseLooks {
     /// Equal intervals in between: where several nodes change within one of them, only what they do
     /// to the velocity together is seen.
     pub count: usize,
+    /// When loads and motions change their rates at once, s.
+    pub corners: Vec<f64>,
     pub masses: Masses,
     /// Coordinates of the inner race that loads drive.
     pub free: [bool; 5],
@@ -44,7 +47,8 @@ pub struct CourseInertia {
     pub steady: f64,
     /// Ringing of a start at rest in the first equilibrium of a course that moves from the outset.
     pub start: f64,
-    /// Intervals within which other nodes came to touch, and the largest ringing of one of them.
+    /// Intervals within which other nodes came to touch or a load has a corner, and the largest
+    /// ringing of one of them.
     pub kinks: usize,
     pub largest_kink: f64,
     /// All that rings, the start included, at random phases: about this, at the end of the looks or
@@ -80,6 +84,13 @@ struct Look {
     velocity: Coordinates,
     touching: Vec<bool>,
     modes: Vec<Mode>,
+    /// Corners of the loads that lie behind.
+    corners: usize,
+}
+
+/// Whether the velocity jumps between two looks.
+fn jumps(pair: &[Look]) -> bool {
+    pair[0].touching != pair[1].touching || pair[0].corners != pair[1].corners
 }
 
 /// Looks along a course; `at` solves for the equilibrium of a time.
@@ -107,6 +118,7 @@ pub fn course_inertia<E>(
             velocity: (coordinates(&later) - place) / (AHEAD * interval),
             touching: state.bore.loads.iter().map(|load| *load > 0.0).collect(),
             modes: modes(&looks.free, &state, &looks.masses, &housing),
+            corners: looks.corners.iter().filter(|corner| **corner <= time).count(),
         });
     }
     Ok(judge(&found, interval, looks.damping))
@@ -123,7 +135,7 @@ fn judge(looks: &[Look], interval: f64, damping: f64) -> CourseInertia {
     let (mut most, mut together, mut largest) = (sum, squares, first);
     let (mut kinks, mut largest_kink) = (0, 0.0f64);
     for pair in looks.windows(2) {
-        if pair[0].touching == pair[1].touching {
+        if !jumps(pair) {
             continue;
         }
         kinks += 1;
@@ -137,7 +149,7 @@ fn judge(looks: &[Look], interval: f64, damping: f64) -> CourseInertia {
     let left = libm::exp(-largest.decay * interval);
     for pair in looks.windows(2) {
         (sum, squares) = (sum * left, squares * left * left);
-        if pair[0].touching != pair[1].touching {
+        if jumps(pair) {
             let new = ring(&pair[1], &(pair[1].velocity - pair[0].velocity), damping).size;
             (sum, squares) = (sum + new, squares + new * new);
         }
@@ -206,9 +218,8 @@ fn across(mode: &Mode) -> f64 {
 fn swing(looks: &[Look]) -> f64 {
     let ends = |i: usize| {
         let places = looks.iter().map(|look| look.place[i]);
-        let [low, high] = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(x), high.max(x)]
-        });
+        let [low, high] = places
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
         0.5 * (low + high)
     };
     let middle = [ends(0), ends(1)];
