@@ -11,6 +11,9 @@ use bearing_dynamics::solver::housing::assembly::{
 };
 use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreError, BoreSearch, Fit};
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::course_inertia::{
+    CourseInertia, CourseLooks, course_inertia,
+};
 use bearing_dynamics::solver::housing::inertia::{Masses, estimate};
 use bearing_dynamics::solver::housing::quasi_static::{Course, history};
 use bearing_dynamics::solver::profile::Profile;
@@ -248,4 +251,48 @@ fn inertia_of_races_that_outweigh_the_housing() {
     assert!((hundred.lowest / should - 1.0).abs() <= 1e-3, "{} {should}", hundred.lowest);
     let half = hundred.error_at(0.5 * hundred.lowest);
     assert!((half - 0.25).abs() <= 1e-12);
+}
+
+/// A load that goes round in a soft ring which never lets go: a circle, slow against its natural motion.
+fn circle(turn: f64, damping: f64, corners: Vec<f64>) -> CourseInertia {
+    let bore = condensed(&RING, &COARSE, Order::Linear, 1e-2 * YOUNG);
+    let fit = fit(5e-6);
+    let steel = hollow_cylinder(32e-3, 35.5e-3, 20e-3, 7850.0);
+    let masses = Masses { inner: steel, outer: steel };
+    let free = [false, true, true, true, true];
+    let looks = CourseLooks { start: 0.0, end: turn, count: 360, corners, masses, free, damping };
+    course_inertia(&looks, &mut search(&bore, &fit), |search, time| {
+        let angle = TAU * time / turn;
+        let problem = bearing(loads([0.0, 2.5 * angle.cos(), 2.5 * angle.sin(), 0.0, 0.0]));
+        search.solve(&problem, &fit, [0.0; 3])
+    })
+    .unwrap()
+}
+
+#[test]
+fn inertia_along_a_circle_is_that_of_one_mass_on_a_spring() {
+    let (slow, fast) = (circle(0.2, 0.0, Vec::new()), circle(0.1, 0.0, Vec::new()));
+    for (found, turn) in [(&slow, 0.2), (&fast, 0.1)] {
+        let ratio = 1.0 / (turn * found.frequency);
+        assert!(ratio < 0.1 && found.kinks == 0, "{found:?}");
+        // The other natural motions take some of it, and a period is not nothing of a turn.
+        let steady = found.steady / (ratio * ratio * found.swing);
+        assert!((0.8..=1.3).contains(&steady), "{steady} {found:?}");
+        // Sizes are added: of two equal modes across up to √2, and of the races against each other.
+        let start = found.start / (ratio * found.swing);
+        assert!((0.9..=2.1).contains(&start), "{start} {found:?}");
+        assert_eq!(found.ringing, found.start);
+        let bound = found.start + 2.0 * found.steady;
+        assert!((found.bound / bound - 1.0).abs() <= 1e-12, "{found:?}");
+    }
+    // First and second power of the speed.
+    assert!((fast.start / slow.start - 2.0).abs() <= 1e-3, "{slow:?} {fast:?}");
+    assert!((fast.steady / slow.steady - 4.0).abs() <= 0.2, "{slow:?} {fast:?}");
+    // A corner of the load is a kink, though nothing jumps at this one but by what an interval turns.
+    let cornered = circle(0.1, 0.0, vec![0.05]);
+    assert_eq!(cornered.kinks, 1);
+    assert!(cornered.largest_kink > 0.0 && cornered.largest_kink < 0.1 * fast.start);
+    // Damping takes the start's ringing before the corner adds to it.
+    let damped = circle(0.1, 1e4, vec![0.05]);
+    assert!(damped.bound < cornered.bound, "{damped:?}");
 }

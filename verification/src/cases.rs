@@ -26,6 +26,8 @@ mod cylinder_on_block_table_2_1;
 mod free_ring_modes;
 #[path = "../hertz_elliptic/case.rs"]
 mod hertz_elliptic;
+#[path = "../housing_inertia_estimate/case.rs"]
+mod housing_inertia_estimate;
 #[path = "../housing_orbits_2_4_2/case.rs"]
 mod housing_orbits_2_4_2;
 #[path = "../housing_settling/case.rs"]
@@ -85,6 +87,7 @@ pub const CASES: &[Case] = &[
     housing_settling::CASE,
     assembly_fits_2_4_1::CASE,
     housing_orbits_2_4_2::CASE,
+    housing_inertia_estimate::CASE,
     steel_load_rates_2_4_3::CASE,
     steel_impact_2_4_3::CASE,
 ];

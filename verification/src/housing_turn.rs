@@ -39,6 +39,8 @@ pub struct Turning {
     /// Which of the even angles of a turn, and when, s.
     pub places: Vec<usize>,
     pub times: Vec<f64>,
+    /// Between race and bore, m.
+    pub interference: f64,
 }
 
 impl Turning {
@@ -51,7 +53,7 @@ impl Turning {
         let at = |angle: f64| 0.5 * duration + angle / speed;
         let (places, times) =
             angles(POINTS).map(at).enumerate().filter(|(_, time)| *time >= duration).unzip();
-        Turning { load, places, times }
+        Turning { load, places, times, interference: 0.0 }
     }
 
     /// The same load without its run-up, all around.
@@ -62,7 +64,7 @@ impl Turning {
             phase: 0.0,
         };
         let times = angles(POINTS).map(|angle| angle / speed).collect();
-        Turning { load, places: (0..POINTS).collect(), times }
+        Turning { load, places: (0..POINTS).collect(), times, interference: 0.0 }
     }
 }
 
@@ -85,7 +87,7 @@ pub fn equilibria(
             weight: [0.0; 3],
             centrifugal: false,
         };
-        for moment in history(search, &bearing, &housings::fit(0.0), &course)? {
+        for moment in history(search, &bearing, &housings::fit(turning.interference), &course)? {
             visit(search, &moment);
             moments.push(moment);
         }
@@ -152,7 +154,9 @@ pub fn explicit(
         outer.drives[0] = Drive::Motion(Profile::ZERO);
     }
     let elements = model.problem.elements.len();
-    let mut housed = HousedBearing::new(problem, model, seat(mesh)?, displacement, &options())?;
+    let radius = Profile::Constant(BORE_RADIUS + turning.interference);
+    let seat = Seat { radius, ..seat(mesh)? };
+    let mut housed = HousedBearing::new(problem, model, seat, displacement, &options())?;
     let place = |housed: &HousedBearing| {
         let [_, y, z] = outer_state(&housed.bearing).position;
         (housed.time(), [y, z])
@@ -167,8 +171,8 @@ pub fn explicit(
             housed.exchange()?;
             now = place(&housed);
         }
-        // A window is next to nothing of a turn.
-        let part = (time - before.0) / (now.0 - before.0);
+        // A window is next to nothing of a turn; at the start there is none yet.
+        let part = if now.0 > before.0 { (time - before.0) / (now.0 - before.0) } else { 0.0 };
         outer.push([0, 1].map(|i| before.1[i] + part * (now.1[i] - before.1[i])));
         let snapshot = housed.snapshot()?;
         residual = largest([residual, snapshot.residual.abs() / snapshot.turned_over]);

@@ -3,8 +3,8 @@
 //! It takes seconds, so that it keeps no state: an interrupted one is started again.
 
 use super::{
-    Prepared, condensed, inertia_estimate, plan, prepare, record, refuse_moving, remove_earlier,
-    run_settings, run_table, search, title, write_bore,
+    Prepared, along_course, condensed, inertia_estimate, plan, prepare, record, refuse_moving,
+    remove_earlier, run_settings, run_table, search, title, write_bore,
 };
 use crate::commands::run::{Arguments, pictures, refuse_unfinished};
 use crate::commands::solid::say_mesh_notes;
@@ -100,8 +100,10 @@ pub fn run(arguments: &Arguments, document: &Document, scene: &HousedScene) -> C
         write_bore(&folder, &bore_nodes(setup, &bore, &moment.state))?;
     }
     let inertia = inertia_estimate(scene, setup, &bore).ok().flatten();
+    let along = along_course(scene, setup, &bore).ok().flatten();
     if let Some(estimate) = &inertia {
-        sections.push(("inertia".into(), inertia_section(estimate, &excitations(scene))?));
+        let section = inertia_section(estimate, &excitations(scene), along.as_ref())?;
+        sections.push(("inertia".into(), section));
     }
     let table = run_table(course.series()?, course.interval, settings.window_start);
     let written = pictures(&folder, &scene.bearing, &table)?;
@@ -118,7 +120,10 @@ pub fn run(arguments: &Arguments, document: &Document, scene: &HousedScene) -> C
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
     say(&figures(&course, seconds))?;
     if let Some(estimate) = &inertia {
-        say(&format!("inertia left out       {}\n", plan::verdict(scene, estimate)))?;
+        say(&format!(
+            "inertia left out       {}\n",
+            plan::verdict(scene, estimate, along.as_ref())
+        ))?;
     }
     say(&format!(
         "wrote series, fields, bore, summary and {} plots of {} to {}\n",

@@ -10,7 +10,7 @@ pub mod statics;
 use super::{echo_run, placed};
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::dynamics::table::RunTable;
-use bearing_dynamics::output::housed::course::{masses, on_inner, on_outer};
+use bearing_dynamics::output::housed::course::{masses, moments, on_inner, on_outer};
 use bearing_dynamics::output::housed::fields::{BoreNodeState, bore_series};
 use bearing_dynamics::output::housed::state::{HousedParts, HousedRequest};
 use bearing_dynamics::output::results::RunRecord;
@@ -19,7 +19,7 @@ use bearing_dynamics::output::solid::fields::LIST;
 use bearing_dynamics::output::solid::state::remove_arrays;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
-use bearing_dynamics::scene::housing_problem::{HousingSetup, check_constant, setup};
+use bearing_dynamics::scene::housing_problem::{HousingSetup, check_constant, excitations, setup};
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build};
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{DefaultUsed, Document, RunSettings};
@@ -28,12 +28,16 @@ use bearing_dynamics::solver::dynamics::run::RunOptions;
 use bearing_dynamics::solver::housing::assembly::{AssemblyOptions, AssemblySearch, AssemblyState};
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
+use bearing_dynamics::solver::housing::course_inertia::{
+    CourseInertia, CourseLooks, course_inertia,
+};
 use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, HousedBearing, Seat};
 use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::support::free_motions;
 use bearing_dynamics::solver::statics::{Condition, StaticProblem};
 use std::error::Error;
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -143,6 +147,48 @@ pub fn estimate_at(
     }
     let found = estimate(&problem, search, state, &masses(scene)?);
     Some(found).filter(|found| found.lowest > 0.0 && found.lowest.is_finite())
+}
+
+/// Looks at a course: so many for each turn of a load, at most so many, fewest.
+const LOOKS: [f64; 3] = [720.0, 2880.0, 720.0];
+
+/// What inertia would add along the scene's run. Nothing for one in which nothing moves.
+pub fn along_course(
+    scene: &HousedScene,
+    setup: &HousingSetup,
+    bore: &CondensedBore,
+) -> Fallible<Option<CourseInertia>> {
+    let dynamics = &scene.bearing.dynamics;
+    let (Some(run), Some(masses)) = (&dynamics.run, masses(scene)) else { return Ok(None) };
+    if excitations(scene).is_empty() {
+        return Ok(None);
+    }
+    let turns = dynamics.rotating_load.as_ref().map_or(0.0, |load| load.angle(run.end).abs()) / TAU;
+    let [a_turn, most, fewest] = LOOKS;
+    let drives = &dynamics.inner.drives;
+    let mut free = [0, 1, 2, 3, 4].map(|i| matches!(drives[i], Drive::Load(_)));
+    // As in the estimate about one equilibrium.
+    free[0] &= !matches!(drives[0], Drive::Load(Profile::Constant(_)));
+    let looks = CourseLooks {
+        start: 0.0,
+        end: run.end,
+        count: (a_turn * turns).clamp(fewest, most) as usize,
+        corners: dynamic_problem(&scene.bearing)?.corners(),
+        masses,
+        free,
+        damping: setup.solid.problem.damping,
+    };
+    let problem = static_problem(&scene.bearing)?;
+    let mut search = search(scene, bore);
+    let found = course_inertia(&looks, &mut search, |search, time| {
+        let mut moments = moments(scene, setup, &problem, search, time)?;
+        moments
+            .pop()
+            .map(|moment| moment.state)
+            .ok_or("no equilibrium")
+            .map_err(Box::<dyn Error>::from)
+    })?;
+    Ok(Some(found).filter(|found| found.swing > 0.0))
 }
 
 /// Bearing, housing and seat for explicit steps.

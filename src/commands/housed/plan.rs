@@ -2,7 +2,8 @@
 //! would cost.
 
 use super::{
-    Prepared, bearing_at, condensed, inertia_estimate, mesh_text, parts, prepare, request, started,
+    Prepared, along_course, bearing_at, condensed, inertia_estimate, mesh_text, parts, prepare,
+    request, started,
 };
 use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::run::request as bearing_request;
@@ -17,6 +18,7 @@ use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
 use bearing_dynamics::scene::housing_problem::{check_constant, excitations};
 use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::course_inertia::CourseInertia;
 use bearing_dynamics::solver::housing::inertia::InertiaEstimate;
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -136,24 +138,42 @@ fn quasi_static_line(
         }
         Err(error) => return Err(error),
     };
-    Ok(line("notes", name, &verdict(scene, &estimate)))
+    let (along, missing) = match along_course(scene, &prepared.setup, bore) {
+        Ok(along) => (along, String::new()),
+        Err(error) => (None, format!("; no estimate along the course: {error}")),
+    };
+    let said = verdict(scene, &estimate, along.as_ref());
+    Ok(line("notes", name, &(said + &missing)))
 }
 
-/// The error estimate in words.
-pub fn verdict(scene: &HousedScene, estimate: &InertiaEstimate) -> String {
+/// The error estimate in words: along the course where there is one, else of what drives fastest.
+pub fn verdict(
+    scene: &HousedScene,
+    estimate: &InertiaEstimate,
+    along: Option<&CourseInertia>,
+) -> String {
     let excitations = excitations(scene);
     let mut said = format!("lowest natural frequency about {} Hz", to_digits(estimate.lowest, 4));
     let chosen = scene.housing.method == HousingMethod::QuasiStatic;
-    let Some((error, cause)) = largest_error(estimate, &excitations) else {
+    let Some((driven, cause)) = largest_error(estimate, &excitations) else {
         said += ", and nothing drives it at a frequency of its own";
         return said;
     };
-    said += &format!(
-        "; error of {} of the displacement that goes with {} ({} Hz)",
-        percent(error),
-        cause.what,
-        to_digits(cause.frequency, 4)
-    );
+    let error = match along {
+        Some(course) => {
+            said += &format!("; {}", course_text(course));
+            course.part(course.expected())
+        }
+        None => {
+            said += &format!(
+                "; error of {} of the displacement that goes with {} ({} Hz)",
+                percent(driven),
+                cause.what,
+                to_digits(cause.frequency, 4)
+            );
+            driven
+        }
+    };
     // An error that is not a number is one.
     let (small, bearable) = (error <= WORTH_A_WORD, error <= TOO_MUCH);
     said += match (chosen, small, bearable) {
@@ -166,6 +186,23 @@ pub fn verdict(scene: &HousedScene, estimate: &InertiaEstimate) -> String {
         (false, _, true) => "; method = \"quasi-static\" in [housing] takes it",
     };
     said
+}
+
+/// Parts of what inertia adds, over the swing of the outer race.
+fn course_text(course: &CourseInertia) -> String {
+    let part = |length: f64| percent(course.part(length));
+    format!(
+        "of the outer race's swing of {} nm: acceleration {}, a start at rest {}, {} kinks of the contact and the loads up to {}; \
+         about {} together, at most {}, which rings at {} Hz until damping takes it",
+        to_digits(1e9 * course.swing, 4),
+        part(course.steady),
+        part(course.start),
+        course.kinks,
+        part(course.largest_kink),
+        part(course.expected()),
+        part(course.bound),
+        to_digits(course.frequency, 3)
+    )
 }
 
 pub fn percent(part: f64) -> String {

@@ -52,7 +52,7 @@ pub fn run(
     say(&table::render(&problem, &state.bearing))?;
     say(&housing_table(&bore, &state, largest))?;
     if let Some(estimate) = &inertia {
-        say(&format!("note: {}\n", plan::verdict(scene, estimate)))?;
+        say(&format!("note: {}\n", plan::verdict(scene, estimate, None)))?;
     }
     if dry {
         return Ok(Outcome::Done);
@@ -72,7 +72,9 @@ pub fn run(
         .push(("housing".into(), equilibrium_section(setup, &bore, &state, &displacement)?));
     record.sections.extend(field_sections(built, &displacement, &stress)?);
     if let Some(estimate) = &inertia {
-        record.sections.push(("inertia".into(), inertia_section(estimate, &excitations(scene))?));
+        record
+            .sections
+            .push(("inertia".into(), inertia_section(estimate, &excitations(scene), None)?));
     }
     let mut drawn = scene.bearing.clone();
     // The other plots move the bearing on, which would move the outer race.

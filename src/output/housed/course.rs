@@ -121,28 +121,7 @@ impl<'s> HousedCourse<'s> {
     /// No equilibrium at its time.
     pub fn next(&mut self, search: &mut AssemblySearch) -> Result<(), CourseError> {
         let time = self.rows() as f64 * self.interval;
-        let radius = self.setup.radius(self.scene);
-        let mut problem = self.problem.clone();
-        problem.conditions = on_inner(self.scene, time);
-        let constant = |condition: &Condition| match condition {
-            Condition::Load(value) | Condition::Displacement(value) => Profile::Constant(*value),
-        };
-        let speed = match &self.scene.bearing.dynamics.inner.rotation {
-            Rotation::Speed(speed) => speed.clone(),
-            Rotation::Torque(_) => Profile::ZERO,
-        };
-        let course = Course {
-            times: vec![time],
-            conditions: problem.conditions.each_ref().map(constant),
-            rotating_load: None,
-            shaft_speed: speed,
-            interference: Profile::ZERO,
-            weight: on_outer(self.scene, time),
-            // As in a run: balls that go round have mass.
-            centrifugal: true,
-        };
-        let fit = Fit { radius: radius.value(time), ..self.setup.fit(self.scene) };
-        for moment in history(search, &problem, &fit, &course)? {
+        for moment in moments(self.scene, self.setup, &self.problem, search, time)? {
             self.record(search.bore().bore(), &moment);
             self.latest = Some(moment);
         }
@@ -181,6 +160,41 @@ impl<'s> HousedCourse<'s> {
             .expect("every row gives one value per column");
         Series::new(self.columns.clone(), data)
     }
+}
+
+/// The one equilibrium of `problem` at a time of the scene.
+///
+/// # Errors
+/// No equilibrium then.
+pub fn moments(
+    scene: &HousedScene,
+    setup: &HousingSetup,
+    problem: &StaticProblem,
+    search: &mut AssemblySearch,
+    time: f64,
+) -> Result<Vec<Moment>, CourseError> {
+    let radius = setup.radius(scene);
+    let conditions = on_inner(scene, time);
+    let constant = |condition: &Condition| match condition {
+        Condition::Load(value) | Condition::Displacement(value) => Profile::Constant(*value),
+    };
+    let speed = match &scene.bearing.dynamics.inner.rotation {
+        Rotation::Speed(speed) => speed.clone(),
+        Rotation::Torque(_) => Profile::ZERO,
+    };
+    let course = Course {
+        times: vec![time],
+        conditions: conditions.each_ref().map(constant),
+        rotating_load: None,
+        shaft_speed: speed,
+        interference: Profile::ZERO,
+        weight: on_outer(scene, time),
+        // As in a run: balls that go round have mass.
+        centrifugal: true,
+    };
+    let problem = StaticProblem { conditions, ..problem.clone() };
+    let fit = Fit { radius: radius.value(time), ..setup.fit(scene) };
+    history(search, &problem, &fit, &course)
 }
 
 /// Position (m) and tilts (rad) of the outer race in the world.

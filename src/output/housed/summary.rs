@@ -15,6 +15,7 @@ use crate::scene::solid_mesh::BuiltMesh;
 use crate::solver::housing::assembly::AssemblyState;
 use crate::solver::housing::bore_equilibrium::POSE_NAMES;
 use crate::solver::housing::condensed::{CondensedBore, geometry_error};
+use crate::solver::housing::course_inertia::CourseInertia;
 use crate::solver::housing::inertia::InertiaEstimate;
 use serde_json::{Map, Value, json};
 
@@ -33,11 +34,16 @@ pub fn seat_section(setup: &HousingSetup) -> Part {
     }))
 }
 
-/// How slow everything is against what the housing holds: what leaving out inertia costs.
+/// How slow everything is against what the housing holds: what leaving out inertia costs, to what
+/// drives and, of a run, along its course.
 ///
 /// # Errors
 /// A value that is not finite.
-pub fn inertia_section(estimate: &InertiaEstimate, excitations: &[Excitation]) -> Part {
+pub fn inertia_section(
+    estimate: &InertiaEstimate,
+    excitations: &[Excitation],
+    course: Option<&CourseInertia>,
+) -> Part {
     let mut driven = Map::new();
     for excitation in excitations {
         driven.insert(
@@ -48,11 +54,26 @@ pub fn inertia_section(estimate: &InertiaEstimate, excitations: &[Excitation]) -
             }),
         );
     }
-    Ok(json!({
+    let mut section = json!({
         "lowest_frequency": quantity("frequency", estimate.lowest, "Hz")?,
         "housing_over_race": quantity("kinetic energy", estimate.housing_share, "1")?,
         "error_of_what_drives": driven,
-    }))
+    });
+    if let Some(course) = course {
+        let length = |value: f64| quantity("a part of inertia", value, "m");
+        section["along_the_course"] = json!({
+            "swing": length(course.swing)?,
+            "steady": length(course.steady)?,
+            "start_at_rest": length(course.start)?,
+            "kinks": course.kinks,
+            "largest_kink": length(course.largest_kink)?,
+            "ringing": length(course.ringing)?,
+            "expected": length(course.expected())?,
+            "at_most": length(course.bound)?,
+            "ringing_frequency": quantity("frequency", course.frequency, "Hz")?,
+        });
+    }
+    Ok(section)
 }
 
 /// The largest of these errors, and what causes it.

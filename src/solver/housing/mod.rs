@@ -12,6 +12,7 @@ pub mod assembly;
 pub mod bore_equilibrium;
 pub mod checkpoint;
 pub mod condensed;
+pub mod course_inertia;
 pub mod exchange;
 pub mod inertia;
 pub mod quasi_static;
