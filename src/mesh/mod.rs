@@ -13,6 +13,7 @@
 //! Lengths are metres everywhere past the readers. Readers take bytes and writers give bytes:
 //! nothing here opens a file, and nothing knows a scene, a material or a unit string.
 pub mod check;
+pub mod cylinder_fit;
 pub mod error;
 pub mod generate;
 pub mod measure;

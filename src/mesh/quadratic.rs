@@ -5,7 +5,7 @@ use crate::mesh::measure::{least_jacobian, straight_volume};
 use crate::mesh::node_order::EDGES;
 use crate::mesh::select::faces_on;
 use crate::mesh::surface::Surface;
-use crate::mesh::tet_mesh::{Elements, TetMesh};
+use crate::mesh::tet_mesh::{Elements, Face, TetMesh};
 use crate::mesh::topology::surface;
 use nalgebra::Vector3;
 
@@ -33,6 +33,20 @@ const ON_SURFACE: f64 = 1e-7;
 /// # Errors
 /// [`MeshError::AlreadyQuadratic`]; [`MeshError::TooLarge`] where the nodes cannot be numbered.
 pub fn elevate(mesh: &TetMesh, curved: &[Surface]) -> Result<Elevated, MeshError> {
+    let boundary = surface(mesh);
+    let on = |shape: &Surface| faces_on(mesh, &boundary, shape, ON_SURFACE * mesh.size());
+    let curved: Vec<_> = curved.iter().map(|shape| (*shape, on(shape))).collect();
+    elevate_faces(mesh, &curved)
+}
+
+/// The same for surfaces with the faces that lie on each.
+///
+/// # Errors
+/// Those of [`elevate`].
+pub fn elevate_faces(
+    mesh: &TetMesh,
+    curved: &[(Surface, Vec<Face>)],
+) -> Result<Elevated, MeshError> {
     let Elements::Linear(list) = &mesh.elements else {
         return Err(MeshError::AlreadyQuadratic);
     };
@@ -52,9 +66,8 @@ pub fn elevate(mesh: &TetMesh, curved: &[Surface]) -> Result<Elevated, MeshError
     let straight: Vec<Vector3<f64>> =
         edges.iter().map(|&[a, b]| (mesh.point(a) + mesh.point(b)) * 0.5).collect();
     let mut on: Vec<Vec<usize>> = vec![Vec::new(); edges.len()];
-    let boundary = surface(mesh);
-    for (index, shape) in curved.iter().enumerate() {
-        for face in faces_on(mesh, &boundary, shape, ON_SURFACE * mesh.size()) {
+    for (index, (_, faces)) in curved.iter().enumerate() {
+        for &face in faces {
             let [a, b, c] = mesh.face_corners(face);
             for edge in [middle_of(a, b), middle_of(b, c), middle_of(c, a)] {
                 if !on[edge].contains(&index) {
@@ -66,7 +79,7 @@ pub fn elevate(mesh: &TetMesh, curved: &[Surface]) -> Result<Elevated, MeshError
     let mut middles: Vec<Vector3<f64>> = straight
         .iter()
         .zip(&on)
-        .map(|(&place, on)| onto_all(place, &on.iter().map(|&i| curved[i]).collect::<Vec<_>>()))
+        .map(|(&place, on)| onto_all(place, &on.iter().map(|&i| curved[i].0).collect::<Vec<_>>()))
         .collect();
 
     let quadratic: Vec<[u32; 10]> = list

@@ -26,15 +26,15 @@ pub enum Surface {
 }
 
 /// A place in the coordinates of a surface of revolution.
-struct Polar {
+pub(crate) struct Polar {
     /// Unit axis and unit radial direction.
     axis: Vector3<f64>,
-    outward: Vector3<f64>,
-    along: f64,
-    radius: f64,
+    pub outward: Vector3<f64>,
+    pub along: f64,
+    pub radius: f64,
 }
 
-fn polar(point: [f64; 3], axis: [f64; 3], place: Vector3<f64>) -> Polar {
+pub(crate) fn polar(point: [f64; 3], axis: [f64; 3], place: Vector3<f64>) -> Polar {
     let axis = Vector3::from(axis).normalize();
     let offset = place - Vector3::from(point);
     let along = offset.dot(&axis);

@@ -1,8 +1,12 @@
 //! From a bearing in a housing and the housing's mesh to what the solver takes, and what drives it.
 
-use crate::ch2_housing::bore_contact::{ContactNode, Frame, contact_nodes};
-use crate::kinematics::{Pose, euler};
+use crate::ch2_housing::bore_contact::{ContactNode, Frame, Penalty, contact_nodes};
+use crate::kinematics::Pose;
+use crate::mesh::cylinder_fit::fit_cylinder;
 use crate::scene::about::About;
+use crate::scene::bore_shape::{
+    BorePlace, LARGEST_OUT_OF_ROUND, MiddleNodes, RIM, ROUND, middle_nodes,
+};
 use crate::scene::housing::{FitSize, HousedScene};
 use crate::scene::solid::{LoadKind, SetLoad};
 use crate::scene::solid_mesh::BuiltMesh;
@@ -17,11 +21,10 @@ use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use thiserror::Error;
 
-/// Part of the width by which a seat is wider than the race, as in a condensed housing: a node on the
-/// rim stays under the race when the bore swells along its axis by some nanometres.
-const RIM: f64 = 2e-3;
-/// Part of the race's radius by which the bore may differ from it, and be out of round or centre.
+/// Part of the race's radius by which the bore may differ from it, and be out of centre.
 const FAR_OFF: f64 = 0.05;
+/// Part of an interference below which out-of-roundness changes pressures by no more than this part.
+const SMALL: f64 = 0.01;
 
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum HousingSetupError {
@@ -53,6 +56,22 @@ pub enum HousingSetupError {
         1e3 * *.nearest, 1e3 * *.farthest
     )]
     NotRound { bore: String, nearest: f64, farthest: f64 },
+    #[error(
+        "housing.bore: the edges of \"{bore}\" are straight: its mid-side nodes, where the race touches, lie \
+         up to {:.3} um inside the cylinder of radius {:.4} mm through its corners; edges this long have arcs \
+         {:.3} um high, of which {:.0} % is missing. Hint: mesh it with curved edges (in Gmsh \
+         Mesh.SecondOrderLinear = 0, and Mesh.HighOrderOptimize = 0 if that pulled them straight), or save \
+         it with elements of first order and write order = 2 in [solid.mesh]",
+        1e6 * *.inside, 1e3 * *.radius, 1e6 * *.sagitta, 1e2 * *.missing
+    )]
+    StraightBore { bore: String, radius: f64, inside: f64, sagitta: f64, missing: f64 },
+    #[error(
+        "housing.bore: nodes of \"{bore}\" are up to {:.3} um off its cylinder of radius {:.4} mm, more than \
+         the {:.3} um of a bore to IT7. Hint: has the set faces beside the bore? Are its nodes written with \
+         all digits, its mid-side nodes on the curved surface?",
+        1e6 * *.off, 1e3 * *.radius, 1e6 * *.limit
+    )]
+    OutOfRound { bore: String, radius: f64, off: f64, limit: f64 },
     #[error("housing: the fit leaves the outer race {:.1} um larger than the bore, more than {:.1} um",
         1e6 * *.interference, 1e6 * *.limit)]
     FitTooLarge { interference: f64, limit: f64 },
@@ -76,7 +95,9 @@ impl HousingSetupError {
             HousingSetupError::Model(_) => return None,
             HousingSetupError::NoBore { .. }
             | HousingSetupError::FarFromTheRace { .. }
-            | HousingSetupError::NotRound { .. } => About::key("housing.bore"),
+            | HousingSetupError::NotRound { .. }
+            | HousingSetupError::OutOfRound { .. } => About::key("housing.bore"),
+            HousingSetupError::StraightBore { .. } => About::key("solid.mesh.file"),
             HousingSetupError::BesideTheRace { .. } => About::key("housing.width"),
             HousingSetupError::FitTooLarge { .. } => About::key("housing.outer_radius"),
             HousingSetupError::VaryingLoad { index } => {
@@ -100,8 +121,14 @@ pub struct HousingSetup {
     pub model: SolidModel,
     /// Nodes of the bore that carry a part of its surface.
     pub nodes: Vec<ContactNode>,
-    /// Mean distance from the axis of those under the race, m.
+    /// Of the cylinder that lies nearest to those under the race, m.
     pub bore_radius: f64,
+    /// Largest distance of those from it, m.
+    pub out_of_round: f64,
+    /// Distance of its axis from the race's centre, m.
+    pub off_centre: f64,
+    /// What the bore's own shape does to the results, where that is worth a word.
+    pub caution: Option<String>,
     /// Radial, m; negative is clearance.
     pub interference: f64,
     /// Of the outer race, m.
@@ -121,23 +148,22 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
         known: mesh.surface_sets.keys().cloned().collect(),
     })?;
     let nodes = contact_nodes(mesh, faces);
-    let [x, y, z, tilt_y, tilt_z] = scene.bearing.outer_race;
-    let nominal = Pose {
-        position: Vector3::new(x, y, z),
-        orientation: euler::quaternion(0.0, tilt_y, tilt_z),
-    };
+    let place = BorePlace::of(scene);
+    let nominal = place.nominal;
     let frame = Frame::new(&nominal);
     let seen: Vec<[f64; 3]> = nodes.iter().map(|node| frame.seen(node.place)).collect();
     let ends = seen.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], place| {
         [low.min(place[0]), high.max(place[0])]
     });
     let width = scene.housing.width.unwrap_or(ends[1] - ends[0]);
-    let under = seen.iter().filter(|place| place[0].abs() <= 0.5 * width * (1.0 + RIM));
-    let distances: Vec<f64> = under.map(|p| (p[1] * p[1] + p[2] * p[2]).sqrt()).collect();
+    let is_under = |place: &[f64; 3]| place[0].abs() <= 0.5 * width * (1.0 + RIM);
+    let distance = |[_, y, z]: &[f64; 3]| (y * y + z * z).sqrt();
+    let distances: Vec<f64> = seen.iter().filter(|at| is_under(at)).map(distance).collect();
     if distances.is_empty() {
-        return Err(HousingSetupError::BesideTheRace { count: nodes.len(), width, centre: x });
+        let centre = nominal.position.x;
+        return Err(HousingSetupError::BesideTheRace { count: nodes.len(), width, centre });
     }
-    let radius = distances.iter().sum::<f64>() / distances.len() as f64;
+    let mean = distances.iter().sum::<f64>() / distances.len() as f64;
     let sizes = &scene.bearing.dimensions;
     let given = match scene.housing.fit {
         FitSize::OuterRadius(radius) => Some(radius),
@@ -146,20 +172,37 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     let groove = sizes.outer_race.radius;
     let race = given.unwrap_or(1.1 * groove);
     let near = match given {
-        Some(given) => (radius - given).abs() <= FAR_OFF * given,
+        Some(given) => (mean - given).abs() <= FAR_OFF * given,
         // Any wall behind the groove.
-        None => radius > groove && radius < 2.0 * groove,
+        None => mean > groove && mean < 2.0 * groove,
     };
     if !near {
-        return Err(HousingSetupError::FarFromTheRace { bore, radius, race });
+        return Err(HousingSetupError::FarFromTheRace { bore, radius: mean, race });
+    }
+    if let Some(corners) = place.corner_cylinder(mesh, faces) {
+        let middles = middle_nodes(mesh, faces, &corners);
+        if middles.straight() {
+            let (radius, MiddleNodes { inside, sagitta, missing, .. }) = (corners.radius, middles);
+            return Err(HousingSetupError::StraightBore { bore, radius, inside, sagitta, missing });
+        }
     }
     let farthest = distances.iter().copied().fold(0.0, f64::max);
     let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
     // Written as it is so that a place that is not a number is refused as well.
-    let round = farthest - nearest <= FAR_OFF * radius;
-    if !round {
+    let round = farthest - nearest <= FAR_OFF * mean;
+    let under = nodes.iter().zip(&seen).filter(|(_, at)| is_under(at));
+    let under: Vec<Vector3<f64>> = under.map(|(node, _)| Vector3::from(node.place)).collect();
+    let Some(cylinder) = fit_cylinder(&under, place.axis()).filter(|_| round) else {
         return Err(HousingSetupError::NotRound { bore, nearest, farthest });
+    };
+    let radius = cylinder.radius;
+    let off = under.iter().map(|at| cylinder.outside(*at).abs()).fold(0.0, f64::max);
+    let limit = LARGEST_OUT_OF_ROUND * radius;
+    let round = off <= limit;
+    if !round {
+        return Err(HousingSetupError::OutOfRound { bore, radius, off, limit });
     }
+    let off_centre = cylinder.outside(nominal.position) + radius;
     let interference = match scene.housing.fit {
         FitSize::Interference(interference) => interference,
         FitSize::OuterRadius(race) => race - radius,
@@ -170,7 +213,38 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
         return Err(HousingSetupError::FitTooLarge { interference, limit });
     }
     let model = SolidModel::labelled(solid.problem.clone(), solid.labels.clone())?;
-    Ok(HousingSetup { solid, model, nodes, bore_radius: radius, interference, width, nominal })
+    Ok(HousingSetup {
+        solid,
+        model,
+        nodes,
+        bore_radius: radius,
+        out_of_round: off,
+        off_centre,
+        caution: caution(off, interference, scene.housing.penalty),
+        interference,
+        width,
+        nominal,
+    })
+}
+
+/// Of a bore so far (m) off its cylinder, where that is not small beside an interference or, under
+/// any fit, beside how far the race sinks into its seat.
+fn caution(off: f64, interference: f64, penalty: Penalty) -> Option<String> {
+    if off <= ROUND.max(SMALL * interference) {
+        return None;
+    }
+    let load = match penalty {
+        Penalty::PerArea(stiffness) => format!("{:.3} MPa", 1e-6 * stiffness * off),
+        Penalty::PerNode(stiffness) => format!("{:.3} N a node", stiffness * off),
+    };
+    Some(format!(
+        "the bore is {:.4} um out of round at a fit of {:+.4} um: nodes that stand out touch first, with \
+         up to {load} more than on a round bore; which nodes touch, the peak pressure and stresses at the \
+         bore are those of this mesh's shape, and the race's place is uncertain by about as much. If the \
+         shape is not meant, write the nodes' coordinates with more digits",
+        1e6 * off,
+        1e6 * interference
+    ))
 }
 
 impl HousingSetup {

@@ -18,6 +18,7 @@
 //! # Ok::<(), scene::SceneError>(())
 //! ```
 pub mod about;
+pub mod bore_shape;
 pub mod document;
 pub mod dynamics;
 pub mod error;

@@ -11,6 +11,8 @@ use crate::mesh::select::Region;
 use crate::mesh::topology::surface;
 use crate::mesh::{MeshError, Order, TetMesh};
 use crate::scene::about::About;
+use crate::scene::bore_shape::{BorePlace, elevate_with_bore};
+use crate::scene::housing::HousedScene;
 use crate::scene::resolve_solid_mesh::{extension, key_of_dimension};
 use crate::scene::solid::{MeshRequest, MeshSource, SetPlace};
 use crate::solver::solid::labels::Labels;
@@ -85,7 +87,7 @@ impl SolidMeshError {
 }
 
 /// Part of the mesh's size within which nodes lie on the surface of a set.
-const ON_SURFACE: f64 = 1e-6;
+pub(crate) const ON_SURFACE: f64 = 1e-6;
 
 /// Hexahedra that a generator may make, six tetrahedra each: some gigabytes.
 const MOST_CELLS: f64 = 1e7;
@@ -96,6 +98,21 @@ const MOST_CELLS: f64 = 1e7;
 /// A file that cannot be read, a mesh with a fault that no repair was asked for, dimensions that do
 /// not fit, a set that matches nothing.
 pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
+    build_around(request, None)
+}
+
+/// The same for a housing: where a file's elements are raised to ten nodes, the bore stays round.
+///
+/// # Errors
+/// Those of [`build`].
+pub fn build_housing(scene: &HousedScene) -> Result<BuiltMesh, SolidMeshError> {
+    build_around(&scene.solid.mesh, Some(&BorePlace::of(scene)))
+}
+
+fn build_around(
+    request: &MeshRequest,
+    bore: Option<&BorePlace>,
+) -> Result<BuiltMesh, SolidMeshError> {
     let mut notes = Vec::new();
     let mut repaired = Repaired::default();
     let mut labels = Labels::default();
@@ -128,7 +145,8 @@ pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
                 let faults = named(faults, &labels);
                 SolidMeshError::Faults { path: path.clone(), faults }
             })?;
-            let (mesh, pulled_back) = from_file(mesh, request.order, path)?;
+            let (mesh, pulled_back, bent) = from_file(mesh, request, bore, path)?;
+            notes.extend(bent);
             // Nodes put on edges come last, and the file has none of them.
             labels.nodes.resize(mesh.nodes.len(), None);
             (mesh, pulled_back)
@@ -196,21 +214,26 @@ fn labels_of_nodes(mesh: &TetMesh, places: &[[f64; 3]], numbers: &[u64]) -> Vec<
     mesh.nodes.iter().map(next).collect()
 }
 
-/// A file's mesh in the order that is asked for.
+/// A file's mesh in the order that is asked for, mid-side nodes off curved surfaces, and a note.
 fn from_file(
     mesh: TetMesh,
-    order: Option<Order>,
+    request: &MeshRequest,
+    bore: Option<&BorePlace>,
     path: &Path,
-) -> Result<(TetMesh, usize), SolidMeshError> {
-    match (mesh.order(), order) {
+) -> Result<(TetMesh, usize, Option<String>), SolidMeshError> {
+    match (mesh.order(), request.order) {
         (Order::Quadratic, Some(Order::Linear)) => {
             Err(SolidMeshError::Order { path: path.to_path_buf() })
         }
         (Order::Linear, Some(Order::Quadratic)) => {
-            let elevated = elevate(&mesh, &[]).map_err(|source| in_mesh(path, source))?;
-            Ok((elevated.mesh, elevated.pulled_back))
+            let raised = match bore {
+                Some(bore) => elevate_with_bore(&mesh, request, bore),
+                None => elevate(&mesh, &[]).map(|elevated| (elevated, None)),
+            };
+            let (elevated, note) = raised.map_err(|source| in_mesh(path, source))?;
+            Ok((elevated.mesh, elevated.pulled_back, note))
         }
-        _ => Ok((mesh, 0)),
+        _ => Ok((mesh, 0, None)),
     }
 }
 

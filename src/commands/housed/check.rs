@@ -1,6 +1,6 @@
 //! `bearing check` of a bearing in its housing.
 
-use super::{condensed, defaults, echo, mesh_text, prepare, refuse_moving};
+use super::{condensed, defaults, echo, mesh_text, prepare, refuse_moving, shape_text};
 use crate::commands::check::{bearing_lines, bodies, stepping};
 use crate::commands::solid::mesh_notes;
 use crate::commands::{CommandResult, Outcome, echo_run, say};
@@ -70,6 +70,10 @@ pub fn run(path: &Path, document: &Document, scene: &HousedScene, json: bool) ->
             2.0 * um
         ),
     );
+    line("bore shape", shape_text(setup));
+    if let Some(caution) = &setup.caution {
+        line("caution", caution.clone());
+    }
     let stiffness = match scene.housing.penalty {
         Penalty::PerArea(stiffness) => format!("{stiffness:e} N/m^3, by area"),
         Penalty::PerNode(stiffness) => format!("{stiffness:e} N/m for each node"),

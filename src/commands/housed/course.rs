@@ -4,10 +4,9 @@
 
 use super::{
     Prepared, along_course, condensed, inertia_estimate, plan, prepare, record, refuse_moving,
-    remove_earlier, run_settings, run_table, search, title, write_bore,
+    remove_earlier, run_settings, run_table, say_notes, search, title, write_bore,
 };
 use crate::commands::run::{Arguments, pictures, refuse_unfinished};
-use crate::commands::solid::say_mesh_notes;
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::housed::course::{HousedCourse, bore_nodes};
@@ -67,7 +66,7 @@ pub fn run(arguments: &Arguments, document: &Document, scene: &HousedScene) -> C
         settings.output_interval,
         &settings.channels,
     );
-    say_mesh_notes(built)?;
+    say_notes(&prepared)?;
     say(&format!(
         "{} unknowns condensed onto {} bore nodes in {condense_seconds:.2} s\n{} equilibria to t = {} s, \
          a row every {:.4e} s\n",

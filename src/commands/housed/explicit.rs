@@ -2,10 +2,9 @@
 
 use super::{
     Prepared, parts, plan, prepare, record, remove_earlier, request, run_settings, run_table,
-    started, write_bore,
+    say_notes, started, write_bore,
 };
 use crate::commands::run::{Arguments, no_run, pictures, refuse_unfinished};
-use crate::commands::solid::say_mesh_notes;
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::housed::fields::write_housing_fields;
@@ -67,7 +66,7 @@ pub fn run(
         output_interval: kept.map_or(request.output_interval, |file| file.output_interval),
         seconds: kept.map_or(0.0, |file| file.seconds),
     };
-    say_mesh_notes(built)?;
+    say_notes(&prepared)?;
     say(&announcement(&session))?;
     if let Some(file) = kept {
         say(&format!("resumed at t = {} s, row {}\n", rounded(file.time), file.rows))?;

@@ -7,7 +7,8 @@ pub mod explicit;
 pub mod plan;
 pub mod statics;
 
-use super::{echo_run, placed};
+use super::solid::mesh_notes;
+use super::{echo_run, placed, say};
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::dynamics::table::RunTable;
 use bearing_dynamics::output::housed::course::{masses, moments, on_inner, on_outer};
@@ -20,7 +21,7 @@ use bearing_dynamics::output::solid::state::remove_arrays;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
 use bearing_dynamics::scene::housing_problem::{HousingSetup, check_constant, excitations, setup};
-use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build};
+use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{DefaultUsed, Document, RunSettings};
 use bearing_dynamics::solver::dynamics::model::Drive;
@@ -56,7 +57,7 @@ pub struct Prepared {
 /// Reads or makes the mesh; the document says where in the scene an error stands.
 pub fn prepare(document: &Document, scene: &HousedScene) -> Fallible<Prepared> {
     let start = Instant::now();
-    let built = build(&scene.solid.mesh).map_err(|error| placed(document, error.about(), error))?;
+    let built = build_housing(scene).map_err(|error| placed(document, error.about(), error))?;
     let setup = setup(scene, &built).map_err(|error| placed(document, error.about(), error))?;
     Ok(Prepared { built, setup, mesh_seconds: start.elapsed().as_secs_f64() })
 }
@@ -294,6 +295,26 @@ pub fn mesh_text(built: &BuiltMesh) -> String {
     let mesh = &built.mesh;
     let nodes_each = if mesh.order() == Order::Linear { 4 } else { 10 };
     format!("{} nodes, {} elements of {nodes_each}", mesh.nodes.len(), mesh.elements.len())
+}
+
+/// How round the bore is, and where.
+pub fn shape_text(setup: &HousingSetup) -> String {
+    format!(
+        "{:.4} um out of round, axis {:.4} um from the race's centre",
+        1e6 * setup.out_of_round,
+        1e6 * setup.off_centre
+    )
+}
+
+/// What a person should know of mesh and bore before results.
+pub fn notes(prepared: &Prepared) -> Vec<String> {
+    let caution = prepared.setup.caution.iter().map(|caution| format!("caution: {caution}"));
+    mesh_notes(&prepared.built).into_iter().chain(caution).collect()
+}
+
+/// Says these.
+pub fn say_notes(prepared: &Prepared) -> Fallible<()> {
+    notes(prepared).iter().try_for_each(|note| say(&format!("note: {note}\n")))
 }
 
 /// Rows at equal intervals with the window that starts at a time.

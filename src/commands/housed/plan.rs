@@ -2,12 +2,11 @@
 //! would cost.
 
 use super::{
-    Prepared, along_course, bearing_at, condensed, inertia_estimate, mesh_text, parts, prepare,
-    request, started,
+    Prepared, along_course, bearing_at, condensed, inertia_estimate, mesh_text, notes, parts,
+    prepare, request, started,
 };
 use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::run::request as bearing_request;
-use crate::commands::solid::mesh_notes;
 use crate::commands::solve::plan_lines;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::housed::summary::largest_error;
@@ -32,8 +31,7 @@ const TIMED: Duration = Duration::from_millis(300);
 pub fn run(document: &Document, scene: &HousedScene) -> CommandResult {
     let prepared = prepare(document, scene)?;
     let mut lines = lines(scene, &prepared)?;
-    let notes = mesh_notes(&prepared.built);
-    lines.extend(notes.iter().map(|note| line("notes", "housing mesh", note)));
+    lines.extend(notes(&prepared).iter().map(|note| line("notes", "housing mesh", note)));
     let bore = match check_constant(scene) {
         Ok(()) => condensed(&prepared).map_err(|error| error.to_string()),
         Err(error) => Err(error.to_string()),

@@ -2,9 +2,8 @@
 
 use super::{
     Prepared, condensed, equilibrium_at, estimate_at, plan, prepare, record, remove_earlier,
-    search, write_bore,
+    say_notes, search, write_bore,
 };
-use crate::commands::solid::say_mesh_notes;
 use crate::commands::{
     CommandResult, Outcome, pictures, refuse_folder_of_run, results_folder, say, table,
 };
@@ -48,7 +47,7 @@ pub fn run(
     let stress = stresses(&setup.model, &displacement);
     let largest = stress.cell_von_mises.iter().copied().fold(0.0, f64::max);
 
-    say_mesh_notes(built)?;
+    say_notes(&prepared)?;
     say(&table::render(&problem, &state.bearing))?;
     say(&housing_table(&bore, &state, largest))?;
     if let Some(estimate) = &inertia {

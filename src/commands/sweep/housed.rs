@@ -8,10 +8,11 @@ use crate::commands::housed::{Prepared, condensed, equilibrium_at, search};
 use bearing_dynamics::output::housed::course::outer_place;
 use bearing_dynamics::output::housed::rows::SeatRow;
 use bearing_dynamics::output::solid::fields::stresses;
+use bearing_dynamics::scene::bore_shape::BorePlace;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::scene::housing_problem::setup;
 use bearing_dynamics::scene::solid::MeshSource;
-use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build};
+use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
 use bearing_dynamics::scene::{Document, Subject};
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, Reach};
 use std::error::Error;
@@ -42,10 +43,14 @@ pub const RESULTS: [(&str, &str); 12] = [
 /// Position and results of bearing and housing at t = 0, the race grown into its fit.
 pub fn row(scene: &HousedScene, kept: &mut Option<Kept>) -> Result<Vec<f64>, Box<dyn Error>> {
     let (built, earlier) = match kept.take() {
-        Some(kept) if kept.scene.solid == scene.solid => {
+        // The bore's place counts: mid-side nodes may be put on its cylinder.
+        Some(kept)
+            if kept.scene.solid == scene.solid
+                && BorePlace::of(&kept.scene) == BorePlace::of(scene) =>
+        {
             (kept.built, Some((kept.scene.housing.bore, kept.bore)))
         }
-        _ => (build(&scene.solid.mesh)?, None),
+        _ => (build_housing(scene)?, None),
     };
     let setup = setup(scene, &built)?;
     let prepared = Prepared { built, setup, mesh_seconds: 0.0 };

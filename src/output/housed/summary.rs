@@ -21,17 +21,23 @@ use serde_json::{Map, Value, json};
 
 type Part = Result<Value, ResultsError>;
 
-/// Fit, width and mesh.
+/// Fit, width and mesh; the bore's shape, and what it does to results where that is worth a word.
 ///
 /// # Errors
 /// A value that is not finite.
 pub fn seat_section(setup: &HousingSetup) -> Part {
-    Ok(json!({
+    let mut section = json!({
         "bore_radius": quantity("bore radius", setup.bore_radius, "m")?,
+        "bore_out_of_round": quantity("out-of-roundness", setup.out_of_round, "m")?,
+        "bore_off_centre": quantity("distance of the axes", setup.off_centre, "m")?,
         "interference": quantity("interference", setup.interference, "m")?,
         "width": quantity("width", setup.width, "m")?,
         "bore_nodes": setup.nodes.len(),
-    }))
+    });
+    if let Some(caution) = &setup.caution {
+        section["caution"] = json!(caution);
+    }
+    Ok(section)
 }
 
 /// How slow everything is against what the housing holds: what leaving out inertia costs, to what

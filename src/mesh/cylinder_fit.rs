@@ -1,0 +1,90 @@
+//! The cylinder that lies nearest to given places.
+
+use crate::mesh::surface::{Surface, polar};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+
+/// A cylinder without ends. Lengths in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FittedCylinder {
+    /// A point of the axis.
+    pub point: Vector3<f64>,
+    /// Unit vector.
+    pub axis: Vector3<f64>,
+    pub radius: f64,
+}
+
+impl FittedCylinder {
+    /// How far outside the cylinder a place is, m; negative inside.
+    pub fn outside(&self, place: Vector3<f64>) -> f64 {
+        polar(self.point.into(), self.axis.into(), place).radius - self.radius
+    }
+
+    pub fn surface(&self) -> Surface {
+        let (point, axis) = (self.point.into(), self.axis.into());
+        Surface::Cylinder { point, axis, radius: self.radius }
+    }
+}
+
+/// Least squares of the distances from the cylinder, about an axis that is nearly `along`. A part of
+/// the circumference does. What the places do not determine (the tilt, if they lie in one plane)
+/// stays as `along` has it.
+///
+/// Nothing for fewer than three places, or for places that are not about an axis.
+pub fn fit_cylinder(places: &[Vector3<f64>], along: Vector3<f64>) -> Option<FittedCylinder> {
+    /// Each takes the error to about its square; tilts are small.
+    const ROUNDS: usize = 8;
+    /// Part of the largest eigenvalue below which a motion of the axis is not determined.
+    const DETERMINED: f64 = 1e-10;
+    if places.len() < 3 {
+        return None;
+    }
+    let along = along.normalize();
+    let helper = Vector3::ith(along.iamin(), 1.0);
+    let across = along.cross(&helper).normalize();
+    let up = along.cross(&across);
+    let count = places.len() as f64;
+    let middle = places.iter().sum::<Vector3<f64>>() / count;
+
+    // A circle seen along the axis, which is linear in its centre: it starts the rest.
+    let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for place in places {
+        let (y, z) = ((place - middle).dot(&across), (place - middle).dot(&up));
+        let row = Vector3::new(2.0 * y, 2.0 * z, 1.0);
+        matrix += row * row.transpose();
+        right += row * (y * y + z * z);
+    }
+    let centre = matrix.lu().solve(&right)?;
+    let mut point = middle + across * centre[0] + up * centre[1];
+    let mut axis = along;
+    let distance = |place: &Vector3<f64>| polar(point.into(), along.into(), *place).radius;
+    let mut radius = places.iter().map(distance).sum::<f64>() / count;
+
+    for _ in 0..ROUNDS {
+        let mut matrix = SMatrix::<f64, 5, 5>::zeros();
+        let mut right = SVector::<f64, 5>::zeros();
+        for place in places {
+            let seen = polar(point.into(), axis.into(), *place);
+            let (c, s) = (seen.outward.dot(&across), seen.outward.dot(&up));
+            let lever = seen.along / radius;
+            let row = SVector::from([c, s, lever * c, lever * s, 1.0]);
+            matrix += row * row.transpose();
+            right += row * (seen.radius - radius);
+        }
+        if !matrix.iter().chain(right.iter()).all(|value| value.is_finite()) {
+            return None;
+        }
+        let eigen = matrix.symmetric_eigen();
+        let least = DETERMINED * eigen.eigenvalues.max();
+        let mut step = SVector::<f64, 5>::zeros();
+        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            if *value > least {
+                step += vector * (vector.dot(&right) / value);
+            }
+        }
+        point += across * step[0] + up * step[1];
+        axis = (axis + (across * step[2] + up * step[3]) / radius).normalize();
+        radius += step[4];
+    }
+    let sound = radius.is_finite() && radius > 0.0 && axis.iter().all(|part| part.is_finite());
+    sound.then_some(FittedCylinder { point, axis, radius })
+}
