@@ -163,7 +163,10 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
         let centre = nominal.position.x;
         return Err(HousingSetupError::BesideTheRace { count: nodes.len(), width, centre });
     }
+    let corners = place.corner_cylinder(mesh, faces);
     let mean = distances.iter().sum::<f64>() / distances.len() as f64;
+    // Straight edges would make a coarse bore look far too small.
+    let size = corners.map_or(mean, |corners| corners.radius);
     let sizes = &scene.bearing.dimensions;
     let given = match scene.housing.fit {
         FitSize::OuterRadius(radius) => Some(radius),
@@ -172,14 +175,14 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     let groove = sizes.outer_race.radius;
     let race = given.unwrap_or(1.1 * groove);
     let near = match given {
-        Some(given) => (mean - given).abs() <= FAR_OFF * given,
+        Some(given) => (size - given).abs() <= FAR_OFF * given,
         // Any wall behind the groove.
-        None => mean > groove && mean < 2.0 * groove,
+        None => size > groove && size < 2.0 * groove,
     };
     if !near {
-        return Err(HousingSetupError::FarFromTheRace { bore, radius: mean, race });
+        return Err(HousingSetupError::FarFromTheRace { bore, radius: size, race });
     }
-    if let Some(corners) = place.corner_cylinder(mesh, faces) {
+    if let Some(corners) = corners {
         let middles = middle_nodes(mesh, faces, &corners);
         if middles.straight() {
             let (radius, MiddleNodes { inside, sagitta, missing, .. }) = (corners.radius, middles);

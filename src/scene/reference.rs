@@ -264,9 +264,15 @@ going round as in pure rolling; traction, cage, damping and inertia are left out
 change. It takes constant loads on outer race and solid, and no torque or unbalance. `explicit` moves both in steps of their own that exchange
 impulses. `rigid` fixes the outer race: the solid's mesh is not even read. `plan` says what the other way would cost.
 
-**Fit.** `fit` is the interference; with `outer_radius` it is the difference to the mean radius of the bore's nodes. In a run it grows in over
+**Fit.** `fit` is the interference; with `outer_radius` it is the difference to the cylinder nearest to the bore's nodes under the race. In a run it grows in over
 `fit_ramp`; a clearance is there from the start. `statics` has the whole fit, and the loads of t = 0. Weights of both races count with
-`ball_forces.gravity`. A bore that is more than 5 % off the race's outer radius or out of round is refused: was its unit mm or m?
+`ball_forces.gravity`. A bore that is more than 5 % off the race's outer radius or out of centre is refused: was its unit mm or m?
+
+**Shape of the bore.** Fits are micrometres, and ten-node elements touch the race at mid-side nodes. A file's four-node elements raised by
+`order = 2` get those of the bore on the cylinder through its corners, and a note says so. A file of ten-node elements whose bore edges are
+straight is refused: mid-side nodes must miss less than a quarter of their arcs' height L²/8R. `check` and summaries have `bore_out_of_round`, the
+largest distance of a contact node from the fitted cylinder, and `bore_off_centre`. Beyond 0.5 thousandths of the radius, a little more than a bore to IT7 may have, it is refused;
+beyond 10 nm and 1 % of an interference a caution says what it changes. Coordinates rounded to 1e-4 mm make 0.05 um, and peak pressures several times too large.
 
 **Runs** end at the row nearest to `numerics.end`. Fields are written at the end, and every `numerics.fields_interval` if that is given.
 
