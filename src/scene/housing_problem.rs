@@ -15,11 +15,15 @@ use crate::solver::profile::Profile;
 use crate::solver::solid::model::{SolidError, SolidModel};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 use thiserror::Error;
 
 /// Part of the width by which a seat is wider than the race, as in a condensed housing: a node on the
 /// rim stays under the race when the bore swells along its axis by some nanometres.
 const RIM: f64 = 2e-3;
+/// What the nodes under the race may stand for, as a part of the bore that it covers: two rows of nodes at
+/// its edges and one between give 1.5 in a longer bore, and 0.5 where those at its edges are missed.
+const SHARES: RangeInclusive<f64> = 0.6..=1.6;
 /// Part of the race's radius by which the bore may differ from it, and be out of round or centre.
 const FAR_OFF: f64 = 0.05;
 
@@ -53,6 +57,12 @@ pub enum HousingSetupError {
         1e3 * *.nearest, 1e3 * *.farthest
     )]
     NotRound { bore: String, nearest: f64, farthest: f64 },
+    #[error(
+        "housing.width: nodes of the bore stand for {share:.2} of the seat of a race {:.4} mm wide, and it \
+         should be {} to {}. Hint: refine the mesh along the axis, or let rows of nodes lie at the race's edges",
+        1e3 * *.width, SHARES.start(), SHARES.end()
+    )]
+    CoarseSeat { width: f64, share: f64 },
     #[error("housing: the fit leaves the outer race {:.1} um larger than the bore, more than {:.1} um",
         1e6 * *.interference, 1e6 * *.limit)]
     FitTooLarge { interference: f64, limit: f64 },
@@ -77,7 +87,9 @@ impl HousingSetupError {
             HousingSetupError::NoBore { .. }
             | HousingSetupError::FarFromTheRace { .. }
             | HousingSetupError::NotRound { .. } => About::key("housing.bore"),
-            HousingSetupError::BesideTheRace { .. } => About::key("housing.width"),
+            HousingSetupError::BesideTheRace { .. } | HousingSetupError::CoarseSeat { .. } => {
+                About::key("housing.width")
+            }
             HousingSetupError::FitTooLarge { .. } => About::key("housing.outer_radius"),
             HousingSetupError::VaryingLoad { index } => {
                 About::Item { table: "solid.load", index: *index, key: "set" }
@@ -160,6 +172,11 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     if !round {
         return Err(HousingSetupError::NotRound { bore, nearest, farthest });
     }
+    let share = share_of_seat(&nodes, &seen, width, ends[1] - ends[0]);
+    let stands_for_it = SHARES.contains(&share);
+    if !stands_for_it {
+        return Err(HousingSetupError::CoarseSeat { width, share });
+    }
     let interference = match scene.housing.fit {
         FitSize::Interference(interference) => interference,
         FitSize::OuterRadius(race) => race - radius,
@@ -173,6 +190,16 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     Ok(HousingSetup { solid, model, nodes, bore_radius: radius, interference, width, nominal })
 }
 
+/// Area that the nodes under a race of `width` carry, over the part of the bore (of length `length`, m) that
+/// it covers.
+fn share_of_seat(nodes: &[ContactNode], seen: &[[f64; 3]], width: f64, length: f64) -> f64 {
+    let under = |place: &[f64; 3]| place[0].abs() <= 0.5 * width * (1.0 + RIM);
+    let all: f64 = nodes.iter().map(|node| node.area).sum();
+    let carried: f64 =
+        nodes.iter().zip(seen).filter(|(_, place)| under(place)).map(|(node, _)| node.area).sum();
+    carried / (all * (width / length).min(1.0))
+}
+
 impl HousingSetup {
     /// Radius of the outer race over time, m: an interference grows in.
     pub fn radius(&self, scene: &HousedScene) -> Profile {
@@ -183,11 +210,6 @@ impl HousingSetup {
             }
             _ => Profile::Constant(grown),
         }
-    }
-
-    /// The seat's width in which nodes are tested, m.
-    pub fn seat_width(&self) -> f64 {
-        self.width * (1.0 + RIM)
     }
 
     /// Nodes a condensed housing keeps: all under the race.
