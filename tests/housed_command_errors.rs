@@ -60,6 +60,11 @@ fn cases() -> Vec<Case> {
             &["housing.width", "no unit", "20 mm"],
         ),
         (
+            "a width that the mesh does not resolve",
+            changed("fit.radial = \"1 um\"", "fit.radial = \"1 um\"\nwidth = \"2 mm\""),
+            &["housing.width", "stand for", "0.6 to 1.6", "refine the mesh along the axis"],
+        ),
+        (
             "millimetres for metres",
             changed("bore_radius = \"35.527 mm\"", "bore_radius = \"35.527 m\"")
                 .replace("\"50 mm\"", "\"50 m\""),

@@ -19,8 +19,12 @@ use crate::solver::profile::Profile;
 use crate::solver::solid::model::{SolidError, SolidModel};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 use thiserror::Error;
 
+/// What the nodes under the race may stand for, as a part of the bore that it covers: two rows of nodes at
+/// its edges and one between give 1.5 in a longer bore, and 0.5 where those at its edges are missed.
+const SHARES: RangeInclusive<f64> = 0.6..=1.6;
 /// Part of the race's radius by which the bore may differ from it, and be out of centre.
 const FAR_OFF: f64 = 0.05;
 /// Part of an interference below which out-of-roundness changes pressures by no more than this part.
@@ -72,6 +76,12 @@ pub enum HousingSetupError {
         1e6 * *.off, 1e3 * *.radius, 1e6 * *.limit
     )]
     OutOfRound { bore: String, radius: f64, off: f64, limit: f64 },
+    #[error(
+        "housing.width: nodes of the bore stand for {share:.2} of the seat of a race {:.4} mm wide, and it \
+         should be {} to {}. Hint: refine the mesh along the axis, or let rows of nodes lie at the race's edges",
+        1e3 * *.width, SHARES.start(), SHARES.end()
+    )]
+    CoarseSeat { width: f64, share: f64 },
     #[error("housing: the fit leaves the outer race {:.1} um larger than the bore, more than {:.1} um",
         1e6 * *.interference, 1e6 * *.limit)]
     FitTooLarge { interference: f64, limit: f64 },
@@ -98,7 +108,9 @@ impl HousingSetupError {
             | HousingSetupError::NotRound { .. }
             | HousingSetupError::OutOfRound { .. } => About::key("housing.bore"),
             HousingSetupError::StraightBore { .. } => About::key("solid.mesh.file"),
-            HousingSetupError::BesideTheRace { .. } => About::key("housing.width"),
+            HousingSetupError::BesideTheRace { .. } | HousingSetupError::CoarseSeat { .. } => {
+                About::key("housing.width")
+            }
             HousingSetupError::FitTooLarge { .. } => About::key("housing.outer_radius"),
             HousingSetupError::VaryingLoad { index } => {
                 About::Item { table: "solid.load", index: *index, key: "set" }
@@ -206,6 +218,11 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
         return Err(HousingSetupError::OutOfRound { bore, radius, off, limit });
     }
     let off_centre = cylinder.outside(nominal.position) + radius;
+    let share = share_of_seat(&nodes, &seen, width, ends[1] - ends[0]);
+    let stands_for_it = SHARES.contains(&share);
+    if !stands_for_it {
+        return Err(HousingSetupError::CoarseSeat { width, share });
+    }
     let interference = match scene.housing.fit {
         FitSize::Interference(interference) => interference,
         FitSize::OuterRadius(race) => race - radius,
@@ -250,6 +267,16 @@ fn caution(off: f64, interference: f64, penalty: Penalty) -> Option<String> {
     ))
 }
 
+/// Area that the nodes under a race of `width` carry, over the part of the bore (of length `length`, m) that
+/// it covers.
+fn share_of_seat(nodes: &[ContactNode], seen: &[[f64; 3]], width: f64, length: f64) -> f64 {
+    let under = |place: &[f64; 3]| place[0].abs() <= 0.5 * width * (1.0 + RIM);
+    let all: f64 = nodes.iter().map(|node| node.area).sum();
+    let carried: f64 =
+        nodes.iter().zip(seen).filter(|(_, place)| under(place)).map(|(node, _)| node.area).sum();
+    carried / (all * (width / length).min(1.0))
+}
+
 impl HousingSetup {
     /// Radius of the outer race over time, m: an interference grows in.
     pub fn radius(&self, scene: &HousedScene) -> Profile {
@@ -260,11 +287,6 @@ impl HousingSetup {
             }
             _ => Profile::Constant(grown),
         }
-    }
-
-    /// The seat's width in which nodes are tested, m.
-    pub fn seat_width(&self) -> f64 {
-        self.width * (1.0 + RIM)
     }
 
     /// Nodes a condensed housing keeps: all under the race.

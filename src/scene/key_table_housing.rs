@@ -36,8 +36,8 @@ pub(super) const KEYS: &[Key] = &[
         "Penalty stiffness (2.19): by area (N/m^3), so that pressure does not depend on the mesh, or for each node (N/m), as printed.").hint("the source has 2.5e8 N/m a node for steel").example_of("\"2.5e14 N/m^3\""),
     Key::new("housing.step_fraction", Kind::Number(above(0.0, 1.0, "")), Default { value: "0.8", reason: "a part of the largest stable step of the housing in contact" },
         "`explicit`: steps of the housing as a part of their stability limit.").example_of("0.8"),
-    Key::new("housing.window_phase", Kind::Number(above(0.0, 1.9, "")), Default { value: "0.25", reason: "energy is kept to 1e-5" },
-        "`explicit`: window between two exchanges of impulses, as a phase of the outer race's swing on its seat; stable below 2.").example_of("0.25"),
+    Key::new("housing.window_phase", Kind::Number(above(0.0, 1.9, "")), Default { value: "0.125", reason: "energy is kept to 1e-4 of what a blow through clearance turns over" },
+        "`explicit`: window between two exchanges of impulses, as a phase of the outer race's swing on its seat; stable below 2. Errors of energy go with its square.").example_of("0.25"),
 ];
 
 /// Tables in the order of the reference.

@@ -173,7 +173,7 @@ fn settings(
             Penalty::default()
         }
     };
-    let (mut step_fraction, mut window_phase) = (0.8, 0.25);
+    let (mut step_fraction, mut window_phase) = (0.8, 0.125);
     for (key, value) in
         [("housing.step_fraction", &mut step_fraction), ("housing.window_phase", &mut window_phase)]
     {

@@ -201,7 +201,7 @@ pub fn parts(
     let housing = &scene.housing;
     let seat = Seat {
         radius: setup.radius(scene),
-        width: setup.seat_width(),
+        width: setup.width,
         penalty: housing.penalty,
         nodes: setup.nodes.clone(),
         reach: REACH * setup.bore_radius,

@@ -66,11 +66,12 @@ impl HousedBearing {
     pub fn from_checkpoint(
         problem: DynamicProblem,
         model: SolidModel,
-        seat: Seat,
+        mut seat: Seat,
         options: &ExchangeOptions,
         windows: &Windows,
         checkpoint: &HousedCheckpoint,
     ) -> Result<HousedBearing, ExchangeError> {
+        let rim = seat.keep_under(&problem.outer_start);
         let bearing = Simulation::from_checkpoint(problem, options.bearing, &checkpoint.bearing)?;
         let method = ExplicitMethod::CentralDifferences;
         let step = windows.window / windows.solid_steps as f64;
@@ -82,6 +83,7 @@ impl HousedBearing {
             bearing,
             solid,
             seat,
+            rim,
             window: windows.window,
             solid_steps: windows.solid_steps,
             exchanges: checkpoint.exchanges,

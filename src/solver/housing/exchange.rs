@@ -92,7 +92,10 @@ const LOOK: u64 = 16;
 pub struct HousedBearing {
     pub bearing: Simulation,
     pub solid: ExplicitSolid,
+    /// Its nodes are those under the race at the start.
     pub seat: Seat,
+    /// How far a node may slide over the rim and still be touched, m.
+    pub rim: f64,
     /// Of the window in which both are taken on, s, and the steps of the housing in it.
     pub window: f64,
     pub solid_steps: usize,
@@ -148,9 +151,21 @@ pub struct HousedSnapshot {
 }
 
 impl Seat {
-    /// The race at time `t`, with room for nodes on its rim.
-    fn race(&self, t: f64) -> Cylinder {
-        Cylinder { radius: self.radius.value(t), width: (1.0 + 2.0 * RIM) * self.width }
+    /// The race at time `t`, wider by `rim` (m) at each end.
+    fn race(&self, t: f64, rim: f64) -> Cylinder {
+        Cylinder { radius: self.radius.value(t), width: self.width + 2.0 * rim }
+    }
+
+    /// Leaves out the nodes beside a race that starts at `start` (X, Y, Z, m; tilts, rad), as a condensed
+    /// housing does. How far the others may slide over the rim and still be touched, m: half of what a node
+    /// stands for, since the part of the bore that it carries is still under the race by then, and no more
+    /// than a quarter of the seat.
+    pub(super) fn keep_under(&mut self, start: &[f64; 5]) -> f64 {
+        let frame = Frame::new(&pose_after(&race::fixed(start).state, 0.0));
+        let half = (0.5 + RIM) * self.width;
+        self.nodes.retain(|node| frame.seen(node.place)[0].abs() <= half);
+        let area: f64 = self.nodes.iter().map(|node| node.area).sum();
+        (0.5 * (area / self.nodes.len().max(1) as f64).sqrt()).min(0.25 * self.width)
     }
 }
 
@@ -159,9 +174,6 @@ fn seat_stiffness(seat: &Seat, centre: f64) -> [f64; 2] {
     let mut sums = [0.0; 2];
     for node in &seat.nodes {
         let along = node.place[0] - centre;
-        if along.abs() > (0.5 + RIM) * seat.width {
-            continue;
-        }
         let stiffness = seat.penalty.of_node(node.area);
         sums[0] += stiffness;
         sums[1] += stiffness * along * along;
@@ -178,7 +190,7 @@ impl HousedBearing {
     pub fn new(
         problem: DynamicProblem,
         model: SolidModel,
-        seat: Seat,
+        mut seat: Seat,
         displacement: Vec<Vec3>,
         options: &ExchangeOptions,
     ) -> Result<HousedBearing, ExchangeError> {
@@ -195,6 +207,7 @@ impl HousedBearing {
         if outer.foundation_stiffness.iter().chain(&outer.foundation_damping).any(|k| *k != 0.0) {
             return Err(ExchangeError::Foundation);
         }
+        let rim = seat.keep_under(&problem.outer_start);
         let [shift, tilt] = seat_stiffness(&seat, problem.outer_start[0]);
         let square = (shift / outer.inertia.mass).max(tilt / outer.inertia.transverse);
         if square.is_nan() || square <= 0.0 {
@@ -218,11 +231,12 @@ impl HousedBearing {
         solid.displacement = displacement;
         solid.time = 0.5 * step;
         let frame = Frame::new(&pose_after(&outer_state(&bearing), 0.0));
-        let cylinder = seat.race(0.0);
+        let cylinder = seat.race(0.0, rim);
         let mut housed = HousedBearing {
             bearing,
             solid,
             seat,
+            rim,
             window,
             solid_steps,
             exchanges: 0,
@@ -295,10 +309,10 @@ impl HousedBearing {
         let mut impulse = RaceLoads::default();
         for k in 0..self.solid_steps {
             let pose = pose_after(&race, (k as f64 + 0.5) * step);
-            let HousedBearing { solid, seat, near, contact: last, growth, .. } = self;
+            let HousedBearing { solid, seat, near, contact: last, growth, rim, .. } = self;
             let frame = Frame::new(&pose);
             solid.step(|t, displacement, forces| {
-                let cylinder = seat.race(t);
+                let cylinder = seat.race(t, *rim);
                 *last = press(&cylinder, &frame, seat.penalty, near, displacement, forces);
                 *growth = growth.to(cylinder.radius, last.radial_load);
             })?;
@@ -326,7 +340,7 @@ impl HousedBearing {
     fn ahead(&self) -> (Cylinder, Frame) {
         let race = outer_state(&self.bearing);
         let frame = Frame::new(&pose_after(&race, 0.5 * self.solid.step_size));
-        (self.seat.race(self.solid.time), frame)
+        (self.seat.race(self.solid.time, self.rim), frame)
     }
 
     /// Sorts the nodes of the bore into those that are tested and those out of reach.
@@ -347,9 +361,9 @@ impl HousedBearing {
         let (time, step) = (self.bearing.time, self.exchanges);
         let [along, across, up] = frame.centre;
         let start = self.bearing.system.problem.outer_start;
-        // Half the seat is gone, or the race hangs in the wall.
+        // Nodes no longer stand for what is under the race, or it hangs in the wall.
         for (way, distance, allowed) in [
-            ("along the axis", (along - start[0]).abs(), 0.5 * cylinder.width),
+            ("along the axis", (along - start[0]).abs(), self.rim),
             ("across it", libm::hypot(across - start[1], up - start[2]), 0.1 * cylinder.radius),
         ] {
             if distance.is_nan() || distance > allowed {
