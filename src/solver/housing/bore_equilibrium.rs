@@ -40,12 +40,11 @@ pub enum Axial {
     Free,
 }
 
-/// The race's radius and what it meets.
+/// The race's radius, and what holds it along its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     /// Outer radius of the race, m: the bore's radius plus the interference.
     pub radius: f64,
-    pub penalty: Penalty,
     pub axial: Axial,
 }
 
