@@ -22,15 +22,15 @@ use housing_common::*;
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 fn fit(interference: f64) -> Fit {
-    Fit { radius: BORE + interference, penalty: Penalty::default(), axial: Axial::Held }
+    Fit { radius: BORE + interference, axial: Axial::Held }
 }
 
-fn search<'a>(bore: &'a CondensedBore, fit: &Fit) -> AssemblySearch<'a> {
-    AssemblySearch::new(BoreSearch::new(bore, fit.penalty), AssemblyOptions::default())
+fn search(bore: &CondensedBore) -> AssemblySearch<'_> {
+    AssemblySearch::new(BoreSearch::new(bore, Penalty::default()), AssemblyOptions::default())
 }
 
 fn solve(bore: &CondensedBore, fit: &Fit, problem: &StaticProblem) -> AssemblyState {
-    search(bore, fit).solve(problem, fit, [0.0; 3]).unwrap()
+    search(bore).solve(problem, fit, [0.0; 3]).unwrap()
 }
 
 fn loads(of: [f64; 5]) -> [Condition; 5] {
@@ -44,7 +44,7 @@ fn both_races_balance() {
         let fit = fit(interference);
         let problem = bearing(loads([20.0, 100.0, -250.0, 0.2, -0.3]));
         let weight = [0.0, 0.0, -2.0];
-        let state = search(&bore, &fit).solve(&problem, &fit, weight).unwrap();
+        let state = search(&bore).solve(&problem, &fit, weight).unwrap();
         assert!(state.residual <= 1e-9);
         let should = [20.0, 100.0, -252.0];
         for (force, should) in state.on_outer.force.into_iter().zip(should) {
@@ -66,14 +66,47 @@ fn both_races_balance() {
     }
 }
 
+/// Every force on a ball goes through its centre and they balance: what the
+/// balls and their cage put on both races sums to no moment, about every axis.
+#[test]
+fn moments_on_both_races_sum_to_nothing() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    let fit = fit(1e-6);
+    let problem = bearing(loads([200.0, 100.0, -250.0, 1.0, -0.6]));
+    let state = solve(&bore, &fit, &problem);
+    let outer = nalgebra::Vector3::new(0.0, state.bore.pose[0], state.bore.pose[1]);
+    let offset = state.bearing.coordinates.fixed_rows::<3>(0) - outer;
+    let (force, moment) = (state.bearing.force_on_inner, state.bearing.moment_on_inner);
+    let on_outer = nalgebra::Vector3::from(state.on_outer.moment);
+    let sum = moment + offset.cross(&force) + on_outer;
+    // Balls stand in balance to 1e-11 of their load.
+    assert!(sum.amax() <= 1e-8 * 250.0 * BORE, "{sum:?} of {on_outer:?}");
+    let by_cage: f64 = state.bearing.balls.iter().map(|ball| ball.cage_force.abs()).sum();
+    assert!(by_cage * BORE >= 1e-5 * 250.0 * BORE, "the cage has something to do: {by_cage}");
+}
+
+/// In a linear housing under preload a thousandth of the load moves the race a thousandth as far.
+#[test]
+fn a_small_load_beside_a_large_one_is_not_lost() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    let fit = fit(5e-6);
+    let sideways = |y: f64| solve(&bore, &fit, &bearing(loads([0.0, y, -250.0, 0.0, 0.0]))).bore;
+    let (none, small, large) = (sideways(0.0), sideways(0.1), sideways(100.0));
+    assert!((small.load[0] / 0.1 - 1.0).abs() <= 1e-5, "{:?}", small.load);
+    let (way, far) = (small.pose[0] - none.pose[0], large.pose[0] - none.pose[0]);
+    assert!((1e3 * way / far - 1.0).abs() <= 1e-3, "{way:e} {far:e}");
+}
+
 /// A bore that does not give way is a fixed outer race.
 #[test]
 fn rigid_housing_is_a_fixed_race() {
     let bore = condensed(&RING, &COARSE, Order::Linear, 1e7 * YOUNG);
-    let fit = Fit { penalty: Penalty::PerArea(1e22), ..fit(0.0) };
+    let fit = fit(0.0);
+    let seat = BoreSearch::new(&bore, Penalty::PerArea(1e22));
     let problem = bearing(loads([0.0, 100.0, -250.0, 0.0, 0.0]));
     let fixed = statics::solve(&problem).unwrap();
-    let held = solve(&bore, &fit, &problem);
+    let mut search = AssemblySearch::new(seat, AssemblyOptions::default());
+    let held = search.solve(&problem, &fit, [0.0; 3]).unwrap();
     let size = fixed.coordinates[2].abs();
     for i in 0..3 {
         let gap = held.bearing.coordinates[i] - fixed.coordinates[i];
@@ -115,7 +148,7 @@ fn an_axial_load_needs_something_that_holds_the_race() {
     let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
     let problem = bearing(loads([50.0, 0.0, -250.0, 0.0, 0.0]));
     let free = Fit { axial: Axial::Free, ..fit(0.0) };
-    let error = search(&bore, &free).solve(&problem, &free, [0.0; 3]).unwrap_err();
+    let error = search(&bore).solve(&problem, &free, [0.0; 3]).unwrap_err();
     assert!(matches!(error, AssemblyError::Bore(BoreError::AxialForce { .. })), "{error}");
     assert!((solve(&bore, &fit(0.0), &problem).on_outer.force[0] - 50.0).abs() <= 1e-7);
 }
@@ -143,7 +176,7 @@ fn a_turning_load_in_a_ring() {
     let bore = condensed(&RING, &COARSE, Order::Quadratic, YOUNG);
     let problem = bearing(loads([0.0; 5]));
     let fit = fit(0.0);
-    let moments = history(&mut search(&bore, &fit), &problem, &fit, &one_turn(8)).unwrap();
+    let moments = history(&mut search(&bore), &problem, &fit, &one_turn(8)).unwrap();
     let radii: Vec<f64> =
         moments.iter().map(|m| m.state.bore.pose[0].hypot(m.state.bore.pose[1])).collect();
     for (i, (moment, radius)) in moments.iter().zip(&radii).enumerate() {
@@ -175,7 +208,7 @@ fn rate_and_history_do_not_matter() {
         course.interference = ramp(0.0, 1e-6, 0.0, 0.2);
         course.conditions[2] = ramp(0.0, -250.0, 0.2, 0.8);
         course.times = (0..=5).map(|i| 0.2 * f64::from(i) * duration).collect();
-        let moments = history(&mut search(&bore, &fit), &problem, &fit, &course).unwrap();
+        let moments = history(&mut search(&bore), &problem, &fit, &course).unwrap();
         moments.iter().map(|moment| moment.state.bore.pose[1]).collect::<Vec<f64>>()
     });
     let last = paths[0][5];
@@ -199,7 +232,7 @@ fn balls_roll_with_the_cage() {
     let mut course = one_turn(2);
     course.shaft_speed = Profile::Constant(10.0);
     course.centrifugal = true;
-    let moments = history(&mut search(&bore, &fit), &problem, &fit, &course).unwrap();
+    let moments = history(&mut search(&bore), &problem, &fit, &course).unwrap();
     let gamma = problem.geometry.ball_radius / problem.geometry.pitch_radius;
     for moment in &moments {
         let should = 0.5 * (1.0 - gamma) * 10.0 * moment.time;
@@ -221,7 +254,7 @@ fn inertia_of_races_that_outweigh_the_housing() {
     let bore = condensed(&RING, &COARSE, Order::Linear, 1e-4 * YOUNG);
     let problem = bearing(loads([0.0, 0.0, -2.5, 0.0, 0.0]));
     let fit = fit(5e-6);
-    let mut search = search(&bore, &fit);
+    let mut search = search(&bore);
     let state = search.solve(&problem, &fit, [0.0; 3]).unwrap();
     let steel = hollow_cylinder(32e-3, 35.5e-3, 20e-3, 7850.0);
     let of = |factor: f64| {
@@ -261,7 +294,7 @@ fn circle(turn: f64, damping: f64, corners: Vec<f64>) -> CourseInertia {
     let masses = Masses { inner: steel, outer: steel };
     let free = [false, true, true, true, true];
     let looks = CourseLooks { start: 0.0, end: turn, count: 360, corners, masses, free, damping };
-    course_inertia(&looks, &mut search(&bore, &fit), |search, time| {
+    course_inertia(&looks, &mut search(&bore), |search, time| {
         let angle = TAU * time / turn;
         let problem = bearing(loads([0.0, 2.5 * angle.cos(), 2.5 * angle.sin(), 0.0, 0.0]));
         search.solve(&problem, &fit, [0.0; 3])

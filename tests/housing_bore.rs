@@ -22,7 +22,7 @@ use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;
 
 fn fit(interference: f64) -> Fit {
-    Fit { radius: BORE + interference, penalty: Penalty::default(), axial: Axial::Held }
+    Fit { radius: BORE + interference, axial: Axial::Held }
 }
 
 fn load(y: f64, z: f64, about_y: f64, about_z: f64) -> RaceLoad {
@@ -30,7 +30,7 @@ fn load(y: f64, z: f64, about_y: f64, about_z: f64) -> RaceLoad {
 }
 
 fn solve(bore: &CondensedBore, fit: &Fit, load: &RaceLoad) -> BoreState {
-    BoreSearch::new(bore, fit.penalty).under_load(fit, load).unwrap()
+    BoreSearch::new(bore, Penalty::default()).under_load(fit, load).unwrap()
 }
 
 fn far(a: &[f64], b: &[f64]) -> f64 {
@@ -113,7 +113,7 @@ fn nodes_that_carry_nothing_are_clear_of_the_race() {
     let block = Housing::PillowBlock(PillowBlock::proportioned(BORE, WIDTH));
     let bore = condensed(&block, &COARSE, Order::Quadratic, YOUNG);
     let fit = fit(0.0);
-    let mut search = BoreSearch::new(&bore, fit.penalty);
+    let mut search = BoreSearch::new(&bore, Penalty::default());
     for [y, z] in [[250.0, 0.0], [0.0, 250.0], [-200.0, 100.0], [0.0, -250.0]] {
         let state = search.under_load(&fit, &load(y, z, 0.0, 0.0)).unwrap();
         let clear = state.loads.iter().zip(&state.penetration).filter(|(load, _)| **load == 0.0);
@@ -144,7 +144,7 @@ fn stiffness_is_the_slope_of_the_load() {
     let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
     for interference in [-1e-6, 0.0, 5e-6] {
         let fit = fit(interference);
-        let mut search = BoreSearch::new(&bore, fit.penalty);
+        let mut search = BoreSearch::new(&bore, Penalty::default());
         let here = search.under_load(&fit, &load(30.0, -250.0, 0.2, 0.1)).unwrap();
         for i in 0..4 {
             // So small that no node comes or goes.
@@ -168,7 +168,7 @@ fn fits_rank_and_all_interferences_are_alike() {
     let force = load(0.0, -250.0, 0.0, 0.0);
     let sink = |interference: f64| {
         let fit = fit(interference);
-        let mut search = BoreSearch::new(&bore, fit.penalty);
+        let mut search = BoreSearch::new(&bore, Penalty::default());
         let idle = search.under_load(&fit, &RaceLoad::default()).unwrap();
         search.under_load(&fit, &force).unwrap().pose[1] - idle.pose[1]
     };
@@ -186,7 +186,7 @@ fn fits_rank_and_all_interferences_are_alike() {
 fn a_loose_race_stays_without_load_and_finds_contact_with_one() {
     let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
     let fit = fit(-1e-5);
-    let mut search = BoreSearch::new(&bore, fit.penalty);
+    let mut search = BoreSearch::new(&bore, Penalty::default());
     let idle = search.under_load(&fit, &RaceLoad::default()).unwrap();
     assert_eq!((idle.pose, idle.touching), ([0.0; 4], 0));
     for force in [1e-3, 1.0, 1e3] {
@@ -205,7 +205,7 @@ fn a_loose_race_stays_without_load_and_finds_contact_with_one() {
 fn what_a_smooth_bore_cannot_hold_is_an_error() {
     let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
     let free = Fit { axial: Axial::Free, ..fit(0.0) };
-    let mut search = BoreSearch::new(&bore, free.penalty);
+    let mut search = BoreSearch::new(&bore, Penalty::default());
     let along = RaceLoad { force: [5.0, 0.0, -250.0], moment: [0.0; 3] };
     assert_eq!(search.under_load(&free, &along).unwrap_err(), BoreError::AxialForce { force: 5.0 });
     assert!(search.under_load(&fit(0.0), &along).is_ok());
@@ -219,7 +219,7 @@ fn what_a_smooth_bore_cannot_hold_is_an_error() {
     let narrow = Reach { width: 2e-3, ..reach() };
     let row = condense(&model_of(&mesh, YOUNG), &bore_of(&mesh), &narrow).unwrap();
     assert_eq!((row.sizes.kept, row.sizes.beside), (24, 48));
-    let error = BoreSearch::new(&row, free.penalty)
+    let error = BoreSearch::new(&row, Penalty::default())
         .under_load(&fit(0.0), &load(0.0, -250.0, 1.0, 0.0))
         .unwrap_err();
     assert!(matches!(error, BoreError::NotHeld { coordinate: "tilt_y", .. }), "{error}");
@@ -261,7 +261,7 @@ fn own_loads_of_the_housing() {
     assert!(far(u.as_flattened(), should.as_flattened()) <= 1e-4 * size, "{size}");
     assert!(largest(bore.response(&none).as_flattened()) == 0.0);
     let loose = fit(-1e-6);
-    let state = BoreSearch::new(&bore, loose.penalty).at_pose(&loose, [0.0; 4]).unwrap();
+    let state = BoreSearch::new(&bore, Penalty::default()).at_pose(&loose, [0.0; 4]).unwrap();
     for (node, g) in bore.nodes.iter().zip(&state.penetration) {
         let [_, y, z] = mesh.nodes[node.node as usize];
         let [_, v, w] = u[node.node as usize];
@@ -269,6 +269,39 @@ fn own_loads_of_the_housing() {
         assert!((g + 1e-6 + outward).abs() <= 1e-9 * size, "{g} {outward}");
     }
     assert_eq!(state.touching, 0);
+    // What a node moves by is that of the whole field, contact or not.
+    let tight = fit(1e-6);
+    let pressed = solve(&bore, &tight, &load(50.0, -250.0, 0.0, 0.0));
+    assert!(pressed.touching > 0);
+    for state in [&state, &pressed] {
+        let u = bore.displacement(&state.loads);
+        for (node, found) in bore.nodes.iter().zip(&state.outward) {
+            let [_, y, z] = mesh.nodes[node.node as usize];
+            let [_, v, w] = u[node.node as usize];
+            let outward = (v * y + w * z) / y.hypot(z);
+            assert!((found - outward).abs() <= 1e-9 * size, "{found} {outward}");
+        }
+    }
+}
+
+/// What fixed normals leave out of the distance of a node from the axis of a race that has moved by δ,
+/// across the node's normal by δ sin α: δ² sin² α / 2r.
+#[test]
+fn the_error_of_fixed_normals_is_that_of_a_chord() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    let still = vec![[0.0; 3]; bore.mass.len()];
+    for moved in [1e-5, 1e-4] {
+        let [error, opposite] =
+            [moved, -moved].map(|y| geometry_error(&bore, &still, &[y, 0.0, 0.0, 0.0]));
+        // A node at right angles to the motion is among the 24.
+        let chord = moved * moved / (2.0 * BORE);
+        assert!((error / chord - 1.0).abs() <= 5e-3, "{error:e} {chord:e}");
+        assert!((opposite / chord - 1.0).abs() <= 5e-3, "{opposite:e} {chord:e}");
+        // The bore moving the same way as a whole leaves none.
+        let with = vec![[0.0, moved, 0.0]; bore.mass.len()];
+        let error = geometry_error(&bore, &with, &[moved, 0.0, 0.0, 0.0]);
+        assert!(error <= 1e-16 + 1e-9 * moved, "{error:e}");
+    }
 }
 
 /// The mesh turned with the load gives the same loads turned; the load turned alone, what the mesh's
@@ -339,7 +372,7 @@ fn nodes_out_of_reach_are_counted_and_not_missed() {
     assert!(summed > 250.0 && largest_gap <= 1e-7 * summed, "{summed} {largest_gap}");
     // A load that takes it farther than that is refused, not answered.
     let lifted =
-        BoreSearch::new(&part, fit.penalty).at_pose(&fit, [0.0, 2.0 * clearance, 0.0, 0.0]);
+        BoreSearch::new(&part, Penalty::default()).at_pose(&fit, [0.0, 2.0 * clearance, 0.0, 0.0]);
     assert!(matches!(lifted, Err(BoreError::BeyondReach { .. })), "{lifted:?}");
 }
 

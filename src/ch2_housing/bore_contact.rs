@@ -180,39 +180,6 @@ impl Touch {
         let n = self.normal;
         [0, 1, 2].map(|i: usize| [0, 1, 2].map(|j: usize| stiffness * n[i] * n[j]))
     }
-
-    /// Derivatives that go with a motion of the cylinder, its centre by c and its axes by the small
-    /// rotation θ (inertial frame).
-    pub fn coupling(&self, stiffness: f64) -> Coupling {
-        let k = self.stiffness(stiffness);
-        let force = cross_matrix(self.force(stiffness));
-        let arm = cross_matrix(self.arm);
-        // The node sees its own motion less the cylinder's, and its force turns with the cylinder.
-        let by_turn = minus(add_matrices(force, product(k, arm)));
-        let moment_by_node = add_matrices(force, product(arm, k));
-        let moment_by_turn = product(arm, minus(by_turn));
-        Coupling { by_shift: k, by_turn, moment_by_node, moment_by_turn }
-    }
-}
-
-/// How one node's force f, and force −f and moment −w × f on the cylinder about its centre, change
-/// when node or cylinder move. \[f\] is the matrix of f ×, w the arm, k the stiffness.
-///
-/// | | node's place | centre | rotation |
-/// |---|---|---|---|
-/// | force on the node | −k | k | `by_turn` = −\[f\] − k\[w\] |
-/// | force on the cylinder | k | −k | −`by_turn` |
-/// | moment on the cylinder | `moment_by_node` = \[f\] + \[w\]k | −`moment_by_node` | `moment_by_turn` = −\[w\]`by_turn` |
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coupling {
-    /// N/m.
-    pub by_shift: Mat3,
-    /// N/rad.
-    pub by_turn: Mat3,
-    /// N·m/m.
-    pub moment_by_node: Mat3,
-    /// N·m/rad.
-    pub moment_by_turn: Mat3,
 }
 
 /// What a contact does to the cylinder, and its measures.
@@ -280,21 +247,4 @@ pub fn split_by_reach(
         // Not `>=`: a place that is not a number stays among those tested.
         !(gap > reach || beside > reach)
     })
-}
-
-/// Matrix of v ×.
-fn cross_matrix([x, y, z]: Vec3) -> Mat3 {
-    [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
-}
-
-fn product(a: Mat3, b: Mat3) -> Mat3 {
-    a.map(|row| [0, 1, 2].map(|j: usize| row[0] * b[0][j] + row[1] * b[1][j] + row[2] * b[2][j]))
-}
-
-fn add_matrices(a: Mat3, b: Mat3) -> Mat3 {
-    [add(a[0], b[0]), add(a[1], b[1]), add(a[2], b[2])]
-}
-
-fn minus(a: Mat3) -> Mat3 {
-    a.map(|row| scale(row, -1.0))
 }

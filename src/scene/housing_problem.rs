@@ -297,11 +297,7 @@ impl HousingSetup {
 
     /// The race as fully grown into its fit.
     pub fn fit(&self, scene: &HousedScene) -> Fit {
-        Fit {
-            radius: self.bore_radius + self.interference,
-            penalty: scene.housing.penalty,
-            axial: scene.housing.axial,
-        }
+        Fit { radius: self.bore_radius + self.interference, axial: scene.housing.axial }
     }
 }
 

@@ -102,7 +102,7 @@ pub fn condensed(mesh: &TetMesh, solid: &SolidModel) -> Result<CondensedBore, Ca
 /// Interference (m; negative for a clearance) between race and bore.
 pub fn fit(interference: f64) -> Fit {
     let radius = BORE_RADIUS + interference;
-    Fit { radius, penalty: Penalty::default(), axial: Axial::Held }
+    Fit { radius, axial: Axial::Held }
 }
 
 pub fn search(bore: &CondensedBore) -> AssemblySearch<'_> {

@@ -16,6 +16,7 @@ use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
 use bearing_dynamics::scene::housing_problem::{check_constant, excitations};
 use bearing_dynamics::solver::clock::to_digits;
+use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::course_inertia::CourseInertia;
 use bearing_dynamics::solver::housing::inertia::InertiaEstimate;
@@ -67,6 +68,7 @@ pub fn lines(scene: &HousedScene, prepared: &Prepared) -> Result<Vec<String>, Bo
     let mut lines: Vec<String> = of_bearing
         .into_iter()
         .filter(|line| !ALONE.iter().any(|name| line[6..].starts_with(name)))
+        .map(|line| if balls_go_round(scene) { with_centrifugal(line) } else { line })
         .collect();
     lines.push(line("does ", "housing mesh", &mesh_text(&prepared.built)));
     let held = setup.solid.problem.prescribed.len();
@@ -95,6 +97,23 @@ pub fn lines(scene: &HousedScene, prepared: &Prepared) -> Result<Vec<String>, Bo
         ),
     });
     Ok(lines)
+}
+
+/// Whether the balls go round in a run of equilibria, which gives them their centrifugal force.
+fn balls_go_round(scene: &HousedScene) -> bool {
+    let dynamics = &scene.bearing.dynamics;
+    let turns = matches!(&dynamics.inner.rotation, Rotation::Speed(speed) if !speed.is_zero());
+    scene.housing.method == HousingMethod::QuasiStatic && dynamics.run.is_some() && turns
+}
+
+/// The line that says statics leaves centrifugal force out, if this is it, for both commands.
+fn with_centrifugal(of_statics: String) -> String {
+    const NAME: &str = "centrifugal force on balls";
+    if !of_statics.starts_with(&format!("skips {NAME}")) {
+        return of_statics;
+    }
+    let said = "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
+    line("does ", NAME, said)
 }
 
 fn condensed_line(scene: &HousedScene, bore: &CondensedBore) -> String {
@@ -231,6 +250,13 @@ fn timed(
     let grid = request.grid(run.output_interval, windows);
     let all = grid.rows * windows;
     let (tested, out_of_reach) = housed.counts();
+    let sorted = match out_of_reach {
+        0 => String::new(),
+        _ => format!(
+            ", sorted anew each time that race and bore have moved by {} um",
+            to_digits(0.5e6 * housed.seat.reach, 3)
+        ),
+    };
     let start = Instant::now();
     let mut done = 0u64;
     while start.elapsed() < TIMED && done < all {
@@ -242,8 +268,8 @@ fn timed(
     let seconds = start.elapsed().as_secs_f64() / done as f64 * all as f64;
     Ok(format!(
         "{all} windows of {:.3e} s to t = {} s, each {} of the housing (limit {:.3e} s) and steps of \
-         the bearing up to {:.3e} s; {tested} bore nodes tested, {out_of_reach} out of reach; about {} \
-         of wall time here",
+         the bearing up to {:.3e} s; at the start {tested} bore nodes tested, {out_of_reach} out of \
+         reach{sorted}; about {} of wall time here",
         housed.window,
         run.end,
         steps(housed.solid_steps),

@@ -50,36 +50,41 @@ pub fn inertia_section(
     excitations: &[Excitation],
     course: Option<&CourseInertia>,
 ) -> Part {
+    // A race that nothing holds for a while swings at no frequency, and its error has no bound: such
+    // parts are left out.
+    let finite = |parts: &[(&str, f64, &'static str)]| -> Result<Map<String, Value>, ResultsError> {
+        let mut map = Map::new();
+        for &(name, value, unit) in parts.iter().filter(|part| part.1.is_finite()) {
+            map.insert(name.into(), quantity(name, value, unit)?);
+        }
+        Ok(map)
+    };
     let mut driven = Map::new();
     for excitation in excitations {
-        driven.insert(
-            excitation.what.clone(),
-            json!({
-                "frequency": quantity("frequency", excitation.frequency, "Hz")?,
-                "error": quantity("error", estimate.error_at(excitation.frequency), "1")?,
-            }),
-        );
+        let error = estimate.error_at(excitation.frequency);
+        let parts = [("frequency", excitation.frequency, "Hz"), ("error", error, "1")];
+        driven.insert(excitation.what.clone(), finite(&parts)?.into());
     }
-    let mut section = json!({
-        "lowest_frequency": quantity("frequency", estimate.lowest, "Hz")?,
-        "housing_over_race": quantity("kinetic energy", estimate.housing_share, "1")?,
-        "error_of_what_drives": driven,
-    });
+    let mut section = finite(&[
+        ("lowest_frequency", estimate.lowest, "Hz"),
+        ("housing_over_race", estimate.housing_share, "1"),
+    ])?;
+    section.insert("error_of_what_drives".into(), driven.into());
     if let Some(course) = course {
-        let length = |value: f64| quantity("a part of inertia", value, "m");
-        section["along_the_course"] = json!({
-            "swing": length(course.swing)?,
-            "steady": length(course.steady)?,
-            "start_at_rest": length(course.start)?,
-            "kinks": course.kinks,
-            "largest_kink": length(course.largest_kink)?,
-            "ringing": length(course.ringing)?,
-            "expected": length(course.expected())?,
-            "at_most": length(course.bound)?,
-            "ringing_frequency": quantity("frequency", course.frequency, "Hz")?,
-        });
+        let mut along = finite(&[
+            ("swing", course.swing, "m"),
+            ("steady", course.steady, "m"),
+            ("start_at_rest", course.start, "m"),
+            ("largest_kink", course.largest_kink, "m"),
+            ("ringing", course.ringing, "m"),
+            ("expected", course.expected(), "m"),
+            ("at_most", course.bound, "m"),
+            ("ringing_frequency", course.frequency, "Hz"),
+        ])?;
+        along.insert("kinks".into(), course.kinks.into());
+        section.insert("along_the_course".into(), along.into());
     }
-    Ok(section)
+    Ok(section.into())
 }
 
 /// The largest of these errors, and what causes it.

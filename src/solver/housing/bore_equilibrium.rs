@@ -40,12 +40,11 @@ pub enum Axial {
     Free,
 }
 
-/// The race's radius and what it meets.
+/// The race's radius, and what holds it along its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     /// Outer radius of the race, m: the bore's radius plus the interference.
     pub radius: f64,
-    pub penalty: Penalty,
     pub axial: Axial,
 }
 
@@ -236,19 +235,31 @@ impl<'a> BoreSearch<'a> {
         (self.changes, self.factorisations) = (0, 0);
         let overlap = self.overlap(fit);
         let metres = self.metres(fit);
-        let mut hint = HINT * self.scale;
+        let whole_scale = self.scale;
+        let mut hint = HINT * whole_scale;
         let mut last = f64::INFINITY;
         for _ in 0..40 {
             let before = self.pose;
             let hold = Matrix4::from_diagonal(&metres.component_mul(&metres)) * hint;
             let loads = self.settle(&overlap, |contact, by_overlap| {
                 let stiffness = contact.map_or(Matrix4::zeros(), |contact| contact.stiffness);
-                let right = pull + tether.stiffness * tether.place + hold * before - by_overlap;
-                let whole = stiffness + tether.stiffness + hold;
                 // Scaled, so that tilts and metres weigh alike.
                 let per = metres.map(|m| 1.0 / m);
-                let scaled = Matrix4::from_fn(|i, j| whole[(i, j)] * per[i] * per[j]);
-                let step = scaled.cholesky()?.solve(&right.component_mul(&per));
+                // A bearing that is about to leave a saddle pushes the race on: the artificial stiffness
+                // has to be larger than that.
+                let mut hold = hold;
+                let step = loop {
+                    let right = pull + tether.stiffness * tether.place + hold * before - by_overlap;
+                    let whole = stiffness + tether.stiffness + hold;
+                    let scaled = Matrix4::from_fn(|i, j| whole[(i, j)] * per[i] * per[j]);
+                    if let Some(factor) = scaled.cholesky() {
+                        break factor.solve(&right.component_mul(&per));
+                    }
+                    if hold[(0, 0)].is_nan() || hold[(0, 0)] > 10.0 * whole_scale {
+                        return None;
+                    }
+                    hold *= 10.0;
+                };
                 Some(step.component_mul(&per))
             })?;
             let state = self.finish(&overlap, loads)?;
