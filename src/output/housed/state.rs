@@ -67,7 +67,8 @@ pub struct HousingEntry {
 pub enum HousedStateError {
     #[error(
         "{} belongs to another scene or mesh: only end and plots may change from one part of a run \
-         to the next; choose another --out, or start anew (--fresh)",
+         to the next, and a fit_ramp that is not written is a tenth of the end; write it, choose another \
+         --out, or start anew (--fresh)",
         path.display()
     )]
     Scene { path: PathBuf },
