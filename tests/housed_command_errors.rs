@@ -140,7 +140,7 @@ fn cases() -> Vec<Case> {
             "a nominal start",
             changed("fit.radial = \"1 um\"", "method = \"explicit\"")
                 .replace("end = \"1 ms\"", "end = \"1 ms\"\nstart = \"nominal\""),
-            &["numerics.start", "starts in equilibrium"],
+            &["numerics.start", "start in equilibrium"],
         ),
         (
             "a probe of a housing",

@@ -302,7 +302,7 @@ fn rest(
     let nominal =
         bearing.dynamics.run.as_ref().is_some_and(|run| run.options.start == Start::Nominal);
     if nominal && housing.method == HousingMethod::Explicit {
-        let reason = "in a housing the bearing starts in equilibrium";
+        let reason = "in a housing inner race and balls start in equilibrium with the outer race in its first place";
         return not_applicable(document, "numerics.start", reason, "leave it out");
     }
     let start = bearing.outer_race[0];

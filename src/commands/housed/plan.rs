@@ -84,6 +84,13 @@ pub fn lines(scene: &HousedScene, prepared: &Prepared) -> Result<Vec<String>, Bo
             }
         },
     ));
+    if scene.housing.method == HousingMethod::Explicit {
+        lines.push(line(
+            "notes",
+            "start of the housing",
+            "undeformed, the outer race in its first place: what the bearing carries from the start swings in",
+        ));
+    }
     lines.push(match scene.housing.method {
         HousingMethod::QuasiStatic => line(
             "does ",
