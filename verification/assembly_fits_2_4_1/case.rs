@@ -20,6 +20,9 @@ use crate::motion::RPM;
 use crate::solids::{Vec3, largest};
 use crate::surface_picture::{SurfacePicture, surface_picture};
 
+mod oracle;
+mod press_fit;
+
 pub const CASE: Case = Case {
     id: "assembly_fits_2_4_1",
     title: "Clearance, transition and interference between race and housing",
@@ -236,6 +239,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             .absolute(1e-6, "the balls that roll meanwhile carry their preload only"),
         );
     }
+    press_fit::press_fit(context)?;
     table(context, &curves);
     figures(context, &curves, pictures)
 }

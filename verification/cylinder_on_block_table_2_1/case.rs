@@ -40,6 +40,9 @@ const HALF_WIDTH: f64 = 0.377e-3;
 /// Peak contact pressures of a separate solver for the slab with free depth faces, small strains, MPa.
 const SEPARATE_SOLVER: [f64; 6] = [309.9, 462.0, 693.0, 882.9, 1051.9, 1208.1];
 
+/// Name of the assumption of plane strain, as it stands beside the status of single rows.
+const REJECTED: &str = "plane_strain_rejected_as_a_whole";
+
 /// Where von Mises stress and pressure are shown to lie, by the second solver in the plane, MPa.
 struct InPlane {
     strain: Vec<oracle::Pressed>,
@@ -87,6 +90,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     offset(context, &slab)?;
     held_against_plane(context, &slab, &plane, &in_plane);
     readings(context, &slab, &plane);
+    not_von_mises(context, &slab, &plane);
     tables(context, &slab, &plane);
     figure(context, &slab, &plane)
 }
@@ -99,10 +103,11 @@ fn assumptions(context: &mut CaseContext) {
         "peak contact pressure, free depth faces",
     );
     context.assumption(
-        "plane",
-        "The other reading of how the block is held: both depth faces kept in their planes. Single rows \
-         up to 2 µm agree with it; the rows beyond do not.",
-        "plane strain",
+        REJECTED,
+        "The other reading of how the block is held, both depth faces kept in their planes, is rejected as a whole: eight of its twelve \
+         pressures are too high by 4 to 8 %, the more the wider the contact, and von Mises stress is too low throughout. Four single \
+         pressures up to 2 µm come within 4 % nevertheless; a row that holds under this name is no evidence for plane strain.",
+        "plane strain, rejected",
     );
     context.assumption(
         "half_width",
@@ -227,7 +232,7 @@ fn offset(context: &mut CaseContext, fine: &Answers) -> Result<(), CaseError> {
         solve(None, Setting { hardness: 0.25 * COARSE.hardness, ..COARSE }, &ends, Some(&coarse))?;
     let thick = solve(None, Setting { depth_cells: 2, ..COARSE }, &ends, None)?;
     let percent = |x: f64| format!("{:+.3}", 100.0 * x);
-    let mut rows = Vec::new();
+    let (mut rows, mut ends_of) = (Vec::new(), Vec::new());
     for (i, (name, indentation)) in INDENTATIONS.into_iter().enumerate() {
         let should = SEPARATE_SOLVER[i];
         // Errors of second order, cells of 1/8 and 1/12.
@@ -250,7 +255,8 @@ fn offset(context: &mut CaseContext, fine: &Answers) -> Result<(), CaseError> {
             .independent(should, "a separate solver, same block, converged mesh, small strains")
             .relative(
                 0.01,
-                "finite strains lower the pressure by up to 0.9 %; two solvers and meshes",
+                "the cells continued to zero size; as computed, b/12, it is up to 1.03 % low (table offset). Finite strains, which the \
+                 separate solver leaves out, lower it by up to 0.9 % of that",
             )
             .golden(GoldenTolerance::MIXED),
         );
@@ -269,6 +275,7 @@ fn offset(context: &mut CaseContext, fine: &Answers) -> Result<(), CaseError> {
             )
             .golden(GoldenTolerance::MIXED),
         );
+        ends_of.push([fine.pressure[i] / should - 1.0, converged / should - 1.0]);
         let end = ends.iter().position(|end| *end == i);
         let at_end = |other: &Answers, part: f64| {
             end.map_or(String::new(), |k| {
@@ -288,6 +295,20 @@ fn offset(context: &mut CaseContext, fine: &Answers) -> Result<(), CaseError> {
             percent(converged / (1.0 + strains) / should - 1.0),
         ]);
     }
+    let worst = |k: usize| largest(ends_of.iter().map(|both| both[k].abs()));
+    let last = ends_of[ends_of.len() - 1];
+    context.finding(
+        "within_one_percent",
+        format!(
+            "Against the separate solver the peak pressure is within {:.2} % in all rows as computed on cells of b/12, within {:.2} % continued to cells \
+             of zero size; at 5 µm {} % and {} %. One per cent therefore holds of the continued values only, and narrowly at 5 µm: what is left \
+             there is finite strains, without which the two solvers agree (last column of table offset).",
+            100.0 * worst(0),
+            100.0 * worst(1),
+            percent(last[0]),
+            percent(last[1]),
+        ),
+    );
     context.table(
         "offset",
         "Peak pressure with free depth faces against the separate solver, and what each setting contributes, \
@@ -466,10 +487,10 @@ fn readings(context: &mut CaseContext, slab: &Answers, plane: &Answers) {
         ),
         (
             "plane_pressure",
-            "pressure, plane strain",
+            "pressure, plane strain (rejected as a whole)",
             &plane.pressure,
             PLANE_PRESSURE,
-            "plane",
+            REJECTED,
             "Held depth faces make the block stiffer than the table's, the more the wider the contact: another \
              solver in plane strain gives the same.",
             ["plane_", "plane_von_mises_"],
@@ -486,10 +507,10 @@ fn readings(context: &mut CaseContext, slab: &Answers, plane: &Answers) {
         ),
         (
             "plane_von_mises",
-            "von Mises stress, plane strain",
+            "von Mises stress, plane strain (rejected as a whole)",
             &plane.von_mises,
             PLANE_VON_MISES,
-            "plane",
+            REJECTED,
             "Not what the table lists: in plane strain von Mises stress stays at 0.56 to 0.66 of the \
              pressure; another solver gives the same.",
             ["plane_", "plane_von_mises_"],
@@ -518,6 +539,32 @@ fn readings(context: &mut CaseContext, slab: &Answers, plane: &Answers) {
             }
         }
     }
+}
+
+/// How far von Mises stress is below the pressure, which is what the table's numbers are near.
+fn not_von_mises(context: &mut CaseContext, slab: &Answers, plane: &Answers) {
+    let below = |answers: &Answers| {
+        let parts: Vec<f64> = answers
+            .von_mises
+            .iter()
+            .zip(&slab.pressure)
+            .map(|(s, p)| 100.0 * (1.0 - s / p))
+            .collect();
+        let low = parts.iter().fold(f64::INFINITY, |low: f64, x| low.min(*x));
+        format!("{low:.1} to {:.1} %", largest(parts))
+    };
+    context.finding(
+        "von_mises_misses",
+        format!(
+            "Largest von Mises stress is below the peak pressure with free depth faces, which agrees with the table, by {} with free depth faces and by \
+             {} in plane strain. Against the table itself (the signed errors of the checks) single rows are 13.3 to 27.9 % too low in the slab and \
+             29.7 to 41.6 % in plane strain, both columns taken together; by root mean square over the rows, 17 and 19 % (EFEM, ABAQUS) in the \
+             slab, 34 and 35 % in plane strain. The study behind the slab's pressures states 17 to 36 %: that agrees as a root mean square per reading \
+             and column, not as a range of single rows. Too low it is in every row under every reading.",
+            below(slab),
+            below(plane),
+        ),
+    );
 }
 
 fn tables(context: &mut CaseContext, slab: &Answers, plane: &Answers) {

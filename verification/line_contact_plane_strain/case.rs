@@ -1,7 +1,7 @@
 //! A rigid cylinder pressed on a large block in plane strain, at rest and by explicit steps, against
 //! Hertz.
 
-use bearing_dynamics::ch2_housing::bore_contact::{ContactNode, Penalty};
+use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::solver::profile::Profile;
@@ -14,7 +14,7 @@ use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
 use crate::pressed_block::{
-    BlockShape, DepthFaces, LineContact, PressedBlock, line_contact, pressed_block,
+    BlockShape, DepthFaces, LineContact, PressedBlock, crest, line_contact, pressed_block,
 };
 use crate::solids::{STEEL, Vec3, largest, name_of, size_of};
 
@@ -62,7 +62,7 @@ const WAYS: [Way; 3] = [
 
 /// Solved both ways: settled motion has to end in equilibrium.
 const COARSE: Way =
-    Way { key: "", order: Order::Linear, cells: 8.0, size: 32.0, hardness: 10.0, explicit: false };
+    Way { key: "", order: Order::Linear, cells: 10.0, size: 32.0, hardness: 10.0, explicit: false };
 
 /// Of explicit runs: smooth descent, and all of the run, s; damping, 1/s, about critical for the
 /// block's slowest motions.
@@ -70,8 +70,13 @@ const DESCENT: f64 = 2e-6;
 const DURATION: f64 = 6e-6;
 const DAMPING: f64 = 3e6;
 
+/// Of the indentation for the half width aimed at: so many that the edge of contact comes to lie
+/// in different places of its cell.
+const PARTS: [f64; 6] = [0.85, 0.9, 0.95, 1.0, 1.05, 1.1];
+/// Half widths between which the crest of von Mises stress is looked for.
+const CREST: [f64; 2] = [0.35, 1.1];
+
 struct Answer {
-    block: PressedBlock,
     line: LineContact,
     displacement: Vec<Vec3>,
     deepest: f64,
@@ -106,23 +111,32 @@ impl Way {
         HALF_WIDTH * HALF_WIDTH / (4.0 * RADIUS) * (2.0 * (2.0 * self.size).ln() - 0.43)
     }
 
-    fn solve(&self, radius: f64) -> Result<Answer, CaseError> {
-        let block = self.block()?;
-        if self.explicit { self.settle(block, radius) } else { self.rest(block, radius) }
-    }
-
-    fn rest(&self, block: PressedBlock, radius: f64) -> Result<Answer, CaseError> {
-        let down = |sign: f64| Profile::Constant(sign * self.indentation());
+    /// At rest under `part` of the indentation, sought from `near`.
+    fn rest(
+        &self,
+        block: &PressedBlock,
+        radius: f64,
+        part: f64,
+        near: Option<&Answer>,
+    ) -> Result<Answer, CaseError> {
+        let down = |sign: f64| Profile::Constant(sign * part * self.indentation());
         let contact = block.cylinder(radius, self.penalty(), down);
         let options = EquilibriumOptions::default();
-        let found = equilibrium_in_contact(&block.model, 0.0, &contact, None, &options)?;
+        let near = near.map(|near| near.displacement.as_slice());
+        let found = equilibrium_in_contact(&block.model, 0.0, &contact, near, &options)?;
         let solid = found.solid;
-        let effort =
-            format!("{} iterations, {} factorisations", solid.iterations, solid.factorisations);
-        Ok(answer(block, &found.nodes, solid.displacement, found.sum.deepest, effort))
+        Ok(Answer {
+            line: line_contact(block, &found.nodes),
+            displacement: solid.displacement,
+            deepest: found.sum.deepest,
+            effort: format!(
+                "{} iterations, {} factorisations",
+                solid.iterations, solid.factorisations
+            ),
+        })
     }
 
-    fn settle(&self, block: PressedBlock, radius: f64) -> Result<Answer, CaseError> {
+    fn settle(&self, block: &PressedBlock, radius: f64) -> Result<Answer, CaseError> {
         let down = |sign: f64| Profile::SmoothRamp {
             from: 0.0,
             to: sign * self.indentation(),
@@ -148,77 +162,204 @@ impl Way {
         let effort = format!("{} steps; {near} nodes tested, {far} out of reach", solid.steps);
         let nodes = run.nodal_forces(solid.time, &solid.displacement);
         let displacement = solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect();
-        Ok(answer(block, &nodes, displacement, run.sum.deepest, effort))
+        Ok(Answer {
+            line: line_contact(block, &nodes),
+            displacement,
+            deepest: run.sum.deepest,
+            effort,
+        })
     }
-}
-
-fn answer(
-    block: PressedBlock,
-    nodes: &[(ContactNode, Vec3)],
-    displacement: Vec<Vec3>,
-    deepest: f64,
-    effort: String,
-) -> Answer {
-    let line = line_contact(&block, nodes);
-    Answer { block, line, displacement, deepest, effort }
 }
 
 fn hertz(answer: &Answer, radius: f64) -> oracle::Line {
     oracle::line(answer.line.load, radius, STEEL.young, STEEL.poisson)
 }
 
+/// What one answer differs by from Hertz under its own load.
+#[derive(Clone, Copy)]
+struct Errors {
+    /// Relative.
+    peak: f64,
+    half_width: f64,
+    /// Over p₀: nodal forces over what Hertz puts on their shares, the largest farther than a cell from
+    /// the edge, and the root mean square of all over the half width.
+    shares: f64,
+    mean_square: f64,
+    /// Over p₀: nodal pressures against Hertz' at the nodes, farther than a cell from the edge and anywhere.
+    inside: f64,
+    at_edge: f64,
+    /// Largest von Mises stress, relative, and its depth, in half widths.
+    von_mises: f64,
+    depth: f64,
+}
+
+fn errors(way: &Way, block: &PressedBlock, answer: &Answer) -> Errors {
+    let (line, exact) = (&answer.line, hertz(answer, RADIUS));
+    let cell = HALF_WIDTH / way.cells;
+    let (b, top) = (exact.half_width, exact.peak);
+    let (mut shares, mut squares, mut inside, mut at_edge) = (0.0, 0.0, 0.0, 0.0);
+    for ([y, p], [from, to]) in line.profile.iter().zip(&line.shares) {
+        let share = to - from;
+        let by_share = (p - exact.force_between(*from, *to) / share).abs() / top;
+        let by_node = (p - exact.pressure(*y)).abs() / top;
+        squares += share * by_share * by_share;
+        at_edge = largest([at_edge, by_node]);
+        if *to <= b - cell || *from >= b + cell {
+            shares = largest([shares, by_share]);
+            inside = largest([inside, by_node]);
+        }
+    }
+    // The exact stresses at the same depths, read the same way.
+    let below = block.von_mises_below(&answer.displacement, 1e-9, 2.0 * b);
+    let over: Vec<[f64; 2]> = below.iter().map(|[z, s]| [z / b, s / top]).collect();
+    let known: Vec<[f64; 2]> =
+        over.iter().map(|[z, _]| [*z, oracle::von_mises(*z, STEEL.poisson)]).collect();
+    let ([depth, stress], [known_depth, _]) = (crest(&over, CREST), crest(&known, CREST));
+    let [should, _] = oracle::von_mises_peak(STEEL.poisson);
+    Errors {
+        peak: line.peak / top - 1.0,
+        half_width: line.half_width / b - 1.0,
+        shares,
+        mean_square: (squares / b).sqrt(),
+        inside,
+        at_edge,
+        von_mises: stress / should - 1.0,
+        depth: depth - known_depth,
+    }
+}
+
+/// The one farthest from zero, with its sign; NaN if any is.
+fn farthest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(
+        0.0,
+        |far: f64, x| {
+            if far.is_nan() || x.abs() <= far.abs() { far } else { x }
+        },
+    )
+}
+
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
-    let mut rows = Vec::new();
-    let mut curves = Vec::new();
-    let mut at_rest = f64::NAN;
+    let (mut rows, mut curves, mut edges) = (Vec::new(), Vec::new(), Vec::new());
+    let mut at_rest: Option<Answer> = None;
     for way in &WAYS {
-        let answer = way.solve(RADIUS)?;
+        let block = way.block()?;
+        let answers = if way.explicit {
+            vec![(1.0, way.settle(&block, RADIUS)?)]
+        } else {
+            let mut all: Vec<(f64, Answer)> = Vec::new();
+            for part in PARTS {
+                let near = all.last().map(|(_, answer)| answer);
+                let answer = way.rest(&block, RADIUS, part, near)?;
+                all.push((part, answer));
+            }
+            all
+        };
+        let found: Vec<Errors> = answers.iter().map(|(_, a)| errors(way, &block, a)).collect();
+        checks(context, way.key, &found);
+        edges.extend(found.iter().map(|e| (way.key, *e)));
+        for ((part, answer), e) in answers.iter().zip(&found) {
+            let percent = |x: f64| format!("{:+.2}", 100.0 * x);
+            let unsigned = |x: f64| format!("{:.2}", 100.0 * x);
+            rows.push(vec![
+                way.key.to_string(),
+                format!("{}, {}", name_of(way.order), size_of(&block.mesh)),
+                format!("{} b", way.size),
+                format!("{part}"),
+                answer.effort.clone(),
+                format!("{:.2}", 1e-3 * answer.line.load),
+                percent(e.peak),
+                percent(e.half_width),
+                unsigned(e.shares),
+                unsigned(e.mean_square),
+                unsigned(e.inside),
+                unsigned(e.at_edge),
+                percent(e.von_mises),
+                format!("{:+.3}", e.depth),
+                format!("{:.1}", 1e9 * answer.deepest),
+            ]);
+        }
+        let middle = answers.into_iter().find(|(part, _)| *part == 1.0);
+        let Some((_, answer)) = middle else { continue };
         let exact = hertz(&answer, RADIUS);
-        let [stress, depth] =
-            answer.block.von_mises_below(&answer.displacement, 1e-9, 2.0 * exact.half_width);
-        checks(context, way.key, &answer, exact, [stress, depth]);
-        rows.push(vec![
-            way.key.to_string(),
-            name_of(way.order).to_string(),
-            size_of(&answer.block.mesh),
-            format!("{} b", way.size),
-            answer.effort.clone(),
-            format!("{:.2}", 1e-3 * answer.line.load),
-            format!("{:+.2}", 100.0 * (answer.line.peak / exact.peak - 1.0)),
-            format!("{:+.2}", 100.0 * (answer.line.half_width / exact.half_width - 1.0)),
-            format!("{:.4} at {:.3} b", stress / exact.peak, depth / exact.half_width),
-            format!("{:.1}", 1e9 * answer.deepest),
-        ]);
         let seen = answer.line.profile.iter().filter(|p| p[0] <= 1.4 * exact.half_width);
         let points = seen.map(|p| [p[0] / exact.half_width, p[1] / exact.peak]).collect();
         let name = format!("{}, {}", way.key, name_of(way.order));
         curves.push(Curve::separate(name, points));
-        match way.key {
-            "static_tet4" => {
-                other_radius(context, way, &answer)?;
-                harder(context, way, &answer)?;
-                at_rest = answer.line.load;
-            }
-            "explicit" => context.check(
-                Check::new("settled", "load after settling, explicit steps", "N/m", answer.line.load)
-                    .converged(at_rest, "equilibrium of the same mesh by Newton's method")
-                    .relative(
-                        1e-4,
-                        "what is left of the slowest motion; equilibrium and motion share the law but not the way",
-                    ),
-            ),
-            _ => {}
+        if way.key == "static_tet4" {
+            other_radius(context, way, &block, &answer)?;
+            harder(context, way, &block, &answer)?;
+            at_rest = Some(answer);
+        } else if let (true, Some(rest)) = (way.explicit, &at_rest) {
+            settled(context, &answer, rest);
         }
     }
     context.table(
         "ways",
-        "Differences from Hertz under the load found, in percent; von Mises stress over p₀; penetration in nm",
+        "Differences from Hertz under the load found, in percent (of p₀ for pressures): force on the nodes' shares farther than a cell from \
+         the edge, all of them by root mean square, pressure at the nodes farther than a cell from the edge, and anywhere; \
+         depth of the von Mises crest in half widths; penetration in nm",
         &[
-            "way", "element", "mesh", "size", "effort", "load, N/mm", "p₀", "half width",
-            "von Mises", "penetration",
+            "way", "mesh", "size", "indentation", "effort", "load, N/mm", "p₀", "half width", "shares",
+            "shares, rms", "nodes inside", "nodes, edge too", "von Mises", "its depth", "penetration",
         ],
         rows,
     );
+    edge(context, &edges);
+    figure(context, curves)
+}
+
+/// Why nodes next to the edge are not held against the profile point by point.
+fn edge(context: &mut CaseContext, all: &[(&str, Errors)]) {
+    let [cells, coarse] = [WAYS[0].cells, COARSE.cells];
+    let of = |key: &str| -> Vec<String> {
+        let those = all.iter().filter(|(way, _)| *way == key);
+        those.map(|(_, e)| format!("{:.1}", 100.0 * e.at_edge)).collect()
+    };
+    context.finding(
+        "edge_of_contact",
+        format!(
+            "Point by point, the node nearest to the edge is off by {} % of p₀ (ten-node elements, the six indentations in turn) and {} % \
+             (four-node). Hertz' pressure there is p₀·√(2s/b) at a distance s from the edge, of infinite slope: an edge misplaced by \
+             0.0002 b is 2 % of p₀ at the edge itself, and nodes place it within a cell h only, which leaves up to \
+             p₀·√(2h/b) = {:.2} p₀ with cells of b/{cells}, {:.2} with b/{coarse}. Smaller cells lower that by the root of their size; at one indentation it is as \
+             small as one likes, by where the edge happens to lie. So nothing is asked of that one value; what is asked is the force \
+             on each share farther than a cell from the edge, and the mean square over the whole width.",
+            of("static").join(", "),
+            of("static_tet4").join(", "),
+            (2.0 / cells).sqrt(),
+            (2.0 / coarse).sqrt(),
+        ),
+    );
+}
+
+/// Motion that has settled is in equilibrium, node by node.
+fn settled(context: &mut CaseContext, answer: &Answer, rest: &Answer) {
+    context.check(
+        Check::new("settled", "load after settling, explicit steps", "N/m", answer.line.load)
+            .converged(rest.line.load, "equilibrium of the same mesh by Newton's method")
+            .relative(
+                1e-4,
+                "what is left of the slowest motion; equilibrium and motion share the law but not the way",
+            ),
+    );
+    let pairs = answer.line.profile.iter().zip(&rest.line.profile);
+    let gap = largest(pairs.map(|(one, other)| (one[1] - other[1]).abs())) / rest.line.peak;
+    context.check(
+        Check::new(
+            "settled_nodes",
+            "largest distance of a nodal pressure after settling from that at rest, over p₀",
+            "1",
+            gap,
+        )
+        .converged(0.0, "equilibrium of the same mesh by Newton's method")
+        .absolute(
+            1e-3,
+            "as for the load, ten times it at single nodes: the six indentations at rest then speak for explicit steps too",
+        ),
+    );
+}
+
+fn figure(context: &mut CaseContext, mut curves: Vec<Curve>) -> Result<(), CaseError> {
     let ellipse: Vec<[f64; 2]> = (0..=200)
         .map(|i| {
             let y = f64::from(i) / 200.0;
@@ -236,84 +377,82 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     context.figure(
         "pressure",
         xy(&plot)?,
-        "As Fig. 2.10: nodal force over nodal area, by Hertz' peak pressure and half width under the load \
-         found. Nothing is fitted.",
+        "As Fig. 2.10, at the indentation for the half width aimed at: nodal force over nodal area, by Hertz' peak pressure and half width \
+         under the load found. Nothing is fitted.",
     );
     Ok(())
 }
 
-fn checks(
-    context: &mut CaseContext,
-    key: &str,
-    answer: &Answer,
-    exact: oracle::Line,
-    [stress, depth]: [f64; 2],
-) {
-    let line = &answer.line;
+fn checks(context: &mut CaseContext, key: &str, found: &[Errors]) {
     let origin = "Hertz, rigid cylinder on a half space in plane strain, under the load found";
     let mesh = "what the mesh, the contact's own softness and a block of this size leave; a wrong area or radius \
                 is off by more";
-    let two = 0.02;
-    context.check(
-        Check::new(&format!("{key}_peak"), &format!("{key}: peak pressure"), "Pa", line.peak)
-            .closed_form(exact.peak, origin)
-            .relative(two, mesh)
-            .golden(GoldenTolerance::MIXED),
+    let many = if found.len() > 1 {
+        format!("farthest of {} indentations", found.len())
+    } else {
+        "one indentation".into()
+    };
+    let mut check = |id: &str, what: &str, value: f64, against: &str, tolerance: f64, why: &str| {
+        context.check(
+            Check::new(&format!("{key}_{id}"), &format!("{key}, {many}: {what}"), "1", value)
+                .closed_form(0.0, against)
+                .absolute(tolerance, why)
+                .golden(GoldenTolerance::MIXED.floor(1e-4)),
+        );
+    };
+    let worst = |of: fn(&Errors) -> f64| farthest(found.iter().map(of));
+    check("peak", "peak pressure over Hertz', less one", worst(|e| e.peak), origin, 0.02, mesh);
+    check(
+        "half_width",
+        "half width over Hertz', less one",
+        worst(|e| e.half_width),
+        origin,
+        0.02,
+        mesh,
     );
-    context.check(
-        Check::new(
-            &format!("{key}_half_width"),
-            &format!("{key}: half width"),
-            "m",
-            line.half_width,
-        )
-        .closed_form(exact.half_width, origin)
-        .relative(two, mesh)
-        .golden(GoldenTolerance::MIXED),
+    check(
+        "profile",
+        "nodal force against Hertz' pressure over the node's share, farther than a cell from the edge, over p₀ times the share",
+        worst(|e| e.shares),
+        origin,
+        0.02,
+        "a node knows the force on its share of the surface, not the pressure at a point; nodes place the edge within a cell only, \
+         and there the profile is upright (finding edge_of_contact)",
     );
-    let gap = largest(line.profile.iter().map(|p| (p[1] - exact.pressure(p[0])).abs()));
-    context.check(
-        Check::new(
-            &format!("{key}_profile"),
-            &format!("{key}: largest distance of a nodal pressure from Hertz' profile, over p₀"),
-            "1",
-            gap / exact.peak,
-        )
-        .closed_form(0.0, origin)
-        .absolute(two, "the edge, where the profile falls upright, lies anywhere within a cell")
-        .golden(GoldenTolerance::MIXED.floor(1e-4)),
+    check(
+        "profile_rms",
+        "the same over the whole width, edge too: root mean square over p₀",
+        worst(|e| e.mean_square),
+        origin,
+        0.02,
+        "an edge misplaced within its cell: off by the root of the cell on one cell's width, so that the mean square falls with the cell; the largest value does not",
     );
-    let [should, place] = oracle::von_mises_peak(STEEL.poisson);
-    context.check(
-        Check::new(
-            &format!("{key}_von_mises"),
-            &format!("{key}: largest von Mises stress below the contact, over p₀"),
-            "1",
-            stress / exact.peak,
-        )
-        .closed_form(should, "stresses on the axis below a line contact, plane strain, ν = 0.3")
-        .relative(0.03, "averaged to nodes; sides and base at n half widths add some 0.7/n of it")
-        .golden(GoldenTolerance::MIXED),
+    check(
+        "von_mises",
+        "largest von Mises stress below the contact over 0.5575 p₀, less one",
+        worst(|e| e.von_mises),
+        "stresses on the axis below a line contact, plane strain, ν = 0.3",
+        0.03,
+        "averaged to nodes, crest of a cubic through them; sides and base at n half widths add some 0.7/n of it",
     );
-    context.check(
-        Check::new(
-            &format!("{key}_von_mises_depth"),
-            &format!("{key}: its depth over the half width"),
-            "1",
-            depth / exact.half_width,
-        )
-        .closed_form(place, "the same")
-        .absolute(
-            0.08,
-            "the maximum is flat: 0.1 half widths off it is 0.7 % less; one cell is 0.06 to 0.12",
-        )
-        .golden(GoldenTolerance::MIXED),
+    check(
+        "von_mises_depth",
+        "its depth less that of the exact curve, over the half width (the maximum is at 0.704)",
+        worst(|e| e.depth),
+        "the exact stresses at the same depths, crest read by the same cubic",
+        0.03,
+        "nodes at corners and at middles of edges average different elements, 1.5 and 0.9 % high by turns in ten-node ones, which the cubic evens out and a parabola through three nodes does not (6 % too deep); stress is flat there, 0.1 % less 0.03 half widths off",
     );
 }
 
 /// A radius 10 % larger, at the same indentation: pressure goes with √(P′/R).
-fn other_radius(context: &mut CaseContext, way: &Way, answer: &Answer) -> Result<(), CaseError> {
-    let larger = way.solve(1.1 * RADIUS)?;
+fn other_radius(
+    context: &mut CaseContext,
+    way: &Way,
+    block: &PressedBlock,
+    answer: &Answer,
+) -> Result<(), CaseError> {
+    let larger = way.rest(block, 1.1 * RADIUS, 1.0, Some(answer))?;
     let ratio = larger.line.peak / answer.line.peak;
     context.check(
         Check::new(
@@ -338,8 +477,14 @@ fn other_radius(context: &mut CaseContext, way: &Way, answer: &Answer) -> Result
 }
 
 /// The contact doubled in stiffness.
-fn harder(context: &mut CaseContext, way: &Way, answer: &Answer) -> Result<(), CaseError> {
-    let doubled = Way { hardness: 2.0 * way.hardness, ..*way }.solve(RADIUS)?;
+fn harder(
+    context: &mut CaseContext,
+    way: &Way,
+    block: &PressedBlock,
+    answer: &Answer,
+) -> Result<(), CaseError> {
+    let twice = Way { hardness: 2.0 * way.hardness, ..*way };
+    let doubled = twice.rest(block, RADIUS, 1.0, Some(answer))?;
     let moved = doubled.line.peak / answer.line.peak;
     context.check(
         Check::new(

@@ -24,6 +24,15 @@ impl Line {
         let part = y / self.half_width;
         if part.abs() < 1.0 { self.peak * (1.0 - part * part).sqrt() } else { 0.0 }
     }
+
+    /// Its integral from one distance to another, N/m.
+    pub fn force_between(&self, from: f64, to: f64) -> f64 {
+        let up_to = |y: f64| {
+            let part = (y / self.half_width).clamp(-1.0, 1.0);
+            0.5 * (part * (1.0 - part * part).sqrt() + part.asin())
+        };
+        self.peak * self.half_width * (up_to(to) - up_to(from))
+    }
 }
 
 /// Von Mises stress over p₀ on the axis of symmetry, `depth` half widths below the surface.
@@ -54,6 +63,12 @@ mod tests {
         let h = line.half_width / f64::from(steps);
         let sum: f64 = (0..steps).map(|i| 2.0 * h * line.pressure((f64::from(i) + 0.5) * h)).sum();
         assert!((sum / 7e5 - 1.0).abs() <= 1e-5, "{sum}");
+        let across = 0.5 * line.half_width;
+        assert!(
+            (2.0 * line.force_between(0.0, across + line.half_width) / 7e5 - 1.0).abs() <= 1e-12
+        );
+        let part: f64 = (0..steps / 2).map(|i| h * line.pressure((f64::from(i) + 0.5) * h)).sum();
+        assert!((line.force_between(0.0, across) / part - 1.0).abs() <= 1e-6, "{part}");
         let [stress, depth] = von_mises_peak(0.3);
         assert!(
             (stress - 0.5575).abs() <= 5e-4 && (depth - 0.704).abs() <= 1e-3,

@@ -12,7 +12,7 @@ use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::contact::{CylinderContact, CylinderPath};
 use bearing_dynamics::solver::solid::model::{SolidError, SolidModel};
 use bearing_dynamics::solver::solid::stress::nodal_stresses;
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Matrix4, UnitQuaternion, Vector3, Vector4};
 
 use crate::solids::{Material, Vec3, free_body, mesh_of, prescribe};
 
@@ -116,9 +116,9 @@ impl PressedBlock {
         CylinderContact { path, width: 0.1, penalty, nodes: self.nodes.clone() }
     }
 
-    /// Largest von Mises stress within `across` of the plane of symmetry and `below` of the top, and
-    /// its depth by a parabola through the neighbours in depth, Pa and m.
-    pub fn von_mises_below(&self, displacement: &[Vec3], across: f64, below: f64) -> [f64; 2] {
+    /// Von Mises stress over depth (m, Pa) within `across` of the plane of symmetry, mean of the nodes
+    /// at each depth down to `below`.
+    pub fn von_mises_below(&self, displacement: &[Vec3], across: f64, below: f64) -> Vec<[f64; 2]> {
         let stress = nodal_stresses(&self.model, displacement);
         let mut by_depth: Vec<[f64; 3]> = Vec::new();
         for (place, stress) in self.mesh.nodes.iter().zip(&stress) {
@@ -135,25 +135,30 @@ impl PressedBlock {
             }
         }
         by_depth.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let curve: Vec<[f64; 2]> = by_depth.iter().map(|e| [e[0], e[1] / e[2]]).collect();
-        peak(&curve)
+        by_depth.iter().map(|e| [e[0], e[1] / e[2]]).collect()
     }
 }
 
-/// Height and place of a curve's peak, by the parabola through the highest point and its neighbours.
-fn peak(curve: &[[f64; 2]]) -> [f64; 2] {
-    let top = (0..curve.len()).max_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1]));
-    match top {
-        Some(i) if i > 0 && i + 1 < curve.len() => {
-            let [[x0, y0], [x1, y1], [x2, y2]] = [curve[i - 1], curve[i], curve[i + 1]];
-            let (left, right) = ((y1 - y0) / (x1 - x0), (y2 - y1) / (x2 - x1));
-            let bend = (right - left) / (x2 - x0);
-            let at = 0.5 * (x0 + x1) - 0.5 * left / bend;
-            [y1 - bend * (at - x1) * (at - x1), at]
-        }
-        Some(i) => [curve[i][1], curve[i][0]],
-        None => [f64::NAN; 2],
+/// Place and height of a curve's crest: of the cubic through its points from `low` to `high` by least
+/// squares. One point's error hardly moves it, as it does a parabola through three.
+pub fn crest(curve: &[[f64; 2]], [low, high]: [f64; 2]) -> [f64; 2] {
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let powers = |x: f64| {
+        let s = (x - middle) / half;
+        Vector4::new(1.0, s, s * s, s * s * s)
+    };
+    let (mut matrix, mut right) = (Matrix4::zeros(), Vector4::zeros());
+    for [x, y] in curve.iter().filter(|p| p[0] >= low && p[0] <= high) {
+        let row = powers(*x);
+        matrix += row * row.transpose();
+        right += *y * row;
     }
+    let Some(inverse) = matrix.try_inverse() else { return [f64::NAN; 2] };
+    let c = inverse * right;
+    // Of the two places without slope the one that bends down: c₁ + 2 c₂ s + 3 c₃ s² = 0.
+    let root = (c[2] * c[2] - 3.0 * c[1] * c[3]).sqrt();
+    let at = middle + half * c[1] / (root - c[2]);
+    [at, c.dot(&powers(at))]
 }
 
 /// What a pressed line shows, SI; the load and pressures are those of the whole body.
@@ -163,6 +168,9 @@ pub struct LineContact {
     pub load: f64,
     /// Pressure over y ≥ 0, mean over the depth: nodal forces over nodal areas.
     pub profile: Vec<[f64; 2]>,
+    /// Where the share of the surface of each of these nodes begins and ends. The shares lie side by
+    /// side from y = 0 on.
+    pub shares: Vec<[f64; 2]>,
     /// Largest of the profile.
     pub peak: f64,
     /// Where p² falls to zero, by a straight line through p² over y² down to a tenth of its peak.
@@ -190,6 +198,13 @@ pub fn line_contact(block: &PressedBlock, forces: &[(ContactNode, Vec3)]) -> Lin
     }
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let profile: Vec<[f64; 2]> = rows.iter().map(|row| [row[0], row[1] / row[2]]).collect();
+    let mut end = 0.0;
+    let shares = rows.iter().map(|row| {
+        let begin = end;
+        end += 0.5 * whole * row[2] / block.shape.depth;
+        [begin, end]
+    });
+    let shares = shares.collect();
     let peak = profile.iter().fold(0.0, |most, p| f64::max(most, p[1]));
     let squares = profile.iter().filter(|p| p[1] * p[1] >= 0.1 * peak * peak);
     let [n, x, y, xx, xy] = squares.fold([0.0; 5], |[n, x, y, xx, xy], p| {
@@ -198,5 +213,24 @@ pub fn line_contact(block: &PressedBlock, forces: &[(ContactNode, Vec3)]) -> Lin
     });
     let slope = (n * xy - x * y) / (n * xx - x * x);
     let half_width = ((x - y / slope) / n).sqrt();
-    LineContact { load, profile, peak, half_width }
+    LineContact { load, profile, shares, peak, half_width }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn crest_of_a_cubic_is_its_own() {
+        // Upright at 0.7, where it is 2; bends up further on.
+        let curve: Vec<[f64; 2]> = (0..40)
+            .map(|i| {
+                let x = 0.05 * f64::from(i);
+                let s: f64 = x - 0.7;
+                [x, 2.0 - s * s + 0.4 * s * s * s]
+            })
+            .collect();
+        let [at, height] = crest(&curve, [0.4, 1.2]);
+        assert!((at - 0.7).abs() <= 1e-9 && (height - 2.0).abs() <= 1e-9, "{at} {height}");
+    }
 }
