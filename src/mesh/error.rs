@@ -8,7 +8,9 @@ use thiserror::Error;
 /// A request that cannot be met.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum MeshError {
-    #[error("the mesh has no tetrahedra")]
+    #[error(
+        "the mesh has no tetrahedra; in Gmsh give the volume a physical group too, or save all elements"
+    )]
     NoElements,
     #[error("{count} nodes or elements are more than the {max} that can be numbered", max = u32::MAX)]
     TooLarge { count: usize },

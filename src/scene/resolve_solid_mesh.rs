@@ -140,7 +140,8 @@ pub(crate) fn source(reader: &mut Reader) -> Result<MeshSource, SceneError> {
                 Some("mm") => LengthUnit::Millimetre,
                 Some(_) => LengthUnit::Metre,
                 None => {
-                    let because = ": a mesh file does not say in which unit its numbers are";
+                    let because =
+                        ": a mesh file does not say in which unit its numbers are, \"mm\" or \"m\"";
                     return Err(reader.missing("solid.mesh.unit", because));
                 }
             };

@@ -283,7 +283,8 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         let exact = hertz(&answer, RADIUS);
         let seen = answer.line.profile.iter().filter(|p| p[0] <= 1.4 * exact.half_width);
         let points = seen.map(|p| [p[0] / exact.half_width, p[1] / exact.peak]).collect();
-        let name = format!("{}, {}", way.key, name_of(way.order));
+        let path = if way.explicit { "explicit" } else { "static" };
+        let name = format!("{path}, {}", name_of(way.order));
         curves.push(Curve::separate(name, points));
         if way.key == "static_tet4" {
             other_radius(context, way, &block, &answer)?;

@@ -221,7 +221,9 @@ pub(super) fn kind(source: &Source, at: usize, code: i64) -> Result<(Kind, usize
                 5 | 12 | 17 => "hexahedron",
                 6 | 13 | 18 => "prism",
                 7 | 14 | 19 => "pyramid",
-                29..=31 => "tetrahedron of higher order",
+                20..=25 => "triangle of higher order; write second order at most",
+                26..=28 => "line of higher order; write second order at most",
+                29..=31 => "tetrahedron of higher order; write second order at most",
                 _ => "unknown to this reader",
             };
             Err(source.error_at(at, Problem::ElementType { found: format!("{other} ({name})") }))
