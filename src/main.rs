@@ -5,6 +5,7 @@
 
 mod commands;
 
+use bearing_dynamics::output::visible::visible_line;
 use clap::{Parser, Subcommand};
 use commands::{Outcome, check, compare, modes, pack, plan, run, schema, statics, sweep};
 use std::process::ExitCode;
@@ -63,7 +64,7 @@ fn main() -> ExitCode {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Different) => ExitCode::from(1),
         Err(error) => {
-            eprintln!("bearing: {error}");
+            eprintln!("bearing: {}", visible_line(&error.to_string()));
             ExitCode::from(2)
         }
     }

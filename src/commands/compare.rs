@@ -3,7 +3,7 @@
 use super::{CommandResult, Outcome, say};
 use bearing_dynamics::output::compare::tolerance::{GivenTolerance, ToleranceClass};
 use bearing_dynamics::output::compare::{Options, compare, report, to_json};
-use bearing_dynamics::output::pack::{MANIFEST, PackError, verify_pack};
+use bearing_dynamics::output::pack::{MANIFEST, PackError, RESOLVED, verify_pack};
 use bearing_dynamics::output::results::pretty;
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -51,7 +51,16 @@ fn names() -> Vec<&'static str> {
 /// A case pack must be the one that was written. Its tolerances may be edited.
 fn refuse_corrupt_pack(reference: &Path) -> Result<(), Box<dyn Error>> {
     if !reference.join(MANIFEST).exists() {
-        return Ok(());
+        if !reference.join(RESOLVED).exists() {
+            return Ok(());
+        }
+        return Err(format!(
+            "{} has the {RESOLVED} of a case pack and no {MANIFEST}, so that nothing says whether its \
+             numbers are those that were written; get the whole pack, write it anew with `bearing pack`, \
+             or compare with its summary.json and series.csv by name",
+            reference.display()
+        )
+        .into());
     }
     match verify_pack(reference) {
         // The manifest is checked in the order of names, in which this file is the last.

@@ -1,9 +1,10 @@
 //! `bearing pack CASE`.
 
+use super::earlier::{Writes, claimed};
 use super::solve::solve_scene;
 use super::{CommandResult, Outcome, say};
 use bearing_dynamics::output::compare::tolerance::ToleranceClass;
-use bearing_dynamics::output::pack::{PackInput, write_pack};
+use bearing_dynamics::output::pack::{PackInput, refuse_foreign_files, write_pack};
 use bearing_dynamics::scene::{Document, resolve};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -22,17 +23,19 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
     let document = Document::read_file(&path)?;
     let scene = resolve(&document)?;
-    let solved = solve_scene(&scene, start.elapsed().as_secs_f64())?;
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("toml");
     let name = format!("scene.{extension}");
+    let stem = path.file_stem().unwrap_or(path.as_os_str());
+    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("packs").join(stem));
+    let folder = claimed(&folder, Writes::Pack)?;
+    refuse_foreign_files(&folder, &name)?;
+    let solved = solve_scene(&scene, start.elapsed().as_secs_f64())?;
     let input = PackInput {
         scene_name: &name,
         scene_text: document.text(),
         resolved: &solved.record.scene,
         class: ToleranceClass::F64Reordered,
     };
-    let stem = path.file_stem().unwrap_or(path.as_os_str());
-    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("packs").join(stem));
     let manifest = write_pack(&folder, &input, &solved.solution, &solved.record)?;
     let of_run = match scene.dynamics.run {
         Some(_) => ": the statics of this scene; its run is not packed",

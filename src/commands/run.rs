@@ -1,10 +1,10 @@
 //! `bearing run SCENE`: the bearing in motion, step after step, and the folder it leaves.
 
+use super::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
 use super::plan::dynamic_plan_lines;
 use super::run_figures::key_figures;
 use super::{
-    CommandResult, Outcome, echo, echo_run, pictures as static_pictures, refuse_folder_half_way,
-    refuse_folder_of_other, results_folder, say,
+    CommandResult, Outcome, echo, echo_run, results_folder, say,
 };
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::dynamics::pictures::{Picture, draw};
@@ -85,6 +85,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let problem = dynamic_problem(&scene)?;
     let request = request(&scene, &settings);
     let folder = results_folder(&arguments.scene, &arguments.out);
+    let folder = claimed(&folder, Writes::Run { fresh: arguments.fresh })?;
     let kept = kept_state(arguments, &folder)?;
     let read_seconds = start.elapsed().as_secs_f64();
 
@@ -192,32 +193,15 @@ pub(super) fn no_run(folder: &Path) -> String {
     )
 }
 
-/// Unless it is discarded, an unfinished run stays, and so do results of another kind.
-pub fn refuse_unfinished(arguments: &Arguments, folder: &Path) -> Result<(), Box<dyn Error>> {
-    if arguments.fresh {
-        return Ok(());
-    }
-    refuse_folder_of_other(folder)?;
-    refuse_folder_half_way(folder)
-}
-
 /// The state to go on from, if that was asked for; what an earlier run left is removed otherwise.
 fn kept_state(arguments: &Arguments, folder: &Path) -> Result<Option<StateFile>, Box<dyn Error>> {
     if arguments.resume {
         return Ok(Some(state::read(folder)?.ok_or_else(|| no_run(folder))?));
     }
-    refuse_unfinished(arguments, folder)?;
-    let earlier = ["summary.json", state::STATE, state::SERIES, "series.csv", "spectrum.csv"];
-    for name in earlier.into_iter().chain(static_pictures::NAMES) {
-        match std::fs::remove_file(folder.join(name)) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(
-                    format!("cannot remove {}: {error}", folder.join(name).display()).into()
-                );
-            }
-            _ => {}
-        }
+    if !arguments.fresh {
+        refuse_half_way(folder)?;
     }
+    remove_earlier(folder)?;
     Ok(None)
 }
 

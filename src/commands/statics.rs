@@ -1,11 +1,11 @@
 //! `bearing statics SCENE`.
 
+use super::earlier::{Writes, claimed, remove_earlier};
 use super::solve::solve_scene;
-use super::{CommandResult, Outcome, pictures, refuse_folder_of_run, results_folder, say, table};
+use super::{CommandResult, Outcome, pictures, results_folder, say, table};
 use bearing_dynamics::output::results::write_static_results;
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
-use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 #[derive(clap::Args)]
@@ -34,16 +34,16 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         }
         Subject::Bearing(scene) => *scene,
     };
+    let folder = match arguments.dry {
+        true => None,
+        false => {
+            Some(claimed(&results_folder(&arguments.scene, &arguments.out), Writes::Statics)?)
+        }
+    };
     let solved = solve_scene(&scene, start.elapsed().as_secs_f64())?;
-    let table = table::render(&solved.problem, &solved.solution);
-    if arguments.dry {
-        say(&table)?;
-        return Ok(Outcome::Done);
-    }
-    // Nothing computed is lost if the folder cannot be written.
-    say(&table)?;
-    let folder = results_folder(&arguments.scene, &arguments.out);
-    refuse_folder_of_run(&folder)?;
+    // Nothing computed is lost if a file cannot be written.
+    say(&table::render(&solved.problem, &solved.solution))?;
+    let Some(folder) = folder else { return Ok(Outcome::Done) };
     let mut record = solved.record;
     remove_earlier(&folder)?;
     let start = Instant::now();
@@ -52,17 +52,4 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     written.extend(write_static_results(&folder, &solved.solution, &record)?);
     say(&format!("wrote {} files to {}\n", written.len(), folder.display()))?;
     Ok(Outcome::Done)
-}
-
-/// What an earlier run left and this one may not write again: the plots, and the summary, whose
-/// presence says that the folder is complete.
-fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
-    for name in pictures::NAMES.into_iter().chain(["summary.json"]) {
-        let path = folder.join(name);
-        if path.is_file() {
-            std::fs::remove_file(&path)
-                .map_err(|error| format!("cannot replace {}: {error}", path.display()))?;
-        }
-    }
-    Ok(())
 }

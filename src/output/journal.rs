@@ -3,6 +3,7 @@
 
 use crate::output::atomic::{WriteError, remove_partials, write_atomic};
 use crate::output::results::pretty;
+use crate::scene::input_file::{self, InputError, LARGEST_JSON};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -26,7 +27,7 @@ pub enum Stopped {
 #[derive(Debug, Error)]
 pub enum JournalError {
     #[error("cannot read {}: {source}", path.display())]
-    Read { path: PathBuf, source: std::io::Error },
+    Read { path: PathBuf, source: InputError },
     #[error("{} is not the state of such a run: {source}", path.display())]
     Json { path: PathBuf, source: serde_json::Error },
     #[error(
@@ -42,11 +43,11 @@ pub enum JournalError {
 /// A file that cannot be read, or is the state of something else.
 pub fn read<T: DeserializeOwned>(folder: &Path) -> Result<Option<T>, JournalError> {
     let path = folder.join(STATE);
-    match std::fs::read(&path) {
+    match input_file::read(&path, LARGEST_JSON) {
         Ok(bytes) => serde_json::from_slice(&bytes)
             .map(Some)
             .map_err(|source| JournalError::Json { path, source }),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(error) if error.is_missing() => Ok(None),
         Err(source) => Err(JournalError::Read { path, source }),
     }
 }

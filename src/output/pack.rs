@@ -14,6 +14,7 @@ use crate::output::compare::tolerance::{
     ChannelTolerance, ToleranceClass, ToleranceError, Tolerances,
 };
 use crate::output::results::{ResultsError, RunRecord, pretty, write_static_results};
+use crate::scene::input_file::{self, InputError, LARGEST_DATA, LARGEST_JSON};
 use crate::solver::statics::StaticSolution;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -23,6 +24,8 @@ use std::path::{Component, Path, PathBuf};
 use thiserror::Error;
 
 pub const MANIFEST: &str = "manifest.json";
+/// Only packs have it: a folder with it and without a manifest is half a pack.
+pub const RESOLVED: &str = "resolved.json";
 
 /// `manifest.json`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,7 +53,10 @@ pub struct PackInput<'a> {
 pub enum PackError {
     #[error("{name:?} is no plain file name")]
     SceneName { name: String },
-    #[error("{} exists and holds {found:?}, which is not part of a case pack", folder.display())]
+    #[error(
+        "{} exists and holds {found:?}, which is not part of a case pack; name another folder with --out",
+        folder.display()
+    )]
     Foreign { folder: PathBuf, found: String },
     #[error(transparent)]
     Results(#[from] ResultsError),
@@ -59,7 +65,7 @@ pub enum PackError {
     #[error(transparent)]
     Write(#[from] WriteError),
     #[error("cannot read {}: {source}", path.display())]
-    Read { path: PathBuf, source: std::io::Error },
+    Read { path: PathBuf, source: InputError },
     #[error("{} is not a manifest: {source}", path.display())]
     Manifest { path: PathBuf, source: serde_json::Error },
     #[error("{name}: sha256 is {found}, the manifest says {expected}")]
@@ -98,7 +104,7 @@ pub fn write_pack(
     let tolerances = serde_json::to_value(&tolerances).expect("tolerances are plain JSON");
     let texts = [
         (input.scene_name, input.scene_text.to_string()),
-        ("resolved.json", pretty(input.resolved)),
+        (RESOLVED, pretty(input.resolved)),
         ("tolerances.json", pretty(&tolerances)),
         ("README.txt", readme(input)),
     ];
@@ -119,7 +125,7 @@ pub fn write_pack(
 /// Every file of a pack but the scene and the manifest.
 const EXPECTED: [&str; 7] = [
     "README.txt",
-    "resolved.json",
+    RESOLVED,
     "series.columns.json",
     "series.csv",
     "series.npy",
@@ -133,8 +139,8 @@ const EXPECTED: [&str; 7] = [
 /// The first file that is missing, altered, or not listed; a manifest that lacks a part of a pack.
 pub fn verify_pack(folder: &Path) -> Result<Manifest, PackError> {
     let path = folder.join(MANIFEST);
-    let bytes =
-        std::fs::read(&path).map_err(|source| PackError::Read { path: path.clone(), source })?;
+    let bytes = input_file::read(&path, LARGEST_JSON)
+        .map_err(|source| PackError::Read { path: path.clone(), source })?;
     let manifest: Manifest =
         serde_json::from_slice(&bytes).map_err(|source| PackError::Manifest { path, source })?;
     for name in EXPECTED {
@@ -215,7 +221,10 @@ fn is_plain_name(name: &str) -> bool {
 }
 
 /// A pack may be written over an older pack, not into a folder with something else in it.
-fn refuse_foreign_files(folder: &Path, scene_name: &str) -> Result<(), PackError> {
+///
+/// # Errors
+/// [`PackError::Foreign`] with the first such file; a folder that cannot be read.
+pub fn refuse_foreign_files(folder: &Path, scene_name: &str) -> Result<(), PackError> {
     if !folder.exists() {
         return Ok(());
     }
@@ -228,7 +237,10 @@ fn refuse_foreign_files(folder: &Path, scene_name: &str) -> Result<(), PackError
 }
 
 fn file_names(folder: &Path) -> Result<Vec<String>, PackError> {
-    let failed = |source| PackError::Read { path: folder.to_path_buf(), source };
+    let failed = |source: std::io::Error| PackError::Read {
+        path: folder.to_path_buf(),
+        source: source.into(),
+    };
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         names.push(entry.map_err(failed)?.file_name().to_string_lossy().into_owned());
@@ -238,7 +250,7 @@ fn file_names(folder: &Path) -> Result<Vec<String>, PackError> {
 }
 
 fn hash(path: &Path) -> Result<String, PackError> {
-    let bytes = std::fs::read(path)
+    let bytes = input_file::read(path, LARGEST_DATA)
         .map_err(|source| PackError::Read { path: path.to_path_buf(), source })?;
     Ok(Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect())
 }

@@ -5,11 +5,12 @@
 //! with its column names beside it in `NAME.columns.json`, a list of `{"name", "unit"}`.
 
 use crate::output::atomic::{WriteError, write_atomic};
-use ndarray::{Array2, ArrayD, Ix2};
-use ndarray_npy::npy::header::Header;
-use ndarray_npy::{ReadNpyError, ReadNpyExt, ReadableElement, WriteNpyError, WriteNpyExt};
+use crate::output::npy::{self, MOST_COLUMNS, NpyError};
+use crate::scene::input_file::{self, InputError, LARGEST_DATA, LARGEST_JSON};
+use ndarray::Array2;
+use ndarray_npy::{WriteNpyError, WriteNpyExt};
 use serde::{Deserialize, Serialize};
-use std::fs;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -56,6 +57,8 @@ pub struct Series {
 pub enum SeriesError {
     #[error("{columns} column names for a table of {width} columns")]
     ColumnCount { columns: usize, width: usize },
+    #[error("{columns} columns; a table has up to {MOST_COLUMNS}")]
+    Columns { columns: usize },
     #[error("column name {name:?}: {reason}")]
     ColumnName { name: String, reason: &'static str },
     #[error("row {row} of column {column:?} is {value}; only finite numbers are written")]
@@ -65,15 +68,13 @@ pub enum SeriesError {
     #[error("cannot encode {}: {source}", path.display())]
     Encode { path: PathBuf, source: WriteNpyError },
     #[error("cannot read {}: {source}", path.display())]
-    Read { path: PathBuf, source: std::io::Error },
+    Read { path: PathBuf, source: InputError },
     #[error("{} is not a CSV table: {source}", path.display())]
     Csv { path: PathBuf, source: csv::Error },
     #[error("{} line {line}, column {column:?}: {text:?} is not a number", path.display())]
     Number { path: PathBuf, line: u64, column: String, text: String },
-    #[error("{} is not a NumPy file of real numbers: {source}", path.display())]
-    Npy { path: PathBuf, source: ReadNpyError },
-    #[error("{} has {dimensions} dimensions; a table has one or two", path.display())]
-    Dimensions { path: PathBuf, dimensions: usize },
+    #[error("{} is not a NumPy table of real numbers: {source}", path.display())]
+    Npy { path: PathBuf, source: NpyError },
     #[error("{} is not a list of column names and units: {source}", path.display())]
     ColumnsFile { path: PathBuf, source: serde_json::Error },
     #[error("{}: {reason}", path.display())]
@@ -88,7 +89,11 @@ impl Series {
         if columns.len() != data.ncols() {
             return Err(SeriesError::ColumnCount { columns: columns.len(), width: data.ncols() });
         }
-        for (index, column) in columns.iter().enumerate() {
+        if columns.len() > MOST_COLUMNS {
+            return Err(SeriesError::Columns { columns: columns.len() });
+        }
+        let mut names = HashSet::new();
+        for column in &columns {
             let refused = |reason| SeriesError::ColumnName { name: column.name.clone(), reason };
             if column.name.is_empty() {
                 return Err(refused("a name is required"));
@@ -100,7 +105,7 @@ impl Series {
                     ));
                 }
             }
-            if columns[..index].iter().any(|other| other.name == column.name) {
+            if !names.insert(column.name.as_str()) {
                 return Err(refused("the name is used twice"));
             }
         }
@@ -205,25 +210,13 @@ impl Series {
     /// Values that are not finite are read as they are.
     pub fn read_npy(path: &Path) -> Result<Self, SeriesError> {
         let bytes = read(path)?;
-        let npy_error = |source| SeriesError::Npy { path: path.to_path_buf(), source };
-        let values = match read_array::<f64>(&bytes) {
-            Err(ReadNpyError::WrongDescriptor(_)) => {
-                read_array::<f32>(&bytes).map(|single| single.mapv(f64::from))
-            }
-            other => other,
-        }
-        .map_err(npy_error)?;
-        let dimensions = values.ndim();
-        let values = match dimensions {
-            1 => values.insert_axis(ndarray::Axis(1)),
-            _ => values,
-        };
-        let data = values
-            .into_dimensionality::<Ix2>()
-            .map_err(|_| SeriesError::Dimensions { path: path.to_path_buf(), dimensions })?;
+        let data = npy::parse(&bytes)
+            .map_err(|source| SeriesError::Npy { path: path.to_path_buf(), source })?;
         let columns_path = columns_path(path);
         let columns = if columns_path.exists() {
-            serde_json::from_slice(&read(&columns_path)?)
+            let bytes = input_file::read(&columns_path, LARGEST_JSON)
+                .map_err(|source| SeriesError::Read { path: columns_path.clone(), source })?;
+            serde_json::from_slice(&bytes)
                 .map_err(|source| SeriesError::ColumnsFile { path: columns_path.clone(), source })?
         } else {
             (0..data.ncols()).map(|index| Column::new(format!("column {index}"), "")).collect()
@@ -238,22 +231,12 @@ pub fn columns_path(npy: &Path) -> PathBuf {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, SeriesError> {
-    fs::read(path).map_err(|source| SeriesError::Read { path: path.to_path_buf(), source })
+    input_file::read(path, LARGEST_DATA)
+        .map_err(|source| SeriesError::Read { path: path.to_path_buf(), source })
 }
 
 fn in_file(path: &Path, reason: SeriesError) -> SeriesError {
     SeriesError::Table { path: path.to_path_buf(), reason: Box::new(reason) }
-}
-
-fn read_array<T: ReadableElement>(bytes: &[u8]) -> Result<ArrayD<T>, ReadNpyError> {
-    // The reader allocates what the header promises before it looks at the data, so a damaged
-    // header must not promise more than the file holds (every element takes a byte or more).
-    let header = Header::from_reader(&mut &bytes[..])?;
-    let promised = header.shape.iter().try_fold(1usize, |total, &n| total.checked_mul(n));
-    if promised.ok_or(ReadNpyError::LengthOverflow)? > bytes.len() {
-        return Err(ReadNpyError::MissingData);
-    }
-    ArrayD::<T>::read_npy(bytes)
 }
 
 fn csv_line(fields: impl Iterator<Item = String>) -> String {

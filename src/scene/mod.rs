@@ -24,6 +24,7 @@ pub mod dynamics;
 pub mod error;
 pub mod housing;
 pub mod housing_problem;
+pub mod input_file;
 mod key_table;
 mod key_table_dynamics;
 mod key_table_housing;

@@ -13,6 +13,7 @@ use crate::mesh::{MeshError, Order, TetMesh};
 use crate::scene::about::About;
 use crate::scene::bore_shape::{BorePlace, elevate_with_bore};
 use crate::scene::housing::HousedScene;
+use crate::scene::input_file::{self, InputError, LARGEST_DATA};
 use crate::scene::resolve_solid_mesh::{extension, key_of_dimension};
 use crate::scene::solid::{MeshRequest, MeshSource, SetPlace};
 use crate::solver::solid::labels::Labels;
@@ -36,7 +37,7 @@ pub struct BuiltMesh {
 #[derive(Debug, Error)]
 pub enum SolidMeshError {
     #[error("solid.mesh.file: cannot read {}: {source}", path.display())]
-    File { path: PathBuf, source: std::io::Error },
+    File { path: PathBuf, source: InputError },
     #[error("{}: {source}", path.display())]
     Read { path: PathBuf, source: ReadError },
     #[error("{}: {faults}", path.display())]
@@ -120,7 +121,7 @@ fn build_around(
         Limits { aspect: request.largest_aspect, cavities: request.cavities, ..Limits::default() };
     let (mesh, pulled_back) = match &request.source {
         MeshSource::File { path, unit, .. } => {
-            let bytes = std::fs::read(path)
+            let bytes = input_file::read(path, LARGEST_DATA)
                 .map_err(|source| SolidMeshError::File { path: path.clone(), source })?;
             let loaded = match extension(&path.to_string_lossy()).as_str() {
                 "inp" => read_abaqus(&bytes, *unit),

@@ -1,8 +1,7 @@
 //! The text of a scene: reading the file, refusing what is not a scene early, and positions.
 
 use crate::scene::error::{Place, Problem, SceneError};
-use std::fs::File;
-use std::io::Read;
+use crate::scene::input_file::{self, InputError};
 use std::path::Path;
 
 /// How a scene is written.
@@ -48,29 +47,16 @@ impl Source {
 pub fn read(path: &Path) -> Result<(Source, Format), SceneError> {
     let name = path.display().to_string();
     let fail = |problem| SceneError::new(Place::file(&name), "", problem);
-    let unreadable = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound => fail(Problem::NoSuchFile),
-        _ => fail(Problem::Unreadable { reason: error.to_string() }),
-    };
-    let metadata = std::fs::metadata(path).map_err(unreadable)?;
-    if metadata.is_dir() {
-        return Err(fail(Problem::IsFolder));
-    }
-    if !metadata.is_file() {
-        return Err(fail(Problem::NotRegularFile));
-    }
-    let too_large = |bytes| fail(Problem::TooLarge { bytes, limit: LARGEST_FILE });
-    if metadata.len() > LARGEST_FILE {
-        return Err(too_large(metadata.len()));
-    }
+    let bytes = input_file::read(path, LARGEST_FILE).map_err(|error| {
+        fail(match error {
+            error if error.is_missing() => Problem::NoSuchFile,
+            InputError::Io(error) => Problem::Unreadable { reason: error.to_string() },
+            InputError::Folder => Problem::IsFolder,
+            InputError::NotRegular => Problem::NotRegularFile,
+            InputError::TooLarge { bytes, limit } => Problem::TooLarge { bytes, limit },
+        })
+    })?;
     let format = format_of(path).ok_or_else(|| fail(Problem::UnknownFormat))?;
-    let mut bytes = Vec::new();
-    let file = File::open(path).map_err(unreadable)?;
-    // The file may grow while it is read.
-    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > LARGEST_FILE {
-        return Err(too_large(bytes.len() as u64));
-    }
     Ok((decode(name, bytes)?, format))
 }
 

@@ -4,9 +4,10 @@
 
 use super::{
     Prepared, along_course, condensed, inertia_estimate, plan, prepare, record, refuse_moving,
-    remove_earlier, run_settings, run_table, say_notes, search, title, write_bore,
+    run_settings, run_table, say_notes, search, title, write_bore,
 };
-use crate::commands::run::{Arguments, pictures, refuse_unfinished};
+use crate::commands::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
+use crate::commands::run::{Arguments, pictures};
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::housed::course::{HousedCourse, bore_nodes};
@@ -46,7 +47,10 @@ pub fn run(arguments: &Arguments, document: &Document, scene: &HousedScene) -> C
     }
     let settings = run_settings(&arguments.scene, scene)?;
     let folder = results_folder(&arguments.scene, &arguments.out);
-    refuse_unfinished(arguments, &folder)?;
+    let folder = claimed(&folder, Writes::Run { fresh: arguments.fresh })?;
+    if !arguments.fresh {
+        refuse_half_way(&folder)?;
+    }
     let prepared = prepare(document, scene)?;
     let Prepared { built, setup, mesh_seconds } = &prepared;
     refuse_moving(document, scene)?;

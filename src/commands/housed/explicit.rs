@@ -1,10 +1,11 @@
 //! `bearing run` of a bearing in its housing in explicit steps.
 
 use super::{
-    Prepared, parts, plan, prepare, record, remove_earlier, request, run_settings, run_table,
+    Prepared, parts, plan, prepare, record, request, run_settings, run_table,
     say_notes, started, write_bore,
 };
-use crate::commands::run::{Arguments, no_run, pictures, refuse_unfinished};
+use crate::commands::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
+use crate::commands::run::{Arguments, no_run, pictures};
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::housed::fields::write_housing_fields;
@@ -43,6 +44,7 @@ pub fn run(
 ) -> CommandResult {
     let settings = run_settings(&arguments.scene, scene)?;
     let folder = results_folder(&arguments.scene, &arguments.out);
+    let folder = claimed(&folder, Writes::Run { fresh: arguments.fresh })?;
     let kept = kept_state(arguments, &folder)?;
     let prepared = prepare(document, scene)?;
     let Prepared { built, setup, .. } = &prepared;
@@ -159,7 +161,9 @@ fn kept_state(
     if arguments.resume {
         return Ok(Some(state::read(folder)?.ok_or_else(|| no_run(folder))?));
     }
-    refuse_unfinished(arguments, folder)?;
+    if !arguments.fresh {
+        refuse_half_way(folder)?;
+    }
     remove_earlier(folder)?;
     Ok(None)
 }

@@ -16,8 +16,6 @@ use bearing_dynamics::output::housed::fields::{BoreNodeState, bore_series};
 use bearing_dynamics::output::housed::state::{HousedParts, HousedRequest};
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::series::Series;
-use bearing_dynamics::output::solid::fields::LIST;
-use bearing_dynamics::output::solid::state::remove_arrays;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
 use bearing_dynamics::scene::housing_problem::{HousingSetup, check_constant, excitations, setup};
@@ -332,30 +330,4 @@ pub fn write_bore(folder: &Path, bore: &[BoreNodeState]) -> Fallible<PathBuf> {
     let path = folder.join("bore.csv");
     bore_series(bore)?.write_csv(&path)?;
     Ok(path)
-}
-
-/// Removes what an earlier command left in the folder and this one may not write again.
-pub fn remove_earlier(folder: &Path) -> Fallible<()> {
-    const NAMES: [&str; 8] = [
-        "summary.json",
-        "state.json",
-        "series.csv",
-        "series.npy",
-        "spectrum.csv",
-        "bore.csv",
-        LIST,
-        "load_zone.svg",
-    ];
-    super::solid::remove_earlier(folder)?;
-    for name in NAMES {
-        let path = folder.join(name);
-        match std::fs::remove_file(&path) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(format!("cannot replace {}: {error}", path.display()).into());
-            }
-            _ => {}
-        }
-    }
-    remove_arrays(folder, "");
-    Ok(())
 }

@@ -1,11 +1,12 @@
 //! `bearing statics` of a bearing in its housing: one equilibrium at t = 0.
 
 use super::{
-    Prepared, condensed, equilibrium_at, estimate_at, plan, prepare, record, remove_earlier,
+    Prepared, condensed, equilibrium_at, estimate_at, plan, prepare, record,
     say_notes, search, write_bore,
 };
+use crate::commands::earlier::{Writes, claimed, remove_earlier};
 use crate::commands::{
-    CommandResult, Outcome, pictures, refuse_folder_of_run, results_folder, say, table,
+    CommandResult, Outcome, pictures, results_folder, say, table,
 };
 use bearing_dynamics::output::housed::course::{bore_nodes, outer_place};
 use bearing_dynamics::output::housed::fields::write_housing_fields;
@@ -33,6 +34,10 @@ pub fn run(
     out: &Option<PathBuf>,
     dry: bool,
 ) -> CommandResult {
+    let folder = match dry {
+        true => None,
+        false => Some(claimed(&results_folder(path, out), Writes::Statics)?),
+    };
     let prepared = prepare(document, scene)?;
     let Prepared { built, setup, mesh_seconds } = &prepared;
     let start = Instant::now();
@@ -53,11 +58,7 @@ pub fn run(
     if let Some(estimate) = &inertia {
         say(&format!("note: {}\n", plan::verdict(scene, estimate, None)))?;
     }
-    if dry {
-        return Ok(Outcome::Done);
-    }
-    let folder = results_folder(path, out);
-    refuse_folder_of_run(&folder)?;
+    let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let seconds = vec![
         ("mesh".into(), *mesh_seconds),

@@ -10,14 +10,11 @@ pub mod statics;
 use super::{placed, say};
 use bearing_dynamics::mesh::repair::Repaired;
 use bearing_dynamics::output::results::RunRecord;
-use bearing_dynamics::output::solid::fields;
-use bearing_dynamics::output::solid::state::remove_arrays;
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build};
 use bearing_dynamics::scene::solid_problem::{SolidSetup, setup};
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::support::{FreeMotions, free_motions};
 use std::error::Error;
-use std::path::Path;
 use std::time::Instant;
 
 /// A scene with its mesh, ready to be solved.
@@ -78,38 +75,4 @@ pub fn record(
         seconds,
         sections: Vec::new(),
     })
-}
-
-/// Removes what an earlier command left in the folder and this one may not write again; nothing
-/// that this program does not name so.
-pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
-    let mut doomed: Vec<_> = ["summary.json", "state.json", "series.csv", "series.npy"]
-        .into_iter()
-        .chain([fields::LIST, "energies.svg", "spectrum.svg"])
-        .map(|name| folder.join(name))
-        .collect();
-    let inside = |folder: &Path, start: &str, end: &str| {
-        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        let paths = entries.map(|entry| entry.path());
-        let named = paths.filter(|path| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            name.starts_with(start) && name.ends_with(end)
-        });
-        named.collect::<Vec<_>>()
-    };
-    doomed.extend(inside(folder, "probe_", ".svg"));
-    let files = folder.join(fields::FOLDER);
-    for kind in ["fields_", "mode_"] {
-        doomed.extend(inside(&files, kind, ".vtu"));
-    }
-    for path in doomed {
-        match std::fs::remove_file(&path) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(format!("cannot replace {}: {error}", path.display()).into());
-            }
-            _ => {}
-        }
-    }
-    remove_arrays(folder, "");
-    Ok(())
 }

@@ -1,7 +1,8 @@
 //! `bearing modes`: natural frequencies and mode shapes of a solid.
 
-use super::{plan, prepare, record, remove_earlier, say_mesh_notes};
-use crate::commands::{CommandResult, Outcome, refuse_folder_of_run, results_folder, say};
+use super::{plan, prepare, record, say_mesh_notes};
+use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, write_list, write_mode};
@@ -20,6 +21,10 @@ pub fn run(
     out: &Option<PathBuf>,
     dry: bool,
 ) -> CommandResult {
+    let folder = match dry {
+        true => None,
+        false => Some(claimed(&modes_folder(path, out), Writes::Modes)?),
+    };
     let prepared = prepare(document, scene)?;
     let (built, setup) = (&prepared.built, &prepared.setup);
     let start = Instant::now();
@@ -38,17 +43,7 @@ pub fn run(
         let _ = writeln!(text, "{:>4} {:>20.6}", index + 1, mode.frequency);
     }
     say(&text)?;
-    if dry {
-        return Ok(Outcome::Done);
-    }
-    let folder = results_folder(path, out);
-    refuse_folder_of_run(&folder)?;
-    let folder = if out.is_some() {
-        folder
-    } else {
-        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        folder.with_file_name(format!("{name}-modes"))
-    };
+    let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let mut steps = Vec::new();
     for (index, mode) in found.modes.iter().enumerate() {
@@ -62,4 +57,14 @@ pub fn run(
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
     say(&format!("wrote {} files to {}\n", steps.len() + 5, folder.display()))?;
     Ok(Outcome::Done)
+}
+
+/// Apart from the folder of statics and of runs, so that each holds one kind of results.
+fn modes_folder(scene: &Path, out: &Option<PathBuf>) -> PathBuf {
+    let folder = results_folder(scene, out);
+    if out.is_some() {
+        return folder;
+    }
+    let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    folder.with_file_name(format!("{name}-modes"))
 }

@@ -1,6 +1,7 @@
 //! `bearing run` of a solid: step after step, and the folder it leaves.
 
-use super::{Prepared, plan, prepare, record, remove_earlier, say_mesh_notes, title};
+use super::{Prepared, plan, prepare, record, say_mesh_notes, title};
+use crate::commands::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
 use crate::commands::run::{Arguments, no_run};
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::mesh::TetMesh;
@@ -42,9 +43,10 @@ pub fn run(
         let scene = arguments.scene.display();
         return Err(format!("{scene}: a run needs `end` in [numerics]").into());
     };
+    let folder = results_folder(&arguments.scene, &arguments.out);
+    let folder = claimed(&folder, Writes::Run { fresh: arguments.fresh })?;
     let prepared = prepare(document, scene)?;
     let Prepared { built, setup, .. } = &prepared;
-    let folder = results_folder(&arguments.scene, &arguments.out);
     let kept = kept_state(arguments, &folder)?;
     let read_seconds = begun.elapsed().as_secs_f64();
 
@@ -165,18 +167,8 @@ fn kept_state(
     if arguments.resume {
         return Ok(Some(state::read(folder)?.ok_or_else(|| no_run(folder))?));
     }
-    if !arguments.fresh
-        && let Some(file) = state::read(folder)?
-        && matches!(file.stopped, Stopped::Interrupted | Stopped::Running)
-    {
-        return Err(format!(
-            "{} holds a run that stands at t = {} s of {} s; go on with it (--resume), discard \
-             it (--fresh), or choose another --out",
-            folder.display(),
-            rounded(file.time),
-            file.end
-        )
-        .into());
+    if !arguments.fresh {
+        refuse_half_way(folder)?;
     }
     remove_earlier(folder)?;
     Ok(None)

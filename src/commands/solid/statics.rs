@@ -1,7 +1,8 @@
 //! `bearing statics` of a solid.
 
-use super::{Prepared, plan, prepare, record, remove_earlier, say_mesh_notes};
-use crate::commands::{CommandResult, Outcome, refuse_folder_of_run, results_folder, say};
+use super::{Prepared, plan, prepare, record, say_mesh_notes};
+use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, stresses, write_fields, write_list};
@@ -21,6 +22,10 @@ pub fn run(
     out: &Option<PathBuf>,
     dry: bool,
 ) -> CommandResult {
+    let folder = match dry {
+        true => None,
+        false => Some(claimed(&results_folder(path, out), Writes::Statics)?),
+    };
     let prepared = prepare(document, scene)?;
     let Prepared { built, setup, free, mesh_seconds } = &prepared;
     if free.count > 0 {
@@ -48,11 +53,7 @@ pub fn run(
     let (summary, series) = summary::statics(&model, setup, built, &solution, &stress, &record)?;
     say_mesh_notes(built)?;
     say(&table(&summary))?;
-    if dry {
-        return Ok(Outcome::Done);
-    }
-    let folder = results_folder(path, out);
-    refuse_folder_of_run(&folder)?;
+    let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let file = file_name("fields", 0);
     write_fields(&folder.join(&file), &built.mesh, &solution.displacement, None, &stress)?;

@@ -11,6 +11,7 @@ use bearing_dynamics::output::solid::fields::stresses;
 use bearing_dynamics::scene::bore_shape::BorePlace;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::scene::housing_problem::setup;
+use bearing_dynamics::scene::input_file::{self, LARGEST_DATA};
 use bearing_dynamics::scene::solid::MeshSource;
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
 use bearing_dynamics::scene::{Document, Subject};
@@ -88,7 +89,7 @@ pub fn row(scene: &HousedScene, kept: &mut Option<Kept>) -> Result<Vec<f64>, Box
 pub fn mesh_file(subject: &Subject) -> Result<Vec<u8>, Box<dyn Error>> {
     let Subject::Housed(scene) = subject else { return Ok(Vec::new()) };
     let MeshSource::File { path, .. } = &scene.solid.mesh.source else { return Ok(Vec::new()) };
-    Ok(std::fs::read(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?)
+    Ok(input_file::read(path, LARGEST_DATA).map_err(|error| format!("cannot read {}: {error}", path.display()))?)
 }
 
 /// Whether a scene has a flexible housing; all points of a sweep agree on it.

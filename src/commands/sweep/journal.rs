@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::error::Error;
+use bearing_dynamics::scene::input_file::{self, InputError};
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -40,24 +41,30 @@ struct Open {
 }
 
 impl Journal {
-    /// Opens the journal in `folder`, with the chunks an earlier run left there.
+    /// Opens the journal in `folder`, with the chunks an earlier run left there; `points` is how many
+    /// points a chunk has.
     pub fn open(
         folder: &Path,
         fingerprint: &str,
         expected: usize,
+        points: impl Fn(usize) -> usize,
         fresh: bool,
     ) -> Result<Journal, Box<dyn Error>> {
-        std::fs::create_dir_all(folder)
-            .map_err(|error| format!("cannot create {}: {error}", folder.display()))?;
         let path = folder.join("sweep.journal");
-        let chunks = if fresh { BTreeMap::new() } else { read(&path, fingerprint, expected)? };
+        let chunks = match fresh {
+            true => BTreeMap::new(),
+            false => read(&path, fingerprint, expected, points)?,
+        };
         // Written anew, so that a line cut off by the interruption is gone.
-        let mut text = serde_json::to_string(&Header { sweep: fingerprint.into() })? + "\n";
+        let mut text = header(fingerprint)? + "\n";
         for chunk in chunks.values() {
             text += &(serde_json::to_string(chunk)? + "\n");
         }
         bearing_dynamics::output::write_atomic(&path, text.as_bytes())?;
-        let file = OpenOptions::new().append(true).open(&path)?;
+        let file = OpenOptions::new()
+            .append(true)
+            .open(&path)
+            .map_err(|error| format!("cannot write {}: {error}", path.display()))?;
         Ok(Journal { path, expected, open: Mutex::new(Open { file, chunks }) })
     }
 
@@ -91,25 +98,36 @@ impl Journal {
 
     /// Removes the file; the table has everything.
     pub fn remove(self) -> Result<(), Box<dyn Error>> {
-        std::fs::remove_file(&self.path)?;
-        Ok(())
+        Ok(std::fs::remove_file(&self.path)
+            .map_err(|error| format!("cannot remove {}: {error}", self.path.display()))?)
     }
+}
+
+fn header(fingerprint: &str) -> Result<String, serde_json::Error> {
+    serde_json::to_string(&Header { sweep: fingerprint.into() })
 }
 
 fn read(
     path: &Path,
     fingerprint: &str,
     expected: usize,
+    points: impl Fn(usize) -> usize,
 ) -> Result<BTreeMap<usize, Chunk>, Box<dyn Error>> {
     let mut chunks = BTreeMap::new();
-    let file = match File::open(path) {
-        Ok(file) => file,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(chunks),
-        Err(error) => return Err(format!("cannot read {}: {error}", path.display()).into()),
+    let unreadable = |error: InputError| format!("cannot read {}: {error}", path.display());
+    // As long as the sweep has come.
+    let file = match input_file::open(path, u64::MAX) {
+        Err(error) if error.is_missing() => return Ok(chunks),
+        other => other.map_err(unreadable)?,
     };
-    let mut lines = BufReader::new(file).lines();
-    let header = lines.next().transpose()?.unwrap_or_default();
-    let same = serde_json::from_str::<Header>(&header).is_ok_and(|h| h.sweep == fingerprint);
+    // Bytes: what a crash leaves at the end need not be text.
+    let mut lines = BufReader::new(file).split(b'\n');
+    let first = lines.next().transpose().map_err(|e| unreadable(e.into()))?.unwrap_or_default();
+    let same = serde_json::from_slice::<Header>(&first).is_ok_and(|h| h.sweep == fingerprint);
+    if !same && header(fingerprint)?.as_bytes().starts_with(&first) {
+        // Cut off before anything was kept.
+        return Ok(chunks);
+    }
     if !same {
         return Err(format!(
             "{} belongs to an unfinished sweep of another scene or of other values; finish that one, \
@@ -120,8 +138,13 @@ fn read(
     }
     for line in lines {
         // A line that does not parse was cut off; its chunk is solved again.
-        let Ok(chunk) = serde_json::from_str::<Chunk>(&line?) else { continue };
-        if chunk.index < expected {
+        let line = line.map_err(|error| unreadable(error.into()))?;
+        let Ok(chunk) = serde_json::from_slice::<Chunk>(&line) else { continue };
+        let is_whole = |chunk: &Chunk| {
+            chunk.rows.len() + chunk.failures.len() == points(chunk.index)
+                && chunk.rows.iter().all(|row| row.len() == chunk.rows[0].len())
+        };
+        if chunk.index < expected && is_whole(&chunk) {
             chunks.insert(chunk.index, chunk);
         }
     }

@@ -11,6 +11,7 @@ mod journal;
 mod point;
 mod report;
 
+use super::earlier::{Writes, claimed};
 use super::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::scene::{Document, Subject};
 use grid::Grid;
@@ -56,13 +57,15 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let grid = Grid::new(&document, &arguments.vary)?;
     // A scene that cannot be solved at all is said before anything is written.
     grid.check(&document)?;
-    let folder = sweep_folder(arguments);
+    let folder = claimed(&sweep_folder(arguments), Writes::Sweep)?;
     let first = grid.scene(&document, 0);
     let mesh = first.as_ref().map_or(Ok(Vec::new()), housed::mesh_file)?;
     let housed = matches!(first, Ok(Subject::Housed(_))) || housed::is_housed(&document);
     let size = if housed { HOUSED_CHUNK } else { CHUNK };
     let fingerprint = grid.fingerprint(&document, &mesh, arguments.cold);
-    let journal = Journal::open(&folder, &fingerprint, grid.chunks(size), arguments.fresh)?;
+    let points = |index| grid.chunk_range(index, size).len();
+    let journal =
+        Journal::open(&folder, &fingerprint, grid.chunks(size), points, arguments.fresh)?;
     let resumed = journal.finished();
     report::remove_earlier(&folder)?;
 

@@ -6,3 +6,8 @@ mod vtu;
 pub use abaqus::write_abaqus;
 pub use gmsh::write_gmsh;
 pub use vtu::{Field, write_pvd, write_vtu};
+
+/// Whether XML 1.0 (production 2) has a way to write this character.
+pub fn is_xml_character(c: char) -> bool {
+    matches!(c, '\t' | '\n' | '\r' | ' '..='\u{d7ff}' | '\u{e000}'..='\u{fffd}' | '\u{10000}'..)
+}

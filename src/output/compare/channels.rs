@@ -1,6 +1,7 @@
 //! The two forms in which results are compared: tables of numbers, and trees of named values.
 
 use crate::output::compare::CompareError;
+use crate::output::json;
 use crate::output::series::{Series, columns_path};
 use serde_json::Value;
 use std::path::Path;
@@ -57,11 +58,11 @@ pub fn read(path: &Path) -> Result<Content, CompareError> {
         Some("csv") => Ok(Content::Table(Series::read_csv(path)?)),
         Some("npy") => Ok(Content::Table(Series::read_npy(path)?)),
         Some("json") => {
-            let bytes = std::fs::read(path)
-                .map_err(|source| CompareError::Read { path: path.to_path_buf(), source })?;
-            let tree: Value = serde_json::from_slice(&bytes)
+            let tree = json::read(path)
                 .map_err(|source| CompareError::Json { path: path.to_path_buf(), source })?;
-            Ok(Content::Tree(leaves(&tree)))
+            let leaves =
+                leaves(&tree).ok_or_else(|| CompareError::Names { path: path.to_path_buf() })?;
+            Ok(Content::Tree(leaves))
         }
         _ => Err(CompareError::UnknownKind { path: path.to_path_buf() }),
     }
@@ -80,14 +81,27 @@ pub fn name_columns_as(
     Ok(candidate)
 }
 
-/// The values of a tree in the order in which they are written.
-pub fn leaves(tree: &Value) -> Vec<Leaf> {
+/// Bytes of all paths and channels of a tree. Each value carries the names of the parts above it: a
+/// long name above many values would multiply.
+pub const MOST_NAME_BYTES: usize = 32 << 20;
+
+/// The values of a tree in the order in which they are written; `None` where their names take more
+/// than [`MOST_NAME_BYTES`].
+pub fn leaves(tree: &Value) -> Option<Vec<Leaf>> {
     let mut found = Vec::new();
-    collect(tree, "", "", &mut found);
-    found
+    let mut room = MOST_NAME_BYTES;
+    collect(tree, "", "", &mut room, &mut found)?;
+    Some(found)
 }
 
-fn collect(value: &Value, path: &str, channel: &str, found: &mut Vec<Leaf>) {
+fn collect(
+    value: &Value,
+    path: &str,
+    channel: &str,
+    room: &mut usize,
+    found: &mut Vec<Leaf>,
+) -> Option<()> {
+    *room = room.checked_sub(path.len() + channel.len())?;
     let below = |parent: &str, key: &str| match parent {
         "" => key.to_string(),
         _ => format!("{parent}.{key}"),
@@ -100,15 +114,17 @@ fn collect(value: &Value, path: &str, channel: &str, found: &mut Vec<Leaf>) {
         Value::Array(items) if items.is_empty() => push("", LeafValue::Text("[]".into())),
         Value::Object(map) => {
             if let Some((real, unit)) = quantity(value) {
-                return push(unit, LeafValue::Real(real));
+                push(unit, LeafValue::Real(real));
+                return Some(());
             }
             for (key, item) in map {
-                collect(item, &below(path, key), &below(channel, key), found);
+                collect(item, &below(path, key), &below(channel, key), room, found)?;
             }
         }
         Value::Array(items) => {
             for (index, item) in items.iter().enumerate() {
-                collect(item, &format!("{path}[{index}]"), &format!("{channel}[]"), found);
+                let (path, channel) = (format!("{path}[{index}]"), format!("{channel}[]"));
+                collect(item, &path, &channel, room, found)?;
             }
         }
         Value::Number(number) => push(
@@ -122,6 +138,7 @@ fn collect(value: &Value, path: &str, channel: &str, found: &mut Vec<Leaf>) {
             push("", LeafValue::Text(value.to_string()));
         }
     }
+    Some(())
 }
 
 /// `{"value", "unit"}`. A `null` value is a number that JSON could not hold.

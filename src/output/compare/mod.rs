@@ -21,8 +21,9 @@ pub mod report;
 pub mod tolerance;
 pub mod unloaded;
 
+use crate::output::json::JsonError;
 use crate::output::series::SeriesError;
-use channels::{Content, name_columns_as};
+use channels::{Content, MOST_NAME_BYTES, name_columns_as};
 use judge::Judge;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -52,8 +53,13 @@ pub struct Options {
 pub enum CompareError {
     #[error("cannot read {}: {source}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
-    #[error("{} is not JSON: {source}", path.display())]
-    Json { path: PathBuf, source: serde_json::Error },
+    #[error("cannot read {} as JSON: {source}", path.display())]
+    Json { path: PathBuf, source: JsonError },
+    #[error(
+        "{}: the names of its values are too long together (more than {MOST_NAME_BYTES} bytes)",
+        path.display()
+    )]
+    Names { path: PathBuf },
     #[error(transparent)]
     Series(#[from] SeriesError),
     #[error(transparent)]

@@ -1,6 +1,7 @@
 //! A comparison as text for people and as JSON for programs.
 
 use crate::output::compare::{ChannelResult, Comparison, Divergence, DivergenceKind};
+use crate::output::visible::visible_line;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -193,6 +194,7 @@ fn list(text: &mut String, title: &str, items: &[String]) {
 }
 
 fn line(text: &mut String, content: String) {
-    text.push_str(&content);
+    // A key of a file may hold a line break, and so pass for a line of this report.
+    text.push_str(&visible_line(&content));
     text.push('\n');
 }

@@ -3,10 +3,14 @@
 //! allowed = absolute floor + relative · |reference| + scale relative · (largest |reference| of
 //! the channel; the components of one vector share theirs).
 
+use crate::scene::input_file::{self, InputError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
+
+/// Bytes of the largest `tolerances.json`; it has one line a channel.
+const LARGEST_FILE: u64 = 1 << 20;
 
 /// A named set of tolerance numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -195,7 +199,7 @@ pub struct ChannelTolerance {
 #[derive(Debug, Error)]
 pub enum ToleranceError {
     #[error("cannot read {}: {source}", path.display())]
-    Read { path: PathBuf, source: std::io::Error },
+    Read { path: PathBuf, source: InputError },
     #[error("{} is not a tolerance file: {source}", path.display())]
     Json { path: PathBuf, source: serde_json::Error },
     #[error("tolerance of {channel:?}: {number} is {value}; allowed are finite numbers >= 0")]
@@ -215,7 +219,7 @@ pub enum ToleranceError {
 
 impl Tolerances {
     pub fn read(path: &Path) -> Result<Self, ToleranceError> {
-        let bytes = std::fs::read(path)
+        let bytes = input_file::read(path, LARGEST_FILE)
             .map_err(|source| ToleranceError::Read { path: path.to_path_buf(), source })?;
         let tolerances: Tolerances = serde_json::from_slice(&bytes)
             .map_err(|source| ToleranceError::Json { path: path.to_path_buf(), source })?;

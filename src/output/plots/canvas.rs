@@ -1,5 +1,6 @@
 //! Drawing primitives that all plots share: text, lines, markers, legend.
 
+use crate::mesh::write::is_xml_character;
 use crate::output::plots::{Curve, PlotError};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -62,8 +63,8 @@ pub fn text(
     align: Align,
     colour: RGBColor,
 ) -> Result<(), PlotError> {
-    // XML has no way to write control characters.
-    let content: String = content.chars().filter(|c| !c.is_control()).collect();
+    let content: String =
+        content.chars().filter(|c| !c.is_control() && is_xml_character(*c)).collect();
     let horizontal = match align {
         Align::Left => HPos::Left,
         Align::Centre | Align::Upwards => HPos::Center,

@@ -1,0 +1,124 @@
+//! What lies in a results folder before a command writes there: what may be replaced, and its removal.
+
+use super::{pictures, say};
+use bearing_dynamics::output::folder::{Holds, ResultsFolder, claim, holds};
+use bearing_dynamics::output::json;
+use bearing_dynamics::output::solid::fields;
+use bearing_dynamics::output::solid::state::remove_arrays;
+use bearing_dynamics::solver::clock::rounded;
+use std::error::Error;
+use std::path::Path;
+
+/// What a command is about to write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Writes {
+    Statics,
+    Modes,
+    /// Over results of statics or modes too, if that was asked for.
+    Run {
+        fresh: bool,
+    },
+    Sweep,
+    Pack,
+}
+
+/// The folder for this process alone, once it is clear that it can be written to and that nothing in
+/// it is lost but results of the same command.
+pub fn claimed(path: &Path, writes: Writes) -> Result<ResultsFolder, Box<dyn Error>> {
+    let folder = claim(path)?;
+    if !folder.locked {
+        say(&format!(
+            "note: {} cannot be locked on this file system; let no second command write there\n",
+            folder.display()
+        ))?;
+    }
+    refuse_other(&folder, writes)?;
+    Ok(folder)
+}
+
+/// Refuses to write over results of another command, or over what is not this program's.
+fn refuse_other(folder: &Path, writes: Writes) -> Result<(), Box<dyn Error>> {
+    let found = match (holds(folder)?, writes) {
+        (Holds::Nothing, _)
+        | (Holds::Run, Writes::Run { .. })
+        | (Holds::Sweep, Writes::Sweep)
+        | (Holds::Pack, Writes::Pack)
+        | (Holds::Results(_), Writes::Run { fresh: true }) => return Ok(()),
+        (Holds::Results(kind), Writes::Statics) if kind.starts_with("static") => return Ok(()),
+        (Holds::Results(kind), Writes::Modes) if kind.contains("modes") => return Ok(()),
+        (Holds::Results(kind), Writes::Run { fresh: false }) => {
+            return Err(format!(
+                "{} holds results of another kind ({kind}); name another folder with --out, or write \
+                 over them (--fresh)",
+                folder.display()
+            )
+            .into());
+        }
+        (Holds::Results(kind), _) => format!("results of another kind ({kind})"),
+        (Holds::Run, _) => "a run".to_string(),
+        (Holds::Sweep, _) => "a sweep".to_string(),
+        (Holds::Pack, _) => "a case pack".to_string(),
+    };
+    Err(format!("{} holds {found}; name another folder with --out", folder.display()).into())
+}
+
+/// Refuses to write over a run of any kind that stands half way.
+pub fn refuse_half_way(folder: &Path) -> Result<(), Box<dyn Error>> {
+    let state = json::read(&folder.join("state.json")).unwrap_or_default();
+    // That of a bearing in its housing lies a level deeper.
+    let of = if state["bearing"].is_object() { &state["bearing"] } else { &state };
+    if !matches!(of["stopped"].as_str(), Some("running" | "interrupted")) {
+        return Ok(());
+    }
+    let (time, end) = (of["time"].as_f64().unwrap_or(0.0), &of["end"]);
+    Err(format!(
+        "{} holds a run that stands at t = {} s of {end} s; go on with it (--resume), discard it \
+         (--fresh), or choose another --out",
+        folder.display(),
+        rounded(time)
+    )
+    .into())
+}
+
+/// Removes what an earlier command left in the folder and this one may not write again; nothing that
+/// this program does not name so. The summary goes first: its presence says that a folder is complete.
+pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
+    const NAMES: [&str; 10] = [
+        "summary.json",
+        "state.json",
+        "series.csv",
+        "series.npy",
+        "series.columns.json",
+        "spectrum.csv",
+        "bore.csv",
+        fields::LIST,
+        "energies.svg",
+        "spectrum.svg",
+    ];
+    let named = NAMES.into_iter().chain(pictures::NAMES).map(|name| folder.join(name));
+    let mut doomed: Vec<_> = named.collect();
+    let inside = |folder: &Path, start: &str, end: &str| {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        let paths = entries.map(|entry| entry.path());
+        let named = paths.filter(|path| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            name.starts_with(start) && name.ends_with(end)
+        });
+        named.collect::<Vec<_>>()
+    };
+    doomed.extend(inside(folder, "probe_", ".svg"));
+    let files = folder.join(fields::FOLDER);
+    for kind in ["fields_", "mode_"] {
+        doomed.extend(inside(&files, kind, ".vtu"));
+    }
+    for path in doomed {
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(format!("cannot replace {}: {error}", path.display()).into());
+            }
+            _ => {}
+        }
+    }
+    remove_arrays(folder, "");
+    Ok(())
+}

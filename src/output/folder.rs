@@ -1,0 +1,233 @@
+//! Who may write into a results folder, and over what.
+//!
+//! A command claims its folder before it computes anything: the folder can be made and written to, no
+//! other process of this program writes there, and what lies in it may be replaced. The lock is the
+//! system's, on the folder itself: it leaves no file, and goes with the process that holds it, however
+//! that ends.
+
+use crate::output::atomic::remove_partials;
+use crate::output::json;
+use crate::output::pack::{MANIFEST, RESOLVED};
+use serde_json::Value;
+use std::fs::{self, File, TryLockError};
+use std::io;
+use std::ops::Deref;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// A folder that this process alone writes into, until it is dropped. One that was made for it and is
+/// still empty goes again.
+#[derive(Debug)]
+pub struct ResultsFolder {
+    path: PathBuf,
+    /// Innermost first.
+    made: Vec<PathBuf>,
+    /// False where the file system cannot lock.
+    pub locked: bool,
+    _lock: File,
+}
+
+#[derive(Debug, Error)]
+pub enum FolderError {
+    #[error(
+        "cannot make the results folder {}: {} is a file; move it away, or choose another --out",
+        folder.display(), file.display()
+    )]
+    FileInTheWay { folder: PathBuf, file: PathBuf },
+    #[error(
+        "cannot make the results folder {}: {source}; choose another --out", folder.display()
+    )]
+    Make { folder: PathBuf, source: io::Error },
+    #[error(
+        "cannot write into the results folder {}: {source}; choose another --out, or see who may write \
+         there and whether the disk is full",
+        folder.display()
+    )]
+    Write { folder: PathBuf, source: io::Error },
+    #[error(
+        "another bearing process is writing into {}; wait until it has ended, or choose another --out",
+        folder.display()
+    )]
+    Busy { folder: PathBuf },
+    #[error(
+        "{} was not written by this program ({reason}), and is not replaced; move it away, or choose \
+         another --out",
+        file.display()
+    )]
+    Foreign { file: PathBuf, reason: String },
+}
+
+impl Deref for ResultsFolder {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Drop for ResultsFolder {
+    fn drop(&mut self) {
+        // Only empty folders can be removed so; what cannot be removed stays: it harms nothing.
+        for folder in &self.made {
+            if fs::remove_dir(folder).is_err() {
+                break;
+            }
+        }
+    }
+}
+
+/// Makes the folder where there is none, locks it, sees that it can be written to, and removes what
+/// killed processes left half written in it.
+///
+/// # Errors
+/// [`FolderError`] but for [`FolderError::Foreign`].
+pub fn claim(path: &Path) -> Result<ResultsFolder, FolderError> {
+    let mut made = Vec::new();
+    let (lock, locked) = loop {
+        made.extend(make(path)?);
+        let failed = |source| FolderError::Make { folder: path.to_path_buf(), source };
+        let handle = match handle(path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
+            other => other.map_err(failed)?,
+        };
+        let locked = match handle.try_lock() {
+            Ok(()) => true,
+            Err(TryLockError::WouldBlock) => {
+                return Err(FolderError::Busy { folder: path.to_path_buf() });
+            }
+            Err(TryLockError::Error(_)) => false,
+        };
+        // Another process may have removed its empty folder between the opening and the locking.
+        if is_at(&handle, path) {
+            break (handle, locked);
+        }
+    };
+    let folder = ResultsFolder { path: path.to_path_buf(), made, locked, _lock: lock };
+    let write = |source| FolderError::Write { folder: path.to_path_buf(), source };
+    // Named as a half-written file is, so that it does not stay.
+    let probe = path.join(format!(".probe.{}.partial", std::process::id()));
+    File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(write)?;
+    if locked {
+        remove_partials(path);
+    }
+    Ok(folder)
+}
+
+/// Makes a folder and those above it; returns the new ones, innermost first.
+fn make(path: &Path) -> Result<Vec<PathBuf>, FolderError> {
+    let folder = || path.to_path_buf();
+    let missing: Vec<PathBuf> = path
+        .ancestors()
+        .filter(|above| !above.as_os_str().is_empty())
+        .take_while(|above| !above.exists())
+        .map(Path::to_path_buf)
+        .collect();
+    let in_the_way = path.ancestors().find(|above| above.exists() && !above.is_dir());
+    if let Some(file) = in_the_way {
+        return Err(FolderError::FileInTheWay { folder: folder(), file: file.to_path_buf() });
+    }
+    fs::create_dir_all(path).map_err(|source| FolderError::Make { folder: folder(), source })?;
+    Ok(missing)
+}
+
+#[cfg(unix)]
+fn handle(folder: &Path) -> io::Result<File> {
+    File::open(folder)
+}
+
+/// Whether a path still leads to an opened folder.
+#[cfg(unix)]
+fn is_at(handle: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let place = |data: fs::Metadata| (data.dev(), data.ino());
+    let opened = handle.metadata().map(place);
+    matches!((opened, fs::metadata(path).map(place)), (Ok(a), Ok(b)) if a == b)
+}
+
+/// Folders cannot be opened everywhere: there a file in it stands for the folder.
+#[cfg(not(unix))]
+fn handle(folder: &Path) -> io::Result<File> {
+    File::options().create(true).truncate(false).write(true).open(folder.join(".lock"))
+}
+
+#[cfg(not(unix))]
+fn is_at(_: &File, _: &Path) -> bool {
+    true
+}
+
+/// What a folder holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Holds {
+    /// Nothing that a command would replace.
+    Nothing,
+    /// A run, finished or not.
+    Run,
+    /// Other results, by the `kind` of their summary.
+    Results(String),
+    Sweep,
+    Pack,
+}
+
+/// Tables that a command replaces; they are this program's where one of its records lies beside them.
+const TABLES: [&str; 6] =
+    ["series.csv", "series.npy", "spectrum.csv", "bore.csv", "sweep.csv", "sweep.npy"];
+
+/// What lies in a folder, by the records that this program leaves.
+///
+/// # Errors
+/// [`FolderError::Foreign`] for a file that a command would replace and that is not this program's.
+pub fn holds(folder: &Path) -> Result<Holds, FolderError> {
+    let there = |name: &str| folder.join(name).exists();
+    let foreign = |name: &str, reason: &str| FolderError::Foreign {
+        file: folder.join(name),
+        reason: reason.to_string(),
+    };
+    let record = |name: &str| -> Result<Option<Value>, FolderError> {
+        let file = folder.join(name);
+        match fs::symlink_metadata(&file) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            _ => match json::read(&file) {
+                Ok(record) if is_own(&record) => Ok(Some(record)),
+                Ok(_) => Err(foreign(name, "it names another program, or none")),
+                Err(error) => Err(foreign(name, &error.to_string())),
+            },
+        }
+    };
+    let (state, summary) = (record("state.json")?, record("summary.json")?);
+    let sweep = record("sweep.json")?;
+    // A pack that was left half written has no manifest yet.
+    let manifest = json::read(&folder.join(MANIFEST)).is_ok_and(|manifest| is_own(&manifest));
+    if manifest || (summary.is_some() && there(RESOLVED)) {
+        return Ok(Holds::Pack);
+    }
+    if sweep.is_some() || there("sweep.journal") {
+        return Ok(Holds::Sweep);
+    }
+    if state.is_some() {
+        return Ok(Holds::Run);
+    }
+    if let Some(summary) = summary {
+        return Ok(match summary["kind"].as_str().unwrap_or("results") {
+            kind if kind.starts_with("run") => Holds::Run,
+            kind => Holds::Results(kind.to_string()),
+        });
+    }
+    // A process killed between its tables and its record leaves the names of the columns, or the list
+    // of fields.
+    if there("series.columns.json") || there("fields.pvd") {
+        return Ok(Holds::Nothing);
+    }
+    match TABLES.iter().find(|name| there(name)) {
+        Some(name) => Err(foreign(name, "no record of this program lies beside it")),
+        None => Ok(Holds::Nothing),
+    }
+}
+
+/// Whether a record says that this program wrote it: summaries name it in a table, a run in its
+/// housing a level deeper, all others as a word.
+fn is_own(record: &Value) -> bool {
+    let name = env!("CARGO_PKG_NAME");
+    [&record["program"], &record["program"]["name"], &record["bearing"]["program"]]
+        .into_iter()
+        .any(|found| found == name)
+}

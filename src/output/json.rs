@@ -1,0 +1,69 @@
+//! JSON files of results, read within bounds: a tree takes up to a hundred times the memory of its
+//! text, so that its values are counted before it is built.
+
+use crate::scene::input_file::{self, InputError, LARGEST_JSON};
+use serde_json::Value;
+use std::path::Path;
+use thiserror::Error;
+
+/// Values, lists and tables in a file. The summary of a run of 200 balls that records everything has
+/// some ten thousand; a quarter of a million take about 100 MB.
+pub const MOST_VALUES: usize = 250_000;
+
+#[derive(Debug, Error)]
+pub enum JsonError {
+    #[error(transparent)]
+    Input(#[from] InputError),
+    #[error("it has more than {MOST_VALUES} values; tables belong into .csv or .npy files")]
+    TooMany,
+    #[error(transparent)]
+    Syntax(#[from] serde_json::Error),
+}
+
+/// Reads a file as a tree.
+///
+/// # Errors
+/// [`JsonError`].
+pub fn read(path: &Path) -> Result<Value, JsonError> {
+    parse(&input_file::read(path, LARGEST_JSON)?)
+}
+
+/// The same from bytes.
+///
+/// # Errors
+/// [`JsonError`].
+pub fn parse(bytes: &[u8]) -> Result<Value, JsonError> {
+    if values(bytes) > MOST_VALUES {
+        return Err(JsonError::TooMany);
+    }
+    Ok(serde_json::from_slice(bytes)?)
+}
+
+/// How many values the text has at most: one, and one more for each comma and opening bracket outside
+/// of strings.
+fn values(bytes: &[u8]) -> usize {
+    let (mut count, mut in_string, mut escaped) = (1, false, false);
+    for byte in bytes {
+        match byte {
+            _ if escaped => escaped = false,
+            b'\\' if in_string => escaped = true,
+            b'"' => in_string = !in_string,
+            b',' | b'[' | b'{' if !in_string => count += 1,
+            _ => {}
+        }
+    }
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_counted_outside_of_strings() {
+        assert_eq!(values(br#"{"a,[{\",": [1, 2, {}]}"#), 1 + 1 + 1 + 2 + 1);
+        let list = |count: usize| format!("[{}0]", "0,".repeat(count - 1));
+        assert!(parse(list(MOST_VALUES - 1).as_bytes()).is_ok());
+        assert!(matches!(parse(list(MOST_VALUES).as_bytes()), Err(JsonError::TooMany)));
+    }
+}
