@@ -153,9 +153,68 @@ fn a_killed_sweep_resumes_to_the_same_bytes() {
     let complete = journal.rfind('\n').unwrap();
     let last = journal[..complete].rfind('\n').unwrap();
     fs::write(sweep.journal(), &journal[..(last + complete) / 2]).unwrap();
+    fs::write(sweep.out.join(".sweep.journal.4294967294.partial"), "half").unwrap();
     let chunks = journal[..last].lines().count() - 1;
     assert!(chunks >= 2);
     sweep.resume_and_compare(chunks * CHUNK);
+}
+
+/// A kill, or a crash of the machine, may cut the journal anywhere: in its last record or in its header,
+/// with or without what was never text behind it. `JOURNAL_CUTS=all` cuts at every byte of the record.
+#[test]
+fn a_journal_that_was_cut_anywhere_is_resumed() {
+    let root = tempdir().unwrap();
+    let path = write(root.path(), "a.toml", DEEP_GROOVE);
+    // The last chunk has two points, so that its record is short.
+    let points = CHUNK + 2;
+    let vary = vary_phase(points);
+    let sweep = |out: &Path| {
+        ["sweep", &path, "--vary", &vary, "--threads", "1", "--out", &text(out)].map(str::to_string)
+    };
+    let run = |out: &Path| {
+        let arguments = sweep(out);
+        done(&arguments.each_ref().map(String::as_str))
+    };
+    let whole = root.path().join("whole");
+    run(&whole);
+    // The journal of this sweep, caught before it is over.
+    let out = root.path().join("out");
+    let journal = out.join("sweep.journal");
+    let mut kept = Vec::new();
+    for _ in 0..200 {
+        let arguments = sweep(&out);
+        let mut child = command().args(&arguments).stdout(Stdio::null()).spawn().unwrap();
+        while child.try_wait().unwrap().is_none() {
+            let lines = |bytes: &[u8]| bytes.iter().filter(|&&b| b == b'\n').count();
+            if let Ok(bytes) = fs::read(&journal)
+                && bytes.ends_with(b"\n")
+                && lines(&bytes) == 3
+            {
+                kept = bytes;
+            }
+        }
+        if !kept.is_empty() {
+            break;
+        }
+    }
+    assert!(!kept.is_empty(), "the sweep was never seen half way");
+    let ends: Vec<usize> = (0..kept.len()).filter(|&at| kept[at] == b'\n').collect();
+    let last = ends[1] + 1;
+    // The end, where numbers, brackets and the break are, and some bytes before; all of them on request.
+    let step = if std::env::var("JOURNAL_CUTS").is_ok_and(|all| all == "all") { 1 } else { 29 };
+    let inside = (last..kept.len()).filter(|at| kept.len() - at < 6 || (at - last) % step == 0);
+    let cuts = inside.chain([0, 1, ends[0] / 2, ends[0], ends[0] + 1]);
+    for (count, cut) in cuts.enumerate() {
+        let rest: &[u8] = [&b""[..], b"\xff\xfe\n", b"\0\0\0\0"][count % 3];
+        fs::create_dir_all(&out).unwrap();
+        fs::write(&journal, [&kept[..cut], if cut > ends[0] { rest } else { b"" }].concat())
+            .unwrap();
+        let said = run(&out);
+        assert!(said.starts_with(&format!("{} points", points)), "cut at {cut}: {said}");
+        assert!(bytes(&out) == bytes(&whole), "cut at {cut}");
+        assert!(!journal.exists());
+        fs::remove_file(out.join("sweep.json")).unwrap();
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 #[allow(dead_code)]
 mod output_common;
 
-use bearing_dynamics::output::compare::tolerance::{ToleranceClass, Tolerances};
+use bearing_dynamics::output::compare::tolerance::{GivenTolerance, ToleranceClass, Tolerances};
 use bearing_dynamics::output::compare::{
     CompareError, Comparison, DivergenceKind, Options, compare, is_ignored_by_name, report, to_json,
 };
@@ -415,7 +415,16 @@ fn a_missing_file_is_a_difference_and_a_damaged_one_an_error() {
 fn a_header_that_promises_too_much_is_refused_without_allocating() {
     let root = tempfile::tempdir().unwrap();
     let path = root.path().join("huge.npy");
-    for shape in ["(1000000000000, 8)", "(18446744073709551615, 8)", "(99999999999999999999, 8)"] {
+    let nested = "(".repeat(9000);
+    for shape in [
+        "(1000000000000, 8)",
+        "(18446744073709551615, 8)",
+        "(99999999999999999999, 8)",
+        // No numbers at all, and a name for each column of them.
+        "(0, 4611686018427387904)",
+        "(0, 100000)",
+        &nested,
+    ] {
         let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}");
         while !(header.len() + 11).is_multiple_of(64) {
             header.push(' ');
@@ -426,6 +435,135 @@ fn a_header_that_promises_too_much_is_refused_without_allocating() {
         bytes.extend(header.as_bytes());
         fs::write(&path, bytes).unwrap();
         assert!(compare(&path, &path, &Options::default()).is_err());
+    }
+    // A header of four gigabytes.
+    for version in [2, 3] {
+        let mut bytes = b"\x93NUMPY".to_vec();
+        bytes.extend([version, 0, 255, 255, 255, 255]);
+        bytes.extend(b"{'descr': '<f8', 'fortran_order': False, 'shape': (1, 1), }\n");
+        fs::write(&path, bytes).unwrap();
+        let error = compare(&path, &path, &Options::default()).unwrap_err().to_string();
+        assert!(error.contains("header claims 4294967295 bytes"), "{error}");
+    }
+}
+
+/// Tables as NumPy writes them, to the byte but for the padding of the header.
+#[test]
+fn npy_is_read_in_both_orders_precisions_and_versions() {
+    let root = tempfile::tempdir().unwrap();
+    let path = root.path().join("t.npy");
+    let file = |version: u8, header: &str, data: &[u8]| {
+        let mut bytes = b"\x93NUMPY".to_vec();
+        bytes.extend([version, 0]);
+        match version {
+            1 => bytes.extend((header.len() as u16).to_le_bytes()),
+            _ => bytes.extend((header.len() as u32).to_le_bytes()),
+        }
+        bytes.extend(header.as_bytes());
+        bytes.extend(data);
+        fs::write(&path, bytes).unwrap();
+        Series::read_npy(&path).map(|series| series.data().clone())
+    };
+    let rows: [f64; 6] = [1.5, -2.0, 0.25, 1e3, 7.0, -0.5];
+    let columns = [rows[0], rows[3], rows[1], rows[4], rows[2], rows[5]];
+    let expected = ndarray::arr2(&[[1.5, -2.0, 0.25], [1e3, 7.0, -0.5]]);
+    let bytes = |values: &[f64], of: &dyn Fn(f64) -> Vec<u8>| -> Vec<u8> {
+        values.iter().flat_map(|value| of(*value)).collect()
+    };
+    type Code = fn(f64) -> Vec<u8>;
+    let codes: [(&str, Code); 4] = [
+        ("<f8", |x| x.to_le_bytes().to_vec()),
+        (">f8", |x| x.to_be_bytes().to_vec()),
+        ("<f4", |x| (x as f32).to_le_bytes().to_vec()),
+        (">f4", |x| (x as f32).to_be_bytes().to_vec()),
+    ];
+    for (descr, code) in codes {
+        for version in [1, 2, 3] {
+            for (order, values) in [("False", &rows), ("True", &columns)] {
+                let header = format!(
+                    "{{'descr': '{descr}', 'fortran_order': {order}, 'shape': (2, 3), }}    \n"
+                );
+                assert_eq!(file(version, &header, &bytes(values, &code)).unwrap(), expected);
+                let cut = bytes(&values[..5], &code);
+                assert!(file(version, &header, &cut).is_err(), "{header}");
+            }
+        }
+    }
+    let header = "{\"shape\":(6,),\"fortran_order\":False,\"descr\":\"<f8\"}";
+    let column = file(1, header, &bytes(&rows, &codes[0].1)).unwrap();
+    assert_eq!(column, ndarray::Array2::from_shape_vec((6, 1), rows.to_vec()).unwrap());
+    for wrong in [
+        "{'descr': '<i8', 'fortran_order': False, 'shape': (6,)}",
+        "{'descr': [('a', '<f8')], 'fortran_order': False, 'shape': (6,)}",
+        "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 2, 3)}",
+        "{'descr': '<f8', 'fortran_order': False, 'shape': ()}",
+        "{'descr': '<f8', 'fortran_order': False, 'shape': (-6,)}",
+        "{'descr': '<f8', 'fortran_order': False}",
+        "{'descr': '<f8', 'descr': '<f8', 'fortran_order': False, 'shape': (6,)}",
+        "{'descr': '<f8', 'fortran_order': No, 'shape': (6,)}",
+        "{'descr': '<f8', 'fortran_order': False, 'shape': (6,)} more",
+        "",
+    ] {
+        assert!(file(1, wrong, &bytes(&rows, &codes[0].1)).is_err(), "{wrong}");
+    }
+}
+
+/// A small but ordinary value of each unit, put together from forces of 100 N, levers of a centimetre,
+/// lengths of 0.1 mm and the like; a tolerance class takes its share of it.
+#[test]
+fn the_floor_of_every_unit_is_its_share_of_a_small_ordinary_value() {
+    const UM: f64 = 1e-6;
+    const MRAD: f64 = 1e-3;
+    let length = 1e-4;
+    let table = [
+        ("m", length),
+        ("mm", length / 1e-3),
+        ("um", length / UM),
+        ("N", 100.0),
+        ("N m", 100.0 * 0.01),
+        ("deg", 1e-3),
+        ("rad", 1e-5),
+        ("Pa", 1e6),
+        ("MPa", 1.0),
+        ("N/m", 1.0 / UM),
+        ("N/rad", 1.0 / MRAD),
+        ("N m/m", 1.0 / MRAD),
+        ("N m/rad", 1e-3 / MRAD),
+        ("N/m^1.5", 1.0 / (UM * UM.sqrt())),
+        ("s", 1e-6),
+        ("Hz", 1e-3),
+        ("rad/s", 1e-3),
+        ("m/s", 1e-3),
+        ("m/s^2", 1e-3),
+        ("kg", 1e-6),
+        ("J", 1e-6),
+        ("1", 0.0),
+        ("", 0.0),
+        ("furlong", 0.0),
+    ];
+    let root = tempfile::tempdir().unwrap();
+    let [reference, candidate] = ["a.csv", "b.csv"].map(|name| root.path().join(name));
+    let column = |path: &Path, unit: &str, value: f64| {
+        let header = if unit.is_empty() { "x".into() } else { format!("x [{unit}]") };
+        fs::write(path, format!("{header}\n0\n{value:?}\n")).unwrap();
+    };
+    for (unit, ordinary) in table {
+        column(&reference, unit, 0.0);
+        let equal = |options: &Options, value: f64| {
+            column(&candidate, unit, value);
+            compare(&reference, &candidate, options).unwrap().equal
+        };
+        let given = GivenTolerance { scale_relative: 1e-2, floors: Vec::new() };
+        let given = Options { given: Some(given), ..Options::default() };
+        for (options, share) in [
+            (with_class(ToleranceClass::F64Reordered), 1e-10),
+            (with_class(ToleranceClass::Mixed), 1e-5),
+            (given, 1e-3 * 1e-2),
+        ] {
+            let floor = share * ordinary;
+            assert!(equal(&options, 0.99 * floor), "{unit}: {floor:e}");
+            assert!(!equal(&options, 1.01 * floor + 1e-300), "{unit}: {floor:e}");
+        }
     }
 }
 

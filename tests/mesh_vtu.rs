@@ -66,7 +66,10 @@ fn fields_that_do_not_fit_are_refused() {
     let mut values = vec![0.0; mesh.nodes.len()];
     assert!(write("t", &values).is_ok());
     assert!(matches!(write("t", &values[1..]), Err(MeshError::FieldLength { .. })));
-    assert!(matches!(write("a<b", &values), Err(MeshError::Name { .. })));
+    for name in ["a<b", "a\u{fffe}b", "\u{ffff}", "\u{1b}", "\u{0}", ""] {
+        assert!(matches!(write(name, &values), Err(MeshError::Name { .. })), "{name:?}");
+        assert!(matches!(write_pvd(&[(0.0, name)]), Err(MeshError::Name { .. })), "{name:?}");
+    }
     values[7] = f64::NAN;
     assert!(matches!(write("t", &values), Err(MeshError::FieldNotFinite { index: 7, .. })));
     assert!(matches!(write_pvd(&[(f64::INFINITY, "a.vtu")]), Err(MeshError::Dimension { .. })));

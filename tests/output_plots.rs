@@ -86,6 +86,24 @@ fn assert_svg(svg: &str, texts: &[&str]) {
     }
 }
 
+/// Everything in the markup is a character that XML can hold, whatever a scene is called.
+#[test]
+fn names_that_xml_cannot_hold_leave_it_well_formed() {
+    let hostile = "a\u{fffe}b\u{ffff}c\u{1b}[31md\u{0}e\u{b}\u{9b}\u{7f}";
+    let curve = || Curve::new(hostile, vec![[0.0, 0.0], [0.1, 1.0]]);
+    let mut xy_form = xy_plot(vec![curve()]);
+    xy_form.title = hostile.into();
+    xy_form.y = Axis::linear(hostile, hostile);
+    let mut zone = zone();
+    zone.title = hostile.into();
+    let mut polar_form = polar_plot(vec![ball_curve(hostile, 1.0)]);
+    polar_form.title = hostile.into();
+    for svg in [xy(&xy_form).unwrap(), load_zone(&zone).unwrap(), polar(&polar_form).unwrap()] {
+        let allowed = |c: char| matches!(c, '\t' | '\n' | '\r' | '\u{20}'..='\u{fffd}' | '\u{10000}'..='\u{10ffff}');
+        assert!(svg.chars().all(allowed) && svg.contains("abc[31mde"), "{svg}");
+    }
+}
+
 #[test]
 fn xy_names_curves_and_units() {
     let curve = |name: &str, power: f64| {

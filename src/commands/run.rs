@@ -3,9 +3,7 @@
 use super::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
 use super::plan::dynamic_plan_lines;
 use super::run_figures::key_figures;
-use super::{
-    CommandResult, Outcome, echo, echo_run, results_folder, say,
-};
+use super::{CommandResult, Outcome, echo, echo_run, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::dynamics::pictures::{Picture, draw};
 use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status};

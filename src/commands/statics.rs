@@ -36,9 +36,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     };
     let folder = match arguments.dry {
         true => None,
-        false => {
-            Some(claimed(&results_folder(&arguments.scene, &arguments.out), Writes::Statics)?)
-        }
+        false => Some(claimed(&results_folder(&arguments.scene, &arguments.out), Writes::Statics)?),
     };
     let solved = solve_scene(&scene, start.elapsed().as_secs_f64())?;
     // Nothing computed is lost if a file cannot be written.

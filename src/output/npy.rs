@@ -19,7 +19,9 @@ pub enum NpyError {
     Magic,
     #[error("version {major}.{minor} is not read; known are 1.0, 2.0 and 3.0")]
     Version { major: u8, minor: u8 },
-    #[error("its header claims {claimed} bytes; there are {left}, and up to {LONGEST_HEADER} are read")]
+    #[error(
+        "its header claims {claimed} bytes; there are {left}, and up to {LONGEST_HEADER} are read"
+    )]
     HeaderLength { claimed: usize, left: usize },
     #[error("its header is damaged at byte {at}: {expected} was expected")]
     Header { at: usize, expected: &'static str },
@@ -29,7 +31,9 @@ pub enum NpyError {
     Dimensions { dimensions: usize },
     #[error("it has {columns} columns; up to {MOST_COLUMNS} are read")]
     Columns { columns: usize },
-    #[error("a table of {rows} rows and {columns} columns does not take the {bytes} bytes that follow")]
+    #[error(
+        "a table of {rows} rows and {columns} columns does not take the {bytes} bytes that follow"
+    )]
     Length { rows: usize, columns: usize, bytes: usize },
 }
 

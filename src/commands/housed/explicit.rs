@@ -1,8 +1,8 @@
 //! `bearing run` of a bearing in its housing in explicit steps.
 
 use super::{
-    Prepared, parts, plan, prepare, record, request, run_settings, run_table,
-    say_notes, started, write_bore,
+    Prepared, parts, plan, prepare, record, request, run_settings, run_table, say_notes, started,
+    write_bore,
 };
 use crate::commands::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
 use crate::commands::run::{Arguments, no_run, pictures};

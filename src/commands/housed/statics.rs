@@ -1,13 +1,11 @@
 //! `bearing statics` of a bearing in its housing: one equilibrium at t = 0.
 
 use super::{
-    Prepared, condensed, equilibrium_at, estimate_at, plan, prepare, record,
-    say_notes, search, write_bore,
+    Prepared, condensed, equilibrium_at, estimate_at, plan, prepare, record, say_notes, search,
+    write_bore,
 };
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
-use crate::commands::{
-    CommandResult, Outcome, pictures, results_folder, say, table,
-};
+use crate::commands::{CommandResult, Outcome, pictures, results_folder, say, table};
 use bearing_dynamics::output::housed::course::{bore_nodes, outer_place};
 use bearing_dynamics::output::housed::fields::write_housing_fields;
 use bearing_dynamics::output::housed::rows::SeatRow;

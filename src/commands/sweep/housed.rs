@@ -89,7 +89,8 @@ pub fn row(scene: &HousedScene, kept: &mut Option<Kept>) -> Result<Vec<f64>, Box
 pub fn mesh_file(subject: &Subject) -> Result<Vec<u8>, Box<dyn Error>> {
     let Subject::Housed(scene) = subject else { return Ok(Vec::new()) };
     let MeshSource::File { path, .. } = &scene.solid.mesh.source else { return Ok(Vec::new()) };
-    Ok(input_file::read(path, LARGEST_DATA).map_err(|error| format!("cannot read {}: {error}", path.display()))?)
+    Ok(input_file::read(path, LARGEST_DATA)
+        .map_err(|error| format!("cannot read {}: {error}", path.display()))?)
 }
 
 /// Whether a scene has a flexible housing; all points of a sweep agree on it.

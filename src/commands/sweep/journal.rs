@@ -1,9 +1,9 @@
 //! The journal of an unfinished sweep: a header line, then one line a finished chunk.
 
+use bearing_dynamics::scene::input_file::{self, InputError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::error::Error;
-use bearing_dynamics::scene::input_file::{self, InputError};
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};

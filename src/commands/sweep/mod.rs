@@ -64,8 +64,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let size = if housed { HOUSED_CHUNK } else { CHUNK };
     let fingerprint = grid.fingerprint(&document, &mesh, arguments.cold);
     let points = |index| grid.chunk_range(index, size).len();
-    let journal =
-        Journal::open(&folder, &fingerprint, grid.chunks(size), points, arguments.fresh)?;
+    let journal = Journal::open(&folder, &fingerprint, grid.chunks(size), points, arguments.fresh)?;
     let resumed = journal.finished();
     report::remove_earlier(&folder)?;
 

@@ -3,8 +3,8 @@
 //! Numbers stand as raw little-endian bytes behind the markup: exact, small and fast.
 
 use crate::mesh::error::MeshError;
-use crate::mesh::write::is_xml_character;
 use crate::mesh::tet_mesh::{Order, TetMesh};
+use crate::mesh::write::is_xml_character;
 
 /// Values at nodes or in elements: `components` numbers for each, one after the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,9 +35,9 @@ impl Field<'_> {
 
 /// Names and file names stand between quotes in the markup.
 fn check_name(name: &str) -> Result<(), MeshError> {
-    if !name.is_empty() && !name.contains(|c: char| {
-        c.is_control() || !is_xml_character(c) || "<>&\"'".contains(c)
-    }) {
+    if !name.is_empty()
+        && !name.contains(|c: char| c.is_control() || !is_xml_character(c) || "<>&\"'".contains(c))
+    {
         return Ok(());
     }
     let why = "it must not be empty nor hold <, >, &, quotes, control or non-characters";
