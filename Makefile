@@ -37,10 +37,11 @@ JOBS ?= 1
 mutants:
 	$(VERIFY) mutants --jobs $(JOBS) $(if $(ONLY),--only $(ONLY))
 
-## A million mutated scenes and mesh files through their readers.
+## A million mutated scenes, mesh files and results of other programs, each, through their readers.
 fuzz:
 	SCENE_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test scene_fuzz -- --nocapture
 	MESH_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test mesh_fuzz -- --nocapture
+	RESULTS_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test results_fuzz -- --nocapture
 
 doc:
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --release --locked --no-deps --workspace

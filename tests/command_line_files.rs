@@ -43,10 +43,10 @@ fn unreadable(path: &Path) -> [(&'static str, Box<dyn Fn() + '_>); 3] {
     [
         (
             "regular file",
-            Box::new(|| assert!(Command::new("mkfifo").arg(path).status().unwrap().success())),
+            Box::new(move || assert!(Command::new("mkfifo").arg(path).status().unwrap().success())),
         ),
-        ("regular file", Box::new(|| std::os::unix::fs::symlink("/dev/zero", path).unwrap())),
-        ("folder", Box::new(|| fs::create_dir(path).unwrap())),
+        ("regular file", Box::new(move || std::os::unix::fs::symlink("/dev/zero", path).unwrap())),
+        ("folder", Box::new(move || fs::create_dir(path).unwrap())),
     ]
 }
 
@@ -345,7 +345,7 @@ fn a_pack_without_its_manifest_is_no_reference() {
 fn nothing_from_a_file_commands_the_terminal() {
     let root = tempdir().unwrap();
     let hostile = "\\u001b[2J\\u009b31m\\u0007\\u202e";
-    let quoted = format!("title = \"a{hostile}\\rb\"\n");
+    let quoted = format!("title = \"a{hostile}\\r\\nequal: 2 values\"\n");
     let noted = format!("[assumptions]\nnote = \"x{hostile}\\r\"\n");
     let path = write(
         root.path(),

@@ -3,6 +3,7 @@
 use super::{CommandResult, Outcome, echo, echo_run, say};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::results::pretty;
+use bearing_dynamics::output::visible::visible_line;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::{
     CageInRun, Document, RunSettings, Scene, Subject, resolve_subject, statics::static_problem,
@@ -58,9 +59,9 @@ pub fn run(arguments: &Arguments) -> CommandResult {
 }
 
 fn summary(name: &str, scene: &Scene) -> String {
-    let mut text = format!("{name}: a valid scene\n");
+    let mut text = format!("{}: a valid scene\n", visible_line(name));
     let mut line = |label: &str, value: String| {
-        let _ = writeln!(text, "  {label:<22} {value}");
+        let _ = writeln!(text, "  {label:<22} {}", visible_line(&value));
     };
     bearing_lines(scene, &mut line);
     if scene.dynamics.run.is_some() {

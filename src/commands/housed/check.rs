@@ -8,6 +8,7 @@ use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::output::housed::summary::seat_section;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::summary::mesh_section;
+use bearing_dynamics::output::visible::visible_line;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
@@ -40,9 +41,9 @@ pub fn run(path: &Path, document: &Document, scene: &HousedScene, json: bool) ->
         say(&pretty(&echo))?;
         return Ok(Outcome::Done);
     }
-    let mut text = format!("{}: a valid scene\n", path.display());
+    let mut text = format!("{}: a valid scene\n", visible_line(&path.display().to_string()));
     let mut line = |label: &str, value: String| {
-        let _ = writeln!(text, "  {label:<22} {value}");
+        let _ = writeln!(text, "  {label:<22} {}", visible_line(&value));
     };
     bearing_lines(&scene.bearing, &mut line);
     line("housing", format!("{}; {}", mesh_text(&prepared.built), echo::method(scene)));

@@ -6,6 +6,7 @@ use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::session::sum;
 use bearing_dynamics::output::solid::summary::mesh_section;
+use bearing_dynamics::output::visible::visible_line;
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::model::SolidModel;
 use serde_json::json;
@@ -28,9 +29,9 @@ pub fn run(path: &Path, document: &Document, scene: &SolidScene, json: bool) -> 
         say(&pretty(&echo))?;
         return Ok(Outcome::Done);
     }
-    let mut text = format!("{}: a valid scene\n", path.display());
+    let mut text = format!("{}: a valid scene\n", visible_line(&path.display().to_string()));
     let mut line = |label: &str, value: String| {
-        let _ = writeln!(text, "  {label:<22} {value}");
+        let _ = writeln!(text, "  {label:<22} {}", visible_line(&value));
     };
     if let Some(title) = &scene.title {
         line("title", title.clone());
