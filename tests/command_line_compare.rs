@@ -148,7 +148,12 @@ fn what_cannot_be_compared_is_named() {
     assert!(different(&pack, Path::new(&empty)).contains("no such file"));
     // A pack is not written into a folder with something else in it.
     let message = refused(&["pack", &path, "--out", &results_text]);
-    assert!(message.contains("not part of a case pack"), "{message}");
+    assert!(message.contains("results of another kind (static solution)"), "{message}");
+    let notes = root.path().join("notes");
+    fs::create_dir(&notes).unwrap();
+    fs::write(notes.join("notes.txt"), "mine").unwrap();
+    let message = refused(&["pack", &path, "--out", &text(&notes)]);
+    assert!(message.contains("\"notes.txt\", which is not part of a case pack"), "{message}");
 }
 
 // The perturbations go through the library, which the command calls with the same options: some
