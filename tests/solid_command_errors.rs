@@ -2,6 +2,7 @@
 
 mod solid_command_common;
 
+use bearing_dynamics::solver::solid::modes::ModeError;
 use serde_json::Value;
 use solid_command_common::{ON_ROLLERS, Place, bar, command, number, shipped, stderr, succeed};
 use std::fs;
@@ -349,4 +350,27 @@ fn several_volumes_of_one_material_are_told() {
     assert!(!accepted(&place, text).contains("volumes"));
     fs::write(place.path("two.msh"), TWO_VOLUMES.replace("$Nodes\n5", "$Nodes\n-5")).unwrap();
     refused(&place, text, &["line 9", "\"-5\" is not a count of nodes (a whole number"]);
+}
+
+#[test]
+fn a_file_in_place_of_a_folder_is_named() {
+    let place = Place::new();
+    fs::write(place.path("taken"), "mine").unwrap();
+    let out = place.path("taken");
+    let output =
+        solid_command_common::into_folder("statics", &shipped("deep_groove_tilt.toml"), &out, &[])
+            .output()
+            .unwrap();
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("taken is a file, and a folder is needed there"), "{said}");
+    assert_eq!(fs::read_to_string(place.path("taken")).unwrap(), "mine");
+}
+
+#[test]
+fn modes_that_do_not_settle_say_what_to_ask_for() {
+    let error = ModeError::NotConverged { found: 5, wanted: 12, vectors: 240 }.to_string();
+    for part in ["lowest 5 of the 12 natural modes", "modes.count", "Poisson's ratio"] {
+        assert!(error.contains(part), "{part} is not in {error}");
+    }
 }

@@ -357,6 +357,14 @@ fn meshes_that_lock_are_told_and_fine_ones_are_not() {
         let found = remarks(&place, &bent([24, 4, 4], 2, poisson, "-100 N"));
         assert!(found.is_empty(), "{found:?}");
     }
+    // A stiff bar has a high lowest frequency.
+    let modes = |cells, order| {
+        let scene = bent(cells, order, "0.3", "-100 N");
+        succeed(command("modes", &place.scene("modes.toml", &scene), &["--dry"]))
+    };
+    let coarse = modes([10, 2, 2], 1);
+    assert!(coarse.contains("note: the mesh is too coarse: the lowest frequency"), "{coarse}");
+    assert!(!modes([24, 4, 4], 2).contains("note: "));
     // The cause, not the load.
     let scene = place.scene("nearly.toml", &bent([10, 2, 2], 2, "0.4999999999", "-100 N"));
     let output = command("statics", &scene, &["--dry"]).output().unwrap();

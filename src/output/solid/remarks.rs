@@ -1,12 +1,14 @@
 //! What a person should know of a solid's results before using them: a mesh that is too coarse for them,
 //! or strains and displacements that a linear law does not hold for.
 
-use crate::kinematics::vec3::Vec3;
+use crate::kinematics::vec3::{Vec3, norm, scale};
 use crate::mesh::Order;
 use crate::output::solid::fields::Stresses;
 use crate::output::solid::session::SolidSession;
 use crate::solver::clock::{rounded, to_digits};
 use crate::solver::solid::model::SolidModel;
+use crate::solver::solid::modes::Modes;
+use crate::solver::solid::stress::nodal_stresses;
 use crate::solver::solid::trust::{EnergyError, Strained, energy_error};
 
 /// Part of the energy that a mesh may seem to miss without a word. On coarse meshes the estimate is a third
@@ -76,19 +78,53 @@ fn of_mesh(model: &SolidModel, error: &EnergyError) -> Option<String> {
     if small {
         return None;
     }
-    let cure = match model.problem.elements.order() {
-        Order::Linear => {
-            "four-node elements are too stiff where walls bend over few of them: write order = 2 in \
-             [solid.mesh], or more cells through the wall"
-        }
-        Order::Quadratic => "make the mesh finer where stresses are high",
-    };
+    let cure = cure(model);
     Some(format!(
         "the mesh is too coarse: displacements under these loads are expected to be {} % too small, on coarse \
          meshes two or three times as much, and stresses are less certain than that (after Zienkiewicz and \
          Zhu, from the jumps of stress between elements); {cure}",
         to_digits(100.0 * part, 2)
     ))
+}
+
+/// Remarks on natural modes, from the stresses of the lowest one that is no rigid motion.
+pub fn of_modes(model: &SolidModel, found: &Modes) -> Vec<String> {
+    if let Some(remark) = of_locking(model) {
+        return vec![remark];
+    }
+    let highest = found.modes.last().map_or(0.0, |mode| mode.frequency);
+    // Rigid motions have what rounding leaves of zero.
+    let Some(lowest) = found.modes.iter().find(|mode| mode.frequency > 1e-3 * highest) else {
+        return Vec::new();
+    };
+    // So small that strains are linear.
+    let size = Strained::of(model, &lowest.shape, &[]).size;
+    let most = lowest.shape.iter().map(|u| norm(*u)).fold(0.0, f64::max);
+    let shape: Vec<Vec3> = lowest.shape.iter().map(|u| scale(*u, 1e-6 * size / most)).collect();
+    let part = energy_error(model, &shape, &nodal_stresses(model, &shape)).part();
+    let small = part <= SILENT;
+    if small {
+        return Vec::new();
+    }
+    // Frequencies go with the root of the energy.
+    let percent = to_digits(50.0 * part, 2);
+    let cure = cure(model);
+    vec![format!(
+        "the mesh is too coarse: the lowest frequency is expected to be {percent} % too high, on coarse meshes \
+         two or three times as much, and the others more (after Zienkiewicz and Zhu, from the jumps of stress \
+         between elements); {cure}"
+    )]
+}
+
+/// What to do about a mesh that is too coarse.
+fn cure(model: &SolidModel) -> &'static str {
+    match model.problem.elements.order() {
+        Order::Linear => {
+            "four-node elements are too stiff where walls bend over few of them: write order = 2 in \
+             [solid.mesh], or more cells through the wall"
+        }
+        Order::Quadratic => "make the mesh finer where stresses are high",
+    }
 }
 
 /// Four-node elements near incompressibility.

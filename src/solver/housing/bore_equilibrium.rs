@@ -11,6 +11,7 @@
 use super::condensed::{BoreNode, CondensedBore, lever, race_motion};
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::kinematics::vec3::{Vec3, norm};
+use crate::solver::clock::to_digits;
 use crate::solver::dense::DenseFactor;
 use crate::solver::sparse::FactorError;
 use nalgebra::{Matrix4, Vector4};
@@ -60,11 +61,12 @@ pub enum BoreError {
     #[error("a moment of {moment:.3e} N m turns the outer race in its bore, which has no friction")]
     AxialMoment { moment: f64 },
     #[error(
-        "the bore does not hold the outer race: its loads have {} from its nominal place, and {force:.3} N of \
+        "the bore does not hold the outer race: its loads have {} from its nominal place, and {} N of \
          them (of a moment: over the radius) meet no resistance. Hint: a bore without friction holds a race \
          across its axis and, along its width, against tilt: check size and direction of the loads, the fit, and \
          which parts of the solid are held",
-        travel_text(coordinate, *travel)
+        travel_text(coordinate, *travel),
+        to_digits(*force, 3)
     )]
     NotHeld { coordinate: &'static str, travel: f64, force: f64 },
     #[error(
