@@ -300,7 +300,7 @@ fn probes_outside_the_body_or_with_endless_names_are_refused_at_once() {
     refused(
         &place,
         &probe("far", "400 mm"),
-        &["solid.probe.at", "360.0", "outside the body", "40.0"],
+        &["solid.probe.at", "360.0", "outside the body", "0.040000"],
     );
     let said = accepted(&place, &probe("near", "42 mm"));
     assert!(said.contains("probe \"near\" is that of the nearest node"), "{said}");
@@ -349,7 +349,7 @@ fn several_volumes_of_one_material_are_told() {
         .unwrap();
     assert!(!accepted(&place, text).contains("volumes"));
     fs::write(place.path("two.msh"), TWO_VOLUMES.replace("$Nodes\n5", "$Nodes\n-5")).unwrap();
-    refused(&place, text, &["line 9", "\"-5\" is not a count of nodes (a whole number"]);
+    refused(&place, text, &["line 10", "\"-5\" is not a count of nodes (a whole number"]);
 }
 
 #[test]

@@ -216,7 +216,7 @@ pub fn verdict(
         }
         (true, false, true) => "; WARNING: method = \"explicit\" in [housing] has inertia",
         (true, true, true) if of_swing > TOO_MUCH => {
-            ", though not of how it swings: method = \"explicit\" in [housing] for that"
+            "; to see how it swings write method = \"explicit\" in [housing]"
         }
         (true, true, true) => "",
         (false, _, false) => "; not allowed: inertia counts here",
