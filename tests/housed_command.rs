@@ -290,3 +290,24 @@ fn shipped_scenes_run() {
     assert!(force.iter().copied().fold(0.0, f64::min) < -400.0, "{force:?}");
     assert!(value(&summary["energy"]["largest_residual_part"]) <= 1e-4);
 }
+
+/// Inertia changes much of a ripple and next to nothing of the displacement that it is on: judged is what is
+/// read, and a load that swings the race as far as it is displaced still gets its warning.
+#[test]
+fn inertia_is_judged_by_the_displacement() {
+    let place = Place::new();
+    let planned = |amplitude: &str| {
+        let run = "[numerics]\nend = \"2 ms\"\noutput_interval = \"0.05 ms\"\n";
+        let swing =
+            format!("y = {{ load = {{ amplitude = \"{amplitude}\", frequency = \"3 kHz\" }} }}");
+        let text = scene_text("fit.radial = \"2 um\"", run);
+        let text = text.replace("[inner_race]\n", &format!("[inner_race]\n{swing}\n"));
+        let said = succeed(command("plan", &place.scene("swing.toml", &text), &[]));
+        said.lines().find(|line| line.contains("inertia left out")).unwrap().to_string()
+    };
+    let ripple = planned("0.01 N");
+    assert!(!ripple.contains("WARNING"), "{ripple}");
+    assert!(ripple.contains("of its displacement; to see how it swings"), "{ripple}");
+    let swing = planned("250 N");
+    assert!(swing.contains("WARNING"), "{swing}");
+}

@@ -111,3 +111,28 @@ fn what_cannot_be_drawn_or_recorded_is_refused() {
         assert!(out.join(name).exists(), "{name}");
     }
 }
+
+/// Rings that are rigid, a race beside its seat: said before anything is solved, and kept in the summary.
+#[test]
+fn fits_and_seats_are_not_taken_in_silence() {
+    let place = Place::new();
+    let noted = |housing: &str| checked(&place, &scene_text(housing, "")).0;
+    let tight = noted("fit.radial = \"5 um\"");
+    assert!(tight.contains("the races are rigid") && tight.contains("5.000 um"), "{tight}");
+    // E t δ/(r R) of a ring of 3.574 mm: 210 GPa × 3.574 mm × 5 µm / (33.74 mm × 35.527 mm).
+    assert!(tight.contains("3.574 mm") && tight.contains("3.131 MPa"), "{tight}");
+    assert!(!tight.contains("lie beside the bore"), "{tight}");
+    let loose = noted("fit.radial = \"-1 um\"");
+    assert!(!loose.contains("rigid"), "{loose}");
+    let wide = noted("fit.radial = \"-1 um\"\nwidth = \"30 mm\"");
+    assert!(wide.contains("30.0000 mm of width 10.0000 mm lie beside the bore"), "{wide}");
+    let scene = place.scene("tight.toml", &scene_text("fit.radial = \"5 um\"", ""));
+    let out = place.path("tight");
+    let said = succeed(into_folder("statics", &scene, &out, &[]));
+    assert!(said.contains("this pressure is of one node"), "{said}");
+    let summary = solids::json(out.join("summary.json"));
+    let notes = summary["mesh"]["notes"].to_string();
+    assert!(notes.contains("the races are rigid"), "{notes}");
+    let pressure = summary["housing"]["seat"]["peak_pressure_note"].as_str().unwrap();
+    assert!(pressure.starts_with("of one node"), "{pressure}");
+}

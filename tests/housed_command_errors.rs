@@ -96,6 +96,11 @@ fn cases() -> Vec<Case> {
             &["973.0 um larger than the bore"],
         ),
         (
+            "a bore that is held",
+            changed("set = \"fixed\"", "set = \"bore\""),
+            &["housing.bore", "held by [[solid.held]]", "Hold another set", "rigid"],
+        ),
+        (
             "an unknown method",
             changed("fit.radial = \"1 um\"", "method = \"static\""),
             &["housing.method", "\"quasi-static\""],

@@ -4,21 +4,29 @@ mod housing_common;
 
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::output::housed::course::outer_place;
+use bearing_dynamics::output::housed::rows::SeatRow;
 use bearing_dynamics::solver::dynamics::model::RotatingLoad;
 use bearing_dynamics::solver::housing::assembly::{
     AssemblyError, AssemblyOptions, AssemblySearch, AssemblyState,
 };
 use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreError, BoreSearch, Fit};
-use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::condensed::{
+    CondensedBore, Reach, condense, geometry_error,
+};
 use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, course_inertia,
 };
 use bearing_dynamics::solver::housing::inertia::{Masses, estimate};
 use bearing_dynamics::solver::housing::quasi_static::{Course, history};
 use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::model::{Load, SolidModel};
 use bearing_dynamics::solver::statics::{self, Condition, StaticProblem};
 use housing_common::*;
+use nalgebra::{UnitQuaternion, Vector3};
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 fn fit(interference: f64) -> Fit {
@@ -83,6 +91,94 @@ fn moments_on_both_races_sum_to_nothing() {
     assert!(sum.amax() <= 1e-8 * 250.0 * BORE, "{sum:?} of {on_outer:?}");
     let by_cage: f64 = state.bearing.balls.iter().map(|ball| ball.cage_force.abs()).sum();
     assert!(by_cage * BORE >= 1e-5 * 250.0 * BORE, "the cage has something to do: {by_cage}");
+}
+
+/// A scene and the same one turned and moved in the world: mesh, weights, the load on the housing, the race's
+/// place and the bearing's frame, by 2 rad about no axis of theirs, so that no rotation is near its inverse.
+/// What is seen from the bearing stays, what is seen from the world turns. The race sits in its bore off
+/// the frame's own axes already, and what the results say of its seat is the sum over the bore's nodes.
+#[test]
+fn turning_the_whole_scene_turns_what_the_world_sees() {
+    let orientation = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 1.6, -0.9));
+    let turn = Pose { position: Vector3::new(0.1, -0.2, 0.3), orientation };
+    let small = Pose {
+        position: Vector3::new(0.0, 2e-6, -1e-6),
+        orientation: UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 2e-4, -1e-4)),
+    };
+    let vector = |of: [f64; 3], world: &Pose| Vec3::from(world.orientation * Vector3::from(of));
+    let fit = fit(2e-6);
+    let scene = |world: &Pose| {
+        let mut mesh = mesh_of(&RING, &COARSE, Order::Quadratic);
+        for node in &mut mesh.nodes {
+            *node = world.point_to_parent(&Vector3::from(*node)).into();
+        }
+        let mut problem = model_of(&mesh, YOUNG).problem;
+        problem.gravity = vector([200.0, 3e3, -1e4], world);
+        let loaded = mesh.surface_set("bore").unwrap()[0];
+        let forces = mesh.face_nodes(loaded).map(|node| (node, vector([40.0, -90.0, 60.0], world)));
+        problem.loads.push(Load { forces: forces.collect(), profile: Profile::Constant(1.0) });
+        let model = SolidModel::new(problem).unwrap();
+        let nominal = small.seen_from_parent_of(world);
+        let bore = condense(&model, &bore_of(&mesh), &Reach { nominal, ..reach() }).unwrap();
+        let problem = StaticProblem {
+            frame: *world,
+            outer_pose: nominal,
+            ..bearing(loads([20.0, 100.0, -250.0, 0.2, -0.3]))
+        };
+        let weight = vector([0.0, 3.0, -20.0], world);
+        let state = search(&bore).solve(&problem, &fit, weight).unwrap();
+        (bore, state)
+    };
+    let (here, there) = (scene(&Pose::identity()), scene(&turn));
+    // Two factorisations in other coordinates.
+    const ROUNDING: f64 = 1e-7;
+    let near = |a: &[f64], b: &[f64], what: &str| {
+        let size = b.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        assert!(size > 0.0, "{what}");
+        for (a, b) in a.iter().zip(b) {
+            assert!((a - b).abs() <= ROUNDING * size, "{what}: {a:e} {b:e}");
+        }
+    };
+    let turned = |of: Vec3| vector(of, &turn);
+    let ((bore, state), (bore_there, state_there)) = (&here, &there);
+    let coordinates = |state: &AssemblyState, from: usize, count: usize| {
+        state.bearing.coordinates.as_slice()[from..from + count].to_vec()
+    };
+    near(&coordinates(state_there, 0, 3), &coordinates(state, 0, 3), "inner race");
+    near(&coordinates(state_there, 3, 2), &coordinates(state, 3, 2), "tilts of the inner race");
+    near(&state_there.bore.pose[..2], &state.bore.pose[..2], "outer race");
+    near(&state_there.bore.pose[2..], &state.bore.pose[2..], "tilts of the outer race");
+    near(&state_there.on_outer.force, &state.on_outer.force, "force in the race's axes");
+    near(&state_there.on_outer.moment, &state.on_outer.moment, "moment in the race's axes");
+    near(&state_there.bore.loads, &state.bore.loads, "loads of nodes");
+    let displaced =
+        |(bore, state): &(CondensedBore, AssemblyState)| bore.displacement(&state.bore.loads);
+    let (field, field_there) = (displaced(&here), displaced(&there));
+    let should: Vec<Vec3> = field.iter().map(|u| turned(*u)).collect();
+    near(field_there.as_flattened(), should.as_flattened(), "displacements");
+    let [seat, seat_there] =
+        [&here, &there].map(|(bore, state)| SeatRow::of_equilibrium(bore, &state.bore));
+    near(&seat_there.force, &turned(seat.force), "force on the race");
+    near(&seat_there.moment, &turned(seat.moment), "moment on the race");
+    let place = |bore, state, from: usize| outer_place(bore, state)[from..from + 3].to_vec();
+    let should = turn.point_to_parent(&Vector3::from_row_slice(&place(bore, state, 0)));
+    near(&place(bore_there, state_there, 0), should.as_slice(), "place of the outer race");
+    let error = geometry_error(bore, &field, &state.bore.pose);
+    let error_there = geometry_error(bore_there, &field_there, &state_there.bore.pose);
+    // Of the bearing's size in the world, some 1e-16 m are rounding.
+    assert!((error_there - error).abs() <= 1e-3 * error, "{error_there:e} {error:e}");
+    // The race gets what the nodes do not keep.
+    for ((bore, state), seat) in [(&here, seat), (&there, seat_there)] {
+        let centre = bore.reach.nominal.position;
+        let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
+        for (node, (_, load)) in bore.nodes.iter().zip(bore.nodal_forces(&state.bore.loads)) {
+            let arm = bore.reach.nominal.point_to_parent(&Vector3::from(node.arm)) - centre;
+            force -= Vector3::from(load);
+            moment -= arm.cross(&Vector3::from(load));
+        }
+        near(&seat.force, force.as_slice(), "sum of forces");
+        near(&seat.moment, moment.as_slice(), "sum of moments");
+    }
 }
 
 /// In a linear housing under preload a thousandth of the load moves the race a thousandth as far.

@@ -223,6 +223,12 @@ fn what_a_smooth_bore_cannot_hold_is_an_error() {
         .under_load(&fit(0.0), &load(0.0, -250.0, 1.0, 0.0))
         .unwrap_err();
     assert!(matches!(error, BoreError::NotHeld { coordinate: "tilt_y", .. }), "{error}");
+    let said = error.to_string();
+    assert!(said.contains("tilted it by") && said.contains("deg about y"), "{said}");
+    let said =
+        BoreError::NotHeld { coordinate: "z", travel: -1.939e-2, force: 2.141e-3 }.to_string();
+    assert!(said.contains("moved it by -19.3900 mm along z from its nominal place"), "{said}");
+    assert!(said.contains("0.00214 N"), "{said}");
 }
 
 #[test]

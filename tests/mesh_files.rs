@@ -232,7 +232,8 @@ fn deck(from: &str, to: &str) -> ReadError {
 
 #[test]
 fn a_typed_input_deck() {
-    let Loaded { mesh, notes, numbers } = read_abaqus(DECK.as_bytes(), LengthUnit::Metre).unwrap();
+    let Loaded { mesh, notes, numbers, .. } =
+        read_abaqus(DECK.as_bytes(), LengthUnit::Metre).unwrap();
     assert_eq!(mesh.node_set("everything").unwrap(), [0, 1, 2, 3]);
     assert_eq!(mesh.node_set("base").unwrap(), [0, 1, 2]);
     assert_eq!(mesh.node_set("more").unwrap(), [0, 1, 2, 3]);

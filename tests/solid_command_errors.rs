@@ -2,6 +2,7 @@
 
 mod solid_command_common;
 
+use bearing_dynamics::solver::solid::modes::ModeError;
 use serde_json::Value;
 use solid_command_common::{ON_ROLLERS, Place, bar, command, number, shipped, stderr, succeed};
 use std::fs;
@@ -255,4 +256,121 @@ fn errors_name_what_is_wrong() {
     assert_eq!(modes.status.code(), Some(2));
     assert!(stderr(&modes).contains("modes takes a solid"), "{}", stderr(&modes));
     insta::assert_snapshot!(messages);
+}
+
+/// A scene that is refused with all of these words, by `check` already.
+fn refused(place: &Place, text: &str, parts: &[&str]) {
+    let output = command("check", &place.scene("refused.toml", text), &[]).output().unwrap();
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    for part in parts {
+        assert!(said.contains(part), "{part} is not in {said}");
+    }
+}
+
+fn accepted(place: &Place, text: &str) -> String {
+    succeed(command("check", &place.scene("accepted.toml", text), &[]))
+}
+
+const CLAMPED: &str = "[[solid.held]]\nset = \"x_low\"\nx = true\ny = true\nz = true\n";
+
+#[test]
+fn loads_that_supports_take_are_told() {
+    let place = Place::new();
+    let load = |set: &str| format!("[[solid.load]]\nset = \"{set}\"\nz = \"-100 N\"\n");
+    let parts = ["solid.load.set", "\"x_low\" is held along z", "Load another set"];
+    refused(&place, &bar(1, &format!("{CLAMPED}{}", load("x_low"))), &parts);
+    let pressure = "[[solid.load]]\nset = \"x_low\"\npressure = \"1 MPa\"\n";
+    refused(&place, &bar(1, &format!("{CLAMPED}{pressure}")), &["held along x"]);
+    let said = accepted(&place, &bar(1, &format!("{CLAMPED}{}", load("x_high"))));
+    assert!(!said.contains("the support takes it"), "{said}");
+    // The upper edge of an end of two cells has a quarter of it.
+    let roof = "[[solid.held]]\nset = \"z_high\"\nz = true\n";
+    let said = accepted(&place, &bar(1, &format!("{roof}{}", load("x_high"))));
+    assert!(said.contains("25 % of the load on set \"x_high\""), "{said}");
+}
+
+#[test]
+fn probes_outside_the_body_or_with_endless_names_are_refused_at_once() {
+    let place = Place::new();
+    let probe = |name: &str, x: &str| {
+        let at = format!("[\"{x}\", \"5 mm\", \"5 mm\"]");
+        bar(1, &format!("{CLAMPED}[[solid.probe]]\nname = \"{name}\"\nat = {at}\n"))
+    };
+    refused(
+        &place,
+        &probe("far", "400 mm"),
+        &["solid.probe.at", "360.0", "outside the body", "0.040000"],
+    );
+    let said = accepted(&place, &probe("near", "42 mm"));
+    assert!(said.contains("probe \"near\" is that of the nearest node"), "{said}");
+    assert!(!accepted(&place, &probe("exact", "40 mm")).contains("nearest node"));
+    let long = "n".repeat(200);
+    refused(&place, &probe(&long, "40 mm"), &["solid.probe.name", "200 letters", "120"]);
+}
+
+#[test]
+fn materials_of_decks_are_not_skipped_for_steel() {
+    let place = Place::new();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh");
+    let deck = fs::read_to_string(data.join("box_o1.inp")).unwrap();
+    let scene = |elastic: &str, density: &str, further: &str| {
+        let material = format!("*MATERIAL, NAME=ALU\n*ELASTIC\n{elastic}\n*DENSITY\n{density},\n");
+        fs::write(place.path("deck.inp"), format!("{deck}\n{material}")).unwrap();
+        format!("[solid.mesh]\nfile = \"deck.inp\"\nunit = \"mm\"\n{further}")
+    };
+    let aluminium = ("70000., 0.33", "2.7e-9");
+    let parts = ["\"ALU\"", "steel", "youngs_modulus = \"70 GPa\"", "0.33", "\"2700 kg/m^3\""];
+    refused(&place, &scene(aluminium.0, aluminium.1, ""), &parts);
+    let named = "[solid.material]\nyoungs_modulus = \"68 GPa\"\npoisson_ratio = 0.33\ndensity = \"2700 kg/m^3\"\n";
+    let said = accepted(&place, &scene(aluminium.0, aluminium.1, named));
+    assert!(said.contains("the deck's material is not used") && said.contains("70 GPa"), "{said}");
+    let said = accepted(&place, &scene("68000., 0.33", "2.7e-9", named));
+    assert!(!said.contains("the deck's material"), "{said}");
+    // Steel by default is steel.
+    let said = accepted(&place, &scene("210000., 0.3", "7.85e-9", ""));
+    assert!(!said.contains("the deck's material"), "{said}");
+}
+
+/// Two tetrahedra of one face, in Gmsh's version 2.2, each in a volume of its own.
+const TWO_VOLUMES: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 \"hub\"\n3 2 \"rim\"\n\
+$EndPhysicalNames\n$Nodes\n5\n1 0 0 0\n2 10 0 0\n3 0 10 0\n4 0 0 10\n5 10 10 10\n$EndNodes\n\
+$Elements\n2\n1 4 2 1 1 1 2 3 4\n2 4 2 2 2 2 3 4 5\n$EndElements\n";
+
+#[test]
+fn several_volumes_of_one_material_are_told() {
+    let place = Place::new();
+    let text = "[solid.mesh]\nfile = \"two.msh\"\nunit = \"mm\"\n";
+    fs::write(place.path("two.msh"), TWO_VOLUMES).unwrap();
+    let said = accepted(&place, text);
+    assert!(said.contains("2 volumes (hub, rim)") && said.contains("one material"), "{said}");
+    let one = TWO_VOLUMES.replace("\n2 4 2 2 2", "\n2 4 2 1 2");
+    fs::write(place.path("two.msh"), one.replace("2\n3 1 \"hub\"\n3 2 \"rim\"", "1\n3 1 \"hub\""))
+        .unwrap();
+    assert!(!accepted(&place, text).contains("volumes"));
+    fs::write(place.path("two.msh"), TWO_VOLUMES.replace("$Nodes\n5", "$Nodes\n-5")).unwrap();
+    refused(&place, text, &["line 10", "\"-5\" is not a count of nodes (a whole number"]);
+}
+
+#[test]
+fn a_file_in_place_of_a_folder_is_named() {
+    let place = Place::new();
+    fs::write(place.path("taken"), "mine").unwrap();
+    let out = place.path("taken");
+    let output =
+        solid_command_common::into_folder("statics", &shipped("deep_groove_tilt.toml"), &out, &[])
+            .output()
+            .unwrap();
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("taken is a file, and a folder is needed there"), "{said}");
+    assert_eq!(fs::read_to_string(place.path("taken")).unwrap(), "mine");
+}
+
+#[test]
+fn modes_that_do_not_settle_say_what_to_ask_for() {
+    let error = ModeError::NotConverged { found: 5, wanted: 12, vectors: 240 }.to_string();
+    for part in ["lowest 5 of the 12 natural modes", "modes.count", "Poisson's ratio"] {
+        assert!(error.contains(part), "{part} is not in {error}");
+    }
 }

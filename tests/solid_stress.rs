@@ -4,10 +4,16 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::strain::{Sym3, full, principal, von_mises};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::generate::bar;
+use bearing_dynamics::mesh::measure::{Share, tributary_areas};
 use bearing_dynamics::mesh::node_order::EDGES;
 use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
-use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel, SolidProblem};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solver::solid::model::{
+    DampedMotion, Load, Prescribed, SolidModel, SolidProblem,
+};
 use bearing_dynamics::solver::solid::stress::{element_stresses, nodal_stresses, point_stresses};
+use bearing_dynamics::solver::solid::trust::energy_error;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 const YOUNG: f64 = 2.1e11;
@@ -211,4 +217,72 @@ fn invariants_of_a_stress() {
     assert!(a >= b && b >= c);
     let trace = full(&any);
     assert!((a + b + c - trace[0][0] - trace[1][1] - trace[2][2]).abs() <= 1e-6);
+}
+
+/// A bar of 100 × 10 × 10 mm clamped at one end and bent by 100 N at the other.
+fn bent(cells: [usize; 3], order: Order, poisson: f64) -> (SolidModel, Vec<Vec3>, f64) {
+    let solid = bar([0.1, 0.01, 0.01], cells).unwrap();
+    let mesh = match order {
+        Order::Linear => solid.mesh,
+        Order::Quadratic => solid.quadratic().unwrap().mesh,
+    };
+    let faces = |name: &str| mesh.surface_set(name).unwrap();
+    let held = mesh.nodes_of_faces(faces("x_low"));
+    let shares = tributary_areas(&mesh, faces("x_high"), Share::Consistent);
+    let total: f64 = shares.iter().sum();
+    let force = |(node, share): (u32, &f64)| (node, [0.0, 0.0, -100.0 * share / total]);
+    let loads = (0..).zip(&shares).filter(|(_, share)| **share != 0.0).map(force).collect();
+    let hold =
+        |node: &u32| [0, 1, 2].map(|axis| Prescribed { node: *node, axis, profile: Profile::ZERO });
+    let model = SolidModel::new(SolidProblem {
+        prescribed: held.iter().flat_map(hold).collect(),
+        loads: vec![Load { forces: loads, profile: Profile::Constant(1.0) }],
+        material: LinearElastic::new(YOUNG, poisson).unwrap(),
+        nodes: mesh.nodes.clone(),
+        elements: mesh.elements.clone(),
+        density: 7800.0,
+        damping: 0.0,
+        damped_motion: DampedMotion::Absolute,
+        gravity: [0.0; 3],
+    })
+    .unwrap();
+    let u = equilibrium(&model, 0.0, &EquilibriumOptions::default()).unwrap().displacement;
+    let along: f64 =
+        model.problem.loads[0].forces.iter().map(|(n, f)| f[2] * u[*n as usize][2]).sum();
+    (model, u, along / 100.0)
+}
+
+/// Under one load the energy is half its work, so that the missing part of one is that of the other. Jumps of
+/// stress tell a third of it or more, and the less is missing the better; only where four-node elements
+/// lock altogether they tell next to nothing.
+#[test]
+fn jumps_of_stress_say_how_much_a_mesh_misses() {
+    for poisson in [0.3, 0.4999] {
+        let part = |cells, order| {
+            let (model, u, tip) = bent(cells, order, poisson);
+            (energy_error(&model, &u, &nodal_stresses(&model, &u)), tip)
+        };
+        let (fine, truth) = part([24, 4, 4], Order::Quadratic);
+        let work = 0.5 * 100.0 * truth;
+        assert!((fine.energy / work - 1.0).abs() <= 1e-3, "{fine:?} {work:e}");
+        // What the corners of a clamped end leave; the estimate knows of no better mesh.
+        assert!(fine.part() <= 0.01, "{poisson}: {fine:?}");
+        for (cells, order) in [
+            ([10, 2, 2], Order::Linear),
+            ([20, 4, 4], Order::Linear),
+            ([10, 1, 1], Order::Quadratic),
+            ([10, 2, 2], Order::Quadratic),
+        ] {
+            let (found, tip) = part(cells, order);
+            let (told, missing) = (found.part(), 1.0 - tip / truth);
+            println!(
+                "{poisson} {cells:?} {order:?}: {:.3} um, {told:.4} of {missing:.4}",
+                1e6 * tip
+            );
+            let locks = poisson > 0.45 && order == Order::Linear;
+            let least = if locks { 0.05 } else { 0.24 };
+            assert!(told >= least * missing && told <= missing, "{told} {missing}");
+            assert_eq!(locks, missing > 0.9, "{missing}");
+        }
+    }
 }

@@ -11,8 +11,8 @@
 use crate::kinematics::Pose;
 use crate::kinematics::strain::Mat3;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
-use crate::mesh::measure::face_area;
-use crate::mesh::{Face, Order, TetMesh};
+use crate::mesh::measure::{Share, tributary_areas};
+use crate::mesh::{Face, TetMesh};
 
 /// A rigid cylinder about the X axis of its own frame, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,21 +75,12 @@ pub struct ContactNode {
 
 /// The nodes of `faces` that carry a share of their area, ascending.
 ///
-/// A third of a triangle goes to each corner of a three-node face, and to each mid-side node of a
-/// six-node face: with these shares a uniform pressure is what the elements take it for. Corners of
-/// six-node faces carry nothing, so they are left out.
+/// Each corner of a three-node face has a third of it, each mid-side node of a six-node face what
+/// [`Share::ThreeNodes`] gives it, a third where the face is flat: with these shares a uniform
+/// pressure is what the elements take it for. Corners of six-node faces carry next to nothing, of
+/// either sign, and are left out.
 pub fn contact_nodes(mesh: &TetMesh, faces: &[Face]) -> Vec<ContactNode> {
-    let skipped = match mesh.order() {
-        Order::Linear => 0,
-        Order::Quadratic => 3,
-    };
-    let mut areas = vec![0.0; mesh.nodes.len()];
-    for &face in faces {
-        let share = face_area(mesh, face) / 3.0;
-        for node in mesh.face_nodes(face).skip(skipped) {
-            areas[node as usize] += share;
-        }
-    }
+    let areas = tributary_areas(mesh, faces, Share::ThreeNodes);
     let with_share = areas.iter().enumerate().filter(|(_, area)| **area > 0.0);
     with_share
         .map(|(n, &area)| ContactNode { node: n as u32, place: mesh.nodes[n], area })

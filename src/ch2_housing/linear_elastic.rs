@@ -43,6 +43,16 @@ impl LinearElastic {
         })
     }
 
+    /// ν.
+    pub fn poisson_ratio(&self) -> f64 {
+        0.5 * self.lambda / (self.lambda + self.shear_modulus)
+    }
+
+    /// E, Pa.
+    pub fn youngs_modulus(&self) -> f64 {
+        2.0 * self.shear_modulus * (1.0 + self.poisson_ratio())
+    }
+
     /// Second Piola–Kirchhoff stress (2.4): S = E/(1+ν)·(E + ν/(1−2ν)·tr(E) 1), Pa.
     #[inline(always)]
     pub fn second_piola_kirchhoff(&self, strain: &Sym3) -> Sym3 {

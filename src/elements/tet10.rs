@@ -46,7 +46,7 @@ pub fn from_points(l: &[f64; 4]) -> [f64; POINTS] {
 }
 
 /// Barycentric coordinates of quadrature point `point` of the four-point rule of degree 2.
-fn stiffness_rule(point: usize) -> [f64; 4] {
+pub fn stiffness_rule(point: usize) -> [f64; 4] {
     let mut coordinates = [NEAR; 4];
     coordinates[point] = FAR;
     coordinates

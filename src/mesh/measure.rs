@@ -70,6 +70,11 @@ pub enum Share {
     Consistent,
     /// In proportion to ∫ Nᵢ² dA, the sum kept: positive at every node.
     Positive,
+    /// To three nodes alone, corners of a three-node face and middles of a six-node one: ∫ Nᵢ dA, and
+    /// what that gives a curved face's corners dealt to its middles so that not only the area but the
+    /// integral of all that is linear over the face (in its own coordinates) is kept. Then the middle
+    /// between corners i and j has ∫ (λᵢ + λⱼ − λₖ) dA: a third of the face where it is flat.
+    ThreeNodes,
 }
 
 /// Seven-point rule on a triangle (Radon 1948), exact to degree five: barycentric places, weights.
@@ -155,12 +160,25 @@ pub fn tributary_areas(mesh: &TetMesh, faces: &[Face], share: Share) -> Vec<f64>
         let sums = face_integrals(mesh, face);
         let area: f64 = sums.iter().map(|sum| sum[0]).sum();
         let squares: f64 = sums.iter().map(|sum| sum[1]).sum();
-        for (node, sum) in mesh.face_nodes(face).zip(sums) {
-            areas[node as usize] += match share {
-                Share::Consistent => sum[0],
-                Share::Positive => sum[1] / squares * area,
-            };
+        let shares: [f64; 6] = match share {
+            Share::Consistent => sums.map(|sum| sum[0]),
+            Share::Positive => sums.map(|sum| sum[1] / squares * area),
+            Share::ThreeNodes => three_nodes(mesh.order(), sums.map(|sum| sum[0])),
+        };
+        for (node, share) in mesh.face_nodes(face).zip(shares) {
+            areas[node as usize] += share;
         }
     }
     areas
+}
+
+/// [`Share::ThreeNodes`] from ∫ Nᵢ dA of the six nodes of a face.
+fn three_nodes(order: Order, shares: [f64; 6]) -> [f64; 6] {
+    if order == Order::Linear {
+        return shares;
+    }
+    // What is linear has at a corner the sum of its values at the two middles beside it, less that
+    // at the third.
+    let [a, b, c, ab, bc, ca] = shares;
+    [0.0, 0.0, 0.0, ab + a + b - c, bc + b + c - a, ca + c + a - b]
 }

@@ -20,7 +20,7 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     let failed = |source| WriteError { path: path.to_path_buf(), source };
     let name = path.file_name().ok_or_else(|| failed(io::ErrorKind::InvalidFilename.into()))?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::create_dir_all(folder).map_err(failed)?;
+    fs::create_dir_all(folder).map_err(|source| failed(in_the_way(folder, source)))?;
     // The process id keeps two runs that share a folder from writing into each other's file.
     let temporary =
         folder.join(format!(".{}.{}.partial", name.to_string_lossy(), std::process::id()));
@@ -30,6 +30,17 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
         let _ = fs::remove_file(&temporary);
         failed(source)
     })
+}
+
+/// Where a file stands in place of a folder, the system says "File exists" of no one knows which.
+fn in_the_way(folder: &Path, source: io::Error) -> io::Error {
+    let file = folder.ancestors().find(|part| part.exists() && !part.is_dir());
+    let Some(file) = file else { return source };
+    let text = format!(
+        "{} is a file, and a folder is needed there; remove it, or name another folder with --out",
+        file.display()
+    );
+    io::Error::new(source.kind(), text)
 }
 
 /// Removes what killed runs left half written in a folder: the temporary files of [`write_atomic`]

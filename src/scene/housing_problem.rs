@@ -18,6 +18,7 @@ use crate::solver::housing::condensed::Reach;
 use crate::solver::profile::Profile;
 use crate::solver::solid::model::{SolidError, SolidModel};
 use nalgebra::Vector3;
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 use thiserror::Error;
@@ -82,6 +83,11 @@ pub enum HousingSetupError {
         1e3 * *.width, SHARES.start(), SHARES.end()
     )]
     CoarseSeat { width: f64, share: f64 },
+    #[error(
+        "housing.bore: all {count} nodes of \"{bore}\" under the race are held by [[solid.held]]: the bore cannot \
+         give way, and nothing of the solid counts. Hold another set, or write method = \"rigid\" in [housing]"
+    )]
+    HeldBore { bore: String, count: usize },
     #[error("housing: the fit leaves the outer race {:.1} um larger than the bore, more than {:.1} um",
         1e6 * *.interference, 1e6 * *.limit)]
     FitTooLarge { interference: f64, limit: f64 },
@@ -106,6 +112,7 @@ impl HousingSetupError {
             HousingSetupError::NoBore { .. }
             | HousingSetupError::FarFromTheRace { .. }
             | HousingSetupError::NotRound { .. }
+            | HousingSetupError::HeldBore { .. }
             | HousingSetupError::OutOfRound { .. } => About::key("housing.bore"),
             HousingSetupError::StraightBore { .. } => About::key("solid.mesh.file"),
             HousingSetupError::BesideTheRace { .. } | HousingSetupError::CoarseSeat { .. } => {
@@ -141,6 +148,8 @@ pub struct HousingSetup {
     pub off_centre: f64,
     /// What the bore's own shape does to the results, where that is worth a word.
     pub caution: Option<String>,
+    /// What is no error and perhaps not meant.
+    pub notes: Vec<String>,
     /// Radial, m; negative is clearance.
     pub interference: f64,
     /// Of the outer race, m.
@@ -232,6 +241,11 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     if !fits {
         return Err(HousingSetupError::FitTooLarge { interference, limit });
     }
+    let mut notes = Vec::new();
+    notes.extend(overhang(width, ends));
+    let under = nodes.iter().zip(&seen).filter(|(_, at)| is_under(at)).map(|(node, _)| node.node);
+    notes.extend(held_nodes(&bore, under.collect(), &solid)?);
+    notes.extend(rigid_rings(scene, radius, interference));
     let model = SolidModel::labelled(solid.problem.clone(), solid.labels.clone())?;
     Ok(HousingSetup {
         solid,
@@ -241,10 +255,78 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
         out_of_round: off,
         off_centre,
         caution: caution(off, interference, scene.housing.penalty),
+        notes,
         interference,
         width,
         nominal,
     })
+}
+
+/// A race that is wider than the seat under it, which lies between these places along its axis, m.
+fn overhang(width: f64, [low, high]: [f64; 2]) -> Option<String> {
+    let beside = (0.5 * width - high).max(0.0) + (0.5 * width + low).max(0.0);
+    // A thousandth of the width is what meshes and drawings round.
+    (beside > 1e-3 * width).then(|| {
+        format!(
+            "of the outer race's {:.4} mm of width {:.4} mm lie beside the bore, which goes from {:.4} to {:.4} \
+             mm along the axis from the race's centre: they bear on nothing, and pressure is high at the \
+             bore's edge. If that is not meant, check housing.width and outer_race.x",
+            1e3 * width,
+            1e3 * beside,
+            1e3 * low,
+            1e3 * high
+        )
+    })
+}
+
+/// Nodes of the bore that a support holds across the axis.
+fn held_nodes(
+    bore: &str,
+    under: BTreeSet<u32>,
+    solid: &SolidSetup,
+) -> Result<Option<String>, HousingSetupError> {
+    let across = solid.problem.prescribed.iter().filter(|held| held.axis > 0);
+    let held: BTreeSet<u32> =
+        across.map(|held| held.node).filter(|node| under.contains(node)).collect();
+    let count = under.len();
+    if held.len() == count {
+        return Err(HousingSetupError::HeldBore { bore: bore.to_string(), count });
+    }
+    Ok((!held.is_empty()).then(|| {
+        format!(
+            "{} of {count} nodes of the bore under the race are held by [[solid.held]] and do not give way: \
+             they take more of the load than a bore's would",
+            held.len()
+        )
+    }))
+}
+
+/// Rings are rigid: what that does to a fit, beside what a ring of its thickness would do.
+fn rigid_rings(scene: &HousedScene, radius: f64, interference: f64) -> Option<String> {
+    // Below this no fit is asked for: rounding of a given outer radius.
+    if interference <= 1e-9 * radius {
+        return None;
+    }
+    let thickness = radius - scene.bearing.dimensions.outer_race.radius;
+    let mean = radius - 0.5 * thickness;
+    // A thin ring under outer pressure p becomes smaller by p r²/(E t).
+    let alone =
+        scene.bearing.outer_material.youngs_modulus * thickness * interference / (mean * radius);
+    let ring = if thickness > 0.0 {
+        format!(
+            "; a thin ring as thick as from groove to seat, {:.3} mm, would give way by all of the fit under \
+             {:.3} MPa, and the parts share it by their stiffness",
+            1e3 * thickness,
+            1e-6 * alone
+        )
+    } else {
+        String::new()
+    };
+    Some(format!(
+        "the races are rigid, so that the housing takes all of the fit of {:.3} um, and the bearing's clearance \
+         stays: pressure and stress of the fit are upper bounds{ring}",
+        1e6 * interference
+    ))
 }
 
 /// Of a bore so far (m) off its cylinder, where that is not small beside an interference or, under
@@ -324,6 +406,9 @@ pub fn check_constant(scene: &HousedScene) -> Result<(), HousingSetupError> {
     Ok(())
 }
 
+/// Cause of the ripple of a load that goes from ball to ball.
+pub const BALLS_PASSING: &str = "balls passing the load";
+
 /// Something that drives bearing and housing, and its frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Excitation {
@@ -360,7 +445,7 @@ pub fn excitations(scene: &HousedScene) -> Vec<Excitation> {
         let shaft = largest(speed, end) / TAU;
         against_balls += cage * shaft;
     }
-    add("balls passing the load".into(), balls * against_balls);
+    add(BALLS_PASSING.into(), balls * against_balls);
     if let Some(ramp) = scene.housing.fit_ramp {
         add("the fit that grows in".into(), 0.5 / ramp);
     }

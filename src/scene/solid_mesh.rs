@@ -5,7 +5,7 @@ use crate::mesh::generate::{Solid, bar, contact_block, ring, shaft};
 use crate::mesh::numbering::reverse_cuthill_mckee;
 use crate::mesh::quadratic::elevate;
 use crate::mesh::quality::{Quality, quality};
-use crate::mesh::read::{ReadError, read_abaqus, read_gmsh};
+use crate::mesh::read::{DeckMaterial, ReadError, read_abaqus, read_gmsh};
 use crate::mesh::repair::{Repair, Repaired, repair};
 use crate::mesh::select::Region;
 use crate::mesh::topology::surface;
@@ -32,6 +32,8 @@ pub struct BuiltMesh {
     pub pulled_back: usize,
     /// What a person should know about the reading.
     pub notes: Vec<String>,
+    /// Of an input deck; a scene names the one that is used.
+    pub materials: Vec<DeckMaterial>,
 }
 
 #[derive(Debug, Error)]
@@ -114,7 +116,7 @@ fn build_around(
     request: &MeshRequest,
     bore: Option<&BorePlace>,
 ) -> Result<BuiltMesh, SolidMeshError> {
-    let mut notes = Vec::new();
+    let (mut notes, mut materials) = (Vec::new(), Vec::new());
     let mut repaired = Repaired::default();
     let mut labels = Labels::default();
     let limits =
@@ -130,6 +132,7 @@ fn build_around(
             let loaded =
                 loaded.map_err(|source| SolidMeshError::Read { path: path.clone(), source })?;
             notes.extend(loaded.notes.iter().map(ToString::to_string));
+            materials = loaded.materials;
             let tolerance = limits.duplicate * loaded.mesh.size();
             let wanted = Repair {
                 orient: request.orient,
@@ -183,7 +186,7 @@ fn build_around(
         }
         false => (mesh, labels),
     };
-    Ok(BuiltMesh { quality: quality(&mesh), mesh, labels, repaired, pulled_back, notes })
+    Ok(BuiltMesh { quality: quality(&mesh), mesh, labels, repaired, pulled_back, notes, materials })
 }
 
 fn in_mesh(path: &Path, source: MeshError) -> SolidMeshError {

@@ -3,11 +3,13 @@
 use crate::ch2_housing::linear_elastic::{ElasticError, LinearElastic};
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::measure::{Share, tributary_areas};
+use crate::mesh::read::DeckMaterial;
 use crate::mesh::vector_area::vector_areas;
 use crate::mesh::{Face, TetMesh};
 use crate::scene::about::About;
 use crate::scene::solid::{LoadKind, ProbeOf, SolidScene};
 use crate::scene::solid_mesh::BuiltMesh;
+use crate::solver::clock::to_digits;
 use crate::solver::profile::Profile;
 use crate::solver::solid::labels::Labels;
 use crate::solver::solid::model::{Load, Prescribed, SolidProblem};
@@ -20,6 +22,11 @@ use thiserror::Error;
 pub enum SolidSetupError {
     #[error(transparent)]
     Material(#[from] ElasticError),
+    #[error(
+        "solid.material: the deck has a material ({deck}), which is not taken from there, and the scene names \
+         none, so that steel would be in its place. Write what you mean in [solid]: {write}"
+    )]
+    DeckMaterial { deck: String, write: String },
     #[error("{part}.set: no set is called \"{set}\"; there are: {}", list(known))]
     NoSuchSet { part: &'static str, index: usize, set: String, known: Vec<String> },
     #[error("{part}.set: set \"{set}\" has no nodes")]
@@ -36,6 +43,23 @@ pub enum SolidSetupError {
         place(at)
     )]
     HeldTwice { index: usize, first: String, second: String, axis: &'static str, at: Vec3 },
+    #[error(
+        "solid.load.set: set \"{set}\" is held along {along} where it is loaded: the support takes all of the \
+         load, and the body none. Load another set, or leave that axis out of [[solid.held]]"
+    )]
+    LoadOnSupport { index: usize, set: String, along: String },
+    #[error(
+        "solid.probe.at: {:.4} mm from there is the nearest node ({}), farther than the longest edge of the \
+         mesh, {:.4} mm: the place is outside the body. Hint: check the place, its unit and the mesh's; or \
+         give the probe a `set`",
+        1e3 * *.distance, place(nearest), 1e3 * *.edge
+    )]
+    FarProbe { index: usize, distance: f64, nearest: Vec3, edge: f64 },
+    #[error(
+        "solid.probe.name: a name of {length} letters is too long for the names of files, which take \
+         {LONGEST_NAME}; give the probe a shorter `name`"
+    )]
+    LongName { index: usize, length: usize },
     #[error("solid.probe.name: two probes are called \"{name}\"; give one of them another `name`")]
     ProbeTwice { index: usize, name: String },
 }
@@ -43,7 +67,9 @@ pub enum SolidSetupError {
 impl SolidSetupError {
     pub fn about(&self) -> About {
         match *self {
-            SolidSetupError::Material(_) => About::key("solid.material"),
+            SolidSetupError::Material(_) | SolidSetupError::DeckMaterial { .. } => {
+                About::key("solid.material")
+            }
             SolidSetupError::NoSuchSet { part: table, index, .. }
             | SolidSetupError::EmptySet { part: table, index, .. } => {
                 About::Item { table, index, key: "set" }
@@ -54,7 +80,13 @@ impl SolidSetupError {
             SolidSetupError::HeldTwice { index, axis: key, .. } => {
                 About::Item { table: "solid.held", index, key }
             }
-            SolidSetupError::ProbeTwice { index, .. } => {
+            SolidSetupError::LoadOnSupport { index, .. } => {
+                About::Item { table: "solid.load", index, key: "set" }
+            }
+            SolidSetupError::FarProbe { index, .. } => {
+                About::Item { table: "solid.probe", index, key: "at" }
+            }
+            SolidSetupError::ProbeTwice { index, .. } | SolidSetupError::LongName { index, .. } => {
                 About::Item { table: "solid.probe", index, key: "name" }
             }
         }
@@ -111,7 +143,17 @@ pub struct SolidSetup {
     pub probes: Vec<NamedNodes>,
     /// Supports; their reactions are written.
     pub supports: Vec<Support>,
+    /// What is no error and perhaps not meant.
+    pub notes: Vec<String>,
 }
+
+/// Bytes of a probe's name: file systems take 255 with what is put before and behind it.
+const LONGEST_NAME: usize = 120;
+/// Part of a load on held components above which it gets a word: the edge of a loaded face that is held
+/// at its end has less on meshes of ten cells or more.
+const WORTH_A_WORD: f64 = 0.2;
+/// Part of the longest edge within which a probe's place counts as its node's.
+const ON_A_NODE: f64 = 0.01;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -121,9 +163,12 @@ pub fn setup(scene: &SolidScene, built: &BuiltMesh) -> Result<SolidSetup, SolidS
     let mesh = &built.mesh;
     let material = LinearElastic::new(scene.youngs_modulus, scene.poisson_ratio)?;
     let (prescribed, supports) = supports(scene, mesh)?;
+    let mut notes = deck_materials(scene, built)?;
     let mut loads = Vec::new();
     for (index, load) in scene.loads.iter().enumerate() {
-        loads.extend(set_loads(mesh, index, &load.set, &load.kind)?);
+        let of_set = set_loads(mesh, index, &load.set, &load.kind)?;
+        notes.extend(on_supports(index, &load.set, &of_set, &prescribed)?);
+        loads.extend(of_set);
     }
     let problem = SolidProblem {
         nodes: mesh.nodes.clone(),
@@ -139,8 +184,61 @@ pub fn setup(scene: &SolidScene, built: &BuiltMesh) -> Result<SolidSetup, SolidS
     let [u, v, w] = scene.velocity;
     let velocity =
         mesh.nodes.iter().map(|[_, y, z]| [u, v - scene.spin * z, w + scene.spin * y]).collect();
-    let (labels, probes) = (built.labels.clone(), probes(scene, mesh)?);
-    Ok(SolidSetup { problem, labels, velocity, probes, supports })
+    let labels = built.labels.clone();
+    let probes = probes(scene, mesh, built.quality.longest_edge, &mut notes)?;
+    Ok(SolidSetup { problem, labels, velocity, probes, supports, notes })
+}
+
+/// Materials of a deck beside the one of the scene: notes where they differ from it, an error where the
+/// scene has only defaults for what the deck has.
+fn deck_materials(scene: &SolidScene, built: &BuiltMesh) -> Result<Vec<String>, SolidSetupError> {
+    let defaulted = |key: &str| {
+        scene.defaults_used.iter().any(|used| used.key == format!("solid.material.{key}"))
+    };
+    let [no_young, no_poisson, no_density] =
+        ["youngs_modulus", "poisson_ratio", "density"].map(defaulted);
+    // To the digits in which people write moduli.
+    let differ = |a: f64, b: f64| (a - b).abs() > 1e-3 * b.abs();
+    let given: Vec<&DeckMaterial> =
+        built.materials.iter().filter(|m| m.elastic.is_some() || m.density.is_some()).collect();
+    let mut notes = Vec::new();
+    for material in &given {
+        let [young, poisson] =
+            material.elastic.unwrap_or([scene.youngs_modulus, scene.poisson_ratio]);
+        let density = material.density.unwrap_or(scene.density);
+        let of = [
+            (young, scene.youngs_modulus, no_young),
+            (poisson, scene.poisson_ratio, no_poisson),
+            (density, scene.density, no_density),
+        ];
+        let deck = format!(
+            "\"{}\": Young's modulus {} GPa, Poisson's ratio {poisson}, density {} kg/m^3, if its units fit \
+             solid.mesh.unit",
+            material.name,
+            to_digits(1e-9 * young, 6),
+            to_digits(density, 6)
+        );
+        if of.iter().any(|(deck, scene, no)| *no && differ(*deck, *scene)) {
+            let write = format!(
+                "material = {{ youngs_modulus = \"{} GPa\", poisson_ratio = {poisson}, density = \"{} kg/m^3\" }}",
+                to_digits(1e-9 * young, 6),
+                to_digits(density, 6)
+            );
+            return Err(SolidSetupError::DeckMaterial { deck, write });
+        }
+        if of.iter().any(|(deck, scene, _)| differ(*deck, *scene)) {
+            notes.push(format!(
+                "the deck's material is not used, the scene's is; the deck has {deck}"
+            ));
+        }
+    }
+    if given.len() > 1 {
+        notes.push(format!(
+            "the deck has {} materials: the whole body is of the one of the scene",
+            given.len()
+        ));
+    }
+    Ok(notes)
 }
 
 /// Every set of the mesh, once.
@@ -271,18 +369,79 @@ fn shares(mesh: &TetMesh, index: usize, set: &str) -> Result<Vec<(u32, f64)>, So
     Ok(carrying.map(|(node, area)| (node, area / total)).collect())
 }
 
-fn probes(scene: &SolidScene, mesh: &TetMesh) -> Result<Vec<NamedNodes>, SolidSetupError> {
+/// A load that a support takes at once does nothing: whole it is an error, a large part gets a note.
+fn on_supports(
+    index: usize,
+    set: &str,
+    loads: &[Load],
+    prescribed: &[Prescribed],
+) -> Result<Option<String>, SolidSetupError> {
+    let held: BTreeSet<(u32, usize)> = prescribed.iter().map(|p| (p.node, p.axis)).collect();
+    let (mut all, mut taken) = ([0.0; 3], [0.0; 3]);
+    for load in loads.iter().filter(|load| !load.profile.is_zero()) {
+        for (node, force) in &load.forces {
+            for axis in 0..3 {
+                all[axis] += force[axis].abs();
+                if held.contains(&(*node, axis)) {
+                    taken[axis] += force[axis].abs();
+                }
+            }
+        }
+    }
+    let (sum, on_held): (f64, f64) = (all.iter().sum(), taken.iter().sum());
+    let along: Vec<&str> =
+        (0..3).filter(|&axis| taken[axis] > 0.0).map(|axis| AXES[axis]).collect();
+    let along = along.join(" and ");
+    // Rounding of sums of shares.
+    if sum > 0.0 && on_held >= (1.0 - 1e-9) * sum {
+        return Err(SolidSetupError::LoadOnSupport { index, set: set.to_string(), along });
+    }
+    let part = 100.0 * on_held / sum;
+    Ok((on_held > WORTH_A_WORD * sum).then(|| {
+        format!(
+            "{part:.0} % of the load on set \"{set}\" is on nodes that are held along {along}: the support \
+             takes it at once"
+        )
+    }))
+}
+
+/// Nodes of the probes; places next to no node get a note, those outside the mesh are errors.
+fn probes(
+    scene: &SolidScene,
+    mesh: &TetMesh,
+    edge: f64,
+    notes: &mut Vec<String>,
+) -> Result<Vec<NamedNodes>, SolidSetupError> {
     let mut probes: Vec<NamedNodes> = Vec::new();
     for (index, probe) in scene.probes.iter().enumerate() {
         let nodes = match &probe.of {
             ProbeOf::Set(set) => nodes_of_set(mesh, set, "solid.probe", index)?,
             ProbeOf::Place(at) => {
                 let off = |p: &Vec3| (0..3).map(|i| (p[i] - at[i]) * (p[i] - at[i])).sum::<f64>();
-                let nearest = (0..).zip(&mesh.nodes).min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
-                nearest.map(|(node, _)| vec![node]).unwrap_or_default()
+                let nearest =
+                    (0u32..).zip(&mesh.nodes).min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
+                let Some((node, nearest)) = nearest else { continue };
+                let distance = off(nearest).sqrt();
+                let near = distance <= edge;
+                if !near {
+                    let nearest = *nearest;
+                    return Err(SolidSetupError::FarProbe { index, distance, nearest, edge });
+                }
+                if distance > ON_A_NODE * edge {
+                    notes.push(format!(
+                        "probe \"{}\" is that of the nearest node, {} ({:.4} mm away)",
+                        probe.name,
+                        place(nearest),
+                        1e3 * distance
+                    ));
+                }
+                vec![node]
             }
         };
         let name = column_name(&probe.name);
+        if name.len() > LONGEST_NAME {
+            return Err(SolidSetupError::LongName { index, length: name.len() });
+        }
         if probes.iter().any(|other| other.name == name) {
             return Err(SolidSetupError::ProbeTwice { index, name });
         }

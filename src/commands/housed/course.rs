@@ -8,15 +8,17 @@ use super::{
 };
 use crate::commands::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
 use crate::commands::run::{Arguments, pictures};
+use crate::commands::solid::say_remarks;
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::housed::course::{HousedCourse, bore_nodes};
 use bearing_dynamics::output::housed::fields::write_housing_fields;
 use bearing_dynamics::output::housed::summary::{
-    course_summary, equilibrium_section, field_sections, inertia_section,
+    PEAK_PRESSURE, course_summary, equilibrium_section, field_sections, inertia_section,
 };
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, stresses, write_list};
+use bearing_dynamics::output::solid::remarks;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::scene::housing_problem::excitations;
@@ -25,6 +27,7 @@ use bearing_dynamics::solver::clock::rounded;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::quasi_static::{CourseError, Moment};
 use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
@@ -90,7 +93,7 @@ pub fn run(arguments: &Arguments, document: &Document, scene: &HousedScene) -> C
         End::Interrupted => Some("interrupted".to_string()),
         End::Failed(error) => Some(error.to_string()),
     };
-    let mut sections = Vec::new();
+    let (mut sections, mut remarks) = (Vec::new(), Vec::new());
     if let Some(moment) = course.latest.clone() {
         fields.write(course.rows() - 1, &moment)?;
         let displacement = bore.displacement(&moment.state.bore.loads);
@@ -100,6 +103,8 @@ pub fn run(arguments: &Arguments, document: &Document, scene: &HousedScene) -> C
             equilibrium_section(setup, &bore, &moment.state, &displacement)?,
         ));
         sections.extend(field_sections(built, &displacement, &stress)?);
+        remarks = remarks::of_equilibrium(&setup.model, &displacement, &stress);
+        sections.push(("housing_remarks".into(), json!(remarks)));
         write_bore(&folder, &bore_nodes(setup, &bore, &moment.state))?;
     }
     let inertia = inertia_estimate(scene, setup, &bore).ok().flatten();
@@ -122,6 +127,7 @@ pub fn run(arguments: &Arguments, document: &Document, scene: &HousedScene) -> C
     let summary = course_summary(&course, settings.end, &table, stopped_by.as_deref(), &record)?;
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
     say(&figures(&course, seconds))?;
+    say_remarks(&remarks)?;
     if let Some(estimate) = &inertia {
         say(&format!(
             "inertia left out       {}\n",
@@ -244,10 +250,10 @@ fn figures(course: &HousedCourse, seconds: f64) -> String {
     line(
         "bore",
         format!(
-            "penetration up to {:.6} um, pressure up to {:.4} MPa, up to {} nodes touching",
+            "penetration up to {:.6} um, up to {} nodes touching, pressure up to {:.4} MPa, {PEAK_PRESSURE}",
             1e6 * largest("bore_deepest_penetration"),
-            1e-6 * largest("bore_peak_pressure"),
-            largest("bore_nodes_touching")
+            largest("bore_nodes_touching"),
+            1e-6 * largest("bore_peak_pressure")
         ),
     );
     line(

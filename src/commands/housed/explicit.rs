@@ -6,19 +6,24 @@ use super::{
 };
 use crate::commands::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
 use crate::commands::run::{Arguments, no_run, pictures};
+use crate::commands::solid::say_remarks;
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::housed::fields::write_housing_fields;
 use bearing_dynamics::output::housed::session::{HousedRunError, HousedSession, Progress};
 use bearing_dynamics::output::housed::state::{self, HousedParts, HousedRequest, HousedStateFile};
-use bearing_dynamics::output::housed::summary::{field_sections, run_summary, seat_section};
+use bearing_dynamics::output::housed::summary::{
+    PEAK_PRESSURE, field_sections, run_summary, seat_section,
+};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, stresses, write_list};
+use bearing_dynamics::output::solid::remarks;
 use bearing_dynamics::output::state::{StateRecord, Stopped};
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::solver::clock::rounded;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
@@ -95,6 +100,7 @@ pub fn run(
 
     let start = Instant::now();
     let mut sections = vec![("seat".to_string(), seat_section(setup)?)];
+    let mut remarks = Vec::new();
     if stopped == Stopped::Complete {
         let rows = session.grid.rows;
         // One file more unless the last one is due there anyway.
@@ -106,6 +112,8 @@ pub fn run(
         let displacement = session.displacement();
         let stress = stresses(&setup.model, &displacement);
         sections.extend(field_sections(built, &displacement, &stress)?);
+        remarks = remarks::of_motion(&setup.model, &displacement, &stress);
+        sections.push(("housing_remarks".into(), json!(remarks)));
         write_bore(&folder, &session.bore_nodes())?;
     }
     let table = run_table(session.series()?, session.interval(), settings.window_start);
@@ -123,6 +131,7 @@ pub fn run(
     let summary = run_summary(&session, settings.end, &table, stopped_by.as_deref(), &record)?;
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
     say(&figures(&session, seconds))?;
+    say_remarks(&remarks)?;
     say(&format!("wrote series, summary and {} plots to {}\n", written.len(), folder.display()))?;
     outcome(arguments, &folder, &session, end)
 }
@@ -315,7 +324,7 @@ fn figures(session: &HousedSession, seconds: f64) -> String {
     line(
         "bore",
         format!(
-            "penetration up to {:.6} um, pressure up to {:.4} MPa",
+            "penetration up to {:.6} um, pressure up to {:.4} MPa, {PEAK_PRESSURE}",
             1e6 * largest("bore_deepest_penetration"),
             1e-6 * largest("bore_peak_pressure")
         ),

@@ -55,8 +55,9 @@ pub struct Prepared {
 /// Reads or makes the mesh; the document says where in the scene an error stands.
 pub fn prepare(document: &Document, scene: &HousedScene) -> Fallible<Prepared> {
     let start = Instant::now();
-    let built = build_housing(scene).map_err(|error| placed(document, error.about(), error))?;
+    let mut built = build_housing(scene).map_err(|error| placed(document, error.about(), error))?;
     let setup = setup(scene, &built).map_err(|error| placed(document, error.about(), error))?;
+    built.notes.extend(setup.solid.notes.iter().chain(&setup.notes).cloned());
     Ok(Prepared { built, setup, mesh_seconds: start.elapsed().as_secs_f64() })
 }
 

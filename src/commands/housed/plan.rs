@@ -14,7 +14,9 @@ use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::RunSettings;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
-use bearing_dynamics::scene::housing_problem::{check_constant, excitations};
+use bearing_dynamics::scene::housing_problem::{
+    BALLS_PASSING, Excitation, check_constant, excitations,
+};
 use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
@@ -183,10 +185,14 @@ pub fn verdict(
         said += ", and nothing drives it at a frequency of its own";
         return said;
     };
-    let error = match along {
+    // What counts is the race's displacement, which is what is read; of one that hardly swings, inertia may
+    // change much of the swing and next to nothing of that.
+    let (error, of_swing) = match along {
         Some(course) => {
             said += &format!("; {}", course_text(course));
-            course.part(course.expected())
+            let part = course.expected() / course.displacement.max(course.swing);
+            said += &format!("; that is {} of its displacement", percent(part));
+            (part, course.part(course.expected()))
         }
         None => {
             said += &format!(
@@ -195,7 +201,11 @@ pub fn verdict(
                 cause.what,
                 to_digits(cause.frequency, 4)
             );
-            driven
+            // How much balls that pass by displace shows only along a course.
+            let others: Vec<Excitation> =
+                excitations.iter().filter(|other| other.what != BALLS_PASSING).cloned().collect();
+            let judged = largest_error(estimate, &others).map_or(0.0, |(error, _)| error);
+            (judged, driven)
         }
     };
     // An error that is not a number is one.
@@ -205,6 +215,9 @@ pub fn verdict(
             "; WARNING: not allowed for more than a rough look, write method = \"explicit\" in [housing]"
         }
         (true, false, true) => "; WARNING: method = \"explicit\" in [housing] has inertia",
+        (true, true, true) if of_swing > TOO_MUCH => {
+            "; to see how it swings write method = \"explicit\" in [housing]"
+        }
         (true, true, true) => "",
         (false, _, false) => "; not allowed: inertia counts here",
         (false, _, true) => "; method = \"quasi-static\" in [housing] takes it",

@@ -5,15 +5,17 @@ use super::{
     write_bore,
 };
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::solid::say_remarks;
 use crate::commands::{CommandResult, Outcome, pictures, results_folder, say, table};
 use bearing_dynamics::output::housed::course::{bore_nodes, outer_place};
 use bearing_dynamics::output::housed::fields::write_housing_fields;
 use bearing_dynamics::output::housed::rows::SeatRow;
 use bearing_dynamics::output::housed::summary::{
-    equilibrium_section, field_sections, inertia_section,
+    PEAK_PRESSURE, equilibrium_section, field_sections, inertia_section,
 };
 use bearing_dynamics::output::results::write_static_results;
 use bearing_dynamics::output::solid::fields::{file_name, stresses, write_list};
+use bearing_dynamics::output::solid::remarks;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::Plot;
 use bearing_dynamics::scene::housing::HousedScene;
@@ -21,6 +23,7 @@ use bearing_dynamics::scene::housing_problem::excitations;
 use bearing_dynamics::solver::housing::assembly::AssemblyState;
 use bearing_dynamics::solver::housing::bore_equilibrium::POSE_NAMES;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use serde_json::json;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -53,6 +56,8 @@ pub fn run(
     say_notes(&prepared)?;
     say(&table::render(&problem, &state.bearing))?;
     say(&housing_table(&bore, &state, largest))?;
+    let remarks = remarks::of_equilibrium(&setup.model, &displacement, &stress);
+    say_remarks(&remarks)?;
     if let Some(estimate) = &inertia {
         say(&format!("note: {}\n", plan::verdict(scene, estimate, None)))?;
     }
@@ -69,6 +74,7 @@ pub fn run(
         .sections
         .push(("housing".into(), equilibrium_section(setup, &bore, &state, &displacement)?));
     record.sections.extend(field_sections(built, &displacement, &stress)?);
+    record.sections.push(("housing_remarks".into(), json!(remarks)));
     if let Some(estimate) = &inertia {
         record
             .sections
@@ -110,6 +116,7 @@ fn housing_table(bore: &CondensedBore, state: &AssemblyState, von_mises: f64) ->
         "housing stiffness {:.4} N/um along y, {:.4} N/um along z\n\
          {} of {} bore nodes touch, penetration up to {:.6} um, pressure up to {:.4} MPa, von Mises \
          stress up to {:.4} MPa\n\
+         this pressure is {PEAK_PRESSURE}\n\
          {} rounds, {} changes of contact, unbalanced part of the load {:.1e}",
         stiffness(0),
         stiffness(1),

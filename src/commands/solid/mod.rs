@@ -28,9 +28,10 @@ pub struct Prepared {
 /// Reads or makes the mesh; the document says where in the scene an error stands.
 pub fn prepare(document: &Document, scene: &SolidScene) -> Result<Prepared, Box<dyn Error>> {
     let start = Instant::now();
-    let built = build(&scene.mesh).map_err(|error| placed(document, error.about(), error))?;
+    let mut built = build(&scene.mesh).map_err(|error| placed(document, error.about(), error))?;
     let setup =
         setup(scene, &built).map_err(|error| placed(document, Some(error.about()), error))?;
+    built.notes.extend(setup.notes.iter().cloned());
     let free = free_motions(&setup.problem);
     Ok(Prepared { built, setup, free, mesh_seconds: start.elapsed().as_secs_f64() })
 }
@@ -50,6 +51,11 @@ pub fn mesh_notes(built: &BuiltMesh) -> Vec<String> {
 /// Says these before results.
 pub fn say_mesh_notes(built: &BuiltMesh) -> Result<(), Box<dyn Error>> {
     mesh_notes(built).iter().try_for_each(|note| say(&format!("note: {note}\n")))
+}
+
+/// Says these after results.
+pub fn say_remarks(remarks: &[String]) -> Result<(), Box<dyn Error>> {
+    remarks.iter().try_for_each(|remark| say(&format!("note: {remark}\n")))
 }
 
 pub fn title(scene: &SolidScene) -> String {

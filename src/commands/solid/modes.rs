@@ -1,15 +1,16 @@
 //! `bearing modes`: natural frequencies and mode shapes of a solid.
 
-use super::{plan, prepare, record, say_mesh_notes};
+use super::{plan, prepare, record, say_mesh_notes, say_remarks};
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, write_list, write_mode};
-use bearing_dynamics::output::solid::summary;
+use bearing_dynamics::output::solid::{remarks, summary};
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::model::SolidModel;
 use bearing_dynamics::solver::solid::modes::{ModeOptions, modes};
+use serde_json::json;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -36,13 +37,16 @@ pub fn run(
         ("solve".into(), start.elapsed().as_secs_f64()),
     ];
     let record = record(scene, plan::lines(scene, &prepared), seconds)?;
-    let (summary, series) = summary::modes(&model, built, &found, &record)?;
+    let (mut summary, series) = summary::modes(&model, built, &found, &record)?;
+    let remarks = remarks::of_modes(&model, &found);
+    summary["remarks"] = json!(remarks);
     say_mesh_notes(built)?;
     let mut text = "mode        frequency, Hz\n".to_string();
     for (index, mode) in found.modes.iter().enumerate() {
         let _ = writeln!(text, "{:>4} {:>20.6}", index + 1, mode.frequency);
     }
     say(&text)?;
+    say_remarks(&remarks)?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let mut steps = Vec::new();

@@ -1,6 +1,6 @@
 //! `bearing run` of a solid: step after step, and the folder it leaves.
 
-use super::{Prepared, plan, prepare, record, say_mesh_notes, title};
+use super::{Prepared, plan, prepare, record, say_mesh_notes, say_remarks, title};
 use crate::commands::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
 use crate::commands::run::{Arguments, no_run};
 use crate::commands::{CommandResult, Outcome, results_folder, say};
@@ -11,12 +11,13 @@ use bearing_dynamics::output::solid::fields::{file_name, stresses, write_fields,
 use bearing_dynamics::output::solid::pictures::{probe_spectra, series_plots, spectrum_plot};
 use bearing_dynamics::output::solid::session::{Progress, SolidRunError, SolidSession};
 use bearing_dynamics::output::solid::state::{self, SolidStateFile, SolidStateRecord};
-use bearing_dynamics::output::solid::summary;
+use bearing_dynamics::output::solid::{remarks, summary};
 use bearing_dynamics::output::state::Stopped;
 use bearing_dynamics::scene::solid::SolidRun;
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::clock::rounded;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
 use std::error::Error;
 use std::path::Path;
 use std::sync::Arc;
@@ -121,8 +122,11 @@ pub fn run(
     record.threads = threads;
     let stress = stresses(&session.solid.model, &session.displacement());
     let reason = stopped_by.as_deref();
-    let summary = summary::run(&session, &settings, built, &stress, &spectra, reason, &record)?;
+    let mut summary = summary::run(&session, &settings, built, &stress, &spectra, reason, &record)?;
+    let remarks = remarks::of_run(&session, &stress);
+    summary["remarks"] = json!(remarks);
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
+    say_remarks(&remarks)?;
     say(&format!(
         "wrote series, fields, summary and {} plots to {}\n",
         plots.len(),

@@ -1,16 +1,16 @@
 //! `bearing statics` of a solid.
 
-use super::{Prepared, plan, prepare, record, say_mesh_notes};
+use super::{Prepared, plan, prepare, record, say_mesh_notes, say_remarks};
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, stresses, write_fields, write_list};
-use bearing_dynamics::output::solid::summary;
+use bearing_dynamics::output::solid::{remarks, summary};
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
 use bearing_dynamics::solver::solid::model::SolidModel;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -50,9 +50,13 @@ pub fn run(
         ("stresses".into(), stress_seconds),
     ];
     let record = record(scene, plan::lines(scene, &prepared), seconds)?;
-    let (summary, series) = summary::statics(&model, setup, built, &solution, &stress, &record)?;
+    let (mut summary, series) =
+        summary::statics(&model, setup, built, &solution, &stress, &record)?;
+    let remarks = remarks::of_equilibrium(&model, &solution.displacement, &stress);
+    summary["remarks"] = json!(remarks);
     say_mesh_notes(built)?;
     say(&table(&summary))?;
+    say_remarks(&remarks)?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let file = file_name("fields", 0);

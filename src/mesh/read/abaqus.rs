@@ -7,17 +7,40 @@ use crate::mesh::read::abaqus_lines::{Keyword, extend_set, keyword, member_count
 use crate::mesh::read::assemble::{Numbered, RawFace, RawMesh};
 use crate::mesh::read::error::{Problem, ReadError};
 use crate::mesh::read::source::{Source, excerpt};
-use crate::mesh::read::{LengthUnit, Loaded};
+use crate::mesh::read::{DeckMaterial, LengthUnit, Loaded};
 
 /// What the data lines of the present keyword are.
 enum Block {
     Nothing,
-    Nodes { set: Option<String> },
-    Elements { kind: Kind, set: Option<String>, pending: Vec<u64>, from: usize },
-    NodeSet { name: String, generate: bool },
-    ElementSet { name: String, generate: bool },
-    Surface { name: String },
+    Nodes {
+        set: Option<String>,
+    },
+    Elements {
+        kind: Kind,
+        set: Option<String>,
+        pending: Vec<u64>,
+        from: usize,
+    },
+    NodeSet {
+        name: String,
+        generate: bool,
+    },
+    ElementSet {
+        name: String,
+        generate: bool,
+    },
+    Surface {
+        name: String,
+    },
     Instance,
+    /// The first line of a material's constants.
+    Constants(Constants),
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Constants {
+    Elastic,
+    Density,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -147,8 +170,41 @@ impl Deck {
             }
             other => {
                 self.raw.ignore(format!("*{}", excerpt(other.as_bytes())));
-                Ok(Block::Nothing)
+                Ok(self.material(other, keyword))
             }
+        }
+    }
+
+    /// Materials are not taken, but remembered, so that what is taken in their place can be told.
+    fn material(&mut self, keyword: &str, of: &Keyword) -> Block {
+        let isotropic = of.parameter("TYPE").is_none_or(|kind| {
+            ["ISO", "ISOTROPIC"].iter().any(|name| kind.eq_ignore_ascii_case(name))
+        });
+        match keyword {
+            "MATERIAL" => {
+                let name = of.parameter("NAME").unwrap_or_default().to_string();
+                self.raw.materials.push(DeckMaterial { name, ..DeckMaterial::default() });
+                Block::Nothing
+            }
+            "ELASTIC" if isotropic => Block::Constants(Constants::Elastic),
+            "DENSITY" => Block::Constants(Constants::Density),
+            _ => Block::Nothing,
+        }
+    }
+
+    /// Constants that are not numbers, or of no material, are left.
+    fn constants(&mut self, words: &[&str], kind: Constants) {
+        let number = |index: usize| {
+            let value: Option<f64> = words.get(index).and_then(|word| word.parse().ok());
+            value.filter(|value| value.is_finite())
+        };
+        let Some(material) = self.raw.materials.last_mut() else { return };
+        match (kind, number(0), number(1)) {
+            (Constants::Elastic, Some(young), Some(poisson)) => {
+                material.elastic = Some([young, poisson]);
+            }
+            (Constants::Density, Some(density), _) => material.density = Some(density),
+            _ => {}
         }
     }
 
@@ -168,6 +224,12 @@ impl Deck {
         };
         match block {
             Block::Nothing => Ok(()),
+            Block::Constants(kind) => {
+                self.constants(words, *kind);
+                // Further lines are for other temperatures.
+                *block = Block::Nothing;
+                Ok(())
+            }
             Block::Nodes { set } => self.node(source, at, words, set.as_deref()),
             Block::Elements { kind, set, pending, from } => {
                 if pending.is_empty() {

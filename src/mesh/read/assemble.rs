@@ -3,7 +3,7 @@
 use crate::mesh::error::MeshError;
 use crate::mesh::read::error::{Problem, ReadError};
 use crate::mesh::read::source::Source;
-use crate::mesh::read::{FileNumbers, LengthUnit, Loaded, Note, size_note};
+use crate::mesh::read::{DeckMaterial, FileNumbers, LengthUnit, Loaded, Note, size_note};
 use crate::mesh::tet_mesh::{Elements, Face, TetMesh};
 use crate::mesh::topology::sorted_faces;
 use std::collections::{BTreeMap, HashMap};
@@ -46,6 +46,8 @@ pub struct RawMesh {
     pub surface_sets: BTreeMap<String, Vec<RawFace>>,
     numbered: HashMap<u64, Numbered>,
     ignored: BTreeMap<String, usize>,
+    /// In the numbers of the file.
+    pub materials: Vec<DeckMaterial>,
 }
 
 impl RawMesh {
@@ -67,6 +69,7 @@ impl RawMesh {
             surface_sets: BTreeMap::new(),
             numbered: HashMap::new(),
             ignored: BTreeMap::new(),
+            materials: Vec::new(),
         }
     }
 
@@ -218,7 +221,14 @@ impl RawMesh {
         for (tag, index) in self.node_index {
             numbers.nodes[index as usize] = tag;
         }
-        Ok(Loaded { mesh, notes, numbers })
+        let [stress, density] = unit.of_materials();
+        let in_si = |material: DeckMaterial| DeckMaterial {
+            elastic: material.elastic.map(|[young, poisson]| [stress * young, poisson]),
+            density: material.density.map(|given| density * given),
+            ..material
+        };
+        let materials = self.materials.into_iter().map(in_si).collect();
+        Ok(Loaded { mesh, notes, numbers, materials })
     }
 
     /// Elements by node indices, the first N nodes of each.

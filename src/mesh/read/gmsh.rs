@@ -7,7 +7,7 @@ use crate::mesh::node_order::swap_gmsh;
 use crate::mesh::read::assemble::{RawFace, RawMesh};
 use crate::mesh::read::error::{Problem, ReadError};
 use crate::mesh::read::source::{Coding, Source, excerpt};
-use crate::mesh::read::{LengthUnit, Loaded, gmsh2, gmsh4};
+use crate::mesh::read::{LengthUnit, Loaded, Note, gmsh2, gmsh4};
 use std::collections::HashMap;
 
 /// Names of physical groups by dimension and tag.
@@ -103,7 +103,12 @@ pub fn read_gmsh(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> {
             return Err(source.error(Problem::MissingSection { section }));
         }
     }
-    raw.finish(&source, unit)
+    let mut loaded = raw.finish(&source, unit)?;
+    if loaded.mesh.element_sets.len() > 1 {
+        let names = loaded.mesh.element_sets.keys().cloned().collect();
+        loaded.notes.push(Note::SeveralVolumes { names });
+    }
+    Ok(loaded)
 }
 
 /// Runs `read` with numbers in the file's coding, and goes back to text.

@@ -3,12 +3,12 @@
 use crate::mesh::read::assemble::RawMesh;
 use crate::mesh::read::error::{Problem, ReadError};
 use crate::mesh::read::gmsh::{Kind, Names, in_coding, kind, place_element};
-use crate::mesh::read::source::{Coding, Source};
+use crate::mesh::read::source::{Coding, Source, count_of};
 use std::collections::HashMap;
 
 /// A count on a line of its own.
 fn count(source: &mut Source, what: &'static str) -> Result<u64, ReadError> {
-    let count = source.text_number(what)?;
+    let count = source.text_number(count_of(what))?;
     source.line();
     source.expect_room(what, count, 4)?;
     Ok(count)

@@ -3,7 +3,7 @@
 use crate::mesh::read::assemble::RawMesh;
 use crate::mesh::read::error::{Problem, ReadError};
 use crate::mesh::read::gmsh::{Names, kind, place_element};
-use crate::mesh::read::source::Source;
+use crate::mesh::read::source::{Source, count_of};
 use std::collections::HashMap;
 
 /// Physical groups of each geometric entity, by its dimension and tag.
@@ -44,7 +44,7 @@ fn int_list(source: &mut Source, what: &'static str) -> Result<Vec<i64>, ReadErr
 /// nothing that the tags do not.
 fn totals(source: &mut Source, what: &'static str) -> Result<(u64, u64), ReadError> {
     let blocks = source.size("a count of blocks")?;
-    let total = source.size(what)?;
+    let total = source.size(count_of(what))?;
     source.size("the least tag")?;
     source.size("the greatest tag")?;
     source.expect_room("blocks", blocks, 8)?;

@@ -35,6 +35,14 @@ impl LengthUnit {
             LengthUnit::Millimetre => 1e-3,
         }
     }
+
+    /// Of a stress (Pa) and a density (kg/m³) in a consistent set with this unit of length.
+    fn of_materials(self) -> [f64; 2] {
+        match self {
+            LengthUnit::Metre => [1.0, 1.0],
+            LengthUnit::Millimetre => [1e6, 1e12],
+        }
+    }
 }
 
 /// A mesh as read, in metres, and what a person should know about the reading.
@@ -43,6 +51,19 @@ pub struct Loaded {
     pub mesh: TetMesh,
     pub notes: Vec<Note>,
     pub numbers: FileNumbers,
+    /// Of an input deck, in its order; the mesh takes none of them.
+    pub materials: Vec<DeckMaterial>,
+}
+
+/// A material as an input deck has it, in SI units: its numbers are taken as a consistent set with the file's
+/// unit of length, so that millimetres go with N, MPa and tonnes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DeckMaterial {
+    pub name: String,
+    /// Young's modulus, Pa, and Poisson's ratio, of *ELASTIC for isotropic solids.
+    pub elastic: Option<[f64; 2]>,
+    /// kg/m³.
+    pub density: Option<f64>,
 }
 
 /// Numbers of the file's own, in the order of the mesh: Gmsh's tags, Abaqus' labels.
@@ -57,6 +78,8 @@ pub struct FileNumbers {
 pub enum Note {
     /// Machine parts are rarely smaller than 1 mm or larger than 10 m.
     UnlikelySize { size: f64, unit: LengthUnit },
+    /// Groups of elements that may be meant as bodies of several materials.
+    SeveralVolumes { names: Vec<String> },
     /// A part of the file that says nothing about the mesh: keyword or section.
     Ignored { what: String, count: usize },
 }
@@ -73,6 +96,12 @@ impl fmt::Display for Note {
                 f,
                 "the mesh is {size:.4e} m across when its numbers are millimetres; as metres it would be {:.4e} m",
                 size * 1e3
+            ),
+            Note::SeveralVolumes { names } => write!(
+                f,
+                "the file has {} volumes ({}): all become one body of the one material of the scene",
+                names.len(),
+                names.join(", ")
             ),
             Note::Ignored { what, count } => write!(f, "{what} was skipped ({count} times)"),
         }

@@ -22,6 +22,14 @@ pub fn excerpt(bytes: &[u8]) -> String {
     String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST)]).into_owned()
 }
 
+/// What the number of these is called where it is none.
+pub fn count_of(what: &str) -> &'static str {
+    match what {
+        "nodes" => "a count of nodes (a whole number, 0 or more)",
+        _ => "a count of elements (a whole number, 0 or more)",
+    }
+}
+
 impl<'a> Source<'a> {
     pub fn new(bytes: &'a [u8]) -> Source<'a> {
         Source { bytes, at: 0, coding: Coding::Text }

@@ -21,6 +21,11 @@ use serde_json::{Map, Value, json};
 
 type Part = Result<Value, ResultsError>;
 
+/// What a largest pressure of bore nodes is worth: measured on housings of 2.4.2, where it moved by 24 %
+/// between meshes whose displacements are 0.7 % apart.
+pub const PEAK_PRESSURE: &str =
+    "of one node: it moves by tens of per cent with the mesh where displacements move by one";
+
 /// Fit, width and mesh; the bore's shape, and what it does to results where that is worth a word.
 ///
 /// # Errors
@@ -33,6 +38,7 @@ pub fn seat_section(setup: &HousingSetup) -> Part {
         "interference": quantity("interference", setup.interference, "m")?,
         "width": quantity("width", setup.width, "m")?,
         "bore_nodes": setup.nodes.len(),
+        "peak_pressure_note": PEAK_PRESSURE,
     });
     if let Some(caution) = &setup.caution {
         section["caution"] = json!(caution);
@@ -73,6 +79,7 @@ pub fn inertia_section(
     if let Some(course) = course {
         let mut along = finite(&[
             ("swing", course.swing, "m"),
+            ("displacement", course.displacement, "m"),
             ("steady", course.steady, "m"),
             ("start_at_rest", course.start, "m"),
             ("largest_kink", course.largest_kink, "m"),

@@ -28,6 +28,8 @@ pub struct Stresses {
     /// Cauchy stress of each element, the mean over its points by volume: XX YY ZZ XY YZ ZX.
     pub cell: Vec<Sym3>,
     pub cell_von_mises: Vec<f64>,
+    /// Stress at nodes as [`nodal_stresses`] finds it there.
+    pub nodal: Vec<Sym3>,
     /// Von Mises stress at nodes, of the stress that [`nodal_stresses`] finds there.
     pub node_von_mises: Vec<f64>,
 }
@@ -39,6 +41,7 @@ pub fn stresses(model: &SolidModel, displacement: &[Vec3]) -> Stresses {
     Stresses {
         cell_von_mises: cell.iter().map(von_mises).collect(),
         node_von_mises: nodal.iter().map(von_mises).collect(),
+        nodal,
         cell,
     }
 }

@@ -9,6 +9,7 @@
 //! | `state.json`, `state-N.npy` | what a run goes on from |
 pub mod fields;
 pub mod pictures;
+pub mod remarks;
 pub mod session;
 pub mod state;
 pub mod summary;

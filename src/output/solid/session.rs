@@ -13,7 +13,7 @@ use crate::solver::solid::energy::SolidEnergy;
 use crate::solver::solid::explicit::{ExplicitSolid, SolidStepping, padded};
 use crate::solver::solid::model::{SolidError, SolidModel};
 use crate::solver::solid::step_limit::{SolidStepLimit, step_limit};
-use crate::solver::solid::stress::first_inverted;
+use crate::solver::solid::stress::look;
 use crate::solver::solid::team::Team;
 use ndarray::Array2;
 use thiserror::Error;
@@ -289,7 +289,8 @@ impl SolidSession {
         if let Some(node) = displacement.iter().position(|u| !u.iter().all(|x| x.is_finite())) {
             return Err(self.solid.model.not_finite(node, time, step).into());
         }
-        if let Some((element, ratio)) = first_inverted(&self.solid.model, &displacement) {
+        let seen = look(&self.solid.model, &displacement);
+        if let Some((element, ratio)) = seen.inverted {
             return Err(self.solid.model.inverted(element, ratio, time, step).into());
         }
         let ledger = self.solid.ledger();
@@ -310,6 +311,7 @@ impl SolidSession {
         }
         let largest = displacement.iter().map(length).fold(0.0, f64::max);
         self.values.extend([time, strain, kinetic, external, damping, residual, largest]);
+        self.values.push(seen.von_mises);
         for probe in &self.probes {
             self.values.extend(mean(&displacement, &probe.nodes));
         }
@@ -453,6 +455,7 @@ fn columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column> {
     }
     columns.push(Column::new("energy_residual", "J"));
     columns.push(Column::new("largest_displacement", "m"));
+    columns.push(Column::new("largest_von_mises", "Pa"));
     columns.extend(probe_columns(probes, supports));
     columns
 }

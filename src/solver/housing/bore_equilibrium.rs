@@ -11,6 +11,7 @@
 use super::condensed::{BoreNode, CondensedBore, lever, race_motion};
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::kinematics::vec3::{Vec3, norm};
+use crate::solver::clock::to_digits;
 use crate::solver::dense::DenseFactor;
 use crate::solver::sparse::FactorError;
 use nalgebra::{Matrix4, Vector4};
@@ -60,8 +61,12 @@ pub enum BoreError {
     #[error("a moment of {moment:.3e} N m turns the outer race in its bore, which has no friction")]
     AxialMoment { moment: f64 },
     #[error(
-        "the bore does not hold the outer race: its {coordinate} has moved by {travel:.3e} and \
-         {force:.3e} N (a moment over the radius) are still unbalanced"
+        "the bore does not hold the outer race: its loads have {} from its nominal place, and {} N of \
+         them (of a moment: over the radius) meet no resistance. Hint: a bore without friction holds a race \
+         across its axis and, along its width, against tilt: check size and direction of the loads, the fit, and \
+         which parts of the solid are held",
+        travel_text(coordinate, *travel),
+        to_digits(*force, 3)
     )]
     NotHeld { coordinate: &'static str, travel: f64, force: f64 },
     #[error(
@@ -73,6 +78,17 @@ pub enum BoreError {
     NotSettled { changes: usize },
     #[error(transparent)]
     Factor(#[from] FactorError),
+}
+
+/// How far a race has moved along one of [`POSE_NAMES`], m or rad.
+fn travel_text(coordinate: &str, travel: f64) -> String {
+    match coordinate {
+        "y" | "z" => format!("moved it by {:.4} mm along {coordinate}", 1e3 * travel),
+        tilt => {
+            let axis = tilt.trim_start_matches("tilt_");
+            format!("tilted it by {:.4} deg about {axis}", travel.to_degrees())
+        }
+    }
 }
 
 /// The race in its bore.

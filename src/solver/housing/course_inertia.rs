@@ -43,6 +43,8 @@ pub struct CourseLooks {
 pub struct CourseInertia {
     /// The race's largest distance from the middle of its course.
     pub swing: f64,
+    /// The race's largest distance from its nominal place: what its displacement is read as.
+    pub displacement: f64,
     /// Largest |ẍ|/ω², the acceleration a mean over one period of what it drives.
     pub steady: f64,
     /// Ringing of a start at rest in the first equilibrium of a course that moves from the outset.
@@ -158,6 +160,10 @@ fn judge(looks: &[Look], interval: f64, damping: f64) -> CourseInertia {
     let steady = steady(looks, interval, largest.square);
     CourseInertia {
         swing: swing(looks),
+        displacement: looks
+            .iter()
+            .map(|look| libm::hypot(look.place[0], look.place[1]))
+            .fold(0.0, f64::max),
         steady,
         start: first.size,
         kinks,

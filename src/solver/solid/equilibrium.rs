@@ -46,15 +46,32 @@ pub enum EquilibriumError {
     Factor(#[from] FactorError),
     #[error(
         "no equilibrium found: at {fraction} of the load the unbalanced force is {residual:.3e} N \
-         of {scale:.3e} N after {iterations} iterations; apply less load"
+         of {scale:.3e} N after {iterations} iterations; {}",
+        remedy(*poisson_ratio)
     )]
-    NotConverged { fraction: f64, residual: f64, scale: f64, iterations: usize },
+    NotConverged { fraction: f64, residual: f64, scale: f64, iterations: usize, poisson_ratio: f64 },
     #[error(
         "no equilibrium found: at {fraction} of the load element {element} at {} is turned inside out \
-         (volume ratio {ratio:.3}); apply less load",
-        place(at)
+         (volume ratio {ratio:.3}); {}",
+        place(at),
+        remedy(*poisson_ratio)
     )]
-    Inverted { fraction: f64, element: u64, at: Vec3, ratio: f64 },
+    Inverted { fraction: f64, element: u64, at: Vec3, ratio: f64, poisson_ratio: f64 },
+}
+
+/// 1 − 2ν below which rounding of stresses, 1e-16 over it, leaves more unbalanced than
+/// [`EquilibriumOptions::rounding`] allows.
+const INCOMPRESSIBLE: f64 = 2e-6;
+
+fn remedy(poisson_ratio: f64) -> String {
+    if 1.0 - 2.0 * poisson_ratio < INCOMPRESSIBLE {
+        return format!(
+            "Poisson's ratio {poisson_ratio} is so near to 1/2, where no volume changes, that rounding of the \
+             stresses is larger than what has to balance: write 0.49999 or less, with order = 2 in \
+             [solid.mesh]"
+        );
+    }
+    "apply less load, or check its unit and Young's modulus".to_string()
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -197,7 +214,8 @@ impl<'a> Newton<'a> {
             Some((index, ratio)) => {
                 let at = centre(&self.model.problem, index);
                 let element = self.model.labels.element(index);
-                Err(EquilibriumError::Inverted { fraction, element, at, ratio })
+                let poisson_ratio = self.model.problem.material.poisson_ratio();
+                Err(EquilibriumError::Inverted { fraction, element, at, ratio, poisson_ratio })
             }
         }
     }
@@ -285,6 +303,7 @@ impl<'a> Newton<'a> {
                     residual: largest,
                     scale,
                     iterations: iteration,
+                    poisson_ratio: self.model.problem.material.poisson_ratio(),
                 });
             }
             fresh = self.stale || largest > 0.1 * last;

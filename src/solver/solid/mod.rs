@@ -1,5 +1,5 @@
 //! Flexible solids of tetrahedra: what is simulated, explicit steps and the step they can take,
-//! equilibrium, natural modes, stresses, contact with a rigid cylinder.
+//! equilibrium, natural modes, stresses, how far they can be trusted, contact with a rigid cylinder.
 pub mod checkpoint;
 pub mod contact;
 pub mod energy;
@@ -16,3 +16,4 @@ pub mod tangent;
 pub mod team;
 pub mod tet10_blocks;
 pub mod tet4_blocks;
+pub mod trust;

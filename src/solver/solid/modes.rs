@@ -30,7 +30,11 @@ pub enum ModeError {
     Factor(#[from] FactorError),
     #[error("{wanted} modes are asked for, but the body has only {unknowns} free components")]
     TooMany { wanted: usize, unknowns: usize },
-    #[error("only {found} of {wanted} modes settled within {vectors} vectors")]
+    #[error(
+        "only the lowest {found} of the {wanted} natural modes asked for were found to full accuracy, with \
+         {vectors} trial vectors; ask for {found} or fewer (modes.count), and check the mesh's worst elements \
+         and Poisson's ratio (0.499 or less), which make modes hard to tell apart"
+    )]
     NotConverged { found: usize, wanted: usize, vectors: usize },
 }
 

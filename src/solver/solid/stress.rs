@@ -4,7 +4,7 @@
 use super::model::{SolidModel, SolidProblem, corners};
 use crate::elements::tet4::{Tet4, relative};
 use crate::elements::tet10::{Tet10, from_points};
-use crate::kinematics::strain::{Mat3, Sym3, cauchy, green_lagrange, volume_change};
+use crate::kinematics::strain::{Mat3, Sym3, cauchy, green_lagrange, volume_change, von_mises};
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::node_order::EDGES;
 use crate::mesh::tet_mesh::Elements;
@@ -76,6 +76,30 @@ pub fn first_inverted(model: &SolidModel, displacement: &[Vec3]) -> Option<(usiz
         if !sound && found.is_none() {
             found = Some((element, ratio));
         }
+    });
+    found
+}
+
+/// What a look at a moving solid sees.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Look {
+    /// As [`first_inverted`].
+    pub inverted: Option<(usize, f64)>,
+    /// Largest von Mises stress at a quadrature point, Pa.
+    pub von_mises: f64,
+}
+
+/// [`first_inverted`] and the largest stress in one go.
+pub fn look(model: &SolidModel, displacement: &[Vec3]) -> Look {
+    let mut found = Look::default();
+    each_point(&model.problem, displacement, |element, _, h| {
+        let ratio = 1.0 + volume_change(h);
+        let sound = ratio > 0.0;
+        if !sound && found.inverted.is_none() {
+            found.inverted = Some((element, ratio));
+        }
+        let second = model.problem.material.second_piola_kirchhoff(&green_lagrange(h));
+        found.von_mises = found.von_mises.max(von_mises(&cauchy(h, &second)));
     });
     found
 }

@@ -1,0 +1,152 @@
+//! How far a solid's displacements can be trusted: what its mesh is too coarse for, and what a linear
+//! law does not hold for.
+
+use super::model::{SolidModel, centre, corners};
+use super::stress::point_stresses;
+use crate::elements::tet4::Tet4;
+use crate::elements::tet10::{self, Tet10};
+use crate::kinematics::strain::{Sym3, von_mises};
+use crate::kinematics::vec3::{Vec3, norm};
+use crate::mesh::tet_mesh::Elements;
+
+/// What an estimate from the stresses says of a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EnergyError {
+    /// Strain energy, J.
+    pub energy: f64,
+    /// Of the stresses' difference from smoothed ones, J: what the mesh is expected to miss.
+    pub missing: f64,
+}
+
+impl EnergyError {
+    /// Missing part of the energy of the exact solution. Under given loads, displacements along them are
+    /// too small by as much; under given displacements forces are too large.
+    pub fn part(&self) -> f64 {
+        let whole = self.energy + self.missing;
+        if whole > 0.0 { self.missing / whole } else { 0.0 }
+    }
+}
+
+/// The error of Zienkiewicz and Zhu (1987): displacements of finite elements are continuous and their
+/// stresses are not, so that smoothed stresses σ* (`nodal`, interpolated by the shape functions) are
+/// nearer to the truth. The energy of σ* − σ estimates that of the error, ½ ∫ (σ* − σ) : C⁻¹ : (σ* − σ) dV.
+///
+/// It tends to the error as the mesh becomes finer, and is too small where a mesh has next to
+/// nothing of the solution. `nodal` is what [`nodal_stresses`](super::stress::nodal_stresses) gives.
+pub fn energy_error(model: &SolidModel, displacement: &[Vec3], nodal: &[Sym3]) -> EnergyError {
+    let problem = &model.problem;
+    let (shear, lambda) = (problem.material.shear_modulus, problem.material.lambda);
+    // Of a stress: its deviator's energy and its mean's, s : s / 4G + (tr σ)² / 18 K.
+    let bulk = lambda + 2.0 / 3.0 * shear;
+    let density = |s: &Sym3| {
+        let trace = s[0] + s[1] + s[2];
+        let deviator = [s[0] - trace / 3.0, s[1] - trace / 3.0, s[2] - trace / 3.0];
+        let squares = deviator.iter().map(|x| x * x).sum::<f64>()
+            + 2.0 * s[3..].iter().map(|x| x * x).sum::<f64>();
+        squares / (4.0 * shear) + trace * trace / (18.0 * bulk)
+    };
+    let less = |a: &Sym3, b: &Sym3| -> Sym3 { std::array::from_fn(|i| a[i] - b[i]) };
+    let sound = "elements were checked when the model was made";
+    let mut sum = EnergyError::default();
+    for (element, at_points) in point_stresses(model, displacement).iter().enumerate() {
+        match &problem.elements {
+            Elements::Linear(list) => {
+                let nodes = &list[element];
+                let tet = Tet4::new(&corners(&problem.nodes, nodes)).expect(sound);
+                let stress = &at_points[0];
+                sum.energy += tet.volume * density(stress);
+                let at = nodes.map(|node| less(&nodal[node as usize], stress));
+                // The density is quadratic over the element: the four-point rule is exact.
+                for point in 0..tet10::POINTS {
+                    let shares = tet10::stiffness_rule(point);
+                    let mixed = mixed(&shares, &at);
+                    sum.missing += 0.25 * tet.volume * density(&mixed);
+                }
+            }
+            Elements::Quadratic(list) => {
+                let nodes = &list[element];
+                let tet = Tet10::new(&corners(&problem.nodes, nodes)).expect(sound);
+                let smooth = nodes.map(|node| nodal[node as usize]);
+                for (point, stress) in at_points.iter().enumerate() {
+                    let volume = tet.points[point].volume;
+                    let shares = tet10::shape_functions(&tet10::stiffness_rule(point));
+                    sum.energy += volume * density(stress);
+                    sum.missing += volume * density(&less(&mixed(&shares, &smooth), stress));
+                }
+            }
+        }
+    }
+    sum
+}
+
+fn mixed<const N: usize>(shares: &[f64; N], of: &[Sym3; N]) -> Sym3 {
+    let mut sum = [0.0; 6];
+    for (share, stress) in shares.iter().zip(of) {
+        for (sum, s) in sum.iter_mut().zip(stress) {
+            *sum += share * s;
+        }
+    }
+    sum
+}
+
+/// A value and where it is, undeformed, m.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placed {
+    pub value: f64,
+    pub at: Vec3,
+}
+
+/// What a linear law is asked to hold for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Strained {
+    /// Largest von Mises stress of an element, Pa.
+    pub stress: Placed,
+    /// Pa.
+    pub youngs_modulus: f64,
+    /// Largest displacement, m; of a body that is free to move the largest beside its mean.
+    pub displacement: Placed,
+    /// Diagonal of the box around the undeformed body, m.
+    pub size: f64,
+}
+
+impl Strained {
+    /// Of a state, from the stresses of its elements.
+    pub fn of(model: &SolidModel, displacement: &[Vec3], cells: &[Sym3]) -> Strained {
+        let problem = &model.problem;
+        let youngs_modulus = problem.material.youngs_modulus();
+        let mut stress = Placed::default();
+        for (element, cell) in cells.iter().enumerate() {
+            let value = von_mises(cell);
+            if value > stress.value {
+                stress = Placed { value, at: centre(problem, element) };
+            }
+        }
+        let free = problem.prescribed.is_empty();
+        let count = displacement.len() as f64;
+        let mean = [0, 1, 2].map(|i: usize| match free {
+            true => displacement.iter().map(|u| u[i]).sum::<f64>() / count,
+            false => 0.0,
+        });
+        let mut moved = Placed::default();
+        for (u, at) in displacement.iter().zip(&problem.nodes) {
+            let value = norm([u[0] - mean[0], u[1] - mean[1], u[2] - mean[2]]);
+            if value > moved.value {
+                moved = Placed { value, at: *at };
+            }
+        }
+        Strained { stress, youngs_modulus, displacement: moved, size: size(model) }
+    }
+
+    /// Strain of a bar that is pulled to the largest stress.
+    pub fn strain(&self) -> f64 {
+        self.stress.value / self.youngs_modulus
+    }
+}
+
+fn size(model: &SolidModel) -> f64 {
+    let ends = [0, 1, 2].map(|axis: usize| {
+        let along = model.problem.nodes.iter().map(|node| node[axis]);
+        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+    });
+    norm(ends.map(|[low, high]| high - low))
+}
