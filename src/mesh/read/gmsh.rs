@@ -3,6 +3,7 @@
 //! Physical volumes become element sets, surfaces become surface sets with their nodes, curves
 //! and points become node sets. A group without a name is called `physical_<dimension>_<tag>`.
 
+use crate::mesh::TetMesh;
 use crate::mesh::node_order::swap_gmsh;
 use crate::mesh::read::assemble::{RawFace, RawMesh};
 use crate::mesh::read::error::{Problem, ReadError};
@@ -104,11 +105,29 @@ pub fn read_gmsh(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> {
         }
     }
     let mut loaded = raw.finish(&source, unit)?;
-    if loaded.mesh.element_sets.len() > 1 {
-        let names = loaded.mesh.element_sets.keys().cloned().collect();
+    let names = volumes(&loaded.mesh);
+    if names.len() > 1 {
         loaded.notes.push(Note::SeveralVolumes { names });
     }
     Ok(loaded)
+}
+
+/// Names of groups that share no element, the smallest first to claim theirs: a group of all is no volume
+/// beside its parts.
+fn volumes(mesh: &TetMesh) -> Vec<String> {
+    let mut sets: Vec<(&String, &Vec<u32>)> = mesh.element_sets.iter().collect();
+    sets.sort_by_key(|(_, elements)| elements.len());
+    let mut claimed = vec![false; mesh.elements.len()];
+    let mut names = Vec::new();
+    for (name, elements) in sets {
+        if elements.iter().any(|element| claimed[*element as usize]) {
+            continue;
+        }
+        elements.iter().for_each(|element| claimed[*element as usize] = true);
+        names.push(name.clone());
+    }
+    names.sort();
+    names
 }
 
 /// Runs `read` with numbers in the file's coding, and goes back to text.
