@@ -1,5 +1,6 @@
 //! Elliptic integrals and the exact Hertz contact against quadrature; the fit's error.
 
+use bearing_dynamics::ch2_housing::bearing::contact::normal_load;
 use bearing_dynamics::ch2_housing::bearing::elliptic::{first_kind, second_kind};
 use bearing_dynamics::ch2_housing::bearing::hertz::{
     HertzModel, contact_ellipse, contact_from_radii,
@@ -14,6 +15,7 @@ use crate::golden::GoldenTolerance;
 use crate::oracles::elliptic::{e_of_complement, k_of_complement};
 use crate::oracles::hertz::{self, RelativeRadii};
 use crate::report::format::significant;
+use crate::solids::largest;
 
 pub const CASE: Case = Case {
     id: "hertz_elliptic",
@@ -38,6 +40,7 @@ const MODULUS: f64 = 210e9 / 0.91;
 
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     integrals(context);
+    law_of_load(context);
     exact_contact(context)?;
     contacts_of_table_2_2(context)?;
     fit_error(context)
@@ -83,6 +86,32 @@ fn integrals(context: &mut CaseContext) {
             );
         }
     }
+}
+
+/// (2.1): W = K δ^(3/2), by logarithms instead of a root; nothing across a gap.
+fn law_of_load(context: &mut CaseContext) {
+    let stiffness = 4.3e10_f64;
+    let overlaps = (0..=90).map(|i| ten_to_the(-9.0 + f64::from(i) / 15.0));
+    let off = overlaps.map(|overlap| {
+        let closed = (stiffness.ln() + 1.5 * overlap.ln()).exp();
+        (normal_load(stiffness, overlap) / closed - 1.0).abs()
+    });
+    context.check(
+        Check::new(
+            "normal_load",
+            "load of (2.1), overlaps of 1 nm to 1 mm, largest relative error",
+            "1",
+            largest(off),
+        )
+        .closed_form(0.0, "exp(ln K + 3/2 ln δ)")
+        .absolute(5e-14, "rounding of an exponent of up to 31"),
+    );
+    let across = [0.0, -1e-12, -1e-3].map(|gap| normal_load(stiffness, gap));
+    context.check(
+        Check::new("normal_load_gap", "load of (2.1) without overlap", "N", largest(across))
+            .closed_form(0.0, "a gap carries nothing")
+            .absolute(0.0, "exactly"),
+    );
 }
 
 fn ten_to_the(exponent: f64) -> f64 {

@@ -1,7 +1,8 @@
 //! A bearing in its housing in equilibrium, against a solution that shares the mesh alone.
 
-use bearing_dynamics::ch2_housing::bore_contact::contact_nodes;
+use bearing_dynamics::ch2_housing::bore_contact::{Cylinder, Frame, contact_nodes, touch};
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::kinematics::euler::inertial_to_body;
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, Reach, condense};
 use bearing_dynamics::solver::statics::{Condition, StaticProblem};
@@ -323,8 +324,119 @@ fn compare(context: &mut CaseContext, variant: &Variant) -> Result<Vec<String>, 
     ])
 }
 
+/// (2.16) to (2.19) one by one, of a race displaced and tilted in axes that are turned, against plain products.
+fn laws(context: &mut CaseContext) {
+    let (eta, xi, lambda) = (0.7_f64, -1.1_f64, 2.3_f64);
+    // Turns about one axis each, body to inertial; 1-2-3 about body-fixed axes is their product.
+    let about = |axis: usize, angle: f64| -> [Vec3; 3] {
+        let (sin, cos) = angle.sin_cos();
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let mut turn = [[0.0; 3]; 3];
+        turn[axis][axis] = 1.0;
+        (turn[i][i], turn[i][j], turn[j][i], turn[j][j]) = (cos, -sin, sin, cos);
+        turn
+    };
+    let times = |a: [Vec3; 3], b: [Vec3; 3]| {
+        [0, 1, 2].map(|i: usize| {
+            [0, 1, 2].map(|j: usize| (0..3).map(|k| a[i][k] * b[k][j]).sum::<f64>())
+        })
+    };
+    let turn = times(times(about(0, eta), about(1, xi)), about(2, lambda));
+    let printed = inertial_to_body(eta, xi, lambda);
+    let entries = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
+    context.check(
+        Check::new(
+            "law_2_16",
+            "(2.16): largest difference of an entry, angles 0.7, −1.1, 2.3",
+            "1",
+            largest(entries.map(|(i, j)| (printed[(i, j)] - turn[j][i]).abs())),
+        )
+        .closed_form(0.0, "the product of three turns about one axis each, transposed")
+        .absolute(2e-15, "rounding of sums of up to three products of numbers up to one"),
+    );
+
+    let centre = [0.11, -0.07, 0.23];
+    let orientation = UnitQuaternion::from_matrix(&nalgebra::Matrix3::from_fn(|i, j| turn[i][j]));
+    let frame = Frame::new(&Pose { position: Vector3::from(centre), orientation });
+    let cylinder = Cylinder { radius: BORE_RADIUS, width: WIDTH };
+    let (mut seen, mut apart, mut pushed) = (0.0f64, 0.0f64, 0.0f64);
+    let (mut inside, mut wrong) = (0, 0);
+    for n in 0..60 {
+        // Places around the race, some inside of it and some not, some beside it.
+        let angle = 0.37 * f64::from(n);
+        let own = [
+            0.6 * WIDTH * (1.3 * f64::from(n)).sin(),
+            (BORE_RADIUS + 1e-6 * (2.1 * f64::from(n)).cos()) * angle.cos(),
+            (BORE_RADIUS + 1e-6 * (2.1 * f64::from(n)).cos()) * angle.sin(),
+        ];
+        let world =
+            [0, 1, 2].map(|i: usize| centre[i] + (0..3).map(|j| turn[i][j] * own[j]).sum::<f64>());
+        let found = frame.seen(world);
+        seen = largest([seen].into_iter().chain((0..3).map(|i| (found[i] - own[i]).abs())));
+        let depth = BORE_RADIUS - own[1].hypot(own[2]);
+        let expected = depth > 0.0 && own[0].abs() <= 0.5 * WIDTH;
+        let touched = touch(&cylinder, &frame, world);
+        wrong += usize::from(expected != touched.is_some());
+        if let Some(touched) = touched {
+            inside += 1;
+            apart = largest([apart, (touched.penetration - depth).abs()]);
+            // 1 N for each µm, outwards from the axis.
+            let force = touched.force(1e6);
+            let outward = [0, 1, 2]
+                .map(|i: usize| (turn[i][1] * own[1] + turn[i][2] * own[2]) / own[1].hypot(own[2]));
+            let gaps = (0..3).map(|i| (force[i] - 1e6 * depth * outward[i]).abs());
+            pushed = largest([pushed].into_iter().chain(gaps));
+        }
+    }
+    for (id, what, unit, error, limit, why) in [
+        (
+            "law_2_17",
+            "(2.17): place of 60 points seen from a turned race, largest error",
+            "m",
+            seen,
+            2e-16,
+            "some ulps of 0.25 m, from the origin of the world",
+        ),
+        (
+            "law_2_18",
+            "(2.18): penetration of those that touch, largest error",
+            "m",
+            apart,
+            2e-16,
+            "as the places",
+        ),
+        (
+            "law_2_19",
+            "(2.19): force on them at 1e6 N/m, largest error of a component",
+            "N",
+            pushed,
+            2e-10,
+            "as the places",
+        ),
+        (
+            "law_touching",
+            "points wrongly found inside or outside the race",
+            "1",
+            wrong as f64,
+            0.0,
+            "a count",
+        ),
+    ] {
+        context.check(
+            Check::new(id, what, unit, error)
+                .closed_form(
+                    0.0,
+                    "the place in the race's own axes, from which its place in the world was made",
+                )
+                .absolute(limit, why),
+        );
+    }
+    context.work("points inside the race", inside);
+}
+
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     housings::assumptions(context);
+    laws(context);
     let mut rows = Vec::new();
     for variant in &VARIANTS {
         rows.push(compare(context, variant)?);
