@@ -112,8 +112,7 @@ fn frequencies(context: &mut CaseContext, run: &Run) -> Result<(), CaseError> {
     .relative(
         0.005,
         "printed to 2e-4; what play of the pockets and creep leave of an angle is less than 1e-3",
-    )
-    .golden(GoldenTolerance { relative: 1e-5, absolute: 0.0 });
+    );
     let rolling = format!("ball_set_{shaft}");
     let line = format!("line_{shaft}");
     let halves = [1, 2].map(|half| format!("line_{shaft}_half_{half}"));
