@@ -175,7 +175,7 @@ fn slip_at_speed(context: &mut CaseContext, run: &Run) -> Result<(), CaseError> 
         )
         .independent(
             expected.ratio,
-            "rolling at the loaded contact angles, roll axis where spin moments balance",
+            "rolling at the loaded contact angles, roll axis where spin moments balance; the friction curve is the program's",
         )
         .under("scene")
         .relative(
