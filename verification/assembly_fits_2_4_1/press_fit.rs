@@ -145,7 +145,7 @@ fn lame(context: &mut CaseContext) -> Result<(), CaseError> {
                 1e-6 * ours.mean,
             )
             .closed_form(1e-6 * known(stiffness), origin)
-            .relative(0.005, "32 ten-node elements around; it agrees to parts in 10⁵, and half a per cent is a tenth of what the interface's compliance makes")
+            .relative(2e-4, "32 ten-node elements around leave 5e-5; what the interface's compliance makes is 8 %")
             .golden(GoldenTolerance { relative: 1e-6, absolute: 0.0 }),
         );
     }
@@ -158,22 +158,7 @@ fn lame(context: &mut CaseContext) -> Result<(), CaseError> {
             ratio,
         )
         .closed_form(known(2.0 * STIFFNESS) / known(STIFFNESS), origin)
-        .relative(1e-3, "the mesh's error is in both, and all but cancels"),
-    );
-    context.check(
-        Check::new("press_fit_sensitivity_matters", "the same ratio", "1", ratio)
-            .closed_form(1.0, "a contact without compliance of its own")
-            .at_least(0.02, "the layer has a twelfth of the ring's compliance: the penalty is seen in the pressure"),
-    );
-    context.check(
-        Check::new(
-            "press_fit_lame_alone",
-            "the same: mean pressure over Lamé's for the whole interference",
-            "1",
-            once.mean / (INTERFERENCE / ring.compliance()),
-        )
-        .closed_form(1.0, "the interface's compliance left out")
-        .at_most(0.05, "without its share the closed form must miss"),
+        .relative(2e-5, "the mesh's error is in both, and all but cancels: 2e-6 is left"),
     );
     Ok(())
 }
@@ -191,11 +176,11 @@ fn doubled(context: &mut CaseContext, housing: char, once: Pressure, twice: Pres
             "1",
             ratio,
         )
-        .closed_form(
+        .consistency(
             in_series(INTERFERENCE, own, 0.5 / STIFFNESS) / once.mean,
-            "housing and interface in a row, the housing's compliance from the first pressure",
+            "two of our own solutions: housing and interface in a row, the housing's compliance from the first pressure",
         )
-        .relative(5e-4, "the pressure is not even, so that mean compliances do not quite add: parts in 10⁴"),
+        .relative(3e-4, "the pressure is not even, so that mean compliances do not quite add: 1e-4"),
     );
     context.finding(
         &format!("doubled_stiffness_{small}"),

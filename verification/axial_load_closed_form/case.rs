@@ -97,8 +97,8 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                     .closed_form(reference, "F = Z Q sin α, bisection to the last bit")
                     .under("steel")
                     .relative(
-                        1e-8,
-                        "a 4 µm overlap at a radius of 30 mm is known to 1e-12; no physics is decided below 1e-8",
+                        3e-11,
+                        "a 4 µm overlap at a radius of 30 mm is known to 1e-12; ten times the 3e-12 that are seen",
                     )
                     .golden(GoldenTolerance::REORDERED),
             );

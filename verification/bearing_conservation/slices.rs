@@ -108,7 +108,7 @@ pub(super) fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 2.0,
                 "midpoints of equal slices, slip that turns round in the middle of one",
             )
-            .absolute(0.1, "the next order"),
+            .absolute(0.01, "the next order, 1/(15)² of the first ratio"),
         );
     }
     let points = counts.iter().zip(&errors).map(|(count, error)| [*count as f64, *error]).collect();

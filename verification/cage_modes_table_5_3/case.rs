@@ -127,7 +127,7 @@ fn literal_modes(context: &mut CaseContext) -> Result<[f64; 2], CaseError> {
             "kg",
             STEEL.density * total_volume(&ten.mesh),
         )
-        .closed_form(MASS, "stated, and the width taken from it")
+        .consistency(MASS, "the mesh against the stated mass from which its width was taken")
         .relative(
             1e-3,
             "the width is rounded to 1 µm and the stated mass to 0.7 %; curved elements leave 1e-5",
@@ -172,7 +172,7 @@ fn relieved_modes(context: &mut CaseContext) -> Result<(), CaseError> {
             "kg",
             STEEL.density * total_volume(&pairs.mesh),
         )
-        .closed_form(MASS, "stated")
+        .consistency(MASS, "the mesh against the stated mass from which its width was taken")
         .relative(0.01, "stated to 0.7 %; the belt's edge runs through cells"),
     );
     let texts = ["first pair in the plane", "first pair out of the plane"];
@@ -186,6 +186,7 @@ fn relieved_modes(context: &mut CaseContext) -> Result<(), CaseError> {
             )
             .published(&format!("abaqus_{}", i + 1))
             .under("relieved_rails")
+            .fit("depth and belt of the relief were fitted to the two frequencies of this pair")
             .relative(0.02, "two parameters rounded to whole millimetres")
             .golden(GoldenTolerance::MIXED),
         );
@@ -217,9 +218,10 @@ fn other_widths(context: &mut CaseContext) -> Result<(), CaseError> {
         rows,
     );
     context.check(
-        Check::new("largest_ratio", "largest ratio of the two pairs over all these widths", "1", largest(ratios))
-            .independent(4105.0 / 1989.0, "ratio of the pair that Table 5.2 prints for ABAQUS")
-            .at_most(0.2, "no width brings the ratio near the published one; nor do modulus and density, which move both alike"),
+        Check::new("largest_ratio", "largest ratio of the two pairs over all these widths", "1", largest(ratios.iter().copied()))
+            .consistency(ratios[2], "our own modes of other widths against those of the stated mass' width, the same mesh")
+            .relative(0.1, "no width raises the ratio by a tenth; the pair that Table 5.2 prints for ABAQUS has one a fifth higher. Modulus and \
+                            density move both alike"),
     );
     Ok(())
 }

@@ -155,7 +155,7 @@ fn free_cage(
                 "Hz",
                 found,
             )
-            .independent(exact[i], "eigenvalue of the same mesh and lumped mass, mean of the pair")
+            .consistency(exact[i], "our explicit steps against our own eigenvalue of the same mesh and lumped mass, mean of the pair")
             .absolute(1.0 / FREE_TIME, "one bin of the spectrum"),
         );
     }
@@ -195,7 +195,7 @@ fn held_cage(
             "1",
             below as f64,
         )
-        .independent(2.0, "lines that the source reports for the suspended cage")
+        .stated(2.0, "5.3.3", "the suspended cage shows two lines")
         .at_least(1.0, "more lines than two: which of them the source shows cannot be told")
         .under("held_patch"),
     );

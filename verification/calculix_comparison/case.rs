@@ -96,24 +96,18 @@ const KINDS: [Kind; 2] = [
         first: [HELD_MODES, FREE_MODES - RIGID],
         few_points: (5e-7, "seven digits printed; Rayleigh–Ritz over the modes of the exact mass"),
         total_mass: (
-            1e-2,
-            "four points do not give the volume of this element, curved on purpose, exactly",
+            1e-4,
+            "four points do not give the volume of this element, curved on purpose, exactly: 1e-5 are missing",
         ),
     },
 ];
 
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     let altered = files::altered();
-    context.check(
-        Check::new(
-            "altered_files",
-            "kept files whose content has changed",
-            "1",
-            altered.len() as f64,
-        )
-        .closed_form(0.0, "SHA256SUMS")
-        .absolute(0.5, "a count"),
-    );
+    if !altered.is_empty() {
+        let names = altered.join(", ");
+        return Err(CaseError::message(format!("not as SHA256SUMS has them: {names}")));
+    }
     for kind in &KINDS {
         let part = Part::read(kind)?;
         part.compare_meshes(context)?;
@@ -257,7 +251,10 @@ impl Part {
                 0.0,
                 "a third of each flat triangle's force to each of its nodes, by bracket.py",
             )
-            .absolute(1e-7, "places are rounded to 1e-7 mm, which bends the edges of quadratic triangles by 1e-8"),
+            .absolute(
+                if self.kind.tag == "c3d4" { 1e-11 } else { 1e-7 },
+                "places are rounded to 1e-7 mm, which bends the edges of quadratic triangles by 1e-8; flat ones are the same, 3e-13",
+            ),
         );
         Ok(())
     }
@@ -285,7 +282,10 @@ impl Part {
                 difference(&whole, &theirs),
             )
             .independent(0.0, "CalculiX, linear static")
-            .absolute(1e-5, "same elements, nodes and forces; seven digits printed"),
+            .absolute(
+                2e-6,
+                "same elements, nodes and forces; seven digits printed, 4e-7 of the largest",
+            ),
         );
         let most = |axis: usize| largest(whole.iter().map(|u| u[axis].abs()));
         for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
@@ -298,7 +298,7 @@ impl Part {
                     most(axis),
                 )
                 .independent(of_theirs, "CalculiX, linear static")
-                .relative(1e-5, "as all displacements")
+                .relative(5e-6, "as all displacements; the small ones across the load are printed to fewer of their digits")
                 .golden(SOLVED),
             );
         }
@@ -351,7 +351,7 @@ impl Part {
             context.check(
                 Check::new(&self.id("rigid"), &format!("{name}: largest of the six frequencies of rigid motion"), "Hz", ours[rigid - 1])
                     .closed_form(0.0, "a free body has six motions without stiffness")
-                    .absolute(0.1,
+                    .absolute(0.03,
 "rounding: 1e-8 (the root of 1e-16) of an element's own frequency, about a megahertz"),
             );
         }

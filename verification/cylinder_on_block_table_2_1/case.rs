@@ -40,9 +40,6 @@ const HALF_WIDTH: f64 = 0.377e-3;
 /// Peak contact pressures of a separate solver for the slab with free depth faces, small strains, MPa.
 const SEPARATE_SOLVER: [f64; 6] = [309.9, 462.0, 693.0, 882.9, 1051.9, 1208.1];
 
-/// Name of the assumption of plane strain, as it stands beside the status of single rows.
-const REJECTED: &str = "plane_strain_rejected_as_a_whole";
-
 /// Where von Mises stress and pressure are shown to lie, by the second solver in the plane, MPa.
 struct InPlane {
     strain: Vec<oracle::Pressed>,
@@ -99,15 +96,16 @@ fn assumptions(context: &mut CaseContext) {
     context.assumption(
         "slab",
         "Table 2.1 does not say which stress is largest, nor what holds block and depth faces. Taken: peak \
-         contact pressure of a slab whose depth faces are free, base fixed, sides free.",
+         contact pressure of a slab whose depth faces are free, base fixed, sides free. Chosen among four readings because \
+         it is the one that meets the table; nothing in it is adjusted.",
         "peak contact pressure, free depth faces",
     );
-    context.assumption(
-        REJECTED,
+    context.finding(
+        "plane_strain_rejected",
         "The other reading of how the block is held, both depth faces kept in their planes, is rejected as a whole: eight of its twelve \
          pressures are too high by 4 to 8 %, the more the wider the contact, and von Mises stress is too low throughout. Four single \
-         pressures up to 2 µm come within 4 % nevertheless; a row that holds under this name is no evidence for plane strain.",
-        "plane strain, rejected",
+         pressures up to 2 µm come within 4 % nevertheless: no evidence for plane strain, so that they claim nothing and no check \
+         holds them against the table.",
     );
     context.assumption(
         "half_width",
@@ -480,7 +478,6 @@ fn readings(context: &mut CaseContext, slab: &Answers, plane: &Answers) {
             "pressure, free depth faces",
             &slab.pressure,
             SLAB_PRESSURE,
-            "slab",
             "A separate solver is as far off; half of the contact is a quarter of the largest half width \
              here, and the two published columns differ most in this row.",
             ["slab_", "slab_small_strains_"],
@@ -490,7 +487,6 @@ fn readings(context: &mut CaseContext, slab: &Answers, plane: &Answers) {
             "pressure, plane strain (rejected as a whole)",
             &plane.pressure,
             PLANE_PRESSURE,
-            REJECTED,
             "Held depth faces make the block stiffer than the table's, the more the wider the contact: another \
              solver in plane strain gives the same.",
             ["plane_", "plane_von_mises_"],
@@ -500,7 +496,6 @@ fn readings(context: &mut CaseContext, slab: &Answers, plane: &Answers) {
             "von Mises stress, free depth faces",
             &slab.von_mises,
             SLAB_VON_MISES,
-            "slab",
             "Not what the table lists: the slab's von Mises stress lies between those of plane strain and \
              plane stress, both below the table.",
             ["slab_von_mises_above_", "slab_von_mises_below_"],
@@ -510,15 +505,19 @@ fn readings(context: &mut CaseContext, slab: &Answers, plane: &Answers) {
             "von Mises stress, plane strain (rejected as a whole)",
             &plane.von_mises,
             PLANE_VON_MISES,
-            REJECTED,
             "Not what the table lists: in plane strain von Mises stress stays at 0.56 to 0.66 of the \
              pressure; another solver gives the same.",
             ["plane_", "plane_von_mises_"],
         ),
     ];
-    for (id, text, ours, gaps, assumption, because, evidence) in all {
+    for (id, text, ours, gaps, because, evidence) in all {
+        let taken = id == "slab_pressure";
         for ((key, label), gaps) in [("efem", "EFEM"), ("abaqus", "ABAQUS")].into_iter().zip(gaps) {
             for (i, (name, indentation)) in INDENTATIONS.into_iter().enumerate() {
+                // What a rejected reading happens to meet it does not reproduce.
+                if gaps[i].is_none() && !taken {
+                    continue;
+                }
                 let published = format!("{key}_{name}");
                 let check = Check::new(
                     &format!("{id}_{published}"),
@@ -534,7 +533,7 @@ fn readings(context: &mut CaseContext, slab: &Answers, plane: &Answers) {
                         let evidence = [&evidence[0], &evidence[1], "matrix"];
                         check.explained(Explanation::new(because, gap, stray, &evidence))
                     }
-                    None => check.under(assumption),
+                    None => check.under("slab"),
                 });
             }
         }

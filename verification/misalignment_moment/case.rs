@@ -47,9 +47,10 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     context.assumption(
         "ball_radius_of_5_um_interference",
         "3.4.3 creates a 5 µm interference; Table 3.5 prints a ball of 5.955 mm, which makes 4 µm. The radial \
-         clearance is −5 µm, through the ball radius as in 4.3.1. Identified by reproducing the published \
-         moment [fit]: 5.955 mm misses it by 16 %.",
-        "ball radius 5.9555 mm",
+         clearance is −5 µm, through the ball radius as 4.3.1 has it. Both are inputs of the source and exclude each \
+         other; 3.4.5 repeats neither. The published moment decides: 5.955 mm misses it by 16 %. So the moment is a \
+         fit; the tilts of Table 3.7, which decided nothing, are held against what was so chosen.",
+        "ball radius 5.9555 mm, stated as 5 µm",
     );
     context.assumption(
         "ball_phase",
@@ -74,6 +75,7 @@ fn against_the_source(context: &mut CaseContext) -> Result<(), CaseError> {
         Check::new("moment_0p15", "moment at 0.15° tilt", "N·m", moment)
             .published("moment_0p15")
             .under("ball_radius_of_5_um_interference")
+            .fit("this moment chose 3.4.3's 5 µm of interference over Table 3.5's ball of 5.955 mm; no number was adjusted")
             .relative(0.005, "0.03 µm of the interference, which is stated to one digit; the unstated ball phase is 0.06 %")
             .golden(GoldenTolerance::REORDERED),
     );
@@ -104,7 +106,7 @@ fn against_the_source(context: &mut CaseContext) -> Result<(), CaseError> {
 
 fn against_the_oracle(context: &mut CaseContext) -> Result<(), CaseError> {
     let reference = baseline(PHASE);
-    let reason = "both solvers stop where rounding takes over, about 1e-12; no physics is decided below 1e-8";
+    let reason = "both solvers stop where rounding takes over, about 1e-12 of the load";
     context.check(
         Check::new(
             "moment_0p15_independent",
@@ -113,7 +115,7 @@ fn against_the_oracle(context: &mut CaseContext) -> Result<(), CaseError> {
             moment_at(Hertz::Fit, PHASE, 0.15)?,
         )
         .independent(reference.moment_at_0_15_degrees, "independent solver, from Table 3.5")
-        .relative(1e-8, reason),
+        .relative(1e-11, reason),
     );
     for ((label, moment), theirs) in MOMENTS.into_iter().zip(reference.tilt_degrees) {
         context.check(
@@ -124,7 +126,7 @@ fn against_the_oracle(context: &mut CaseContext) -> Result<(), CaseError> {
                 tilt_at(Hertz::Fit, PHASE, moment)?,
             )
             .independent(theirs, "independent solver, from Table 3.5")
-            .relative(1e-8, reason),
+            .relative(1e-11, reason),
         );
     }
     let mut rows = Vec::new();
@@ -174,12 +176,7 @@ fn last_row(context: &mut CaseContext) {
         .collect();
     let columns =
         ["reading", "moment at 0.15°, N·m", "tilt at 2.5 N·m, °", "at 5 N·m, °", "at 10 N·m, °"];
-    context.table(
-        "readings",
-        "Readings tried on Table 3.7 (published 0.094°, 0.134°, 0.175°)",
-        &columns,
-        rows,
-    );
+    context.table("readings", "Readings tried on Table 3.7", &columns, rows);
 }
 
 fn exact_beside_fit(context: &mut CaseContext) -> Result<(), CaseError> {
@@ -217,7 +214,6 @@ fn figures(context: &mut CaseContext) -> Result<(), CaseError> {
             })
             .collect()
     };
-    let published = vec![[0.094, 2.5], [0.134, 5.0], [0.15, 6.423], [0.175, 10.0]];
     let svg = xy(&XyPlot {
         title: "Moment over tilt, fixed outer race".into(),
         x: Axis::linear("tilt about Y", "deg"),
@@ -226,14 +222,12 @@ fn figures(context: &mut CaseContext) -> Result<(), CaseError> {
         curves: vec![
             Curve::new("hamrock-brewe", curve(Hertz::Fit)?),
             Curve::new("exact", curve(Hertz::Exact)?),
-            Curve::separate("published (Table 3.7 and 3.4.5)", published),
         ],
     })?;
     context.figure(
         "moment_over_tilt",
         svg,
-        "Moment that holds a tilt of the inner race. The published points at 0.094°, 0.134° and 0.15° lie on \
-         the curve, the one at 0.175° does not.",
+        "Moment that holds a tilt of the inner race, by both Hertz solutions.",
     );
     let mut points = Vec::new();
     for step in 0..16 {

@@ -26,6 +26,8 @@ mod cylinder_on_block_table_2_1;
 mod free_ring_modes;
 #[path = "../hertz_elliptic/case.rs"]
 mod hertz_elliptic;
+#[path = "../housing_equilibrium/case.rs"]
+mod housing_equilibrium;
 #[path = "../housing_inertia_estimate/case.rs"]
 mod housing_inertia_estimate;
 #[path = "../housing_orbits_2_4_2/case.rs"]
@@ -84,6 +86,7 @@ pub const CASES: &[Case] = &[
     calculix_comparison::CASE,
     line_contact_plane_strain::CASE,
     cylinder_on_block_table_2_1::CASE,
+    housing_equilibrium::CASE,
     housing_settling::CASE,
     assembly_fits_2_4_1::CASE,
     housing_orbits_2_4_2::CASE,

@@ -28,8 +28,12 @@ pub enum ReferenceKind {
     ClosedForm,
     /// The limit of a refinement, or a solution fine enough to count as one.
     Converged,
-    /// Another method or another code.
+    /// Another method or another code, which shares nothing of ours but the question.
     Independent,
+    /// Another of our own ways to the same number: both may be wrong together.
+    Consistency,
+    /// A threshold or an order taken from a sentence of the source, which prints no number for it.
+    Stated,
 }
 
 /// How closely our number must agree. The error is ours − reference.
@@ -105,6 +109,8 @@ pub struct Check {
     pub reason: String,
     pub assumption: Option<String>,
     pub explanation: Option<Explanation>,
+    /// What was fitted to what, where our number meets the published one because it was made to.
+    pub fit: Option<String>,
     pub golden: Option<GoldenTolerance>,
 }
 
@@ -121,6 +127,7 @@ impl Check {
             reason: String::new(),
             assumption: None,
             explanation: None,
+            fit: None,
             golden: None,
         }
     }
@@ -141,9 +148,23 @@ impl Check {
         self.computed(ReferenceKind::Converged, value, origin)
     }
 
-    /// Hold it against another method or code; `origin` says which.
+    /// Hold it against another method or code that shares none of ours; `origin` says which.
     pub fn independent(self, value: f64, origin: &str) -> Check {
         self.computed(ReferenceKind::Independent, value, origin)
+    }
+
+    /// Hold it against another of our own ways; `ways` says which two: "explicit run, settled, against our
+    /// own equilibrium".
+    pub fn consistency(self, value: f64, ways: &str) -> Check {
+        self.computed(ReferenceKind::Consistency, value, ways)
+    }
+
+    /// Hold it against what a sentence of the source says without a number: a threshold or an order.
+    /// `section` is where it stands, `sentence` what it says in our own words: "thinner is stiffer".
+    pub fn stated(self, value: f64, section: &str, sentence: &str) -> Check {
+        let blank = section.trim().is_empty() || sentence.trim().is_empty();
+        let origin = if blank { String::new() } else { format!("{section}: {sentence}") };
+        self.computed(ReferenceKind::Stated, value, &origin)
     }
 
     fn computed(mut self, kind: ReferenceKind, value: f64, origin: &str) -> Check {
@@ -191,6 +212,13 @@ impl Check {
     /// The published number is known to differ; the tolerance is then what agreement *would* be.
     pub fn explained(mut self, explanation: Explanation) -> Check {
         self.explanation = Some(explanation);
+        self
+    }
+
+    /// The published number is met because something was identified from that very number; `what`
+    /// says what was fitted to what. Its status is then `fit`, never `reproduced`.
+    pub fn fit(mut self, what: &str) -> Check {
+        self.fit = Some(what.to_string());
         self
     }
 

@@ -18,6 +18,8 @@ pub enum Status {
     Reproduced,
     /// A published number, within tolerance once the named assumption fills a hole.
     ReproducedUnderAssumption,
+    /// A published number within tolerance because something was identified from that very number.
+    Fit,
     /// A published number that differs, with the difference known and shown.
     Explained,
     /// Agrees with a reference that is not a published number.
@@ -31,6 +33,7 @@ impl Status {
         match self {
             Status::Reproduced => "reproduced",
             Status::ReproducedUnderAssumption => "reproduced under assumption",
+            Status::Fit => "fit",
             Status::Explained => "explained",
             Status::Pass => "pass",
             Status::Failed => "failed",
@@ -75,6 +78,8 @@ pub struct CheckReport {
     pub status: Status,
     pub assumption: Option<String>,
     pub explanation: Option<Explanation>,
+    /// What was fitted to what, where the published number was met because it was aimed at.
+    pub fit: Option<String>,
     /// Why the check failed.
     pub failure: Option<String>,
 }
@@ -132,6 +137,7 @@ fn judge_alone(check: &Check, record: &CaseContext, published: &Published) -> Ch
         status: Status::Failed,
         assumption: check.assumption.clone(),
         explanation: check.explanation.clone(),
+        fit: check.fit.clone(),
         failure: None,
     };
     match verdict_of(check, record, published, &mut report) {
@@ -213,6 +219,7 @@ fn verdict_of(
     }
 
     let is_published = report.published_id.is_some();
+    misuse_of_fit(check, is_published)?;
     let measured = match on {
         ToleranceOn::RelativeError if reference == 0.0 => {
             return Err("a relative tolerance needs a reference other than zero".into());
@@ -270,10 +277,29 @@ fn verdict_of(
     }
 }
 
+fn misuse_of_fit(check: &Check, is_published: bool) -> Result<(), String> {
+    let one_sided =
+        matches!(check.tolerance, Some(Tolerance::AtLeast { .. } | Tolerance::AtMost { .. }));
+    match &check.fit {
+        None => Ok(()),
+        Some(what) if what.trim().is_empty() => {
+            Err("the fit does not say what was fitted to what".into())
+        }
+        Some(_) if !is_published => Err("only a published number can be met by a fit".into()),
+        Some(_) if one_sided => Err("a one-sided check cannot be a fit".into()),
+        Some(_) if check.explanation.is_some() => {
+            Err("a number that was fitted needs no explanation: it is met".into())
+        }
+        Some(_) => Ok(()),
+    }
+}
+
+/// The status of a published number within its tolerance.
 fn agreement(check: &Check) -> Status {
-    match check.assumption {
-        Some(_) => Status::ReproducedUnderAssumption,
-        None => Status::Reproduced,
+    match (&check.fit, &check.assumption) {
+        (Some(_), _) => Status::Fit,
+        (None, Some(_)) => Status::ReproducedUnderAssumption,
+        (None, None) => Status::Reproduced,
     }
 }
 
@@ -293,6 +319,8 @@ fn missing_evidence(
             Some(Status::Explained) => {
                 return Some(format!("the explanation rests on `{id}`, itself only explained"));
             }
+            // A fitted number holds by construction: it shows nothing.
+            Some(Status::Fit) => (),
             Some(_) => held += 1,
             None => {
                 let shown = record.figures.iter().any(|figure| figure.name == *id)

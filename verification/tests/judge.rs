@@ -1,6 +1,7 @@
 //! Each rule of the judge, and that breaking it is noticed.
 
 use verification::case::{Case, Tier};
+use verification::check::ReferenceKind::{Consistency, Stated};
 use verification::check::{Check, Explanation};
 use verification::context::CaseContext;
 use verification::golden::GoldenTolerance;
@@ -66,6 +67,53 @@ fn statuses_of_checks_that_hold() {
     let report = verdict(force(101.0).relative(0.02, "why"));
     assert_eq!((report.error_absolute, report.error_relative), (Some(1.0), Some(0.01)));
     assert_eq!(report.ratio, Some(0.5));
+}
+
+#[test]
+fn kinds_of_references_are_kept_apart() {
+    let held = |check: Check| verdict(check.absolute(0.0, "exact"));
+    let new = || Check::new("x", "x", "N", 1.0);
+    let ways = held(new().consistency(1.0, "settled run against our own equilibrium"));
+    assert_eq!((ways.status, ways.reference_kind), (Status::Pass, Some(Consistency)));
+    let said = held(new().stated(1.0, "2.4.3", "thinner is stiffer"));
+    assert_eq!((said.status, said.reference_kind), (Status::Pass, Some(Stated)));
+    assert_eq!(said.reference_source, "2.4.3: thinner is stiffer");
+    // Neither ways nor sentence named.
+    for nameless in [
+        new().consistency(1.0, " "),
+        new().stated(1.0, "", "thinner is stiffer"),
+        new().stated(1.0, "2.4.3", ""),
+    ] {
+        let failure = held(nameless).failure.unwrap();
+        assert!(failure.contains("where it comes from"), "{failure}");
+    }
+}
+
+/// A number met because something was identified from it is no reproduction, and no evidence.
+#[test]
+fn a_fitted_number_is_a_fit() {
+    let fitted = |ours: f64| force(ours).fit("clearance fitted to this force");
+    let report = verdict(fitted(100.5).relative(0.01, "why"));
+    assert_eq!(report.status, Status::Fit);
+    assert_eq!(report.fit.as_deref(), Some("clearance fitted to this force"));
+    let assumed = verdict(fitted(100.5).relative(0.01, "why").under("stated"));
+    assert_eq!(assumed.status, Status::Fit);
+    // It still has to be met, to say what was fitted, and to be a published number.
+    assert!(failure(fitted(101.1).relative(0.01, "why")).contains("exceeds"));
+    assert!(failure(force(100.0).relative(0.1, "why").fit(" ")).contains("what was fitted"));
+    let own = Check::new("a", "a", "N", 1.0).closed_form(1.0, "one").absolute(0.0, "exact");
+    assert!(failure(own.fit("x to y")).contains("only a published number"));
+    assert!(failure(fitted(101.0).at_least(0.5, "why")).contains("one-sided"));
+    let explained = Explanation::new("text", 0.2, 0.01, &["seen"]);
+    let both = fitted(120.0).relative(0.01, "why").explained(explained);
+    assert!(failure(both).contains("needs no explanation"));
+    // An explanation cannot rest on it alone.
+    let explained = Explanation::new("text", 0.2, 0.01, &["fitted"]);
+    let mut other = fitted(100.0).relative(0.01, "why");
+    other.id = "fitted".into();
+    let check = force(120.0).relative(0.01, "why").explained(explained);
+    let report = with_evidence(check, &[other]);
+    assert!(report.failure.unwrap().contains("no check of its own"));
 }
 
 #[test]

@@ -81,7 +81,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
 fn checks(context: &mut CaseContext, key: &str, order: Order, found: [f64; 3], should: [f64; 3]) {
     let name = name_of(order);
     let (moves, stress) = match order {
-        Order::Quadratic => (5e-4, 5e-3),
+        Order::Quadratic => (5e-4, 1e-4),
         Order::Linear => (0.01, 0.05),
     };
     let quantities = [
@@ -101,7 +101,7 @@ fn checks(context: &mut CaseContext, key: &str, order: Order, found: [f64; 3], s
             .relative(
                 tolerance,
                 match order {
-                    Order::Quadratic => "what this mesh leaves; a stress at the surface is an order behind",
+                    Order::Quadratic => "what this mesh leaves: 1e-4 of displacements, 1e-5 of the mean of stresses at the bore, whose errors alternate",
                     Order::Linear => "chords for arcs and one stress per element: second order in 0.07 of the circle, \
                                       first order for the stress at the surface",
                 },

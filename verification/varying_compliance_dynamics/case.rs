@@ -244,9 +244,10 @@ fn amplitudes(context: &mut CaseContext, pitches: &[Pitch]) {
                         "nm",
                         ours,
                     )
-                    .independent(
+                    .stated(
                         looser.even.amplitude(axis),
-                        "the looser bearing by independent statics; 4.3.1 states the order",
+                        "4.3.1",
+                        "less clearance, less amplitude; the looser bearing is independent statics'",
                     )
                     .at_most(1.0, "a real difference: far above what either side is off"),
                 );
@@ -310,7 +311,7 @@ fn without_traction(context: &mut CaseContext) -> Result<(), CaseError> {
             "rad",
             uneven,
         )
-        .closed_form(0.0, "balls that pass the load zone evenly")
+        .consistency(0.0, "our run without traction against balls that pass the load zone evenly, as ours do with traction")
         .at_least(
             0.1,
             "the ball under the load is thrown out of the load zone; with traction 0.001 rad",

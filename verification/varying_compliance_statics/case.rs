@@ -130,7 +130,10 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                     1e9 * amplitude(ours),
                 )
                 .independent(1e9 * amplitude(theirs), origin)
-                .absolute(1e-4, "10 µm positions good to 1e-8 on both sides: 1e-4 nm")
+                .absolute(
+                    3e-8,
+                    "10 µm positions, good to 3e-13 of them on both sides: 3e-9 nm; ten times that",
+                )
                 .golden(GoldenTolerance::REORDERED.floor(1e-4)),
             );
             if i > 0 {
@@ -147,11 +150,12 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                         "nm",
                         1e9 * amplitude(ours),
                     )
-                    .independent(
+                    .stated(
                         1e9 * amplitude(looser),
-                        "the looser bearing by the independent solver; 4.3.1 states the order",
+                        "4.3.1",
+                        "less clearance, less amplitude; the looser bearing is the independent solver's",
                     )
-                    .at_most(1e-3, "a real difference, ten times what either side can be off"),
+                    .at_most(1.0, "a nanometre, as far as a figure could show"),
                 );
             }
         }
@@ -171,17 +175,6 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             );
         }
     }
-    context.check(
-        Check::new(
-            "loaded_balls_minus_10",
-            "balls in contact throughout at −10 µm",
-            "1",
-            ours[3].fewest_loaded as f64,
-        )
-        .published("loaded_balls_minus_10")
-        .under("upright_inner_race")
-        .absolute(0.0, "a count"),
-    );
     context.work("Newton iterations, 364 warm positions", iterations as u64);
     context.work("ball–race evaluations, 364 warm positions", evaluations as u64);
     figures(context, &ours)

@@ -5,6 +5,7 @@
 //! usual one on purpose, so that an error would have to be made twice in different ways.
 
 pub mod dense;
+pub mod elastic;
 pub mod elliptic;
 pub mod hertz;
 pub mod hyperdual;
@@ -12,6 +13,7 @@ pub mod lame;
 pub mod misalignment;
 pub mod ring;
 pub mod rolling;
+pub mod seated;
 pub mod statics;
 #[cfg(test)]
 mod statics_tests;

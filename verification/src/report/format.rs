@@ -98,6 +98,8 @@ pub fn kind(kind: Option<ReferenceKind>) -> &'static str {
         Some(ReferenceKind::ClosedForm) => "closed form",
         Some(ReferenceKind::Converged) => "converged",
         Some(ReferenceKind::Independent) => "independent",
+        Some(ReferenceKind::Consistency) => "consistency",
+        Some(ReferenceKind::Stated) => "stated",
         None => "none",
     }
 }

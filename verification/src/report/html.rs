@@ -348,7 +348,7 @@ fn chip(status: Status) -> String {
     let class = match status {
         Status::Reproduced | Status::Pass => "good",
         Status::ReproducedUnderAssumption => "assumed",
-        Status::Explained => "open",
+        Status::Explained | Status::Fit => "open",
         Status::Failed => "bad",
     };
     format!("<span class=\"chip {class}\">{}</span>", status.word())
