@@ -359,7 +359,12 @@ fn literals(code: &str) -> Vec<(usize, f64)> {
                     }
                 }
             }
-            '.' if word.contains('.') || text.peek() == Some(&'.') => keep(&mut word, line),
+            '.' if !word.starts_with(|c: char| c.is_ascii_digit())
+                || word.contains('.')
+                || text.peek() == Some(&'.') =>
+            {
+                keep(&mut word, line);
+            }
             _ if c.is_ascii_alphanumeric() || c == '_' || c == '.' => word.push(c),
             '+' | '-' if exponent => word.push(c),
             _ => {

@@ -28,7 +28,7 @@ pub fn write_totals(out: &mut String, report: &Report, source: &[ChapterEntries]
     }
     writeln!(
         out,
-        "<tr class=\"sum\"><td>in all, each counted once<small>{} held in two cases</small></td>\
+        "<tr class=\"sum\"><td>in all, each counted once<small>{} of a number that two cases hold</small></td>\
          <td class=\"number\">{}</td></tr></tbody></table>",
         format::counted(totals.twins, "check"),
         totals.published_numbers.printed()

@@ -34,8 +34,8 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
     front::write_totals(out, report, &source)?;
     writeln!(out, "</header>")?;
     front::write_failures(out, report)?;
-    front::write_source(out, &source)?;
     front::write_not_reproduced(out, report)?;
+    front::write_source(out, &source)?;
     front::write_left_out(out, report)?;
     front::write_assumptions(out, report)?;
     write_summary(out, report)?;
