@@ -14,6 +14,22 @@ pub fn now() -> String {
     format!("{} {:02}:{:02} UTC", today(), minutes / 60 % 24, minutes % 60)
 }
 
+/// Whether a text is a day as [`today`] writes it.
+pub fn is_day(text: &str) -> bool {
+    let parts: Vec<&str> = text.split('-').collect();
+    let number = |part: &str, digits: usize| {
+        (part.len() == digits).then(|| part.parse::<u32>().ok()).flatten()
+    };
+    match parts[..] {
+        [year, month, day] => {
+            number(year, 4).is_some()
+                && number(month, 2).is_some_and(|month| (1..=12).contains(&month))
+                && number(day, 2).is_some_and(|day| (1..=31).contains(&day))
+        }
+        _ => false,
+    }
+}
+
 fn seconds_since_epoch() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |elapsed| elapsed.as_secs())
 }
@@ -41,7 +57,7 @@ fn civil(days: u64) -> (u64, u64, u64) {
 
 #[cfg(test)]
 mod tests {
-    use super::civil;
+    use super::{civil, is_day, today};
 
     #[test]
     fn known_days() {
@@ -50,5 +66,13 @@ mod tests {
         assert_eq!(civil(951_782_400 / 86_400), (2000, 2, 29));
         assert_eq!(civil(1_704_067_200 / 86_400), (2024, 1, 1));
         assert_eq!(civil(4_107_542_400 / 86_400), (2100, 3, 1));
+    }
+
+    #[test]
+    fn days_are_told_from_other_text() {
+        assert!(is_day(&today()) && is_day("2026-11-20"));
+        for text in ["", "2026-11", "2026-13-01", "2026-1-01", "20.11.2026", "2026-11-20 "] {
+            assert!(!is_day(text), "{text}");
+        }
     }
 }

@@ -1,7 +1,9 @@
 //! Our own past: the numbers each case gave when they were last accepted, and why.
 //!
 //! `golden/<case>.json` is compared in every verification run. A difference means that behaviour
-//! changed; it is accepted only by writing the file anew with a reason, which is kept.
+//! changed; it is accepted only by writing the file anew with a reason, which is kept. Beside the
+//! numbers stand commit, compiler and date of their acceptance, and a digest over all of it, so that
+//! a number edited by hand is noticed ([`GoldenFile::unsound`]).
 
 use std::collections::HashSet;
 use std::fs;
@@ -9,8 +11,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use thiserror::Error;
 
+use crate::machine::Machine;
 use crate::{date, number};
 
 /// Allowed difference: `absolute + relative · |expected|`.
@@ -69,9 +73,77 @@ pub struct GoldenFile {
     pub case: String,
     pub crate_version: String,
     pub date: String,
+    /// Commit whose program gave the numbers, `+changes` where the work tree differed from it.
+    #[serde(default)]
+    pub commit: String,
+    /// What `rustc --version` said.
+    #[serde(default)]
+    pub compiler: String,
     /// Oldest first.
     pub history: Vec<Reason>,
     pub values: Vec<GoldenValue>,
+    /// [`GoldenFile::digest_of_content`] when the numbers were accepted.
+    #[serde(default)]
+    pub digest: String,
+}
+
+impl GoldenFile {
+    /// sha256 over case, version, date, commit, compiler, reasons and values, bit for bit.
+    pub fn digest_of_content(&self) -> String {
+        let mut hash = Sha256::new();
+        // Each part ends in a byte that none contains, so that no two contents read alike.
+        let mut part = |text: &str| {
+            hash.update(text.as_bytes());
+            hash.update([0]);
+        };
+        for text in [&self.case, &self.crate_version, &self.date, &self.commit, &self.compiler] {
+            part(text);
+        }
+        for entry in &self.history {
+            part(&entry.date);
+            part(&entry.reason);
+        }
+        for value in &self.values {
+            let GoldenTolerance { relative, absolute } = value.tolerance;
+            part(&value.name);
+            part(&value.unit);
+            for number in [value.value, relative, absolute] {
+                part(&format!("{:016x}", number.to_bits()));
+            }
+        }
+        hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// What is wrong with the record of where the numbers come from, if anything is.
+    pub fn unsound(&self) -> Option<String> {
+        let (hash, changed) = match self.commit.strip_suffix("+changes") {
+            Some(hash) => (hash, true),
+            None => (self.commit.as_str(), false),
+        };
+        let is_hash = (7..=40).contains(&hash.len())
+            && hash.chars().all(|c| c.is_ascii_digit() || ('a'..='f').contains(&c));
+        let well_formed = is_hash || (hash == "unknown" && !changed);
+        if !well_formed {
+            return Some(format!("its commit is `{}`", self.commit));
+        }
+        if !self.compiler.starts_with("rustc ") {
+            return Some(format!("its compiler is `{}`", self.compiler));
+        }
+        if self.crate_version.split('.').filter(|part| part.parse::<u32>().is_ok()).count() != 3 {
+            return Some(format!("its version is `{}`", self.crate_version));
+        }
+        if self.history.last().is_none_or(|last| last.date != self.date) {
+            return Some("its last reason is not of the date of its numbers".into());
+        }
+        for entry in &self.history {
+            if entry.reason.trim().is_empty() || !date::is_day(&entry.date) {
+                return Some(format!("a reason of `{}` is `{}`", entry.date, entry.reason));
+            }
+        }
+        (self.digest != self.digest_of_content()).then(|| {
+            "it was edited by hand: what stands there is not what was accepted (digest)".into()
+        })
+    }
 }
 
 #[derive(Debug, Error)]
@@ -151,18 +223,23 @@ pub fn write(
     }
     validate(values)?;
     let old = read(folder, case)?;
-    if old.as_ref().is_some_and(|file| file.values == values) {
+    if old.as_ref().is_some_and(|file| file.values == values && file.unsound().is_none()) {
         return Ok(false);
     }
     let mut history = old.map_or(Vec::new(), |file| file.history);
     history.push(Reason { date: date::today(), reason: reason.trim().to_string() });
-    let file = GoldenFile {
+    let machine = Machine::facts();
+    let mut file = GoldenFile {
         case: case.to_string(),
-        crate_version: env!("CARGO_PKG_VERSION").to_string(),
+        crate_version: machine.crate_version,
         date: date::today(),
+        commit: machine.commit.unwrap_or_else(|| "unknown".into()),
+        compiler: machine.rustc,
         history,
         values: values.to_vec(),
+        digest: String::new(),
     };
+    file.digest = file.digest_of_content();
     let path = folder.join(format!("{case}.json"));
     let mut text = serde_json::to_string_pretty(&file)
         .map_err(|source| GoldenError::Json { path: path.clone(), source })?;

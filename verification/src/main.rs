@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use verification::cache::Cache;
 use verification::case::{Case, Tier};
+use verification::index::Index;
 use verification::machine::{self, Machine};
 use verification::report::{CaseReport, CaseStatus, Report};
 use verification::{cases, golden, mutants, pareto, runner};
@@ -115,6 +116,7 @@ fn verify(arguments: &Arguments) -> Result<bool, String> {
     let mut report = Report {
         machine: Machine::facts(),
         tier: arguments.tier,
+        index: Index::load().map_err(|error| format!("source_index.toml: {error}"))?,
         cases: selected.iter().map(CaseReport::pending).collect(),
     };
     let save = |report: &Report| {

@@ -135,7 +135,8 @@ fn compare_golden(case: &str, values: &[GoldenValue], folder: &Path) -> GoldenRe
             last_reason: None,
         },
         Ok(Some(file)) => {
-            let differences = golden::differences(&file.values, values);
+            let mut differences = golden::differences(&file.values, values);
+            differences.extend(file.unsound().map(|what| format!("golden/{case}.json: {what}")));
             let status = match differences.is_empty() {
                 true => GoldenStatus::Unchanged,
                 false => GoldenStatus::GoldenChanged,

@@ -46,6 +46,22 @@ fn a_run_writes_its_report_in_three_forms_on_one_thread() {
             assert!(form.contains(needed), "{needed}");
         }
     }
+    // Totals, the source's index and the cases that did not run.
+    for needed in ["Index of the source", "Fig. 5.34", "Cases not run", "misalignment_moment"] {
+        assert!(html.contains(needed) && markdown.contains(needed), "{needed}");
+    }
+    let kinds = report["totals"]["by_kind"].as_array().unwrap();
+    let named: Vec<&str> = kinds.iter().map(|kind| kind["kind"].as_str().unwrap()).collect();
+    let all = ["published", "closed-form", "converged", "independent", "consistency", "stated"];
+    assert_eq!(named, all);
+    let sum = |list: &serde_json::Value, field: &str| -> u64 {
+        list.as_array().unwrap().iter().map(|entry| entry[field].as_u64().unwrap()).sum()
+    };
+    let checks = case["checks"].as_array().unwrap().len() as u64;
+    assert_eq!(sum(&report["totals"]["by_kind"], "checks"), checks);
+    assert_eq!(sum(&report["totals"]["by_status"], "checks"), checks);
+    assert!(report["not_run"].as_array().unwrap().len() > 20);
+    assert_eq!(report["source"].as_array().unwrap().len(), 4);
     // Self-contained: nothing is fetched.
     assert!(html.contains("<svg") && !html.contains("<link") && !html.contains("src="));
     let leftover = fs::read_dir(folder.path())
@@ -77,7 +93,8 @@ fn a_changed_past_exits_1_and_says_which_number() {
     let output = run();
     assert_eq!(output.status.code(), Some(1));
     let name = file["values"][4]["name"].as_str().unwrap();
-    assert!(String::from_utf8_lossy(&output.stderr).contains(name));
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(told.contains(name) && told.contains("edited by hand"), "{told}");
     assert!(text(&folder.path().join("out/report.md")).contains("golden changed"));
 }
 

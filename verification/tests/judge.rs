@@ -5,6 +5,7 @@ use verification::check::ReferenceKind::{Consistency, Stated};
 use verification::check::{Check, Explanation};
 use verification::context::CaseContext;
 use verification::golden::GoldenTolerance;
+use verification::index::Index;
 use verification::judge::{CheckReport, Status, entries_without_effect, judge};
 use verification::published::Published;
 use verification::report::{CaseReport, CaseStatus, GoldenStatus};
@@ -265,4 +266,58 @@ fn numbers_to_pin_without_a_golden_file_fail() {
     });
     assert_eq!(report.status, CaseStatus::GoldenChanged);
     assert_eq!((report.golden.status, report.golden.values), (GoldenStatus::GoldenMissing, 2));
+}
+
+/// Lines of the index take their words from the run; a twin counts once, by its least favourable status.
+#[test]
+fn lines_of_the_index_are_judged_by_the_run() {
+    let index: Index = toml::from_str(
+        r#"
+[[chapter]]
+number = 2
+title = "Title"
+tables = 1
+figures = 2
+lines = [
+  { section = "2.1", at = "Table 2.1", role = "result", what = "table", prints = 4, values = ["one/force", "two/force", "one/load"] },
+  { section = "2.1", at = "Fig. 2.1", role = "result", what = "curve", cases = ["one"] },
+  { section = "2.1", at = "Fig. 2.2", role = "picture", what = "drawing" },
+  { section = "2.2", role = "input", what = "speed", cases = ["one"] },
+  { section = "2.2", role = "result", what = "curve" },
+]
+"#,
+    )
+    .unwrap();
+    let published =
+        Published::parse(&[PUBLISHED, &PUBLISHED.replace("\"force\"", "\"load\"")].concat());
+    let published = published.unwrap();
+    let report = |id: &'static str, checks: &[Check]| {
+        let case =
+            Case { id, title: "", section: "", tier: Tier::Smoke, published: "", run: |_| Ok(()) };
+        let mut report = CaseReport::pending(&case);
+        let mut context = CaseContext::default();
+        checks.iter().for_each(|check| context.check(check.clone()));
+        report.checks = judge(&context, &published).checks;
+        report.status = report.verdict();
+        report
+    };
+    let load = |ours: f64| Check::new("load", "load", "N", ours).published("load");
+    let close = |check: Check| check.relative(0.01, "why");
+    let words = |cases: &[CaseReport]| -> Vec<String> {
+        index.judged(cases)[0].lines.iter().map(|line| line.status.clone()).collect()
+    };
+    let rest = ["picture", "input", "not built"];
+    assert_eq!(words(&[])[..2], ["2 not run, 2 not built", "not run"]);
+    assert_eq!(words(&[])[2..], rest);
+    let one = report("one", &[close(force(100.0)), close(load(100.5))]);
+    assert_eq!(words(&[one.clone()])[0], "2 reproduced, 2 not built");
+    assert_eq!(words(&[one.clone()])[1], "computed, no number printed");
+    // The other case meets the same number by a fit: it counts once, as that.
+    let two = report("two", &[close(force(100.0)).fit("a force to this force")]);
+    assert_eq!(words(&[one.clone(), two.clone()])[0], "1 fit, 1 reproduced, 2 not built");
+    // Evidence on one side settles nothing; a case without the check it owes fails the number.
+    let poor = report("one", &[force(102.0).at_least(1.0, "why"), close(load(102.0))]);
+    assert_eq!(words(&[poor, two])[..2], ["2 failed, 2 not built", "failed"]);
+    assert_eq!(index.twins("one", "force"), ["two"]);
+    assert!(index.twins("one", "load").is_empty());
 }

@@ -1,10 +1,13 @@
 //! The sources of the cases: each reads its published numbers in one place, no oracle sees what it
 //! judges.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use verification::cases;
+use verification::index::{Index, Line, Role};
+use verification::published::{Published, PublishedValue};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).to_path_buf()
@@ -51,7 +54,7 @@ fn our_numbers_do_not_depend_on_the_published_ones() {
 }
 
 /// What reads, judges and reports published numbers; none of it computes.
-const FRAMEWORK: [&str; 18] = [
+const FRAMEWORK: [&str; 20] = [
     // Another program's kept decks and outputs, beside which it has no published numbers.
     "calculix_comparison/files.rs",
     "build.rs",
@@ -61,6 +64,9 @@ const FRAMEWORK: [&str; 18] = [
     "src/case.rs",
     "src/check.rs",
     "src/golden.rs",
+    // The index of the source, and figures of the README.
+    "src/index.rs",
+    "src/readme.rs",
     "src/judge.rs",
     "src/date.rs",
     "src/lib.rs",
@@ -154,4 +160,304 @@ fn oracles_import_nothing_from_the_library() {
         }
     }
     assert!(oracles > 0, "no oracle found");
+}
+
+/// Every published value by `case/id`.
+fn published_values() -> BTreeMap<String, PublishedValue> {
+    let values = cases::CASES.iter().flat_map(|case| {
+        let published = Published::parse(case.published).unwrap();
+        let named = |value: &PublishedValue| (format!("{}/{}", case.id, value.id), value.clone());
+        published.values().iter().map(named).collect::<Vec<_>>()
+    });
+    values.collect()
+}
+
+/// What breaks the source's own numbering: each table and figure once, from 1 without a gap, sections in
+/// order.
+fn out_of_order(index: &Index) -> Vec<String> {
+    let mut problems = Vec::new();
+    for chapter in &index.chapters {
+        for (word, count) in [("Table", chapter.tables), ("Fig.", chapter.figures)] {
+            let there: Vec<&str> = chapter
+                .lines
+                .iter()
+                .map(|line| line.at.as_str())
+                .filter(|at| at.starts_with(word))
+                .collect();
+            let all: Vec<String> =
+                (1..=count).map(|n| format!("{word} {}.{n}", chapter.number)).collect();
+            if there != all {
+                problems.push(format!("{word}s of chapter {}: {there:?}", chapter.number));
+            }
+        }
+        let section = |line: &Line| -> Vec<u32> {
+            line.section.split('.').map(|part| part.parse().unwrap_or(0)).collect()
+        };
+        for (line, next) in chapter.lines.iter().zip(chapter.lines.iter().skip(1)) {
+            if section(next) < section(line) {
+                problems.push(format!("{} after {}", next.section, line.section));
+            }
+        }
+        for line in &chapter.lines {
+            let known =
+                line.at.is_empty() || line.at.starts_with("Table ") || line.at.starts_with("Fig. ");
+            if !known || section(line).first() != Some(&chapter.number) || line.what.is_empty() {
+                problems.push(format!("line `{}` {} {}", line.at, line.section, line.what));
+            }
+        }
+    }
+    problems
+}
+
+#[test]
+fn the_index_follows_the_numbering_of_the_source() {
+    let index = Index::load().unwrap();
+    assert_eq!(out_of_order(&index), [""; 0]);
+    let chapters: Vec<(u32, usize, usize)> =
+        index.chapters.iter().map(|c| (c.number, c.tables, c.figures)).collect();
+    // Captions of the printed text; chapters 1 and 6 have none.
+    assert_eq!(chapters, [(2, 4, 27), (3, 7, 34), (4, 3, 23), (5, 4, 34)]);
+
+    // Seen to fail: a line lost, doubled, out of place.
+    let broken = |alter: &dyn Fn(&mut Index)| {
+        let mut index = index.clone();
+        alter(&mut index);
+        assert!(!out_of_order(&index).is_empty());
+    };
+    let table = index.chapters[0].lines.iter().position(|line| line.at == "Table 2.1").unwrap();
+    broken(&|index| drop(index.chapters[0].lines.remove(table)));
+    broken(&|index| {
+        let line = index.chapters[0].lines[table].clone();
+        index.chapters[0].lines.push(line);
+    });
+    broken(&|index| index.chapters[0].lines.swap(table, 0));
+    broken(&|index| index.chapters[3].figures += 1);
+}
+
+/// What is wrong with the claims of the index on published values.
+fn wrong_claims(index: &Index, values: &BTreeMap<String, PublishedValue>) -> Vec<String> {
+    let mut problems = Vec::new();
+    let mut claimed = BTreeSet::new();
+    for line in index.lines() {
+        let place = format!("{} {} {}", line.section, line.at, line.what);
+        for case in line.carriers() {
+            if cases::find(case).is_none() {
+                problems.push(format!("{place}: there is no case `{case}`"));
+            }
+        }
+        let may_print = matches!(line.role, Role::Result | Role::Measurement);
+        if line.distinct() > line.prints || line.prints > 0 && !may_print {
+            problems.push(format!("{place}: prints {}, claims {}", line.prints, line.distinct()));
+        }
+        for claim in &line.values {
+            if !claimed.insert(claim.clone()) {
+                problems.push(format!("{place}: `{claim}` is claimed twice"));
+            }
+            if !values.contains_key(claim) {
+                problems.push(format!("{place}: there is no published value `{claim}`"));
+            }
+        }
+        // Twins: one number in two cases has one id, one value, one unit and one source.
+        let here = || line.values.iter().filter_map(|claim| Some((claim, values.get(claim)?)));
+        for (one, value) in here() {
+            for (other, twin) in here().filter(|(other, _)| *other > one) {
+                let same_number = (value.value, &value.unit, &value.source, &value.quantity)
+                    == (twin.value, &twin.unit, &twin.source, &twin.quantity);
+                if same_number != (value.id == twin.id) {
+                    problems
+                        .push(format!("{place}: `{one}` and `{other}`: the same number or not?"));
+                }
+            }
+        }
+    }
+    let unclaimed = values.keys().filter(|name| !claimed.contains(*name));
+    problems.extend(unclaimed.map(|name| format!("no line of the index claims `{name}`")));
+    problems
+}
+
+#[test]
+fn each_published_value_stands_on_one_line_of_the_index() {
+    let index = Index::load().unwrap();
+    let values = published_values();
+    assert!(values.len() > 20);
+    assert_eq!(wrong_claims(&index, &values), [""; 0]);
+
+    // Seen to fail.
+    let mut more = values.clone();
+    more.insert("misalignment_moment/new".into(), values["misalignment_moment/tilt_5"].clone());
+    assert_eq!(wrong_claims(&index, &more).len(), 1);
+    let mut fewer = values.clone();
+    fewer.remove("misalignment_moment/tilt_5");
+    assert_eq!(wrong_claims(&index, &fewer).len(), 1);
+    // A twin: the same number in another case, and one that calls itself so but differs.
+    let mut twins = index.clone();
+    let line = twins.chapters.iter_mut().flat_map(|chapter| &mut chapter.lines);
+    let line = line.filter(|line| line.at == "Table 3.7").last().unwrap();
+    line.values.push("cage_slip/tilt_5".into());
+    let mut held_twice = values.clone();
+    held_twice.insert("cage_slip/tilt_5".into(), values["misalignment_moment/tilt_5"].clone());
+    assert_eq!(wrong_claims(&twins, &held_twice), [""; 0]);
+    assert_eq!(twins.twins("cage_slip", "tilt_5"), ["misalignment_moment"]);
+    held_twice.get_mut("cage_slip/tilt_5").unwrap().value = 0.135;
+    assert_eq!(wrong_claims(&twins, &held_twice).len(), 1);
+    let mut twice = index.clone();
+    twice.chapters[0].lines[0].values.push("misalignment_moment/tilt_5".into());
+    assert!(wrong_claims(&twice, &values).len() >= 2);
+}
+
+/// Published numbers that stand in code, and why they may: case or helper, number, reason. An entry that
+/// nothing needs is an error.
+const TYPED: &[(&str, f64, &str)] = &[
+    ("cage_modes_table_5_3/case.rs", 4105.0, "ratio of the pair, which no width is to come near"),
+    ("cage_modes_table_5_3/case.rs", 1989.0, "ratio of the pair, which no width is to come near"),
+    ("misalignment_moment/case.rs", 0.094, "drawn as a point beside our curve"),
+    ("misalignment_moment/case.rs", 0.134, "drawn as a point beside our curve"),
+    ("misalignment_moment/case.rs", 0.175, "drawn as a point beside our curve"),
+    ("misalignment_moment/case.rs", 6.423, "drawn as a point beside our curve"),
+    (
+        "cylinder_on_block_table_2_1/case.rs",
+        0.134,
+        "another program's -27.8 and 13.4 %, not a tilt of Table 3.7",
+    ),
+];
+
+/// Number literals of code, without comments, text and unit tests, with their lines.
+fn literals(code: &str) -> Vec<(usize, f64)> {
+    let code = code.split("#[cfg(test)]").next().unwrap_or("");
+    let mut found = Vec::new();
+    let mut text = code.chars().peekable();
+    let (mut line, mut word) = (1, String::new());
+    let mut keep = |word: &mut String, line: usize| {
+        let bare = word.replace('_', "");
+        let bare = ["f64", "usize", "u32", "i32", "u64"]
+            .iter()
+            .find_map(|end| bare.strip_suffix(end))
+            .unwrap_or(&bare);
+        if word.starts_with(|c: char| c.is_ascii_digit())
+            && let Ok(value) = bare.trim_end_matches('.').parse::<f64>()
+        {
+            found.push((line, value));
+        }
+        word.clear();
+    };
+    while let Some(c) = text.next() {
+        let exponent = word.starts_with(|c: char| c.is_ascii_digit()) && word.ends_with(['e', 'E']);
+        match c {
+            '/' if text.peek() == Some(&'/') => {
+                keep(&mut word, line);
+                while text.peek().is_some_and(|c| *c != '\n') {
+                    text.next();
+                }
+            }
+            '"' => {
+                keep(&mut word, line);
+                while let Some(c) = text.next() {
+                    match c {
+                        '\\' => line += usize::from(text.next() == Some('\n')),
+                        '"' => break,
+                        _ => line += usize::from(c == '\n'),
+                    }
+                }
+            }
+            '.' if !word.starts_with(|c: char| c.is_ascii_digit())
+                || word.contains('.')
+                || text.peek() == Some(&'.') =>
+            {
+                keep(&mut word, line);
+            }
+            _ if c.is_ascii_alphanumeric() || c == '_' || c == '.' => word.push(c),
+            '+' | '-' if exponent => word.push(c),
+            _ => {
+                keep(&mut word, line);
+                line += usize::from(c == '\n');
+            }
+        }
+    }
+    keep(&mut word, line);
+    found
+}
+
+#[test]
+fn literals_are_found_where_they_are() {
+    let code = "let a = 6.423; // 1.5\nlet b = [1_989.0f64, 2e-3]; f(\"0.094 \\\" 7\", x.0, y12);\n(0..8) 3.max(4)";
+    let values: Vec<(usize, f64)> = literals(code);
+    assert_eq!(values[..3], [(1, 6.423), (2, 1989.0), (2, 2e-3)]);
+    assert!(values.contains(&(3, 8.0)) && !values.iter().any(|v| [0.094, 7.0, 1.5].contains(&v.1)));
+}
+
+/// Where published numbers stand in a file's code, as they are or in another unit. Numbers of less than
+/// three digits are too common to tell: they count in the case that publishes them only, and as printed.
+fn typed(
+    name: &str,
+    code: &str,
+    values: &BTreeMap<String, PublishedValue>,
+) -> Vec<(usize, f64, String)> {
+    let mut found = Vec::new();
+    for (line, literal) in literals(code) {
+        for (claim, value) in values {
+            let digits =
+                value.value.to_string().chars().filter(char::is_ascii_digit).collect::<String>();
+            let scales: &[f64] = match digits.trim_start_matches('0').trim_end_matches('0').len() {
+                0..3 if name.split('/').next() != claim.split('/').next() => &[],
+                0..3 => &[1.0],
+                _ => &[1.0, 1e3, 1e6, 1e9, 1e-3, 1e-6, 1e-9],
+            };
+            let meets = |scale: &f64| {
+                let there = scale * value.value.abs();
+                (literal - there).abs() <= 4.0 * f64::EPSILON * there
+            };
+            if scales.iter().any(meets) {
+                found.push((line, value.value, claim.clone()));
+            }
+        }
+    }
+    found
+}
+
+/// A case computes without knowing what is published: no such number stands in its code.
+#[test]
+fn no_published_number_is_typed_into_a_case() {
+    let values = published_values();
+    let mut used = BTreeSet::new();
+    let mut problems = Vec::new();
+    let mut pending = vec![folder()];
+    while let Some(place) = pending.pop() {
+        for entry in fs::read_dir(&place).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                if !path.ends_with("tests") {
+                    pending.push(path);
+                }
+                continue;
+            }
+            let name = path.strip_prefix(folder()).unwrap().to_string_lossy().replace('\\', "/");
+            if !name.ends_with(".rs") || FRAMEWORK.iter().any(|part| name.starts_with(part)) {
+                continue;
+            }
+            for (line, value, claim) in typed(&name, &fs::read_to_string(&path).unwrap(), &values) {
+                match TYPED.iter().position(|entry| entry.0 == name && entry.1 == value) {
+                    Some(entry) => drop(used.insert(entry)),
+                    None => problems.push(format!("{name}:{line}: {value} is `{claim}`")),
+                }
+            }
+        }
+    }
+    assert_eq!(problems, [""; 0]);
+    for (index, (name, value, reason)) in TYPED.iter().enumerate() {
+        assert!(used.contains(&index), "{name}: {value} ({reason}) stands there no longer");
+        assert!(!reason.is_empty());
+    }
+}
+
+#[test]
+fn a_typed_number_is_noticed_in_any_unit() {
+    let values = published_values();
+    let seen = |name: &str, code: &str| !typed(name, code, &values).is_empty();
+    assert!(seen("cage_slip/case.rs", "let moment = 6.423;"));
+    assert!(seen("cage_slip/case.rs", "let moment = 6423.0;"));
+    assert!(seen("src/housings.rs", "const F: f64 = 1.989e3;"));
+    assert!(!seen("cage_slip/case.rs", "let moment = 6.42; // 6.423"));
+    // A short number counts where it is published only.
+    assert!(seen("cage_speed_table_5_4/case.rs", "let gap = 0.2;"));
+    assert!(!seen("cage_slip/case.rs", "let gap = 0.2;"));
 }

@@ -9,6 +9,7 @@ use verification::cases;
 use verification::golden::{self, differences};
 use verification::judge::{Status, judge, widest_tolerance};
 use verification::published::Published;
+use verification::readme;
 use verification::runner::{Run, compute};
 
 /// In order; on all cores, since the cases know nothing of each other.
@@ -83,4 +84,40 @@ fn smoke_cases_agree_with_their_past() {
             None => assert!(values.is_empty(), "{} has no golden file", case.id),
         }
     }
+}
+
+/// Figures of accuracy in the README are those of the run; of long cases, those that are pinned.
+#[test]
+fn figures_of_the_readme_are_those_of_the_run() {
+    let text =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../README.md")).unwrap();
+    let figures = readme::figures(&text).unwrap();
+    assert!(figures.len() > 20, "only {} figures", figures.len());
+    let mut stale = Vec::new();
+    for figure in &figures {
+        let shown = if figure.is_pinned() {
+            let file = golden::read(&golden::default_folder(), &figure.case).unwrap();
+            file.ok_or_else(|| format!("no golden file of {}", figure.case))
+                .and_then(|file| figure.from_golden(&file))
+        } else {
+            let run = smoke_runs().iter().find(|(case, _)| case.id == figure.case);
+            run.ok_or_else(|| format!("no case {} in the smoke tier", figure.case)).and_then(
+                |(case, run)| {
+                    let published = Published::parse(case.published).unwrap();
+                    figure.from_checks(&judge(&run.record, &published).checks)
+                },
+            )
+        };
+        match shown {
+            Ok(text) if text == figure.text => (),
+            Ok(text) => stale.push(format!(
+                "{} {}: README says {}, it is {text}",
+                figure.form,
+                figure.source(),
+                figure.text
+            )),
+            Err(error) => stale.push(error),
+        }
+    }
+    assert_eq!(stale, [""; 0]);
 }

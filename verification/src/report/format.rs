@@ -1,8 +1,10 @@
 //! Numbers and words for people; the JSON keeps full precision.
 
 use crate::check::ReferenceKind;
+use crate::index::Entry;
 use crate::judge::{CheckReport, ToleranceOn};
-use crate::report::Report;
+use crate::report::totals::{self, Totals};
+use crate::report::{CaseStatus, Report};
 
 /// `digits` significant digits, in plain notation where that is short.
 pub fn significant(value: f64, digits: usize) -> String {
@@ -101,6 +103,81 @@ pub fn kind(kind: Option<ReferenceKind>) -> &'static str {
         Some(ReferenceKind::Consistency) => "consistency",
         Some(ReferenceKind::Stated) => "stated",
         None => "none",
+    }
+}
+
+/// What a kind of reference is, in a few words.
+pub fn meaning(kind: ReferenceKind) -> &'static str {
+    match kind {
+        ReferenceKind::Published => "a number that the source prints",
+        ReferenceKind::ClosedForm => "a formula evaluated apart",
+        ReferenceKind::Converged => "the limit of a refinement",
+        ReferenceKind::Independent => "another method or code",
+        ReferenceKind::Consistency => "another of our own ways",
+        ReferenceKind::Stated => "a sentence of the source, without a number",
+    }
+}
+
+/// What holds and what does not, in sentences.
+pub fn lead(report: &Report, totals: &Totals) -> Vec<String> {
+    let with = |status: CaseStatus| report.cases.iter().filter(move |case| case.status == status);
+    let in_words = |parts: &[(usize, &str)]| {
+        let parts = parts.iter().filter(|part| part.0 > 0);
+        parts.map(|(count, word)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
+    };
+    let mut cases = format!(
+        "{} of {} hold",
+        with(CaseStatus::Passed).count(),
+        counted(report.cases.len(), "case")
+    );
+    for status in [CaseStatus::Failed, CaseStatus::GoldenChanged, CaseStatus::NotRun] {
+        let ids: Vec<&str> = with(status).map(|case| case.id.as_str()).collect();
+        match status {
+            _ if ids.is_empty() => (),
+            CaseStatus::NotRun => cases += &format!("; {} not run yet", ids.len()),
+            _ => cases += &format!("; {}: {}", status.word(), ids.join(", ")),
+        }
+    }
+    let statuses: Vec<(usize, &str)> =
+        totals.by_status.iter().map(|of| (of.checks, of.status.word())).collect();
+    let mut sentences = vec![
+        format!("{cases}."),
+        format!(
+            "Of {} that the source prints as results: {}.",
+            counted(totals.published_numbers.printed(), "number"),
+            in_words(&totals.published_numbers.parts())
+        ),
+        format!(
+            "{}: {}. One-sided (a limit above or below only): {}.",
+            counted(totals.checks, "check"),
+            in_words(&statuses),
+            totals.one_sided
+        ),
+    ];
+    let left_out = totals::left_out(report).len();
+    if left_out > 0 {
+        sentences.push(format!(
+            "{} of this repository, named below, {} no part of this run.",
+            counted(left_out, "case"),
+            if left_out == 1 { "is" } else { "are" }
+        ));
+    }
+    sentences
+}
+
+/// The colour of an index line: that of its least favourable number.
+pub fn worst_class(line: &Entry) -> &'static str {
+    let numbers = &line.numbers;
+    if numbers.failed > 0 || line.status == "failed" {
+        "bad"
+    } else if numbers.explained + numbers.fit > 0 {
+        "open"
+    } else if numbers.under_assumption > 0 {
+        "assumed"
+    } else if line.status == "not run" {
+        "dim"
+    } else {
+        "good"
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::judge::{CheckReport, Status};
 use crate::report::format::{self, optional};
-use crate::report::{CaseReport, CaseStatus, GoldenStatus, Report};
+use crate::report::{CaseReport, CaseStatus, GoldenStatus, Report, front, totals};
 
 pub fn render(report: &Report) -> String {
     let mut out = String::with_capacity(64 * 1024);
@@ -26,25 +26,29 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
          <title>Verification report: {verdict}</title>\n<style>{}</style>\n</head>\n<body>",
         include_str!("report.css")
     )?;
+    let source = report.index.judged(&report.cases);
     writeln!(
         out,
         "<header><h1>Verification report <span class=\"chip {class}\">{verdict}</span></h1>"
     )?;
-    write_machine(out, report)?;
+    front::write_totals(out, report, &source)?;
     writeln!(out, "</header>")?;
+    front::write_failures(out, report)?;
+    front::write_not_reproduced(out, report)?;
+    front::write_source(out, &source)?;
+    front::write_left_out(out, report)?;
+    front::write_assumptions(out, report)?;
     write_summary(out, report)?;
     writeln!(out, "{}", include_str!("how_to_read.html"))?;
-    write_assumptions(out, report)?;
-    write_explained(out, report)?;
     for case in &report.cases {
-        write_case(out, case)?;
+        write_case(out, report, case)?;
     }
+    write_machine(out, report)?;
     writeln!(out, "</body>\n</html>")
 }
 
 fn write_machine(out: &mut String, report: &Report) -> std::fmt::Result {
     let machine = &report.machine;
-    let checks: usize = report.cases.iter().map(|case| case.checks.len()).sum();
     let facts = [
         ("Date", machine.date.clone()),
         ("Version", machine.crate_version.clone()),
@@ -53,39 +57,34 @@ fn write_machine(out: &mut String, report: &Report) -> std::fmt::Result {
         ("Processor", format!("{}, {} cores", machine.cpu, machine.cores)),
         ("Threads used", machine.threads.map_or("unknown".into(), |count| count.to_string())),
         ("Tier", format!("{:?}", report.tier).to_lowercase()),
-        (
-            "Extent",
-            format!(
-                "{}, {}, {}",
-                format::counted(report.cases.len(), "case"),
-                format::counted(checks, "check"),
-                format::seconds_in_all(report)
-            ),
-        ),
+        ("Seconds", format::seconds_in_all(report)),
     ];
-    writeln!(out, "<dl class=\"facts\">")?;
+    writeln!(out, "<section><h2>The run</h2><dl class=\"facts\">")?;
     for (name, fact) in facts {
         writeln!(out, "<div><dt>{name}</dt><dd>{}</dd></div>", escape(&fact))?;
     }
-    writeln!(out, "</dl>")
+    writeln!(out, "</dl></section>")
 }
 
 fn write_summary(out: &mut String, report: &Report) -> std::fmt::Result {
     writeln!(
         out,
-        "<section><h2>Summary</h2><table class=\"summary\"><thead><tr><th>Case</th>\
+        "<section><h2>Cases</h2><table class=\"summary\"><thead><tr><th>Case</th>\
          <th>Section of the source</th><th class=\"number\">Repro&shy;duced</th>\
-         <th class=\"number\">under assump&shy;tion</th><th class=\"number\">Explained</th>\
-         <th class=\"number\">Other checks</th><th class=\"number\">Seconds</th>\
+         <th class=\"number\">under assump&shy;tion</th><th class=\"number\">Fit</th>\
+         <th class=\"number\">Explained</th><th class=\"number\">Other checks</th>\
+         <th class=\"number\">One-sided</th><th class=\"number\">Seconds</th>\
          <th class=\"number\">Worst error / tolerance</th><th>Status</th></tr></thead><tbody>"
     )?;
     for case in &report.cases {
-        let counted = [Status::Reproduced, Status::ReproducedUnderAssumption, Status::Explained]
-            .map(|status| case.count(status));
+        let counted =
+            [Status::Reproduced, Status::ReproducedUnderAssumption, Status::Fit, Status::Explained]
+                .map(|status| case.count(status));
         writeln!(
             out,
             "<tr><td><a href=\"#{}\">{}</a></td><td>{}</td><td class=\"number\">{}</td>\
              <td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>\
+             <td class=\"number\">{}</td><td class=\"number\">{}</td>\
              <td class=\"number\">{}{}</td><td class=\"number\">{}</td><td>{}</td></tr>",
             escape(&case.id),
             escape(&case.title),
@@ -93,7 +92,9 @@ fn write_summary(out: &mut String, report: &Report) -> std::fmt::Result {
             counted[0],
             counted[1],
             counted[2],
+            counted[3],
             case.checks.len() - counted.iter().sum::<usize>(),
+            case.checks.iter().filter(|check| totals::one_sided(check)).count(),
             format::seconds(case.seconds),
             if case.cached.is_some() { "<small>cached</small>" } else { "" },
             optional(case.worst_ratio, 2),
@@ -103,63 +104,7 @@ fn write_summary(out: &mut String, report: &Report) -> std::fmt::Result {
     writeln!(out, "</tbody></table></section>")
 }
 
-fn write_assumptions(out: &mut String, report: &Report) -> std::fmt::Result {
-    writeln!(out, "<section><h2>Assumptions</h2>")?;
-    if report.cases.iter().all(|case| case.assumptions.is_empty()) {
-        return writeln!(out, "<p>No case needs one.</p></section>");
-    }
-    writeln!(
-        out,
-        "<p>What the source leaves out, and the value taken.</p><table><thead><tr>\
-         <th>Assumption</th><th>Value</th><th>What it fills</th><th>Case</th></tr></thead><tbody>"
-    )?;
-    for case in &report.cases {
-        for assumption in &case.assumptions {
-            writeln!(
-                out,
-                "<tr><td><code>{}</code></td><td>{}</td><td>{}</td>\
-                 <td><a href=\"#{id}\">{id}</a></td></tr>",
-                escape(&assumption.name),
-                escape(&assumption.default),
-                escape(&assumption.text),
-                id = escape(&case.id),
-            )?;
-        }
-    }
-    writeln!(out, "</tbody></table></section>")
-}
-
-fn write_explained(out: &mut String, report: &Report) -> std::fmt::Result {
-    writeln!(out, "<section><h2>Published numbers that are explained, not reproduced</h2>")?;
-    if report.cases.iter().all(|case| case.count(Status::Explained) == 0) {
-        return writeln!(out, "<p>None.</p></section>");
-    }
-    writeln!(
-        out,
-        "<table><thead><tr><th>Quantity</th><th class=\"number\">Published</th>\
-         <th class=\"number\">Ours</th><th class=\"number\">Difference</th><th>Explanation</th>\
-         </tr></thead><tbody>"
-    )?;
-    for case in &report.cases {
-        for check in case.checks.iter().filter(|check| check.status == Status::Explained) {
-            writeln!(
-                out,
-                "<tr><td><a href=\"#{}\">{}</a><small>{}</small></td><td class=\"number\">{}</td>\
-                 <td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td></tr>",
-                check_anchor(case, check),
-                escape(&check.quantity),
-                escape(&check.reference_source),
-                number(&format::reference(check), &check.unit),
-                number(&format::ours(check), &check.unit),
-                nowrap(&format::error(check)),
-                explanation(case, check),
-            )?;
-        }
-    }
-    writeln!(out, "</tbody></table></section>")
-}
-
-fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
+fn write_case(out: &mut String, report: &Report, case: &CaseReport) -> std::fmt::Result {
     writeln!(
         out,
         "<section class=\"case\" id=\"{id}\"><h2>{} {}</h2><p class=\"meta\"><code>{id}</code> · \
@@ -183,46 +128,16 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
         writeln!(out, "</ul>")?;
     }
     if !case.assumptions.is_empty() {
-        writeln!(out, "<h3>Assumptions</h3><dl class=\"assumptions\">")?;
-        for assumption in &case.assumptions {
-            writeln!(
-                out,
-                "<dt><code>{}</code>: {}</dt><dd>{}</dd>",
-                escape(&assumption.name),
-                escape(&assumption.default),
-                prose(&assumption.text)
-            )?;
-        }
-        writeln!(out, "</dl>")?;
+        let names: Vec<String> = (case.assumptions.iter())
+            .map(|assumption| {
+                let name = escape(&assumption.name);
+                format!("<a href=\"#assumptions\"><code>{name}</code></a>")
+            })
+            .collect();
+        writeln!(out, "<p class=\"meta\">Assumptions: {}</p>", names.join(", "))?;
     }
-    write_checks(out, case)?;
-    for figure in &case.figures {
-        writeln!(
-            out,
-            "<figure id=\"{}\">{}<figcaption>{}</figcaption></figure>",
-            anchor(case, &figure.name),
-            inline_svg(&figure.svg),
-            prose(&figure.caption)
-        )?;
-    }
-    for table in &case.tables {
-        writeln!(
-            out,
-            "<h3 id=\"{}\">{}</h3><table class=\"data\"><thead><tr>",
-            anchor(case, &table.id),
-            escape(&table.title)
-        )?;
-        for column in &table.columns {
-            write!(out, "<th>{}</th>", escape(column))?;
-        }
-        writeln!(out, "</tr></thead><tbody>")?;
-        for row in &table.rows {
-            let cells: String =
-                row.iter().map(|text| format!("<td>{}</td>", escape(text))).collect();
-            writeln!(out, "<tr>{cells}</tr>")?;
-        }
-        writeln!(out, "</tbody></table>")?;
-    }
+    write_checks(out, report, case)?;
+    write_figures(out, case)?;
     if !case.findings.is_empty() {
         writeln!(out, "<h3>Findings</h3><dl class=\"findings\">")?;
         for finding in &case.findings {
@@ -236,6 +151,7 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
         }
         writeln!(out, "</dl>")?;
     }
+    write_tables(out, case)?;
     if !case.work.is_empty() {
         let counts: Vec<String> =
             case.work.iter().map(|work| format!("{} {}", work.count, escape(&work.name))).collect();
@@ -258,13 +174,55 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
     writeln!(out, "</section>")
 }
 
-fn write_checks(out: &mut String, case: &CaseReport) -> std::fmt::Result {
+fn write_figures(out: &mut String, case: &CaseReport) -> std::fmt::Result {
+    if case.figures.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "<div class=\"figures\">")?;
+    for figure in &case.figures {
+        writeln!(
+            out,
+            "<figure id=\"{}\">{}<figcaption>{}</figcaption></figure>",
+            anchor(case, &figure.name),
+            inline_svg(&figure.svg),
+            prose(&figure.caption)
+        )?;
+    }
+    writeln!(out, "</div>")
+}
+
+fn write_tables(out: &mut String, case: &CaseReport) -> std::fmt::Result {
+    for table in &case.tables {
+        writeln!(
+            out,
+            "<details class=\"data\" id=\"{}\"><summary>Table: {}</summary><table class=\"data\">\
+             <thead><tr>",
+            anchor(case, &table.id),
+            escape(&table.title)
+        )?;
+        for column in &table.columns {
+            write!(out, "<th>{}</th>", escape(column))?;
+        }
+        writeln!(out, "</tr></thead><tbody>")?;
+        for row in &table.rows {
+            write!(out, "<tr>")?;
+            for text in row {
+                write!(out, "<td>{}</td>", escape(text))?;
+            }
+            writeln!(out, "</tr>")?;
+        }
+        writeln!(out, "</tbody></table></details>")?;
+    }
+    Ok(())
+}
+
+fn write_checks(out: &mut String, report: &Report, case: &CaseReport) -> std::fmt::Result {
     if case.checks.is_empty() {
         return Ok(());
     }
     writeln!(
         out,
-        "<h3>Checks</h3><table class=\"checks\"><thead><tr><th>Quantity</th>\
+        "<h3 class=\"label\">Checks</h3><table class=\"checks\"><thead><tr><th>Quantity</th>\
          <th class=\"number\">Ours</th><th class=\"number\">Reference</th><th>Held against</th>\
          <th class=\"number\">Error</th><th>Tolerance and its reason</th><th>Status</th></tr>\
          </thead><tbody>"
@@ -273,6 +231,15 @@ fn write_checks(out: &mut String, case: &CaseReport) -> std::fmt::Result {
         let mut note = String::new();
         if let Some(name) = &check.assumption {
             write!(note, "<small><code>{}</code></small>", escape(name))?;
+        }
+        if let Some(id) = &check.published_id {
+            let twins = report.index.twins(&case.id, id);
+            if !twins.is_empty() {
+                write!(note, "<small>also held by {}</small>", escape(&twins.join(", ")))?;
+            }
+        }
+        if let Some(what) = &check.fit {
+            write!(note, "<small>{}</small>", prose(what))?;
         }
         if let Some(failure) = &check.failure {
             write!(note, "<small class=\"bad\">{}</small>", escape(failure))?;
@@ -306,7 +273,7 @@ fn write_checks(out: &mut String, case: &CaseReport) -> std::fmt::Result {
     writeln!(out, "</tbody></table>")
 }
 
-fn explanation(case: &CaseReport, check: &CheckReport) -> String {
+pub(super) fn explanation(case: &CaseReport, check: &CheckReport) -> String {
     let Some(explanation) = &check.explanation else { return String::new() };
     let evidence: Vec<String> = explanation
         .evidence
@@ -323,16 +290,16 @@ fn explanation(case: &CaseReport, check: &CheckReport) -> String {
 }
 
 /// Checks, figures, tables and findings of a case share one space of ids.
-fn anchor(case: &CaseReport, id: &str) -> String {
+pub(super) fn anchor(case: &CaseReport, id: &str) -> String {
     format!("{}--{}", escape(&case.id), escape(id))
 }
 
-fn check_anchor(case: &CaseReport, check: &CheckReport) -> String {
+pub(super) fn check_anchor(case: &CaseReport, check: &CheckReport) -> String {
     anchor(case, &check.id)
 }
 
 /// A number with its unit below it; the signs of degrees and percent stay beside it.
-fn number(text: &str, unit: &str) -> String {
+pub(super) fn number(text: &str, unit: &str) -> String {
     let shown = escape(&format::unit(unit));
     if ["°", "%"].contains(&unit) {
         return format!("<span class=\"value\">{text}{shown}</span>");
@@ -340,11 +307,11 @@ fn number(text: &str, unit: &str) -> String {
     format!("<span class=\"value\">{text}</span><small>{shown}</small>")
 }
 
-fn nowrap(text: &str) -> String {
+pub(super) fn nowrap(text: &str) -> String {
     format!("<span class=\"value\">{}</span>", escape(text))
 }
 
-fn chip(status: Status) -> String {
+pub(super) fn chip(status: Status) -> String {
     let class = match status {
         Status::Reproduced | Status::Pass => "good",
         Status::ReproducedUnderAssumption => "assumed",
@@ -354,7 +321,7 @@ fn chip(status: Status) -> String {
     format!("<span class=\"chip {class}\">{}</span>", status.word())
 }
 
-fn case_chip(status: CaseStatus) -> String {
+pub(super) fn case_chip(status: CaseStatus) -> String {
     let class = match status {
         CaseStatus::Passed => "good",
         CaseStatus::Failed | CaseStatus::GoldenChanged => "bad",
@@ -369,7 +336,7 @@ fn inline_svg(svg: &str) -> &str {
 }
 
 /// Escaped text in which what stands between backticks is code.
-fn prose(text: &str) -> String {
+pub(super) fn prose(text: &str) -> String {
     let mut parts: Vec<String> = escape(text).split('`').map(String::from).collect();
     if parts.len().is_multiple_of(2) {
         return escape(text);
@@ -380,6 +347,6 @@ fn prose(text: &str) -> String {
     parts.concat()
 }
 
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

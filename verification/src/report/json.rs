@@ -6,8 +6,10 @@ use serde::Serialize;
 
 use crate::case::Tier;
 use crate::context::{Assumption, Finding, Table, Work};
+use crate::index::ChapterEntries;
 use crate::judge::CheckReport;
 use crate::machine::Machine;
+use crate::report::totals::{self, Totals};
 use crate::report::{Cached, CaseReport, CaseStatus, GoldenReport, Report, figure_file};
 
 #[derive(Serialize)]
@@ -18,7 +20,20 @@ struct Document<'a> {
     tier: Tier,
     seconds: f64,
     machine: &'a Machine,
+    totals: Totals,
+    /// Cases of the repository that are no part of this run.
+    not_run: Vec<LeftOut>,
+    /// The source's tables, figures and numbers in the text, in its order.
+    source: Vec<ChapterEntries>,
     cases: Vec<CaseEntry<'a>>,
+}
+
+#[derive(Serialize)]
+struct LeftOut {
+    id: &'static str,
+    title: &'static str,
+    section: &'static str,
+    tier: Tier,
 }
 
 #[derive(Serialize)]
@@ -50,6 +65,8 @@ struct FigureEntry<'a> {
 }
 
 pub fn render(report: &Report) -> io::Result<String> {
+    let source = report.index.judged(&report.cases);
+    let left_out = totals::left_out(report).into_iter();
     let document = Document {
         format: "bearing-dynamics verification report 1",
         passed: report.passed(),
@@ -57,6 +74,16 @@ pub fn render(report: &Report) -> io::Result<String> {
         tier: report.tier,
         seconds: report.seconds(),
         machine: &report.machine,
+        totals: totals::totals(report, &source),
+        not_run: left_out
+            .map(|case| LeftOut {
+                id: case.id,
+                title: case.title,
+                section: case.section,
+                tier: case.tier,
+            })
+            .collect(),
+        source,
         cases: report.cases.iter().map(entry).collect(),
     };
     let mut text = serde_json::to_string_pretty(&document)?;

@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use crate::index::ChapterEntries;
 use crate::judge::Status;
 use crate::report::format::{self, optional};
-use crate::report::{CaseReport, GoldenStatus, Report, figure_file};
+use crate::report::{CaseReport, GoldenStatus, Report, figure_file, totals};
 
 pub fn render(report: &Report) -> String {
     let mut out = String::new();
@@ -33,18 +34,39 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
         machine.threads.map_or("?".into(), |count| count.to_string()),
         format::seconds_in_all(report),
     )?;
-    writeln!(out, "{HOW_TO_READ}\n")?;
+    let source = report.index.judged(&report.cases);
+    let totals = totals::totals(report, &source);
+    for sentence in format::lead(report, &totals) {
+        writeln!(out, "{sentence}\n")?;
+    }
+    writeln!(out, "| held against | checks | one-sided | failed |\n|---|--:|--:|--:|")?;
+    for kind in &totals.by_kind {
+        writeln!(
+            out,
+            "| {}: {} | {} | {} | {} |",
+            format::kind(Some(kind.kind)),
+            format::meaning(kind.kind),
+            kind.checks,
+            kind.one_sided,
+            kind.failed
+        )?;
+    }
+    writeln!(out, "\n{HOW_TO_READ}")?;
+    write_not_reproduced(out, report)?;
+    write_source(out, &source)?;
+    write_left_out(out, report)?;
+    write_assumptions(out, report)?;
 
-    writeln!(out, "## Summary\n")?;
+    writeln!(out, "\n## Cases\n")?;
     writeln!(
         out,
-        "| case | section | status | checks | reproduced | under assumption | explained | \
-         seconds | worst error / tolerance |\n|---|---|---|--:|--:|--:|--:|--:|--:|"
+        "| case | section | status | checks | reproduced | under assumption | fit | explained | \
+         seconds | worst error / tolerance |\n|---|---|---|--:|--:|--:|--:|--:|--:|--:|"
     )?;
     for case in &report.cases {
         writeln!(
             out,
-            "| [{}](#{}) | {} | **{}** | {} | {} | {} | {} | {}{} | {} |",
+            "| [{}](#{}) | {} | **{}** | {} | {} | {} | {} | {} | {}{} | {} |",
             cell(&case.title),
             case.id,
             cell(&case.section),
@@ -52,66 +74,108 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
             case.checks.len(),
             case.count(Status::Reproduced),
             case.count(Status::ReproducedUnderAssumption),
+            case.count(Status::Fit),
             case.count(Status::Explained),
             format::seconds(case.seconds),
             if case.cached.is_some() { " (cached)" } else { "" },
             optional(case.worst_ratio, 2),
         )?;
     }
-
-    write_assumptions(out, report)?;
-    write_explained(out, report)?;
     for case in &report.cases {
         write_case(out, case)?;
     }
     Ok(())
 }
 
-fn write_assumptions(out: &mut String, report: &Report) -> std::fmt::Result {
-    writeln!(out, "\n## Assumptions\n")?;
-    if report.cases.iter().all(|case| case.assumptions.is_empty()) {
-        return writeln!(out, "No case needs one.");
-    }
-    writeln!(out, "| case | assumption | value | what it fills |\n|---|---|---|---|")?;
-    for case in &report.cases {
-        for assumption in &case.assumptions {
+fn write_source(out: &mut String, source: &[ChapterEntries]) -> std::fmt::Result {
+    writeln!(out, "\n## Index of the source")?;
+    for chapter in source {
+        writeln!(
+            out,
+            "\n### {} {}\n\n| section | where | what | status | case |\n|---|---|---|---|---|",
+            chapter.number, chapter.title
+        )?;
+        for line in &chapter.lines {
             writeln!(
                 out,
-                "| {} | `{}` | {} | {} |",
-                case.id,
-                cell(&assumption.name),
-                cell(&assumption.default),
-                cell(&assumption.text)
+                "| {} | {} | {} | {} | {} |",
+                line.section,
+                if line.at.is_empty() { "text" } else { &line.at },
+                cell(&line.what),
+                line.status,
+                line.cases.join(", ")
             )?;
         }
     }
     Ok(())
 }
 
-fn write_explained(out: &mut String, report: &Report) -> std::fmt::Result {
-    writeln!(out, "\n## Published numbers that are explained, not reproduced\n")?;
-    if report.cases.iter().all(|case| case.count(Status::Explained) == 0) {
-        return writeln!(out, "None.");
+fn write_left_out(out: &mut String, report: &Report) -> std::fmt::Result {
+    let left_out = totals::left_out(report);
+    if left_out.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\n## Cases not run\n")?;
+    for case in left_out {
+        writeln!(out, "- `{}`: {} ({}; {:?} tier)", case.id, case.title, case.section, case.tier)?;
+    }
+    Ok(())
+}
+
+fn write_assumptions(out: &mut String, report: &Report) -> std::fmt::Result {
+    writeln!(out, "\n## Assumptions\n")?;
+    let shared = totals::assumptions(report);
+    if shared.is_empty() {
+        return writeln!(out, "No case needs one.");
     }
     writeln!(
         out,
-        "| case | quantity | source | published | ours | difference | explanation | evidence |\n\
-         |---|---|---|--:|--:|--:|---|---|"
+        "| assumption | value | what it fills | checks that lean on it | cases |\n|---|---|---|--:|---|"
+    )?;
+    for entry in shared {
+        let cases: Vec<&str> = entry.cases.iter().map(|case| case.id.as_str()).collect();
+        writeln!(
+            out,
+            "| `{}` | {} | {} | {} | {} |",
+            cell(&entry.assumption.name),
+            cell(&entry.assumption.default),
+            cell(&entry.assumption.text),
+            entry.leaning,
+            cases.join(", ")
+        )?;
+    }
+    Ok(())
+}
+
+fn write_not_reproduced(out: &mut String, report: &Report) -> std::fmt::Result {
+    writeln!(out, "\n## Published numbers that are explained or fitted, not reproduced\n")?;
+    let not_reproduced = |status: Status| matches!(status, Status::Explained | Status::Fit);
+    if !report.cases.iter().flat_map(|case| &case.checks).any(|c| not_reproduced(c.status)) {
+        return writeln!(out, "None in this run.");
+    }
+    writeln!(
+        out,
+        "| case | quantity | status | source | published | ours | difference | why | evidence |\n\
+         |---|---|---|---|--:|--:|--:|---|---|"
     )?;
     for case in &report.cases {
-        for check in case.checks.iter().filter(|check| check.status == Status::Explained) {
-            let Some(explanation) = &check.explanation else { continue };
+        for check in case.checks.iter().filter(|check| not_reproduced(check.status)) {
+            let (why, evidence) = match (&check.fit, &check.explanation) {
+                (Some(what), _) => (what.as_str(), String::new()),
+                (None, Some(text)) => (text.text.as_str(), text.evidence.join(", ")),
+                (None, None) => ("", String::new()),
+            };
             writeln!(
                 out,
-                "| {} | {} | {} | {} | {} | {} | {} | {} |",
+                "| {} | {} | {} | {} | {} | {} | {} | {} | {evidence} |",
                 case.id,
                 cell(&check.quantity),
+                check.status.word(),
                 cell(&check.reference_source),
                 format::reference(check),
                 format::ours(check),
                 format::error(check),
-                cell(&explanation.text),
-                explanation.evidence.join(", "),
+                cell(why),
             )?;
         }
     }
@@ -135,12 +199,10 @@ fn write_case(out: &mut String, case: &CaseReport) -> std::fmt::Result {
     for failure in case.failures() {
         writeln!(out, "- **failed:** {failure}")?;
     }
-    for assumption in &case.assumptions {
-        writeln!(
-            out,
-            "- assumption `{}`: {}. {}",
-            assumption.name, assumption.default, assumption.text
-        )?;
+    if !case.assumptions.is_empty() {
+        let names: Vec<String> =
+            case.assumptions.iter().map(|assumption| format!("`{}`", assumption.name)).collect();
+        writeln!(out, "\nAssumptions: {}", names.join(", "))?;
     }
     if !case.checks.is_empty() {
         writeln!(
@@ -214,6 +276,6 @@ fn cell(text: &str) -> String {
 const HOW_TO_READ: &str = "\
 How to read it: *ours* is computed before any published number is opened. *Reproduced* means \
 within tolerance on stated inputs; *reproduced under assumption* needs the named assumption for \
-something the source leaves out; *explained* means that the source prints something else, that we \
-know by how much, and that the evidence named beside it holds. *Pass* is agreement with a closed \
-form, a converged solution or an independent method. The error is measured as its tolerance is.";
+something the source leaves out; *fit* means that something was identified from that very number; *explained* means that the source prints something else, that we \
+know by how much, and that the evidence named beside it holds. *Pass* is agreement with a \
+reference that is no published number: the column *kind* says which, and *consistency* is another of our own ways. The error is measured as its tolerance is.";

@@ -1,9 +1,11 @@
 //! The report as data, and its three forms.
 
 pub(crate) mod format;
+mod front;
 mod html;
 mod json;
 mod markdown;
+pub mod totals;
 
 use std::fs;
 use std::io;
@@ -14,6 +16,7 @@ use serde::Serialize;
 use crate::case::{Case, Tier};
 use crate::context::{Assumption, Figure, Finding, Table, Work};
 use crate::golden::Reason;
+use crate::index::Index;
 use crate::judge::{CheckReport, Status};
 use crate::machine::Machine;
 
@@ -167,6 +170,8 @@ impl CaseReport {
 pub struct Report {
     pub machine: Machine,
     pub tier: Tier,
+    /// Lines of the source, which the cases carry.
+    pub index: Index,
     pub cases: Vec<CaseReport>,
 }
 
