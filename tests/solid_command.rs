@@ -1,8 +1,10 @@
 //! A scene with a solid alone as a user meets it: values against closed forms, and what ParaView
 //! makes of the fields.
 
+mod outside_common;
 mod solid_command_common;
 
+use outside_common::python_with_vtk;
 use serde_json::Value;
 use solid_command_common::{
     DENSITY, ON_ROLLERS, Place, SHORT_RUN, YOUNG, assert_near, bar, column, into_folder, json,
@@ -232,13 +234,7 @@ fn supports_that_move_close_the_ledger() {
 
 #[test]
 fn paraview_opens_fields_and_modes() {
-    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
-    let has_vtk = Command::new(&python).args(["-c", "import vtk"]).output();
-    if !has_vtk.is_ok_and(|output| output.status.success()) {
-        assert!(std::env::var("REQUIRE_VTK").is_err(), "{python} has no vtk");
-        eprintln!("SKIPPED paraview_opens_fields_and_modes: {python} has no vtk (pip install vtk)");
-        return;
-    }
+    let Some(python) = python_with_vtk("paraview_opens_fields_and_modes") else { return };
     let place = Place::new();
     let [statics, modes, run] = ["statics", "modes", "run"].map(|name| place.path(name));
     succeed(into_folder("statics", &shipped("cantilever.toml"), &statics, &[]));

@@ -10,7 +10,7 @@ use verification::cache::Cache;
 use verification::case::{Case, Tier};
 use verification::machine::{self, Machine};
 use verification::report::{CaseReport, CaseStatus, Report};
-use verification::{cases, golden, mutants, pareto, runner};
+use verification::{cases, golden, mutants, outside, pareto, runner};
 
 #[derive(Parser)]
 #[command(name = "verify", about, version, args_conflicts_with_subcommands = true)]
@@ -111,6 +111,7 @@ fn select(ids: &[String], tier: Tier) -> Result<Vec<Case>, String> {
 
 fn verify(arguments: &Arguments) -> Result<bool, String> {
     let selected = select(&arguments.cases, arguments.tier)?;
+    let skipped = outside::skipped(&selected)?;
     let golden_folder = arguments.golden.clone().unwrap_or_else(golden::default_folder);
     let mut report = Report {
         machine: Machine::facts(),
@@ -163,6 +164,7 @@ fn verify(arguments: &Arguments) -> Result<bool, String> {
         report.seconds() - before,
         arguments.out.join("report.html").display()
     );
+    skipped.iter().for_each(|line| eprintln!("{line}"));
     Ok(report.passed())
 }
 
