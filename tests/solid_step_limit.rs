@@ -307,17 +307,14 @@ fn shapes(nodes: usize, l: [f64; 4]) -> Vec<f64> {
 fn integrals(places: &[Vec3], density: f64) -> DMatrix<f64> {
     let count = places.len();
     let mut sum = DMatrix::zeros(count, count);
-    let at = |r: [f64; 3]| [1.0 - r[0] - r[1] - r[2], r[0], r[1], r[2]];
+    let corners = |r: [f64; 3]| [1.0 - r[0] - r[1] - r[2], r[0], r[1], r[2]];
     let place = |r: [f64; 3]| -> Vector3<f64> {
-        let n = shapes(count, at(r));
+        let n = shapes(count, corners(r));
         places.iter().zip(&n).map(|(x, n)| Vector3::from(*x) * *n).sum()
     };
     let rule = gauss(8);
-    for ((u, a), (v, b), (w, c)) in rule
-        .iter()
-        .flat_map(|x| rule.iter().flat_map(move |y| rule.iter().map(move |z| (x, y, z))))
-        .map(|(x, y, z)| (*x, *y, *z))
-    {
+    for at in 0..512 {
+        let [(u, a), (v, b), (w, c)] = [rule[at / 64], rule[at / 8 % 8], rule[at % 8]];
         let r = [u, v * (1.0 - u), w * (1.0 - u) * (1.0 - v)];
         let fold = (1.0 - u) * (1.0 - u) * (1.0 - v);
         // Places are of second degree, so that central differences are exact but for rounding.
@@ -327,7 +324,7 @@ fn integrals(places: &[Vec3], density: f64) -> DMatrix<f64> {
             (place(by(1.0)) - place(by(-1.0))) / 0.2
         };
         let volume = slope(0).dot(&slope(1).cross(&slope(2)));
-        let n = shapes(count, at(r));
+        let n = shapes(count, corners(r));
         for i in 0..count {
             for j in 0..count {
                 sum[(i, j)] += density * a * b * c * fold * volume * n[i] * n[j];

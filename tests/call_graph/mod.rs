@@ -3,7 +3,8 @@
 //!
 //! Calls are followed by name. A path (`hertz::contact`, `Tet4::new`) leads to functions of that module
 //! or type, a bare name to the same file or to what the file imports, a method to the methods of that
-//! name of all types that the way there names. What a name cannot tell apart is taken as called, so that
+//! name of all types that the caller's file, what it calls, or fields of such types name. What a name
+//! cannot tell apart is taken as called, so that
 //! a call may be seen where there is none, and none is missed but those through macros.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -14,7 +15,12 @@ struct Function {
     file: usize,
     /// The type whose method it is.
     of_type: Option<String>,
+    /// The innermost module that it stands in.
+    module: String,
     name: String,
+    /// Arguments and what it returns.
+    signature: Vec<String>,
+    /// The signature too.
     body: Vec<String>,
 }
 
@@ -36,6 +42,10 @@ pub struct CallGraph {
     files: Vec<File>,
     functions: Vec<Function>,
     by_name: BTreeMap<String, Vec<usize>>,
+    /// What the declarations of a type's name speak of.
+    fields: BTreeMap<String, Vec<String>>,
+    /// What each function calls, once it was asked for.
+    calls: Vec<Option<BTreeSet<usize>>>,
 }
 
 /// What can be reached from somewhere.
@@ -75,6 +85,7 @@ impl CallGraph {
         };
         let at = self.files.len();
         let mut of_type: Vec<(usize, String)> = Vec::new();
+        let mut modules: Vec<(usize, String)> = vec![(0, module.into())];
         let (mut depth, mut i) = (0usize, 0usize);
         while i < words.len() {
             match words[i].as_str() {
@@ -92,17 +103,35 @@ impl CallGraph {
                     of_type.push((depth + 1, subject(&words[i + 1..end])));
                     (i, depth) = (end, depth + 1);
                 }
+                "mod" if words.get(i + 2).is_some_and(|word| word == "{") => {
+                    modules.push((depth + 1, words[i + 1].clone()));
+                    (i, depth) = (i + 2, depth + 1);
+                }
+                "struct" | "enum" | "type" if i + 1 < words.len() && is_name(&words[i + 1]) => {
+                    let open = brace_or_end(&words, i);
+                    let end = if words[open] == "{" { closing(&words, open) } else { open };
+                    let speaks_of = words[i + 2..end].iter().filter(|word| is_name(word)).cloned();
+                    self.fields.entry(words[i + 1].clone()).or_default().extend(speaks_of);
+                    i = end;
+                }
                 "fn" if i + 1 < words.len() && is_name(&words[i + 1]) => {
-                    let until = words[i..].iter().position(|w| w == "{" || w == ";");
-                    let open = i + until.unwrap_or(words.len() - i - 1);
+                    let open = brace_or_end(&words, i);
                     if words[open] == "{" {
                         let end = closing(&words, open);
                         let name = words[i + 1].clone();
                         let of_type = of_type.last().map(|(_, name)| name.clone());
-                        // The signature too: its types are what the body's methods belong to.
-                        let body = words[i + 2..end].to_vec();
+                        let (signature, body) =
+                            (words[i + 2..open].to_vec(), words[i + 2..end].to_vec());
                         self.by_name.entry(name.clone()).or_default().push(self.functions.len());
-                        self.functions.push(Function { file: at, of_type, name, body });
+                        let module = modules.last().map_or(module, |(_, name)| name).to_string();
+                        self.functions.push(Function {
+                            file: at,
+                            of_type,
+                            module,
+                            name,
+                            signature,
+                            body,
+                        });
                         i = end;
                     } else {
                         i = open;
@@ -112,6 +141,7 @@ impl CallGraph {
                 "}" => {
                     depth = depth.saturating_sub(1);
                     of_type.retain(|(inside, _)| *inside <= depth);
+                    modules.retain(|(inside, _)| *inside <= depth);
                 }
                 _ => {}
             }
@@ -121,58 +151,84 @@ impl CallGraph {
     }
 
     /// From the functions that `starts` picks by file and name.
-    pub fn reached(&self, starts: impl Fn(&str, &str) -> bool) -> Reached {
+    pub fn reached(&mut self, starts: impl Fn(&str, &str) -> bool) -> Reached {
         let mut found = Reached::default();
-        let is_start = |f: &&usize| {
-            let function = &self.functions[**f];
+        let is_start = |f: &usize| {
+            let function = &self.functions[*f];
             starts(&self.files[function.file].path, &function.name)
         };
-        let all: Vec<usize> = (0..self.functions.len()).collect();
-        let mut queue: VecDeque<usize> = all.iter().filter(is_start).copied().collect();
+        let mut queue: VecDeque<usize> = (0..self.functions.len()).filter(is_start).collect();
         let mut seen: BTreeSet<usize> = queue.iter().copied().collect();
-        // Methods wait for their type to be named.
-        let mut waiting: BTreeSet<usize> = BTreeSet::new();
         while let Some(function) = queue.pop_front() {
-            let Function { file, of_type, name, body } = &self.functions[function];
-            let module = of_type.as_ref().unwrap_or(&self.files[*file].module);
+            let Function { of_type, module, name, body, .. } = &self.functions[function];
+            let module = of_type.as_ref().unwrap_or(module);
             found.functions.insert(format!("{module}::{name}"));
             found.words.extend(body.iter().filter(|word| is_name(word)).cloned());
             found.words.extend(of_type.clone());
-            let mut called = BTreeSet::new();
-            for (i, word) in body.iter().enumerate() {
-                let Some(candidates) = self.by_name.get(word) else { continue };
-                let before = |back: usize| i.checked_sub(back).map_or("", |j| body[j].as_str());
-                let of = |other: usize| &self.functions[other];
-                let chosen = candidates.iter().copied().filter(|other| match before(1) {
-                    "::" => self.is_qualified(function, before(2), of(*other)),
-                    "." => of(*other).of_type.is_some(),
-                    "fn" => false,
-                    _ => self.is_in_scope(*file, word, of(*other)),
-                });
-                called.extend(chosen.map(|other| (other, before(1) == ".")));
+            if self.calls.len() != self.functions.len() {
+                self.calls = vec![None; self.functions.len()];
             }
-            for (other, by_method) in called {
-                if by_method {
-                    waiting.insert(other);
-                } else if seen.insert(other) {
+            if self.calls[function].is_none() {
+                self.calls[function] = Some(self.called(function));
+            }
+            for &other in self.calls[function].iter().flatten() {
+                if seen.insert(other) {
                     queue.push_back(other);
-                }
-            }
-            if queue.is_empty() {
-                let named = |other: &usize| {
-                    let of_type = self.functions[*other].of_type.as_ref();
-                    of_type.is_some_and(|name| found.words.contains(name))
-                };
-                let ready: Vec<usize> = waiting.iter().copied().filter(|o| named(o)).collect();
-                for other in ready {
-                    waiting.remove(&other);
-                    if seen.insert(other) {
-                        queue.push_back(other);
-                    }
                 }
             }
         }
         found
+    }
+
+    /// What a function can call.
+    fn called(&self, function: usize) -> BTreeSet<usize> {
+        let Function { file, of_type, body, .. } = &self.functions[function];
+        let (mut called, mut methods) = (BTreeSet::new(), BTreeSet::new());
+        for (i, word) in body.iter().enumerate() {
+            let Some(candidates) = self.by_name.get(word) else { continue };
+            let before = |back: usize| i.checked_sub(back).map_or("", |j| body[j].as_str());
+            let of = |other: &usize| &self.functions[*other];
+            let all = candidates.iter().copied();
+            match before(1) {
+                "::" => {
+                    called.extend(all.filter(|o| self.is_qualified(function, before(2), of(o))))
+                }
+                "." => methods.extend(all.filter(|o| of(o).of_type.is_some())),
+                "fn" => {}
+                _ => called.extend(all.filter(|o| self.is_in_scope(*file, word, of(o)))),
+            }
+        }
+        // A method's type is named here, or in what is called from here, or in the fields of such.
+        let mut types: BTreeSet<&str> = BTreeSet::new();
+        let mut new: Vec<&str> = of_type.iter().map(String::as_str).collect();
+        let here = body.iter().chain(&self.files[*file].imports);
+        new.extend(here.map(String::as_str).filter(|word| is_type(word)));
+        let speaks = |other: usize| {
+            let signature = self.functions[other].signature.iter().map(String::as_str);
+            signature.filter(|word| is_type(word)).collect::<Vec<_>>()
+        };
+        new.extend(called.iter().flat_map(|other| speaks(*other)));
+        loop {
+            while let Some(name) = new.pop() {
+                if types.insert(name) {
+                    let fields = self.fields.get(name).into_iter().flatten();
+                    new.extend(fields.map(String::as_str).filter(|word| is_type(word)));
+                }
+            }
+            let is_named = |other: &usize| {
+                let of_type = self.functions[*other].of_type.as_deref();
+                of_type.is_some_and(|name| types.contains(name))
+            };
+            let ready: Vec<usize> = methods.iter().copied().filter(is_named).collect();
+            for other in &ready {
+                methods.remove(other);
+                new.extend(speaks(*other));
+            }
+            if ready.is_empty() {
+                return called;
+            }
+            called.extend(ready);
+        }
     }
 
     /// Whether `qualifier::name` in a function can be `other`.
@@ -188,7 +244,7 @@ impl CallGraph {
                 let there = &self.files[other.file].path;
                 folder(there) == folder(&file.path) || there.ends_with("/mod.rs")
             }
-            None => self.files[other.file].module == qualifier,
+            None => other.module == qualifier,
         }
     }
 
@@ -200,7 +256,9 @@ impl CallGraph {
         let (here, there) = (&self.files[file], &self.files[other.file]);
         other.file == file
             || (here.imports.contains(word) || here.imports.contains("*"))
-                && (here.imports.contains(&there.module) || here.imports.contains("super"))
+                && (here.imports.contains(&other.module)
+                    || here.imports.contains(&there.module)
+                    || here.imports.contains("super"))
     }
 }
 
@@ -224,6 +282,20 @@ fn subject(head: &[String]) -> String {
     last
 }
 
+/// The brace that opens a declaration, or the semicolon that ends it; not one of an array's type.
+fn brace_or_end(words: &[String], from: usize) -> usize {
+    let mut depth = 0usize;
+    for (i, word) in words.iter().enumerate().skip(from) {
+        match word.as_str() {
+            "[" | "(" => depth += 1,
+            "]" | ")" => depth = depth.saturating_sub(1),
+            "{" | ";" if depth == 0 => return i,
+            _ => {}
+        }
+    }
+    words.len() - 1
+}
+
 fn closing(words: &[String], open: usize) -> usize {
     let mut depth = 0usize;
     for (i, word) in words.iter().enumerate().skip(open) {
@@ -235,6 +307,10 @@ fn closing(words: &[String], open: usize) -> usize {
         }
     }
     words.len()
+}
+
+fn is_type(word: &str) -> bool {
+    word.starts_with(|c: char| c.is_ascii_uppercase())
 }
 
 fn is_name(word: &str) -> bool {
