@@ -7,6 +7,7 @@ use bearing_dynamics::ch2_housing::bore_contact::{
 };
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::kinematics::euler::{inertial_to_body, quaternion};
 use bearing_dynamics::kinematics::vec3::{Vec3, add, cross, dot, norm, sub};
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, bar, ring};
 use bearing_dynamics::mesh::{Order, TetMesh};
@@ -19,7 +20,7 @@ use bearing_dynamics::solver::solid::equilibrium::{
 };
 use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
 use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 const CYLINDER: Cylinder = Cylinder { radius: 35.5e-3, width: 18e-3 };
@@ -80,6 +81,45 @@ fn no_overlap_no_force() {
 }
 
 /// A bore that the cylinder fills pushes it back to the middle; a block under it pushes it up.
+/// (2.16) and (2.17) for a race that is turned about all three axes, and far: the printed matrix, by its
+/// three turns one after the other, takes a node's place from the race's centre to what the contact sees.
+#[test]
+fn a_turned_race_sees_a_node_as_the_printed_matrix_has_it() {
+    let turn_of = |axis: usize, angle: f64| {
+        let (sin, cos) = angle.sin_cos();
+        let mut turn = Matrix3::identity();
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        (turn[(i, i)], turn[(i, j)], turn[(j, i)], turn[(j, j)]) = (cos, sin, -sin, cos);
+        turn
+    };
+    let centre = Vector3::new(0.02, -0.3, 0.11);
+    let cylinder = Cylinder { radius: 2.0, width: 4.0 };
+    for [eta, xi, lambda] in [
+        [0.0; 3],
+        [0.4, 0.0, 0.0],
+        [0.0, -0.8, 0.0],
+        [0.0, 0.0, 1.3],
+        [0.7, -1.1, 2.5],
+        [-2.9, 1.4, 0.3],
+    ] {
+        let printed = inertial_to_body(eta, xi, lambda);
+        let by_turns = turn_of(2, lambda) * turn_of(1, xi) * turn_of(0, eta);
+        // Some products of sines, rounded.
+        assert!((printed - by_turns).amax() <= 1e-15, "{printed} {by_turns}");
+        let pose = Pose { position: centre, orientation: quaternion(eta, xi, lambda) };
+        let frame = Frame::new(&pose);
+        for place in [[0.1, 0.2, -0.05], [-0.2, -0.5, 0.3], [0.02, -0.3, 0.3]] {
+            let seen = by_turns * (Vector3::from(place) - centre);
+            let found = Vector3::from(frame.seen(place));
+            assert!((found - seen).norm() <= 1e-15, "{found} {seen}");
+            let touched = touch(&cylinder, &frame, place).unwrap();
+            assert!((touched.distance - seen.y.hypot(seen.z)).abs() <= 1e-15);
+            let outwards = by_turns.transpose() * Vector3::new(0.0, seen.y, seen.z).normalize();
+            assert!((Vector3::from(touched.normal) - outwards).norm() <= 1e-14);
+        }
+    }
+}
+
 #[test]
 fn within_a_bore_and_on_a_block() {
     let frame = Frame::new(&pose([0.0; 3], [0.0; 3]));

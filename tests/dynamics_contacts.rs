@@ -7,6 +7,7 @@ mod dynamics;
 
 use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::{ContactDamping, normal_load};
+use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::solver::dynamics::contacts::Driver;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad, Rotation};
@@ -171,6 +172,64 @@ proptest! {
         prop_assert!((slope - power).abs() <= allowed, "{slope} W against {power} W, {allowed}");
     }
 
+    /// Each entry by itself is the power of its own forces: what the bodies' kinetic energy gains by
+    /// them, with each cause switched off in turn.
+    #[test]
+    fn each_entry_of_the_ledger_is_the_power_of_its_forces(
+        choice in any_choice(), drives in any_drives(), seed: u64,
+    ) {
+        let mut whole = choice.problem();
+        drives.apply(&mut whole);
+        // Races that follow their loads: given motions need forces of their own.
+        for body in [Some(&mut whole.inner), whole.outer.as_mut()].into_iter().flatten() {
+            for (i, drive) in body.drives.iter_mut().enumerate() {
+                *drive = Drive::Load(Profile::Constant(20.0 + i as f64));
+            }
+            body.rotation = Rotation::Torque(Profile::Constant(0.1));
+        }
+        let state = random_state(&whole, seed);
+        let t = 0.013;
+        let (system, rates, _) = evaluated(&whole, Driver::Lanes, t, &state);
+        let booked = &rates[system.layout.ledger()..][..LEDGER];
+        let scale = force_scale(&system);
+        let mut before = whole.clone();
+        for entry in [
+            Ledger::Traction,
+            Ledger::ContactDamping,
+            Ledger::CageFriction,
+            Ledger::Foundation,
+            Ledger::Drives,
+        ] {
+            // Traction first: it goes with normal loads, of which damping is a part.
+            let mut without = before.clone();
+            let bodies = [Some(&mut without.inner), without.outer.as_mut()];
+            match entry {
+                Ledger::Traction => without.traction = TractionLaw::None,
+                Ledger::ContactDamping => without.damping = ContactDamping::None,
+                Ledger::CageFriction => {
+                    without.cage.iter_mut().for_each(|cage| cage.contacts.friction = 0.0);
+                }
+                Ledger::Foundation => {
+                    bodies.into_iter().flatten().for_each(|body| body.foundation_damping = [0.0; 5]);
+                }
+                Ledger::Drives => {
+                    for body in bodies.into_iter().flatten() {
+                        body.drives = [0.0; 5].map(|zero| Drive::Load(Profile::Constant(zero)));
+                        body.rotation = Rotation::Torque(Profile::ZERO);
+                    }
+                    (without.rotating_load, without.unbalance) = (None, 0.0);
+                }
+            }
+            let power = kinetic_power(&before, t, &state) - kinetic_power(&without, t, &state);
+            let off = (power - booked[entry as usize]).abs();
+            // Forces of `scale` on parts that move at a few m/s, rounded; tilting moments act on
+            // rates of tilts, which are those of the spin but for the tilt of 2e-3, squared.
+            let allowed = 1e-11 * scale + 1e-8;
+            prop_assert!(off <= allowed, "{entry:?}: {power} W, booked {booked:?}");
+            before = without;
+        }
+    }
+
     #[test]
     fn traction_and_friction_only_take_energy(choice in any_choice(), seed: u64) {
         let problem = choice.problem();
@@ -194,6 +253,21 @@ proptest! {
         let (_, lanes, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
         prop_assert_eq!(bits(&plain), bits(&lanes));
     }
+}
+
+/// How fast the kinetic energy of all moving bodies grows, W: forces on velocities, moments on spins.
+fn kinetic_power(problem: &DynamicProblem, t: f64, state: &[f64]) -> f64 {
+    let (system, rates, _) = evaluated(problem, Driver::Lanes, t, state);
+    let layout = &system.layout;
+    let of_body = |(inertia, at): (Inertia, BodyAt)| {
+        let (all, rate) = (entries(layout, state, at), entries(layout, &rates, at));
+        let axis = Vector3::from(BodyState::from_slice(&all).axis());
+        let (spin, spin_rate) = (part(&all, SPIN), part(&rate, SPIN));
+        inertia.mass * part(&all, VELOCITY).dot(&part(&rate, VELOCITY))
+            + inertia.transverse * spin.dot(&spin_rate)
+            + (inertia.axial - inertia.transverse) * axis.dot(&spin) * axis.dot(&spin_rate)
+    };
+    bodies(problem).into_iter().map(of_body).sum()
 }
 
 /// What drives the races: loads, histories, foundations.

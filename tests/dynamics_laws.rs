@@ -11,12 +11,16 @@ use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::kinematics::euler::about;
 use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad, Rotation};
+use bearing_dynamics::solver::dynamics::model::{
+    Drive, DynamicProblem, RaceBody, RotatingLoad, Rotation,
+};
 use bearing_dynamics::solver::dynamics::race::tilts_of;
 use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
 use bearing_dynamics::solver::dynamics::stability::growth;
 use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, Layout, Ledger, SPIN, VELOCITY};
+use bearing_dynamics::solver::dynamics::state::{
+    BODY, BodyState, Layout, Ledger, POSITION, SPIN, VELOCITY,
+};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::solve;
 use common::{table_4_1, table_5_3};
@@ -337,5 +341,218 @@ fn a_rotating_load_turns_from_y_to_z() {
         let [x, y, z] = load.force(t);
         let expected = [3.0 * angle.cos(), 3.0 * angle.sin()];
         assert!(x == 0.0 && (y - expected[0]).abs() + (z - expected[1]).abs() <= 1e-14, "{t}");
+    }
+}
+
+/// Every kind of profile, twice and more, with the number of times at which value or slope jumps.
+fn profiles() -> Vec<(Profile, usize)> {
+    let (from, to, start, duration) = (1.0, 3.0, 0.2, 0.5);
+    vec![
+        (Profile::Constant(3.0), 0),
+        (Profile::Ramp { from, to, start, duration }, 2),
+        (Profile::Ramp { from, to, start: -0.2, duration }, 2),
+        // A ramp of no duration is a step.
+        (Profile::Ramp { from, to, start, duration: 0.0 }, 1),
+        (Profile::SmoothRamp { from, to, start, duration }, 0),
+        (Profile::Table { points: vec![[-0.1, 1.0], [0.3, 2.0], [0.31, 2.0], [0.9, -1.0]] }, 4),
+        (Profile::Harmonic { mean: 2.0, amplitude: 0.5, frequency: 3.0, phase: 0.4 }, 0),
+        (Profile::HalfSine { base: 1.0, peak: 5.0, start: 0.3, duration: 0.4 }, 2),
+        (Profile::HalfSine { base: -1.0, peak: -5.0, start: -0.1, duration: 0.4 }, 2),
+    ]
+}
+
+/// A new kind of profile does not compile until it has a number here, and fails until it is among
+/// `profiles`.
+fn kind(profile: &Profile) -> usize {
+    match profile {
+        Profile::Constant(_) => 0,
+        Profile::Ramp { .. } => 1,
+        Profile::SmoothRamp { .. } => 2,
+        Profile::Table { .. } => 3,
+        Profile::Harmonic { .. } => 4,
+        Profile::HalfSine { .. } => 5,
+    }
+}
+
+/// Times in (−0.5, 1.5) at which the value jumps or bends, by second differences of the value alone.
+fn jumps(value: impl Fn(f64) -> f64) -> Vec<f64> {
+    const STEP: f64 = 1e-5;
+    let at = |k: i32| 1.234e-6 + STEP * f64::from(k);
+    let mut found: Vec<f64> = Vec::new();
+    for k in -50_000..150_000 {
+        let bend = value(at(k + 1)) - 2.0 * value(at(k)) + value(at(k - 1));
+        // A curvature of 400 1/s² leaves 4e-3 of a step, the least jump of a slope above 2 of one.
+        let jumps = bend.abs() > 0.1 * STEP;
+        if jumps && found.last().is_none_or(|last| at(k) - last > 3.0 * STEP) {
+            found.push(at(k));
+        }
+    }
+    found
+}
+
+const SEEN_TO: f64 = 3e-5;
+
+/// No step should cross a jump of a load or a motion, or of its slope: each one that the values show is
+/// in the list of corners.
+#[test]
+fn every_jump_of_a_profile_or_of_its_slope_is_a_corner() {
+    let mut kinds: Vec<usize> = profiles().iter().map(|(profile, _)| kind(profile)).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    assert_eq!(kinds, [0, 1, 2, 3, 4, 5]);
+    for (profile, expected) in profiles() {
+        let found = jumps(|t| profile.value(t));
+        assert_eq!(found.len(), expected, "{profile:?}: {found:?}");
+        let corners = profile.corners();
+        for jump in found {
+            let near = corners.iter().any(|corner| (corner - jump).abs() <= SEEN_TO);
+            assert!(near, "{profile:?}: nothing near {jump} among {corners:?}");
+        }
+    }
+}
+
+/// Wherever a profile stands in a problem, its corners are the problem's; alone and with all others.
+#[test]
+fn every_profile_of_a_problem_has_its_corners_there() {
+    type Put = Box<dyn Fn(&mut DynamicProblem, Profile)>;
+    let still = || bearing(table_4_1(-5e-6), [0.0; 5], 100.0);
+    let mut places: Vec<Put> = Vec::new();
+    for is_outer in [false, true] {
+        let body = move |problem: &mut DynamicProblem, change: &dyn Fn(&mut RaceBody)| {
+            if is_outer {
+                change(problem.outer.get_or_insert_with(free_race));
+            } else {
+                change(&mut problem.inner);
+            }
+        };
+        for i in 0..5 {
+            places.push(Box::new(move |problem, profile| {
+                body(problem, &|race| race.drives[i] = Drive::Load(profile.clone()));
+            }));
+            places.push(Box::new(move |problem, profile| {
+                body(problem, &|race| race.drives[i] = Drive::Motion(profile.clone()));
+            }));
+        }
+        places.push(Box::new(move |problem, profile| {
+            body(problem, &|race| race.rotation = Rotation::Speed(profile.clone()));
+        }));
+        places.push(Box::new(move |problem, profile| {
+            body(problem, &|race| race.rotation = Rotation::Torque(profile.clone()));
+        }));
+    }
+    let turning = || RotatingLoad { force: Profile::ZERO, speed: Profile::ZERO, phase: 0.0 };
+    places.push(Box::new(move |problem, profile| {
+        problem.rotating_load.get_or_insert_with(turning).force = profile;
+    }));
+    places.push(Box::new(move |problem, profile| {
+        problem.rotating_load.get_or_insert_with(turning).speed = profile;
+    }));
+    assert_eq!(places.len(), 2 * 12 + 2);
+    assert!(still().corners().is_empty());
+    let check = |problem: &DynamicProblem, profile: &Profile| {
+        let corners = problem.corners();
+        assert!(corners.windows(2).all(|pair| pair[0] < pair[1]), "{corners:?}");
+        for jump in jumps(|t| profile.value(t)).into_iter().filter(|jump| *jump > SEEN_TO) {
+            let near = corners.iter().any(|corner| (corner - jump).abs() <= SEEN_TO);
+            assert!(near, "{profile:?}: nothing near {jump} among {corners:?}");
+        }
+    };
+    for (index, put) in places.iter().enumerate() {
+        let start = 0.1 + 0.01 * index as f64;
+        let profile = Profile::HalfSine { base: 0.5, peak: 2.0, start, duration: 0.3 };
+        let mut alone = still();
+        put(&mut alone, profile.clone());
+        check(&alone, &profile);
+        // Beside one in every other place that can have one at the same time.
+        let mut beside = still();
+        let ramp = Profile::Ramp { from: 0.0, to: 1.0, start: 0.05, duration: 0.9 };
+        places.iter().step_by(2).for_each(|other| other(&mut beside, ramp.clone()));
+        put(&mut beside, profile.clone());
+        check(&beside, &profile);
+        check(&beside, &ramp);
+    }
+}
+
+/// A bearing turned about its own axis with its loads, tilts, foundation, gravity and balls moves as
+/// before, turned; balls may be counted from any of them.
+#[test]
+fn a_run_turns_with_its_whole_scene() {
+    let steps = 400;
+    let turned = |angle: f64, tilted: bool| {
+        let turn = about(Vector3::x(), angle);
+        let mut problem = bearing(table_5_3(), [0.0; 5], 100.0);
+        // Axial, and across: as a vector of force or place, and as one of moment or tilt.
+        let across = |y: f64, z: f64| turn * Vector3::new(0.0, y, z);
+        let tilted = if tilted { 1.0 } else { 0.0 };
+        let (force, moment) = (across(150.0, -300.0), across(2.0, -1.0) * tilted);
+        let loads = [400.0, force.y, force.z, moment.y, moment.z];
+        problem.inner = race(loads, Rotation::Speed(Profile::Constant(100.0)));
+        let mut outer = free_race();
+        // Held at a place and at tilts that turn too, on a foundation alike in all directions.
+        outer.foundation_stiffness = [2e7, 3e7, 3e7, 2e3, 2e3];
+        outer.foundation_damping = [200.0, 300.0, 300.0, 0.2, 0.2];
+        problem.outer = Some(outer);
+        let place = across(2e-6, -3e-6);
+        let tilts = tilts_of(
+            (turn * about(Vector3::new(0.0, 0.6, 0.8), 1e-3 * tilted) * Vector3::x()).into(),
+        );
+        problem.outer_start = [1e-6, place.y, place.z, tilts[0], tilts[1]];
+        problem.gravity = across(3.0, -9.0).into();
+        let force = Profile::Constant(100.0);
+        problem.rotating_load =
+            Some(RotatingLoad { force, speed: Profile::Constant(900.0), phase: 0.4 + angle });
+        problem.cage = Some(cage(&problem.geometry, Pocket::Cylindrical, Guidance::OuterRace));
+        problem.traction = CONSTANT;
+        problem.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
+        problem.ball_phase = 0.1 + angle;
+        problem
+    };
+    let ends = |problem: &DynamicProblem| {
+        let mut simulation = simulation(problem, 1e-6, Start::Equilibrium);
+        run(&mut simulation, steps);
+        simulation
+    };
+    let balls = table_5_3().ball_count;
+    let pitch = std::f64::consts::TAU / balls as f64;
+    // Upright, what is left of both starts, sought to 1e-9 of the loads. A race that is tilted has its
+    // Y axis off by half the square of the tilt from where it would be turned to, 5e-7 rad, and the
+    // balls are counted from there: 1.3e-8 m on their pitch circle, and what friction makes of it.
+    let upright = [(POSITION, 1e-9), (VELOCITY, 1e-6), (SPIN, 1e-3)];
+    let tilted = [(POSITION, 3e-8), (VELOCITY, 1e-4), (SPIN, 2e-2)];
+    for (is_tilted, allowed, of_ledger) in [(false, upright, 1e-4), (true, tilted, 1e-3)] {
+        let first_problem = turned(0.0, is_tilted);
+        let first = ends(&first_problem);
+        let layout = first.system.layout;
+        for angle in [0.7, -2.4, 3.0 * pitch] {
+            let problem = turned(angle, is_tilted);
+            let there = ends(&problem);
+            let by = about(Vector3::x(), angle);
+            let should = moved(&first_problem, &first.state, &by, &Vector3::zeros());
+            for (_, at) in bodies(&problem) {
+                let (a, b) = (entries(&layout, &should, at), entries(&layout, &there.state, at));
+                for (component, allowed) in allowed {
+                    let off = (part(&a, component) - part(&b, component)).norm();
+                    assert!(off <= allowed, "{angle} {at:?} {component}: {off:e}");
+                }
+            }
+            let booked = [&first, &there]
+                .map(|of| [Ledger::Traction, Ledger::Drives].map(|entry| ledger(of, entry)));
+            for (a, b) in booked[0].iter().zip(booked[1]) {
+                assert!((a / b - 1.0).abs() <= of_ledger && a.abs() > 1e-6, "{booked:?}");
+            }
+        }
+    }
+    // Counted from the next ball on: the same balls by other names.
+    let first = ends(&turned(0.0, true));
+    let mut renamed = turned(0.0, true);
+    renamed.ball_phase += pitch;
+    let there = ends(&renamed);
+    for ball in 0..balls {
+        let [a, b] = [(&first, (ball + 1) % balls), (&there, ball)]
+            .map(|(of, ball)| of.system.layout.ball_state(&of.state, ball));
+        let off = (Vector3::from(a.position) - Vector3::from(b.position)).norm();
+        assert!(off <= 1e-9, "ball {ball}: {off:e}");
+        let off = (Vector3::from(a.spin) - Vector3::from(b.spin)).norm();
+        assert!(off <= 1e-3, "ball {ball}: {off:e}");
     }
 }

@@ -1,6 +1,10 @@
 //! Keeps `docs/equations.md` true: every equation of the dissertation once, every item and every
-//! verification case it names in its place, and nothing called "not yet" that the code cites.
+//! verification case it names in its place, every case with a way of calls to the item, and nothing
+//! called "not yet" that the code cites.
 
+mod call_graph;
+
+use call_graph::{CallGraph, Reached};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;
@@ -182,6 +186,57 @@ fn check_item(root: &Path, item: &str) -> Result<PathBuf, String> {
     }
 }
 
+/// Where a case starts: its `case.rs`, or the file of a law's tests itself.
+fn start_file(root: &Path, case: &str) -> PathBuf {
+    match case.starts_with("tests/") {
+        true => root.join(case),
+        false => root.join("verification").join(case).join("case.rs"),
+    }
+}
+
+/// The calls of the library, of the verification and of the tests that rows name.
+fn call_graph(root: &Path, rows: &[Row]) -> CallGraph {
+    let mut files = rust_files(&root.join("src"));
+    files.extend(rust_files(&root.join("verification")));
+    let laws = rows.iter().flat_map(|row| &row.cases).filter(|case| case.starts_with("tests/"));
+    files.extend(laws.map(|law| root.join(law)));
+    files.sort();
+    files.dedup();
+    let mut graph = CallGraph::default();
+    for file in files {
+        let path = relative(root, &file);
+        if !path.contains("/target/") && !path.starts_with("verification/tests") {
+            graph.add(&path, &read(&file));
+        }
+    }
+    graph
+}
+
+/// Cases from which no call leads to the item that they are said to verify.
+fn check_calls(root: &Path, rows: &[Row]) -> Vec<String> {
+    let mut graph = call_graph(root, rows);
+    let mut known: BTreeMap<&String, Reached> = BTreeMap::new();
+    let mut problems = Vec::new();
+    for row in rows {
+        for case in &row.cases {
+            let start = relative(root, &start_file(root, case));
+            let is_law = case.starts_with("tests/");
+            let reached = known.entry(case).or_insert_with(|| {
+                graph.reached(|file, name| file == start && (is_law || name == "run"))
+            });
+            for item in &row.items {
+                let mut parts = item.rsplit("::");
+                let name = parts.next().unwrap_or_default();
+                let module = parts.next().unwrap_or_default();
+                if !reached.has(module, name) {
+                    problems.push(format!("{}: `{case}` never calls `{item}`", row.label));
+                }
+            }
+        }
+    }
+    problems
+}
+
 fn check_places(root: &Path, rows: &[Row]) -> Vec<String> {
     let mut problems = Vec::new();
     for row in rows {
@@ -199,8 +254,9 @@ fn check_places(root: &Path, rows: &[Row]) -> Vec<String> {
             }
         }
         for case in &row.cases {
-            if !root.join("verification").join(case).join("case.rs").is_file() {
-                problems.push(format!("{}: no verification/{case}/case.rs", row.label));
+            if !start_file(root, case).is_file() {
+                let file = relative(root, &start_file(root, case));
+                problems.push(format!("{}: no {file}", row.label));
             }
         }
         if row.items.is_empty() != row.cases.is_empty() {
@@ -304,6 +360,11 @@ fn restated_equations_share_the_first_ones_item() {
 #[test]
 fn named_items_and_cases_exist() {
     assert_none(check_places(root(), &rows()));
+}
+
+#[test]
+fn every_case_calls_the_items_of_its_rows() {
+    assert_none(check_calls(root(), &rows()));
 }
 
 #[test]
@@ -417,6 +478,46 @@ mod checks_catch {
         ] {
             assert_eq!(problems(bad).len(), 1, "{bad}: {:?}", problems(bad));
         }
+    }
+
+    #[test]
+    fn cases_that_never_call_their_item() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let write = |path: &str, text: &str| {
+            let path = folder.path().join(path);
+            fs::create_dir_all(path.parent().expect("a parent")).expect("a folder");
+            fs::write(path, text).expect("a file");
+        };
+        write(
+            "src/laws.rs",
+            "pub fn law() -> f64 { 1.0 }\npub fn other() { let s = \"law()\"; /* */ }\n\
+             pub struct Thing;\nimpl Thing { pub fn new() -> Thing { inner(); Thing }\n\
+             pub fn weigh(&self) { law(); } }\nfn inner() { hidden() }\nfn hidden() {}\n\
+             pub fn unused() {}\n#[cfg(test)]\nmod tests { fn run() { super::unused(); } }\n",
+        );
+        write("src/same.rs", "pub fn law() {}\npub fn weigh() {}\n");
+        let case = |id: &str, text: &str| write(&format!("verification/{id}/case.rs"), text);
+        case("bare", "use lib::laws::law;\nfn run() { law(); }\n");
+        case("path", "use lib::laws;\nfn run() { helper() }\nfn helper() { laws::law(); }\n");
+        case("method", "use lib::laws::Thing;\nfn run() { let t = Thing::new(); t.weigh(); }\n");
+        case("field", "use lib::laws::other;\nfn run() { other(); let x = thing.law; }\n");
+        case("comment", "use lib::laws::law;\n// law()\nfn run() { print(\"law()\"); }\n");
+        case("unreached", "use lib::laws::law;\nfn run() {}\nfn never() { law(); }\n");
+        case("namesake", "use lib::same::law;\nfn run() { law(); }\n");
+        write("tests/laws.rs", "use lib::laws::law;\n#[test]\nfn it_holds() { law(); }\n");
+        let problems = |item: &str, case: &str| {
+            let row = format!("| (2.1) | law | `laws::{item}` | `{case}` | – |");
+            check_calls(folder.path(), &table(&[&row])).len()
+        };
+        for good in ["bare", "path", "method", "tests/laws.rs"] {
+            assert_eq!(problems("law", good), 0, "{good}");
+        }
+        for bad in ["field", "comment", "unreached", "namesake"] {
+            assert_eq!(problems("law", bad), 1, "{bad}");
+        }
+        assert_eq!((problems("Thing", "method"), problems("Thing", "bare")), (0, 1));
+        // Through a function of a type, and through a private one; not through a module of tests.
+        assert_eq!((problems("hidden", "method"), problems("unused", "method")), (0, 1));
     }
 
     #[test]

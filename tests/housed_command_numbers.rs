@@ -214,3 +214,102 @@ fn a_plan_counts_nodes_in_reach_at_the_start_only() {
     let said = succeed(command("plan", &place.scene("tight.toml", &tight), &[]));
     assert!(said.contains("at the start 72 bore nodes tested, 0 out of reach; about"), "{said}");
 }
+
+/// The number that stands before `words` in what is said.
+fn count_before(said: &str, words: &str) -> u64 {
+    let (before, _) = said.split_once(words).unwrap_or_else(|| panic!("no {words:?}: {said}"));
+    let number = before.rsplit([' ', '\n']).next().unwrap();
+    number.parse().unwrap_or_else(|error| panic!("{number} before {words:?}: {error}"))
+}
+
+/// Numbers in 0 … 1.
+fn some_numbers() -> impl FnMut() -> f64 {
+    let mut state = 7u64;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Windows, steps of the housing in each, their length and the end, foretold and taken: for the scene
+/// that is shipped and for random ends, rows and stiffnesses of the contact.
+#[test]
+fn a_plan_foretells_the_windows_of_a_run() {
+    let place = Place::new();
+    let mut random = some_numbers();
+    let mut scenes = vec![shipped("housing_impact.toml")];
+    for (index, stiffness) in [2.5e14, 2.5e14, 4e15, 4e15, 1e18].into_iter().enumerate() {
+        let interval = 2.0 + 20.0 * random();
+        let rows = 1.0 + (4.0 * random()).floor();
+        let off = [0.0, 0.2, -0.3][index % 3];
+        let numerics = format!(
+            "[numerics]\nend = \"{} us\"\noutput_interval = \"{interval} us\"\n",
+            interval * (rows + off)
+        );
+        let housing = format!(
+            "method = \"explicit\"\nfit.radial = \"1 um\"\ncontact.stiffness = \"{stiffness} N/m^3\""
+        );
+        scenes.push(place.scene(&format!("{index}.toml"), &scene_text(&housing, &numerics)));
+    }
+    for (index, scene) in scenes.iter().enumerate() {
+        let plan = succeed(command("plan", scene, &[]));
+        let out = place.path(&format!("out-{index}"));
+        succeed(into_folder("run", scene, &out, &[]));
+        let summary = json(out.join("summary.json"));
+        let windows = count_before(&plan, " windows of ");
+        let (_, after) = plan.split_once(" windows of ").unwrap();
+        let each = match after.contains(", each one step of the housing") {
+            true => 1,
+            false => count_before(after, " steps of the housing"),
+        };
+        let (work, step) = (&summary["work"], &summary["step"]);
+        assert_eq!(work["windows"], windows, "{plan}");
+        assert_eq!(step["housing_steps_a_window"], each, "{plan}");
+        assert_eq!(work["housing_steps"], windows * each, "{plan}");
+        let window = value(&step["window"]);
+        assert!(after.starts_with(&format!("{window:.3e} s")), "{window} s: {plan}");
+        let time = windows as f64 * window;
+        let end = last(&out.join("series.csv"), "time");
+        assert!((end / time - 1.0).abs() <= 1e-12, "{end} {time}: {plan}");
+        let limit = value(&step["housing_limit"]["step"]);
+        assert!(plan.contains(&format!("(limit {limit:.3e} s)")), "{limit}: {plan}");
+    }
+}
+
+/// The same of courses: equilibria, one a row.
+#[test]
+fn a_plan_foretells_the_equilibria_of_a_course() {
+    let place = Place::new();
+    let mut random = some_numbers();
+    let mut scenes: Vec<_> = ["housing_a_rotating_load", "housing_c_tet10", "interference_fit"]
+        .map(|name| shipped(&format!("{name}.toml")))
+        .into();
+    for (index, off) in [0.0, 0.2, -0.3, 0.0].into_iter().enumerate() {
+        let interval = 0.1 + random();
+        let rows = 1.0 + (12.0 * random()).floor();
+        let numerics = format!(
+            "[numerics]\nend = \"{} ms\"\noutput_interval = \"{interval} ms\"\n",
+            interval * (rows + off)
+        );
+        scenes.push(
+            place.scene(&format!("{index}.toml"), &scene_text("fit.radial = \"1 um\"", &numerics)),
+        );
+    }
+    for (index, scene) in scenes.iter().enumerate() {
+        let plan = succeed(command("plan", scene, &[]));
+        let out = place.path(&format!("out-{index}"));
+        let said = succeed(into_folder("run", scene, &out, &[]));
+        let foretold = count_before(&plan, " equilibria to t = ");
+        assert_eq!(json(out.join("summary.json"))["work"]["equilibria"], foretold, "{plan}");
+        assert_eq!(column(&out.join("series.csv"), "time").len() as u64, foretold, "{plan}");
+        // And to the same time.
+        let until = |said: &str| {
+            let (_, after) = said.split_once(" equilibria to t = ").unwrap();
+            after.split_once(" s,").unwrap().0.to_string()
+        };
+        assert_eq!(until(&plan), until(&said));
+        let time: f64 = until(&plan).parse().unwrap();
+        let end = last(&out.join("series.csv"), "time");
+        assert!((end / time - 1.0).abs() <= 1e-8, "{end} {time}");
+    }
+}

@@ -1,10 +1,14 @@
 //! `.vtu` files: their own bytes taken apart, and opened by VTK's reader where Python has it.
-//! `PYTHON=…` chooses the interpreter; with `REQUIRE_VTK=1` a missing VTK fails the test.
+//! `PYTHON=…` chooses the interpreter; with `REQUIRE_VTK=1` a missing VTK fails the test, else it is
+//! written down as skipped.
+
+mod outside_common;
 
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
 use bearing_dynamics::mesh::measure::{total_volume, volume};
 use bearing_dynamics::mesh::write::{Field, write_pvd, write_vtu};
 use bearing_dynamics::mesh::{MeshError, TetMesh};
+use outside_common::{python_with_vtk, skipped_file, write_down};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -80,13 +84,7 @@ fn fields_that_do_not_fit_are_refused() {
 
 #[test]
 fn vtk_reads_what_was_written() {
-    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
-    let has_vtk = Command::new(&python).args(["-c", "import vtk"]).output();
-    if !has_vtk.is_ok_and(|output| output.status.success()) {
-        assert!(std::env::var("REQUIRE_VTK").is_err(), "{python} has no vtk");
-        eprintln!("SKIPPED vtk_reads_what_was_written: {python} has no vtk (pip install vtk)");
-        return;
-    }
+    let Some(python) = python_with_vtk("vtk_reads_what_was_written") else { return };
     let folder = tempfile::tempdir().unwrap();
     let meshes = meshes();
     let paths = [0, 1].map(|i| folder.path().join(format!("{i}.vtu")));
@@ -120,5 +118,38 @@ fn vtk_reads_what_was_written() {
         assert_eq!([0, 1, 2].map(|c| top("point_data", "displacement", c)), high);
         let largest = (0..mesh.elements.len()).map(|e| volume(mesh, e)).fold(0.0, f64::max);
         assert_eq!(top("cell_data", "volume", 0), largest);
+    }
+}
+
+/// What is skipped stands in a file of the target folder, a line each, and `make test` prints that file
+/// whatever the tests came to.
+#[test]
+fn a_skip_is_written_down_and_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("skipped.txt");
+    ["SKIPPED a\n", "SKIPPED b\n"].into_iter().for_each(|line| write_down(&path, line));
+    assert_eq!(fs::read_to_string(&path).unwrap(), "SKIPPED a\nSKIPPED b\n");
+    assert_eq!(skipped_file().file_name().unwrap(), "skipped.txt");
+    assert!(skipped_file().parent().unwrap().join("CACHEDIR.TAG").exists());
+    // The recipe of the Makefile, with a stand-in for cargo that skips and fails or not.
+    let make = Path::new(env!("CARGO_MANIFEST_DIR")).join("Makefile");
+    for code in [0, 3] {
+        let cargo = folder.path().join("cargo");
+        let script = format!("#!/bin/sh\necho SKIPPED it >> {}\nexit {code}\n", path.display());
+        fs::write(&cargo, script).unwrap();
+        let output = Command::new("make")
+            .arg("--makefile")
+            .arg(&make)
+            .arg("test")
+            .arg(format!("CARGO=sh {}", cargo.display()))
+            .env("CARGO_TARGET_DIR", folder.path())
+            .env_remove("MAKEFLAGS")
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert_eq!(output.status.success(), code == 0, "{said}");
+        // Of this run alone, and last.
+        assert!(!said.contains("SKIPPED a"), "{said}");
+        assert_eq!(said.lines().last(), Some("SKIPPED it"), "{said}");
     }
 }

@@ -1,12 +1,14 @@
 //! A scene with a solid alone as a user meets it: values against closed forms, and what ParaView
 //! makes of the fields.
 
+mod outside_common;
 mod solid_command_common;
 
+use outside_common::python_with_vtk;
 use serde_json::Value;
 use solid_command_common::{
-    DENSITY, ON_ROLLERS, Place, SHORT_RUN, YOUNG, assert_near, bar, column, into_folder, json,
-    number, shipped, stderr, succeed,
+    DENSITY, ON_ROLLERS, Place, SHORT_RUN, YOUNG, assert_near, bar, column, command, into_folder,
+    json, number, shipped, stderr, succeed,
 };
 use std::fs;
 use std::path::Path;
@@ -232,13 +234,7 @@ fn supports_that_move_close_the_ledger() {
 
 #[test]
 fn paraview_opens_fields_and_modes() {
-    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
-    let has_vtk = Command::new(&python).args(["-c", "import vtk"]).output();
-    if !has_vtk.is_ok_and(|output| output.status.success()) {
-        assert!(std::env::var("REQUIRE_VTK").is_err(), "{python} has no vtk");
-        eprintln!("SKIPPED paraview_opens_fields_and_modes: {python} has no vtk (pip install vtk)");
-        return;
-    }
+    let Some(python) = python_with_vtk("paraview_opens_fields_and_modes") else { return };
     let place = Place::new();
     let [statics, modes, run] = ["statics", "modes", "run"].map(|name| place.path(name));
     succeed(into_folder("statics", &shipped("cantilever.toml"), &statics, &[]));
@@ -280,4 +276,53 @@ fn times_of_a_run_are_written_as_people_write_them() {
     assert!(said.contains("4000 steps to t = 0.0004 s,"), "{said}");
     assert_eq!(column(&place.path("out"), "time"), [0.0, 0.0001, 0.0002, 0.0003, 0.0004]);
     assert_eq!(number(&json(place.path("out/summary.json"))["time"]), 0.0004);
+}
+
+/// Steps and their length, foretold and taken: of the scene that is shipped and of random ends, rows and
+/// steps, given or from the limit.
+#[test]
+fn a_plan_foretells_the_steps_of_a_run() {
+    let place = Place::new();
+    let mut state = 3u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut scenes = vec![shipped("bar_impact.toml")];
+    for index in 0..12 {
+        let order = 1 + index % 2;
+        let step = 0.02 + 0.03 * random();
+        let per_row = 1.0 + (9.0 * random()).floor();
+        let rows = 1.0 + (9.0 * random()).floor();
+        // The last row may be off the grid, by whole steps.
+        let end = step * (per_row * rows + [0.0, 1.0, 0.0][index % 3]);
+        let stepping = match index % 4 {
+            0 => format!("step = \"{step} us\"\n"),
+            1 => "step_fraction = 0.37\n".to_string(),
+            2 => format!("step = \"{step} us\"\nmethod = \"runge-kutta\"\n"),
+            _ => String::new(),
+        };
+        let numerics = format!(
+            "{ON_ROLLERS}[numerics]\nend = \"{end} us\"\noutput_interval = \"{} us\"\n{stepping}",
+            step * per_row
+        );
+        scenes.push(place.scene(&format!("{index}.toml"), &bar(order as u8, &numerics)));
+    }
+    for (index, scene) in scenes.iter().enumerate() {
+        let plan = succeed(command("plan", scene, &[]));
+        let out = place.path(&format!("out-{index}"));
+        succeed(into_folder("run", scene, &out, &[]));
+        let summary = json(out.join("summary.json"));
+        let line = plan.lines().find(|line| line.contains(" of the stability limit ")).unwrap();
+        let (before, _) = line.split_once(" steps to t = ").unwrap();
+        let steps: u64 = before.rsplit(' ').next().unwrap().parse().unwrap();
+        assert_eq!(summary["work"]["steps"], steps, "{plan}");
+        let size = number(&summary["step"]["size"]);
+        let limit = number(&summary["step"]["limit"]["step"]);
+        for part in [format!("{size:.3e} s is"), format!("stability limit {limit:.3e} s")] {
+            assert!(line.contains(&part), "{part}: {plan}");
+        }
+        let time = column(&out, "time").last().copied().unwrap();
+        assert!((time / (steps as f64 * size) - 1.0).abs() <= 1e-8, "{time}: {plan}");
+    }
 }

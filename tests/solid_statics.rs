@@ -3,16 +3,20 @@
 mod solid_common;
 
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
+use bearing_dynamics::kinematics::strain::{Sym3, full};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::tet_mesh::Order;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::equilibrium::{
     EquilibriumError, EquilibriumOptions, equilibrium,
 };
+use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
 use bearing_dynamics::solver::solid::model::{Load, Prescribed, SolidModel, SolidProblem};
 use bearing_dynamics::solver::solid::modes::{ModeOptions, modes};
+use bearing_dynamics::solver::solid::stress::nodal_stresses;
 use bearing_dynamics::solver::solid::tangent::MassMatrix;
 use bearing_dynamics::solver::sparse::FactorError;
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use solid_common::{DENSITY, YOUNG, cut_cubes, solid};
 
 /// A bar of cubes with side `size / cells`, its inner nodes shaken when asked.
@@ -247,4 +251,79 @@ fn a_nearly_incompressible_bar_is_solved_to_rounding() {
     let (usual_residual, _, other) = solve(0.49, usual.rounding).unwrap();
     assert!(usual_residual <= usual.tolerance, "{usual_residual}");
     assert!((sag / other - 1.0).abs() <= 0.05, "{sag} {other}");
+}
+
+/// A solid turned with its supports, loads and weight: displacements, reactions and stresses turn,
+/// frequencies stay, and so does a run of explicit steps.
+#[test]
+fn a_whole_solid_turns() {
+    let size = [0.06, 0.01, 0.015];
+    for order in [Order::Linear, Order::Quadratic] {
+        let turned = |turn: &Rotation3<f64>| {
+            let mut problem = bar(size, [4, 1, 2], order, true);
+            hold(&mut problem, |x| if x[0] < 1e-9 { [Some(0.0); 3] } else { [None; 3] });
+            let rotate = |v: Vec3| -> Vec3 { (turn * Vector3::from(v)).into() };
+            let end = (0..problem.nodes.len() as u32)
+                .filter(|n| problem.nodes[*n as usize][0] > size[0] - 1e-9);
+            let forces = end.map(|n| (n, rotate([300.0, -700.0, 500.0 + f64::from(n)]))).collect();
+            problem.loads.push(Load { forces, profile: Profile::Constant(1.0) });
+            problem.gravity = rotate([1e5, -2e5, 3e5]);
+            problem.nodes.iter_mut().for_each(|place| *place = rotate(*place));
+            SolidModel::new(problem).unwrap()
+        };
+        let solved = |model: &SolidModel| {
+            let options = EquilibriumOptions { tolerance: 1e-12, ..Default::default() };
+            let found = equilibrium(model, 0.0, &options).unwrap();
+            let stress = nodal_stresses(model, &found.displacement);
+            let found_modes = modes(model, &ModeOptions::new(4)).unwrap();
+            let still = vec![[0.0; 3]; model.mass.len()];
+            let mut run = ExplicitSolid::new(
+                model.clone(),
+                ExplicitMethod::CentralDifferences,
+                // A third of the limit or less; a part of it would be known to 1e-5 only.
+                SolidStepping::Fixed(3e-8),
+                still.clone(),
+                still,
+            )
+            .unwrap();
+            (0..50).for_each(|_| run.step(|_, _, _| {}).unwrap());
+            let moved: Vec<Vec3> = run.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect();
+            let frequencies: Vec<f64> = found_modes.modes.iter().map(|m| m.frequency).collect();
+            (found.displacement, found.reactions, moved, stress, frequencies)
+        };
+        let first = solved(&turned(&Rotation3::identity()));
+        let largest = |list: &[Vec3]| -> f64 {
+            list.iter().map(|v| Vector3::from(*v).norm()).fold(0.0, f64::max)
+        };
+        for angles in [[0.7, -1.1, 2.0], [3.0, 0.2, -0.4]] {
+            let turn = Rotation3::from_euler_angles(angles[0], angles[1], angles[2]);
+            let there = solved(&turned(&turn));
+            let vectors = [
+                ("displacement", &first.0, &there.0),
+                ("reaction", &first.1, &there.1),
+                ("explicit step", &first.2, &there.2),
+            ];
+            for (what, a, b) in vectors {
+                let scale = largest(a);
+                for (a, b) in a.iter().zip(b) {
+                    let off = (turn * Vector3::from(*a) - Vector3::from(*b)).norm();
+                    // Rounding of strains of 1e-4 in places of 1e-1 m, by a stiffness whose condition
+                    // is some 1e5; both are sought to 1e-12.
+                    assert!(
+                        scale > 0.0 && off <= 1e-9 * scale,
+                        "{order:?} {what}: {off} of {scale}"
+                    );
+                }
+            }
+            let matrix = |t: &Sym3| Matrix3::from(full(t)).transpose();
+            let scale = first.3.iter().map(|t| matrix(t).norm()).fold(0.0, f64::max);
+            for (a, b) in first.3.iter().zip(&there.3) {
+                let off = (turn * matrix(a) * turn.transpose() - matrix(b)).norm();
+                assert!(off <= 1e-9 * scale, "{order:?} stress: {off} of {scale}");
+            }
+            for (a, b) in first.4.iter().zip(&there.4) {
+                assert!((a / b - 1.0).abs() <= 1e-8, "{order:?}: {a} {b}");
+            }
+        }
+    }
 }

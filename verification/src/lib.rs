@@ -28,6 +28,7 @@ pub mod motion;
 pub mod mutants;
 mod number;
 pub mod oracles;
+pub mod outside;
 pub mod pareto;
 pub mod pressed_block;
 pub mod published;

@@ -11,7 +11,7 @@ use verification::case::{Case, Tier};
 use verification::index::Index;
 use verification::machine::{self, Machine};
 use verification::report::{CaseReport, CaseStatus, Report};
-use verification::{cases, golden, mutants, pareto, runner};
+use verification::{cases, golden, mutants, outside, pareto, runner};
 
 #[derive(Parser)]
 #[command(name = "verify", about, version, args_conflicts_with_subcommands = true)]
@@ -112,6 +112,7 @@ fn select(ids: &[String], tier: Tier) -> Result<Vec<Case>, String> {
 
 fn verify(arguments: &Arguments) -> Result<bool, String> {
     let selected = select(&arguments.cases, arguments.tier)?;
+    let skipped = outside::skipped(&selected)?;
     let golden_folder = arguments.golden.clone().unwrap_or_else(golden::default_folder);
     let mut report = Report {
         machine: Machine::facts(),
@@ -165,6 +166,7 @@ fn verify(arguments: &Arguments) -> Result<bool, String> {
         report.seconds() - before,
         arguments.out.join("report.html").display()
     );
+    skipped.iter().for_each(|line| eprintln!("{line}"));
     Ok(report.passed())
 }
 

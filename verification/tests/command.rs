@@ -109,3 +109,26 @@ fn what_cannot_run_exits_2() {
     fs::write(&file, "").unwrap();
     assert_eq!(verify(&["--out", file.to_str().unwrap()]).status.code(), Some(2));
 }
+
+/// CalculiX where it is not: the run holds and says so last; where it is required, nothing runs.
+#[test]
+fn a_run_without_what_it_compares_with_says_so_last() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |required: bool| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_verify"));
+        command.args(["--case", "calculix_comparison", "--out"]).arg(folder.path().join("report"));
+        command.env("PATH", folder.path()).env_remove("REQUIRE_CALCULIX");
+        if required {
+            command.env("REQUIRE_CALCULIX", "1");
+        }
+        let output = command.output().unwrap();
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let (code, said) = run(true);
+    assert!(code == Some(2) && said.contains("REQUIRE_CALCULIX"), "{said}");
+    assert!(!folder.path().join("report").exists());
+    let (code, said) = run(false);
+    assert_eq!(code, Some(0), "{said}");
+    let last = said.lines().last().unwrap();
+    assert!(last.starts_with("SKIPPED calculix_comparison: no ccx on the path"), "{said}");
+}

@@ -9,6 +9,7 @@ use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::run::request as bearing_request;
 use crate::commands::solve::plan_lines;
 use crate::commands::{CommandResult, Outcome, say};
+use bearing_dynamics::output::housed::course::equilibria;
 use bearing_dynamics::output::housed::summary::largest_error;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::RunSettings;
@@ -17,7 +18,7 @@ use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
 use bearing_dynamics::scene::housing_problem::{
     BALLS_PASSING, Excitation, check_constant, excitations,
 };
-use bearing_dynamics::solver::clock::to_digits;
+use bearing_dynamics::solver::clock::{rounded, to_digits};
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::course_inertia::CourseInertia;
@@ -44,6 +45,9 @@ pub fn run(document: &Document, scene: &HousedScene) -> CommandResult {
     }
     lines.push(quasi_static_line(scene, &prepared, bore.as_ref())?);
     if let Some(run) = &scene.bearing.dynamics.run {
+        if scene.housing.method == HousingMethod::QuasiStatic {
+            lines.push(equilibria_line(run));
+        }
         lines.push(explicit_line(scene, &prepared, run));
     }
     say(&lines.iter().map(|line| format!("{line}\n")).collect::<String>())?;
@@ -123,6 +127,13 @@ fn with_centrifugal(of_statics: String) -> String {
     }
     let said = "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
     line("does ", NAME, said)
+}
+
+/// As many as a run solves.
+fn equilibria_line(run: &RunSettings) -> String {
+    let count = equilibria(run.end, run.output_interval);
+    let last = rounded((count - 1) as f64 * run.output_interval);
+    line("does ", "equilibria", &format!("{count} equilibria to t = {last} s, one a row"))
 }
 
 fn condensed_line(scene: &HousedScene, bore: &CondensedBore) -> String {

@@ -67,6 +67,12 @@ pub fn on_inner(scene: &HousedScene, t: f64) -> [Condition; 5] {
     conditions
 }
 
+/// How many equilibria a course has, one a row every `interval` (s) from 0 to the whole row nearest to
+/// the `end` (s).
+pub fn equilibria(end: f64, interval: f64) -> usize {
+    (end / interval).round().max(1.0) as usize + 1
+}
+
 pub fn masses(scene: &HousedScene) -> Option<Masses> {
     let dynamics = &scene.bearing.dynamics;
     let outer = dynamics.outer.as_ref()?.inertia;
@@ -90,7 +96,7 @@ impl<'s> HousedCourse<'s> {
             setup,
             problem,
             interval,
-            count: (end / interval).round().max(1.0) as usize + 1,
+            count: equilibria(end, interval),
             columns,
             values: Vec::new(),
             loads,

@@ -67,6 +67,15 @@ pub enum Check {
 }
 
 impl Check {
+    /// What is built to run it: checks of one program build nothing but what a fault changes.
+    pub fn program(&self) -> String {
+        match self {
+            Check::Test { name, .. } => format!("--test {name}"),
+            Check::Lib { .. } => "--lib".into(),
+            Check::Case { .. } => "--case".into(),
+        }
+    }
+
     /// # Errors
     /// In words, when the text is no check.
     pub fn parse(text: &str) -> Result<Check, String> {

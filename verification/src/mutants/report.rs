@@ -44,8 +44,17 @@ pub struct Outcome {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Results {
     pub outcomes: Vec<Outcome>,
-    /// Keys of checks that pass without any fault.
-    pub proven: Vec<String>,
+    /// Checks that pass without any fault.
+    pub proven: Vec<Proof>,
+}
+
+/// A check that passes without any fault.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Proof {
+    /// Hash of the library and the check.
+    pub key: String,
+    /// What its program took to run.
+    pub seconds: f64,
 }
 
 impl Results {
@@ -65,6 +74,10 @@ impl Results {
                 && outcome.key == key
                 && matches!(outcome.verdict, Verdict::Caught { .. })
         })
+    }
+
+    pub fn proof(&self, key: &str) -> Option<&Proof> {
+        self.proven.iter().find(|proof| proof.key == key)
     }
 
     pub fn verdict(&self, id: &str) -> Option<&Verdict> {

@@ -10,9 +10,6 @@ use sha2::{Digest, Sha256};
 
 use super::list::{Check, Mutant};
 
-/// A check may take minutes on a slow machine; a fault can keep it from ever ending.
-const PATIENCE: Duration = Duration::from_secs(900);
-
 /// What a check came to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Ran {
@@ -25,12 +22,13 @@ pub enum Ran {
     DoesNotBuild(String),
 }
 
-/// `target/mutants` of a repository.
+/// Contents of every file of a repository, by its path from the root.
+pub struct Sources(BTreeMap<String, Vec<u8>>);
+
+/// A folder with a copy of the sources (`tree`), what is built from it (`target`) and what is run there.
 pub struct Workshop {
     folder: PathBuf,
-    jobs: usize,
-    /// Contents of every file, by its path from the root.
-    sources: BTreeMap<String, Vec<u8>>,
+    processors: usize,
 }
 
 /// A fault in the copy; dropping it puts the right text back.
@@ -46,36 +44,13 @@ impl Drop for Fault {
     }
 }
 
-impl Workshop {
-    /// Copies the sources of `root`; files that are the same already keep their age, so that
-    /// builds go on from the last ones.
-    ///
+impl Sources {
     /// # Errors
-    /// In words, when files cannot be read or written.
-    pub fn new(root: &Path, jobs: usize) -> Result<Workshop, String> {
-        let folder = std::path::absolute(root.join("target/mutants")).map_err(|e| e.to_string())?;
-        let mut sources = BTreeMap::new();
-        read_into(root, "", &mut sources)?;
-        let tree = folder.join("tree");
-        fs::create_dir_all(&tree).map_err(|error| said(&tree, &error))?;
-        let mut copied = BTreeMap::new();
-        read_into(&tree, "", &mut copied)?;
-        for gone in copied.keys().filter(|name| !sources.contains_key(*name)) {
-            fs::remove_file(tree.join(gone)).map_err(|error| said(&tree.join(gone), &error))?;
-        }
-        for (name, contents) in &sources {
-            if copied.get(name) != Some(contents) {
-                let path = tree.join(name);
-                let made = path.parent().map_or(Ok(()), fs::create_dir_all);
-                made.and_then(|()| fs::write(&path, contents))
-                    .map_err(|error| said(&path, &error))?;
-            }
-        }
-        Ok(Workshop { folder, jobs, sources })
-    }
-
-    pub fn folder(&self) -> &Path {
-        &self.folder
+    /// In words, when files cannot be read.
+    pub fn read(root: &Path) -> Result<Sources, String> {
+        let mut files = BTreeMap::new();
+        read_into(root, "", &mut files)?;
+        Ok(Sources(files))
     }
 
     /// Hash of all that a verdict by these checks rests on: the library, the files of the checks
@@ -101,7 +76,7 @@ impl Workshop {
                 || name.starts_with(".cargo/")
                 || checks.iter().any(by_check)
         };
-        for (name, contents) in self.sources.iter().filter(|(name, _)| matters(name)) {
+        for (name, contents) in self.0.iter().filter(|(name, _)| matters(name)) {
             hasher.update(name.as_bytes());
             hasher.update((contents.len() as u64).to_le_bytes());
             hasher.update(contents);
@@ -111,6 +86,31 @@ impl Workshop {
         }
         hasher.update(more.as_bytes());
         hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+impl Workshop {
+    /// Copies the sources into `folder`; files that are the same already keep their age, so that
+    /// builds go on from the last ones.
+    ///
+    /// # Errors
+    /// In words, when files cannot be read or written.
+    pub fn new(sources: &Sources, folder: &Path, processors: usize) -> Result<Workshop, String> {
+        let tree = folder.join("tree");
+        fs::create_dir_all(&tree).map_err(|error| said(&tree, &error))?;
+        let Sources(copied) = Sources::read(&tree)?;
+        for gone in copied.keys().filter(|name| !sources.0.contains_key(*name)) {
+            fs::remove_file(tree.join(gone)).map_err(|error| said(&tree.join(gone), &error))?;
+        }
+        for (name, contents) in &sources.0 {
+            if copied.get(name) != Some(contents) {
+                let path = tree.join(name);
+                let made = path.parent().map_or(Ok(()), fs::create_dir_all);
+                made.and_then(|()| fs::write(&path, contents))
+                    .map_err(|error| said(&path, &error))?;
+            }
+        }
+        Ok(Workshop { folder: folder.to_path_buf(), processors })
     }
 
     /// Puts a fault into the copy.
@@ -126,15 +126,17 @@ impl Workshop {
         Ok(fault)
     }
 
-    /// Builds what a check needs and runs it.
+    /// Builds what a check needs and runs it, for as long as patience lasts; with the seconds that it
+    /// ran.
     ///
     /// # Errors
     /// When cargo or the check cannot be started at all.
-    pub fn run(&self, check: &Check) -> Result<Ran, String> {
+    pub fn run(&self, check: &Check, patience: Duration) -> Result<(Ran, f64), String> {
         let program = match self.build(check)? {
             Ok(program) => program,
-            Err(compiler) => return Ok(Ran::DoesNotBuild(compiler)),
+            Err(compiler) => return Ok((Ran::DoesNotBuild(compiler), 0.0)),
         };
+        let clock = Instant::now();
         let mut command = Command::new(&program);
         command.current_dir(self.folder.join("tree"));
         match check {
@@ -144,7 +146,7 @@ impl Workshop {
                 command.args(["--case", id, "--out"]).arg(out).arg("--golden").arg(golden);
             }
             Check::Test { filter, .. } | Check::Lib { filter } => {
-                command.args(filter).arg(format!("--test-threads={}", self.jobs));
+                command.args(filter).arg(format!("--test-threads={}", self.processors));
             }
         }
         // The same random cases every time, and no snapshot is touched.
@@ -153,12 +155,13 @@ impl Workshop {
         let file = fs::File::create(&log).map_err(|error| said(&log, &error))?;
         let other = file.try_clone().map_err(|error| said(&log, &error))?;
         let child = command.stdin(Stdio::null()).stdout(file).stderr(other).spawn();
-        let passed = wait(child.map_err(|error| said(&program, &error))?)?;
-        Ok(match passed {
+        let passed = wait(child.map_err(|error| said(&program, &error))?, patience)?;
+        let ran = match passed {
             None => Ran::TimedOut,
             Some(false) => Ran::Failed,
             Some(true) => Ran::Passed { tests: tests_in(&log, check) },
-        })
+        };
+        Ok((ran, clock.elapsed().as_secs_f64()))
     }
 
     /// The program of a check, or what the compiler said.
@@ -175,7 +178,7 @@ impl Workshop {
         let output = command
             .current_dir(self.folder.join("tree"))
             .args(["--release", "--message-format=json-render-diagnostics", "--quiet"])
-            .arg(format!("--jobs={}", self.jobs))
+            .arg(format!("--jobs={}", self.processors))
             // One fault changes one module: what the others compiled to is kept.
             .env("CARGO_TARGET_DIR", self.folder.join("target"))
             .env("CARGO_INCREMENTAL", "1")
@@ -209,13 +212,13 @@ fn executable(message: &serde_json::Value, (kind, name): (&str, &str)) -> Option
 }
 
 /// Whether it succeeded; `None` if it was stopped.
-fn wait(mut child: Child) -> Result<Option<bool>, String> {
+fn wait(mut child: Child, patience: Duration) -> Result<Option<bool>, String> {
     let clock = Instant::now();
     loop {
         if let Some(status) = child.try_wait().map_err(|error| error.to_string())? {
             return Ok(Some(status.success()));
         }
-        if clock.elapsed() > PATIENCE {
+        if clock.elapsed() > patience {
             child.kill().and_then(|()| child.wait()).map_err(|error| error.to_string())?;
             return Ok(None);
         }
