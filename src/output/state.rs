@@ -336,14 +336,7 @@ pub(crate) fn checkpoint(file: &StateFile) -> Checkpoint {
         state: file.state.clone(),
         damping: file.damping.clone(),
         was_loaded: file.was_loaded.clone(),
-        first_energy: Energy {
-            kinetic,
-            contact,
-            cage_contact,
-            gravity,
-            foundation,
-            ball_contact,
-        },
+        first_energy: Energy { kinetic, contact, cage_contact, gravity, foundation, ball_contact },
         largest_contact_energy: file.largest_contact_energy,
         work: Work {
             evaluations,

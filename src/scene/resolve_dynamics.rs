@@ -9,9 +9,7 @@ use crate::scene::units::plain;
 use crate::scene::value::Checked;
 use crate::scene::{resolve_cage, resolve_contact};
 use crate::solver::channels::ChannelGroup;
-use crate::solver::dynamics::model::{
-    Drive, RaceBody, RotatingLoad, Rotation, gap_in_pockets,
-};
+use crate::solver::dynamics::model::{Drive, RaceBody, RotatingLoad, Rotation, gap_in_pockets};
 use crate::solver::dynamics::run::{Integrator, RunOptions, Start, Stepping};
 use crate::solver::profile::Profile;
 use crate::solver::statics::COORDINATE_NAMES;

@@ -94,7 +94,9 @@ impl Simulation {
         let (axial, radial) = split(sub(inner.position, outer.position), axis);
         let tilted = system.problem.geometry.pitch_radius * norm(cross(axis, inner.axis()));
         let allowed = race_limit(&system.problem);
-        for (way, distance) in [("along its axis", axial.abs() + tilted), ("across its axis", radial)] {
+        for (way, distance) in
+            [("along its axis", axial.abs() + tilted), ("across its axis", radial)]
+        {
             if !(distance <= allowed) {
                 let (time, step) = (self.time, self.steps);
                 return Err(SimulationError::RaceLeft { way, distance, allowed, time, step });

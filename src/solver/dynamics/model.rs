@@ -189,7 +189,8 @@ impl DynamicProblem {
         if self.ball_contact.is_none() {
             return BallMeeting::NoLaw;
         }
-        let kept = self.cage.as_ref().and_then(|cage| gap_in_pockets(&self.geometry, &cage.contacts));
+        let kept =
+            self.cage.as_ref().and_then(|cage| gap_in_pockets(&self.geometry, &cage.contacts));
         kept.map_or(BallMeeting::Tested, |gap| BallMeeting::KeptApart { gap })
     }
 }
