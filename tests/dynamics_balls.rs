@@ -9,18 +9,16 @@ mod random_scenes;
 
 use bearing_dynamics::ch2_housing::bearing::ball_contact::ball_contact;
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
-use bearing_dynamics::ch2_housing::bearing::traction::{Motion, TractionLaw};
+use bearing_dynamics::ch2_housing::bearing::traction::Motion;
 use bearing_dynamics::solver::dynamics::bounds::{HERTZ_SCALE, race_limit};
 use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{BallMeeting, Drive, DynamicProblem, Rotation};
+use bearing_dynamics::solver::dynamics::model::{BallMeeting, Drive, DynamicProblem};
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };
 use bearing_dynamics::solver::dynamics::stability::{Cause, step_limit};
 use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{
-    BodyState, Layout, Ledger, POSITION, SPIN, VELOCITY,
-};
+use bearing_dynamics::solver::dynamics::state::{Layout, Ledger, POSITION};
 use bearing_dynamics::solver::dynamics::step_watch::stiffness;
 use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::profile::Profile;
@@ -66,11 +64,10 @@ fn options(integrator: Integrator, stepping: Stepping) -> RunOptions {
     RunOptions { integrator, stepping, energy_limit: f64::INFINITY, ..RunOptions::default() }
 }
 
-const ALL: [(Integrator, Stepping, f64); 3] = [
-    // Tolerance of an impact of 60 µs: ω h = 5e-3 to fourth order, and what the accuracy says.
-    (Integrator::RungeKutta, Stepping::Fixed(0.1e-6), 1e-4),
-    (Integrator::DormandPrince, Stepping::Accuracy(1e-5), 1e-4),
-    (Integrator::Rosenbrock, Stepping::Accuracy(1e-5), 1e-4),
+const ALL: [(Integrator, Stepping); 3] = [
+    (Integrator::RungeKutta, Stepping::Fixed(0.1e-6)),
+    (Integrator::DormandPrince, Stepping::Accuracy(1e-5)),
+    (Integrator::Rosenbrock, Stepping::Accuracy(1e-5)),
 ];
 
 #[test]
@@ -85,7 +82,7 @@ fn an_impact_head_on_is_that_of_hertz() {
     let force = stiffness * deepest.powf(1.5);
     // (4/5) √π Γ(2/5)/Γ(9/10).
     let duration = 2.943_275 * deepest / speed;
-    for (integrator, stepping, tolerance) in ALL {
+    for (integrator, stepping) in ALL {
         let along = (line() * 0.5 * speed).into();
         let away = (line() * -0.5 * speed).into();
         let moving = |velocity| Motion { velocity, ..Motion::default() };
@@ -117,15 +114,17 @@ fn an_impact_head_on_is_that_of_hertz() {
             (before, time) = (now, simulation.time);
         }
         println!("{integrator:?}: {peak} N of {force} N, {} s of {duration} s", ends - begins);
-        // Looked at every 0.5 µs of 60: the peak is flat to (π/2 · 0.25/30)² /2 of itself.
+        // Looked at every 0.5 µs of 49: the force is flat at its peak, to (π · 0.25/49)²/2 of itself.
         assert!((peak / force - 1.0).abs() <= 2e-4, "{peak} {force}");
-        // Crossings are interpolated: overlaps there are straight to 1e-6 of their largest.
-        assert!(((ends - begins) / duration - 1.0).abs() <= 1e-3, "{} {duration}", ends - begins);
+        // Crossings are interpolated, where the force begins with the power 3/2 of the overlap; Γ to seven
+        // digits.
+        assert!(((ends - begins) / duration - 1.0).abs() <= 1e-6, "{} {duration}", ends - begins);
         let velocity = |ball| simulation.system.layout.ball_state(&simulation.state, ball).velocity;
         // Equal masses exchange their velocities.
         for i in 0..3 {
-            assert!((velocity(0)[i] - away[i]).abs() <= tolerance * speed);
-            assert!((velocity(1)[i] - along[i]).abs() <= tolerance * speed);
+            // Steps of an accuracy of 1e-5.
+            assert!((velocity(0)[i] - away[i]).abs() <= 1e-5 * speed);
+            assert!((velocity(1)[i] - along[i]).abs() <= 1e-5 * speed);
         }
     }
 }
@@ -140,7 +139,7 @@ fn an_oblique_impact_with_friction_keeps_momentum_and_books_what_it_loses() {
         ..Motion::default()
     };
     let other = Motion { spin: [40.0, -3.0, 2.0], ..Motion::default() };
-    for (integrator, stepping, tolerance) in ALL {
+    for (integrator, stepping) in ALL {
         let state = two_balls(&problem, [one, other]);
         let before = momenta(&problem, &state);
         let mut simulation =
@@ -158,14 +157,14 @@ fn an_oblique_impact_with_friction_keeps_momentum_and_books_what_it_loses() {
         let moment = problem.geometry.pitch_radius * size;
         // Rounding of a thousand steps; angular momentum as well as the orbit's curvature is followed.
         assert!((after.0 - before.0).norm() <= 1e-11 * size, "{}", (after.0 - before.0).norm());
-        assert!((after.1 - before.1).norm() <= tolerance * moment);
+        assert!((after.1 - before.1).norm() <= 1e-6 * moment);
         let snapshot = simulation.snapshot().unwrap();
         let lost = ledger(&simulation, Ledger::BallFriction);
         println!("{integrator:?}: lost {lost} of {first} J, residual {}", snapshot.residual);
         // Friction 0.1 at 0.4 m/s over the impulse of m v = 0.7 mN s.
         assert!(lost < -1e-2 * first && lost > -first, "{lost} of {first}");
-        // The ledger's rule is of second order in steps of a tenth of the impact.
-        assert!(snapshot.residual.abs() <= 2e-2 * -lost, "{} of {lost}", snapshot.residual);
+        // Measured: 1e-8 to 1.4e-7, by the ledger's rule of second order in short steps.
+        assert!(snapshot.residual.abs() <= 1e-6 * -lost, "{} of {lost}", snapshot.residual);
         assert_eq!(ledger(&simulation, Ledger::CageFriction), 0.0);
     }
 }
@@ -178,7 +177,7 @@ fn balls_that_are_apart_make_no_difference_to_any_bit() {
     let mut caged = problem.clone();
     caged.cage = Some(cage(&geometry, Pocket::Cylindrical, Guidance::OuterRace));
     for problem in [problem, caged] {
-        for (integrator, stepping, _) in ALL {
+        for (integrator, stepping) in ALL {
             let [with, without] = [problem.ball_contact, None].map(|ball_contact| {
                 let problem = DynamicProblem { ball_contact, ..problem.clone() };
                 let mut simulation =
@@ -304,35 +303,38 @@ fn ends(problem: DynamicProblem, stepping: Stepping, most: usize) -> SimulationE
 
 #[test]
 fn a_race_that_leaves_its_bearing_ends_the_run() {
-    // An angular-contact bearing without axial load: nothing holds the race back along X.
-    let mut axial = bearing(table_5_3(), [0.0; 5], 0.0);
-    axial.inner.drives[0] =
-        Drive::Motion(Profile::Ramp { from: 0.0, to: -8e-3, start: 0.0, duration: 0.05 });
-    // A given motion across the axis, with balls that are out of the way.
-    let mut radial = bearing(table_4_1(200e-6), [0.0; 5], 0.0);
-    radial.geometry.ball_count = 3;
-    radial.inner.drives[1] =
-        Drive::Motion(Profile::Ramp { from: 0.0, to: 9e-3, start: 0.0, duration: 0.05 });
-    radial.ball_phase = std::f64::consts::PI;
-    for (problem, named) in [(axial, "along its axis"), (radial, "across its axis")] {
-        let allowed = race_limit(&problem);
-        let radius = problem.geometry.ball_radius;
-        assert!(allowed > radius && allowed < 1.3 * radius, "{allowed}");
-        match ends(problem, Stepping::Accuracy(1e-3), 200_000) {
-            SimulationError::RaceLeft { way, distance, allowed: limit, time, step } => {
-                assert_eq!((way, limit), (named, allowed));
-                assert!(distance > allowed && time > 0.0 && step > 0);
-            }
-            // Balls in the way are pressed out of their groove before.
-            other => assert!(
-                matches!(
-                    other,
-                    SimulationError::Inside { .. } | SimulationError::BallOutside { .. }
-                ) && named != "along its axis",
-                "{other}"
-            ),
-        }
+    // Three balls gathered above the inner race, which falls out between them.
+    let mut problem = bearing(table_4_1(5e-6), [0.0, 0.0, -20.0, 0.0, 0.0], 0.0);
+    problem.geometry.ball_count = 3;
+    let layout = Layout::new(3, false);
+    let mut state = start::nominal(&problem, &layout);
+    for (ball, degrees) in [60.0_f64, 90.0, 120.0].into_iter().enumerate() {
+        let mut body = layout.ball_state(&state, ball);
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let pitch = problem.geometry.pitch_radius;
+        body.position = [0.0, pitch * cos, pitch * sin];
+        layout.set_ball(&mut state, ball, &body);
     }
+    let accuracy = options(Integrator::Rosenbrock, Stepping::Accuracy(1e-3));
+    let mut simulation = Simulation::from_state(problem.clone(), accuracy, state, 0.0).unwrap();
+    let error = (0..200_000).find_map(|_| simulation.step().err()).unwrap();
+    let SimulationError::RaceLeft { way, distance, allowed, time, step } = error else {
+        panic!("{error}")
+    };
+    let radius = problem.geometry.ball_radius;
+    assert_eq!((way, allowed), ("across its axis", race_limit(&problem)));
+    assert!(allowed > radius && allowed < 1.3 * radius, "{allowed}");
+    assert!(distance > allowed && distance < 1.1 * allowed, "{distance}");
+    assert_eq!((time, step), (simulation.time, simulation.steps));
+    // An angular-contact bearing drawn apart: its balls are in the way of a race that comes back.
+    let mut drawn = bearing(table_5_3(), [0.0; 5], 0.0);
+    let way = Profile::Ramp { from: 0.0, to: -8e-3, start: 0.0, duration: 0.05 };
+    drawn.inner.drives[0] = Drive::Motion(way);
+    let error = ends(drawn, Stepping::Accuracy(1e-3), 200_000);
+    assert!(
+        matches!(&error, SimulationError::Inside { other, .. } if other == "the inner race"),
+        "{error}"
+    );
     // Right at once where the state is such.
     let problem = bearing(table_4_1(5e-6), [0.0; 5], 0.0);
     let layout = Layout::new(8, false);
@@ -429,7 +431,8 @@ fn a_full_complement_runs_with_its_ledger_closed() {
         );
         assert!(met > 100);
         assert!(deepest < 0.1 * HERTZ_SCALE * geometry.ball_radius, "{deepest}");
-        assert!(snapshot.residual.abs() <= 1e-2 * turned, "{} of {turned}", snapshot.residual);
+        // Measured: 2e-7 and 2e-6; ten times that for other roundings of so many impacts.
+        assert!(snapshot.residual.abs() <= 2e-5 * turned, "{} of {turned}", snapshot.residual);
     }
 }
 
@@ -462,6 +465,4 @@ fn the_law_is_the_gradient_of_its_energy_and_acts_on_both_alike() {
         (rolling.force[2] - law.friction * rolling.normal_load).abs() <= 1e-4 * rolling.force[2]
     );
     assert!((rolling.power + rolling.force[2] * speed).abs() <= 1e-9 * -rolling.power);
-    let _ = (TractionLaw::None, Rotation::Torque(Profile::ZERO), SPIN, VELOCITY);
-    let _: Option<BodyState> = None;
 }

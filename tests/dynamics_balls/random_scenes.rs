@@ -38,7 +38,7 @@ impl Draw {
 pub fn scene_text(seed: u64, turns: f64) -> String {
     let mut draw = Draw(Noise(0x6265_6172 ^ (seed << 20)));
     let ball = draw.scaled(0.5, 10.0);
-    let full = draw.chance(0.25);
+    let full = draw.chance(0.35);
     let balls = draw.between(3.0, 20.0) as usize;
     let fill = if full { draw.scaled(1.000_01, 1.005) } else { draw.between(1.2, 2.0) };
     // mm; a shaft is left where few balls stand on a small circle.
@@ -83,7 +83,8 @@ pub fn scene_text(seed: u64, turns: f64) -> String {
     let axial =
         if angular { rating * draw.scaled(1e-3, 0.2) } else { rating * draw.scaled(1e-5, 0.05) };
     let rpm = draw.scaled(100.0, 30_000.0);
-    let end = (turns / (rpm / 60.0)).min(5e-3);
+    // Contacts swing the faster the smaller they are.
+    let end = (turns / (rpm / 60.0)).min(3e-4 * ball);
     let speed = if draw.chance(0.3) {
         format!("{{ ramp = [\"0 rpm\", \"{rpm} rpm\"], duration = \"{} s\" }}", 0.5 * end)
     } else {
@@ -149,9 +150,7 @@ fn depths(simulation: &Simulation) -> (f64, f64) {
     let apart = |one: usize| norm(sub(place(one), place((one + 1) % layout.balls)));
     let balls = (0..neighbours(layout.balls)).map(|one| 2.0 * radius - apart(one));
     let balls = balls.fold(0.0, f64::max);
-    let races = system.table.contact.iter().map(|contact| contact.overlap);
-    let races =
-        system.table.active.iter().zip(races).map(|(&pair, _)| system.table.contact[pair].overlap);
+    let races = system.table.active.iter().map(|&pair| system.table.contact[pair].overlap);
     let cage = system.pockets.iter().chain(&system.guides).map(|contact| contact.penetration);
     (balls / radius, races.chain(cage).fold(balls, f64::max) / radius)
 }
@@ -238,5 +237,5 @@ fn two_hundred_random_scenes_end_sound_or_say_why() {
         "{complete} complete, {met} with balls that met, worst residual {worst:e}, deepest {deepest:e}, {steps} steps"
     );
     assert!(complete >= 190, "{complete}");
-    assert!(met >= 20, "{met}");
+    assert!(met >= 25, "{met}");
 }

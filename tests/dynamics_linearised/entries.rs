@@ -221,7 +221,8 @@ fn entries_of_race_contacts_in_every_configuration() {
                 damping: dampings[index % 2],
                 ..problem.clone()
             };
-            let state = shaken(&problem, 1e-3, &mut Noise(index as u64));
+            // Hardly: what closes at 1 cm/s would turn with the normal, which is left out.
+            let state = shaken(&problem, 1e-5, &mut Noise(index as u64));
             let turned = |body: &mut bearing_dynamics::solver::dynamics::model::RaceBody| {
                 body.rotation = Rotation::Torque(Profile::ZERO);
             };
