@@ -17,7 +17,7 @@ use bearing_dynamics::solver::dynamics::state::{
 };
 use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::profile::Profile;
-use common::{table_4_1, table_5_3};
+use common::{full_complement, table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -32,21 +32,27 @@ struct Choice {
     cage: usize,
     cylindrical: bool,
     hertz: bool,
+    /// Balls that nearly fill the pitch circle, so that about half of the neighbours touch.
+    crowded: bool,
 }
 
 fn any_choice() -> impl Strategy<Value = Choice> {
     let laws = (0..5usize, any::<bool>(), 0..3usize);
     let cages = (0..4usize, any::<bool>(), any::<bool>());
-    (any::<bool>(), laws, cages).prop_map(|(angular, laws, cages)| {
+    (any::<bool>(), laws, cages, any::<bool>()).prop_map(|(angular, laws, cages, crowded)| {
         let (traction, heathcote, damping) = laws;
         let (cage, cylindrical, hertz) = cages;
-        Choice { angular, traction, heathcote, damping, cage, cylindrical, hertz }
+        Choice { angular, traction, heathcote, damping, cage, cylindrical, hertz, crowded }
     })
 }
 
 impl Choice {
     fn problem(&self) -> DynamicProblem {
-        let geometry = if self.angular { table_5_3() } else { table_4_1(-5e-6) };
+        let geometry = match (self.crowded, self.angular) {
+            (true, _) => full_complement(9, 10e-6, -5e-6),
+            (false, true) => table_5_3(),
+            (false, false) => table_4_1(-5e-6),
+        };
         let mut problem = bearing(geometry, [0.0; 5], 0.0);
         problem.inner = free_race();
         problem.outer = Some(free_race());
@@ -85,7 +91,8 @@ fn force_scale(system: &System) -> f64 {
     }
     let cage: f64 =
         system.pockets.iter().chain(&system.guides).map(|contact| contact.normal_load).sum();
-    races + cage + 1.0
+    let balls: f64 = system.meetings.iter().map(|meeting| meeting.normal_load).sum();
+    races + cage + balls + 1.0
 }
 
 proptest! {

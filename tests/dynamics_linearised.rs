@@ -10,6 +10,8 @@
 mod common;
 #[path = "common/dynamics.rs"]
 mod dynamics;
+#[path = "dynamics_linearised/entries.rs"]
+mod entries;
 
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;

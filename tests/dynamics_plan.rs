@@ -307,6 +307,7 @@ fn work_is_counted_exactly() {
         slices: 15 * 16 * evaluations,
         pocket_tests: 0,
         guide_tests: 0,
+        ball_tests: 8 * evaluations,
         factorisations: 0,
         rejected_steps: 0,
     };
@@ -321,6 +322,8 @@ fn work_is_counted_exactly() {
             slices: 0,
             pocket_tests: 8 * evaluations,
             guide_tests: guide_tests * evaluations,
+            // Pockets keep the balls apart.
+            ball_tests: 0,
             ..closed
         };
         assert_eq!(after(&problem, steps as usize).system.work, expected);

@@ -379,3 +379,117 @@ fn the_reason_names_what_binds_the_step() {
         assert_eq!(step_limit(&mut system, 0.0, &state), Some(limit));
     }
 }
+
+/// Everything given but what `free` frees; interference so light that contacts are 50 nm deep.
+fn held(free: impl Fn(&mut DynamicProblem)) -> (DynamicProblem, Vec<f64>) {
+    let mut problem = bearing(table_4_1(-0.1e-6), [0.0; 5], 0.0);
+    for drive in &mut problem.inner.drives {
+        *drive = Drive::Motion(Profile::ZERO);
+    }
+    free(&mut problem);
+    let layout = Layout::new(problem.geometry.ball_count, false);
+    let state = start::nominal(&problem, &layout);
+    (problem, state)
+}
+
+fn limit_at(problem: &DynamicProblem, state: &[f64]) -> f64 {
+    let mut system = System::new(problem.clone(), Driver::Lanes);
+    step_limit(&mut system, 0.0, state).unwrap().step
+}
+
+/// Ends of the stability region of classical Runge–Kutta: a swing at ω h = √8, a decay at 2.785.
+const DECAYS: f64 = 2.785_293_563_405_282;
+
+#[test]
+fn the_step_limit_of_a_ball_follows_from_the_state_itself() {
+    // Contacts so light that a displacement of 1 % of their depth in the Jacobian would show.
+    let (problem, state) = held(|_| {});
+    let (system, ..) = evaluated(&problem, Driver::Plain, 0.0, &state);
+    let per_mass = 1.0 / problem.ball.mass;
+    let layout = system.layout;
+    let sum: f64 = [0, 1]
+        .map(|side| {
+            let overlap = system.table.contact[side * layout.padded].overlap;
+            assert!(overlap > 20e-9 && overlap < 100e-9, "{overlap}");
+            1.5 * system.laws.races[side].stiffness * overlap.sqrt()
+        })
+        .iter()
+        .sum();
+    let expected = 8.0_f64.sqrt() / (sum * per_mass).sqrt();
+    let found = limit_at(&problem, &state);
+    // Differences over 0.2 % of the depth, of second order: 2e-7; growth of 1e-6 a step passes.
+    assert!((found / expected - 1.0).abs() <= 2e-5, "{found} {expected}");
+
+    // A slip at rest decays by rolling the ball on the spot: 2 κ' W r²/I, steeper than any swing.
+    let u0 = 1e-4;
+    let law = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: u0 };
+    let (problem, state) = held(|problem| problem.traction = law.clone());
+    let (system, ..) = evaluated(&problem, Driver::Plain, 0.0, &state);
+    let inertia = problem.ball.axial;
+    let turned: f64 = [0, 1]
+        .map(|side| {
+            let pair = side * layout.padded;
+            let reach = problem.geometry.ball_radius - 0.5 * system.table.contact[pair].overlap;
+            0.07 / u0 * system.table.load[pair] * reach * reach / inertia
+        })
+        .iter()
+        .sum();
+    let found = limit_at(&problem, &state);
+    // Loads of both contacts differ as their stiffness does, and couple the roll to a shift.
+    assert!((found * turned / DECAYS - 1.0).abs() <= 5e-2, "{found} {}", DECAYS / turned);
+}
+
+#[test]
+fn the_step_limit_of_a_bearing_that_travels_is_that_of_one_at_rest() {
+    let law = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 1e-3 };
+    let (problem, state) = held(|problem| {
+        problem.traction = law.clone();
+        problem.inner = free_race();
+        problem.outer = Some(free_race());
+    });
+    let layout = Layout::new(problem.geometry.ball_count, false);
+    let resting = limit_at(&problem, &state);
+    for speed in [1.0, 10.0] {
+        let mut moving = state.clone();
+        for ball in 0..layout.balls {
+            moving[layout.ball(VELOCITY) + ball] += speed;
+        }
+        moving[layout.inner() + VELOCITY] += speed;
+        moving[layout.outer() + VELOCITY] += speed;
+        let found = limit_at(&problem, &moving);
+        // Differences over 1e-7 of the speed, 1e-3 of the steep onset's width.
+        assert!((found / resting - 1.0).abs() <= 1e-5, "{speed} m/s: {found} {resting}");
+    }
+}
+
+#[test]
+fn the_step_limit_of_a_tilting_race_follows_from_the_state_itself() {
+    // Balls too heavy to move; the race swings about its diameters alone.
+    let (problem, state) = held(|problem| {
+        problem.ball.mass = 1e6;
+        for k in [3, 4] {
+            problem.inner.drives[k] = Drive::Load(Profile::ZERO);
+        }
+        problem.inner.inertia.transverse = 1e-9;
+        problem.inner.inertia.axial = 1e-9;
+    });
+    let layout = Layout::new(problem.geometry.ball_count, false);
+    let mut system = System::new(problem.clone(), Driver::Plain);
+    let mut rates = vec![0.0; state.len()];
+    let mut spin_rate = |angle: f64| {
+        let mut turned = state.clone();
+        let mut body = BodyState::from_slice(&state[layout.inner()..]);
+        body.orientation = nalgebra::UnitQuaternion::from_scaled_axis(Vector3::y() * angle);
+        turned[layout.inner()..layout.inner() + 13].copy_from_slice(&body.to_array());
+        system.evaluate(0.0, &turned, &mut rates);
+        rates[layout.inner() + SPIN + 1]
+    };
+    // Shifts of 3e-12 m at the pitch circle: 1e-4 of the depth.
+    let angle = 1e-10;
+    let squared = -(spin_rate(angle) - spin_rate(-angle)) / (2.0 * angle);
+    assert!(squared > 0.0, "{squared}");
+    let expected = 8.0_f64.sqrt() / squared.sqrt();
+    let found = limit_at(&problem, &state);
+    // Rounding of 1e-17 m in shifts of 3e-12 m; eight balls hold both tilts alike.
+    assert!((found / expected - 1.0).abs() <= 1e-3, "{found} {expected}");
+}

@@ -89,7 +89,15 @@ fn only_what_is_asked_for_is_there() {
         recorder.columns().iter().map(|column| column.name.clone()).collect::<Vec<_>>()
     };
     // The ledger is always kept, and without friction, cage and gravity it is short.
-    let ledger = ["time", "energy_kinetic", "energy_contact", "work_drives", "energy_residual"];
+    let ledger = [
+        "time",
+        "energy_kinetic",
+        "energy_contact",
+        "energy_ball_contact",
+        "work_ball_friction",
+        "work_drives",
+        "energy_residual",
+    ];
     assert_eq!(names(&frictionless(), &[]), ledger);
     let cage = [ChannelGroup::Cage, ChannelGroup::Pockets];
     assert_eq!(names(&frictionless(), &cage), ledger, "there is no cage");

@@ -7,7 +7,7 @@ use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, Tractio
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::{Assumption, DefaultUsed, Plot, RunPlot, RunSettings, Scene};
 use bearing_dynamics::solver::dynamics::model::{
-    CageBody, Drive, DynamicProblem, RaceBody, Rotation,
+    BallMeeting, CageBody, Drive, DynamicProblem, RaceBody, Rotation,
 };
 use bearing_dynamics::solver::dynamics::run::{Start, Stepping};
 use bearing_dynamics::solver::profile::Profile;
@@ -104,6 +104,9 @@ pub fn motion(problem: &DynamicProblem) -> Echo {
     }
     echo.insert("traction".into(), traction(problem)?);
     echo.insert("contact_damping".into(), damping(&problem.damping)?);
+    if !matches!(problem.ball_meeting(), BallMeeting::KeptApart { .. }) {
+        echo.insert("ball_contact".into(), ball_contact(problem)?);
+    }
     if let Some(load) = &problem.rotating_load {
         let load = json!({
             "force": profile(&load.force, "N")?,
@@ -233,6 +236,16 @@ fn damping(damping: &ContactDamping) -> Echo {
             "slowest": quantity("slowest", *slowest, "m/s")?,
         }),
     })
+}
+
+fn ball_contact(problem: &DynamicProblem) -> Echo {
+    let Some(law) = &problem.ball_contact else { return Ok(json!({ "law": "none" })) };
+    Ok(json!({
+        "law": "hertz",
+        "stiffness": quantity("stiffness", law.stiffness, "N/m^1.5")?,
+        "friction": quantity("friction", law.friction, "1")?,
+        "regularisation_speed": quantity("regularisation_speed", law.regularisation_speed, "m/s")?,
+    }))
 }
 
 fn pairs(points: &[[f64; 2]], x_unit: &str, y_unit: &str) -> Echo {

@@ -56,12 +56,12 @@ pub struct StateFile {
     pub state: Vec<f64>,
     pub damping: Vec<f64>,
     pub was_loaded: Vec<bool>,
-    /// Kinetic, contact, cage contact, gravity, foundation, J.
-    pub first_energy: [f64; 5],
+    /// Kinetic, contact, cage contact, gravity, foundation, ball contact, J.
+    pub first_energy: [f64; 6],
     pub largest_contact_energy: f64,
     /// Evaluations, distance tests, loaded contacts, slices, pocket tests, guide tests,
-    /// factorisations, rejected steps.
-    pub work: [u64; 8],
+    /// ball tests, factorisations, rejected steps.
+    pub work: [u64; 9],
     /// With error control: largest overlap (m), error of the step before, smallest and largest
     /// step (s).
     #[serde(skip_serializing_if = "Option::is_none", default)]
@@ -274,6 +274,7 @@ pub(crate) fn state_file(
             energy.cage_contact,
             energy.gravity,
             energy.foundation,
+            energy.ball_contact,
         ],
         largest_contact_energy: checkpoint.largest_contact_energy,
         work: [
@@ -283,6 +284,7 @@ pub(crate) fn state_file(
             work.slices,
             work.pocket_tests,
             work.guide_tests,
+            work.ball_tests,
             work.factorisations,
             work.rejected_steps,
         ],
@@ -298,7 +300,7 @@ fn cause(name: &str) -> Option<Cause> {
 
 pub(crate) fn checkpoint(file: &StateFile) -> Checkpoint {
     let [oscillation, decay] = file.step_watch.stiffest;
-    let [kinetic, contact, cage_contact, gravity, foundation] = file.first_energy;
+    let [kinetic, contact, cage_contact, gravity, foundation, ball_contact] = file.first_energy;
     let [
         evaluations,
         distance_tests,
@@ -306,6 +308,7 @@ pub(crate) fn checkpoint(file: &StateFile) -> Checkpoint {
         slices,
         pocket_tests,
         guide_tests,
+        ball_tests,
         factorisations,
         rejected_steps,
     ] = file.work;
@@ -333,7 +336,7 @@ pub(crate) fn checkpoint(file: &StateFile) -> Checkpoint {
         state: file.state.clone(),
         damping: file.damping.clone(),
         was_loaded: file.was_loaded.clone(),
-        first_energy: Energy { kinetic, contact, cage_contact, gravity, foundation },
+        first_energy: Energy { kinetic, contact, cage_contact, gravity, foundation, ball_contact },
         largest_contact_energy: file.largest_contact_energy,
         work: Work {
             evaluations,
@@ -342,6 +345,7 @@ pub(crate) fn checkpoint(file: &StateFile) -> Checkpoint {
             slices,
             pocket_tests,
             guide_tests,
+            ball_tests,
             factorisations,
             rejected_steps,
         },

@@ -1,6 +1,7 @@
 //! From a resolved scene to the bearing in motion that it describes.
 
-use crate::ch2_housing::bearing::hertz::{HertzError, RaceSide, contact};
+use crate::ch2_housing::bearing::ball_contact::{BallContactLaw, equal_spheres};
+use crate::ch2_housing::bearing::hertz::{HertzError, RaceSide, contact, effective_modulus};
 use crate::ch2_housing::bearing::inertia;
 use crate::scene::resolved::{CageInRun, RunSettings, Scene};
 use crate::solver::dynamics::model::{DynamicProblem, RaceBody};
@@ -63,6 +64,11 @@ pub fn dynamic_problem(scene: &Scene) -> Result<DynamicProblem, DynamicsError> {
         slices: dynamics.slices,
         heathcote: dynamics.heathcote,
         damping: dynamics.damping,
+        ball_contact: dynamics.ball_friction.map(|[friction, regularisation_speed]| {
+            let modulus = effective_modulus(&scene.ball_material, &scene.ball_material);
+            let stiffness = equal_spheres(modulus, geometry.ball_radius);
+            BallContactLaw { stiffness, friction, regularisation_speed }
+        }),
         gravity: scene.gravity,
         rotating_load: dynamics.rotating_load.clone(),
         unbalance: dynamics.unbalance,

@@ -16,6 +16,7 @@ pub const POCKETS: &[&str] = &["cylindrical", "spherical"];
 pub const CAGE_LAWS: &[&str] = &["penalty", "hertz"];
 pub const TRACTION_LAWS: &[&str] = &["none", "constant", "slide-to-roll", "slip-speed", "table"];
 pub const DAMPING_LAWS: &[&str] = &["none", "hunt-crossley", "lankarani-nikravesh"];
+pub const BALL_CONTACT_LAWS: &[&str] = &["none", "hertz"];
 pub const STARTS: &[&str] = &["equilibrium", "nominal"];
 pub const INTEGRATORS: &[&str] = &["rk4", "dormand-prince", "rosenbrock"];
 /// Names of [`ChannelGroup::ALL`].
@@ -179,6 +180,16 @@ pub(super) const KEYS: &[Key] = &[
         Default { value: "1e-3 m/s", reason: "contacts that begin at rest need a speed of approach" },
         "Least speed of approach that `lankarani-nikravesh` divides by."),
 
+    Key::new("ball_contact.law", Kind::Choice(BALL_CONTACT_LAWS),
+        Default { value: "hertz", reason: "balls that no cage keeps apart touch as equal spheres; the source's have cages" },
+        "Contact between neighbouring balls. With `none` a run in which they meet ends with an error."),
+    Key::new("ball_contact.friction", FRICTION,
+        Default { value: "0.1", reason: "as in the contacts of the source's cage, section 5.3.2" },
+        "Friction coefficient of `hertz`.").hint(FRICTION_HINT).example_of("0.1"),
+    quantity("ball_contact.regularisation_speed", SLIP,
+        Default { value: "0.01 m/s", reason: "as in the contacts of the cage" },
+        "Sliding speed below which the friction between balls is rounded off.").hint(SLIP_HINT),
+
     quantity("numerics.end", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("required for a run"), "Time at which the run ends.").hint("a run of seconds takes seconds to minutes; check the unit"),
     quantity("numerics.step", Kind::Quantity(Time, closed(1e-12, 1e-2, "s")), Optional,
         "Fixed step; leave it out, and it follows from the stability limit.").group("step").hint(STEP_HINT).example_of("1 us"),
@@ -232,5 +243,7 @@ pub(super) const TABLES: &[Table] = &[
         "[traction]\nlaw = \"constant\"\ncoefficient = 0.05\nregularisation_speed = \"0.01 m/s\""),
     table("contact_damping", "Loss in the contacts between balls and races in a run; keys as for `traction`.",
         "[contact_damping]\nlaw = \"hunt-crossley\"\nalpha = \"0.1 s/m\""),
+    table("ball_contact", "Contact between balls in a run, where no cage keeps them apart; keys as for `traction`.",
+        "[ball_contact]\nfriction = 0.05"),
     table("numerics", "How a run is computed.", "[numerics]\nend = \"0.1 s\""),
 ];

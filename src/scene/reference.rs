@@ -20,6 +20,7 @@ pub fn reference_markdown() -> String {
         "ball_forces",
         "traction",
         "contact_damping",
+        "ball_contact",
         "housing",
         "solid",
         "modes",

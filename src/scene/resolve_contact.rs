@@ -1,4 +1,4 @@
-//! Traction and damping between balls and races.
+//! Traction and damping between balls and races, friction between balls.
 
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
@@ -134,4 +134,25 @@ pub(crate) fn damping(reader: &mut Reader) -> Result<ContactDamping, SceneError>
         },
         _ => ContactDamping::None,
     })
+}
+
+/// Friction coefficient and regularisation speed (m/s) between balls; defaults count as used where
+/// balls can meet.
+pub(crate) fn ball_friction(
+    reader: &mut Reader,
+    balls_meet: bool,
+) -> Result<Option<[f64; 2]>, SceneError> {
+    let given = reader.choice_if_given("ball_contact.law");
+    if given == Some("none") {
+        return Ok(None);
+    }
+    let [friction, speed] = ["ball_contact.friction", "ball_contact.regularisation_speed"];
+    if !balls_meet {
+        let value = |path, usual| reader.given_number(path).unwrap_or(usual);
+        return Ok(Some([value(friction, 0.1), value(speed, 0.01)]));
+    }
+    if given.is_none() {
+        reader.note_default("ball_contact.law");
+    }
+    Ok(Some([reader.number(friction).unwrap_or(0.1), reader.number(speed).unwrap_or(0.01)]))
 }

@@ -4,12 +4,12 @@ use crate::ch2_housing::bearing::geometry::{BearingGeometry, Material};
 use crate::ch2_housing::bearing::inertia::{Inertia, grooved_ring};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::Reader;
-use crate::scene::resolved::{Cage, Dimensions, Dynamics, RunSettings};
+use crate::scene::resolved::{Cage, CageInRun, Dimensions, Dynamics, RunSettings};
 use crate::scene::units::plain;
 use crate::scene::value::Checked;
 use crate::scene::{resolve_cage, resolve_contact};
 use crate::solver::channels::ChannelGroup;
-use crate::solver::dynamics::model::{Drive, RaceBody, RotatingLoad, Rotation};
+use crate::solver::dynamics::model::{Drive, RaceBody, RotatingLoad, Rotation, gap_in_pockets};
 use crate::solver::dynamics::run::{Integrator, RunOptions, Start, Stepping};
 use crate::solver::profile::Profile;
 use crate::solver::statics::COORDINATE_NAMES;
@@ -35,10 +35,16 @@ pub(crate) fn dynamics(
         foundation_stiffness: [0.0; 5],
         foundation_damping: [0.0; 5],
     };
+    let outer = outer_race(reader, parts)?;
+    let cage = resolve_cage::in_run(reader, parts.geometry, parts.cage)?;
+    let balls_meet = match &cage {
+        CageInRun::Body(body) => gap_in_pockets(parts.geometry, &body.contacts).is_none(),
+        CageInRun::LeftOut(_) => true,
+    };
     Ok(Dynamics {
         inner,
-        outer: outer_race(reader, parts)?,
-        cage: resolve_cage::in_run(reader, parts.geometry, parts.cage)?,
+        outer,
+        cage,
         rotating_load: rotating_load(reader)?,
         unbalance: reader.given_number("inner_race.unbalance").unwrap_or(0.0),
         traction: resolve_contact::traction(reader)?,
@@ -46,6 +52,7 @@ pub(crate) fn dynamics(
         slices: reader.number("traction.slices").unwrap_or(15.0) as usize,
         heathcote: heathcote(reader),
         damping: resolve_contact::damping(reader)?,
+        ball_friction: resolve_contact::ball_friction(reader, balls_meet)?,
         run: run(reader)?,
         plots: Vec::new(),
         defaults_used: Vec::new(),

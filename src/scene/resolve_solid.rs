@@ -33,8 +33,15 @@ pub fn resolve_subject(document: &Document) -> Result<Subject, SceneError> {
     let Some(solid) = document.first_below("solid") else {
         return Ok(Subject::Bearing(Box::new(resolve(document)?)));
     };
-    const OF_A_BEARING: [&str; 6] =
-        ["bearing", "inner_race", "outer_race", "ball_forces", "traction", "contact_damping"];
+    const OF_A_BEARING: [&str; 7] = [
+        "bearing",
+        "inner_race",
+        "outer_race",
+        "ball_forces",
+        "traction",
+        "contact_damping",
+        "ball_contact",
+    ];
     if let Some(other) = OF_A_BEARING.iter().find_map(|part| document.first_below(part)) {
         let reason = "a bearing and a solid in one scene are coupled by a [housing] table";
         let advice = format!("add it, or leave out `{other}`, or `{solid}` and all beside it");

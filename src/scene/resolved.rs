@@ -122,6 +122,8 @@ pub struct Dynamics {
     pub slices: usize,
     pub heathcote: bool,
     pub damping: ContactDamping,
+    /// Friction coefficient and regularisation speed (m/s) of the contact between balls.
+    pub ball_friction: Option<[f64; 2]>,
     /// `None` where the scene gives no end.
     pub run: Option<RunSettings>,
     pub plots: Vec<RunPlot>,

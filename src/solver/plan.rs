@@ -2,7 +2,7 @@
 //! has, and can be asked why.
 
 use super::channels::ChannelGroup;
-use super::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
+use super::dynamics::model::{BallMeeting, Drive, DynamicProblem, RaceBody, Rotation};
 use super::dynamics::run::{Integrator, RunOptions, Start, Stepping};
 use super::statics::{Condition, StaticProblem};
 use crate::ch2_housing::bearing::cage::Guidance;
@@ -91,6 +91,7 @@ pub fn dynamics(
         contact_damping(&problem.damping),
     ];
     stages.extend(cage(problem, cage_left_out));
+    stages.push(ball_contact(problem));
     stages.push(if problem.gravity != [0.0; 3] {
         stage("gravity", true, "given; it acts on every body that moves")
     } else {
@@ -222,6 +223,25 @@ fn cage(problem: &DynamicProblem, left_out: Option<&str>) -> Vec<Stage> {
             }
         },
     ]
+}
+
+fn ball_contact(problem: &DynamicProblem) -> Stage {
+    let balls = problem.geometry.ball_count;
+    let name = "contact between balls";
+    match problem.ball_meeting() {
+        BallMeeting::Tested => {
+            let reason = format!("{balls} pairs of neighbours; a pair apart costs a distance test");
+            stage(name, true, reason)
+        }
+        BallMeeting::NoLaw => {
+            stage(name, false, "law none: balls that run into each other end the run")
+        }
+        BallMeeting::KeptApart { gap } => {
+            let gap = gap * 1e3;
+            let reason = format!("pockets keep balls apart, by {gap:.3} mm at least: no test");
+            stage(name, false, reason)
+        }
+    }
 }
 
 /// How many of its six coordinates follow from loads.

@@ -2,9 +2,11 @@
 #![allow(dead_code)]
 
 use crate::common::{FREE, problem};
+use bearing_dynamics::ch2_housing::bearing::ball_contact::{BallContactLaw, equal_spheres};
 use bearing_dynamics::ch2_housing::bearing::cage::{CageContacts, CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
-use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
+use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, Material};
+use bearing_dynamics::ch2_housing::bearing::hertz::effective_modulus;
 use bearing_dynamics::ch2_housing::bearing::inertia::{self, Inertia};
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::solver::dynamics::contacts::Driver;
@@ -58,9 +60,20 @@ pub fn bearing(geometry: BearingGeometry, loads: [f64; 5], speed: f64) -> Dynami
         slices: 15,
         heathcote: false,
         damping: ContactDamping::None,
+        ball_contact: Some(ball_law(&geometry)),
         gravity: [0.0; 3],
         rotating_load: None,
         unbalance: 0.0,
+    }
+}
+
+/// Steel balls with friction.
+pub fn ball_law(geometry: &BearingGeometry) -> BallContactLaw {
+    let modulus = effective_modulus(&Material::STEEL, &Material::STEEL);
+    BallContactLaw {
+        stiffness: equal_spheres(modulus, geometry.ball_radius),
+        friction: 0.1,
+        regularisation_speed: 0.01,
     }
 }
 

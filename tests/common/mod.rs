@@ -38,3 +38,13 @@ pub fn problem(geometry: BearingGeometry, conditions: [Condition; 5]) -> StaticP
         conditions,
     }
 }
+
+/// A deep-groove bearing whose balls nearly fill the pitch circle: neighbours are `gap` (m) apart.
+pub fn full_complement(balls: usize, gap: f64, clearance: f64) -> BearingGeometry {
+    let radius = 5.953e-3;
+    let pitch = (radius + 0.5 * gap) / (std::f64::consts::PI / balls as f64).sin();
+    let (inner, outer) = (pitch - radius, pitch + radius);
+    let through = ClearanceThrough::OuterRace;
+    BearingGeometry::deep_groove(balls, inner, 6.013e-3, outer, 6.310e-3, radius)
+        .with_radial_clearance(clearance, through)
+}

@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 pub mod common;
 
+use bearing_dynamics::ch2_housing::bearing::ball_contact::{BallContactLaw, equal_spheres};
 use bearing_dynamics::ch2_housing::bearing::cage::{CageContacts, CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::{self, Inertia};
@@ -39,6 +40,11 @@ pub fn frictionless() -> DynamicProblem {
         slices: 15,
         heathcote: false,
         damping: ContactDamping::None,
+        ball_contact: Some(BallContactLaw {
+            stiffness: equal_spheres(210e9 / 0.91, geometry.ball_radius),
+            friction: 0.1,
+            regularisation_speed: 0.01,
+        }),
         gravity: [0.0; 3],
         rotating_load: None,
         unbalance: 0.0,

@@ -63,6 +63,7 @@ pub fn moving(
         slices: 15,
         heathcote: false,
         damping: ContactDamping::None,
+        ball_contact: None,
         gravity: [0.0; 3],
         rotating_load: None,
         unbalance: 0.0,

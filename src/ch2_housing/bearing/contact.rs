@@ -133,6 +133,8 @@ pub struct RaceLaw {
     pub stiffness: f64,
     /// Semi-major axis of the contact ellipse over √δ, m^0.5.
     pub semi_major_factor: f64,
+    /// On which side of its circle the groove has material: +1 outside (outer race), −1 inside.
+    pub outward: f64,
 }
 
 /// Normal contact of one ball with one race, in inertial axes.
@@ -166,6 +168,8 @@ pub fn race_contact(
     let outward = scale(across, 1.0 / radial);
     let from_axial = axial - law.centre_axial;
     let from_radial = radial - law.centre_radius;
+    // No groove closes over its ball: past 90° its walls go on straight. NaN stays.
+    let from_radial = if law.outward * from_radial < 0.0 { 0.0 } else { from_radial };
     let distance = (from_axial * from_axial + from_radial * from_radial).sqrt();
     let per_distance = 1.0 / if distance > 0.0 { distance } else { 1.0 };
     let normal =

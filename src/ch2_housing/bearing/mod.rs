@@ -2,6 +2,7 @@
 //!
 //! Axes: X axial, Z up, Y lateral. Ball azimuth is measured from +Y towards +Z, so that a ball
 //! at 90° sits on +Z and one at 270° on −Z (the convention of Fig. 3.31).
+pub mod ball_contact;
 pub mod cage;
 pub mod contact;
 pub mod elliptic;

@@ -243,9 +243,10 @@ pub fn run_settings(path: &Path, scene: &HousedScene) -> Fallible<RunSettings> {
 /// Defaults in use for bearing, seat and housing; of a course of equilibria without what only
 /// motion needs.
 pub fn defaults(scene: &HousedScene) -> Vec<DefaultUsed> {
-    const OF_MOTION: [&str; 7] = [
+    const OF_MOTION: [&str; 8] = [
         "traction",
         "contact_damping",
+        "ball_contact",
         "numerics.start",
         "numerics.integrator",
         "numerics.step_fraction",

@@ -6,7 +6,7 @@ use crate::ch2_housing::bearing::traction::{Motion, Sliding, TractionLaw, slidin
 use crate::kinematics::vec3::{dot, sub};
 use crate::output::series::{Column, Series, SeriesError};
 use crate::solver::channels::ChannelGroup;
-use crate::solver::dynamics::model::DynamicProblem;
+use crate::solver::dynamics::model::{BallMeeting, DynamicProblem};
 use crate::solver::dynamics::race::{RaceNow, tilts_of};
 use crate::solver::dynamics::run::{Simulation, Snapshot};
 use crate::solver::dynamics::state::{BODY, BodyState, Ledger, POSITION, SPIN, VELOCITY};
@@ -24,6 +24,7 @@ enum Term {
     CageContact,
     Gravity,
     Foundation,
+    BallContact,
     Work(Ledger),
     Residual,
 }
@@ -356,6 +357,7 @@ fn add_columns(
 /// What can differ from zero in this problem.
 fn terms(problem: &DynamicProblem) -> Vec<Term> {
     let cage = problem.cage.is_some();
+    let meet = problem.ball_meeting() == BallMeeting::Tested;
     let on_foundation = [Some(&problem.inner), problem.outer.as_ref()]
         .into_iter()
         .flatten()
@@ -366,10 +368,12 @@ fn terms(problem: &DynamicProblem) -> Vec<Term> {
         (Term::CageContact, cage),
         (Term::Gravity, problem.gravity != [0.0; 3]),
         (Term::Foundation, on_foundation),
+        (Term::BallContact, meet),
         (Term::Work(Ledger::Traction), problem.traction != TractionLaw::None),
         (Term::Work(Ledger::ContactDamping), problem.damping != ContactDamping::None),
         (Term::Work(Ledger::CageFriction), cage),
         (Term::Work(Ledger::Foundation), on_foundation),
+        (Term::Work(Ledger::BallFriction), meet),
         (Term::Work(Ledger::Drives), true),
         (Term::Residual, true),
     ];
@@ -383,10 +387,12 @@ fn term_name(term: Term) -> &'static str {
         Term::CageContact => "energy_cage_contact",
         Term::Gravity => "energy_gravity",
         Term::Foundation => "energy_foundation",
+        Term::BallContact => "energy_ball_contact",
         Term::Work(Ledger::Traction) => "work_traction",
         Term::Work(Ledger::ContactDamping) => "work_contact_damping",
         Term::Work(Ledger::CageFriction) => "work_cage_friction",
         Term::Work(Ledger::Foundation) => "work_foundation_damping",
+        Term::Work(Ledger::BallFriction) => "work_ball_friction",
         Term::Work(Ledger::Drives) => "work_drives",
         Term::Residual => "energy_residual",
     }
@@ -399,6 +405,7 @@ fn energy_term(term: Term, snapshot: &Snapshot) -> f64 {
         Term::CageContact => snapshot.energy.cage_contact,
         Term::Gravity => snapshot.energy.gravity,
         Term::Foundation => snapshot.energy.foundation,
+        Term::BallContact => snapshot.energy.ball_contact,
         Term::Work(entry) => snapshot.ledger[entry as usize],
         Term::Residual => snapshot.residual,
     }

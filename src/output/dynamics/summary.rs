@@ -116,6 +116,7 @@ pub fn run_summary(
             "slices": work.slices,
             "pocket_tests": work.pocket_tests,
             "guide_tests": work.guide_tests,
+            "ball_tests": work.ball_tests,
             "factorisations": work.factorisations,
             "rejected_steps": work.rejected_steps,
         }),

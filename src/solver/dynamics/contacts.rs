@@ -65,6 +65,8 @@ pub struct Work {
     pub slices: u64,
     pub pocket_tests: u64,
     pub guide_tests: u64,
+    /// Of neighbouring balls.
+    pub ball_tests: u64,
     /// Of the matrix of a linearly implicit step.
     pub factorisations: u64,
     /// Attempts that the error control threw away.

@@ -19,11 +19,18 @@ pub struct Energy {
     pub gravity: f64,
     /// Stored in the foundation's springs.
     pub foundation: f64,
+    /// Stored in contacts between balls.
+    pub ball_contact: f64,
 }
 
 impl Energy {
     pub fn total(&self) -> f64 {
-        self.kinetic + self.contact + self.cage_contact + self.gravity + self.foundation
+        self.kinetic
+            + self.contact
+            + self.cage_contact
+            + self.gravity
+            + self.foundation
+            + self.ball_contact
     }
 }
 
@@ -68,6 +75,11 @@ impl System {
             for i in 0..layout.balls {
                 let overlap = self.table.contact[race * layout.padded + i].overlap;
                 energy.contact += strain_energy(law.stiffness, overlap);
+            }
+        }
+        if let Some(law) = &problem.ball_contact {
+            for meeting in &self.meetings {
+                energy.ball_contact += strain_energy(law.stiffness, meeting.overlap);
             }
         }
         for (body, now) in races {

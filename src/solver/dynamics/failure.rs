@@ -52,6 +52,20 @@ pub enum SimulationError {
     )]
     BallOutside { ball: usize, time: f64, step: u64, distance: f64, ball_radius: f64 },
     #[error(
+        "the inner race has left the bearing at t = {at} s, step {step}: it is {distance:.3e} m off {way}, \
+         farther than the {allowed:.3e} m of a ball's radius and all play of the grooves; nothing holds \
+         it against its loads or given motion (balls gathered on one side, an axial load that opens the bearing?)",
+        at = rounded(*time)
+    )]
+    RaceLeft { way: &'static str, distance: f64, allowed: f64, time: f64, step: u64 },
+    #[error(
+        "{one} is {depth:.3e} m inside {other} at t = {at} s, step {step}, deeper than the {allowed:.3e} m \
+         of a tenth of a ball's radius, where no contact law holds any more; check loads and stiffnesses, \
+         or take shorter steps (numerics.step, numerics.accuracy)",
+        at = rounded(*time)
+    )]
+    Inside { one: String, other: String, depth: f64, allowed: f64, time: f64, step: u64 },
+    #[error(
         "energy is lost or made: {residual:.3e} J of {turned_over:.3e} J are unaccounted for at \
          t = {at} s, step {step} (limit {limit}); take a smaller step or accuracy (numerics.step, \
          numerics.accuracy), or allow more (numerics.energy_limit)",

@@ -1,5 +1,7 @@
 //! What is simulated: bodies, contacts, loads and prescribed motions, as plain data.
 
+use super::bounds::HERTZ_SCALE;
+use crate::ch2_housing::bearing::ball_contact::BallContactLaw;
 use crate::ch2_housing::bearing::cage::CageContacts;
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
@@ -7,6 +9,7 @@ use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::solver::profile::Profile;
+use std::f64::consts::PI;
 
 /// One degree of freedom of a race: driven by a load, or its motion given.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,6 +122,8 @@ pub struct DynamicProblem {
     /// Whether the curvature of the contact surface across the groove makes its edges slide.
     pub heathcote: bool,
     pub damping: ContactDamping,
+    /// Between neighbouring balls; `None` lets them pass into each other, which ends the run.
+    pub ball_contact: Option<BallContactLaw>,
     /// m/s².
     pub gravity: [f64; 3],
     pub rotating_load: Option<RotatingLoad>,
@@ -148,6 +153,45 @@ impl DynamicProblem {
     pub fn jolts_at(&self, time: f64) -> bool {
         let mut given = self.races().flat_map(RaceBody::given);
         given.any(|profile| profile.corners().contains(&time))
+    }
+}
+
+/// Whether neighbouring balls can meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BallMeeting {
+    /// Their contact is part of every evaluation.
+    Tested,
+    /// No law is given for it.
+    NoLaw,
+    /// The pockets keep them apart by at least `gap` (m).
+    KeptApart { gap: f64 },
+}
+
+/// How far inside the pitch circle a ball may come for its pocket to keep it apart, in ball radii:
+/// more than the grooves leave it, by far.
+const INWARDS: f64 = 0.5;
+
+/// The gap (m) that the pockets of a cage keep between neighbouring balls; `None` where they may meet.
+///
+/// Each ball stays on its side of the plane halfway between two pockets as long as it lies no deeper
+/// in its pocket's wall than any run goes on with.
+pub fn gap_in_pockets(geometry: &BearingGeometry, cage: &CageContacts) -> Option<f64> {
+    let radius = geometry.ball_radius;
+    let aside = cage.pocket_radius - radius + HERTZ_SCALE * radius;
+    let pitch = geometry.pitch_radius.min(cage.pocket_pitch_radius);
+    let (sin, cos) = libm::sincos(PI / geometry.ball_count as f64);
+    let inmost = pitch - INWARDS * radius - aside;
+    Some(2.0 * (inmost * sin - aside * cos - radius)).filter(|gap| *gap > 0.0)
+}
+
+impl DynamicProblem {
+    pub fn ball_meeting(&self) -> BallMeeting {
+        if self.ball_contact.is_none() {
+            return BallMeeting::NoLaw;
+        }
+        let kept =
+            self.cage.as_ref().and_then(|cage| gap_in_pockets(&self.geometry, &cage.contacts));
+        kept.map_or(BallMeeting::Tested, |gap| BallMeeting::KeptApart { gap })
     }
 }
 

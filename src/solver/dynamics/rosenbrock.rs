@@ -91,8 +91,9 @@ impl Rosenbrock {
         before: &[f64],
         state: &mut [f64],
     ) {
-        let entries = [Ledger::Traction, Ledger::ContactDamping, Ledger::CageFriction]
-            .map(|e| system.layout.ledger_entry(e));
+        let entries =
+            [Ledger::Traction, Ledger::ContactDamping, Ledger::CageFriction, Ledger::BallFriction]
+                .map(|e| system.layout.ledger_entry(e));
         let first = entries.map(|at| self.first[at]);
         self.begin(system, t, state);
         for (at, first) in entries.into_iter().zip(first) {

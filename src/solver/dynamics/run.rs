@@ -10,10 +10,9 @@ use super::rk4::RungeKutta;
 use super::rosenbrock::{self, Rosenbrock};
 use super::stability::{StepLimit, step_limit};
 use super::start;
-use super::state::{BODY, LEDGER, Layout, Ledger, POSITION};
+use super::state::{LEDGER, Layout, Ledger};
 use super::step_watch::{StepWatch, Stiffness, stiffness};
 use super::system::{Instant, System};
-use crate::kinematics::vec3::{add_scaled, dot, norm, sub};
 
 pub use super::failure::SimulationError;
 
@@ -263,7 +262,7 @@ impl Simulation {
             control,
             integrator,
             attempt: Attempt::new(length),
-            largest_contact_energy: first_energy.contact,
+            largest_contact_energy: first_energy.contact + first_energy.ball_contact,
             first_energy,
             ledger_before,
             was_loaded,
@@ -304,7 +303,8 @@ impl Simulation {
     /// One step; checks what can be checked cheaply.
     ///
     /// # Errors
-    /// A value that is not finite, or a ball outside its races; the state is that after the step.
+    /// A value that is not finite, or a state that has lost its meaning (see [`super::bounds`]): the state
+    /// is that after the step.
     pub fn step(&mut self) -> Result<(), SimulationError> {
         self.step_by(self.step_size).map(|_| ())
     }
@@ -379,49 +379,6 @@ impl Simulation {
         self.take_first_rates();
     }
 
-    /// Non-finite values spread within a step from any body to the races' velocities, so that a
-    /// look at the balls' and races' positions finds them all.
-    fn watch(&self) -> Result<(), SimulationError> {
-        let layout = self.system.layout;
-        let (time, step) = (self.time, self.steps);
-        let not_finite = |body: String| SimulationError::NotFinite { body, time, step };
-        let geometry = &self.system.problem.geometry;
-        let outer = &self.state[layout.outer()..layout.outer() + BODY];
-        let outer = super::state::BodyState::from_slice(outer);
-        let axis = outer.axis();
-        for ball in 0..layout.balls {
-            let position = layout.ball_vector(&self.state, POSITION, ball);
-            let arm = sub(position, outer.position);
-            let axial = dot(arm, axis);
-            let radial = norm(add_scaled(arm, -axial, axis));
-            let distance = libm::hypot(axial, radial - geometry.pitch_radius);
-            if !distance.is_finite() {
-                return Err(not_finite(format!("ball {}", ball + 1)));
-            }
-            if distance > geometry.ball_radius {
-                return Err(SimulationError::BallOutside {
-                    ball: ball + 1,
-                    time,
-                    step,
-                    distance,
-                    ball_radius: geometry.ball_radius,
-                });
-            }
-        }
-        let named = [
-            ("the inner race", layout.inner(), true),
-            ("the outer race", layout.outer(), self.system.problem.outer.is_some()),
-            ("the cage", layout.cage(), layout.has_cage),
-        ];
-        for (name, at, present) in named {
-            let finite = !present || self.state[at..at + BODY].iter().all(|v| v.is_finite());
-            if !finite {
-                return Err(not_finite(name.into()));
-            }
-        }
-        Ok(())
-    }
-
     /// Loads, energies and ledger at the present state.
     ///
     /// # Errors
@@ -435,7 +392,8 @@ impl Simulation {
         let residual = energy.total()
             - self.first_energy.total()
             - (ledger.iter().sum::<f64>() - self.ledger_before);
-        self.largest_contact_energy = self.largest_contact_energy.max(energy.contact);
+        let strain = energy.contact + energy.ball_contact;
+        self.largest_contact_energy = self.largest_contact_energy.max(strain);
         let mut turned_over: f64 =
             self.largest_contact_energy + ledger.iter().map(|entry| entry.abs()).sum::<f64>();
         // Error control keeps the motion, and with it a part of the energy of all motion; steps that

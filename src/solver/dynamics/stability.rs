@@ -22,21 +22,25 @@ pub struct StepLimit {
 pub enum Cause {
     Contact,
     CageContact,
+    BallContact,
     FoundationSpring,
     Traction,
     ContactDamping,
     CageFriction,
+    BallFriction,
     FoundationDashpot,
 }
 
 impl Cause {
-    pub const ALL: [Cause; 7] = [
+    pub const ALL: [Cause; 9] = [
         Cause::Contact,
         Cause::CageContact,
+        Cause::BallContact,
         Cause::FoundationSpring,
         Cause::Traction,
         Cause::ContactDamping,
         Cause::CageFriction,
+        Cause::BallFriction,
         Cause::FoundationDashpot,
     ];
 
@@ -44,10 +48,12 @@ impl Cause {
         match self {
             Cause::Contact => "stiffest contact",
             Cause::CageContact => "contact of the cage",
+            Cause::BallContact => "contact between balls",
             Cause::FoundationSpring => "spring of the foundation",
             Cause::Traction => "traction onset",
             Cause::ContactDamping => "contact damping",
             Cause::CageFriction => "friction onset of the cage",
+            Cause::BallFriction => "friction onset between balls",
             Cause::FoundationDashpot => "dashpot of the foundation",
         }
     }
@@ -83,6 +89,17 @@ impl Cause {
                 .cage
                 .as_mut()
                 .is_some_and(|cage| std::mem::replace(&mut cage.contacts.friction, 0.0) != 0.0),
+            Cause::BallContact | Cause::BallFriction => {
+                let touching = system.meetings.iter().any(|meeting| meeting.normal_load > 0.0);
+                let Some(law) = system.problem.ball_contact.as_mut().filter(|_| touching) else {
+                    return false;
+                };
+                let part = match self {
+                    Cause::BallContact => &mut law.stiffness,
+                    _ => &mut law.friction,
+                };
+                std::mem::replace(part, 0.0) != 0.0
+            }
             Cause::FoundationSpring => races(system, |race| &mut race.foundation_stiffness),
             Cause::FoundationDashpot => races(system, |race| &mut race.foundation_damping),
         }
@@ -102,7 +119,7 @@ impl StepLimit {
             return format!("{name}: oscillation at {:.0} Hz", im.abs() / std::f64::consts::TAU);
         }
         let what = match self.cause {
-            Cause::Traction | Cause::CageFriction => "slip",
+            Cause::Traction | Cause::CageFriction | Cause::BallFriction => "slip",
             _ => "motion",
         };
         format!("{name}: {what} decays at {:.2e} 1/s", -re)
@@ -228,9 +245,15 @@ pub fn step_limit(system: &mut System, t: f64, state: &[f64]) -> Option<StepLimi
 /// a tenth of difference.
 fn cause(system: &mut System, t: f64, state: &[f64], step: f64, eigenvalue: Complex<f64>) -> Cause {
     let candidates: &[Cause] = if StepLimit::decays(eigenvalue) {
-        &[Cause::Traction, Cause::ContactDamping, Cause::CageFriction, Cause::FoundationDashpot]
+        &[
+            Cause::Traction,
+            Cause::ContactDamping,
+            Cause::CageFriction,
+            Cause::BallFriction,
+            Cause::FoundationDashpot,
+        ]
     } else {
-        &[Cause::CageContact, Cause::FoundationSpring]
+        &[Cause::CageContact, Cause::BallContact, Cause::FoundationSpring]
     };
     let mut found = (1.1 * step, Cause::Contact);
     for &candidate in candidates {

@@ -26,9 +26,10 @@ pub enum Ledger {
     /// Dashpots of a foundation, or all that a housing does to the outer race.
     Foundation,
     Drives,
+    BallFriction,
 }
 
-pub const LEDGER: usize = 5;
+pub const LEDGER: usize = 6;
 
 /// Where everything is in the state vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,7 +10,7 @@ use super::run::{Integrator, Simulation, SimulationError, Stepping};
 use super::stability::step_limit;
 use super::system::System;
 use crate::ch2_housing::bearing::cage::CageForce;
-use crate::ch2_housing::bearing::contact::normal_load;
+use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
 use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient_and_slope};
 
 /// Steps from one look at the contacts to the next.
@@ -79,6 +79,16 @@ pub fn stiffness(system: &System) -> Stiffness {
             decay: (slope * system.table.load[pair] * at_surface)
                 .max(system.damping[pair] * elastic * per_mass),
         });
+    }
+    if let Some(law) = &problem.ball_contact {
+        for meeting in system.meetings.iter().filter(|meeting| meeting.normal_load > 0.0) {
+            most = most.largest(&Stiffness {
+                // Both balls move.
+                oscillation: 2.0 * per_mass * normal_stiffness(law.stiffness, meeting.overlap),
+                decay: 2.0 * at_surface * law.friction * meeting.normal_load
+                    / law.regularisation_speed,
+            });
+        }
     }
     let Some(cage) = &problem.cage else { return most };
     let of_cage = |load: f64, depth: f64, moved: f64| Stiffness {

@@ -1,18 +1,19 @@
 //! The equations of motion: state in, rates out.
 
 use super::contacts::{self, ContactLaws, ContactTable, Driver, Want, Work};
-use super::model::{DynamicProblem, RaceBody, Rotation};
+use super::model::{BallMeeting, DynamicProblem, RaceBody, Rotation};
 use super::race::{self, RaceLoads, RaceNow};
 use super::state::{
     BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
 };
+use crate::ch2_housing::bearing::ball_contact::{BallContact, ball_contact};
 use crate::ch2_housing::bearing::cage::{
     AxisMotion, CageContact, Guidance, guide_contact, pocket_contact,
 };
 use crate::ch2_housing::bearing::contact::{ContactDamping, RaceLaw, normal_load};
 use crate::ch2_housing::bearing::geometry::Raceway;
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
-use crate::ch2_housing::bearing::traction::{Slices, TractionLaw};
+use crate::ch2_housing::bearing::traction::{Motion, Slices, TractionLaw};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -30,6 +31,8 @@ pub struct System {
     /// Contacts of the cage with each ball, then with the guiding race at both ends.
     pub pockets: Vec<CageContact>,
     pub guides: [CageContact; 2],
+    /// Each ball with the next one; empty where they cannot meet.
+    pub meetings: Vec<BallContact>,
     /// Profiles are read no later than this, s: in a step that ends at a corner, just before it, so
     /// that no stage sees what comes after. Infinite otherwise.
     pub latest: f64,
@@ -51,7 +54,7 @@ pub struct Instant {
     pub on_outer: RaceLoads,
 }
 
-fn race_law(raceway: &Raceway, hertz: &HertzContact, ball_radius: f64) -> RaceLaw {
+fn race_law(raceway: &Raceway, hertz: &HertzContact, ball_radius: f64, outward: f64) -> RaceLaw {
     // a ∝ W^(1/3) and W = K δ^(3/2), so a = a(K)·√δ.
     RaceLaw {
         centre_axial: raceway.centre_axial,
@@ -59,6 +62,7 @@ fn race_law(raceway: &Raceway, hertz: &HertzContact, ball_radius: f64) -> RaceLa
         room: raceway.groove_radius - ball_radius,
         stiffness: hertz.stiffness,
         semi_major_factor: contact_ellipse(hertz, hertz.stiffness).semi_major,
+        outward,
     }
 }
 
@@ -72,8 +76,8 @@ impl System {
         };
         let laws = ContactLaws {
             races: [
-                race_law(&problem.geometry.inner, &problem.inner_contact, radius),
-                race_law(&problem.geometry.outer, &problem.outer_contact, radius),
+                race_law(&problem.geometry.inner, &problem.inner_contact, radius, -1.0),
+                race_law(&problem.geometry.outer, &problem.outer_contact, radius, 1.0),
             ],
             ball_radius: radius,
             traction: problem.traction.clone(),
@@ -91,11 +95,16 @@ impl System {
             ContactDamping::HuntCrossley { alpha } => 1.5 * alpha,
             ContactDamping::None | ContactDamping::LankaraniNikravesh { .. } => 0.0,
         };
+        let meetings = match problem.ball_meeting() {
+            BallMeeting::Tested => neighbours(layout.balls),
+            BallMeeting::NoLaw | BallMeeting::KeptApart { .. } => 0,
+        };
         System {
             table: ContactTable::new(&layout),
             damping: vec![alpha; 2 * layout.padded],
             pockets: vec![CageContact::default(); layout.balls],
             guides: [CageContact::default(); 2],
+            meetings: vec![BallContact::default(); meetings],
             ball_force: vec![[0.0; 3]; layout.balls],
             ball_moment: vec![[0.0; 3]; layout.balls],
             work: Work::default(),
@@ -170,6 +179,7 @@ impl System {
         let mut on_races = [RaceLoads::default(); 2];
         self.add_race_contacts(state, [&inner, &outer], &mut on_races, &mut ledger);
         let [mut on_inner, mut on_outer] = on_races;
+        self.add_ball_contacts(state, &mut ledger);
         let cage = self.cage_motion(state);
         let mut on_cage = RaceLoads::default();
         if let Some(motion) = &cage {
@@ -269,6 +279,33 @@ impl System {
             }
         }
         power
+    }
+
+    /// Contacts of each ball with the next one, where they can meet. Grooves keep the balls in their
+    /// order, so that neighbours in number are neighbours in azimuth.
+    fn add_ball_contacts(&mut self, state: &[f64], ledger: &mut [f64; LEDGER]) {
+        let Some(law) = self.problem.ball_contact else { return };
+        self.work.ball_tests += self.meetings.len() as u64;
+        for one in 0..self.meetings.len() {
+            let other = (one + 1) % self.layout.balls;
+            let [here, there] = [one, other].map(|ball| Motion {
+                position: self.layout.ball_vector(state, POSITION, ball),
+                velocity: self.layout.ball_vector(state, VELOCITY, ball),
+                spin: self.layout.ball_vector(state, SPIN, ball),
+            });
+            let Some(contact) = ball_contact(&law, self.laws.ball_radius, &here, &there) else {
+                self.meetings[one] = BallContact::default();
+                continue;
+            };
+            self.meetings[one] = contact;
+            self.ball_force[one] = sub(self.ball_force[one], contact.force);
+            self.ball_force[other] = add(self.ball_force[other], contact.force);
+            // Arm and force are both the opposite: the same moment on either ball.
+            let moment = cross(contact.arm, contact.force);
+            self.ball_moment[one] = sub(self.ball_moment[one], moment);
+            self.ball_moment[other] = sub(self.ball_moment[other], moment);
+            ledger[Ledger::BallFriction as usize] += contact.power;
+        }
     }
 
     /// Pocket and guide contacts of the cage.
@@ -420,6 +457,11 @@ impl System {
             }
         }
     }
+}
+
+/// Pairs of balls that lie next to each other.
+pub fn neighbours(balls: usize) -> usize {
+    if balls < 3 { balls.saturating_sub(1) } else { balls }
 }
 
 fn add_load(loads: &mut RaceLoads, centre: Vec3, point: Vec3, force: Vec3) {
