@@ -142,7 +142,7 @@ const CASES: &[Case] = &[
     ("misspelt channels", "window_start = \"50 ms\"", "channels = [\"races\", \"lodas\"]", 46, &["output.channels", "did you mean `loads`", "orbits"]),
     ("column for a group of channels", "window_start = \"50 ms\"", "channels = [\"ball_1_inner_load\"]", 46, &["output.channels", "forces"]),
     ("misspelt table", "[contact_damping]", "[contact_dampng]", 38, &["did you mean `contact_damping`"]),
-    ("accuracy without an error estimate", "step = \"1 us\"", "accuracy = 1e-3", 43, &["numerics.accuracy", "rk4 has no estimate", "rosenbrock"]),
+    ("accuracy without an error estimate", "step = \"1 us\"", "integrator = \"rk4\"\naccuracy = 1e-3", 44, &["numerics.accuracy", "rk4 has no estimate", "rosenbrock"]),
     ("accuracy out of range", "step = \"1 us\"", "accuracy = 0.5", 43, &["numerics.accuracy", "from 1e-8 to 0.1"]),
     ("accuracy and step", "output_interval = \"0.1 ms\"", "accuracy = 1e-3", 44, &["numerics.accuracy", "numerics.step"]),
     ("limit of another integrator", "step = \"1 us\"", "integrator = \"rosenbrock\"\nstep_fraction = 0.5", 44, &["numerics.step_fraction", "that of rk4"]),

@@ -35,7 +35,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         Subject::Bearing(scene) => *scene,
     };
     let solved = solve_scene(&scene, start.elapsed().as_secs_f64())?;
-    let table = table::render(&solved.problem, &solved.solution);
+    let table = table::render(&solved.solution, &solved.remarks);
     if arguments.dry {
         say(&table)?;
         return Ok(Outcome::Done);

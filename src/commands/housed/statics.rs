@@ -1,5 +1,6 @@
 //! `bearing statics` of a bearing in its housing: one equilibrium at t = 0.
 
+use super::super::remarks;
 use super::{
     Prepared, condensed, equilibrium_at, estimate_at, plan, prepare, record, remove_earlier,
     say_notes, search, write_bore,
@@ -48,7 +49,8 @@ pub fn run(
     let largest = stress.cell_von_mises.iter().copied().fold(0.0, f64::max);
 
     say_notes(&prepared)?;
-    say(&table::render(&problem, &state.bearing))?;
+    let remarks = remarks::of_statics(&scene.bearing, &problem, &state.bearing);
+    say(&table::render(&state.bearing, &remarks))?;
     say(&housing_table(&bore, &state, largest))?;
     if let Some(estimate) = &inertia {
         say(&format!("note: {}\n", plan::verdict(scene, estimate, None)))?;
