@@ -183,11 +183,15 @@ fn over_the_edge(scene: &Scene, seen: &Seen) -> Option<String> {
         ),
     };
     Some(format!(
-        "the contact of ball {} with the {race} race reaches {:.1} deg from the bottom of the groove{} \
+        "the contact of ball {} with the {race} race reaches {} from the bottom of the groove{} \
          (contact angle {:.1} deg), past the shoulder, which ends at {:.1} deg ({source}); the model's \
          groove goes on, the real contact is cut off at the edge",
         edge.ball + 1,
-        edge.value.to_degrees(),
+        if edge.value < std::f64::consts::FRAC_PI_2 {
+            format!("{:.1} deg", edge.value.to_degrees())
+        } else {
+            "more than 90 deg".into()
+        },
         seen.when(edge),
         seen.edge_angles[side].to_degrees(),
         ends[side].0.to_degrees()

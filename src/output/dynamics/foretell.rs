@@ -70,7 +70,7 @@ struct Stretch {
     /// Accepted steps that were counted in it and over which time, s.
     counted: f64,
     covered: f64,
-    /// Accepted steps and attempts a second at the end of the look.
+    /// Accepted steps a second at the end of the look, and attempts.
     rate: f64,
     attempts: f64,
     /// Attempts a second of the other method from there.
@@ -219,6 +219,15 @@ fn trial(
             under_way = Some((session, offset));
         }
     }
+    Ok((stretches, spent, begun))
+}
+
+/// Steps of a run whose steps follow from an accuracy or from the stability limit.
+///
+/// # Errors
+/// What keeps the run from starting.
+pub fn foretell(problem: &DynamicProblem, request: &RunRequest) -> Result<Foretold, SessionError> {
+    let (mut stretches, taken, looks) = trial(problem, request, TO_COUNT, None)?;
     // What rings goes on, and steps from the limit do not grow again. An explicit method with error
     // control is bound by traction rather, which rolling faster makes gentler.
     let options = &request.options;
@@ -228,18 +237,8 @@ fn trial(
     for i in 1..stretches.len() {
         if rings && stretches[i].anew {
             stretches[i].rate = stretches[i].rate.max(stretches[i - 1].rate);
-            stretches[i].attempts = stretches[i].attempts.max(stretches[i - 1].attempts);
         }
     }
-    Ok((stretches, spent, begun))
-}
-
-/// Steps of a run whose steps follow from an accuracy or from the stability limit.
-///
-/// # Errors
-/// What keeps the run from starting.
-pub fn foretell(problem: &DynamicProblem, request: &RunRequest) -> Result<Foretold, SessionError> {
-    let (stretches, taken, looks) = trial(problem, request, TO_COUNT, None)?;
     let steps = stretches.iter().map(Stretch::steps).sum();
     let covered: f64 = stretches.iter().map(|s| s.covered).sum();
     let whole = looks == 1 && covered >= request.end * (1.0 - 1e-6);
