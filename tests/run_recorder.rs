@@ -308,7 +308,12 @@ fn extremes_are_of_every_step_whatever_the_rows() {
             [&fine, &coarse].map(|session| session.simulation.extremes.races[0].load);
         assert!(of_coarse.value >= 1.5 * of_rows("inner", &coarse), "{of_coarse:?}");
         match integrator {
-            Integrator::RungeKutta => assert_eq!(of_coarse, of_fine),
+            // But for rounding of the times at which the pulse is read.
+            Integrator::RungeKutta => {
+                let off = of_coarse.value / of_fine.value - 1.0;
+                assert!(off.abs() <= 1e-10 && of_coarse.ball == of_fine.ball, "{of_coarse:?}");
+                assert!((of_coarse.time - of_fine.time).abs() <= 1e-15, "{of_coarse:?}");
+            }
             // Other steps, the same motion.
             _ => assert!((of_coarse.value / of_fine.value - 1.0).abs() <= 1e-2, "{of_coarse:?}"),
         }

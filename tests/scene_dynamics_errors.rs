@@ -133,7 +133,7 @@ const CASES: &[Case] = &[
     ("pockets far from the balls", "pocket_pitch_radius = \"30 mm\"", "pocket_pitch_radius = \"40 mm\"", 13, &["less than the pitch radius plus a ball radius"]),
     ("endless run", "end = \"0.1 s\"", "end = \"20000 s\"", 42, &["more than 0 s to 10000 s"]),
     ("run of no time", "end = \"0.1 s\"", "end = \"0 s\"", 42, &["more than 0 s"]),
-    ("step of a second", "\"1 us\"", "\"1 s\"", 43, &["from 1e-12 s to 0.01 s", "stiffest contact"]),
+    ("step of a second", "\"1 us\"", "\"1 s\"", 43, &["from 1e-12 s to 0.01 s", "follow from an accuracy"]),
     ("step and fraction", "output_interval = \"0.1 ms\"", "step_fraction = 0.5", 44, &["together with `numerics.step`"]),
     ("output after the end", "\"0.1 ms\"", "\"0.2 s\"", 44, &["numerics.output_interval", "0.2 s", "after the end", "up to 0.1 s"]),
     ("window at the end", "\"50 ms\"", "\"100 ms\"", 46, &["output.window_start", "less than 0.1 s"]),

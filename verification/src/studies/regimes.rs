@@ -112,7 +112,11 @@ struct Taken {
 }
 
 /// One run as `bearing run` steps it.
-fn take(problem: &DynamicProblem, request: &RunRequest, method: Method) -> Result<Taken, CaseError> {
+fn take(
+    problem: &DynamicProblem,
+    request: &RunRequest,
+    method: Method,
+) -> Result<Taken, CaseError> {
     let options = RunOptions {
         integrator: method.integrator,
         stepping: method.stepping,
@@ -136,7 +140,11 @@ fn take(problem: &DynamicProblem, request: &RunRequest, method: Method) -> Resul
 }
 
 /// The cheapest of so many runs.
-fn timed(problem: &DynamicProblem, request: &RunRequest, method: Method) -> Result<(Taken, usize), CaseError> {
+fn timed(
+    problem: &DynamicProblem,
+    request: &RunRequest,
+    method: Method,
+) -> Result<(Taken, usize), CaseError> {
     let mut best = take(problem, request, method)?;
     let (mut repeats, mut spent) = (1, best.history.seconds);
     while spent < 0.3 && repeats < 5 {
@@ -163,10 +171,8 @@ fn run(context: &mut ParetoContext) -> Result<(), CaseError> {
         let by_implicit = take(&problem, &request, Method::accurate(Rosenbrock, 1e-5))?.history;
         let default = Method { integrator: choice.integrator, stepping: request.options.stepping };
         let accuracies = [1e-2, 1e-3, 1e-4];
-        let mut methods = vec![Method {
-            integrator: RungeKutta,
-            stepping: Stepping::FractionOfLimit(0.5),
-        }];
+        let mut methods =
+            vec![Method { integrator: RungeKutta, stepping: Stepping::FractionOfLimit(0.5) }];
         for integrator in [DormandPrince, Rosenbrock] {
             methods.extend(accuracies.map(|accuracy| Method::accurate(integrator, accuracy)));
         }
@@ -179,7 +185,10 @@ fn run(context: &mut ParetoContext) -> Result<(), CaseError> {
             let seconds = taken.history.seconds / request.end;
             let chosen = if method == default { ", the default" } else { "" };
             let variant = format!("{} {}{chosen}", method.integrator.name(), method.variant());
-            eprintln!("  {name}: {variant}: {seconds:.3} s/s, {} steps, {displacement:.1e}", taken.steps);
+            eprintln!(
+                "  {name}: {variant}: {seconds:.3} s/s, {} steps, {displacement:.1e}",
+                taken.steps
+            );
             let point = Point {
                 repeats,
                 more_errors: vec![swing],
@@ -195,10 +204,13 @@ fn run(context: &mut ParetoContext) -> Result<(), CaseError> {
         // The cheapest that delivers no larger an error.
         let rivals = points.iter().filter(|(_, point, _)| point.error <= own.error);
         let best = rivals.min_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds)).unwrap_or(&points[0]);
-        let foretold = foretell(&problem, &RunRequest {
-            options: RunOptions { integrator: default.integrator, ..request.options },
-            ..request.clone()
-        });
+        let foretold = foretell(
+            &problem,
+            &RunRequest {
+                options: RunOptions { integrator: default.integrator, ..request.options },
+                ..request.clone()
+            },
+        );
         let foretold = foretold.map_err(|error| CaseError::message(error.to_string()))?.steps;
         let apart = errors(&by_implicit, &by_explicit)[0];
         context.sentence(format!(
