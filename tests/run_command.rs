@@ -439,7 +439,7 @@ fn the_plan_says_how_long_the_steps_are_and_what_makes_them_short() {
         said(&output)
     };
     // Without friction the contacts bind the step.
-    let text = scene("end = \"1 ms\"", "");
+    let text = scene("end = \"1 ms\"\nintegrator = \"rk4\"", "");
     let free = plan(&text);
     for part in ["of the largest stable one at the start", "contact", "steps to t = 0.001 s"] {
         assert!(free.contains(part), "{part} is not in {free}");
@@ -451,9 +451,12 @@ fn the_plan_says_how_long_the_steps_are_and_what_makes_them_short() {
         "speed = { ramp = [\"0 rpm\", \"1000 rpm\"], start = \"0 s\", duration = \"1 ms\" }",
     );
     let short = plan(&default);
-    for part in
-        ["traction onset", "short step", "rosenbrock", "entrainment_floor = \"0.1 m/s\", 10 times"]
-    {
+    for part in [
+        "traction onset",
+        "short step",
+        "accuracy = 1e-3",
+        "entrainment_floor = \"0.1 m/s\", 10 times",
+    ] {
         assert!(short.contains(part), "{part} is not in {short}");
     }
     let number = |text: &str, before: &str| -> f64 {
@@ -468,7 +471,7 @@ fn the_plan_says_how_long_the_steps_are_and_what_makes_them_short() {
     let output = run(&path, &place.path("out"), &[]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     assert!(said(&output).contains("traction onset"), "{}", said(&output));
-    let adaptive = plan(&text.replace("[numerics]\n", "[numerics]\nintegrator = \"rosenbrock\"\n"));
+    let adaptive = plan(&text.replace("\"rk4\"", "\"rosenbrock\""));
     assert!(adaptive.contains("adapts so that") && adaptive.contains("0.001"), "{adaptive}");
 }
 
@@ -479,7 +482,7 @@ fn check_tells_of_the_motion_of_a_run() {
         let path = place.scene("scene.toml", text);
         said(&bearing(&["check", path.to_str().unwrap()]))
     };
-    let run = scene("end = \"1 ms\"", "");
+    let run = scene("end = \"1 ms\"\nintegrator = \"rk4\"", "");
     let moving = check(&run.replace("[traction]", "[outer_race]\nmotion = \"5-dof\"\n[traction]"));
     assert!(moving.contains("to t = 0.001 s by rk4"), "{moving}");
     assert!(moving.contains("5 of 6 coordinates follow from loads"), "{moving}");
@@ -487,7 +490,7 @@ fn check_tells_of_the_motion_of_a_run() {
     assert!(!moving.contains("the outer race is fixed"), "{moving}");
     assert!(check(&run).contains("outer race motion      fixed in space"), "{}", check(&run));
     // One of statics speaks of statics.
-    let statics = check(&run.replace("[numerics]\nend = \"1 ms\"", ""));
+    let statics = check(&run.replace("[numerics]\nend = \"1 ms\"\nintegrator = \"rk4\"", ""));
     assert!(statics.contains("centrifugal force of the balls is left out"), "{statics}");
 }
 
@@ -547,4 +550,72 @@ fn a_cage_that_overlaps_a_race_is_refused() {
     refused("race_clearance = \"0.1 mm\"", "race_clearance = \"4 mm\"", &land);
     let pocket = ["bearing.cage.pocket_radius", "5.95"];
     refused("pocket_radius = \"6.1 mm\"", "pocket_radius = \"5.9 mm\"", &pocket);
+}
+
+/// What statics says of an equilibrium a run says of its steps, on the terminal and in its summary.
+#[test]
+fn a_run_has_the_remarks_of_statics() {
+    let place = Place::new();
+    let remarks = |text: &str| -> [Vec<String>; 2] {
+        let path = place.scene("scene.toml", text);
+        let out = place.path("out");
+        let output = run(&path, &out, &["--fresh"]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let notes = |output: &Output| -> Vec<String> {
+            let said = said(output);
+            said.lines().filter_map(|line| line.strip_prefix("note: ").map(String::from)).collect()
+        };
+        let written = &json(out.join("summary.json"))["remarks"];
+        let found = notes(&output);
+        assert_eq!(*written, serde_json::json!(found));
+        [found, notes(&bearing(&["statics", path.to_str().unwrap(), "--dry"]))]
+    };
+    let short = scene("end = \"0.1 ms\"", "");
+    assert_eq!(remarks(&short), [Vec::<String>::new(), Vec::new()]);
+    let has = |text: &str, part: &str| {
+        for notes in remarks(text) {
+            assert!(notes.iter().any(|note| note.contains(part)), "{part} is not in {notes:?}");
+        }
+    };
+    let pressed = short.replace("\"-250 N\"", "\"-100 kN\"");
+    has(&pressed, "MPa");
+    has(&pressed, "above the 4200 MPa at which ISO 76");
+    // A shoulder hardly higher than the groove, and a tilt that lets the balls climb.
+    let low = short
+        .replace("bore_radius", "shoulder_radius = \"20.1 mm\", bore_radius")
+        .replace("0.05 deg", "0.3 deg");
+    has(&low, "past the shoulder, which ends at");
+    has(&low, "as given");
+    // Nothing but the sixth coordinate holds an angular-contact bearing pushed the wrong way.
+    let single = r#"
+[bearing]
+kind = "angular-contact"
+balls = 11
+pitch_radius = "30 mm"
+contact_angle = "35 deg"
+clearance = { radial = "0 um" }
+inner_race = { groove_radius = "6.6 mm" }
+outer_race = { groove_radius = "6.6 mm" }
+ball = { radius = "5.953 mm" }
+[inner_race]
+x = { load = "-445 N" }
+y = { displacement = "0 um" }
+z = { displacement = "0 um" }
+tilt_y = { tilt = "0 deg" }
+tilt_z = { tilt = "0 deg" }
+speed = "600 rpm"
+[numerics]
+end = "0.5 ms"
+"#;
+    has(single, "loaded at a negative contact angle");
+    has(single, "the centres of the races are 1.49");
+    // Equilibrium alone leaves out what the balls' own spin asks for.
+    let fast = single.replace("-445 N", "200 N").replace("600 rpm", "15000 rpm");
+    let fast = format!("{fast}[ball_forces]\ncentrifugal = true\n");
+    let [of_run, of_statics] = remarks(&fast);
+    let gyroscopic =
+        |notes: &[String]| notes.iter().any(|note| note.contains("no gyroscopic moment"));
+    assert!(gyroscopic(&of_statics) && !gyroscopic(&of_run), "{of_run:?} {of_statics:?}");
+    let slow = fast.replace("15000 rpm", "600 rpm");
+    assert!(!gyroscopic(&remarks(&slow)[1]));
 }

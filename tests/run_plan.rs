@@ -1,10 +1,18 @@
 //! The plan of a run: what each scene computes, what it leaves out, and why.
 
+mod run_common;
+
+use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::output::dynamics::foretell::{WITHIN, choose, foretell};
+use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status, given_steps};
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{self, CageInRun, Format};
 use bearing_dynamics::solver::channels::ChannelGroup;
-use bearing_dynamics::solver::dynamics::run::Simulation;
+use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
+use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
 use bearing_dynamics::solver::plan;
+use bearing_dynamics::solver::profile::Profile;
+use run_common::{frictionless, jolted, pressed, rattling, request, sliding};
 
 const BEARING: &str = r#"
 [bearing]
@@ -29,7 +37,8 @@ const GRAVITY: &str = r#"
 gravity = ["0 m/s^2", "0 m/s^2", "-9.80665 m/s^2"]
 "#;
 
-const END: &str = "[numerics]\nend = \"1 ms\"\n";
+const END: &str = "[numerics]\nend = \"1 ms\"\nintegrator = \"rk4\"\n";
+const DEFAULT: &str = "[numerics]\nend = \"1 ms\"\n";
 
 fn planned(text: &str, channels: &[ChannelGroup]) -> String {
     let scene = scene::read_str(text, Format::Toml, "scene.toml").unwrap();
@@ -84,7 +93,7 @@ slowest = "1e-3 m/s"
 
 #[test]
 fn defaults() {
-    insta::assert_snapshot!(planned(&format!("{BEARING}{END}"), &ChannelGroup::DEFAULT));
+    insta::assert_snapshot!(planned(&format!("{BEARING}{DEFAULT}"), &ChannelGroup::DEFAULT));
 }
 
 #[test]
@@ -144,4 +153,76 @@ fn skipped_stages_do_no_work() {
     assert_eq!(work.guide_tests, 0);
     let guided = format!("{BEARING}{}{load}{END}{step}", guided("inner-race"));
     assert_eq!(counted(&guided).guide_tests, 2 * counted(&guided).evaluations);
+}
+
+fn taken(problem: &DynamicProblem, request: &RunRequest) -> u64 {
+    let mut session = Session::start(problem.clone(), request).unwrap();
+    while session.advance(1000).unwrap() == Status::Running {}
+    session.simulation.steps
+}
+
+#[test]
+fn given_steps_are_counted_as_the_run_takes_them() {
+    let step = 1e-6;
+    for problem in [frictionless(), jolted(), pressed(step)] {
+        for interval in [1e-6, 10e-6, 12.34e-6, 37e-6, 1e-3] {
+            for end in [203.4e-6, 200e-6, 55.31e-6, 0.4e-6, 74e-6] {
+                let wanted = RunRequest { end, output_interval: interval, ..request(step, 1) };
+                let (foretold, taken) =
+                    (given_steps(&problem, &wanted, step), taken(&problem, &wanted));
+                assert_eq!(foretold, taken, "rows {interval}, end {end}");
+            }
+        }
+    }
+}
+
+#[test]
+fn foretold_steps_are_within_the_stated_factor() {
+    // Ringing for good after a blow; a load that grows; bodies that part and hit again; a plain run.
+    let mut struck = sliding();
+    let blow = Profile::HalfSine { base: -250.0, peak: -3000.0, start: 2e-3, duration: 1e-3 };
+    struck.inner.drives[2] = Drive::Load(blow);
+    let mut faster = sliding();
+    faster.inner.rotation =
+        Rotation::Speed(Profile::Ramp { from: 100.0, to: 1000.0, start: 0.0, duration: 20e-3 });
+    let accurate = |integrator| (integrator, Stepping::Accuracy(1e-3));
+    for (name, problem, (integrator, stepping), end) in [
+        ("struck", &struck, accurate(Integrator::Rosenbrock), 20e-3),
+        ("faster", &faster, accurate(Integrator::Rosenbrock), 20e-3),
+        ("faster", &faster, accurate(Integrator::DormandPrince), 20e-3),
+        ("rattling", &rattling(), accurate(Integrator::DormandPrince), 20e-3),
+        ("plain", &sliding(), accurate(Integrator::Rosenbrock), 50e-3),
+        ("plain", &frictionless(), accurate(Integrator::DormandPrince), 50e-3),
+        ("pressed", &pressed(1e-6), (Integrator::RungeKutta, Stepping::FractionOfLimit(0.5)), 4e-3),
+    ] {
+        let options =
+            RunOptions { integrator, stepping, energy_limit: 1.0, ..RunOptions::default() };
+        let output_interval = 0.2e-3;
+        let wanted = RunRequest { options, end, output_interval, channels: Vec::new() };
+        let foretold = foretell(problem, &wanted).unwrap();
+        let taken = taken(problem, &wanted) as f64;
+        let factor = foretold.steps / taken;
+        println!("{name}, {}: {:.0} foretold, {taken} taken", integrator.name(), foretold.steps);
+        assert!((1.0 / WITHIN..=WITHIN).contains(&factor), "{name}: {foretold:?} {taken}");
+        if foretold.whole {
+            assert_eq!(factor, 1.0, "{name}");
+        }
+    }
+}
+
+/// Implicit where friction is steep, explicit where nothing is.
+#[test]
+fn the_plan_chooses_the_method_that_takes_less_work() {
+    let options = RunOptions { stepping: Stepping::Accuracy(1e-3), ..RunOptions::default() };
+    let wanted = RunRequest { options, end: 20e-3, output_interval: 0.1e-3, channels: Vec::new() };
+    let steep = DynamicProblem {
+        traction: TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 5e-4 },
+        ..frictionless()
+    };
+    let choice = choose(&steep, &wanted);
+    assert_eq!(choice.integrator, Integrator::Rosenbrock, "{}", choice.reason());
+    let [implicit, explicit] = choice.mean_steps.unwrap();
+    assert!(implicit > 10.0 * explicit, "{}", choice.reason());
+    let choice = choose(&rattling(), &wanted);
+    assert_eq!(choice.integrator, Integrator::DormandPrince, "{}", choice.reason());
 }

@@ -4,12 +4,13 @@ mod run_common;
 
 use bearing_dynamics::output::dynamics::recorder::{Recorder, RecorderError};
 use bearing_dynamics::output::dynamics::session::{RunRequest, Session, SessionError, Status};
+use bearing_dynamics::output::dynamics::summary::{RunReport, run_summary};
 use bearing_dynamics::output::dynamics::table::RunTable;
 use bearing_dynamics::solver::channels::ChannelGroup;
-use bearing_dynamics::solver::dynamics::model::{DynamicProblem, Rotation};
+use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
 use bearing_dynamics::solver::profile::Profile;
-use run_common::{complete, frictionless, jolted, request};
+use run_common::{common, complete, frictionless, jolted, request, sliding};
 
 fn to_the_end(problem: DynamicProblem, request: &RunRequest) -> Session {
     let mut session = Session::start(problem, request).unwrap();
@@ -273,4 +274,93 @@ fn the_work_of_a_jolt_is_in_the_ledger() {
         println!("{integrator:?}: a jump makes {jump:e} J, residual {worst:e} J");
         assert!(worst <= 1e-3 * jump, "{integrator:?}: {worst} of {jump}");
     }
+}
+
+/// A pulse shorter than a row: 9 kN for 20 µs in a row of 1 ms.
+fn struck() -> DynamicProblem {
+    let mut problem = frictionless();
+    let pulse = Profile::HalfSine { base: -250.0, peak: -9000.0, start: 0.33e-3, duration: 60e-6 };
+    problem.inner.drives[2] = Drive::Load(pulse);
+    problem
+}
+
+#[test]
+fn extremes_are_of_every_step_whatever_the_rows() {
+    for (integrator, stepping) in [
+        (Integrator::RungeKutta, Stepping::Fixed(1e-6)),
+        (Integrator::DormandPrince, Stepping::Accuracy(1e-3)),
+        (Integrator::Rosenbrock, Stepping::Accuracy(1e-3)),
+    ] {
+        let options = RunOptions { integrator, stepping, ..RunOptions::default() };
+        let wanted = |output_interval: f64| RunRequest {
+            options,
+            end: 1e-3,
+            output_interval,
+            ..request(1e-6, 1)
+        };
+        // A row a step: what the rows say is what the steps say.
+        let fine = to_the_end(struck(), &wanted(1e-6));
+        let of_rows = |what: &str, session: &Session| {
+            let channels = (1..=8).map(|ball| column(session, &format!("ball_{ball}_{what}_load")));
+            channels.flatten().fold(0.0, f64::max)
+        };
+        for (side, what) in ["inner", "outer"].into_iter().enumerate() {
+            let most = fine.simulation.extremes.races[side].load.value;
+            // Steps of error control end between rows as well.
+            assert!(most >= of_rows(what, &fine));
+            assert!(most <= 1.001 * of_rows(what, &fine), "{most} {}", of_rows(what, &fine));
+        }
+        // Two rows: they show nothing of the pulse, the extremes all of it.
+        let coarse = to_the_end(struck(), &wanted(1e-3));
+        let [of_fine, of_coarse] =
+            [&fine, &coarse].map(|session| session.simulation.extremes.races[0].load);
+        assert!(of_coarse.value >= 1.5 * of_rows("inner", &coarse), "{of_coarse:?}");
+        match integrator {
+            // But for rounding of the times at which the pulse is read.
+            Integrator::RungeKutta => {
+                let off = of_coarse.value / of_fine.value - 1.0;
+                assert!(off.abs() <= 1e-10 && of_coarse.ball == of_fine.ball, "{of_coarse:?}");
+                assert!((of_coarse.time - of_fine.time).abs() <= 1e-15, "{of_coarse:?}");
+            }
+            // Other steps, the same motion.
+            _ => assert!((of_coarse.value / of_fine.value - 1.0).abs() <= 1e-2, "{of_coarse:?}"),
+        }
+        let far = |session: &Session| {
+            let of = |axis: &str| column(session, &format!("inner_{axis}"));
+            let [x, y, z] = ["x", "y", "z"].map(of);
+            let all = x.iter().zip(&y).zip(&z).map(|((x, y), z)| (x * x + y * y + z * z).sqrt());
+            all.fold(0.0, f64::max)
+        };
+        let farthest = coarse.simulation.extremes.farthest.value;
+        assert!((farthest / far(&fine) - 1.0).abs() <= 1e-2, "{farthest} {}", far(&fine));
+        assert!(farthest >= 1.2 * far(&coarse));
+    }
+}
+
+#[test]
+fn slip_is_told_against_the_contact_angle_that_balls_have() {
+    // Pushed along its axis with clearance, the deep-groove bearing runs at an angle far from its
+    // nominal one of zero, and the axial load leaves the balls hardly any slip.
+    let mut problem = DynamicProblem { geometry: common::table_4_1(20e-6), ..sliding() };
+    problem.inner.drives[2] = Drive::Load(Profile::ZERO);
+    problem.inner.drives[0] = Drive::Load(Profile::Constant(500.0));
+    problem.inner.drives[3] = Drive::Motion(Profile::ZERO);
+    problem.inner.drives[4] = Drive::Motion(Profile::ZERO);
+    let options = RunOptions {
+        integrator: Integrator::Rosenbrock,
+        stepping: Stepping::Accuracy(1e-3),
+        energy_limit: f64::INFINITY,
+        ..RunOptions::default()
+    };
+    let wanted = RunRequest { options, end: 40e-3, output_interval: 0.1e-3, ..request(1e-6, 1) };
+    let session = to_the_end(problem, &wanted);
+    let table = RunTable::new(&session, 30e-3).unwrap();
+    let summary = run_summary(&session, &table, &[], &RunReport::default()).unwrap();
+    let of = |name: &str| summary["kinematics"][name]["value"].as_f64().unwrap();
+    assert!(of("inner_contact_angle") > 10.0, "{}", summary["kinematics"]);
+    let nominal = 1.0 - of("ball_set_speed") / of("rolling_cage_speed_at_nominal_angle");
+    assert!(nominal.abs() > 2e-3, "{nominal}");
+    // A tenth of it at most: what spin leaves, and the angle of each ball beside the mean.
+    assert!(of("ball_set_slip").abs() <= 0.1 * nominal.abs(), "{}", summary["kinematics"]);
+    assert!(summary["kinematics"]["rolling_at"].as_str().unwrap().contains("mean contact angles"));
 }

@@ -1,5 +1,6 @@
 //! `bearing check SCENE`.
 
+use super::run::planned_request;
 use super::{CommandResult, Outcome, echo, echo_run, say};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::results::pretty;
@@ -24,7 +25,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> CommandResult {
     let document = Document::read_file(&arguments.scene)?;
-    let scene = match resolve_subject(&document)? {
+    let mut scene = match resolve_subject(&document)? {
         Subject::Solid(solid) => {
             return super::solid::check::run(&arguments.scene, &document, &solid, arguments.json);
         }
@@ -39,6 +40,10 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         Some(_) => Some(dynamic_problem(&scene)?),
         None => None,
     };
+    if let (Some(problem), Some(settings)) = (&in_motion, scene.dynamics.run.clone()) {
+        let (request, _) = planned_request(&scene, &settings, problem, None);
+        scene.dynamics.run = Some(RunSettings { options: request.options, ..settings });
+    }
     if arguments.json {
         let mut understood = echo::scene(&scene)?;
         if let Some(problem) = &in_motion {

@@ -11,6 +11,7 @@ pub mod pack;
 pub mod pictures;
 pub mod plan;
 pub mod plan_step;
+mod remarks;
 pub mod run;
 pub mod run_figures;
 pub mod schema;

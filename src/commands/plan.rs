@@ -1,9 +1,10 @@
 //! `bearing plan SCENE`.
 
 use super::plan_step::step_lines;
-use super::run::request;
+use super::run::planned_request;
 use super::solve::{lines, plan_lines};
 use super::{CommandResult, Outcome, say};
+use bearing_dynamics::output::dynamics::foretell::Choice;
 use bearing_dynamics::output::dynamics::session::RunRequest;
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{
@@ -29,8 +30,8 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let mut planned = match run_options(&scene) {
         Ok(settings) => {
             let problem = dynamic_problem(&scene)?;
-            let request = request(&scene, &settings);
-            let mut lines = dynamic_plan_lines(&scene, &problem, &request);
+            let (request, choice) = planned_request(&scene, &settings, &problem, None);
+            let mut lines = dynamic_plan_lines(&scene, &problem, &request, choice.as_ref());
             lines.extend(step_lines(&problem, &request));
             lines
         }
@@ -49,10 +50,17 @@ pub fn dynamic_plan_lines(
     scene: &Scene,
     problem: &DynamicProblem,
     request: &RunRequest,
+    choice: Option<&Choice>,
 ) -> Vec<String> {
     let cage_left_out = match &scene.dynamics.cage {
         CageInRun::Body(_) => None,
         CageInRun::LeftOut(reason) => Some(reason.as_str()),
     };
-    lines(plan::dynamics(problem, &request.options, &request.channels, cage_left_out))
+    let mut all =
+        lines(plan::dynamics(problem, &request.options, &request.channels, cage_left_out));
+    if let Some(choice) = choice {
+        let said = format!("{}: {}", choice.integrator.name(), choice.reason());
+        all.push(format!("does  {:<28} {said}", "choice of the integrator"));
+    }
+    all
 }

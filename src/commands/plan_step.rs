@@ -2,7 +2,8 @@
 //! longer.
 
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::output::dynamics::session::{RunRequest, whole_steps};
+use bearing_dynamics::output::dynamics::foretell::{WITHIN, foretell};
+use bearing_dynamics::output::dynamics::session::{RunRequest, given_steps, whole_steps};
 use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{
@@ -24,7 +25,7 @@ pub fn step_lines(problem: &DynamicProblem, request: &RunRequest) -> Vec<String>
     match options.stepping {
         Stepping::Accuracy(accuracy) => adaptive(problem, request, accuracy),
         Stepping::Fixed(step) if options.integrator != Integrator::RungeKutta => {
-            vec![note("given step", &format!("{step:.3e} s: {}", steps(request.end, step)))]
+            vec![note("given step", &format!("{step:.3e} s: {}", steps(problem, request, step)))]
         }
         // The start is the same; the limit does not depend on the fraction.
         Stepping::Fixed(step) => {
@@ -37,7 +38,7 @@ pub fn step_lines(problem: &DynamicProblem, request: &RunRequest) -> Vec<String>
                 Err(SimulationError::NoStep) => (NOT_STIFF.into(), None),
                 Err(error) => (refused(&error), None),
             };
-            let said = format!("{said}; {}", steps(request.end, step));
+            let said = format!("{said}; {}", steps(problem, request, step));
             std::iter::once(note("given step", &said)).chain(advice).collect()
         }
         Stepping::FractionOfLimit(fraction) => automatic(problem, request, fraction),
@@ -54,8 +55,34 @@ fn refused(error: &SimulationError) -> String {
     format!("WARNING: the run will be refused: {error}")
 }
 
-fn steps(end: f64, step: f64) -> String {
-    format!("{} steps to t = {end} s", whole_steps(end, step))
+fn steps(problem: &DynamicProblem, request: &RunRequest, step: f64) -> String {
+    format!("{} steps to t = {} s", given_steps(problem, request, step), request.end)
+}
+
+/// How many steps, and where the number comes from.
+fn foretold(problem: &DynamicProblem, request: &RunRequest) -> String {
+    match foretell(problem, request) {
+        Err(error) => format!("WARNING: the run will be refused: {error}"),
+        Ok(found) if found.whole => {
+            format!(
+                "{} steps to t = {} s, counted in a trial of the whole run",
+                found.steps, request.end
+            )
+        }
+        Ok(found) => format!(
+            "about {} steps to t = {} s, foretold within a factor of {WITHIN} from a trial of {} of them{}, \
+             over {:.1e} s",
+            to_digits(found.steps, 2),
+            request.end,
+            found.taken,
+            if found.looks > 1 {
+                format!(" at {} times of the run", found.looks)
+            } else {
+                " from the start on".into()
+            },
+            found.covered
+        ),
+    }
 }
 
 fn against(step: f64, limit: &StepLimit) -> String {
@@ -85,7 +112,7 @@ fn automatic(problem: &DynamicProblem, request: &RunRequest, fraction: f64) -> V
          shortened on the way where contacts get stiffer",
         limit.step,
         limit.reason(),
-        steps(request.end, step)
+        foretold(problem, request)
     );
     std::iter::once(note("step", &said)).chain(advice(&mut simulation, &limit)).collect()
 }
@@ -98,10 +125,11 @@ fn adaptive(problem: &DynamicProblem, request: &RunRequest, accuracy: f64) -> Ve
     let overlap = simulation.control.as_ref().map_or(0.0, |control| control.memory.displacement);
     let said = format!(
         "adapts so that the motion of the races is good to {accuracy} of the largest overlap of a \
-         contact, at the start {} of {} um; at least a step a row, the first of {:.3e} s",
+         contact, at the start {} of {} um; at least a step a row, the first of {:.3e} s; {}",
         to_digits(accuracy * 1e6 * overlap, 3),
         to_digits(1e6 * overlap, 5),
-        simulation.step_size
+        simulation.step_size,
+        foretold(problem, request)
     );
     vec![note("step", &said)]
 }
@@ -118,7 +146,7 @@ fn advice(simulation: &mut Simulation, limit: &StepLimit) -> Option<String> {
     }
     let mut said = format!(
         "the onset of friction makes the step {gain:.1} times shorter than contacts would; longer \
-         steps: numerics.integrator = \"rosenbrock\" with numerics.accuracy = 1e-3"
+         steps: numerics.accuracy = 1e-3 in place of rk4"
     );
     match onset(&simulation.system, gain.min(MOST_GENTLER)) {
         Onset::Speed { key, before, speed, law } => {

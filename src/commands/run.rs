@@ -3,10 +3,11 @@
 use super::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
 use super::plan::dynamic_plan_lines;
 use super::run_figures::key_figures;
-use super::{CommandResult, Outcome, echo, echo_run, results_folder, say};
+use super::{CommandResult, Outcome, echo, echo_run, remarks, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
+use bearing_dynamics::output::dynamics::foretell::{Choice, choose};
 use bearing_dynamics::output::dynamics::pictures::{Picture, draw};
-use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status};
+use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status, given_steps};
 use bearing_dynamics::output::dynamics::summary::{RunReport, write_run_results};
 use bearing_dynamics::output::dynamics::table::RunTable;
 use bearing_dynamics::output::results::RunRecord;
@@ -21,6 +22,7 @@ use bearing_dynamics::solver::clock::rounded;
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Stepping};
 use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -81,10 +83,10 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let settings =
         run_options(&scene).map_err(|error| format!("{}: {error}", arguments.scene.display()))?;
     let problem = dynamic_problem(&scene)?;
-    let request = request(&scene, &settings);
     let folder = results_folder(&arguments.scene, &arguments.out);
     let folder = claimed(&folder, Writes::Run { fresh: arguments.fresh })?;
     let kept = kept_state(arguments, &folder)?;
+    let (request, choice) = planned_request(&scene, &settings, &problem, kept.as_ref());
     let read_seconds = start.elapsed().as_secs_f64();
 
     let interrupted = Arc::new(AtomicBool::new(false));
@@ -101,7 +103,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         output_interval: kept.as_ref().map_or(request.output_interval, |file| file.output_interval),
         seconds: kept.as_ref().map_or(0.0, |file| file.seconds),
     };
-    say(&announcement(&session, &request, kept.as_ref()))?;
+    say(&announcement(&session, &request, choice.as_ref(), kept.as_ref()))?;
 
     let start = Instant::now();
     let every = Duration::from_secs(arguments.save_every);
@@ -119,7 +121,9 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
     let table = RunTable::new(&session, settings.window_start)?;
     let mut written = pictures(&folder, &scene, &table)?;
-    let mut record = record(&scene, &problem, &request)?;
+    let mut record = record(&scene, &problem, &request, choice.as_ref())?;
+    let remarks = remarks::of_run(&scene, &problem, &session.simulation.extremes);
+    record.sections.push(("remarks".into(), json!(remarks)));
     record.seconds = vec![
         ("read".into(), read_seconds),
         ("start".into(), start_seconds),
@@ -129,12 +133,13 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let report = RunReport {
         record,
         stopped_by,
-        stepping: Some(settings.options.stepping),
-        integrator: Some(settings.options.integrator),
+        stepping: Some(request.options.stepping),
+        integrator: Some(request.options.integrator),
         spectra: scene.dynamics.plots.contains(&RunPlot::Spectrum),
     };
     written.extend(write_run_results(&folder, &session, &table, &report)?);
     say(&key_figures(&session, &table, seconds))?;
+    say(&remarks.iter().map(|remark| format!("note: {remark}\n")).collect::<String>())?;
     // State beside them.
     say(&format!("wrote {} files to {}\n", written.len() + 1, folder.display()))?;
     outcome(arguments, &folder, &session, end)
@@ -181,6 +186,30 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
     }
 }
 
+/// The same with the integrator that the plan chooses, where the scene leaves it to the plan. A run that
+/// goes on does so as it began: a later end may let another one look better.
+pub fn planned_request(
+    scene: &Scene,
+    settings: &RunSettings,
+    problem: &DynamicProblem,
+    kept: Option<&StateFile>,
+) -> (RunRequest, Option<Choice>) {
+    let mut request = request(scene, settings);
+    if !settings.by_plan {
+        return (request, None);
+    }
+    for integrator in [Integrator::Rosenbrock, Integrator::DormandPrince] {
+        request.options.integrator = integrator;
+        let same = |file: &StateFile| file.fingerprint == state::fingerprint(problem, &request);
+        if kept.is_some_and(same) {
+            return (request, Some(Choice { integrator, mean_steps: None }));
+        }
+    }
+    let choice = choose(problem, &request);
+    request.options.integrator = choice.integrator;
+    (request, Some(choice))
+}
+
 /// Said where `--resume` finds nothing.
 pub(super) fn no_run(folder: &Path) -> String {
     format!(
@@ -215,13 +244,22 @@ fn open(
     }
 }
 
-fn announcement(session: &Session, request: &RunRequest, kept: Option<&StateFile>) -> String {
+fn announcement(
+    session: &Session,
+    request: &RunRequest,
+    choice: Option<&Choice>,
+    kept: Option<&StateFile>,
+) -> String {
     let simulation = &session.simulation;
     let integrator = request.options.integrator.name();
     if let Stepping::Accuracy(accuracy) = request.options.stepping {
+        let by_plan = match choice {
+            Some(choice) => format!("chosen: {}\n", choice.reason()),
+            None => String::new(),
+        };
         let mut text = format!(
             "{integrator}, accuracy {accuracy}: steps follow from it, the first of {:.4e} s\n\
-             to t = {} s, a row every {:.4e} s\n",
+             to t = {} s, a row every {:.4e} s\n{by_plan}",
             simulation.step_size,
             session.end,
             session.interval()
@@ -255,7 +293,9 @@ fn announcement(session: &Session, request: &RunRequest, kept: Option<&StateFile
     } else {
         String::new()
     };
-    let steps = (session.end / simulation.step_size).ceil();
+    let problem = &simulation.system.problem;
+    let asked = RunRequest { end: session.end, output_interval: interval, ..request.clone() };
+    let steps = given_steps(problem, &asked, simulation.step_size);
     text += &format!(
         "{steps} steps to t = {} s, a row every {} steps = {interval:.4e} s{rounded}\n",
         session.end, session.steps_per_row
@@ -359,6 +399,7 @@ fn record(
     scene: &Scene,
     problem: &DynamicProblem,
     request: &RunRequest,
+    choice: Option<&Choice>,
 ) -> Result<RunRecord, Box<dyn Error>> {
     let assumptions = scene.assumptions.iter().map(|a| (a.name.clone(), a.text.clone()));
     let defaults = echo_run::defaults(scene)
@@ -366,7 +407,7 @@ fn record(
         .map(|used| (used.key, format!("{} ({})", used.value, used.reason)));
     Ok(RunRecord {
         scene: echo::scene(scene)?,
-        plan: dynamic_plan_lines(scene, problem, request),
+        plan: dynamic_plan_lines(scene, problem, request, choice),
         assumptions: assumptions.chain(defaults).collect(),
         // All of a rigid bearing's work is done by one.
         threads: 1,

@@ -6,7 +6,7 @@ use bearing_dynamics::solver::clock::rounded;
 use std::fmt::Write;
 
 /// Where the inner race was, the largest load of a ball, what is missing of the energy, and the
-/// effort; of what was recorded. A mean is one over the window, an extreme one over all rows.
+/// effort. A mean is one over the rows of the window, an extreme one over all steps.
 pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String {
     let mut text = String::new();
     let mut line = |label: &str, value: String| {
@@ -20,23 +20,16 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
         let [x, y, z] = mean.map(|value| format!("{value:.6}"));
         line("inner race, mean", format!("{x}, {y}, {z} um (x, y, z over the window)"));
     }
-    if let [Some(x), Some(y), Some(z)] = names.map(|name| table.all(name)) {
-        let away = x.iter().zip(&y).zip(&z).map(|((x, y), z)| (x * x + y * y + z * z).sqrt());
-        if let Some((row, most)) = largest(away) {
-            let at = table.time(row);
-            line("inner race, farthest", format!("{:.6} um at t = {at} s", 1e6 * most));
-        }
-    }
-    let balls = 1..=session.simulation.system.problem.geometry.ball_count;
-    let loads = balls.flat_map(|ball| {
-        ["inner", "outer"].into_iter().filter_map(move |race| {
-            let (row, load) = largest(table.all(&format!("ball_{ball}_{race}_load"))?)?;
-            Some((load, ball, race, row))
-        })
-    });
-    if let Some((load, ball, race, row)) = loads.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        let at = table.time(row);
-        line("largest ball load", format!("{load:.6} N, ball {ball}, {race} race, at t = {at} s"));
+    let extremes = &session.simulation.extremes;
+    let farthest = &extremes.farthest;
+    let at = rounded(farthest.time);
+    line("inner race, farthest", format!("{:.6} um at t = {at} s", 1e6 * farthest.value));
+    let [inner, outer] = extremes.races.map(|race| race.load);
+    let (load, race) = if outer.value > inner.value { (outer, "outer") } else { (inner, "inner") };
+    if load.value > 0.0 {
+        let (ball, at) = (load.ball + 1, rounded(load.time));
+        let value = format!("{:.6} N, ball {ball}, {race} race, at t = {at} s", load.value);
+        line("largest ball load", value);
     }
     if let Some((_, most)) =
         table.all("energy_residual").and_then(|values| largest(values.into_iter().map(f64::abs)))

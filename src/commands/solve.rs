@@ -1,6 +1,6 @@
 //! From a scene to its static solution and the record of how it was obtained.
 
-use super::{echo, table};
+use super::{echo, remarks};
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::scene::Scene;
 use bearing_dynamics::scene::statics::static_problem;
@@ -14,6 +14,7 @@ use std::time::Instant;
 pub struct Solved {
     pub problem: StaticProblem,
     pub solution: StaticSolution,
+    pub remarks: Vec<String>,
     pub record: RunRecord,
 }
 
@@ -29,7 +30,8 @@ pub fn solve_scene(scene: &Scene, read_seconds: f64) -> Result<Solved, Box<dyn E
         .iter()
         .map(|used| (used.key.clone(), format!("{} ({})", used.value, used.reason)));
     let mut sections = echo::sections(scene, &problem)?;
-    sections.push(("remarks".into(), json!(table::remarks(&problem, &solution))));
+    let remarks = remarks::of_statics(scene, &problem, &solution);
+    sections.push(("remarks".into(), json!(remarks)));
     let record = RunRecord {
         scene: echo::scene(scene)?,
         plan: plan_lines(&problem),
@@ -38,7 +40,7 @@ pub fn solve_scene(scene: &Scene, read_seconds: f64) -> Result<Solved, Box<dyn E
         seconds: vec![("read".into(), read_seconds), ("solve".into(), solve_seconds)],
         sections,
     };
-    Ok(Solved { problem, solution, record })
+    Ok(Solved { problem, solution, remarks, record })
 }
 
 /// The plan as text, one line a stage.

@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     };
     let solved = solve_scene(&scene, start.elapsed().as_secs_f64())?;
     // Nothing computed is lost if a file cannot be written.
-    say(&table::render(&solved.problem, &solved.solution))?;
+    say(&table::render(&solved.solution, &solved.remarks))?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     let mut record = solved.record;
     remove_earlier(&folder)?;

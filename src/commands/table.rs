@@ -1,13 +1,11 @@
 //! A static solution as a person reads it on a terminal.
 
 use bearing_dynamics::output::results::load_zone_of;
-use bearing_dynamics::solver::statics::{
-    COORDINATE_NAMES, ContactState, Determinacy, StaticProblem, StaticSolution,
-};
+use bearing_dynamics::solver::statics::{COORDINATE_NAMES, ContactState, StaticSolution};
 use std::fmt::Write;
 
 /// Position, reactions, stiffness, balls and what to beware of.
-pub fn render(problem: &StaticProblem, solution: &StaticSolution) -> String {
+pub fn render(solution: &StaticSolution, remarks: &[String]) -> String {
     let mut text = String::new();
     race(&mut text, solution);
     stiffness(&mut text, solution);
@@ -24,7 +22,7 @@ pub fn render(problem: &StaticProblem, solution: &StaticSolution) -> String {
         "{} iterations, {} ball-race evaluations, unbalanced load {:.1e} N",
         solution.iterations, solution.contact_evaluations, solution.residual
     );
-    for remark in remarks(problem, solution) {
+    for remark in remarks {
         let _ = writeln!(text, "note: {remark}");
     }
     text
@@ -107,68 +105,4 @@ fn without_noise(load: f64, solution: &StaticSolution, index: usize) -> f64 {
     let largest = solution.balls.iter().map(|b| b.inner.normal_load).fold(0.0, f64::max);
     let lever = if index < 3 { 1.0 } else { 1.0e-1 };
     if load.abs() <= 1e-9 * largest * lever { 0.0 } else { load }
-}
-
-/// What a reader of the numbers should know.
-pub fn remarks(problem: &StaticProblem, solution: &StaticSolution) -> Vec<String> {
-    let mut remarks = Vec::new();
-    if let Determinacy::Indeterminate { free_directions } = &solution.determinacy {
-        remarks.push(format!(
-            "indeterminate: {} of the race's directions meet no stiffness, the position shown is one \
-             of many; load the bearing, preload it, or hold these coordinates",
-            free_directions.len()
-        ));
-    }
-    if solution.saddles_left > 0 {
-        remarks.push(
-            "the symmetric position is unstable and was left; its mirror image is an equilibrium too"
-                .into(),
-        );
-    }
-    remarks.extend(without_shoulder(problem, solution));
-    remarks.extend(overloaded(solution));
-    remarks
-}
-
-/// Pressure above which ISO 76 counts on lasting dents in ball bearings.
-fn overloaded(solution: &StaticSolution) -> Option<String> {
-    const STATIC_RATING: f64 = 4200e6;
-    let pressures =
-        solution.balls.iter().flat_map(|b| [b.inner.peak_pressure, b.outer.peak_pressure]);
-    let largest = pressures.fold(0.0, f64::max);
-    (largest > STATIC_RATING).then(|| {
-        format!(
-            "a contact pressure of {:.0} MPa is above the 4200 MPa at which ISO 76 counts on lasting \
-             dents; the model is elastic: check loads, clearance and their units",
-            1e-6 * largest
-        )
-    })
-}
-
-/// An angular-contact bearing has a shoulder on one side of each groove only; the model's groove is
-/// a whole torus and carries on either side.
-fn without_shoulder(problem: &StaticProblem, solution: &StaticSolution) -> Option<String> {
-    /// A ball this close to the bottom of the groove, in rad, needs no shoulder.
-    const BOTTOM: f64 = 1e-6;
-    if problem.geometry.contact_angle <= 0.0 {
-        return None;
-    }
-    let unsupported =
-        |contact: &ContactState| contact.normal_load > 0.0 && contact.contact_angle < -BOTTOM;
-    let numbers: Vec<String> = solution
-        .balls
-        .iter()
-        .enumerate()
-        .filter(|(_, ball)| unsupported(&ball.inner) || unsupported(&ball.outer))
-        .map(|(index, _)| (index + 1).to_string())
-        .collect();
-    (!numbers.is_empty()).then(|| {
-        format!(
-            "ball{} {} loaded at a negative contact angle, on the side of the groove where an \
-             angular-contact bearing has no shoulder; the real bearing would come apart or a ball \
-             ride the edge: preload it along +x",
-            if numbers.len() == 1 { "" } else { "s" },
-            numbers.join(", ")
-        )
-    })
 }

@@ -45,7 +45,7 @@ pub const FEWEST_ROWS: usize = 8;
 /// use bearing_dynamics::output::spectrum::{peaks, spectrum};
 /// let sine = |i: usize| 0.5 * (std::f64::consts::TAU * 50.0 * 1e-3 * i as f64).sin();
 /// let values: Vec<f64> = (0..1000).map(sine).collect();
-/// let peak = peaks(&spectrum(&values, 1e-3).unwrap(), 1)[0];
+/// let peak = peaks(&spectrum(&values, 1e-3).unwrap(), 1, 0.0)[0];
 /// assert_eq!(peak.bin_frequency, 50.0);
 /// assert!((peak.amplitude - 0.5).abs() <= 1e-3);
 /// ```
@@ -77,15 +77,32 @@ pub fn spectrum(values: &[f64], interval: f64) -> Option<Spectrum> {
     })
 }
 
-/// The `count` highest peaks, highest first: bins higher than both neighbours, beyond the main
-/// lobe of the mean, and above rounding (1e-9 of the highest bin).
-pub fn peaks(spectrum: &Spectrum, count: usize) -> Vec<Peak> {
+/// Peaks lower than this part of the highest are not listed: so far down a window's side lobes reach.
+pub const LOWEST: f64 = 1e-3;
+
+/// The `count` highest peaks, highest first: bins higher than both neighbours, not below `floor` (in the
+/// unit of the channel) nor below [`LOWEST`] of the highest.
+///
+/// The mean has been taken out, so that what is left in its main lobe is slower than two periods of the
+/// window: it is a peak in bin 1, whose frequency is no better known than that.
+pub fn peaks(spectrum: &Spectrum, count: usize, floor: f64) -> Vec<Peak> {
     let bins = &spectrum.amplitude;
-    let highest = bins.iter().copied().fold(0.0, f64::max);
-    let mut found: Vec<Peak> = (2..bins.len().saturating_sub(1))
-        .filter(|&k| bins[k] > bins[k - 1] && bins[k] >= bins[k + 1] && bins[k] > 1e-9 * highest)
+    if bins.len() < 3 {
+        return Vec::new();
+    }
+    let slow = (bins[1] > bins[2]).then_some(Peak {
+        frequency: spectrum.bin_width,
+        amplitude: bins[1],
+        bin_frequency: spectrum.bin_width,
+        bin_amplitude: bins[1],
+    });
+    let mut found: Vec<Peak> = (2..bins.len() - 1)
+        .filter(|&k| bins[k] > bins[k - 1] && bins[k] >= bins[k + 1])
         .map(|k| parabola(spectrum, k))
+        .chain(slow)
         .collect();
+    let highest = found.iter().map(|peak| peak.amplitude).fold(0.0, f64::max);
+    found.retain(|peak| peak.amplitude > floor.max(LOWEST * highest));
     found.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
     found.truncate(count);
     found
@@ -117,7 +134,7 @@ mod tests {
     #[test]
     fn a_sine_in_a_bin_has_its_amplitude_and_frequency() {
         let spectrum = spectrum(&sine(1000, 0.05, 2.0), 1.0).unwrap();
-        let peak = peaks(&spectrum, 3)[0];
+        let peak = peaks(&spectrum, 3, 0.0)[0];
         assert_eq!((spectrum.amplitude.len(), peak.bin_frequency), (501, 0.05));
         assert!((peak.bin_amplitude - 2.0).abs() <= 1e-12, "{peak:?}");
         assert!((peak.frequency - 0.05).abs() <= 1e-12, "{peak:?}");
@@ -137,7 +154,7 @@ mod tests {
             for part in [0.1, 0.25, 0.5, 0.8] {
                 let frequency = (40.0 + part) / count as f64;
                 let spectrum = spectrum(&sine(count, frequency, 0.3), 1.0).unwrap();
-                let peak = peaks(&spectrum, 1)[0];
+                let peak = peaks(&spectrum, 1, 0.0)[0];
                 let bins = (peak.frequency - frequency).abs() * count as f64;
                 assert!(bins <= 0.02, "{count} {part}: {bins} bins");
                 let error = (peak.amplitude / 0.3 - 1.0).abs();
@@ -173,6 +190,39 @@ mod tests {
     #[test]
     fn too_few_rows_have_no_spectrum_and_a_constant_no_peak() {
         assert_eq!(spectrum(&[1.0; 7], 1.0), None);
-        assert!(peaks(&spectrum(&[1.0; 64], 1.0).unwrap(), 5).is_empty());
+        assert!(peaks(&spectrum(&[1.0; 64], 1.0).unwrap(), 5, 0.0).is_empty());
+    }
+
+    #[test]
+    fn what_is_slower_than_the_window_is_a_peak() {
+        // Once in the window with amplitude 3, and ten times with 0.5.
+        let values = |slow: f64| -> Vec<f64> {
+            let part = |i: usize| TAU * i as f64 / 512.0;
+            (0..512).map(|i| 3.0 * (slow * part(i)).sin() + 0.5 * (10.0 * part(i)).sin()).collect()
+        };
+        let found = peaks(&spectrum(&values(1.0), 1.0).unwrap(), 8, 0.0);
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert_eq!(found[0].bin_frequency, 1.0 / 512.0);
+        assert!((found[0].bin_amplitude - 3.0).abs() <= 1e-12, "{found:?}");
+        assert!((found[1].amplitude - 0.5).abs() <= 1e-3, "{found:?}");
+        // Slower still: it is listed, and first.
+        let found = peaks(&spectrum(&values(0.4), 1.0).unwrap(), 8, 0.0);
+        assert_eq!(found[0].bin_frequency, 1.0 / 512.0, "{found:?}");
+    }
+
+    #[test]
+    fn peaks_end_at_the_floor_and_at_a_thousandth_of_the_highest() {
+        let part = |i: usize| TAU * i as f64 / 512.0;
+        let sizes = [(20.0, 1.0), (60.0, 2e-3), (100.0, 5e-4), (140.0, 1e-12)];
+        let value =
+            |i: usize| sizes.iter().map(|(turns, size)| size * (turns * part(i)).sin()).sum();
+        let values: Vec<f64> = (0..512).map(value).collect();
+        let spectrum = spectrum(&values, 1.0).unwrap();
+        let listed = |floor: f64| -> Vec<f64> {
+            peaks(&spectrum, 8, floor).iter().map(|p| (512.0 * p.bin_frequency).round()).collect()
+        };
+        assert_eq!(listed(0.0), [20.0, 60.0]);
+        assert_eq!(listed(1e-2), [20.0]);
+        assert!(listed(2.0).is_empty());
     }
 }

@@ -14,8 +14,9 @@ use crate::solver::dynamics::checkpoint::Checkpoint;
 use crate::solver::dynamics::contacts::Work;
 use crate::solver::dynamics::control::Memory;
 use crate::solver::dynamics::energy::Energy;
+use crate::solver::dynamics::extremes::Extremes;
 use crate::solver::dynamics::model::DynamicProblem;
-use crate::solver::dynamics::run::Stepping;
+use crate::solver::dynamics::run::{ContactTurnover, Stepping};
 use crate::solver::dynamics::stability::{Cause, StepLimit};
 use crate::solver::dynamics::step_watch::{Shortened, StepWatch, Stiffness};
 use nalgebra::Complex;
@@ -45,6 +46,8 @@ pub struct StateFile {
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub limit: Option<LimitEntry>,
     pub step_watch: StepWatchEntry,
+    /// See [`Extremes::to_numbers`].
+    pub extremes: Vec<f64>,
     /// When the run was to end, and the time between rows that it was asked for, s.
     pub end: f64,
     pub output_interval: f64,
@@ -59,6 +62,8 @@ pub struct StateFile {
     /// Kinetic, contact, cage contact, gravity, foundation, ball contact, J.
     pub first_energy: [f64; 6],
     pub largest_contact_energy: f64,
+    /// See [`ContactTurnover`]: sum and last, J.
+    pub contact_turnover: [f64; 2],
     /// Evaluations, distance tests, loaded contacts, slices, pocket tests, guide tests,
     /// ball tests, factorisations, rejected steps.
     pub work: [u64; 9],
@@ -203,6 +208,9 @@ pub fn resume(
     if !checkpoint.fits(&problem) {
         return Err(damaged("its lists have other lengths than the bearing asks for"));
     }
+    if Extremes::from_numbers(&file.extremes).is_none() {
+        return Err(damaged("its extremes are not as many as a bearing has"));
+    }
     let by_time = file.control.is_some();
     if by_time != matches!(request.options.stepping, Stepping::Accuracy(_)) {
         return Err(damaged("error control without its sizes, or sizes without it"));
@@ -260,6 +268,7 @@ pub(crate) fn state_file(
                 last,
             }),
         },
+        extremes: checkpoint.extremes.to_numbers(),
         end: span.0,
         output_interval: record.output_interval,
         steps_per_row: span.1,
@@ -277,6 +286,7 @@ pub(crate) fn state_file(
             energy.ball_contact,
         ],
         largest_contact_energy: checkpoint.largest_contact_energy,
+        contact_turnover: [checkpoint.contact_turnover.sum, checkpoint.contact_turnover.last],
         work: [
             work.evaluations,
             work.distance_tests,
@@ -333,11 +343,16 @@ pub(crate) fn checkpoint(file: &StateFile) -> Checkpoint {
                 .shortened
                 .map(|ShortenedEntry { times, from, last }| Shortened { times, from, last }),
         },
+        extremes: Extremes::from_numbers(&file.extremes).unwrap_or_default(),
         state: file.state.clone(),
         damping: file.damping.clone(),
         was_loaded: file.was_loaded.clone(),
         first_energy: Energy { kinetic, contact, cage_contact, gravity, foundation, ball_contact },
         largest_contact_energy: file.largest_contact_energy,
+        contact_turnover: ContactTurnover {
+            sum: file.contact_turnover[0],
+            last: file.contact_turnover[1],
+        },
         work: Work {
             evaluations,
             distance_tests,
@@ -366,7 +381,8 @@ pub(crate) fn check_finite(file: &StateFile) -> Result<(), StateError> {
     let watched = watch.stiffest.into_iter().chain(watch.smallest);
     let shortened = watch.shortened.into_iter().flat_map(|s| [s.from, s.last]);
     let limit = limit.chain(watched).chain(watch.exceeded.into_iter().flatten()).chain(shortened);
-    let parts: [(&'static str, Vec<f64>); 5] = [
+    let parts: [(&'static str, Vec<f64>); 6] = [
+        ("an extreme", file.extremes.clone()),
         ("a size of the error control", file.control.into_iter().flatten().collect()),
         (
             "time, step or energy",
@@ -374,6 +390,7 @@ pub(crate) fn check_finite(file: &StateFile) -> Result<(), StateError> {
                 .into_iter()
                 .chain(file.first_energy)
                 .chain([file.largest_contact_energy])
+                .chain(file.contact_turnover)
                 .collect(),
         ),
         ("a step limit", limit.collect()),

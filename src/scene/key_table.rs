@@ -169,8 +169,8 @@ pub(super) const KEYS: &[Key] = &[
         "Whether the balls' centrifugal force counts in statics; needs `inner_race.speed`. A run has it by itself."),
 
     Key::new("output.plots", Kind::Choices(PLOTS),
-        Default { value: "load-zone, polar", reason: "usual plots" },
-        "Plots to draw; `[]` for none. Statics draws `load-zone`, `polar` and `moment-tilt` (in a housing `load-zone` only; equilibria over time have no `polar` and no `slip-spin`), a run `polar` and the others (default `orbit`, `series`, `polar`)."),
+        Depends("`load-zone`, `polar`; of a run `orbit`, `series`, `polar`; of a solid `series`, `spectrum`"),
+        "Plots to draw; `[]` for none. Statics draws `load-zone`, `polar` and `moment-tilt` (in a housing `load-zone` only; equilibria over time have no `polar` and no `slip-spin`), a run `polar` and the others."),
 ];
 
 const MATERIAL_EXAMPLE: &str =

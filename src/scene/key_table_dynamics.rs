@@ -68,7 +68,7 @@ const MASS_HINT: &str = "a positive mass; check the unit";
 const INERTIA_HINT: &str = "a positive moment of inertia; check the unit";
 const FRICTION_HINT: &str = "friction coefficients of steel are 0.05 to 0.2";
 const FOUNDATION_HINT: &str = "a spring or dashpot holds back: it is not negative; check the unit";
-const STEP_HINT: &str = "stable steps of steel bearings are 0.1 to 10 us; leave it out, and it follows from the stiffest contact";
+const STEP_HINT: &str = "stable steps of steel bearings are 0.1 to 10 us; leave it out, and steps follow from an accuracy";
 const SLIP_HINT: &str = "friction needs some sliding speed to build up; 1 to 100 mm/s is usual";
 
 /// What moves a bearing, in the order of the reference.
@@ -192,21 +192,21 @@ pub(super) const KEYS: &[Key] = &[
 
     quantity("numerics.end", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("required for a run"), "Time at which the run ends.").hint("a run of seconds takes seconds to minutes; check the unit"),
     quantity("numerics.step", Kind::Quantity(Time, closed(1e-12, 1e-2, "s")), Optional,
-        "Fixed step; leave it out, and it follows from the stability limit.").group("step").hint(STEP_HINT).example_of("1 us"),
+        "Fixed step, of `rk4` unless another integrator is given; leave it out, and steps follow from an accuracy.").group("step").hint(STEP_HINT).example_of("1 us"),
     Key::new("numerics.step_fraction", Kind::Number(above(0.0, 1.0, "")),
-        Depends("0.5 with `rk4` where no `step` is given; refused with another integrator"),
+        Depends("0.5 where `rk4` is written and no `step`; refused with another integrator"),
         "Step as a part of the largest stable one of `rk4`.").group("step").hint("1 is the stability limit; above it the run fails").example_of("0.5"),
     Key::new("numerics.accuracy", Kind::Number(closed(1e-8, 0.1, "")),
-        Depends("0.001 with another integrator than `rk4` where no `step` is given; refused with `rk4`"),
+        Depends("0.001 where neither `step`, `step_fraction` nor `rk4` is given; refused with `rk4`"),
         "Error wanted in the motion of the races, as a part of the largest overlap of a contact; steps follow from it.")
         .group("step").hint("0.001 is usual; an undamped bearing rings, and below 1e-4 the ringing sets the step").example_of("0.001"),
     Key::new("numerics.start", Kind::Choice(STARTS), Default { value: "equilibrium", reason: "no shock at the start" },
         "Start at the static equilibrium of the loads at t = 0, or in nominal positions; balls and cage roll either way."),
     quantity("numerics.output_interval", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("a thousandth of the run"),
         "Time from one written row to the next.").example_of("0.1 ms"),
-    Key::new("numerics.energy_limit", Kind::Number(above(0.0, 1.0, "")), Default { value: "0.01", reason: "1 % of the energy turned over; with an `accuracy` 1, since error control watches the steps itself" },
-        "Energy unaccounted for, as a part of the energy turned over, at which the run is stopped. Turned over is the largest energy in the contacts, all work and losses, and with an `accuracy` also the kinetic energy.").example_of("0.01"),
-    Key::new("numerics.integrator", Kind::Choice(INTEGRATORS), Default { value: "rk4", reason: "classical fourth-order Runge-Kutta, as the source" },
+    Key::new("numerics.energy_limit", Kind::Number(above(0.0, 1.0, "")), Depends("0.01; with an `accuracy` 0.2"),
+        "Energy unaccounted for, as a part of the energy turned over, at which the run is stopped. Turned over is the largest energy in the contacts, all work and losses, and with an `accuracy` also the kinetic energy and what goes into contacts and out again from row to row.").example_of("0.01"),
+    Key::new("numerics.integrator", Kind::Choice(INTEGRATORS), Depends("with a `step` or a `step_fraction`, and in a housing by explicit steps, `rk4`; otherwise what the plan chooses"),
         "Time integration: classical Runge-Kutta; Dormand and Prince's explicit method of fifth order; a linearly implicit one that traction and contacts do not bind. The latter two take an `accuracy`."),
 
     Key::new("output.channels", Kind::Choices(CHANNELS),

@@ -40,7 +40,7 @@ fn refuse_strangers(
 }
 
 pub(crate) fn traction(reader: &mut Reader) -> Result<TractionLaw, SceneError> {
-    let law = reader.choice("traction.law").unwrap_or("none");
+    let law = reader.choice("traction.law").unwrap_or("slide-to-roll");
     refuse_strangers(reader, law, TRACTION_KEYS)?;
     let because = format!(" with `law = \"{law}\"`");
     Ok(match law {

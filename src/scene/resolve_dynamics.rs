@@ -4,7 +4,7 @@ use crate::ch2_housing::bearing::geometry::{BearingGeometry, Material};
 use crate::ch2_housing::bearing::inertia::{Inertia, grooved_ring};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::Reader;
-use crate::scene::resolved::{Cage, CageInRun, Dimensions, Dynamics, RunSettings};
+use crate::scene::resolved::{Cage, CageInRun, Dimensions, Dynamics, RunSettings, Shoulder};
 use crate::scene::units::plain;
 use crate::scene::value::Checked;
 use crate::scene::{resolve_cage, resolve_contact};
@@ -35,6 +35,12 @@ pub(crate) fn dynamics(
         foundation_stiffness: [0.0; 5],
         foundation_damping: [0.0; 5],
     };
+    let [of_inner, of_outer] = [&INNER, &OUTER].map(|side| {
+        let given = shoulder(reader, parts, side, &format!("{}.shoulder_radius", side.geometry))?;
+        let radius = given.unwrap_or_else(|| usual_shoulder(parts.dimensions, side));
+        Ok(Shoulder { radius, given: given.is_some() })
+    });
+    let shoulders = [of_inner?, of_outer?];
     let outer = outer_race(reader, parts)?;
     let cage = resolve_cage::in_run(reader, parts.geometry, parts.cage)?;
     let balls_meet = match &cage {
@@ -43,6 +49,7 @@ pub(crate) fn dynamics(
     };
     Ok(Dynamics {
         inner,
+        shoulders,
         outer,
         cage,
         rotating_load: rotating_load(reader)?,
@@ -216,7 +223,7 @@ fn race_inertia(reader: &mut Reader, parts: &Parts, side: &Side) -> Result<Inert
         radius
     });
     let land = given_shoulder.unwrap_or_else(|| {
-        let radius = race.radius + side.sign * SHOULDER * diameter;
+        let radius = usual_shoulder(sizes, side);
         let reason = "shoulders as high as 20 % of the ball diameter";
         reader.note(&shoulder_key, &millimetres(radius), reason);
         radius
@@ -241,6 +248,11 @@ fn race_inertia(reader: &mut Reader, parts: &Parts, side: &Side) -> Result<Inert
     );
     reader.note(&format!("{}.inertia", side.table), &value, "a grooved ring of the race's sizes");
     Ok(Inertia { mass: ring.mass + added, ..ring })
+}
+
+fn usual_shoulder(sizes: &Dimensions, side: &Side) -> f64 {
+    let race = if side.sign > 0.0 { &sizes.inner_race } else { &sizes.outer_race };
+    race.radius + side.sign * SHOULDER * 2.0 * sizes.nominal_ball_radius
 }
 
 /// The given shoulder radius: beyond the groove bottom, short of the balls' centres.
@@ -303,24 +315,21 @@ fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
         Some("nominal") => Start::Nominal,
         _ => Start::Equilibrium,
     };
-    let integrator = match reader.choice("numerics.integrator") {
-        Some("dormand-prince") => Integrator::DormandPrince,
-        Some("rosenbrock") => Integrator::Rosenbrock,
-        _ => Integrator::RungeKutta,
-    };
-    let stepping = stepping(reader, integrator)?;
-    let options = RunOptions {
-        start,
-        integrator,
-        stepping,
-        energy_limit: reader.number("numerics.energy_limit").unwrap_or(match stepping {
-            // Error control watches the steps; the ledger of a drive that holds a speed against stiff
-            // traction is inaccurate in long steps, while the motion is not.
-            Stepping::Accuracy(_) => 1.0,
-            Stepping::Fixed(_) | Stepping::FractionOfLimit(_) => usual.energy_limit,
-        }),
-        ..usual
-    };
+    let Steps { integrator, stepping, by_plan } = steps(reader)?;
+    let energy_limit = reader.given_number("numerics.energy_limit").unwrap_or_else(|| {
+        let (limit, reason) = match stepping {
+            Stepping::Fixed(_) | Stepping::FractionOfLimit(_) => {
+                (usual.energy_limit, "1 % of the energy turned over")
+            }
+            Stepping::Accuracy(_) => (
+                ENERGY_LIMIT_OF_CONTROL,
+                "error control watches the motion; long steps balance the work of what holds a speed roughly",
+            ),
+        };
+        reader.note("numerics.energy_limit", &plain(limit), reason);
+        limit
+    });
+    let options = RunOptions { start, integrator, stepping, energy_limit, ..usual };
     let output_interval = within(reader, "numerics.output_interval", end)?.unwrap_or_else(|| {
         let interval = end / 1000.0;
         let value = format!("{} s", plain(interval));
@@ -339,12 +348,48 @@ fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
         }
         _ => ChannelGroup::DEFAULT.to_vec(),
     };
-    Ok(Some(RunSettings { options, end, output_interval, window_start, channels }))
+    Ok(Some(RunSettings { options, by_plan, end, output_interval, window_start, channels }))
 }
 
-fn stepping(reader: &mut Reader, integrator: Integrator) -> Result<Stepping, SceneError> {
+/// Energy that error control may lose, as a part of the energy turned over: sound runs at an accuracy of
+/// 0.01 lose up to 0.02, and one that makes energy without end comes close to 1.
+const ENERGY_LIMIT_OF_CONTROL: f64 = 0.2;
+
+struct Steps {
+    integrator: Integrator,
+    stepping: Stepping,
+    /// Whether the plan is to choose the integrator.
+    by_plan: bool,
+}
+
+/// Without step and integrator error control, by the method that the plan chooses; a step, or a part of
+/// the largest stable one, is one of rk4.
+fn steps(reader: &mut Reader) -> Result<Steps, SceneError> {
     let [step, fraction, accuracy] = ["step", "step_fraction", "accuracy"]
         .map(|name| reader.given_number(&format!("numerics.{name}")));
+    let given = match reader.choice_if_given("numerics.integrator") {
+        Some("dormand-prince") => Some(Integrator::DormandPrince),
+        Some("rosenbrock") => Some(Integrator::Rosenbrock),
+        Some(_) => Some(Integrator::RungeKutta),
+        None => None,
+    };
+    // Windows of a housing are shorter than any step that error control would choose.
+    let in_housing = reader.choice_if_given("housing.method") == Some("explicit");
+    let by_steps = step.is_some() || fraction.is_some() || (in_housing && accuracy.is_none());
+    let by_plan = given.is_none() && !by_steps;
+    let integrator = match given {
+        Some(integrator) => integrator,
+        None if by_steps => {
+            let reason = match in_housing {
+                true => "a housing in explicit steps binds them",
+                false => "steps as given, as the source's",
+            };
+            reader.note("numerics.integrator", "rk4", reason);
+            Integrator::RungeKutta
+        }
+        // Until the plan has looked.
+        None => Integrator::Rosenbrock,
+    };
     let estimates = integrator != Integrator::RungeKutta;
     let refuse = |key: &str, reason, advice: &str| {
         let problem = Problem::NotApplicable { reason, advice: advice.to_string() };
@@ -352,7 +397,8 @@ fn stepping(reader: &mut Reader, integrator: Integrator) -> Result<Stepping, Sce
     };
     if accuracy.is_some() && !estimates {
         let reason = "the integrator rk4 has no estimate of its error";
-        let advice = "write integrator = \"rosenbrock\" or \"dormand-prince\", or give a step";
+        let advice =
+            "leave the integrator out, write \"rosenbrock\" or \"dormand-prince\", or give a step";
         return refuse("numerics.accuracy", reason, advice);
     }
     if fraction.is_some() && estimates {
@@ -360,7 +406,7 @@ fn stepping(reader: &mut Reader, integrator: Integrator) -> Result<Stepping, Sce
         let advice = "give accuracy or step instead, or write integrator = \"rk4\"";
         return refuse("numerics.step_fraction", reason, advice);
     }
-    Ok(match (step, fraction, accuracy) {
+    let stepping = match (step, fraction, accuracy) {
         (Some(step), _, _) => Stepping::Fixed(step),
         (_, Some(fraction), _) => Stepping::FractionOfLimit(fraction),
         (_, _, Some(accuracy)) => Stepping::Accuracy(accuracy),
@@ -373,7 +419,8 @@ fn stepping(reader: &mut Reader, integrator: Integrator) -> Result<Stepping, Sce
             reader.note("numerics.step_fraction", "0.5", "half the largest stable step");
             Stepping::FractionOfLimit(0.5)
         }
-    })
+    };
+    Ok(Steps { integrator, stepping, by_plan })
 }
 
 /// A time that must lie in the run; a window must begin before the end.

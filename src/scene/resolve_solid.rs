@@ -377,7 +377,10 @@ fn run(reader: &mut Reader) -> Result<Option<SolidRun>, SceneError> {
             SolidStepping::FractionOfLimit(STEP_FRACTION)
         }
     };
-    let energy_limit = reader.number("numerics.energy_limit").unwrap_or(0.01);
+    let energy_limit = reader.given_number("numerics.energy_limit").unwrap_or_else(|| {
+        reader.note("numerics.energy_limit", "0.01", "1 % of the energy turned over");
+        0.01
+    });
     let mut interval = |key: &str, parts: f64, reason: &str| -> Result<(f64, bool), SceneError> {
         let Some(value) = reader.given_number(key) else {
             let value = end / parts;

@@ -35,6 +35,15 @@ pub struct RaceDimensions {
     pub osculation: f64,
 }
 
+/// Where a groove ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shoulder {
+    /// From the axis, m.
+    pub radius: f64,
+    /// Or else of a usual height.
+    pub given: bool,
+}
+
 /// Sizes as a person states them, in m. What the solver needs is in [`BearingGeometry`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dimensions {
@@ -98,6 +107,8 @@ pub enum CageInRun {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunSettings {
     pub options: RunOptions,
+    /// Whether the plan is to choose the integrator; the options have one that goes with any bearing.
+    pub by_plan: bool,
     /// s.
     pub end: f64,
     /// Time from one written row to the next, s.
@@ -124,6 +135,8 @@ pub struct Dynamics {
     pub damping: ContactDamping,
     /// Friction coefficient and regularisation speed (m/s) of the contact between balls.
     pub ball_friction: Option<[f64; 2]>,
+    /// Beside the groove of the inner and of the outer race.
+    pub shoulders: [Shoulder; 2],
     /// `None` where the scene gives no end.
     pub run: Option<RunSettings>,
     pub plots: Vec<RunPlot>,

@@ -7,7 +7,7 @@ pub enum ChannelGroup {
     Races,
     /// Position, speed and angle of the cage, and its load on the guiding race.
     Cage,
-    /// Angle and speed of each ball around the bearing.
+    /// Angle and speed of each ball around the bearing; mean contact angle on each race.
     Orbits,
     /// Normal load of each ball on both races.
     Loads,

@@ -56,6 +56,20 @@ impl Profile {
         }
     }
 
+    /// The same with its time counted from `t0` (s).
+    pub fn from_time(&self, t0: f64) -> Profile {
+        let mut later = self.clone();
+        match &mut later {
+            Profile::Constant(_) => {}
+            Profile::Ramp { start, .. }
+            | Profile::SmoothRamp { start, .. }
+            | Profile::HalfSine { start, .. } => *start -= t0,
+            Profile::Table { points } => points.iter_mut().for_each(|point| point[0] -= t0),
+            Profile::Harmonic { frequency, phase, .. } => *phase += TAU * *frequency * t0,
+        }
+        later
+    }
+
     /// Value at time `t` (s).
     pub fn value(&self, t: f64) -> f64 {
         match self {

@@ -92,7 +92,7 @@ fn lines(values: &[f64]) -> Result<Spectrum, CaseError> {
 
 /// Frequency of the highest line, Hz.
 fn highest_line(spectrum: &Spectrum) -> Result<f64, CaseError> {
-    let peak = peaks(spectrum, 1).first().copied();
+    let peak = peaks(spectrum, 1, 0.0).first().copied();
     Ok(peak.ok_or_else(|| CaseError::message("a spectrum without a peak"))?.bin_frequency)
 }
 
@@ -304,7 +304,12 @@ fn tables(context: &mut CaseContext, runs: &[Run]) {
             let y: Vec<f64> = run.motion.cage_centre.iter().map(|centre| centre[0]).collect();
             let [mean_y, mean_z, distance] = mean_centre(&run.motion).map(|mean| 1e6 * mean);
             let strongest = spectrum(&y, INTERVAL)
-                .and_then(|spectrum| peaks(&spectrum, 1).first().copied())
+                .and_then(|spectrum| {
+                    // Slower than the window is the drift of the centre.
+                    let slow = 1.5 * spectrum.bin_width;
+                    let all = peaks(&spectrum, usize::MAX, 0.0);
+                    all.into_iter().find(|peak| peak.bin_frequency > slow)
+                })
                 .map_or_else(
                     || "none".to_string(),
                     |peak| format!("{:.2} Hz, {:.1} µm", peak.bin_frequency, 1e6 * peak.amplitude),

@@ -65,7 +65,7 @@ pub fn lines(scene: &HousedScene, prepared: &Prepared) -> Result<Vec<String>, Bo
         (HousingMethod::Explicit, Some(run)) => {
             let problem = dynamic_problem(&scene.bearing)?;
             let request = bearing_request(&scene.bearing, run);
-            dynamic_plan_lines(&scene.bearing, &problem, &request)
+            dynamic_plan_lines(&scene.bearing, &problem, &request, None)
         }
         _ => plan_lines(&bearing_at(scene, 0.0)?),
     };

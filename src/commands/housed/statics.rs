@@ -1,5 +1,6 @@
 //! `bearing statics` of a bearing in its housing: one equilibrium at t = 0.
 
+use super::super::remarks as bearing_remarks;
 use super::{
     Prepared, condensed, equilibrium_at, estimate_at, plan, prepare, record, say_notes, search,
     write_bore,
@@ -54,7 +55,8 @@ pub fn run(
     let largest = stress.cell_von_mises.iter().copied().fold(0.0, f64::max);
 
     say_notes(&prepared)?;
-    say(&table::render(&problem, &state.bearing))?;
+    let bearing_notes = bearing_remarks::of_statics(&scene.bearing, &problem, &state.bearing);
+    say(&table::render(&state.bearing, &bearing_notes))?;
     say(&housing_table(&bore, &state, largest))?;
     let remarks = remarks::of_equilibrium(&setup.model, &displacement, &stress);
     say_remarks(&remarks)?;

@@ -264,7 +264,11 @@ pub fn is_about_steps(channel: &str) -> bool {
     const LAST: [&str; 3] = ["steps_per_row", "energy_residual", "largest_residual"];
     let mut parts = channel.split('.').map(|part| part.trim_end_matches("[]"));
     let of_residual = parts.clone().any(|part| LAST.contains(&part));
+    // Which of nearly equal values is the largest, the steps decide.
+    let place = channel.starts_with("extremes.")
+        && (channel.ends_with(".time") || channel.ends_with(".ball"));
     of_residual
+        || place
         || channel == "scene.title"
         || parts.next().is_some_and(|first| SECTIONS.contains(&first))
 }

@@ -223,6 +223,10 @@ impl Recorder {
             self.turned(libm::atan2(z, y), speed, before, row);
             self.values.push(speed);
         }
+        let races = [&snapshot.instant.inner, &snapshot.instant.outer];
+        for (side, race) in races.into_iter().enumerate() {
+            self.values.push(contact_angle(&simulation.system, side, race).to_degrees());
+        }
     }
 
     /// Pushes an angle in degrees with all its turns: of the angles that differ by whole turns the
@@ -277,6 +281,20 @@ impl Recorder {
     }
 }
 
+/// Mean contact angle on one race, rad, each ball by its load; the nominal one where nothing touches.
+/// Positive where the inner race is pushed towards +X.
+fn contact_angle(system: &System, side: usize, race: &RaceNow) -> f64 {
+    let table = &system.table;
+    let sign = if side == 0 { -1.0 } else { 1.0 };
+    let (mut sum, mut load) = (0.0, 0.0);
+    for &pair in table.active.iter().filter(|&&pair| pair / system.layout.padded == side) {
+        let sine = sign * dot(table.contact[pair].normal, race.motion.axis);
+        sum += table.load[pair] * libm::asin(sine.clamp(-1.0, 1.0));
+        load += table.load[pair];
+    }
+    if load > 0.0 { sum / load } else { system.problem.geometry.contact_angle }
+}
+
 fn add_columns(
     problem: &DynamicProblem,
     group: ChannelGroup,
@@ -321,10 +339,15 @@ fn add_columns(
                 add("cage_guide_load".into(), "N");
             }
         }
-        ChannelGroup::Orbits => balls.for_each(|ball| {
-            add(format!("ball_{ball}_angle"), "deg");
-            add(format!("ball_{ball}_orbital_speed"), "rad/s");
-        }),
+        ChannelGroup::Orbits => {
+            for ball in balls {
+                add(format!("ball_{ball}_angle"), "deg");
+                add(format!("ball_{ball}_orbital_speed"), "rad/s");
+            }
+            for race in ["inner", "outer"] {
+                add(format!("mean_{race}_contact_angle"), "deg");
+            }
+        }
         ChannelGroup::Loads => balls.for_each(|ball| {
             add(format!("ball_{ball}_inner_load"), "N");
             add(format!("ball_{ball}_outer_load"), "N");

@@ -343,6 +343,50 @@ impl Session {
     }
 }
 
+/// Steps that a run with a given step takes, as [`Session`] takes them: rows of whole steps, the way to
+/// the next row divided evenly between its corners, a last step that ends at the end.
+pub fn given_steps(problem: &DynamicProblem, request: &RunRequest, step: f64) -> u64 {
+    let interval = (request.output_interval / step).round().max(1.0) * step;
+    let corners = problem.corners();
+    let slack = 1e-6 * step;
+    // Steps of about `step` to a time that is `left` away, and the last of a run.
+    let to_stop = |left: f64| (left / step * (1.0 - 1e-9)).ceil().max(1.0);
+    let mut steps = 0.0;
+    let mut row = 0.0;
+    loop {
+        let row_end = row + interval;
+        let has_corner =
+            |from: f64| next_corner(&corners, from).filter(|corner| *corner <= row_end + slack);
+        let Some(mut corner) = has_corner(row) else {
+            let left = request.end - row;
+            if left <= interval + slack {
+                return (steps + (left / step - 1e-6).ceil().max(1.0)) as u64;
+            }
+            // Rows without a corner in one go.
+            let next = next_corner(&corners, row).unwrap_or(f64::INFINITY).min(request.end);
+            let rows = ((next - row - slack) / interval).floor().max(1.0);
+            steps += rows * (interval / step).round();
+            row += rows * interval;
+            continue;
+        };
+        let mut time = row;
+        loop {
+            let count = to_stop(corner - time);
+            let size = (corner - time) / count;
+            if request.end <= corner + 1e-6 * size {
+                return (steps + ((request.end - time) / size - 1e-6).ceil().max(1.0)) as u64;
+            }
+            steps += count;
+            time = corner;
+            if time >= row_end - slack {
+                break;
+            }
+            corner = has_corner(time).unwrap_or(row_end);
+        }
+        row = time;
+    }
+}
+
 /// Steps no longer than `step` that make an interval.
 pub fn whole_steps(interval: f64, step: f64) -> u64 {
     // A ratio that is whole but for rounding is whole.

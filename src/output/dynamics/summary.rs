@@ -1,14 +1,17 @@
 //! `summary.json` of a run, and the folder around it.
 
-use crate::ch2_housing::bearing::frequencies::ratios;
+use crate::ch2_housing::bearing::geometry::BearingGeometry;
+use crate::ch2_housing::bearing::hertz::contact_ellipse;
 use crate::output::atomic::write_atomic;
 use crate::output::dynamics::session::{Session, Status};
 use crate::output::dynamics::table::RunTable;
 use crate::output::results::{ResultsError, RunRecord, insert_record, pretty, quantity};
 use crate::output::series::{Column, Series, columns_path};
-use crate::output::spectrum::{LEAKAGE, Spectrum, WINDOW, peaks};
+use crate::output::spectrum::{LEAKAGE, LOWEST, Spectrum, WINDOW, peaks};
 use crate::output::state::SERIES;
 use crate::solver::clock::rounded;
+use crate::solver::dynamics::control::SHARE;
+use crate::solver::dynamics::extremes::Extreme;
 use crate::solver::dynamics::run::{Integrator, Stepping};
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
@@ -124,6 +127,7 @@ pub fn run_summary(
     if let Some(energy) = energy(table)? {
         summary.insert("energy".into(), energy);
     }
+    summary.insert("extremes".into(), extremes(session)?);
     summary.insert("final".into(), final_values(table)?);
     if table.window.is_empty() {
         let note = "the run has not come to the window yet";
@@ -135,7 +139,10 @@ pub fn run_summary(
         }
     }
     if !spectra.is_empty() {
-        summary.insert("spectra".into(), spectra_section(table, spectra)?);
+        summary.insert(
+            "spectra".into(),
+            spectra_section(table, spectra, spectral_floor(session, spectra, report))?,
+        );
     }
     insert_record(&mut summary, &report.record)?;
     Ok(Value::Object(summary))
@@ -273,7 +280,16 @@ pub(crate) fn window(table: &RunTable) -> Result<Value, ResultsError> {
     }))
 }
 
-/// Mean speeds over the window beside those of pure rolling at the nominal contact angle.
+/// Speed of the ball set over that of the inner race, the outer one at rest, where balls roll without
+/// slip at both contacts: with both angles one, (1 - r cos α/R)/2. With two the ball's own axis lies midway
+/// between them.
+fn rolling_ratio(geometry: &BearingGeometry, [inner, outer]: [f64; 2]) -> f64 {
+    let (pitch, radius) = (geometry.pitch_radius, geometry.ball_radius);
+    let (inner, outer) = (radius * libm::cos(inner), radius * libm::cos(outer));
+    (pitch - inner) / (2.0 * pitch - inner + outer)
+}
+
+/// Mean speeds over the window beside those of pure rolling at the contact angles that the balls had.
 fn kinematics(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsError> {
     let geometry = &session.simulation.system.problem.geometry;
     let mean = |channel: &str| {
@@ -282,16 +298,36 @@ fn kinematics(session: &Session, table: &RunTable) -> Result<Option<Value>, Resu
     };
     let Some(inner) = mean("inner_speed").filter(|speed| *speed != 0.0) else { return Ok(None) };
     let outer = mean("outer_speed").unwrap_or(0.0);
-    let g = geometry;
-    let ratio = ratios(g.ball_count, g.ball_radius, g.pitch_radius, g.contact_angle).cage;
-    let rolling = ratio * inner + (1.0 - ratio) * outer;
+    let nominal = geometry.contact_angle;
+    let actual = ["mean_inner_contact_angle", "mean_outer_contact_angle"].map(mean);
+    let (angles, named) = match actual {
+        [Some(inner), Some(outer)] => (
+            [inner.to_radians(), outer.to_radians()],
+            "the mean contact angles over the window, balls by their load",
+        ),
+        _ => (
+            [nominal; 2],
+            "the nominal contact angle, since the channels `orbits` are not recorded",
+        ),
+    };
+    let speed_at = |angles: [f64; 2]| {
+        let ratio = rolling_ratio(geometry, angles);
+        ratio * inner + (1.0 - ratio) * outer
+    };
+    let rolling = speed_at(angles);
     let mut section = Map::new();
     let speed = |value: f64| quantity("speed", value, "rad/s");
     let frequency = |value: f64| quantity("frequency", value / TAU, "Hz");
+    let angle = |value: f64| quantity("contact angle", value.to_degrees(), "deg");
     section.insert("inner_race_speed".into(), speed(inner)?);
     section.insert("inner_race_frequency".into(), frequency(inner)?);
+    section.insert("rolling_at".into(), json!(named));
+    section.insert("inner_contact_angle".into(), angle(angles[0])?);
+    section.insert("outer_contact_angle".into(), angle(angles[1])?);
+    section.insert("nominal_contact_angle".into(), angle(nominal)?);
     section.insert("rolling_cage_speed".into(), speed(rolling)?);
     section.insert("rolling_cage_frequency".into(), frequency(rolling)?);
+    section.insert("rolling_cage_speed_at_nominal_angle".into(), speed(speed_at([nominal; 2]))?);
     let orbital: Option<Vec<f64>> =
         (1..=geometry.ball_count).map(|ball| mean(&format!("ball_{ball}_orbital_speed"))).collect();
     let balls = orbital.map(|speeds| speeds.iter().sum::<f64>() / speeds.len() as f64);
@@ -307,15 +343,72 @@ fn kinematics(session: &Session, table: &RunTable) -> Result<Option<Value>, Resu
     Ok(Some(Value::Object(section)))
 }
 
+/// Largest values over all steps, whatever rows were written.
+fn extremes(session: &Session) -> Result<Value, ResultsError> {
+    let simulation = &session.simulation;
+    let problem = &simulation.system.problem;
+    let extremes = &simulation.extremes;
+    let mut section = Map::new();
+    for (name, extreme) in
+        [("inner_race_farthest", extremes.farthest), ("races_farthest_apart", extremes.apart)]
+    {
+        let entry = json!({
+            "distance": quantity(name, extreme.value, "m")?,
+            "time": quantity("time", extreme.time, "s")?,
+        });
+        section.insert(name.into(), entry);
+    }
+    let contacts = [("inner_race", &problem.inner_contact), ("outer_race", &problem.outer_contact)];
+    for ((name, contact), race) in contacts.into_iter().zip(&extremes.races) {
+        let load = race.load.value;
+        let at = |extreme: &Extreme| -> Result<[(&'static str, Value); 2], ResultsError> {
+            Ok([("ball", json!(extreme.ball + 1)), ("time", quantity("time", extreme.time, "s")?)])
+        };
+        let mut largest = Map::new();
+        largest.insert("load".into(), quantity("load", load, "N")?);
+        let pressure = contact_ellipse(contact, load).peak_pressure;
+        largest.insert("peak_pressure".into(), quantity("pressure", pressure, "Pa")?);
+        largest.extend(at(&race.load)?.map(|(key, value)| (key.to_string(), value)));
+        let mut edge = Map::new();
+        let angle = |value: f64| quantity("angle", value.to_degrees(), "deg");
+        edge.insert("ellipse_reaches".into(), angle(race.edge.value)?);
+        edge.insert("contact_angle".into(), angle(race.edge_angle)?);
+        edge.extend(at(&race.edge)?.map(|(key, value)| (key.to_string(), value)));
+        section
+            .insert(name.into(), json!({ "largest_load": largest, "farthest_from_bottom": edge }));
+    }
+    section.insert("of".into(), json!("every accepted step, whatever rows were written"));
+    Ok(Value::Object(section))
+}
+
+/// Peaks below this, m, say nothing: 1e-4 of the highest of all channels; what error control lets pass in
+/// a single step.
+fn spectral_floor(
+    session: &Session,
+    spectra: &[(&'static str, Spectrum)],
+    report: &RunReport,
+) -> f64 {
+    let bins = spectra.iter().flat_map(|(_, spectrum)| spectrum.amplitude.iter().skip(1));
+    let highest = bins.fold(0.0f64, |highest, bin| highest.max(*bin));
+    let allowed = match (&session.simulation.control, report.stepping) {
+        (Some(control), Some(Stepping::Accuracy(accuracy))) => {
+            SHARE * accuracy * control.memory.displacement
+        }
+        _ => 0.0,
+    };
+    allowed.max(1e-4 * highest)
+}
+
 fn spectra_section(
     table: &RunTable,
     spectra: &[(&'static str, Spectrum)],
+    floor: f64,
 ) -> Result<Value, ResultsError> {
     let mut channels = Map::new();
     let bin_width = spectra.first().map_or(0.0, |(_, spectrum)| spectrum.bin_width);
     for (name, spectrum) in spectra {
         let unit = table.unit(name);
-        let found: Result<Vec<Value>, ResultsError> = peaks(spectrum, PEAKS)
+        let found: Result<Vec<Value>, ResultsError> = peaks(spectrum, PEAKS, floor)
             .into_iter()
             .map(|peak| {
                 Ok(json!({
@@ -333,6 +426,8 @@ fn spectra_section(
         "leakage": LEAKAGE,
         "rows": table.window.len(),
         "bin_width": quantity("bin_width", bin_width, "Hz")?,
+        "lowest_peak": quantity("lowest peak", floor, "m")?,
+        "lowest_peak_of_highest": LOWEST,
         "channels": channels,
     }))
 }

@@ -327,7 +327,7 @@ fn spectra_section(spectra: &[(String, Spectrum)]) -> Part {
     section.insert("window".into(), json!(WINDOW));
     section.insert("leakage".into(), json!(LEAKAGE));
     for (column, spectrum) in spectra {
-        let found = peaks(spectrum, PEAKS).into_iter().map(|peak| {
+        let found = peaks(spectrum, PEAKS, 0.0).into_iter().map(|peak| {
             Ok(json!({
                 "frequency": quantity("frequency", peak.frequency, "Hz")?,
                 "amplitude": quantity("amplitude", peak.amplitude, "m")?,

@@ -3,8 +3,9 @@
 use super::contacts::Work;
 use super::control::Memory;
 use super::energy::Energy;
+use super::extremes::Extremes;
 use super::model::DynamicProblem;
-use super::run::{RunOptions, Simulation, SimulationError, Stepping};
+use super::run::{ContactTurnover, RunOptions, Simulation, SimulationError, Stepping};
 use super::stability::StepLimit;
 use super::state::Layout;
 use super::step_watch::StepWatch;
@@ -19,6 +20,7 @@ pub struct Checkpoint {
     pub step_size: f64,
     pub limit: Option<StepLimit>,
     pub step_watch: StepWatch,
+    pub extremes: Extremes,
     /// The whole state vector; see [`super::state`].
     pub state: Vec<f64>,
     /// Contact damping of each pair and whether it carried load: the history of contacts.
@@ -27,6 +29,7 @@ pub struct Checkpoint {
     /// Energy at the start and the largest contact energy since, J: the ledger counts from there.
     pub first_energy: Energy,
     pub largest_contact_energy: f64,
+    pub contact_turnover: ContactTurnover,
     pub work: Work,
     /// With error control only.
     pub control: Option<Memory>,
@@ -57,11 +60,13 @@ impl Simulation {
         checkpoint.step_size = self.step_size;
         checkpoint.limit = self.limit;
         checkpoint.step_watch = self.step_watch;
+        checkpoint.extremes = self.extremes;
         checkpoint.state.clone_from(&self.state);
         checkpoint.damping.clone_from(&self.system.damping);
         checkpoint.was_loaded.clone_from(&self.was_loaded);
         checkpoint.first_energy = self.first_energy;
         checkpoint.largest_contact_energy = self.largest_contact_energy;
+        checkpoint.contact_turnover = self.contact_turnover;
         checkpoint.work = self.system.work;
         checkpoint.control = self.control.as_ref().map(|control| control.memory);
     }
@@ -97,6 +102,7 @@ impl Simulation {
         simulation.steps = checkpoint.steps;
         simulation.limit = checkpoint.limit;
         simulation.step_watch = checkpoint.step_watch;
+        simulation.extremes = checkpoint.extremes;
         simulation.system.damping.copy_from_slice(&checkpoint.damping);
         simulation.take_first_rates();
         simulation.system.work = checkpoint.work;
@@ -105,6 +111,7 @@ impl Simulation {
         simulation.first_energy = checkpoint.first_energy;
         simulation.ledger_before = 0.0;
         simulation.largest_contact_energy = checkpoint.largest_contact_energy;
+        simulation.contact_turnover = checkpoint.contact_turnover;
         Ok(simulation)
     }
 }

@@ -3,7 +3,8 @@
 //! `model` says what is simulated, `state` where it lies, `contacts` and `race` turn states into
 //! loads, `system` into rates, `energy` into energies; `rk4`, `dormand_prince` and `rosenbrock`
 //! integrate (the last through `linearised` contacts, the `arrow` matrix and each ball's `orbit_frame`),
-//! `bounds` says where a state has lost its meaning, `control` chooses steps for an accuracy, `run` drives a simulation from start to end.
+//! `bounds` says where a state has lost its meaning, `control` chooses steps for an accuracy, `extremes` remembers the largest loads,
+//! `run` drives a simulation from start to end.
 pub mod arrow;
 pub mod bounds;
 pub mod checkpoint;
@@ -13,6 +14,7 @@ pub mod dormand_prince;
 pub mod elimination;
 pub mod energy;
 pub mod equilibrium;
+pub mod extremes;
 pub mod failure;
 pub mod linearised;
 pub mod model;

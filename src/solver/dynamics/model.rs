@@ -149,6 +149,40 @@ impl DynamicProblem {
         corners
     }
 
+    /// The same with loads and given motions as they are from `t0` (s) on.
+    pub fn from_time(&self, t0: f64) -> DynamicProblem {
+        let mut later = self.clone();
+        for race in std::iter::once(&mut later.inner).chain(&mut later.outer) {
+            for drive in &mut race.drives {
+                match drive {
+                    Drive::Load(profile) | Drive::Motion(profile) => {
+                        *profile = profile.from_time(t0)
+                    }
+                }
+            }
+            match &mut race.rotation {
+                Rotation::Torque(profile) | Rotation::Speed(profile) => {
+                    *profile = profile.from_time(t0);
+                }
+            }
+        }
+        if let Some(load) = &mut later.rotating_load {
+            let phase = load.angle(t0);
+            *load = RotatingLoad {
+                force: load.force.from_time(t0),
+                speed: load.speed.from_time(t0),
+                phase,
+            };
+        }
+        later
+    }
+
+    /// Whether a load or a given motion changes over time; one that turns at a speed of its own does.
+    pub fn changes(&self) -> bool {
+        let mut own = self.races().flat_map(|race| race.loads().chain(race.given()));
+        own.any(|profile| !matches!(profile, Profile::Constant(_))) || self.rotating_load.is_some()
+    }
+
     /// Whether a given motion has a corner at `time`, so that velocities may jump.
     pub fn jolts_at(&self, time: f64) -> bool {
         let mut given = self.races().flat_map(RaceBody::given);

@@ -1,6 +1,6 @@
 //! Classical fourth-order Runge–Kutta, the integrator of 2.2.1 and 4.2.1.2.
 
-use super::system::{Instant, System};
+use super::system::System;
 
 /// Room for the stages; allocated once.
 pub struct RungeKutta {
@@ -13,10 +13,18 @@ impl RungeKutta {
         RungeKutta { rates: std::array::from_fn(|_| vec![0.0; length]), stage: vec![0.0; length] }
     }
 
-    /// Advances `state` from `t` to `t + step`; returns the instant at `t`.
-    pub fn step(&mut self, system: &mut System, t: f64, step: f64, state: &mut [f64]) -> Instant {
+    /// Advances `state` from `t` to `t + step`; shows the system as evaluated at `t` to `seen`.
+    pub fn step(
+        &mut self,
+        system: &mut System,
+        t: f64,
+        step: f64,
+        state: &mut [f64],
+        seen: impl FnOnce(&System, &[f64]),
+    ) {
         let RungeKutta { rates: [k1, k2, k3, k4], stage } = self;
-        let instant = system.evaluate(t, state, k1);
+        system.evaluate(t, state, k1);
+        seen(system, state);
         advance(stage, state, 0.5 * step, k1);
         system.evaluate(t + 0.5 * step, stage, k2);
         advance(stage, state, 0.5 * step, k2);
@@ -28,7 +36,6 @@ impl RungeKutta {
             state[i] += sixth * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
         }
         system.tidy(t + step, state);
-        instant
     }
 }
 

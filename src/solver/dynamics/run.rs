@@ -4,6 +4,7 @@ use super::contacts::Driver;
 use super::control::{Attempt, Controller};
 use super::dormand_prince::{self, DormandPrince};
 use super::energy::Energy;
+use super::extremes::Extremes;
 use super::model::DynamicProblem;
 use super::race::RaceLoads;
 use super::rk4::RungeKutta;
@@ -70,7 +71,8 @@ pub struct RunOptions {
     pub stepping: Stepping,
     pub driver: Driver,
     /// Energy that may go missing, as a fraction of the energy that has been turned over (largest
-    /// contact energy plus all work and losses; with error control also the kinetic energy).
+    /// contact energy plus all work and losses; with error control also the kinetic energy, and what
+    /// went into contacts and out again from one snapshot to the next).
     pub energy_limit: f64,
 }
 
@@ -98,6 +100,9 @@ pub struct Simulation {
     pub limit: Option<StepLimit>,
     /// How the step compares with what the contacts allow since.
     pub step_watch: StepWatch,
+    /// Of every state that a step has led to, as far as it has been evaluated: of Runge–Kutta's that is
+    /// the one before the last step, unless a snapshot was taken.
+    pub extremes: Extremes,
     /// With error control only.
     pub control: Option<Controller>,
     pub(super) options: RunOptions,
@@ -108,7 +113,16 @@ pub struct Simulation {
     /// What the ledger already held then, J.
     pub(super) ledger_before: f64,
     pub(super) largest_contact_energy: f64,
+    pub(super) contact_turnover: ContactTurnover,
     pub(super) rates: Vec<f64>,
+}
+
+/// Energy that went into contacts and out again, as far as snapshots have seen it, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactTurnover {
+    pub sum: f64,
+    /// At the last snapshot.
+    pub last: f64,
 }
 
 enum Stepper {
@@ -244,6 +258,8 @@ impl Simulation {
         system.work = Default::default();
         let instant = system.evaluate(time, &state, &mut rates);
         let first_energy = system.energy(&state, &instant);
+        let mut extremes = Extremes::default();
+        extremes.see(&system, time, &state);
         let step_watch = StepWatch {
             smallest: limit.map(|limit| limit.step),
             stiffest: if limit.is_some() { stiffness(&system) } else { Stiffness::default() },
@@ -259,10 +275,15 @@ impl Simulation {
             control
         });
         let mut simulation = Simulation {
+            extremes,
             control,
             integrator,
             attempt: Attempt::new(length),
             largest_contact_energy: first_energy.contact + first_energy.ball_contact,
+            contact_turnover: ContactTurnover {
+                sum: 0.0,
+                last: first_energy.contact + first_energy.ball_contact,
+            },
             first_energy,
             ledger_before,
             was_loaded,
@@ -278,6 +299,11 @@ impl Simulation {
         };
         simulation.take_first_rates();
         Ok(simulation)
+    }
+
+    /// How it was asked to step.
+    pub fn options(&self) -> &RunOptions {
+        &self.options
     }
 
     /// First stage at the present state, history included, for the integrators that keep it.
@@ -315,10 +341,13 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::step`].
     pub fn step_by(&mut self, step: f64) -> Result<f64, SimulationError> {
-        let Simulation { system, state, attempt, .. } = self;
+        let Simulation { system, state, attempt, extremes, .. } = self;
         let taken = match &mut self.integrator {
             Stepper::RungeKutta(integrator) => {
-                integrator.step(system, self.time, step, state);
+                let t = self.time;
+                integrator.step(system, t, step, state, |system, state| {
+                    extremes.see(system, t, state);
+                });
                 step
             }
             Stepper::DormandPrince(integrator) => {
@@ -331,6 +360,8 @@ impl Simulation {
                 self.step_size = next.unwrap_or(self.step_size);
                 integrator.accept();
                 std::mem::swap(state, &mut attempt.state);
+                // The last stage is the step itself.
+                extremes.see(system, t + taken, state);
                 taken
             }
             Stepper::Rosenbrock(integrator) => {
@@ -344,6 +375,7 @@ impl Simulation {
                 std::mem::swap(state, &mut attempt.state);
                 system.tidy(t + taken, state);
                 integrator.accept(system, t + taken, taken, &attempt.state, state);
+                extremes.see(system, t + taken, state);
                 taken
             }
         };
@@ -385,6 +417,7 @@ impl Simulation {
     /// More energy unaccounted for than the options allow.
     pub fn snapshot(&mut self) -> Result<Snapshot, SimulationError> {
         let instant = self.system.evaluate(self.time, &self.state, &mut self.rates);
+        self.extremes.see(&self.system, self.time, &self.state);
         let energy = self.system.energy(&self.state, &instant);
         let at = self.system.layout.ledger();
         let mut ledger = [0.0; LEDGER];
@@ -396,10 +429,14 @@ impl Simulation {
         self.largest_contact_energy = self.largest_contact_energy.max(strain);
         let mut turned_over: f64 =
             self.largest_contact_energy + ledger.iter().map(|entry| entry.abs()).sum::<f64>();
-        // Error control keeps the motion, and with it a part of the energy of all motion; steps that
-        // are too long for the contacts it does not take. Without it contacts are the first to go.
+        let turnover = &mut self.contact_turnover;
+        turnover.sum += (strain - turnover.last).abs();
+        turnover.last = strain;
+        // Error control keeps the motion, and with it a part of the energy of all motion and of all that
+        // passes through the contacts; steps that are too long for the contacts it does not take.
+        // Without it contacts are the first to go.
         if self.control.is_some() {
-            turned_over += energy.kinetic;
+            turned_over += energy.kinetic + turnover.sum;
         }
         let limit = self.options.energy_limit;
         if residual.abs() <= limit * turned_over || turned_over == 0.0 {

@@ -4,6 +4,7 @@ mod cage;
 mod housing;
 mod motion;
 mod motion_sweeps;
+mod regimes;
 mod solids;
 mod statics;
 mod varying_compliance;
@@ -23,6 +24,7 @@ pub const STUDIES: &[Study] = &[
     cage::SLICES,
     cage::HERTZ,
     cage::CONTACT,
+    regimes::DEFAULT,
     solids::cantilever::DEFLECTION,
     solids::cantilever::FREQUENCY,
     solids::ring::DEFLECTION,

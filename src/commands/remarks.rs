@@ -1,0 +1,246 @@
+//! What a reader of the numbers should know: one set of remarks for equilibrium and motion.
+
+use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
+use bearing_dynamics::scene::Scene;
+use bearing_dynamics::solver::clock::rounded;
+use bearing_dynamics::solver::dynamics::extremes::{Extreme, Extremes};
+use bearing_dynamics::solver::dynamics::model::DynamicProblem;
+use bearing_dynamics::solver::statics::{
+    BallState, ContactState, Determinacy, StaticProblem, StaticSolution,
+};
+
+/// Pressure above which ISO 76 counts on lasting dents in ball bearings, Pa.
+const STATIC_RATING: f64 = 4200e6;
+/// A ball this close to the bottom of the groove, in rad, needs no shoulder.
+const BOTTOM: f64 = 1e-6;
+/// How far beyond the nominal contact angle, rad, shoulders that are not given reach at least in an
+/// angular-contact bearing.
+const BEYOND_NOMINAL: f64 = 15.0 / 180.0 * std::f64::consts::PI;
+/// Elastic deflections are hundredths of a ball radius.
+const FAR: f64 = 0.1;
+/// Traction that a gyroscopic moment asks for, as a part of the load, from which on it is worth a word.
+const GYROSCOPIC: f64 = 0.01;
+
+/// What remarks are made of; times are those of a run, s.
+#[derive(Clone, Debug, Default)]
+struct Seen {
+    /// Inner, outer: largest load, N; farthest end of a contact ellipse and the contact angle there, rad.
+    loads: [Extreme; 2],
+    edges: [Extreme; 2],
+    edge_angles: [f64; 2],
+    /// Balls loaded at a negative contact angle, counted from 1.
+    reversed: Vec<usize>,
+    /// Centre of the inner race from that of the outer one, m.
+    apart: Extreme,
+    moves: bool,
+}
+
+impl Seen {
+    fn when(&self, of: &Extreme) -> String {
+        if self.moves { format!(" at t = {} s", rounded(of.time)) } else { String::new() }
+    }
+}
+
+/// Of an equilibrium.
+pub fn of_statics(
+    scene: &Scene,
+    problem: &StaticProblem,
+    solution: &StaticSolution,
+) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if let Determinacy::Indeterminate { free_directions } = &solution.determinacy {
+        remarks.push(format!(
+            "indeterminate: {} of the race's directions meet no stiffness, the position shown is one \
+             of many; load the bearing, preload it, or hold these coordinates",
+            free_directions.len()
+        ));
+    }
+    if solution.saddles_left > 0 {
+        remarks.push(
+            "the symmetric position is unstable and was left; its mirror image is an equilibrium too"
+                .into(),
+        );
+    }
+    let grooves = [problem.geometry.inner.groove_radius, problem.geometry.outer.groove_radius];
+    let mut seen = Seen::default();
+    let reversed =
+        |contact: &ContactState| contact.normal_load > 0.0 && contact.contact_angle < -BOTTOM;
+    for (ball, state) in solution.balls.iter().enumerate() {
+        for (side, contact) in [&state.inner, &state.outer].into_iter().enumerate() {
+            take(&mut seen.loads[side], contact.normal_load, ball);
+            let angle = contact.contact_angle.abs();
+            if contact.normal_load > 0.0
+                && take(&mut seen.edges[side], angle + contact.semi_major / grooves[side], ball)
+            {
+                seen.edge_angles[side] = angle;
+            }
+        }
+        if reversed(&state.inner) || reversed(&state.outer) {
+            seen.reversed.push(ball + 1);
+        }
+    }
+    let apart = [0, 1, 2].map(|i| solution.coordinates[i] - problem.outer_pose.position[i]);
+    seen.apart.value = apart.iter().map(|x| x * x).sum::<f64>().sqrt();
+    remarks.extend(shared(scene, [&problem.inner_contact, &problem.outer_contact], &seen));
+    remarks.extend(gyroscopic(problem, solution));
+    remarks
+}
+
+/// Of a run: of every step so far.
+pub fn of_run(scene: &Scene, problem: &DynamicProblem, extremes: &Extremes) -> Vec<String> {
+    let mut reversed: Vec<usize> = extremes
+        .races
+        .iter()
+        .filter(|race| race.reversed.value > BOTTOM)
+        .map(|race| race.reversed.ball + 1)
+        .collect();
+    reversed.sort_unstable();
+    reversed.dedup();
+    let seen = Seen {
+        loads: extremes.races.map(|race| race.load),
+        edges: extremes.races.map(|race| race.edge),
+        edge_angles: extremes.races.map(|race| race.edge_angle),
+        reversed,
+        apart: extremes.apart,
+        moves: true,
+    };
+    shared(scene, [&problem.inner_contact, &problem.outer_contact], &seen)
+}
+
+/// Whether `value` is the largest so far.
+fn take(largest: &mut Extreme, value: f64, ball: usize) -> bool {
+    let larger = value > largest.value;
+    if larger {
+        *largest = Extreme { value, ball, time: 0.0 };
+    }
+    larger
+}
+
+/// Remarks that equilibrium and motion have in common.
+fn shared(scene: &Scene, contacts: [&HertzContact; 2], seen: &Seen) -> Vec<String> {
+    let mut remarks = Vec::new();
+    remarks.extend(without_shoulder(scene, seen));
+    remarks.extend(over_the_edge(scene, seen));
+    let pressure =
+        |side: usize| contact_ellipse(contacts[side], seen.loads[side].value).peak_pressure;
+    let side = if pressure(1) > pressure(0) { 1 } else { 0 };
+    if pressure(side) > STATIC_RATING {
+        remarks.push(format!(
+            "a contact pressure of {:.0} MPa{} is above the 4200 MPa at which ISO 76 counts on lasting \
+             dents; the model is elastic: check loads, speeds, clearance and their units",
+            1e-6 * pressure(side),
+            seen.when(&seen.loads[side])
+        ));
+    }
+    remarks.extend(far_apart(scene, seen));
+    remarks
+}
+
+/// An angular-contact bearing has a shoulder on one side of each groove only; the model's groove is
+/// a whole torus and carries on either side.
+fn without_shoulder(scene: &Scene, seen: &Seen) -> Option<String> {
+    if scene.geometry.contact_angle <= 0.0 || seen.reversed.is_empty() {
+        return None;
+    }
+    let numbers: Vec<String> = seen.reversed.iter().map(usize::to_string).collect();
+    Some(format!(
+        "ball{} {} loaded at a negative contact angle, on the side of the groove where an \
+         angular-contact bearing has no shoulder; the real bearing would come apart or a ball \
+         ride the edge: preload it along +x",
+        if numbers.len() == 1 { "" } else { "s" },
+        numbers.join(", ")
+    ))
+}
+
+/// Where the groove of each race ends, rad from its bottom, and whether the scene says so.
+fn shoulders(scene: &Scene) -> [(f64, bool); 2] {
+    let sizes = &scene.dimensions;
+    let races = [&sizes.inner_race, &sizes.outer_race];
+    std::array::from_fn(|side| {
+        let (race, shoulder) = (races[side], &scene.dynamics.shoulders[side]);
+        let height = (shoulder.radius - race.radius).abs();
+        let end = libm::acos((1.0 - height / race.groove_radius).max(-1.0));
+        let nominal = scene.geometry.contact_angle;
+        let usual = if nominal > 0.0 { end.max(nominal + BEYOND_NOMINAL) } else { end };
+        (if shoulder.given { end } else { usual }, shoulder.given)
+    })
+}
+
+/// The model's groove has no shoulder; of a contact past the real one's a part is missing.
+fn over_the_edge(scene: &Scene, seen: &Seen) -> Option<String> {
+    let ends = shoulders(scene);
+    let past = |side: usize| seen.edges[side].value - ends[side].0;
+    let side = if past(1) > past(0) { 1 } else { 0 };
+    if past(side).is_nan() || past(side) <= 0.0 {
+        return None;
+    }
+    let (edge, race) = (&seen.edges[side], ["inner", "outer"][side]);
+    let source = match ends[side].1 {
+        true => "as given".to_string(),
+        false => format!(
+            "taken, since bearing.{race}_race.shoulder_radius is not given: a height of 20 % of the ball \
+             diameter, and 15 deg past the nominal contact angle at least"
+        ),
+    };
+    Some(format!(
+        "the contact of ball {} with the {race} race reaches {} from the bottom of the groove{} \
+         (contact angle {:.1} deg), past the shoulder, which ends at {:.1} deg ({source}); the model's \
+         groove goes on, the real contact is cut off at the edge",
+        edge.ball + 1,
+        if edge.value < std::f64::consts::FRAC_PI_2 {
+            format!("{:.1} deg", edge.value.to_degrees())
+        } else {
+            "more than 90 deg".into()
+        },
+        seen.when(edge),
+        seen.edge_angles[side].to_degrees(),
+        ends[side].0.to_degrees()
+    ))
+}
+
+/// Farther apart than clearance and elastic deflection explain.
+fn far_apart(scene: &Scene, seen: &Seen) -> Option<String> {
+    let ball = scene.geometry.ball_radius;
+    let expected = FAR * ball + scene.dimensions.diametral_clearance.max(0.0);
+    (seen.apart.value > expected).then(|| {
+        format!(
+            "the centres of the races are {:.4} mm apart{}, more than a tenth of the ball radius beside \
+             the clearance: no elastic deflection of a bearing; check loads, speeds, unbalance and their \
+             units, and whether something holds the race along its axis",
+            1e3 * seen.apart.value,
+            seen.when(&seen.apart)
+        )
+    })
+}
+
+/// Balls that go round a bearing with a contact angle resist the turning of their own axes; equilibrium
+/// has no such moment, nor the traction that holds it.
+fn gyroscopic(problem: &StaticProblem, solution: &StaticSolution) -> Option<String> {
+    let speed = problem.orbital_speed.abs();
+    if speed == 0.0 || problem.ball_mass == 0.0 {
+        return None;
+    }
+    let g = &problem.geometry;
+    let inertia = 0.4 * problem.ball_mass * g.ball_radius * g.ball_radius;
+    let share = |ball: &BallState| {
+        let outer = &ball.outer;
+        let (sin, cos) = libm::sincos(outer.contact_angle);
+        let own = speed * (g.pitch_radius + g.ball_radius * cos) / g.ball_radius;
+        let moment = inertia * own * speed * sin.abs();
+        let load = outer.normal_load;
+        if load > 0.0 { [moment / (2.0 * g.ball_radius * load), moment] } else { [0.0; 2] }
+    };
+    let most = solution
+        .balls
+        .iter()
+        .map(share)
+        .fold([0.0; 2], |most, one| if one[0] > most[0] { one } else { most });
+    (most[0] > GYROSCOPIC).then(|| {
+        format!(
+            "equilibrium has no gyroscopic moment of the balls: up to {:.4} N mm here, which takes traction \
+             of {:.1} % of the load of a ball and moves contact angles and the race; `run` has it",
+            1e3 * most[1],
+            100.0 * most[0]
+        )
+    })
+}

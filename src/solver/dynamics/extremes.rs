@@ -1,0 +1,117 @@
+//! The largest of what every accepted step has led to, whatever rows are written: of the contacts of an
+//! evaluation that the step makes anyway.
+
+use super::state::{BodyState, POSITION};
+use super::system::System;
+use crate::kinematics::vec3::{Vec3, dot, norm, sub};
+
+/// A largest value, the ball it belongs to, counted from 0, and its time, s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extreme {
+    pub value: f64,
+    pub ball: usize,
+    pub time: f64,
+}
+
+impl Extreme {
+    /// The first of equal values stays, so that looking twice at one state changes nothing.
+    fn take(&mut self, value: f64, ball: usize, time: f64) {
+        if value > self.value {
+            *self = Extreme { value, ball, time };
+        }
+    }
+}
+
+/// Contacts that carry less than this part of the largest load so far tell nothing of where loads go.
+const WORTH_A_LOOK: f64 = 0.01;
+
+/// Of the contacts with one race.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RaceExtremes {
+    /// Normal load, N.
+    pub load: Extreme,
+    /// Angle in the groove from its bottom to the farther end of the contact ellipse, rad.
+    pub edge: Extreme,
+    /// Contact angle there, rad, without sign.
+    pub edge_angle: f64,
+    /// Sine of the contact angle on the other side of the groove than a positive one is on.
+    pub reversed: Extreme,
+}
+
+/// Since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extremes {
+    /// Inner, outer.
+    pub races: [RaceExtremes; 2],
+    /// Centre of the inner race from the origin, m.
+    pub farthest: Extreme,
+    /// Centre of the inner race from that of the outer one, m.
+    pub apart: Extreme,
+}
+
+impl Extremes {
+    /// Takes note of a state and of the contacts that `system` has evaluated for it last.
+    pub fn see(&mut self, system: &System, time: f64, state: &[f64]) {
+        let layout = &system.layout;
+        let (inner, outer) = (layout.inner(), layout.outer());
+        let position = |at: usize| -> Vec3 { std::array::from_fn(|i| state[at + POSITION + i]) };
+        self.farthest.take(norm(position(inner)), 0, time);
+        self.apart.take(norm(sub(position(inner), position(outer))), 0, time);
+        let axes = [inner, outer].map(|at| BodyState::from_slice(&state[at..]).axis());
+        let geometry = &system.problem.geometry;
+        let grooves = [geometry.inner.groove_radius, geometry.outer.groove_radius];
+        for &pair in &system.table.active {
+            let (side, ball) = (pair / layout.padded, pair % layout.padded);
+            let contact = &system.table.contact[pair];
+            let race = &mut self.races[side];
+            let load = system.table.load[pair];
+            race.load.take(load, ball, time);
+            if load < WORTH_A_LOOK * race.load.value {
+                continue;
+            }
+            // A positive contact angle has the ball at +X of the outer groove's centre and at -X of
+            // the inner one's.
+            let sine = dot(contact.normal, axes[side]) * if side == 0 { -1.0 } else { 1.0 };
+            race.reversed.take(-sine, ball, time);
+            let law = &system.laws.races[side];
+            let half = law.semi_major_factor * contact.overlap.max(0.0).sqrt() / grooves[side];
+            // sin(α + ε) <= sin α + ε: most contacts need no arc sine.
+            if sine.abs() + half > libm::sin(race.edge.value.min(std::f64::consts::FRAC_PI_2)) {
+                let angle = libm::asin(sine.abs().min(1.0));
+                if angle + half > race.edge.value {
+                    race.edge = Extreme { value: angle + half, ball, time };
+                    race.edge_angle = angle;
+                }
+            }
+        }
+    }
+
+    /// As plain numbers, in a fixed order.
+    pub fn to_numbers(&self) -> Vec<f64> {
+        let of = |e: &Extreme| [e.value, e.ball as f64, e.time];
+        let races = self.races.iter().flat_map(|race| {
+            let all = [of(&race.load), of(&race.edge), of(&race.reversed)];
+            all.into_iter().flatten().chain([race.edge_angle])
+        });
+        races.chain(of(&self.farthest)).chain(of(&self.apart)).collect()
+    }
+
+    /// From [`Extremes::to_numbers`]; `None` if they are not as many.
+    pub fn from_numbers(numbers: &[f64]) -> Option<Extremes> {
+        let mut left = numbers.iter().copied();
+        let mut next = || left.next();
+        let mut extremes = Extremes::default();
+        let one = |next: &mut dyn FnMut() -> Option<f64>| -> Option<Extreme> {
+            Some(Extreme { value: next()?, ball: next()? as usize, time: next()? })
+        };
+        for race in &mut extremes.races {
+            race.load = one(&mut next)?;
+            race.edge = one(&mut next)?;
+            race.reversed = one(&mut next)?;
+            race.edge_angle = next()?;
+        }
+        extremes.farthest = one(&mut next)?;
+        extremes.apart = one(&mut next)?;
+        left.next().is_none().then_some(extremes)
+    }
+}
