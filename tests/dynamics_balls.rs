@@ -324,7 +324,7 @@ fn a_race_that_leaves_its_bearing_ends_the_run() {
     let radius = problem.geometry.ball_radius;
     assert_eq!((way, allowed), ("across its axis", race_limit(&problem)));
     assert!(allowed > radius && allowed < 1.3 * radius, "{allowed}");
-    assert!(distance > allowed && distance < 1.1 * allowed, "{distance}");
+    assert!(distance > allowed, "{distance}");
     assert_eq!((time, step), (simulation.time, simulation.steps));
     // An angular-contact bearing drawn apart: its balls are in the way of a race that comes back.
     let mut drawn = bearing(table_5_3(), [0.0; 5], 0.0);

@@ -7,7 +7,7 @@ mod dynamics;
 
 use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
-use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
+use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough};
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::solver::dynamics::contacts::{Driver, Work};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad, Rotation};
@@ -18,8 +18,11 @@ use common::{table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::Vector3;
 
+/// Table 4.1's bearing with as many balls, on a larger circle where that does not hold them.
 fn with_balls(balls: usize) -> BearingGeometry {
-    BearingGeometry { ball_count: balls, ..table_4_1(-5e-6) }
+    let (pitch, ball) = (26e-3 * f64::max(1.0, balls as f64 / 12.0), 5.953e-3);
+    BearingGeometry::deep_groove(balls, pitch - ball, 6.013e-3, pitch + ball, 6.310e-3, ball)
+        .with_radial_clearance(-5e-6, ClearanceThrough::Ball)
 }
 
 /// A bearing at work: radial load, speed, damping, traction.

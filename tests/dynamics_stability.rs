@@ -229,14 +229,24 @@ fn ten_thousand_rpm_with_traction_and_cage_keeps_its_balance() {
 
 #[test]
 fn a_ball_forced_out_is_a_typed_error() {
-    // The grooves have no shoulders: a load that bends no steel on earth is needed.
-    let problem = bearing(table_4_1(-5e-6), [1e9, 0.0, 0.0, 0.0, 0.0], 0.0);
-    let options = fixed_step(1e-6, Start::Nominal);
-    let mut simulation = Simulation::new(problem, options).unwrap();
+    // The grooves have no shoulders: a load that bends no steel on earth is needed. Contacts are far too deep
+    // before a ball is out.
+    let problem = bearing(table_4_1(-5e-6), [1e7, 0.0, 0.0, 0.0, 0.0], 0.0);
+    let options = fixed_step(1e-7, Start::Nominal);
+    let mut simulation = Simulation::new(problem.clone(), options).unwrap();
     let error = (0..20_000).find_map(|_| simulation.step().err());
-    match error {
+    assert!(
+        matches!(&error, Some(SimulationError::Inside { other, .. }) if other.ends_with(" race")),
+        "{error:?}"
+    );
+    // A ball that flies off between two steps.
+    let layout = Layout::new(8, false);
+    let mut state = start::nominal(&problem, &layout);
+    state[layout.ball(VELOCITY) + 2] = 1.1e7 * problem.geometry.ball_radius;
+    let mut simulation = Simulation::from_state(problem, options, state, 0.0).unwrap();
+    match simulation.step().err() {
         Some(SimulationError::BallOutside { ball, time, step, distance, ball_radius }) => {
-            assert!((1..=8).contains(&ball));
+            assert_eq!(ball, 3);
             assert!(distance > ball_radius);
             assert_eq!(step, simulation.steps);
             assert_eq!(time, simulation.time);
@@ -426,22 +436,25 @@ fn the_step_limit_of_a_ball_follows_from_the_state_itself() {
     let (problem, state) = held(|problem| problem.traction = law.clone());
     let (system, ..) = evaluated(&problem, Driver::Plain, 0.0, &state);
     let inertia = problem.ball.axial;
-    let turned: f64 = [0, 1]
-        .map(|side| {
-            let pair = side * layout.padded;
-            let reach = problem.geometry.ball_radius - 0.5 * system.table.contact[pair].overlap;
-            0.07 / u0 * system.table.load[pair] * reach * reach / inertia
-        })
-        .iter()
-        .sum();
+    // Slip of each contact is v ± ρ ω: two equations of shift and roll, symmetric in v √m and ω √I.
+    let [mut shift, mut both, mut roll] = [0.0; 3];
+    for (side, sign) in [(0, -1.0), (1, 1.0)] {
+        let pair = side * layout.padded;
+        let reach = problem.geometry.ball_radius - 0.5 * system.table.contact[pair].overlap;
+        let slope = 0.07 / u0 * system.table.load[pair];
+        shift += slope * per_mass;
+        both += sign * slope * reach * (per_mass / inertia).sqrt();
+        roll += slope * reach * reach / inertia;
+    }
+    let decay = 0.5 * (shift + roll) + libm::hypot(0.5 * (roll - shift), both);
     let found = limit_at(&problem, &state);
-    // Loads of both contacts differ as their stiffness does, and couple the roll to a shift.
-    assert!((found * turned / DECAYS - 1.0).abs() <= 5e-2, "{found} {}", DECAYS / turned);
+    // Differences over 6e-6 of the onset's width; swings, a tenth as fast, turn with it by 1e-2 of that.
+    assert!((found * decay / DECAYS - 1.0).abs() <= 1e-3, "{found} {}", DECAYS / decay);
 }
 
 #[test]
 fn the_step_limit_of_a_bearing_that_travels_is_that_of_one_at_rest() {
-    let law = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 1e-3 };
+    let law = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 1e-4 };
     let (problem, state) = held(|problem| {
         problem.traction = law.clone();
         problem.inner = free_race();
@@ -457,8 +470,9 @@ fn the_step_limit_of_a_bearing_that_travels_is_that_of_one_at_rest() {
         moving[layout.inner() + VELOCITY] += speed;
         moving[layout.outer() + VELOCITY] += speed;
         let found = limit_at(&problem, &moving);
-        // Differences over 1e-7 of the speed, 1e-3 of the steep onset's width.
-        assert!((found / resting - 1.0).abs() <= 1e-5, "{speed} m/s: {found} {resting}");
+        // Differences over 1e-7 of the speed: 1 % of the onset's width at 10 m/s, squared. Velocities round
+        // to 1e-15 m/s of it.
+        assert!((found / resting - 1.0).abs() <= 3e-4, "{speed} m/s: {found} {resting}");
     }
 }
 

@@ -39,10 +39,15 @@ pub fn scene_text(seed: u64, turns: f64) -> String {
     let mut draw = Draw(Noise(0x6265_6172 ^ (seed << 20)));
     let ball = draw.scaled(0.5, 10.0);
     let full = draw.chance(0.35);
-    let balls = draw.between(3.0, 20.0) as usize;
-    let fill = if full { draw.scaled(1.000_01, 1.005) } else { draw.between(1.2, 2.0) };
+    // A full complement of fewer leaves no shaft.
+    let balls = draw.between(if full { 7.0 } else { 3.0 }, 20.0) as usize;
+    let fill = if full { draw.scaled(1.000_001, 1.001) } else { draw.between(1.2, 2.0) };
     // mm; a shaft is left where few balls stand on a small circle.
-    let pitch = (ball * fill / (std::f64::consts::PI / balls as f64).sin()).max(2.2 * ball);
+    let pitch = (ball * fill / (std::f64::consts::PI / balls as f64).sin()).max(if full {
+        0.0
+    } else {
+        2.2 * ball
+    });
     let clearance = ball * draw.between(-5e-4, 3e-3);
     let angular = draw.chance(0.25);
     let kind = if angular {
@@ -61,7 +66,7 @@ pub fn scene_text(seed: u64, turns: f64) -> String {
         conformity[0],
         conformity[1],
     );
-    let caged = !full && draw.chance(0.5);
+    let caged = !full && draw.chance(0.6);
     if caged {
         let (inner, outer) = (pitch - 0.4 * ball, pitch + 0.4 * ball);
         // g, of a steel ring 2.2 balls' radii long, half of it pockets.
@@ -84,7 +89,7 @@ pub fn scene_text(seed: u64, turns: f64) -> String {
         if angular { rating * draw.scaled(1e-3, 0.2) } else { rating * draw.scaled(1e-5, 0.05) };
     let rpm = draw.scaled(100.0, 30_000.0);
     // Contacts swing the faster the smaller they are.
-    let end = (turns / (rpm / 60.0)).min(3e-4 * ball);
+    let end = (turns / (rpm / 60.0)).min(5e-4 * ball);
     let speed = if draw.chance(0.3) {
         format!("{{ ramp = [\"0 rpm\", \"{rpm} rpm\"], duration = \"{} s\" }}", 0.5 * end)
     } else {
@@ -227,9 +232,6 @@ fn two_hundred_random_scenes_end_sound_or_say_why() {
             continue;
         }
         complete += 1;
-        if outcome.residual > 1e-3 {
-            println!("{seed}: residual {:e} after {} steps", outcome.residual, outcome.steps);
-        }
         worst = worst.max(outcome.residual);
         assert!(outcome.residual <= 1e-2, "{seed}: {}\n{text}", outcome.residual);
     }

@@ -197,7 +197,9 @@ fn entries_of_race_contacts_in_every_configuration() {
         problem
     };
     let moving = |mut problem: DynamicProblem| {
-        problem.outer = Some(free_race());
+        let mut outer = free_race();
+        outer.foundation_stiffness = [3e7, 5e7, 4e7, 3e4, 2e4];
+        problem.outer = Some(outer);
         problem
     };
     let given = |mut problem: DynamicProblem| {
