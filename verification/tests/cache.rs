@@ -11,6 +11,7 @@ use verification::case::{Case, CaseError, Tier};
 use verification::check::{Check, Explanation};
 use verification::context::CaseContext;
 use verification::golden::{self, GoldenTolerance};
+use verification::index::Index;
 use verification::machine::Machine;
 use verification::report::{CaseStatus, Report};
 use verification::runner::{self, Run, assess, compute};
@@ -249,7 +250,8 @@ fn forms(run: &Run, golden: &Path, out: &Path) -> [String; 3] {
     let machine = Machine { date: "a day".into(), ..Machine::facts() };
     let case = assess(&LONG, run, golden);
     assert_eq!(case.status, CaseStatus::Passed, "{:?}", case.failures());
-    Report { machine, tier: Tier::Full, cases: vec![case] }.write(out).unwrap();
+    let index = Index::load().unwrap();
+    Report { machine, tier: Tier::Full, index, cases: vec![case] }.write(out).unwrap();
     ["report.json", "report.md", "report.html"]
         .map(|name| fs::read_to_string(out.join(name)).unwrap())
 }

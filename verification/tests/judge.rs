@@ -310,8 +310,8 @@ lines = [
     assert_eq!(words(&[])[..2], ["2 not run, 2 not built", "not run"]);
     assert_eq!(words(&[])[2..], rest);
     let one = report("one", &[close(force(100.0)), close(load(100.5))]);
-    assert_eq!(words(&[one.clone()])[0], "2 reproduced, 2 not built");
-    assert_eq!(words(&[one.clone()])[1], "computed, no number printed");
+    assert_eq!(words(std::slice::from_ref(&one))[0], "2 reproduced, 2 not built");
+    assert_eq!(words(std::slice::from_ref(&one))[1], "computed, no number printed");
     // The other case meets the same number by a fit: it counts once, as that.
     let two = report("two", &[close(force(100.0)).fit("a force to this force")]);
     assert_eq!(words(&[one.clone(), two.clone()])[0], "1 fit, 1 reproduced, 2 not built");
