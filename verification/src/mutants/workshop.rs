@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use sha2::{Digest, Sha256};
@@ -165,26 +165,17 @@ impl Workshop {
     }
 
     /// The program of a check, or what the compiler said.
+    ///
+    /// An interrupted build can leave parts behind that no longer fit together: one that cannot be
+    /// linked is made once more from nothing before the sources are blamed.
     fn build(&self, check: &Check) -> Result<Result<PathBuf, String>, String> {
-        let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
-        let mut command = Command::new(cargo);
-        match check {
-            Check::Test { name, .. } => command.args(["test", "--no-run", "--test", name]),
-            Check::Lib { .. } => command.args(["test", "--no-run", "--lib"]),
-            Check::Case { .. } => {
-                command.args(["build", "--package", "verification", "--bin", "verify"])
-            }
-        };
-        let output = command
-            .current_dir(self.folder.join("tree"))
-            .args(["--release", "--message-format=json-render-diagnostics", "--quiet"])
-            .arg(format!("--jobs={}", self.processors))
-            // One fault changes one module: what the others compiled to is kept.
-            .env("CARGO_TARGET_DIR", self.folder.join("target"))
-            .env("CARGO_INCREMENTAL", "1")
-            .env("CARGO_PROFILE_RELEASE_DEBUG", "0")
-            .output()
-            .map_err(|error| format!("cargo: {error}"))?;
+        let mut output = self.compile(check)?;
+        let errors = String::from_utf8_lossy(&output.stderr);
+        if !output.status.success() && errors.contains("error: linking with") {
+            let target = self.folder.join("target");
+            fs::remove_dir_all(&target).map_err(|error| said(&target, &error))?;
+            output = self.compile(check)?;
+        }
         if !output.status.success() {
             return Ok(Err(String::from_utf8_lossy(&output.stderr).into_owned()));
         }
@@ -199,6 +190,28 @@ impl Workshop {
             .find_map(|message| executable(&message, wanted))
             .map(Ok)
             .ok_or_else(|| format!("cargo built nothing to run for `{check}`"))
+    }
+
+    fn compile(&self, check: &Check) -> Result<Output, String> {
+        let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+        let mut command = Command::new(cargo);
+        match check {
+            Check::Test { name, .. } => command.args(["test", "--no-run", "--test", name]),
+            Check::Lib { .. } => command.args(["test", "--no-run", "--lib"]),
+            Check::Case { .. } => {
+                command.args(["build", "--package", "verification", "--bin", "verify"])
+            }
+        };
+        command
+            .current_dir(self.folder.join("tree"))
+            .args(["--release", "--message-format=json-render-diagnostics", "--quiet"])
+            .arg(format!("--jobs={}", self.processors))
+            // One fault changes one module: what the others compiled to is kept.
+            .env("CARGO_TARGET_DIR", self.folder.join("target"))
+            .env("CARGO_INCREMENTAL", "1")
+            .env("CARGO_PROFILE_RELEASE_DEBUG", "0")
+            .output()
+            .map_err(|error| format!("cargo: {error}"))
     }
 }
 
