@@ -137,7 +137,7 @@ pub fn condense(
     }
     let mut matrix = pattern(&model.problem, &unknowns);
     stiffness(model, &unknowns, &vec![[0.0; 3]; model.mass.len()], &mut matrix);
-    let factor = Factor::new(&matrix)?;
+    let factor = unknowns.factor(&matrix)?;
     drop(matrix);
 
     let count = nodes.len();

@@ -332,7 +332,7 @@ impl<'a> Newton<'a> {
         }
         match &mut self.factor {
             Some(factor) => factor.refactor(&self.matrix)?,
-            None => self.factor = Some(Factor::new(&self.matrix)?),
+            None => self.factor = Some(self.unknowns.factor(&self.matrix)?),
         }
         self.untouched = false;
         self.stale = false;

@@ -2,7 +2,7 @@
 //! inverted problem.
 
 use super::model::SolidModel;
-use super::tangent::{MassMatrix, PRESCRIBED, Unknowns, mass, pattern, stiffness};
+use super::tangent::{MassMatrix, PRESCRIBED, Unknowns, mass, mass_pattern, pattern, stiffness};
 use crate::kinematics::vec3::Vec3;
 use crate::solver::sparse::{Factor, FactorError, SymmetricMatrix};
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -75,15 +75,13 @@ pub fn modes(model: &SolidModel, options: &ModeOptions) -> Result<Modes, ModeErr
     if options.count > size {
         return Err(ModeError::TooMany { wanted: options.count, unknowns: size });
     }
-    let mut stiff = pattern(&model.problem, &unknowns);
-    let mut masses = stiff.clone();
-    let rest = vec![[0.0; 3]; model.mass.len()];
-    stiffness(model, &unknowns, &rest, &mut stiff);
+    let mut masses = mass_pattern(&model.problem, &unknowns);
     mass(model, &unknowns, options.mass, &mut masses);
     let shift = shift(model);
-    let mut shifted = stiff.clone();
+    let mut shifted = pattern(&model.problem, &unknowns);
+    stiffness(model, &unknowns, &vec![[0.0; 3]; model.mass.len()], &mut shifted);
     shifted.add_scaled(-shift, &masses);
-    let factor = Factor::new(&shifted)?;
+    let factor = unknowns.factor(&shifted)?;
 
     let most = (4 * options.count + 60).min(size);
     let mut krylov = Krylov::new(&masses, &factor);
@@ -94,7 +92,7 @@ pub fn modes(model: &SolidModel, options: &ModeOptions) -> Result<Modes, ModeErr
             .into_iter()
             .map(|(vector, inverse)| {
                 let value = shift + 1.0 / inverse;
-                let residual = residual(&stiff, &masses, &vector, value, shift);
+                let residual = residual(&shifted, &masses, &vector, value, shift);
                 (value, vector, residual)
             })
             .collect();
@@ -141,8 +139,9 @@ fn spread(unknowns: &Unknowns, vector: &[f64]) -> Vec<Vec3> {
     unknowns.of.iter().map(|of| of.map(at)).collect()
 }
 
+/// With the shifted stiffness K − shift M, of which (K − λ M) x is all but (λ − shift) M x.
 fn residual(
-    stiff: &SymmetricMatrix,
+    shifted: &SymmetricMatrix,
     masses: &SymmetricMatrix,
     vector: &[f64],
     value: f64,
@@ -150,11 +149,11 @@ fn residual(
 ) -> f64 {
     let mut force = vec![0.0; vector.len()];
     let mut momentum = vec![0.0; vector.len()];
-    stiff.multiply(vector, &mut force);
+    shifted.multiply(vector, &mut force);
     masses.multiply(vector, &mut momentum);
     let (mut gap, mut scale) = (0.0, 0.0);
     for (force, momentum) in force.iter().zip(&momentum) {
-        gap += (force - value * momentum).powi(2);
+        gap += (force - (value - shift) * momentum).powi(2);
         scale += ((value - shift) * momentum).powi(2);
     }
     (gap / scale).sqrt()
@@ -165,8 +164,7 @@ struct Krylov<'a> {
     masses: &'a SymmetricMatrix,
     factor: &'a Factor,
     basis: Vec<Vec<f64>>,
-    /// Mass times each vector, and inverse times that.
-    momenta: Vec<Vec<f64>>,
+    /// Inverse times mass times each vector of the last block.
     images: Vec<Vec<f64>>,
     /// basisᵀ · mass · image.
     projected: DMatrix<f64>,
@@ -183,7 +181,6 @@ impl<'a> Krylov<'a> {
             masses,
             factor,
             basis: Vec::new(),
-            momenta: Vec::new(),
             images: Vec::new(),
             projected: DMatrix::zeros(0, 0),
             solves: 0,
@@ -193,71 +190,81 @@ impl<'a> Krylov<'a> {
     /// Random vectors from a fixed seed.
     fn start(&mut self, count: usize) {
         let mut seed = 0x2545_f491_4f6c_dd1d_u64;
-        for _ in 0..count {
-            let vector = (0..self.masses.size())
-                .map(|_| {
-                    seed ^= seed << 13;
-                    seed ^= seed >> 7;
-                    seed ^= seed << 17;
-                    (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-                })
-                .collect();
-            self.take(vector);
-        }
+        let mut random = || {
+            seed ^= seed << 13;
+            seed ^= seed >> 7;
+            seed ^= seed << 17;
+            (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let size = self.masses.size();
+        let vectors = (0..count).map(|_| (0..size).map(|_| random()).collect()).collect();
+        self.take(vectors);
     }
 
-    /// Adds what is new in a vector; whether there was anything new.
-    fn take(&mut self, mut vector: Vec<f64>) -> bool {
-        let size = vector.len();
+    /// Adds what is new in some vectors; whether there was anything new. One pass through the factors
+    /// serves them all.
+    fn take(&mut self, vectors: Vec<Vec<f64>>) -> bool {
+        let (size, known) = (self.masses.size(), self.basis.len());
+        let mut right = Vec::with_capacity(vectors.len() * size);
+        for vector in vectors {
+            if let Some((vector, momentum)) = self.orthonormal(vector) {
+                self.basis.push(vector);
+                right.extend(momentum);
+            }
+        }
+        let count = self.basis.len();
+        if count == known {
+            return false;
+        }
+        self.factor.solve_columns(&mut right, count - known);
+        self.solves += count - known;
+        self.images = right.chunks_exact(size).map(<[f64]>::to_vec).collect();
+        drop(right);
+        let old = std::mem::replace(&mut self.projected, DMatrix::zeros(count, count));
+        self.projected.view_mut((0, 0), (known, known)).copy_from(&old);
         let mut momentum = vec![0.0; size];
+        for (column, image) in (known..count).zip(&self.images) {
+            self.masses.multiply(image, &mut momentum);
+            for row in 0..=column {
+                let value = dot(&self.basis[row], &momentum);
+                self.projected[(row, column)] = value;
+                self.projected[(column, row)] = value;
+            }
+        }
+        true
+    }
+
+    /// What is new in a vector, of unit length under the mass, and its momentum.
+    fn orthonormal(&self, mut vector: Vec<f64>) -> Option<(Vec<f64>, Vec<f64>)> {
+        let mut momentum = vec![0.0; vector.len()];
         self.masses.multiply(&vector, &mut momentum);
         let first = dot(&vector, &momentum).sqrt();
         // Twice is enough (Kahan, Parlett).
         for _ in 0..2 {
-            for (known, with_mass) in self.basis.iter().zip(&self.momenta) {
-                let share = dot(with_mass, &vector);
+            let shares: Vec<f64> = self.basis.iter().map(|known| dot(known, &momentum)).collect();
+            for (known, share) in self.basis.iter().zip(shares) {
                 for (v, k) in vector.iter_mut().zip(known) {
                     *v -= share * k;
                 }
             }
+            self.masses.multiply(&vector, &mut momentum);
         }
-        self.masses.multiply(&vector, &mut momentum);
         let length = dot(&vector, &momentum).sqrt();
         if length.is_nan() || length <= 1e-12 * first {
-            return false;
+            return None;
         }
         for (v, m) in vector.iter_mut().zip(&mut momentum) {
             *v /= length;
             *m /= length;
         }
-        let mut image = momentum.clone();
-        self.factor.solve(&mut image);
-        self.solves += 1;
-        self.basis.push(vector);
-        self.momenta.push(momentum);
-        self.images.push(image);
-        let count = self.basis.len();
-        let old = std::mem::replace(&mut self.projected, DMatrix::zeros(count, count));
-        self.projected.view_mut((0, 0), (count - 1, count - 1)).copy_from(&old);
-        let newest = &self.images[count - 1];
-        for (i, momentum) in self.momenta.iter().enumerate() {
-            let value = dot(momentum, newest);
-            self.projected[(i, count - 1)] = value;
-            self.projected[(count - 1, i)] = value;
-        }
-        true
+        Some((vector, momentum))
     }
 
     /// One more block; whether the space grew.
     fn grow(&mut self, most: usize) -> bool {
-        let count = self.basis.len();
-        let mut grew = false;
-        for at in count.saturating_sub(BLOCK)..count {
-            if self.basis.len() < most {
-                grew |= self.take(self.images[at].clone());
-            }
-        }
-        grew
+        let mut images = std::mem::take(&mut self.images);
+        images.truncate(most - self.basis.len().min(most));
+        self.take(images)
     }
 
     /// The best approximations of the eigenvectors with the largest eigenvalues of the inverse.

@@ -6,64 +6,105 @@ use crate::elements::tet10::{self, Tet10};
 use crate::kinematics::strain::Mat3;
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::tet_mesh::Elements;
-use crate::solver::sparse::{Entry, SymmetricMatrix};
+use crate::solver::sparse::elimination::Elimination;
+use crate::solver::sparse::graph::Graph;
+use crate::solver::sparse::{
+    self, Entry, Factor, FactorError, Ordering, Progress, SymmetricMatrix,
+};
+use std::sync::Arc;
 
 /// Marks a prescribed component.
 pub const PRESCRIBED: usize = usize::MAX;
 
 /// Which displacement component is which unknown: three for each node, [`PRESCRIBED`] where there
-/// is none.
-#[derive(Clone, Debug, PartialEq)]
+/// is none. Unknowns are numbered in the order of elimination.
+#[derive(Clone, Debug)]
 pub struct Unknowns {
     pub of: Vec<[usize; 3]>,
     pub count: usize,
+    /// What the factors of a stiffness over them look like.
+    pub elimination: Arc<Elimination>,
+    /// How far their factorisation is.
+    pub progress: Progress,
 }
 
 impl Unknowns {
     pub fn new(model: &SolidModel) -> Unknowns {
-        let mut count = 0;
-        let of = model
-            .per_mass
-            .iter()
-            .map(|per_mass| {
-                let mut of = [PRESCRIBED; 3];
-                for i in 0..3 {
-                    if per_mass[i] != 0.0 {
-                        of[i] = count;
-                        count += 1;
-                    }
-                }
-                of
-            })
-            .collect();
-        Unknowns { of, count }
+        Unknowns::ordered(model, Ordering::Cheapest)
     }
+
+    /// Cholesky factors of a matrix over these unknowns.
+    ///
+    /// # Errors
+    /// A matrix that is not positive definite; no memory.
+    pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<Factor, FactorError> {
+        Factor::new(&self.elimination, matrix, &self.progress)
+    }
+
+    /// In an order of a given kind.
+    pub fn ordered(model: &SolidModel, ordering: Ordering) -> Unknowns {
+        let problem = &model.problem;
+        let per_mass = &model.per_mass;
+        let free = |node: u32| (0..3).filter(|i| per_mass[node as usize][*i] != 0.0).count();
+        let graph = graph(problem, |node| free(node) > 0);
+        let (order, elimination) = sparse::ordered(&graph, &problem.nodes, free, ordering);
+        drop(graph);
+        let mut count = 0;
+        let mut of = vec![[PRESCRIBED; 3]; per_mass.len()];
+        for node in order {
+            for i in 0..3 {
+                if per_mass[node as usize][i] != 0.0 {
+                    of[node as usize][i] = count;
+                    count += 1;
+                }
+            }
+        }
+        let elimination = Arc::new(elimination);
+        Unknowns { of, count, elimination, progress: Progress::default() }
+    }
+}
+
+fn graph(problem: &SolidProblem, kept: impl Fn(u32) -> bool) -> Graph {
+    let elements = (0..problem.elements.len()).map(|element| problem.elements.nodes(element));
+    Graph::of_elements(problem.nodes.len(), elements, kept)
 }
 
 /// An empty matrix with room for every pair of components that share an element.
 pub fn pattern(problem: &SolidProblem, unknowns: &Unknowns) -> SymmetricMatrix {
-    let mut columns: Vec<Vec<usize>> = vec![Vec::new(); unknowns.count];
-    // Node by node first: three components share their neighbours.
-    let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); unknowns.of.len()];
-    for element in 0..problem.elements.len() {
-        let nodes = problem.elements.nodes(element);
-        for a in nodes {
-            neighbours[*a as usize].extend_from_slice(nodes);
-        }
-    }
-    for (node, others) in neighbours.iter_mut().enumerate() {
-        others.sort_unstable();
-        others.dedup();
-        for column in unknowns.of[node] {
-            if column == PRESCRIBED {
-                continue;
+    places(problem, unknowns, |_, _| true)
+}
+
+/// An empty matrix with room for every pair of like components that share an element: masses.
+pub fn mass_pattern(problem: &SolidProblem, unknowns: &Unknowns) -> SymmetricMatrix {
+    places(problem, unknowns, |i, j| i == j)
+}
+
+fn places(
+    problem: &SolidProblem,
+    unknowns: &Unknowns,
+    together: impl Fn(usize, usize) -> bool,
+) -> SymmetricMatrix {
+    let graph = graph(problem, |_| true);
+    let mut places = vec![(0, 0); unknowns.count];
+    for (node, of) in (0u32..).zip(&unknowns.of) {
+        for axis in 0..3 {
+            if of[axis] != PRESCRIBED {
+                places[of[axis]] = (node, axis);
             }
-            let rows = others.iter().flat_map(|other| unknowns.of[*other as usize]);
-            columns[column] = rows.filter(|row| *row != PRESCRIBED && *row >= column).collect();
         }
-        *others = Vec::new();
     }
-    SymmetricMatrix::new(columns)
+    SymmetricMatrix::new(unknowns.count, |column, rows| {
+        let (node, axis) = places[column];
+        let from = rows.len();
+        for other in graph.of(node).iter().chain([&node]) {
+            for (other_axis, row) in unknowns.of[*other as usize].into_iter().enumerate() {
+                if row != PRESCRIBED && row >= column && together(axis, other_axis) {
+                    rows.push(row as u32);
+                }
+            }
+        }
+        rows[from..].sort_unstable();
+    })
 }
 
 /// Fills `matrix` with the tangent stiffness at given displacements, N/m.

@@ -1,0 +1,136 @@
+//! What factors of a given structure cost: memory exactly, time by the measured speed of the machine.
+
+use super::elimination::{Elimination, Panel};
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, Par};
+use std::hint::black_box;
+use std::time::Instant;
+use thiserror::Error;
+
+/// Bytes of a value, and of a value with its row.
+const VALUE: f64 = 8.0;
+const ENTRY: f64 = 12.0;
+
+/// What a solution by factors will take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// Values of the factor.
+    pub fill: usize,
+    /// Multiplications and additions of one factorisation.
+    pub operations: f64,
+    /// Bytes of the factor, and of all that the solution holds beside it at its peak.
+    pub factor_bytes: f64,
+    pub other_bytes: f64,
+    pub factorisations: usize,
+    /// Right-hand sides, and how often the factors are read for them.
+    pub passes: usize,
+}
+
+/// A solution that does not fit into memory.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error(
+    "{what} of {unknowns} unknowns needs {:.2} GB of memory, {:.2} GB of them for the factors of the \
+     stiffness, and {:.2} GB may be used ({limit_from}); take a coarser mesh (half the elements along \
+     each side need about an eighth to a fifteenth of it), four-node elements (`order = 1`){other}, or \
+     allow more with --memory if you know better",
+    1e-9 * bytes, 1e-9 * factor_bytes, 1e-9 * limit
+)]
+pub struct TooLarge {
+    /// Such as "statics".
+    pub what: &'static str,
+    pub unknowns: usize,
+    pub bytes: f64,
+    pub factor_bytes: f64,
+    /// Bytes that may be used.
+    pub limit: f64,
+    /// Who set the limit.
+    pub limit_from: String,
+    /// Another way to solve it, where there is one.
+    pub other: &'static str,
+}
+
+impl Cost {
+    /// Of `factorisations` and `passes` through the factors; `matrix` stored values of matrices, and
+    /// `vectors` of so many unknowns.
+    pub fn new(
+        elimination: &Elimination,
+        factorisations: usize,
+        passes: usize,
+        matrix: usize,
+        vectors: usize,
+    ) -> Cost {
+        let unknowns = elimination.unknowns as f64;
+        let structure = 4.0 * elimination.rows.len() as f64
+            + (elimination.panels.len() * size_of::<Panel>()) as f64;
+        // Owner and place of each unknown, and the products of the tallest panel.
+        let work = 8.0 * unknowns + VALUE * elimination.most_products as f64;
+        Cost {
+            fill: elimination.fill,
+            operations: elimination.operations,
+            factor_bytes: VALUE * elimination.fill as f64 + structure,
+            other_bytes: ENTRY * matrix as f64 + VALUE * unknowns * vectors as f64 + work,
+            factorisations,
+            passes,
+        }
+    }
+
+    pub fn bytes(&self) -> f64 {
+        self.factor_bytes + self.other_bytes
+    }
+
+    /// s
+    pub fn seconds(&self, speed: &Speed) -> f64 {
+        let factorise = self.operations / speed.operations + VALUE * self.fill as f64 / speed.bytes;
+        let read = 2.0 * VALUE * self.fill as f64 / speed.bytes;
+        self.factorisations as f64 * factorise + self.passes as f64 * read
+    }
+}
+
+/// Of the machine as it is loaded now, one thread.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Speed {
+    /// Multiplications and additions a second in the products of panels.
+    pub operations: f64,
+    /// Bytes a second, read once from memory.
+    pub bytes: f64,
+}
+
+impl Speed {
+    /// Measures it in some hundredths of a second: the best of a few tries, since other work only
+    /// slows one down.
+    pub fn measured() -> Speed {
+        const ROWS: usize = 768;
+        const COLUMNS: usize = 128;
+        const TRIES: usize = 5;
+        let left = Mat::from_fn(ROWS, COLUMNS, |i, j| ((i + 2 * j) % 7) as f64);
+        let right = Mat::from_fn(COLUMNS, COLUMNS, |i, j| ((3 * i + j) % 5) as f64);
+        let mut product = Mat::<f64>::zeros(ROWS, COLUMNS);
+        let work = 2.0 * (ROWS * COLUMNS * COLUMNS) as f64;
+        let operations = fastest(TRIES, || {
+            for _ in 0..4 {
+                matmul(product.as_mut(), Accum::Replace, &left, &right, 1.0, Par::Seq);
+            }
+            black_box(&product);
+        });
+        let memory = vec![1.0f64; 4 << 20];
+        let bytes = fastest(TRIES, || {
+            let mut sums = [0.0; 8];
+            for eight in black_box(&memory).chunks_exact(8) {
+                (0..8).for_each(|i| sums[i] += eight[i]);
+            }
+            black_box(sums);
+        });
+        Speed { operations: 4.0 * work / operations, bytes: VALUE * memory.len() as f64 / bytes }
+    }
+}
+
+/// Least seconds of some tries.
+fn fastest(tries: usize, mut work: impl FnMut()) -> f64 {
+    let mut least = f64::INFINITY;
+    for _ in 0..tries {
+        let start = Instant::now();
+        work();
+        least = least.min(start.elapsed().as_secs_f64());
+    }
+    least
+}

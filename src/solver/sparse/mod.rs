@@ -1,0 +1,71 @@
+//! Sparse symmetric matrices over the nodes of a mesh, and their Cholesky factors.
+
+pub mod cost;
+pub mod dissection;
+pub mod elimination;
+pub mod factor;
+pub mod graph;
+pub mod matrix;
+pub mod minimum_degree;
+pub mod progress;
+pub mod separator;
+
+use crate::kinematics::vec3::Vec3;
+pub use cost::{Cost, Speed, TooLarge};
+use elimination::{Elimination, analyse};
+pub use factor::Factor;
+use graph::Graph;
+pub use matrix::{Entry, SymmetricMatrix};
+pub use progress::Progress;
+use thiserror::Error;
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum FactorError {
+    #[error(
+        "the stiffness is not positive definite (pivot {pivot}): a part is free to move, or the \
+         body has buckled"
+    )]
+    NotPositiveDefinite { pivot: usize },
+    #[error("no memory for the factors of the stiffness, {:.2} GB", 1e-9 * bytes)]
+    NoMemory { bytes: f64 },
+}
+
+/// How the order of elimination is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ordering {
+    MinimumDegree,
+    NestedDissection,
+    /// Whichever of both takes fewer operations, for large meshes dissection unseen: it has won on
+    /// all of them.
+    Cheapest,
+}
+
+/// Nodes beyond which only dissection is tried.
+const LARGE: usize = 20_000;
+
+/// The nodes that have unknowns (`weight`) in an order of elimination, and what it makes of the
+/// factors.
+pub fn ordered(
+    graph: &Graph,
+    places: &[Vec3],
+    weight: impl Fn(u32) -> usize,
+    ordering: Ordering,
+) -> (Vec<u32>, Elimination) {
+    let nodes: Vec<u32> = (0..graph.nodes() as u32).filter(|node| weight(*node) > 0).collect();
+    let graph = graph.permuted(&nodes);
+    let places: Vec<Vec3> = nodes.iter().map(|node| places[*node as usize]).collect();
+    let analysed = |order: Vec<u32>| analyse(&graph, &order, |node| weight(nodes[node as usize]));
+    let by_degree = || analysed(minimum_degree::minimum_degree(&graph));
+    let dissected = || analysed(dissection::nested_dissection(&graph, &places));
+    let found = match ordering {
+        Ordering::MinimumDegree => by_degree(),
+        Ordering::NestedDissection => dissected(),
+        Ordering::Cheapest if nodes.len() > LARGE => dissected(),
+        Ordering::Cheapest => {
+            let (one, other) = (by_degree(), dissected());
+            if one.elimination.operations < other.elimination.operations { one } else { other }
+        }
+    };
+    let order = found.order.iter().map(|node| nodes[*node as usize]).collect();
+    (order, found.elimination)
+}
