@@ -13,12 +13,9 @@ use crate::mesh::{Face, MeshError, Order, TetMesh};
 use crate::scene::housing::HousedScene;
 use crate::scene::solid::{MeshRequest, SetPlace};
 use crate::scene::solid_mesh::ON_SURFACE;
+use crate::solver::housing::condensed::is_under;
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
-
-/// Part of the width by which a seat is wider than the race, as in a condensed housing: a node on the
-/// rim stays under the race when the bore swells along its axis by some nanometres.
-pub const RIM: f64 = 2e-3;
 
 /// Part of the radius by which nodes of a bore may lie off its cylinder. Bores that bearings are put
 /// in have tolerances up to IT7 of ISO 286, 30 um at a diameter of 71 mm, and are out of round by half
@@ -64,8 +61,8 @@ impl BorePlace {
         let corners: BTreeSet<u32> = faces.iter().flat_map(|&f| mesh.face_corners(f)).collect();
         let places: Vec<Vector3<f64>> = corners.into_iter().map(|node| mesh.point(node)).collect();
         let frame = Frame::new(&self.nominal);
-        let reach = 0.5 * self.width.unwrap_or(f64::INFINITY) * (1.0 + RIM);
-        let under = |place: &&Vector3<f64>| frame.seen((**place).into())[0].abs() <= reach;
+        let width = self.width.unwrap_or(f64::INFINITY);
+        let under = |place: &&Vector3<f64>| is_under(frame.seen((**place).into())[0], width);
         let near: Vec<Vector3<f64>> = places.iter().filter(under).copied().collect();
         fit_cylinder(if near.len() < FEW { &places } else { &near }, self.axis())
     }

@@ -4,9 +4,7 @@ use crate::ch2_housing::bore_contact::{ContactNode, Frame, Penalty, contact_node
 use crate::kinematics::Pose;
 use crate::mesh::cylinder_fit::fit_cylinder;
 use crate::scene::about::About;
-use crate::scene::bore_shape::{
-    BorePlace, LARGEST_OUT_OF_ROUND, MiddleNodes, RIM, ROUND, middle_nodes,
-};
+use crate::scene::bore_shape::{BorePlace, LARGEST_OUT_OF_ROUND, MiddleNodes, ROUND, middle_nodes};
 use crate::scene::housing::{FitSize, HousedScene};
 use crate::scene::solid::{LoadKind, SetLoad};
 use crate::scene::solid_mesh::BuiltMesh;
@@ -14,7 +12,7 @@ use crate::scene::solid_problem::{SolidSetup, SolidSetupError, setup as solid_se
 use crate::scene::statics::kinematic_ratios;
 use crate::solver::dynamics::model::{Drive, Rotation};
 use crate::solver::housing::bore_equilibrium::Fit;
-use crate::solver::housing::condensed::Reach;
+use crate::solver::housing::condensed::{Reach, is_under};
 use crate::solver::profile::Profile;
 use crate::solver::solid::model::{SolidError, SolidModel};
 use nalgebra::Vector3;
@@ -177,7 +175,7 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
         [low.min(place[0]), high.max(place[0])]
     });
     let width = scene.housing.width.unwrap_or(ends[1] - ends[0]);
-    let is_under = |place: &[f64; 3]| place[0].abs() <= 0.5 * width * (1.0 + RIM);
+    let is_under = |place: &[f64; 3]| is_under(place[0], width);
     let distance = |[_, y, z]: &[f64; 3]| (y * y + z * z).sqrt();
     let distances: Vec<f64> = seen.iter().filter(|at| is_under(at)).map(distance).collect();
     if distances.is_empty() {
@@ -352,7 +350,7 @@ fn caution(off: f64, interference: f64, penalty: Penalty) -> Option<String> {
 /// Area that the nodes under a race of `width` carry, over the part of the bore (of length `length`, m) that
 /// it covers.
 fn share_of_seat(nodes: &[ContactNode], seen: &[[f64; 3]], width: f64, length: f64) -> f64 {
-    let under = |place: &[f64; 3]| place[0].abs() <= 0.5 * width * (1.0 + RIM);
+    let under = |place: &[f64; 3]| is_under(place[0], width);
     let all: f64 = nodes.iter().map(|node| node.area).sum();
     let carried: f64 =
         nodes.iter().zip(seen).filter(|(_, place)| under(place)).map(|(node, _)| node.area).sum();

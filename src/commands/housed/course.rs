@@ -35,6 +35,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+/// An estimate, or why there is none.
+fn kept<T>(found: Result<Option<T>, Box<dyn Error>>) -> (Option<T>, Option<String>) {
+    match found {
+        Ok(found) => (found, None),
+        Err(error) => (None, Some(error.to_string())),
+    }
+}
+
 /// How the course ended.
 enum End {
     Complete,
@@ -107,8 +115,9 @@ pub fn run(arguments: &Arguments, document: &Document, scene: &HousedScene) -> C
         sections.push(("housing_remarks".into(), json!(remarks)));
         write_bore(&folder, &bore_nodes(setup, &bore, &moment.state))?;
     }
-    let inertia = inertia_estimate(scene, setup, &bore).ok().flatten();
-    let along = along_course(scene, setup, &bore).ok().flatten();
+    // A course that was found is kept, whatever becomes of the estimate.
+    let (inertia, no_estimate) = kept(inertia_estimate(scene, setup, &bore));
+    let (along, no_course) = kept(along_course(scene, setup, &bore));
     if let Some(estimate) = &inertia {
         let section = inertia_section(estimate, &excitations(scene), along.as_ref())?;
         sections.push(("inertia".into(), section));
@@ -133,6 +142,9 @@ pub fn run(arguments: &Arguments, document: &Document, scene: &HousedScene) -> C
             "inertia left out       {}\n",
             plan::verdict(scene, estimate, along.as_ref())
         ))?;
+    }
+    for why in no_estimate.iter().chain(&no_course) {
+        say(&format!("inertia left out       no estimate: {why}\n"))?;
     }
     say(&format!(
         "wrote series, fields, bore, summary and {} plots of {} to {}\n",

@@ -72,14 +72,6 @@ pub enum HousedStateError {
         path.display()
     )]
     Scene { path: PathBuf },
-    #[error(
-        "the {what} beside {} are {kept} s apart, the scene now asks for {asked} s", path.display()
-    )]
-    Interval { path: PathBuf, what: &'static str, kept: f64, asked: f64 },
-    #[error("{} holds a damaged state: {what}", path.display())]
-    Damaged { path: PathBuf, what: &'static str },
-    #[error("the run has already come to {time} s, past its new end of {end} s")]
-    Past { time: f64, end: f64 },
     #[error(transparent)]
     Bearing(#[from] StateError),
     #[error(transparent)]
@@ -192,7 +184,7 @@ pub fn save(
     if !sums.iter().chain(&checkpoint.impulse).chain(&housing.growth).all(|value| value.is_finite())
     {
         let path = folder.join(STATE);
-        return Err(HousedStateError::Damaged { path, what: "a value that is not finite" });
+        return Err(SolidStateError::Damaged { path, what: "a value that is not finite" }.into());
     }
     session.series()?.write_npy(&folder.join(SERIES))?;
     write_arrays(&folder.join(&arrays), &checkpoint.solid)?;
@@ -227,7 +219,8 @@ pub fn resume(
     if bearing.fingerprint != fingerprint(&parts, request) {
         return Err(HousedStateError::Scene { path });
     }
-    let damaged = |what| HousedStateError::Damaged { path: path.clone(), what };
+    let damaged =
+        |what| -> HousedStateError { SolidStateError::Damaged { path: path.clone(), what }.into() };
     let steps = housing.window > 0.0 && housing.steps_per_window > 0 && housing.windows_per_row > 0;
     if !steps || housing.rows_per_fields == 0 || bearing.step_size <= 0.0 {
         return Err(damaged("no step from one row to the next"));
@@ -239,16 +232,16 @@ pub fn resume(
             && follows(request.output_interval, request.end));
     if !same {
         let (kept, asked) = (bearing.output_interval, request.output_interval);
-        return Err(HousedStateError::Interval { path, what: "rows", kept, asked });
+        return Err(SolidStateError::Interval { path, what: "rows", kept, asked }.into());
     }
     let grid = request.grid(interval, housing.windows_per_row);
     if grid.rows_per_fields != housing.rows_per_fields {
         let seconds = |rows: u64| rows as f64 * interval;
         let (kept, asked) = (seconds(housing.rows_per_fields), seconds(grid.rows_per_fields));
-        return Err(HousedStateError::Interval { path, what: "fields", kept, asked });
+        return Err(SolidStateError::Interval { path, what: "fields", kept, asked }.into());
     }
     if grid.rows * grid.windows_per_row < housing.exchanges {
-        return Err(HousedStateError::Past { time: bearing.time, end: request.end });
+        return Err(SolidStateError::Past { time: bearing.time, end: request.end }.into());
     }
     bearing_state::check_finite(bearing)?;
     let of_bearing = bearing_state::checkpoint(bearing);

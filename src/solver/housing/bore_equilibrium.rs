@@ -251,8 +251,8 @@ impl<'a> BoreSearch<'a> {
         (self.changes, self.factorisations) = (0, 0);
         let overlap = self.overlap(fit);
         let metres = self.metres(fit);
-        let whole_scale = self.scale;
-        let mut hint = HINT * whole_scale;
+        let scale = self.scale;
+        let mut hint = HINT * scale;
         let mut last = f64::INFINITY;
         for _ in 0..40 {
             let before = self.pose;
@@ -271,7 +271,8 @@ impl<'a> BoreSearch<'a> {
                     if let Some(factor) = scaled.cholesky() {
                         break factor.solve(&right.component_mul(&per));
                     }
-                    if hold[(0, 0)].is_nan() || hold[(0, 0)] > 10.0 * whole_scale {
+                    // Stiffer than the whole bore: it is not this that is missing.
+                    if hold[(0, 0)].is_nan() || hold[(0, 0)] > 10.0 * scale {
                         return None;
                     }
                     hold *= 10.0;

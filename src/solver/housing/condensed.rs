@@ -29,9 +29,14 @@ pub struct Reach {
     pub travel: Option<f64>,
 }
 
-/// Part of the width within which a node counts as under the race although it is beside it: what
-/// rounding and the race's tilt do to nodes on its rim.
-pub(super) const RIM: f64 = 1e-3;
+/// Part of the width by which a node may lie beside the race, at each end, and still count as under it:
+/// what rounding does to nodes on its rim.
+const RIM: f64 = 1e-3;
+
+/// Whether a node at `along` (m from the race's centre, along its axis) lies under a race of `width` (m).
+pub fn is_under(along: f64, width: f64) -> bool {
+    along.abs() <= (0.5 + RIM) * width
+}
 /// Right-hand sides solved at once.
 const BLOCK: usize = 32;
 
@@ -120,7 +125,7 @@ pub fn condense(
     for contact in bore {
         let arm = frame.seen(contact.place);
         let distance = (arm[1] * arm[1] + arm[2] * arm[2]).sqrt();
-        if arm[0].abs() > (0.5 + RIM) * reach.width {
+        if !is_under(arm[0], reach.width) {
             sizes.beside += 1;
         } else if reach.travel.is_some_and(|travel| distance - reach.radius > travel) {
             sizes.out_of_reach += 1;

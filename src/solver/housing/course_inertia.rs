@@ -135,25 +135,24 @@ fn judge(looks: &[Look], interval: f64, damping: f64) -> CourseInertia {
     let first = ring(&looks[0], &looks[0].velocity, damping);
     let (mut sum, mut squares) = (first.size, first.size * first.size);
     let (mut most, mut together, mut largest) = (sum, squares, first);
+    let after = |pair: &[Look]| {
+        jumps(pair).then(|| ring(&pair[1], &(pair[1].velocity - pair[0].velocity), damping))
+    };
+    let rings: Vec<Option<Ring>> = looks.windows(2).map(after).collect();
     let (mut kinks, mut largest_kink) = (0, 0.0f64);
-    for pair in looks.windows(2) {
-        if !jumps(pair) {
-            continue;
-        }
+    for new in rings.iter().flatten() {
         kinks += 1;
-        let new = ring(&pair[1], &(pair[1].velocity - pair[0].velocity), damping);
         largest_kink = largest_kink.max(new.size);
         if new.size > largest.size {
-            largest = new;
+            largest = *new;
         }
     }
     // Each dies out at the rate of the largest.
     let left = libm::exp(-largest.decay * interval);
-    for pair in looks.windows(2) {
+    for new in &rings {
         (sum, squares) = (sum * left, squares * left * left);
-        if jumps(pair) {
-            let new = ring(&pair[1], &(pair[1].velocity - pair[0].velocity), damping).size;
-            (sum, squares) = (sum + new, squares + new * new);
+        if let Some(Ring { size, .. }) = new {
+            (sum, squares) = (sum + size, squares + size * size);
         }
         (most, together) = (most.max(sum), together.max(squares));
     }

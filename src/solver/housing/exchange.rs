@@ -7,7 +7,7 @@
 //! the race gets too, with the other sign. Drift, kick, drift: of second order, and an elastic
 //! contact between the two neither makes nor loses energy in the long run.
 
-use super::condensed::RIM;
+use super::condensed::is_under;
 use crate::ch2_housing::bore_contact::{
     ContactNode, ContactSum, Cylinder, Frame, Penalty, contact, split_by_reach,
 };
@@ -162,8 +162,8 @@ impl Seat {
     /// than a quarter of the seat.
     pub(super) fn keep_under(&mut self, start: &[f64; 5]) -> f64 {
         let frame = Frame::new(&pose_after(&race::fixed(start).state, 0.0));
-        let half = (0.5 + RIM) * self.width;
-        self.nodes.retain(|node| frame.seen(node.place)[0].abs() <= half);
+        let width = self.width;
+        self.nodes.retain(|node| is_under(frame.seen(node.place)[0], width));
         let area: f64 = self.nodes.iter().map(|node| node.area).sum();
         (0.5 * (area / self.nodes.len().max(1) as f64).sqrt()).min(0.25 * self.width)
     }
