@@ -42,8 +42,8 @@ mutants:
 
 ## A million mutated scenes, mesh files and results of other programs, each, through their readers.
 fuzz:
-	SCENE_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test scene_fuzz -- --nocapture
-	MESH_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test mesh_fuzz -- --nocapture
+	SCENE_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test scene scene_fuzz -- --nocapture
+	MESH_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test mesh mesh_fuzz -- --nocapture
 	RESULTS_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test results_fuzz -- --nocapture
 
 doc:

@@ -168,7 +168,7 @@ fn kind_and_range(key: &Key) -> (String, String) {
 const INTRODUCTION: &str = "\
 # Scene reference
 
-<!-- Made from the key tables in src/scene/key_table*.rs. After changing one: SCENE_DOCS=write cargo test --release --test scene_docs -->
+<!-- Made from the key tables in src/scene/key_table*.rs. After changing one: SCENE_DOCS=write cargo test --release --test scene scene_docs -->
 
 A scene is a TOML file, or a JSON file of the same shape. Every dimensional value is a text of a number and a
 unit, `\"20.047 mm\"`: nothing is guessed from a bare number. Unknown keys are refused. `bearing check SCENE` names

@@ -1,8 +1,7 @@
 //! A small bearing in a coarse ring.
 #![allow(dead_code)]
 
-#[path = "../solid_command_common/mod.rs"]
-pub mod solids;
+pub(crate) use crate::solid_command_common as solids;
 
 use std::fs;
 use std::path::Path;

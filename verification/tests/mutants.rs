@@ -26,8 +26,14 @@ fn every_fault_of_the_list_applies_and_names_checks_that_exist() {
     for check in list.mutants.iter().flat_map(|m| &m.caught_by).chain(&list.fallback) {
         let there = match check {
             Check::Test { name, filter } => {
-                let text = fs::read_to_string(root.join(format!("tests/{name}.rs")));
-                text.is_ok_and(|text| filter.as_ref().is_none_or(|name| has_test(&text, name)))
+                let file = root.join(format!("tests/{name}.rs"));
+                let parts = fs::read_dir(root.join(format!("tests/{name}"))).into_iter().flatten();
+                let texts: Vec<String> = std::iter::once(file)
+                    .chain(parts.map(|entry| entry.unwrap().path()))
+                    .filter_map(|path| fs::read_to_string(path).ok())
+                    .collect();
+                let found = |name| texts.iter().any(|text| has_test(text, name));
+                !texts.is_empty() && filter.as_deref().is_none_or(found)
             }
             Check::Lib { filter } => filter.as_ref().is_none_or(|name| has_test(&library, name)),
             Check::Case { id } => cases::find(id).is_some(),

@@ -308,12 +308,6 @@ fn each_published_value_stands_on_one_line_of_the_index() {
 /// Published numbers that stand in code, and why they may: case or helper, number, reason. An entry that
 /// nothing needs is an error.
 const TYPED: &[(&str, f64, &str)] = &[
-    ("cage_modes_table_5_3/case.rs", 4105.0, "ratio of the pair, which no width is to come near"),
-    ("cage_modes_table_5_3/case.rs", 1989.0, "ratio of the pair, which no width is to come near"),
-    ("misalignment_moment/case.rs", 0.094, "drawn as a point beside our curve"),
-    ("misalignment_moment/case.rs", 0.134, "drawn as a point beside our curve"),
-    ("misalignment_moment/case.rs", 0.175, "drawn as a point beside our curve"),
-    ("misalignment_moment/case.rs", 6.423, "drawn as a point beside our curve"),
     (
         "cylinder_on_block_table_2_1/case.rs",
         0.134,

@@ -58,7 +58,8 @@ impl Mutant {
 /// `--lib FUNCTION` or `--case ID`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Check {
-    /// A file of `tests/`, and which of its tests.
+    /// A file of `tests/`, by its path there without `.rs`, and which of its tests. The first folder is the
+    /// binary it belongs to.
     Test { name: String, filter: Option<String> },
     /// Unit tests of the library whose path contains the filter.
     Lib { filter: Option<String> },
@@ -70,7 +71,7 @@ impl Check {
     /// What is built to run it: checks of one program build nothing but what a fault changes.
     pub fn program(&self) -> String {
         match self {
-            Check::Test { name, .. } => format!("--test {name}"),
+            Check::Test { name, .. } => format!("--test {}", binary_of(name)),
             Check::Lib { .. } => "--lib".into(),
             Check::Case { .. } => "--case".into(),
         }
@@ -94,6 +95,11 @@ impl Check {
             )),
         }
     }
+}
+
+/// The binary that a file of `tests/` belongs to.
+pub fn binary_of(name: &str) -> &str {
+    name.split('/').next().unwrap_or(name)
 }
 
 impl fmt::Display for Check {

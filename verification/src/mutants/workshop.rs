@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use sha2::{Digest, Sha256};
 
-use super::list::{Check, Mutant};
+use super::list::{Check, Mutant, binary_of};
 
 /// What a check came to.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,7 +60,9 @@ impl Sources {
         let matters = |name: &str| {
             let by_check = |check: &Check| match check {
                 Check::Test { name: test, .. } => {
-                    name == format!("tests/{test}.rs") || name.starts_with("tests/common")
+                    name == format!("tests/{test}.rs")
+                        || name.starts_with(&format!("tests/{test}/"))
+                        || name.starts_with("tests/common")
                 }
                 Check::Lib { .. } => false,
                 Check::Case { id } => {
@@ -145,7 +147,12 @@ impl Workshop {
                 let golden = self.folder.join("tree/golden");
                 command.args(["--case", id, "--out"]).arg(out).arg("--golden").arg(golden);
             }
-            Check::Test { filter, .. } | Check::Lib { filter } => {
+            Check::Test { name, filter } => {
+                let module = name.split_once('/').map(|(_, module)| format!("{module}::"));
+                let wanted = filter.clone().or(module);
+                command.args(wanted).arg(format!("--test-threads={}", self.processors));
+            }
+            Check::Lib { filter } => {
                 command.args(filter).arg(format!("--test-threads={}", self.processors));
             }
         }
@@ -180,7 +187,7 @@ impl Workshop {
             return Ok(Err(String::from_utf8_lossy(&output.stderr).into_owned()));
         }
         let wanted = match check {
-            Check::Test { name, .. } => ("test", name.as_str()),
+            Check::Test { name, .. } => ("test", binary_of(name)),
             Check::Lib { .. } => ("lib", ""),
             Check::Case { .. } => ("bin", "verify"),
         };
@@ -196,7 +203,9 @@ impl Workshop {
         let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
         let mut command = Command::new(cargo);
         match check {
-            Check::Test { name, .. } => command.args(["test", "--no-run", "--test", name]),
+            Check::Test { name, .. } => {
+                command.args(["test", "--no-run", "--test", binary_of(name)])
+            }
             Check::Lib { .. } => command.args(["test", "--no-run", "--lib"]),
             Check::Case { .. } => {
                 command.args(["build", "--package", "verification", "--bin", "verify"])

@@ -1,0 +1,452 @@
+//! What the moving bearing comes to rest in, and what it means over a turn, against statics.
+
+use crate::common;
+use crate::dynamics;
+
+use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
+use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
+use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
+use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
+use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
+use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::solver::dynamics::model::{
+    Drive, DynamicProblem, RaceBody, RotatingLoad, Rotation,
+};
+use bearing_dynamics::solver::dynamics::race::tilts_of;
+use bearing_dynamics::solver::dynamics::run::{Simulation, SimulationError, Start};
+use bearing_dynamics::solver::dynamics::start::static_problem;
+use bearing_dynamics::solver::dynamics::state::{BodyState, Layout, POSITION, SPIN, VELOCITY};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::statics::{StaticsError, solve};
+use common::{table_4_1, table_5_3};
+use dynamics::*;
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+
+/// Tables 2.2 and 3.5 with 5 µm interference.
+fn table_3_5() -> BearingGeometry {
+    table_4_1(-5e-6)
+}
+
+/// Puts every ball back into the plane through the outer race's axis in which statics holds it.
+fn hold_azimuths(simulation: &mut Simulation) {
+    let layout = simulation.system.layout;
+    for ball in 0..layout.balls {
+        let angle = simulation.system.problem.ball_phase + TAU * ball as f64 / layout.balls as f64;
+        let tangent = Vector3::new(0.0, -angle.sin(), angle.cos());
+        let mut body = layout.ball_state(&simulation.state, ball);
+        let across = |v: [f64; 3]| -> [f64; 3] {
+            let v = Vector3::from(v);
+            (v - tangent * tangent.dot(&v)).into()
+        };
+        body.position = across(body.position);
+        body.velocity = across(body.velocity);
+        layout.set_ball(&mut simulation.state, ball, &body);
+    }
+}
+
+#[test]
+fn a_damped_bearing_settles_into_static_equilibrium() {
+    let deep = table_3_5();
+    let angular = table_5_3();
+    let cases = [
+        (deep, [0.0, 0.0, -500.0, 0.0, 0.0]),
+        (deep, [200.0, 300.0, -300.0, 0.0, 0.0]),
+        (deep, [100.0, 0.0, -200.0, 2.0, -1.0]),
+        (angular, [445.0, 0.0, 0.0, 0.0, 0.0]),
+        (angular, [800.0, 100.0, -200.0, 0.0, 0.0]),
+        (angular, [800.0, 0.0, -100.0, 1.5, 1.0]),
+    ];
+    for (geometry, loads) in cases {
+        let expected = solve(&static_problem(&bearing(geometry, loads, 0.0), 0.0)).unwrap();
+        // From the equilibrium of 0.8 of the load; slowly beside the balls' swing across their
+        // grooves (above 5e3 rad/s): it moves no contact along its normal, so that without friction
+        // nothing damps it.
+        let mut problem = bearing(geometry, loads, 0.0);
+        problem.inner.drives = loads.map(|load| {
+            let (start, duration) = (0.0, 60e-3);
+            Drive::Load(Profile::SmoothRamp { from: 0.8 * load, to: load, start, duration })
+        });
+        problem.damping = ContactDamping::HuntCrossley { alpha: 3.0 };
+        // For the same reason contact damping hardly reaches the race's softest modes; dashpots
+        // do, and hold nothing up.
+        problem.inner.foundation_damping = [1e3, 1e3, 1e3, 0.2, 0.2];
+        let mut simulation = simulation(&problem, 2e-6, Start::Equilibrium);
+        for _ in 0..40_000 {
+            simulation.step().unwrap();
+            hold_azimuths(&mut simulation);
+        }
+        let inner = inner_state(&simulation);
+        let tilts = tilts_of(inner.axis());
+        let pitch = geometry.pitch_radius;
+        let there = [
+            inner.position[0],
+            inner.position[1],
+            inner.position[2],
+            tilts[0] * pitch,
+            tilts[1] * pitch,
+        ];
+        let scale = [1.0, 1.0, 1.0, pitch, pitch];
+        let largest =
+            (0..5).map(|i| (expected.coordinates[i] * scale[i]).abs()).fold(0.0, f64::max);
+        let mut worst = 0.0_f64;
+        for i in 0..5 {
+            worst = worst.max((there[i] - expected.coordinates[i] * scale[i]).abs());
+        }
+        for (ball, at) in expected.balls.iter().enumerate() {
+            let here = simulation.system.layout.ball_vector(&simulation.state, POSITION, ball);
+            // An unloaded ball may be anywhere in its room.
+            if at.outer.normal_load > 0.0 {
+                worst = worst.max((Vector3::from(here) - at.position).norm());
+            }
+        }
+        let speed = Vector3::from(inner.velocity).norm();
+        println!("{loads:?}: off by {:e} of {largest:e} m, still {speed:e} m/s", worst / largest);
+        // 20 ms after the last change of load.
+        assert!(worst <= 1e-6 * largest, "{loads:?}: {worst} of {largest}");
+    }
+}
+
+/// Mean position of the inner race (m) over whole ball pitches, or moment on it (N·m) where its
+/// position is given; and the same by statics with centrifugal force at the same ball angles.
+struct Means {
+    dynamic: [f64; 3],
+    fixed: [f64; 3],
+    seconds: f64,
+}
+
+fn means(problem: &DynamicProblem, step: f64, settle_pitches: usize, pitches: usize) -> Means {
+    let clock = std::time::Instant::now();
+    let g = problem.geometry;
+    let layout = Layout::new(g.ball_count, false);
+    let azimuth = |state: &[f64], ball: usize| {
+        let [_, y, z] = layout.ball_vector(state, POSITION, ball);
+        z.atan2(y)
+    };
+    let Rotation::Speed(Profile::Constant(speed)) = problem.inner.rotation else { panic!() };
+    let orbit = speed * ratios(g.ball_count, g.ball_radius, g.pitch_radius, g.contact_angle).cage;
+    let pitch_time = TAU / g.ball_count as f64 / orbit;
+    let every = (pitch_time / step / 100.0).round() as usize;
+    // A pitch is a hundred samples exactly.
+    let (step, steps) = (pitch_time / (100 * every) as f64, 100 * every);
+    let mut simulation = simulation(problem, step, Start::Equilibrium);
+    run(&mut simulation, settle_pitches * steps);
+    let (mut dynamic, mut fixed) = ([0.0; 3], [0.0; 3]);
+    let samples = 100 * pitches;
+    for _ in 0..samples {
+        run(&mut simulation, every);
+        let instant = simulation.snapshot().unwrap().instant;
+        // Mean deviation of the balls from equal spacing, and their mean speed of orbit.
+        let (mut phase, mut orbit) = (0.0, 0.0);
+        let first = azimuth(&simulation.state, 0);
+        for ball in 0..layout.balls {
+            let nominal = first + TAU * ball as f64 / layout.balls as f64;
+            let off = azimuth(&simulation.state, ball) - nominal;
+            phase += (off - TAU * (off / TAU).round()) / layout.balls as f64;
+            let position = layout.ball_vector(&simulation.state, POSITION, ball);
+            let velocity = layout.ball_vector(&simulation.state, VELOCITY, ball);
+            let around = position[1] * velocity[2] - position[2] * velocity[1];
+            orbit += around / (position[1].powi(2) + position[2].powi(2)) / layout.balls as f64;
+        }
+        let mut still = static_problem(problem, simulation.time);
+        still.orbital_speed = orbit;
+        let (ours, theirs) = if matches!(problem.inner.drives[3], Drive::Motion(_)) {
+            // Everything is given: each ball stands alone, and at its own angle.
+            let mut moment = Vector3::zeros();
+            for ball in 0..layout.balls {
+                still.ball_phase = azimuth(&simulation.state, ball);
+                let alone = solve(&still).unwrap().balls[0];
+                moment += alone.position.cross(&alone.inner.force_on_race);
+            }
+            (instant.on_inner.moment, [moment[0], moment[1], moment[2]])
+        } else {
+            still.ball_phase = first + phase;
+            let at = solve(&still).unwrap().coordinates;
+            (instant.inner.state.position, [at[0], at[1], at[2]])
+        };
+        for i in 0..3 {
+            dynamic[i] += ours[i] / samples as f64;
+            fixed[i] += theirs[i] / samples as f64;
+        }
+    }
+    Means { dynamic, fixed, seconds: clock.elapsed().as_secs_f64() }
+}
+
+fn rotating(loads: [f64; 5]) -> DynamicProblem {
+    let mut problem = bearing(table_3_5(), loads, 1000.0 * RPM);
+    problem.traction = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 0.05 };
+    problem.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
+    problem
+}
+
+#[test]
+fn the_mean_of_a_turning_bearing_is_static() {
+    for load in [250.0, 1500.0] {
+        let means = means(&rotating([0.0, 0.0, -load, 0.0, 0.0]), 2.5e-6, 1, 2);
+        let error = means.dynamic[2] / means.fixed[2] - 1.0;
+        println!("{load} N: {:?} {:?} {error:e}, {} s", means.dynamic, means.fixed, means.seconds);
+        assert!(error.abs() <= 1e-3, "{load} N: {error}");
+    }
+}
+
+#[test]
+fn the_mean_moment_of_a_tilted_turning_bearing_is_static() {
+    let mut problem = rotating([0.0; 5]);
+    let tilt = 0.15f64.to_radians();
+    for (i, value) in [0.0, 0.0, 0.0, tilt, 0.0].into_iter().enumerate() {
+        problem.inner.drives[i] = Drive::Motion(Profile::Constant(value));
+    }
+    let means = means(&problem, 2.5e-6, 1, 2);
+    let error = means.dynamic[1] / means.fixed[1] - 1.0;
+    println!("tilt: {:?} {:?} {error:e}, {} s", means.dynamic, means.fixed, means.seconds);
+    assert!(error.abs() <= 1e-3, "{error}");
+}
+
+#[test]
+fn centrifugal_force_loads_the_outer_race_at_10_000_rpm() {
+    let mut problem = rotating([0.0, 0.0, -100.0, 0.0, 0.0]);
+    problem.inner.rotation = Rotation::Speed(Profile::Constant(10_000.0 * RPM));
+    let mut simulation = simulation(&problem, 2e-6, Start::Equilibrium);
+    run(&mut simulation, 1000);
+    let layout = simulation.system.layout;
+    let g = problem.geometry;
+    let (mut difference, mut expected, samples) = (0.0, 0.0, 2000);
+    for _ in 0..samples {
+        run(&mut simulation, 1);
+        simulation.snapshot().unwrap();
+        for ball in 0..layout.balls {
+            let table = &simulation.system.table;
+            difference += table.load[layout.padded + ball] - table.load[ball];
+            let body = layout.ball_state(&simulation.state, ball);
+            let speed = Vector3::from(body.velocity).norm();
+            expected += problem.ball.mass * speed * speed / g.pitch_radius;
+        }
+    }
+    let error = difference / expected - 1.0;
+    let mean = difference / (samples * layout.balls) as f64;
+    println!("centrifugal force {mean} N a ball, off by {error:e}");
+    // m Ω² R with Ω = 0.3855 of the shaft: 29 N.
+    assert!(mean > 20.0);
+    // The mean over 4 ms leaves the ends of the oscillations, a few µN·s of 0.1 N·s.
+    assert!(error.abs() <= 2e-3, "{error}");
+}
+
+/// Ratio of the cage's speed to the inner race's after `time`, from balls and cage at rest on an
+/// inner race at full speed.
+fn cage_speed_from_rest(law: TractionLaw, time: f64) -> f64 {
+    let geometry = table_5_3();
+    let speed = 1000.0 * RPM;
+    let mut problem = bearing(geometry, [445.0, 0.0, 0.0, 0.0, 0.0], 0.0);
+    problem.cage = Some(cage(&geometry, Pocket::Cylindrical, Guidance::OuterRace));
+    problem.traction = law;
+    problem.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
+    let start = simulation(&problem, 2e-6, Start::Equilibrium).state;
+    problem.inner.rotation = Rotation::Speed(Profile::Constant(speed));
+    let options = fixed_step(2e-6, Start::Nominal);
+    let mut simulation = Simulation::from_state(problem.clone(), options, start, 0.0).unwrap();
+    run(&mut simulation, (time / 2e-6) as usize);
+    let at = simulation.system.layout.cage();
+    let cage = BodyState::from_slice(&simulation.state[at..]);
+    Vector3::from(cage.spin).dot(&Vector3::from(cage.axis())) / speed
+}
+
+#[test]
+fn the_cage_is_driven_by_traction_alone() {
+    let law = |coefficient| TractionLaw::Constant { coefficient, regularisation_speed: 0.05 };
+    assert_eq!(cage_speed_from_rest(TractionLaw::None, 4e-3), 0.0);
+    let speeds = [0.0, 0.005, 0.02, 0.08].map(|c| cage_speed_from_rest(law(c), 4e-3));
+    println!("cage over shaft after 4 ms: {speeds:?}");
+    assert_eq!(speeds[0], 0.0);
+    assert!(speeds.windows(2).all(|pair| pair[1] > 1.2 * pair[0]), "{speeds:?}");
+}
+
+#[test]
+fn cage_slip_grows_as_traction_falls() {
+    let geometry = table_5_3();
+    let speed = 1000.0 * RPM;
+    let rolling = ratios(11, geometry.ball_radius, geometry.pitch_radius, geometry.contact_angle);
+    let slips = [0.1, 0.02, 0.004].map(|coefficient| {
+        let mut problem = bearing(geometry, [445.0, 0.0, 0.0, 0.0, 0.0], speed);
+        let mut body = cage(&geometry, Pocket::Cylindrical, Guidance::OuterRace);
+        // Weight and friction far above the real ones, so that the drag shows within 30 ms.
+        body.contacts.friction = 0.3;
+        problem.cage = Some(body);
+        problem.gravity = [0.0, 0.0, -981.0];
+        problem.traction = TractionLaw::Constant { coefficient, regularisation_speed: 0.05 };
+        problem.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
+        let mut simulation = simulation(&problem, 2e-6, Start::Equilibrium);
+        run(&mut simulation, 10_000);
+        let at = simulation.system.layout.cage();
+        let angle = |simulation: &Simulation| {
+            let layout = simulation.system.layout;
+            (0..layout.balls)
+                .map(|ball| {
+                    let [_, y, z] = layout.ball_vector(&simulation.state, POSITION, ball);
+                    let [_, v, w] = layout.ball_vector(&simulation.state, VELOCITY, ball);
+                    (y * w - z * v) / (y * y + z * z) / layout.balls as f64
+                })
+                .sum::<f64>()
+        };
+        let (mut cage, mut balls, samples) = (0.0, 0.0, 50);
+        for _ in 0..samples {
+            run(&mut simulation, 100);
+            cage += simulation.state[at + SPIN] / samples as f64;
+            balls += angle(&simulation) / samples as f64;
+        }
+        let slip = 1.0 - cage / (rolling.cage * speed);
+        println!(
+            "κ {coefficient}: cage slip {slip:e}, balls {}",
+            1.0 - balls / rolling.cage / speed
+        );
+        slip
+    });
+    assert!(slips[0] < 0.02 && slips.windows(2).all(|pair| pair[1] > 2.0 * pair[0]), "{slips:?}");
+}
+
+#[test]
+fn equilibrium_starts_under_all_loads() {
+    // Gravity and a rotating load pull at the start too: nothing is accelerated but the rolling
+    // balls, and they only towards the axis.
+    let mut problem = bearing(table_3_5(), [10.0, 20.0, -100.0, 0.5, 0.2], 0.0);
+    problem.gravity = GRAVITY;
+    let force = Profile::Constant(250.0);
+    problem.rotating_load =
+        Some(RotatingLoad { force, speed: Profile::Constant(50.0), phase: 0.7 });
+    let mut simulation = simulation(&problem, 1e-6, Start::Equilibrium);
+    let mut rates = vec![0.0; simulation.state.len()];
+    simulation.system.evaluate(0.0, &simulation.state, &mut rates);
+    let at = simulation.system.layout.inner();
+    let inertia = problem.inner.inertia;
+    // Statics stops at 1e-11 of the largest load, some 200 N.
+    for i in 0..3 {
+        assert!((rates[at + VELOCITY + i] * inertia.mass).abs() <= 1e-7);
+        assert!((rates[at + SPIN + i] * inertia.transverse).abs() <= 1e-7 * 26e-3);
+    }
+}
+
+/// Forces (N) and moments over the pitch radius (N) by which a race is out of balance, as the
+/// equations of motion have them.
+fn unbalanced(problem: &DynamicProblem, rates: &[f64], at: usize, inertia: Inertia) -> [f64; 6] {
+    let pitch = problem.geometry.pitch_radius;
+    std::array::from_fn(|i| match i {
+        0..3 => (rates[at + VELOCITY + i] * inertia.mass).abs(),
+        _ => (rates[at + SPIN + i - 3] * inertia.transverse / pitch).abs(),
+    })
+}
+
+/// An outer race on springs, tilted and loaded by itself.
+fn on_springs() -> RaceBody {
+    let mut outer = free_race();
+    outer.rotation = Rotation::Speed(Profile::ZERO);
+    outer.foundation_stiffness = [1e7, 2e7, 1.5e7, 1e4, 2e4];
+    outer.foundation_damping = [500.0, 500.0, 500.0, 0.5, 0.5];
+    outer.drives[1] = Drive::Load(Profile::Constant(30.0));
+    outer.drives[4] = Drive::Load(Profile::Constant(-0.3));
+    outer
+}
+
+#[test]
+fn both_races_start_in_equilibrium() {
+    // A torque keeps the rotation free, so that nothing is prescribed; all six coordinates too.
+    let mut on_foundation = bearing(table_3_5(), [10.0, 20.0, -300.0, 0.5, 0.2], 0.0);
+    on_foundation.gravity = GRAVITY;
+    on_foundation.outer = Some(on_springs());
+    on_foundation.outer_start = [1e-3, 2e-6, -5e-6, 1e-3, -5e-4];
+    let mut in_rotation = on_foundation.clone();
+    in_rotation.outer.as_mut().unwrap().rotation = Rotation::Torque(Profile::ZERO);
+    // Held by the inner race alone, across a clearance.
+    let mut hanging = bearing(table_4_1(10e-6), [0.0; 5], 0.0);
+    for drive in &mut hanging.inner.drives {
+        *drive = Drive::Motion(Profile::ZERO);
+    }
+    let mut outer = free_race();
+    outer.drives[0] = Drive::Load(Profile::Constant(40.0));
+    outer.drives[2] = Drive::Load(Profile::Constant(-200.0));
+    hanging.outer = Some(outer);
+    // Springs so soft that both races sink by far more than a ball radius.
+    let mut sinking = on_foundation.clone();
+    sinking.outer.as_mut().unwrap().foundation_stiffness[2] = 2e4;
+    // One coordinate of the outer race given.
+    let mut guided = on_foundation.clone();
+    guided.outer.as_mut().unwrap().drives[2] = Drive::Motion(Profile::Constant(7e-6));
+    for (name, problem) in [
+        ("on foundation", on_foundation),
+        ("six degrees", in_rotation),
+        ("hanging", hanging),
+        ("sinking", sinking),
+        ("guided", guided),
+    ] {
+        let mut simulation = simulation(&problem, 1e-6, Start::Equilibrium);
+        let layout = simulation.system.layout;
+        let mut rates = vec![0.0; simulation.state.len()];
+        simulation.system.evaluate(0.0, &simulation.state, &mut rates);
+        let inner = unbalanced(&problem, &rates, layout.inner(), problem.inner.inertia);
+        let inertia = problem.outer.as_ref().unwrap().inertia;
+        let outer = unbalanced(&problem, &rates, layout.outer(), inertia);
+        println!("{name}: inner {inner:?}, outer {outer:?}");
+        // Statics stops at 1e-11 of the largest load, some 300 N, or where the positions' rounding
+        // (some ulps of 26 mm, times 1e8 N/m) lies: 5e-9 N.
+        for force in inner.into_iter().chain(outer) {
+            assert!(force <= 1e-7, "{name}: {inner:?} {outer:?}");
+        }
+        // And stays there, as long as something holds the balls at their azimuths as in statics.
+        let start = simulation.state.clone();
+        let turn = BodyState::from_slice(&start[layout.outer()..]).orientation;
+        for _ in 0..2000 {
+            simulation.step().unwrap();
+            for ball in 0..layout.balls {
+                let angle = problem.ball_phase + TAU * ball as f64 / layout.balls as f64;
+                let tangent = turn * Vector3::new(0.0, -angle.sin(), angle.cos());
+                let was = Vector3::from(layout.ball_state(&start, ball).position);
+                let mut body = layout.ball_state(&simulation.state, ball);
+                let (position, velocity) =
+                    (Vector3::from(body.position), Vector3::from(body.velocity));
+                body.position = (position - tangent * tangent.dot(&(position - was))).into();
+                body.velocity = (velocity - tangent * tangent.dot(&velocity)).into();
+                layout.set_ball(&mut simulation.state, ball, &body);
+            }
+        }
+        for at in [layout.inner(), layout.outer()] {
+            for i in 0..3 {
+                let moved = (simulation.state[at + i] - start[at + i]).abs();
+                // 1e-7 N on 2e4 N/m and more.
+                assert!(moved <= 1e-11, "{name}: {moved} m");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_race_that_nothing_holds_has_no_equilibrium() {
+    let mut problem = bearing(table_4_1(-5e-6), [0.0, 0.0, -300.0, 0.0, 0.0], 0.0);
+    problem.outer = Some(free_race());
+    let error = Simulation::new(problem.clone(), fixed_step(1e-6, Start::Equilibrium)).err();
+    assert!(
+        matches!(error, Some(SimulationError::Start(StaticsError::OuterAdrift { .. }))),
+        "{error:?}"
+    );
+    // Without loads it stays where it was put. Under loads that cancel each other it would not: statics
+    // holds the balls at their azimuths, and what that takes (some 0.1 N) is missing at the races.
+    problem.inner.drives[2] = Drive::Load(Profile::ZERO);
+    let start = simulation(&problem, 1e-6, Start::Equilibrium);
+    assert_eq!(start.state[start.system.layout.outer() + 2], 0.0);
+}
+
+#[test]
+fn unbalance_takes_part_in_the_equilibrium_at_the_start() {
+    for tilt in [0.0, 2e-3] {
+        let mut problem = bearing(table_3_5(), [50.0, 0.0, -300.0, 0.0, 0.0], 3000.0 * RPM);
+        problem.unbalance = 1e-3;
+        problem.inner.drives[4] = Drive::Motion(Profile::Constant(tilt));
+        let mut simulation = simulation(&problem, 1e-6, Start::Equilibrium);
+        let mut rates = vec![0.0; simulation.state.len()];
+        simulation.system.evaluate(0.0, &simulation.state, &mut rates);
+        let at = simulation.system.layout.inner();
+        // 98.7 N along the race's own Y.
+        for (i, force) in
+            unbalanced(&problem, &rates, at, problem.inner.inertia).into_iter().take(3).enumerate()
+        {
+            assert!(force <= 1e-7, "{tilt}, coordinate {i}: {force} N");
+        }
+    }
+}

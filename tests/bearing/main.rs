@@ -1,0 +1,21 @@
+//! Laws of bearings at rest and in motion.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/dynamics.rs"]
+mod dynamics;
+
+mod dynamics_balls;
+mod dynamics_cage;
+mod dynamics_contacts;
+mod dynamics_integrators;
+mod dynamics_laws;
+mod dynamics_linearised;
+mod dynamics_motion;
+mod dynamics_plan;
+mod dynamics_settling;
+mod dynamics_stability;
+mod free_balls;
+mod geometry_laws;
+mod statics_laws;
+mod work_counts;

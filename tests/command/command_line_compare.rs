@@ -1,0 +1,268 @@
+//! `pack` and `compare` on what the solver really writes: equal passes, and nothing that differs
+//! by ten times its tolerance goes unnoticed.
+
+use crate::command_line_common;
+
+use bearing_dynamics::output::compare::tolerance::ToleranceClass;
+use bearing_dynamics::output::compare::{
+    Comparison, DivergenceKind, Options, compare, is_ignored_by_name, report,
+};
+use bearing_dynamics::output::series::Series;
+use command_line_common::{bearing, changed, done, json, read, refused, scene, text, write};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use tempfile::{TempDir, tempdir};
+
+/// A scene with every kind of result: loads and displacements, tilted outer race, forces on the
+/// balls, three plots.
+const SCENE: &str = "misaligned_radial.json";
+
+/// Scene, its pack and its results folder.
+fn packed() -> (TempDir, String, PathBuf, PathBuf) {
+    let root = tempdir().unwrap();
+    let path = write(root.path(), "scene.json", &read(Path::new(&scene(SCENE))));
+    let [pack, results] = ["pack", "results"].map(|name| root.path().join(name));
+    done(&["pack", &path, "--out", &text(&pack)]);
+    done(&["statics", &path, "--out", &text(&results)]);
+    (root, path, pack, results)
+}
+
+/// Runs `compare`, which must find a difference, and returns what it says.
+fn different(reference: &Path, candidate: &Path) -> String {
+    let arguments = ["compare", &text(reference), &text(candidate)];
+    let run = bearing(&arguments);
+    assert!(run.code == Some(1) && run.stderr.is_empty(), "{run:#?}");
+    assert!(run.stdout.starts_with("different: "), "{}", run.stdout);
+    run.stdout
+}
+
+#[test]
+fn a_pack_equals_the_results_of_its_own_scene() {
+    let (_root, _, pack, results) = packed();
+    let said = done(&["compare", &text(&pack), &text(&results)]);
+    assert!(said.starts_with("equal: "), "{said}");
+    let packed_scene = text(&pack.join("scene.json"));
+    done(&["statics", &packed_scene, "--out", &text(&results)]);
+    done(&["compare", &text(&pack), &text(&results), "--class", "f64-exact"]);
+    let printed = done(&["compare", &text(&pack), &text(&results), "--json"]);
+    let outcome: Value = serde_json::from_str(&printed).unwrap();
+    assert_eq!(outcome["equal"], true);
+    // 23 columns × 8 balls in two files, and the summary.
+    assert!(outcome["checked"].as_u64().unwrap() > 2 * 23 * 8 + 200, "{}", outcome["checked"]);
+    // A pack written over an older one is the new one.
+    done(&["pack", &packed_scene, "--out", &text(&pack)]);
+    done(&["compare", &text(&pack), &text(&results)]);
+}
+
+#[test]
+fn another_scene_differs_and_the_channel_is_named() {
+    let (root, path, pack, results) = packed();
+    let given = read(Path::new(&path));
+    // Less than 1e-10 of the load moves nothing by more than 1e-9; a millinewton does.
+    for (load, equal) in [("-2000.0000001 N", true), ("-2000.001 N", false)] {
+        let other = changed(&given, "\"-2 kN\"", &format!("\"{load}\""));
+        let other = write(root.path(), "other.json", &other);
+        done(&["statics", &other, "--out", &text(&results)]);
+        if equal {
+            done(&["compare", &text(&pack), &text(&results)]);
+            continue;
+        }
+        let said = different(&pack, &results);
+        assert!(said.contains("\nfirst divergence: series.csv, "), "{said}");
+        assert!(said.contains("  series.csv, inner_load [N] (f64-reordered): "), "{said}");
+        assert!(said.contains("summary.json, inner_race.loads.z [N]"), "{said}");
+        let files = ["series.csv", "series.npy", "summary.json"].map(|name| {
+            let said = different(&pack.join(name), &results.join(name));
+            said.lines().nth(1).unwrap().to_string()
+        });
+        assert!(files[0].contains("series.csv") && files[1].contains("series.npy"), "{files:?}");
+        assert!(files[2].contains("summary.json"), "{files:?}");
+    }
+    // Another title is another scene, and no number.
+    let other = write(root.path(), "other.json", &changed(&given, "radial load", "load"));
+    done(&["statics", &other, "--out", &text(&results)]);
+    let said = different(&pack, &results);
+    assert!(said.contains("scene.title"), "{said}");
+}
+
+#[test]
+fn a_pack_that_is_not_as_written_is_no_reference() {
+    let (_root, _, pack, results) = packed();
+    let compare = |out: &Path| refused(&["compare", &text(&pack), &text(out)]);
+    let names =
+        ["series.csv", "series.npy", "summary.json", "resolved.json", "scene.json", "README.txt"];
+    for name in names {
+        let path = pack.join(name);
+        let whole = fs::read(&path).unwrap();
+        let mut flipped = whole.clone();
+        let at = whole.len() / 2;
+        flipped[at] ^= 1;
+        for bytes in [&flipped[..], &whole[..at], b""] {
+            fs::write(&path, bytes).unwrap();
+            let message = compare(&results);
+            assert!(message.contains(name) && message.contains(&text(&pack)), "{message}");
+        }
+        fs::remove_file(&path).unwrap();
+        assert!(compare(&results).contains(name));
+        fs::write(&path, whole).unwrap();
+        done(&["compare", &text(&pack), &text(&results)]);
+    }
+    let manifest = pack.join("manifest.json");
+    let whole = read(&manifest);
+    fs::write(&manifest, &whole[..whole.len() / 2]).unwrap();
+    assert!(compare(&results).contains("manifest.json"));
+    fs::write(&manifest, whole).unwrap();
+    // The user may set other tolerances, if they make sense.
+    let tolerances = pack.join("tolerances.json");
+    fs::write(&tolerances, r#"{"class": "mixed"}"#).unwrap();
+    done(&["compare", &text(&pack), &text(&results)]);
+    fs::write(&tolerances, r#"{"class": "loose"}"#).unwrap();
+    assert!(compare(&results).contains("tolerances.json"));
+}
+
+#[test]
+fn what_cannot_be_compared_is_named() {
+    let (root, path, pack, results) = packed();
+    let empty = root.path().join("empty");
+    fs::create_dir(&empty).unwrap();
+    let [pack_text, results_text, empty] = [&pack, &results, &empty].map(|path| text(path));
+    let csv = text(&results.join("series.csv"));
+    let summary = text(&results.join("summary.json"));
+    let broken = write(root.path(), "broken.csv", "load [N]\nmuch\n");
+    let nowhere = text(&root.path().join("nowhere"));
+    for (reference, candidate, part) in [
+        (&nowhere, &results_text, "nowhere"),
+        (&results_text, &nowhere, "nowhere"),
+        (&empty, &results_text, "nothing to compare"),
+        (&csv, &summary, "different kinds"),
+        (&csv, &results_text, "different kinds"),
+        (&csv, &broken, "is not a number"),
+        (&pack_text, &csv, "different kinds"),
+        (&text(&results.join("polar.svg")), &csv, "only .csv, .npy, .json"),
+    ] {
+        let message = refused(&["compare", reference, candidate]);
+        assert!(message.contains(part), "{message}");
+    }
+    // An empty candidate is a difference, not an error: everything is missing.
+    assert!(different(&pack, Path::new(&empty)).contains("no such file"));
+    // A pack is not written into a folder with something else in it.
+    let message = refused(&["pack", &path, "--out", &results_text]);
+    assert!(message.contains("results of another kind (static solution)"), "{message}");
+    let notes = root.path().join("notes");
+    fs::create_dir(&notes).unwrap();
+    fs::write(notes.join("notes.txt"), "mine").unwrap();
+    let message = refused(&["pack", &path, "--out", &text(&notes)]);
+    assert!(message.contains("\"notes.txt\", which is not part of a case pack"), "{message}");
+}
+
+// The perturbations go through the library, which the command calls with the same options: some
+// thousand comparisons, each of which would start a process.
+
+fn compared(reference: &Path, candidate: &Path, class: ToleranceClass) -> Comparison {
+    let options = Options { default_class: Some(class), ..Options::default() };
+    compare(reference, candidate, &options).unwrap()
+}
+
+/// Beyond any tolerance.
+const GROSS: f64 = 1e30;
+
+/// What is allowed at a place, as the comparison says when it is handed a gross error there.
+fn allowed(gross: &Comparison) -> f64 {
+    match gross.first_divergence.as_ref().expect("a gross error is found").kind {
+        DivergenceKind::Value { allowed, .. } => allowed,
+        ref other => panic!("expected a difference in value, got {other:?}"),
+    }
+}
+
+#[test]
+fn every_cell_of_a_real_series_is_watched() {
+    let (_root, _, pack, results) = packed();
+    let (expected, given) = (pack.join("series.csv"), results.join("series.csv"));
+    let series = Series::read_csv(&expected).unwrap();
+    assert_eq!(series.data().dim(), (8, 24));
+    for class in [ToleranceClass::F64Reordered, ToleranceClass::Mixed] {
+        for ((row, column), &value) in series.data().indexed_iter() {
+            let check = |changed: f64| {
+                let mut data = series.data().clone();
+                data[(row, column)] = changed;
+                let altered = Series::new(series.columns().to_vec(), data).unwrap();
+                fs::write(&given, altered.to_csv().unwrap()).unwrap();
+                compared(&expected, &given, class)
+            };
+            let allowed = allowed(&check(value + GROSS));
+            let found = check(value + 10.0 * allowed);
+            let first = found.first_divergence.as_ref().expect("10 × tolerance is found");
+            assert!(!found.equal && found.differing == 1, "{}", report(&found));
+            assert_eq!(first.channel, series.columns()[column].name);
+            assert_eq!(first.place, format!("row {0} (ball {0})", row + 1));
+            assert!(check(value + 0.1 * allowed).equal, "{first:?}");
+        }
+    }
+}
+
+/// JSON pointers of all leaves.
+fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
+    match value {
+        Value::Object(map) => {
+            map.iter().for_each(|(key, item)| pointers(item, &format!("{at}/{key}"), found));
+        }
+        Value::Array(items) => {
+            let items = items.iter().enumerate();
+            items.for_each(|(i, item)| pointers(item, &format!("{at}/{i}"), found));
+        }
+        _ => found.push(at.to_string()),
+    }
+}
+
+/// `/balls/2/inner/load/value` → `balls[2].inner.load`.
+fn path_of(pointer: &str) -> String {
+    let pointer = pointer.strip_suffix("/value").or(pointer.strip_suffix("/unit"));
+    let mut path = String::new();
+    for part in pointer.expect("the pointer of a quantity").split('/').skip(1) {
+        match part.parse::<usize>() {
+            Ok(index) => path += &format!("[{index}]"),
+            Err(_) if path.is_empty() => path += part,
+            Err(_) => path += &format!(".{part}"),
+        }
+    }
+    path
+}
+
+#[test]
+fn every_quantity_of_a_real_summary_is_watched() {
+    let (_root, _, pack, results) = packed();
+    let (expected, given) = (pack.join("summary.json"), results.join("summary.json"));
+    let summary = json(&expected);
+    let mut leaves = Vec::new();
+    pointers(&summary, "", &mut leaves);
+    leaves.retain(|leaf| leaf.ends_with("/value"));
+    let (mut watched, mut ignored) = (0, Vec::new());
+    for pointer in &leaves {
+        let path = path_of(pointer);
+        let check = |changed: f64| {
+            let mut altered = summary.clone();
+            *altered.pointer_mut(pointer).unwrap() = json!(changed);
+            fs::write(&given, altered.to_string()).unwrap();
+            compared(&expected, &given, ToleranceClass::F64Reordered)
+        };
+        let value = summary.pointer(pointer).unwrap().as_f64().unwrap();
+        let gross = check(value + GROSS);
+        if is_ignored_by_name(&path) {
+            assert!(gross.equal, "{}", report(&gross));
+            ignored.push(path);
+            continue;
+        }
+        let allowed = allowed(&gross);
+        assert!(check(value + 0.1 * allowed).equal, "{path}");
+        let found = check(value + 10.0 * allowed);
+        let first = found.first_divergence.as_ref().expect(&path);
+        assert!(!found.equal && found.differing == 1, "{}", report(&found));
+        assert!(first.place == path || first.place.starts_with(&format!("{path} (ball ")));
+        assert!(report(&found).contains(&first.place));
+        watched += 1;
+    }
+    assert_eq!(ignored, ["seconds.read", "seconds.solve"]);
+    // 8 balls of 22 quantities, 25 of the stiffness and the rest.
+    assert!(watched > 8 * 22 + 25 + 50, "{watched}");
+}

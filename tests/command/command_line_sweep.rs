@@ -1,0 +1,563 @@
+//! `sweep`: the table does not depend on threads, interruptions or warm starts, and no point is
+//! lost or mislabelled.
+
+use crate::command_line_common;
+
+use bearing_dynamics::output::series::Series;
+use command_line_common::{
+    ANGULAR_CONTACT, DEEP_GROOVE, Run, bearing, changed, command, done, files, json, read, refusal,
+    refused, scene, text, write,
+};
+use ndarray::Array1;
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::{TempDir, tempdir};
+
+/// Points of a chunk, as the journal keeps them.
+const CHUNK: usize = 64;
+const POINTS: usize = 10_000;
+
+/// A bearing that takes its time, about a second for all points on one thread: thirteen balls with
+/// forces on them, in a tilted outer race.
+fn slow_scene(folder: &Path) -> String {
+    let scene = read(Path::new(&scene("misaligned_radial.json")));
+    write(folder, "slow.json", &changed(&scene, "\"balls\": 8", "\"balls\": 13"))
+}
+
+fn vary_phase(count: usize) -> String {
+    format!("bearing.ball_phase=0 deg .. 20 deg / {count}")
+}
+
+fn column(table: &Series, name: &str) -> Array1<f64> {
+    table.column(name).unwrap_or_else(|| panic!("column {name}")).to_owned()
+}
+
+fn table(folder: &Path) -> Series {
+    let csv = Series::read_csv(&folder.join("sweep.csv")).unwrap();
+    assert!(csv == Series::read_npy(&folder.join("sweep.npy")).unwrap());
+    csv
+}
+
+/// Both forms of the table, to the byte.
+fn bytes(folder: &Path) -> [Vec<u8>; 3] {
+    ["sweep.csv", "sweep.npy", "sweep.columns.json"]
+        .map(|name| fs::read(folder.join(name)).unwrap())
+}
+
+/// A sweep of the slow scene on one thread that has come past its third chunk.
+struct Started {
+    root: TempDir,
+    path: String,
+    vary: String,
+    out: PathBuf,
+    child: Child,
+}
+
+impl Started {
+    fn new() -> Started {
+        let root = tempdir().unwrap();
+        let path = slow_scene(root.path());
+        let vary = vary_phase(POINTS);
+        let out = root.path().join("out");
+        let mut child = command()
+            .args(["sweep", &path, "--vary", &vary, "--threads", "1", "--out", &text(&out)])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let journal = out.join("sweep.journal");
+        let lines = || fs::read(&journal).map_or(0, |text| text.split(|&b| b == b'\n').count());
+        let start = Instant::now();
+        // The header, three chunks and the empty rest after the last line break.
+        while lines() < 5 {
+            assert!(start.elapsed() <= Duration::from_secs(60), "no journal");
+            assert!(child.try_wait().unwrap().is_none(), "over before it could be interrupted");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        Started { root, path, vary, out, child }
+    }
+
+    /// Sends a signal and waits for the end.
+    fn stop(&mut self, signal: &str) -> Run {
+        let sent =
+            Command::new("sh").args(["-c", &format!("kill {signal} {}", self.child.id())]).status();
+        assert!(sent.unwrap().success());
+        let mut output = [String::new(), String::new()];
+        use std::io::Read;
+        self.child.stdout.take().unwrap().read_to_string(&mut output[0]).unwrap();
+        self.child.stderr.take().unwrap().read_to_string(&mut output[1]).unwrap();
+        let [stdout, stderr] = output;
+        Run { code: self.child.wait().unwrap().code(), stdout, stderr }
+    }
+
+    fn journal(&self) -> PathBuf {
+        self.out.join("sweep.journal")
+    }
+
+    /// The same command again, then the same sweep from the start: the same bytes.
+    fn resume_and_compare(&self, kept: usize) {
+        let arguments = ["sweep", &self.path, "--vary", &self.vary, "--threads", "1", "--out"];
+        let [out, whole] = [text(&self.out), text(&self.root.path().join("whole"))];
+        let said = done(&[&arguments[..], &[&out]].concat());
+        assert!(said.starts_with(&format!("{POINTS} points ({kept} resumed) in ")), "{said}");
+        let said = done(&[&arguments[..], &[&whole]].concat());
+        assert!(said.starts_with(&format!("{POINTS} points in ")), "{said}");
+        assert!(bytes(&self.out) == bytes(Path::new(&whole)));
+        assert_eq!(table(&self.out).data().nrows(), POINTS);
+        assert_eq!(json(&self.out.join("sweep.json"))["complete"], true);
+        let names = ["sweep.columns.json", "sweep.csv", "sweep.json", "sweep.npy"];
+        assert_eq!(files(&self.out), names, "the journal is gone, and nothing else is left");
+    }
+}
+
+#[test]
+fn an_interrupted_sweep_keeps_its_points_and_resumes_to_the_same_bytes() {
+    for signal in ["-INT", "-TERM"] {
+        let mut sweep = Started::new();
+        let run = sweep.stop(signal);
+        assert_eq!(run.stdout, "");
+        let message = refusal(&["sweep", signal], &run);
+        let kept: usize = message
+            .strip_prefix("interrupted after ")
+            .and_then(|rest| {
+                rest.strip_suffix(&format!(
+                    " of {POINTS} points, kept in {}; the same command resumes",
+                    sweep.out.display()
+                ))
+            })
+            .unwrap_or_else(|| panic!("{message}"))
+            .parse()
+            .unwrap();
+        assert!((3 * CHUNK..POINTS).contains(&kept) && kept.is_multiple_of(CHUNK), "{kept}");
+        let partial = table(&sweep.out);
+        assert_eq!(partial.data().nrows(), kept);
+        let summary = json(&sweep.out.join("sweep.json"));
+        assert_eq!((&summary["complete"], &summary["solved"]), (&json!(false), &json!(kept)));
+        sweep.resume_and_compare(kept);
+        let whole = table(&sweep.out);
+        for row in partial.data().rows() {
+            assert_eq!(row, whole.data().row(row[0] as usize));
+        }
+    }
+}
+
+#[test]
+fn a_killed_sweep_resumes_to_the_same_bytes() {
+    let mut sweep = Started::new();
+    assert_eq!(sweep.stop("-KILL").code, None);
+    // As if the end had come in the middle of a line, whether it did or not.
+    let journal = read(&sweep.journal());
+    let complete = journal.rfind('\n').unwrap();
+    let last = journal[..complete].rfind('\n').unwrap();
+    fs::write(sweep.journal(), &journal[..(last + complete) / 2]).unwrap();
+    fs::write(sweep.out.join(".sweep.journal.4294967294.partial"), "half").unwrap();
+    let chunks = journal[..last].lines().count() - 1;
+    assert!(chunks >= 2);
+    sweep.resume_and_compare(chunks * CHUNK);
+}
+
+/// A kill, or a crash of the machine, may cut the journal anywhere: in its last record or in its header,
+/// with or without what was never text behind it. `JOURNAL_CUTS=all` cuts at every byte of the record.
+#[test]
+fn a_journal_that_was_cut_anywhere_is_resumed() {
+    let root = tempdir().unwrap();
+    let path = write(root.path(), "a.toml", DEEP_GROOVE);
+    // The last chunk has two points, so that its record is short.
+    let points = CHUNK + 2;
+    let vary = vary_phase(points);
+    let sweep = |out: &Path| {
+        ["sweep", &path, "--vary", &vary, "--threads", "1", "--out", &text(out)].map(str::to_string)
+    };
+    let run = |out: &Path| {
+        let arguments = sweep(out);
+        done(&arguments.each_ref().map(String::as_str))
+    };
+    let whole = root.path().join("whole");
+    run(&whole);
+    // The journal of this sweep, caught before it is over.
+    let out = root.path().join("out");
+    let journal = out.join("sweep.journal");
+    let mut kept = Vec::new();
+    for _ in 0..200 {
+        let arguments = sweep(&out);
+        let mut child = command().args(&arguments).stdout(Stdio::null()).spawn().unwrap();
+        while child.try_wait().unwrap().is_none() {
+            let lines = |bytes: &[u8]| bytes.iter().filter(|&&b| b == b'\n').count();
+            if let Ok(bytes) = fs::read(&journal)
+                && bytes.ends_with(b"\n")
+                && lines(&bytes) == 3
+            {
+                kept = bytes;
+            }
+        }
+        if !kept.is_empty() {
+            break;
+        }
+    }
+    assert!(!kept.is_empty(), "the sweep was never seen half way");
+    let ends: Vec<usize> = (0..kept.len()).filter(|&at| kept[at] == b'\n').collect();
+    let last = ends[1] + 1;
+    // The end, where numbers, brackets and the break are, and some bytes before; all of them on request.
+    let step = if std::env::var("JOURNAL_CUTS").is_ok_and(|all| all == "all") { 1 } else { 29 };
+    let inside = (last..kept.len()).filter(|at| kept.len() - at < 6 || (at - last) % step == 0);
+    let cuts = inside.chain([0, 1, ends[0] / 2, ends[0], ends[0] + 1]);
+    for (count, cut) in cuts.enumerate() {
+        let rest: &[u8] = [&b""[..], b"\xff\xfe\n", b"\0\0\0\0"][count % 3];
+        fs::create_dir_all(&out).unwrap();
+        fs::write(&journal, [&kept[..cut], if cut > ends[0] { rest } else { b"" }].concat())
+            .unwrap();
+        let said = run(&out);
+        assert!(said.starts_with(&format!("{} points", points)), "cut at {cut}: {said}");
+        assert!(bytes(&out) == bytes(&whole), "cut at {cut}");
+        assert!(!journal.exists());
+        fs::remove_file(out.join("sweep.json")).unwrap();
+    }
+}
+
+#[test]
+fn the_journal_of_another_sweep_is_refused_until_it_is_discarded() {
+    let mut sweep = Started::new();
+    sweep.stop("-KILL");
+    let out = text(&sweep.out);
+    let journal = read(&sweep.journal());
+    let (path, vary) = (sweep.path.as_str(), sweep.vary.as_str());
+    let other =
+        write(sweep.root.path(), "other.json", &changed(&read(Path::new(path)), "-2", "-3"));
+    let short = vary_phase(3);
+    for arguments in [
+        vec!["sweep", &other, "--vary", vary, "--out", &out],
+        vec!["sweep", path, "--vary", &short, "--out", &out],
+        vec!["sweep", path, "--vary", vary, "--out", &out, "--cold"],
+        vec!["sweep", path, "--vary", vary, "--vary", "bearing.balls=8,9", "--out", &out],
+    ] {
+        let message = refused(&arguments);
+        assert!(message.contains("sweep.journal belongs to an unfinished sweep"), "{message}");
+        assert!(message.contains("--fresh") && message.contains("--out"), "{message}");
+        assert!(read(&sweep.journal()) == journal, "the journal stays as it was");
+    }
+    fs::write(sweep.journal(), "not a journal\n").unwrap();
+    assert!(refused(&["sweep", path, "--vary", &short, "--out", &out]).contains("--fresh"));
+    let fresh = text(&sweep.root.path().join("fresh"));
+    let said = done(&["sweep", path, "--vary", &short, "--out", &out, "--fresh"]);
+    assert!(said.starts_with("3 points in "), "{said}");
+    done(&["sweep", path, "--vary", &short, "--out", &fresh]);
+    assert!(bytes(&sweep.out) == bytes(Path::new(&fresh)));
+    assert!(!sweep.journal().exists());
+}
+
+#[test]
+fn the_table_does_not_depend_on_the_number_of_threads() {
+    let root = tempdir().unwrap();
+    let path = slow_scene(root.path());
+    // Not a multiple of the chunk.
+    let vary = vary_phase(1000);
+    let sweep = |threads: &[&str], name: &str| {
+        let out = root.path().join(name);
+        let out_text = text(&out);
+        done(&[&["sweep", &path, "--vary", &vary, "--out", &out_text], threads].concat());
+        bytes(&out)
+    };
+    let one = sweep(&["--threads", "1"], "one");
+    for threads in ["2", "3", "16"] {
+        assert!(one == sweep(&["--threads", threads], threads), "{threads} threads");
+        let summary = json(&root.path().join(threads).join("sweep.json"));
+        assert_eq!(summary["threads"].to_string(), threads);
+    }
+    assert!(one == sweep(&[], "default"));
+}
+
+#[test]
+fn warm_starts_do_not_move_the_solution() {
+    let root = tempdir().unwrap();
+    let slow = slow_scene(root.path());
+    let phase = vary_phase(300);
+    let compliance = scene("varying_compliance.toml");
+    let cases: [&[&str]; 2] = [&["sweep", &compliance], &["sweep", &slow, "--vary", &phase]];
+    for arguments in cases {
+        let [warm, cold] = ["warm", "cold"].map(|name| root.path().join(name));
+        let [warm_text, cold_text] = [&warm, &cold].map(|path| text(path));
+        done(&[arguments, &["--out", &warm_text]].concat());
+        done(&[arguments, &["--out", &cold_text, "--cold"]].concat());
+        assert!(bytes(&warm) != bytes(&cold), "--cold does something");
+        let [warm, cold] = [table(&warm), table(&cold)];
+        for name in ["largest_inner_load", "largest_outer_load", "load_x", "load_y", "load_z"] {
+            let [warm_load, cold_load] = [&warm, &cold].map(|table| column(table, name));
+            let ball_load = column(&warm, "largest_outer_load");
+            for ((a, b), scale) in warm_load.iter().zip(&cold_load).zip(&ball_load) {
+                // The solver stops at 1e-11 of the largest load; a hundredfold for the balls.
+                assert!((a - b).abs() <= 1e-9 * scale, "{name}: {a} {b}");
+            }
+        }
+        let loaded = |table: &Series| column(table, "loaded_balls");
+        assert_eq!(loaded(&warm), loaded(&cold));
+    }
+}
+
+#[test]
+fn a_grid_runs_through_its_last_key_fastest_and_solves_what_it_says() {
+    let root = tempdir().unwrap();
+    let base = format!(
+        "{DEEP_GROOVE}[inner_race]\nx = {{ load = \"100 N\" }}\nz = {{ load = \"-1 kN\" }}\n\
+         tilt_y = {{ tilt = \"0 deg\" }}\ntilt_z = {{ tilt = \"0 deg\" }}\n"
+    );
+    let path = write(root.path(), "scene.toml", &base);
+    let out = root.path().join("out");
+    done(&[
+        "sweep",
+        &path,
+        "--vary",
+        "bearing.hertz=hamrock-brewe,exact",
+        "--vary",
+        // Other units than the first, and the minus sign of a typeset table.
+        "inner_race.z.load = -1 kN, -1500 N, \u{2212}2e-3 MN",
+        "--vary",
+        "bearing.balls=8,9",
+        "--out",
+        &text(&out),
+    ]);
+    let table = table(&out);
+    let header: Vec<String> = table.columns()[..5].iter().map(|column| column.header()).collect();
+    assert_eq!(
+        header,
+        [
+            "point [1]",
+            "bearing.hertz [choice]",
+            "inner_race.z.load [kN]",
+            "bearing.balls [1]",
+            "x [um]"
+        ]
+    );
+    assert_eq!(
+        json(&out.join("sweep.json"))["axes"],
+        json!([
+            { "key": "bearing.hertz", "count": 2, "unit": "choice",
+              "choices": ["hamrock-brewe", "exact"] },
+            { "key": "inner_race.z.load", "count": 3, "unit": "kN" },
+            { "key": "bearing.balls", "count": 2, "unit": "1" },
+        ])
+    );
+    let mut rows = table.data().rows().into_iter();
+    let mut point = 0.0;
+    for (choice, hertz) in ["hamrock-brewe", "exact"].iter().enumerate() {
+        for load in [-1.0, -1.5, -2.0] {
+            for balls in [8.0, 9.0] {
+                let row = rows.next().unwrap();
+                let axes: Vec<f64> = row.iter().take(4).copied().collect();
+                assert_eq!(axes, [point, choice as f64, load, balls]);
+                point += 1.0;
+                let same = base
+                    .replacen("balls = 8", &format!("balls = {balls}\nhertz = \"{hertz}\""), 1)
+                    .replacen("\"-1 kN\"", &format!("\"{load} kN\""), 1);
+                let same = write(root.path(), "point.toml", &same);
+                let results = root.path().join("results");
+                done(&["statics", &same, "--out", &text(&results)]);
+                let summary = json(&results.join("summary.json"));
+                let number = |at: &str| summary.pointer(at).unwrap()["value"].as_f64().unwrap();
+                let cell = |name: &str| row[column_index(&table, name)];
+                for (name, value, scale) in [
+                    ("x", 1e6 * number("/inner_race/position/x"), 10.0),
+                    ("z", 1e6 * number("/inner_race/position/z"), 10.0),
+                    ("load_z", number("/inner_race/loads/z"), 1e3),
+                    ("stiffness_z", number("/stiffness/z/z"), 1e8),
+                    ("largest_inner_load", number("/load_zone/largest_inner_load"), 1e3),
+                    (
+                        "loaded_balls",
+                        summary["load_zone"]["balls_loaded_inner"].as_f64().unwrap(),
+                        1.0,
+                    ),
+                ] {
+                    // A warm and a cold start: as above, with 1e-9 of an ordinary value.
+                    assert!((cell(name) - value).abs() <= 1e-9 * scale, "{name} {value} {row}");
+                }
+            }
+        }
+    }
+    assert!(rows.next().is_none());
+}
+
+fn column_index(table: &Series, name: &str) -> usize {
+    table.columns().iter().position(|column| column.name == name).unwrap()
+}
+
+#[test]
+fn ranges_meet_both_ends_and_the_scene_may_hold_the_sweep() {
+    let root = tempdir().unwrap();
+    let out = root.path().join("out");
+    let path = scene("varying_compliance.toml");
+    assert!(done(&["sweep", &path, "--out", &text(&out)]).starts_with("364 points in "));
+    let whole = table(&out);
+    let phase = column(&whole, "bearing.ball_phase");
+    assert!((0..364).all(|point| phase[point] == (point % 91) as f64 * 0.5));
+    let clearance = column(&whole, "bearing.clearance.radial");
+    assert!((0..364).all(|point| clearance[point] == [5.0, 0.0, -5.0, -10.0][point / 91]));
+    // One pitch on, the same bearing stands there again, with the balls numbered anew.
+    for (name, scale) in [("y", 10.0), ("z", 10.0), ("largest_inner_load", 1e3)] {
+        let values = column(&whole, name);
+        for start in [0, 91, 182, 273] {
+            let difference = (values[start] - values[start + 90]).abs();
+            assert!(difference <= 1e-9 * scale, "{name}: {difference}");
+        }
+    }
+    // The command line goes before the scene.
+    let arguments = ["sweep", &path, "--vary", "bearing.ball_phase=0 rad .. 0.1 rad / 3"];
+    done(&[&arguments[..], &["--out", &text(&out)]].concat());
+    let phase = table(&out);
+    assert_eq!(phase.columns()[1].header(), "bearing.ball_phase [rad]");
+    assert_eq!(column(&phase, "bearing.ball_phase").to_vec(), [0.0, 0.05, 0.1]);
+}
+
+#[test]
+fn points_without_a_solution_are_listed_and_all_others_kept() {
+    let root = tempdir().unwrap();
+    let out = root.path().join("out");
+    let held = "[inner_race]\ny = { displacement = \"0 um\" }\nz = { displacement = \"0 um\" }\n\
+                tilt_y = { tilt = \"0 deg\" }\ntilt_z = { tilt = \"0 deg\" }\n\
+                x = { load = \"445 N\" }\n";
+    let path = write(root.path(), "scene.toml", &format!("{ANGULAR_CONTACT}{held}"));
+    // Key, values, which of them fail, why.
+    let cases: [(&str, &[&str], &[usize], &str); 4] = [
+        ("inner_race.x.load", &["400 N", "1000 MN", "-400 N", "500 N"], &[1], "no equilibrium"),
+        ("inner_race.x.load", &["1000 MN", "400 N", "1000 MN"], &[0, 2], "no equilibrium"),
+        ("bearing.outer_race.groove_radius", &["6.6 mm", "5 mm", "7 mm"], &[1], "does not fit"),
+        ("bearing.outer_race.groove_radius", &["5 mm", "1 m", "7 mm"], &[0, 1], "Allowed: "),
+    ];
+    for (key, values, failing, why) in cases {
+        let vary = format!("{key}={}", values.join(", "));
+        let arguments = ["sweep", &path, "--vary", &vary, "--out", &text(&out)];
+        let run = bearing(&arguments);
+        let message = refusal(&arguments, &run);
+        let start = format!(
+            "{} of {} points have no solution (listed in {}), the first is point {}: ",
+            failing.len(),
+            values.len(),
+            out.join("sweep.json").display(),
+            failing[0]
+        );
+        assert!(message.starts_with(&start) && message.contains(why), "{message}");
+        assert!(run.stdout.starts_with(&format!("{} points in ", values.len())), "{}", run.stdout);
+        let summary = json(&out.join("sweep.json"));
+        assert_eq!(
+            (&summary["complete"], &summary["points"]),
+            (&json!(true), &json!(values.len()))
+        );
+        let listed = summary["failures"].as_array().unwrap();
+        assert_eq!(listed.len(), failing.len());
+        for (failure, &point) in listed.iter().zip(failing) {
+            assert_eq!(failure["point"], point);
+            assert_eq!(failure["at"], json!([format!("{key} = {}", values[point])]));
+            assert!(failure["message"].as_str().unwrap().contains(why), "{failure}");
+        }
+        let kept: Vec<f64> =
+            (0..values.len()).filter(|point| !failing.contains(point)).map(|p| p as f64).collect();
+        let table = table(&out);
+        assert_eq!(column(&table, "point").to_vec(), kept);
+        assert!(table.data().iter().all(|value| value.is_finite()));
+        assert!(!out.join("sweep.journal").exists());
+    }
+}
+
+#[test]
+fn a_sweep_that_makes_no_sense_is_refused_before_anything_is_written() {
+    let root = tempdir().unwrap();
+    let out = text(&root.path().join("out"));
+    let path = scene("deep_groove_tilt.toml");
+    let cases: [(&[&str], &str); 13] = [
+        (&[], "nothing to vary"),
+        (&["bearing.ball_phase"], "no '='"),
+        (&["bearing.ball_fase=1 deg"], "did you mean `bearing.ball_phase`"),
+        (&["bearing=1"], "unknown key"),
+        (&["bearing.ball_phase=1"], "has no unit"),
+        (&["bearing.ball_phase=1 mm"], "unit of length"),
+        (&["bearing.ball_phase="], "an entry is empty"),
+        (&["bearing.ball_phase=0 deg .. 1 deg / 0"], "whole number from 2"),
+        (&["bearing.hertz=hamrok"], "\"hamrock-brewe\", \"exact\""),
+        (&["title=a"], "title"),
+        (&["bearing.balls=8", "bearing.balls=9"], "varied twice"),
+        (
+            &["bearing.clearance.radial=1 um, 2 um", "bearing.clearance.diametral=1 um, 2 um"],
+            "exclude each other",
+        ),
+        (&["bearing.outer_race.groove_radius=5 mm, 5.5 mm"], "does not fit a ball"),
+    ];
+    for (axes, part) in cases {
+        let varied = axes.iter().flat_map(|axis| ["--vary", axis]);
+        let arguments: Vec<&str> =
+            ["sweep", &path, "--out", &out].into_iter().chain(varied).collect();
+        let message = refused(&arguments);
+        assert!(message.contains(part), "{part}: {message}");
+    }
+    let many = "bearing.ball_phase=0 deg .. 1 deg / 10000000";
+    let loads = "inner_race.z.load=0 N .. 1 N / 10000000";
+    let arguments = ["sweep", &path, "--vary", many, "--vary", loads, "--out", &out];
+    assert!(refused(&arguments).contains("more than 100000000 points"));
+    assert!(!root.path().join("out").exists());
+}
+
+#[test]
+fn a_new_sweep_replaces_the_table_of_an_older_one() {
+    let root = tempdir().unwrap();
+    let out = root.path().join("out");
+    let path = scene("deep_groove_tilt.toml");
+    let sweep = |values: &str| {
+        let vary = format!("bearing.balls={values}");
+        done(&["sweep", &path, "--vary", &vary, "--out", &text(&out)]);
+        table(&out).data().nrows()
+    };
+    assert_eq!((sweep("7, 8, 9"), sweep("8")), (3, 1));
+    assert_eq!(files(&out).len(), 4);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_is_shown_the_progress_and_a_pipe_is_not() {
+    let root = tempdir().unwrap();
+    let path = slow_scene(root.path());
+    let out = text(&root.path().join("out"));
+    let vary = vary_phase(POINTS);
+    // `script` gives the command a terminal.
+    let line = format!(
+        "'{}' sweep '{path}' --vary '{vary}' --threads 1 --out '{out}'",
+        env!("CARGO_BIN_EXE_bearing")
+    );
+    let run = Command::new("script")
+        .args(["-q", "-e", "-c", &line, "/dev/null"])
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let shown = String::from_utf8_lossy(&run.stdout);
+    assert!(run.status.success(), "{shown}");
+    let progress: Vec<&str> =
+        shown.split('\r').filter(|line| line.contains(&format!("/{POINTS} points, "))).collect();
+    assert!(progress.len() >= 3 && progress.iter().all(|line| line.contains("left")), "{shown}");
+    // A file is no terminal: nothing but the last line.
+    let said = done(&["sweep", &path, "--vary", &vary_phase(200), "--out", &out]);
+    assert_eq!(said.lines().count(), 1);
+}
+
+/// The record of a sweep says how it was made.
+#[test]
+fn the_record_has_what_a_reader_needs() {
+    let root = tempdir().unwrap();
+    let out = root.path().join("out");
+    let path = scene("deep_groove_moment.toml");
+    done(&["sweep", &path, "--out", &text(&out), "--threads", "2"]);
+    let Value::Object(record) = json(&out.join("sweep.json")) else { panic!() };
+    assert_eq!(record["scene"], path);
+    assert_eq!(record["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(record["threads"], 2);
+    assert!(record["seconds"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn a_sweep_of_a_scene_with_a_run_says_that_it_is_one_of_statics() {
+    let root = tempdir().unwrap();
+    let out = text(&root.path().join("sweep"));
+    let vary = ["--vary", "bearing.ball_phase=0 deg, 5 deg", "--out", &out];
+    for (name, has_run) in [("settling.toml", true), ("deep_groove_tilt.toml", false)] {
+        let said = done(&[&["sweep", &scene(name), "--fresh"], &vary[..]].concat());
+        assert_eq!(said.contains("its run is not swept"), has_run, "{said}");
+    }
+}

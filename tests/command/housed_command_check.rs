@@ -1,0 +1,138 @@
+//! `bearing check` of a bearing in its housing: nothing that a run uses is left unsaid.
+
+use crate::housed_command_common;
+
+use housed_command_common::*;
+use serde_json::{Value, json};
+
+const RUN: &str = "[numerics]\nend = \"1 ms\"\noutput_interval = \"0.02 ms\"\n\
+                   fields_interval = \"0.2 ms\"\n";
+
+/// What `check` says, as text and as JSON.
+fn checked(place: &Place, text: &str) -> (String, Value) {
+    let scene = place.scene("scene.toml", text);
+    let said = succeed(command("check", &scene, &[]));
+    let echo = succeed(command("check", &scene, &["--json"]));
+    (said, serde_json::from_str(&echo).unwrap())
+}
+
+/// Lines of the text that start with a label, without it.
+fn lines(said: &str, label: &str) -> Vec<String> {
+    let found = said.lines().filter_map(|line| {
+        let (before, after) = line.split_at_checked(25)?;
+        (before.trim() == label).then(|| after.to_string())
+    });
+    found.collect()
+}
+
+#[test]
+fn numerics_output_assumptions_and_defaults_are_echoed() {
+    let place = Place::new();
+    let quantity = |value: f64, unit: &str| json!({ "value": value, "unit": unit });
+    for method in ["quasi-static", "explicit"] {
+        let housing = format!("method = \"{method}\"\nfit.radial = \"2 um\"");
+        let (said, echo) = checked(&place, &scene_text(&housing, RUN));
+        let numerics = &echo["numerics"];
+        assert_eq!(numerics["end"], quantity(1e-3, "s"));
+        assert_eq!(numerics["output_interval"], quantity(2e-5, "s"));
+        assert_eq!(numerics["fields_interval"], quantity(2e-4, "s"));
+        // Equilibria have no steps.
+        let explicit = method == "explicit";
+        assert_eq!(numerics["integrator"] == "rk4", explicit, "{numerics}");
+        assert_eq!(numerics["energy_limit"].is_object(), explicit, "{numerics}");
+        let output = &echo["output"];
+        // Half the run, as everywhere.
+        assert_eq!(output["window_start"], quantity(5e-4, "s"));
+        if explicit {
+            assert_eq!(output["plots"], json!(["orbit", "series", "polar"]));
+            assert!(output["channels"].as_array().unwrap().contains(&json!("pockets")));
+        } else {
+            assert_eq!(output["plots"], json!(["orbit", "series"]));
+            assert_eq!(output["channels"], json!(["races", "loads", "forces", "energy"]));
+        }
+        // As many assumptions and defaults as the text for people has, and the same.
+        for (label, notes) in [("assumption", "assumptions"), ("default", "defaults")] {
+            let notes = echo[notes].as_array().unwrap();
+            let text = |name: &str, note: &Value| note[name].as_str().unwrap().to_string();
+            let expected: Vec<String> = notes
+                .iter()
+                .map(|note| match label {
+                    "assumption" => format!("{}: {}", text("name", note), text("text", note)),
+                    _ => format!(
+                        "{} = {} ({})",
+                        text("key", note),
+                        text("value", note),
+                        text("reason", note)
+                    ),
+                })
+                .collect();
+            assert!(!expected.is_empty());
+            assert_eq!(lines(&said, label), expected);
+        }
+        assert_eq!(lines(&said, "fields"), ["every 0.0002 s"]);
+        let motion = if explicit { "inner race motion" } else { "motion" };
+        assert_eq!(lines(&said, motion).len(), 1, "{said}");
+        assert_eq!(lines(&said, "steps").len(), usize::from(explicit), "{said}");
+        // The summary of a run repeats what `check` understood.
+        let scene = place.scene("scene.toml", &scene_text(&housing, RUN));
+        let out = place.path(method);
+        succeed(into_folder("run", &scene, &out, &[]));
+        assert_eq!(json(out.join("summary.json"))["scene"]["numerics"], *numerics);
+    }
+}
+
+#[test]
+fn what_cannot_be_drawn_or_recorded_is_refused() {
+    let place = Place::new();
+    let (_, echo) = checked(&place, &scene_text("", ""));
+    assert_eq!(echo["output"], json!({ "plots": ["load-zone"] }));
+    assert!(echo["numerics"].is_null(), "nothing runs");
+    for (key, output, run) in [
+        ("output.plots", "plots = [\"polar\"]", ""),
+        ("output.plots", "plots = [\"moment-tilt\"]", ""),
+        ("output.plots", "plots = [\"moment-tilt\"]", RUN),
+        ("output.plots", "plots = [\"orbit\", \"slip-spin\"]", RUN),
+        ("output.channels", "channels = [\"races\", \"pockets\"]", RUN),
+    ] {
+        let text = scene_text("", &format!("{run}[output]\n{output}"));
+        let output = command("check", &place.scene("scene.toml", &text), &[]).output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        let message = stderr(&output);
+        assert!(message.contains(key) && message.contains("equilibria"), "{message}");
+    }
+    // In explicit steps both are drawn.
+    let plots = "[output]\nplots = [\"polar\", \"slip-spin\"]\nchannels = [\"loads\"]";
+    let text = scene_text("method = \"explicit\"", &format!("{RUN}{plots}"));
+    let (_, echo) = checked(&place, &text);
+    assert_eq!(echo["output"]["plots"], json!(["slip-spin", "polar"]));
+    let out = place.path("out");
+    succeed(into_folder("run", &place.scene("scene.toml", &text), &out, &[]));
+    for name in ["polar.svg", "slip.svg", "spin.svg"] {
+        assert!(out.join(name).exists(), "{name}");
+    }
+}
+
+/// Rings that are rigid, a race beside its seat: said before anything is solved, and kept in the summary.
+#[test]
+fn fits_and_seats_are_not_taken_in_silence() {
+    let place = Place::new();
+    let noted = |housing: &str| checked(&place, &scene_text(housing, "")).0;
+    let tight = noted("fit.radial = \"5 um\"");
+    assert!(tight.contains("the races are rigid") && tight.contains("5.000 um"), "{tight}");
+    // E t δ/(r R) of a ring of 3.574 mm: 210 GPa × 3.574 mm × 5 µm / (33.74 mm × 35.527 mm).
+    assert!(tight.contains("3.574 mm") && tight.contains("3.131 MPa"), "{tight}");
+    assert!(!tight.contains("lie beside the bore"), "{tight}");
+    let loose = noted("fit.radial = \"-1 um\"");
+    assert!(!loose.contains("rigid"), "{loose}");
+    let wide = noted("fit.radial = \"-1 um\"\nwidth = \"30 mm\"");
+    assert!(wide.contains("30.0000 mm of width 10.0000 mm lie beside the bore"), "{wide}");
+    let scene = place.scene("tight.toml", &scene_text("fit.radial = \"5 um\"", ""));
+    let out = place.path("tight");
+    let said = succeed(into_folder("statics", &scene, &out, &[]));
+    assert!(said.contains("this pressure is of one node"), "{said}");
+    let summary = solids::json(out.join("summary.json"));
+    let notes = summary["mesh"]["notes"].to_string();
+    assert!(notes.contains("the races are rigid"), "{notes}");
+    let pressure = summary["housing"]["seat"]["peak_pressure_note"].as_str().unwrap();
+    assert!(pressure.starts_with("of one node"), "{pressure}");
+}

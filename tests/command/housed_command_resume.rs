@@ -1,0 +1,80 @@
+//! Explicit runs of a bearing in its housing that are interrupted, killed, extended or fail.
+
+use crate::housed_command_common;
+use crate::resume_common;
+
+use housed_command_common::*;
+use resume_common::{assert_same_results, signal, start, wait};
+use std::time::Duration;
+
+/// A blow; the rows lie on a grid that windows divide.
+fn blow(end: &str, further: &str) -> String {
+    let housing =
+        format!("method = \"explicit\"\nfit.radial = \"1 um\"\nfit_ramp = \"0.1 ms\"\n{further}");
+    let run = format!(
+        "[numerics]\nend = \"{end}\"\noutput_interval = \"20 us\"\nfields_interval = \"0.4 ms\"\n"
+    );
+    let pulse =
+        "z = { load = { half_sine = \"-500 N\", start = \"0.2 ms\", duration = \"0.4 ms\" } }";
+    scene_text(&housing, &run).replace("z = { load = \"-250 N\" }", pulse)
+}
+
+#[test]
+fn interrupted_killed_and_extended_runs_end_with_the_same_bytes() {
+    let place = Place::new();
+    let scene = place.scene("scene.toml", &blow("2 ms", ""));
+    let (whole, parts) = (place.path("whole"), place.path("parts"));
+    let child = start(into_folder("run", &scene, &parts, &["--save-every", "1"]));
+    std::thread::sleep(Duration::from_millis(150));
+    signal(&child, "-TERM");
+    let (code, message) = wait(child);
+    assert_eq!(code, Some(2), "{message}");
+    assert!(message.contains("--resume"), "{message}");
+    let stood = json(parts.join("state.json"))["bearing"]["time"].as_f64().unwrap();
+    assert!(stood > 0.0 && stood < 2e-3, "{stood}");
+    assert_eq!(json(parts.join("summary.json"))["complete"], false);
+    // It is not written over.
+    let output = into_folder("run", &scene, &parts, &[]).output().unwrap();
+    assert!(stderr(&output).contains("--resume"), "{}", stderr(&output));
+    // Killed on the way, it goes on from what was kept last.
+    let child = start(into_folder("run", &scene, &parts, &["--resume", "--save-every", "1"]));
+    std::thread::sleep(Duration::from_millis(100));
+    signal(&child, "-KILL");
+    wait(child);
+    let said = succeed(into_folder("run", &scene, &parts, &["--resume"]));
+    assert!(said.contains("resumed at"), "{said}");
+    succeed(into_folder("run", &scene, &whole, &[]));
+    assert_same_results(&whole, &parts);
+    // To a later end.
+    let (longer, extended) = (place.path("longer"), whole);
+    let scene = place.scene("scene.toml", &blow("2.4 ms", ""));
+    succeed(into_folder("run", &scene, &longer, &[]));
+    succeed(into_folder("run", &scene, &extended, &["--resume"]));
+    assert_same_results(&longer, &extended);
+    // Of another scene it is refused.
+    let other = place.scene("other.toml", &blow("3 ms", "window_phase = 0.2"));
+    let output = into_folder("run", &other, &longer, &["--resume"]).output().unwrap();
+    assert!(stderr(&output).contains("another scene"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_run_that_fails_keeps_its_last_row() {
+    let place = Place::new();
+    // Nothing holds the race along its axis, and a force pulls it out of a narrow seat.
+    let text = blow("4 ms", "axial = \"free\"\nwidth = \"7 mm\"")
+        .replace("[traction]", "x = { load = \"1500 N\" }\n[traction]");
+    let scene = place.scene("scene.toml", &text);
+    let out = place.path("out");
+    let output = into_folder("run", &scene, &out, &[]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let message = stderr(&output);
+    assert!(message.contains("has left its bore") && message.contains("t = "), "{message}");
+    let state = json(out.join("state.json"));
+    assert_eq!(state["bearing"]["stopped"], "failed");
+    let rows = column(&out.join("series.csv"), "outer_x");
+    assert_eq!(state["bearing"]["rows"].as_u64(), Some(rows.len() as u64));
+    assert!(*rows.last().unwrap() > 1e-3, "{rows:?}");
+    let summary = json(out.join("summary.json"));
+    assert_eq!(summary["complete"], false);
+    assert!(summary["stopped_by"].as_str().unwrap().contains("left its bore"));
+}

@@ -1,0 +1,41 @@
+//! The command as a user meets it.
+
+#[path = "../command_line_common/mod.rs"]
+mod command_line_common;
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/dynamics.rs"]
+mod dynamics;
+#[path = "../housed_command_common/mod.rs"]
+mod housed_command_common;
+#[path = "../outside_common/mod.rs"]
+mod outside_common;
+#[path = "../resume_common/mod.rs"]
+mod resume_common;
+#[path = "../run_common/mod.rs"]
+mod run_common;
+#[path = "../solid_command_common/mod.rs"]
+mod solid_command_common;
+
+mod command_line;
+mod command_line_check;
+mod command_line_compare;
+mod command_line_files;
+mod command_line_sweep;
+mod documented_commands;
+mod housed_bore_shape;
+mod housed_command;
+mod housed_command_check;
+mod housed_command_errors;
+mod housed_command_numbers;
+mod housed_command_resume;
+mod housed_command_sweep;
+mod run_command;
+mod run_plan;
+mod run_recorder;
+mod run_resume;
+mod run_step_watch;
+mod solid_command;
+mod solid_command_errors;
+mod solid_command_numbers;
+mod solid_command_resume;

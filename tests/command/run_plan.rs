@@ -1,0 +1,228 @@
+//! The plan of a run: what each scene computes, what it leaves out, and why.
+
+use crate::run_common;
+
+use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::output::dynamics::foretell::{WITHIN, choose, foretell};
+use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status, given_steps};
+use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
+use bearing_dynamics::scene::{self, CageInRun, Format};
+use bearing_dynamics::solver::channels::ChannelGroup;
+use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
+use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
+use bearing_dynamics::solver::plan;
+use bearing_dynamics::solver::profile::Profile;
+use run_common::{frictionless, jolted, pressed, rattling, request, sliding};
+
+const BEARING: &str = r#"
+[bearing]
+kind = "deep-groove"
+balls = 8
+clearance = { radial = "-5 um" }
+inner_race = { radius = "20.047 mm", groove_radius = "6.013 mm", bore_radius = "15 mm" }
+outer_race = { radius = "31.953 mm", groove_radius = "6.310 mm", outer_radius = "36 mm" }
+"#;
+
+const CAGE: &str = r#"
+[bearing.cage]
+pocket_radius = "6.1 mm"
+inner_radius = "23.5 mm"
+outer_radius = "28.5 mm"
+mass = "20 g"
+length = "12 mm"
+"#;
+
+const GRAVITY: &str = r#"
+[ball_forces]
+gravity = ["0 m/s^2", "0 m/s^2", "-9.80665 m/s^2"]
+"#;
+
+const END: &str = "[numerics]\nend = \"1 ms\"\nintegrator = \"rk4\"\n";
+const DEFAULT: &str = "[numerics]\nend = \"1 ms\"\n";
+
+fn planned(text: &str, channels: &[ChannelGroup]) -> String {
+    let scene = scene::read_str(text, Format::Toml, "scene.toml").unwrap();
+    let (problem, settings) = (dynamic_problem(&scene).unwrap(), run_options(&scene).unwrap());
+    let left_out = match &scene.dynamics.cage {
+        CageInRun::Body(_) => None,
+        CageInRun::LeftOut(reason) => Some(reason.as_str()),
+    };
+    let stages = plan::dynamics(&problem, &settings.options, channels, left_out);
+    stages
+        .iter()
+        .map(|stage| {
+            let mark = if stage.included { "does " } else { "skips" };
+            format!("{mark} {:<28} {}\n", stage.name, stage.reason)
+        })
+        .collect()
+}
+
+fn guided(by: &str) -> String {
+    format!("{CAGE}guidance = \"{by}\"\nrace_clearance = \"0.1 mm\"\n")
+}
+
+#[test]
+fn everything_left_out() {
+    let traction = "[traction]\nlaw = \"none\"\nslices = 15\n";
+    insta::assert_snapshot!(planned(&format!("{BEARING}{traction}{END}"), &[]));
+}
+
+#[test]
+fn everything_at_once() {
+    let races = r#"
+[inner_race]
+z = { load = "-250 N" }
+speed = "1000 rpm"
+unbalance = "1e-4 kg m"
+rotating_load = { force = "10 N", speed = "50 rpm" }
+[outer_race]
+motion = "5-dof"
+foundation = { stiffness = { y = "1e8 N/m", z = "1e8 N/m" } }
+[traction]
+heathcote = true
+[contact_damping]
+law = "lankarani-nikravesh"
+restitution = 0.9
+slowest = "1e-3 m/s"
+"#;
+    let cage = guided("outer-race");
+    let text =
+        format!("{BEARING}{cage}{GRAVITY}{races}{END}start = \"nominal\"\nstep = \"1 us\"\n");
+    insta::assert_snapshot!(planned(&text, &ChannelGroup::ALL));
+}
+
+#[test]
+fn defaults() {
+    insta::assert_snapshot!(planned(&format!("{BEARING}{DEFAULT}"), &ChannelGroup::DEFAULT));
+}
+
+#[test]
+fn cage_guided_by_balls() {
+    let text = format!("{BEARING}{CAGE}guidance = \"balls\"\n{END}step_fraction = 0.25\n");
+    insta::assert_snapshot!(planned(&text, &ChannelGroup::DEFAULT));
+}
+
+#[test]
+fn cage_that_lacks_a_key() {
+    let cage = CAGE.replace("mass = \"20 g\"\n", "");
+    let damping = "[contact_damping]\nlaw = \"hunt-crossley\"\nalpha = \"0.1 s/m\"\n";
+    let constant = "[traction]\nlaw = \"constant\"\ncoefficient = 0.1\nslices = 5\n\
+        regularisation_speed = \"0.01 m/s\"\n";
+    let text = format!("{BEARING}{cage}{damping}{constant}{END}");
+    insta::assert_snapshot!(planned(&text, &[ChannelGroup::Loads, ChannelGroup::Cage]));
+}
+
+#[test]
+fn all_motion_given() {
+    let inner = r#"
+[inner_race]
+x = { displacement = "0 um" }
+y = { displacement = "0 um" }
+z = { displacement = "-2 um" }
+tilt_y = { tilt = "0.1 deg" }
+tilt_z = { tilt = "0 deg" }
+speed = "1000 rpm"
+[outer_race]
+motion = "6-dof"
+"#;
+    let text = format!("{BEARING}{inner}{END}");
+    insta::assert_snapshot!(planned(&text, &[ChannelGroup::Races, ChannelGroup::Slip]));
+}
+
+/// What the plan says is skipped is not counted either.
+#[test]
+fn skipped_stages_do_no_work() {
+    let counted = |text: &str| {
+        let scene = scene::read_str(text, Format::Toml, "scene.toml").unwrap();
+        let settings = run_options(&scene).unwrap();
+        let mut simulation =
+            Simulation::new(dynamic_problem(&scene).unwrap(), settings.options).unwrap();
+        for _ in 0..10 {
+            simulation.step().unwrap();
+        }
+        simulation.system.work
+    };
+    let load = "[inner_race]\nz = { load = \"-250 N\" }\nspeed = \"100 rpm\"\n";
+    let step = "step = \"0.1 us\"\n";
+    let bare = format!("{BEARING}{load}[traction]\nlaw = \"none\"\n{END}{step}");
+    let work = counted(&bare);
+    assert_eq!((work.slices, work.pocket_tests, work.guide_tests), (0, 0, 0));
+    let balls = format!("{BEARING}{CAGE}guidance = \"balls\"\n{load}{END}{step}");
+    let work = counted(&balls);
+    assert!(work.slices > 0 && work.pocket_tests > 0, "{work:?}");
+    assert_eq!(work.guide_tests, 0);
+    let guided = format!("{BEARING}{}{load}{END}{step}", guided("inner-race"));
+    assert_eq!(counted(&guided).guide_tests, 2 * counted(&guided).evaluations);
+}
+
+fn taken(problem: &DynamicProblem, request: &RunRequest) -> u64 {
+    let mut session = Session::start(problem.clone(), request).unwrap();
+    while session.advance(1000).unwrap() == Status::Running {}
+    session.simulation.steps
+}
+
+#[test]
+fn given_steps_are_counted_as_the_run_takes_them() {
+    let step = 1e-6;
+    for problem in [frictionless(), jolted(), pressed(step)] {
+        for interval in [1e-6, 10e-6, 12.34e-6, 37e-6, 1e-3] {
+            for end in [203.4e-6, 200e-6, 55.31e-6, 0.4e-6, 74e-6] {
+                let wanted = RunRequest { end, output_interval: interval, ..request(step, 1) };
+                let (foretold, taken) =
+                    (given_steps(&problem, &wanted, step), taken(&problem, &wanted));
+                assert_eq!(foretold, taken, "rows {interval}, end {end}");
+            }
+        }
+    }
+}
+
+#[test]
+fn foretold_steps_are_within_the_stated_factor() {
+    // Ringing for good after a blow; a load that grows; bodies that part and hit again; a plain run.
+    let mut struck = sliding();
+    let blow = Profile::HalfSine { base: -250.0, peak: -3000.0, start: 2e-3, duration: 1e-3 };
+    struck.inner.drives[2] = Drive::Load(blow);
+    let mut faster = sliding();
+    faster.inner.rotation =
+        Rotation::Speed(Profile::Ramp { from: 100.0, to: 1000.0, start: 0.0, duration: 20e-3 });
+    let accurate = |integrator| (integrator, Stepping::Accuracy(1e-3));
+    for (name, problem, (integrator, stepping), end) in [
+        ("struck", &struck, accurate(Integrator::Rosenbrock), 20e-3),
+        ("faster", &faster, accurate(Integrator::Rosenbrock), 20e-3),
+        ("faster", &faster, accurate(Integrator::DormandPrince), 20e-3),
+        ("rattling", &rattling(), accurate(Integrator::DormandPrince), 20e-3),
+        ("plain", &sliding(), accurate(Integrator::Rosenbrock), 50e-3),
+        ("plain", &frictionless(), accurate(Integrator::DormandPrince), 50e-3),
+        ("pressed", &pressed(1e-6), (Integrator::RungeKutta, Stepping::FractionOfLimit(0.5)), 4e-3),
+    ] {
+        let options =
+            RunOptions { integrator, stepping, energy_limit: 1.0, ..RunOptions::default() };
+        let output_interval = 0.2e-3;
+        let wanted = RunRequest { options, end, output_interval, channels: Vec::new() };
+        let foretold = foretell(problem, &wanted).unwrap();
+        let taken = taken(problem, &wanted) as f64;
+        let factor = foretold.steps / taken;
+        println!("{name}, {}: {:.0} foretold, {taken} taken", integrator.name(), foretold.steps);
+        assert!((1.0 / WITHIN..=WITHIN).contains(&factor), "{name}: {foretold:?} {taken}");
+        if foretold.whole {
+            assert_eq!(factor, 1.0, "{name}");
+        }
+    }
+}
+
+/// Implicit where friction is steep, explicit where nothing is.
+#[test]
+fn the_plan_chooses_the_method_that_takes_less_work() {
+    let options = RunOptions { stepping: Stepping::Accuracy(1e-3), ..RunOptions::default() };
+    let wanted = RunRequest { options, end: 20e-3, output_interval: 0.1e-3, channels: Vec::new() };
+    let steep = DynamicProblem {
+        traction: TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 5e-4 },
+        ..frictionless()
+    };
+    let choice = choose(&steep, &wanted);
+    assert_eq!(choice.integrator, Integrator::Rosenbrock, "{}", choice.reason());
+    let [implicit, explicit] = choice.mean_steps.unwrap();
+    assert!(implicit > 10.0 * explicit, "{}", choice.reason());
+    let choice = choose(&rattling(), &wanted);
+    assert_eq!(choice.integrator, Integrator::DormandPrince, "{}", choice.reason());
+}

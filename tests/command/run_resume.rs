@@ -1,0 +1,284 @@
+//! A run that was interrupted ends with the same bytes as one that was not.
+
+use crate::run_common;
+
+use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status};
+use bearing_dynamics::output::dynamics::summary::{RunReport, write_run_results};
+use bearing_dynamics::output::dynamics::table::RunTable;
+use bearing_dynamics::output::journal::JournalError;
+use bearing_dynamics::output::state::{
+    self, StateError, StateRecord, Stopped, fingerprint, read, resume, save,
+};
+use bearing_dynamics::solver::dynamics::model::DynamicProblem;
+use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Start, Stepping};
+use run_common::{complete, frictionless, jolted, pressed, rattling, request};
+use std::fs;
+use std::path::Path;
+
+const STEP: f64 = 1e-6;
+
+fn record(problem: &DynamicProblem, request: &RunRequest, stopped: Stopped) -> StateRecord {
+    StateRecord {
+        fingerprint: fingerprint(problem, request),
+        stopped,
+        error: None,
+        output_interval: request.output_interval,
+        seconds: 0.0,
+    }
+}
+
+/// Runs to the end, writes everything, as the command does.
+fn finish(folder: &Path, problem: &DynamicProblem, request: &RunRequest, mut session: Session) {
+    while session.advance(7).unwrap() == Status::Running {}
+    write(folder, problem, request, &session, Stopped::Complete);
+}
+
+fn write(
+    folder: &Path,
+    problem: &DynamicProblem,
+    request: &RunRequest,
+    session: &Session,
+    stopped: Stopped,
+) {
+    let table = RunTable::new(session, 0.0).unwrap();
+    let report = RunReport { spectra: true, ..RunReport::default() };
+    write_run_results(folder, session, &table, &report).unwrap();
+    save(folder, session, &record(problem, request, stopped)).unwrap();
+}
+
+fn go_on(folder: &Path, problem: &DynamicProblem, request: &RunRequest) -> Session {
+    let file = read(folder).unwrap().expect("a state was written");
+    resume(folder, &file, problem.clone(), request).unwrap()
+}
+
+fn assert_same_files(expected: &Path, found: &Path) {
+    let mut names: Vec<_> =
+        fs::read_dir(expected).unwrap().map(|e| e.unwrap().file_name()).collect();
+    names.sort();
+    assert!(names.len() >= 5, "{names:?}");
+    for name in names {
+        let [a, b] = [expected, found].map(|folder| fs::read(folder.join(&name)).unwrap());
+        assert!(a == b, "{} differs", name.display());
+    }
+}
+
+#[test]
+fn interrupted_anywhere_the_files_are_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    use Integrator::{DormandPrince, Rosenbrock, RungeKutta};
+    for (name, problem, integrator, start) in [
+        ("complete", complete(), RungeKutta, Start::Equilibrium),
+        ("rosenbrock", complete(), Rosenbrock, Start::Equilibrium),
+        ("dormand-prince", rattling(), DormandPrince, Start::Nominal),
+        ("rattling", rattling(), RungeKutta, Start::Nominal),
+        ("frictionless", frictionless(), RungeKutta, Start::Equilibrium),
+        ("jolted", jolted(), RungeKutta, Start::Equilibrium),
+    ] {
+        let mut request = request(STEP, 40);
+        request.options.start = start;
+        request.options.integrator = integrator;
+        // On a row, off a row, before the first row, twice, within the last steps.
+        let stops = [vec![200], vec![137], vec![3], vec![55, 56, 333], vec![403]];
+        interrupt(folder.path(), name, &problem, &request, &stops);
+    }
+}
+
+#[test]
+fn with_error_control_the_files_are_the_same_too() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, problem, integrator, start) in [
+        ("rosenbrock", complete(), Integrator::Rosenbrock, Start::Equilibrium),
+        ("rattling", rattling(), Integrator::Rosenbrock, Start::Nominal),
+        ("dormand-prince", frictionless(), Integrator::DormandPrince, Start::Equilibrium),
+    ] {
+        let mut request = request(STEP, 40);
+        request.options.start = start;
+        request.options.integrator = integrator;
+        request.options.stepping = Stepping::Accuracy(1e-3);
+        // At least a step a row, and a last one off the grid.
+        let stops = [vec![1], vec![3, 4, 17], vec![40]];
+        interrupt(folder.path(), name, &problem, &request, &stops);
+        // A shorter run that is extended has the bits of the long one.
+        let short = RunRequest { end: 123.4 * STEP, ..request.clone() };
+        let parts = folder.path().join(format!("{name} extended"));
+        finish(&parts, &problem, &short, Session::start(problem.clone(), &short).unwrap());
+        let session = go_on(&parts, &problem, &request);
+        finish(&parts, &problem, &request, session);
+        assert_same_files(&folder.path().join(name), &parts);
+    }
+}
+
+/// Runs as a whole and with each list of stops; all files must be the same.
+fn interrupt(
+    folder: &Path,
+    name: &str,
+    problem: &DynamicProblem,
+    request: &RunRequest,
+    stops: &[Vec<u64>],
+) {
+    let whole = folder.join(name);
+    finish(&whole, problem, request, Session::start(problem.clone(), request).unwrap());
+    for stops in stops {
+        let parts = folder.join(format!("{name} {stops:?}"));
+        let mut session = Session::start(problem.clone(), request).unwrap();
+        let mut steps = 0;
+        for &stop in stops {
+            assert_eq!(session.advance(stop - steps).unwrap(), Status::Running);
+            steps = stop;
+            write(&parts, problem, request, &session, Stopped::Interrupted);
+            session = go_on(&parts, problem, request);
+            assert_eq!(session.simulation.steps, steps);
+        }
+        finish(&parts, problem, request, session);
+        assert_same_files(&whole, &parts);
+    }
+}
+
+#[test]
+fn where_the_step_was_shortened_the_files_are_the_same_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let step = 4e-7;
+    let problem = pressed(step);
+    let mut long = RunRequest { end: 2000.0 * step, ..request(10.0 * step, 20) };
+    long.options.stepping = Stepping::FractionOfLimit(0.5);
+    // Where the step is shortened first, in the middle of a row.
+    let mut session = Session::start(problem.clone(), &long).unwrap();
+    while session.simulation.step_watch.shortened.is_none() {
+        assert_eq!(session.advance(1).unwrap(), Status::Running);
+    }
+    let (at, time) = (session.simulation.steps, session.simulation.time);
+    println!("shortened after step {at}, at t = {time} s");
+    let stops = [vec![at - 1], vec![at], vec![at + 1], vec![at - 16, at + 16], vec![at + 100]];
+    interrupt(folder.path(), "shortened", &problem, &long, &stops);
+    // A run that ends close to there and is extended.
+    for (index, end) in [time - 0.2 * step, time, time + 0.2 * step].into_iter().enumerate() {
+        let short = RunRequest { end, ..long.clone() };
+        let parts = folder.path().join(format!("extended {index}"));
+        finish(&parts, &problem, &short, Session::start(problem.clone(), &short).unwrap());
+        let session = go_on(&parts, &problem, &long);
+        finish(&parts, &problem, &long, session);
+        assert_same_files(&folder.path().join("shortened"), &parts);
+    }
+}
+
+#[test]
+fn an_extended_run_has_the_bits_of_a_long_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let problem = complete();
+    let long = request(STEP, 30);
+    let short = RunRequest { end: 123.4 * STEP, ..long.clone() };
+    let [at_once, extended] = ["at once", "extended"].map(|name| folder.path().join(name));
+    finish(&at_once, &problem, &long, Session::start(problem.clone(), &long).unwrap());
+    finish(&extended, &problem, &short, Session::start(problem.clone(), &short).unwrap());
+    let short_end = *go_on(&extended, &problem, &short).recorder.row(12).first().unwrap();
+    assert!((short_end - 120.0 * STEP).abs() <= 1e-3 * STEP, "the shortened step is in the state");
+    let session = go_on(&extended, &problem, &long);
+    finish(&extended, &problem, &long, session);
+    assert_same_files(&at_once, &extended);
+    // A complete run that is resumed computes its last step once more and changes nothing.
+    let session = go_on(&extended, &problem, &long);
+    finish(&extended, &problem, &long, session);
+    assert_same_files(&at_once, &extended);
+}
+
+#[test]
+fn a_state_of_something_else_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (problem, wanted) = (frictionless(), request(STEP, 10));
+    assert!(read(folder).unwrap().is_none());
+    let mut session = Session::start(problem.clone(), &wanted).unwrap();
+    session.advance(25).unwrap();
+    write(folder, &problem, &wanted, &session, Stopped::Interrupted);
+    let file = read(folder).unwrap().unwrap();
+    let try_with = |file: &state::StateFile, problem: DynamicProblem, request: &RunRequest| {
+        resume(folder, file, problem, request).err().expect("it is refused")
+    };
+
+    let mut heavier = problem.clone();
+    heavier.inner.inertia.mass = f64::from_bits(heavier.inner.inertia.mass.to_bits() + 1);
+    assert!(matches!(try_with(&file, heavier, &wanted), StateError::Scene { .. }));
+    let mut fewer = wanted.clone();
+    fewer.channels.pop();
+    assert!(matches!(try_with(&file, problem.clone(), &fewer), StateError::Scene { .. }));
+    let earlier = RunRequest { end: 20.0 * STEP, ..wanted.clone() };
+    assert!(matches!(try_with(&file, problem.clone(), &earlier), StateError::Past { .. }));
+    let nowhere = RunRequest { end: f64::NAN, ..wanted.clone() };
+    assert!(matches!(try_with(&file, problem.clone(), &nowhere), StateError::Past { .. }));
+    let older = state::StateFile { version: "0.0.0".into(), ..file.clone() };
+    assert!(matches!(
+        try_with(&older, problem.clone(), &wanted),
+        StateError::Journal(JournalError::Version { .. })
+    ));
+    let mut cut = file.clone();
+    cut.state.pop();
+    assert!(matches!(try_with(&cut, problem.clone(), &wanted), StateError::Damaged { .. }));
+    let more_rows = state::StateFile { rows: 4, ..file.clone() };
+    assert!(matches!(try_with(&more_rows, problem.clone(), &wanted), StateError::Rows { .. }));
+    // The file itself.
+    let text = fs::read_to_string(folder.join(state::STATE)).unwrap();
+    fs::write(folder.join(state::STATE), &text[..text.len() / 2]).unwrap();
+    assert!(matches!(read(folder), Err(StateError::Journal(JournalError::Json { .. }))));
+}
+
+#[test]
+fn numbers_come_back_to_the_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let (problem, wanted) = (complete(), request(STEP, 10));
+    let mut session = Session::start(problem.clone(), &wanted).unwrap();
+    session.advance(42).unwrap();
+    // What decimal text could lose: signed zero, the smallest and the largest numbers.
+    let odd = [-0.0, f64::from_bits(1), f64::MAX, f64::MIN_POSITIVE, 0.1 + 0.2, 1e23, 1.0];
+    session.simulation.system.damping[..odd.len()].copy_from_slice(&odd);
+    save(folder.path(), &session, &record(&problem, &wanted, Stopped::Running)).unwrap();
+    let back = go_on(folder.path(), &problem, &wanted);
+    let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+    let (a, b) = (session.simulation.checkpoint(), back.simulation.checkpoint());
+    assert_eq!(bits(&a.state), bits(&b.state));
+    assert_eq!(bits(&a.damping), bits(&b.damping));
+    assert_eq!(a, b);
+    let rows = session.recorder.rows();
+    assert_eq!(rows, back.recorder.rows());
+    for row in 0..rows {
+        assert_eq!(bits(session.recorder.row(row)), bits(back.recorder.row(row)));
+    }
+    // The history is the file's, not that of the state it came with.
+    let mut file = read(folder.path()).unwrap().unwrap();
+    file.was_loaded[3] = !file.was_loaded[3];
+    let flipped = resume(folder.path(), &file, problem.clone(), &wanted).unwrap();
+    assert_eq!(flipped.simulation.checkpoint().was_loaded, file.was_loaded);
+    // What JSON cannot hold is not written, and the state that is there stays.
+    let before = fs::read(folder.path().join(state::STATE)).unwrap();
+    session.simulation.system.damping[0] = f64::NAN;
+    let refused = save(folder.path(), &session, &record(&problem, &wanted, Stopped::Running));
+    assert!(matches!(refused, Err(StateError::NotFinite { .. })));
+    assert_eq!(fs::read(folder.path().join(state::STATE)).unwrap(), before);
+}
+
+#[test]
+fn a_run_that_fails_keeps_the_state_before_the_failing_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let (problem, wanted) = (frictionless(), request(STEP, 10));
+    let mut session = Session::start(problem.clone(), &wanted).unwrap();
+    session.advance(33).unwrap();
+    let before = session.simulation.checkpoint();
+    // Shoot ball 3 out of its races.
+    let layout = session.simulation.system.layout;
+    session.simulation.state[layout.ball(7) + 2] = 1e7;
+    let thrown = session.simulation.checkpoint();
+    let error = session.advance(50).unwrap_err();
+    let SimulationError::BallOutside { ball, step, .. } = error else { panic!("{error}") };
+    assert_eq!((ball, step), (3, 34));
+    let (kept, rows) = session.resumable();
+    assert_eq!((kept.steps, rows), (33, 4));
+    assert_eq!(kept, thrown);
+    assert_ne!(kept, before);
+    let failed = StateRecord {
+        error: Some(error.to_string()),
+        ..record(&problem, &wanted, Stopped::Failed)
+    };
+    save(folder.path(), &session, &failed).unwrap();
+    let file = read(folder.path()).unwrap().unwrap();
+    assert_eq!((file.stopped, file.steps, file.rows), (Stopped::Failed, 33, 4));
+    assert!(file.error.unwrap().contains("ball 3"));
+}

@@ -1,0 +1,376 @@
+//! Scenes with a solid that are refused, meshes that are repaired only when asked, and every generator.
+
+use crate::solid_command_common;
+
+use bearing_dynamics::solver::solid::modes::ModeError;
+use serde_json::Value;
+use solid_command_common::{ON_ROLLERS, Place, bar, command, number, shipped, stderr, succeed};
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn meshes_from_files_are_repaired_only_when_asked() {
+    let place = Place::new();
+    fs::copy(shipped("meshes/bar.msh"), place.path("bar.msh")).unwrap();
+    // Two corners of the first tetrahedron exchanged turn it inside out.
+    let text = fs::read_to_string(place.path("bar.msh")).unwrap();
+    let at = text.find("\n3 1 4 ").expect("the block of tetrahedra");
+    let line_start = at + 1 + text[at + 1..].find('\n').unwrap() + 1;
+    let line_end = line_start + text[line_start..].find('\n').unwrap();
+    let words: Vec<&str> = text[line_start..line_end].split_whitespace().collect();
+    let turned = [words[0], words[1], words[3], words[2], words[4]].join(" ");
+    let broken = format!("{}{turned}{}", &text[..line_start], &text[line_end..]);
+    fs::write(place.path("broken.msh"), broken).unwrap();
+    let scene = |name: &str, further: &str| {
+        let text = format!("[solid.mesh]\nfile = \"{name}\"\nunit = \"mm\"\n{further}");
+        place.scene("scene.toml", &text)
+    };
+    let output = command("check", &scene("broken.msh", ""), &[]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("1 of 1798 elements are inverted"), "{}", stderr(&output));
+    let said = succeed(command("check", &scene("broken.msh", "repair = [\"orient\"]\n"), &[]));
+    assert!(said.contains("1 elements turned"), "{said}");
+    // In metres it would be a hundred of them: said, not refused.
+    let said = succeed(command(
+        "check",
+        &place.scene("m.toml", "[solid.mesh]\nfile = \"bar.msh\"\nunit = \"m\"\n"),
+        &[],
+    ));
+    assert!(said.contains("as millimetres it would be"), "{said}");
+    // An Abaqus file, its order raised.
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh");
+    fs::copy(data.join("box_o1.inp"), place.path("box.inp")).unwrap();
+    let said = succeed(command("check", &scene("box.inp", "order = 2\n"), &[]));
+    assert!(said.contains("elements of 10"), "{said}");
+}
+
+#[test]
+fn every_generator_makes_a_solid() {
+    let place = Place::new();
+    let cases = [
+        (
+            "block",
+            "half_width = \"0.1 mm\"\ncells = { per_half_width = 2, deep = 1, growth = 1.3 }",
+        ),
+        (
+            "shaft",
+            "radius = \"10 mm\"\nstations = [\"0 mm\", \"30 mm\", \"80 mm\"]\ncells = { along = 8, around = 8, radial = 1 }",
+        ),
+        (
+            "shaft",
+            "radius = \"10 mm\"\nlength = \"80 mm\"\ncells = { along = 8, around = 8, radial = 1 }",
+        ),
+        (
+            "cage",
+            "pockets = 8\npocket_radius = \"6.1 mm\"\ninner_radius = \"24 mm\"\nouter_radius = \"28 mm\"\nwidth = \"16 mm\"\nrelief = { depth = \"0.5 mm\", belt_width = \"13 mm\" }\ncells = { quarter = 2, bar = 1, wall = 1 }",
+        ),
+        (
+            "housing-a",
+            "bore_radius = \"26 mm\"\nside = \"80 mm\"\ndepth = \"15 mm\"\ncells = { around = 16, radial = 2, axial = 1 }",
+        ),
+        (
+            "housing-b",
+            "bore_radius = \"26 mm\"\ndepth = \"15 mm\"\ncells = { around = 16, radial = 2, axial = 1 }",
+        ),
+        (
+            "housing-c",
+            "bore_radius = \"26 mm\"\ndepth = \"15 mm\"\nouter_radius = \"37 mm\"\ncells = { around = 16, radial = 2, axial = 1 }",
+        ),
+        (
+            "housing-d",
+            "bore_radius = \"26 mm\"\nouter_radius = \"37 mm\"\ndepth = \"15 mm\"\ncells = { around = 16, radial = 2, axial = 1, growth = 1.2 }",
+        ),
+    ];
+    for (generator, dimensions) in cases {
+        for order in [1, 2] {
+            let text = format!(
+                "[solid.mesh]\ngenerate = \"{generator}\"\norder = {order}\n{dimensions}\n"
+            );
+            let scene = place.scene("scene.toml", &text);
+            let said = succeed(command("check", &scene, &[]));
+            assert!(said.contains("a valid scene"), "{generator}: {said}");
+            if generator == "shaft" {
+                let summary = succeed(command("check", &scene, &["--json"]));
+                let echo: Value = serde_json::from_str(&summary).unwrap();
+                assert_eq!(number(&echo["mesh"]["high"]["x"]), 0.08);
+            }
+        }
+    }
+}
+
+#[test]
+fn errors_name_what_is_wrong() {
+    let place = Place::new();
+    fs::copy(shipped("meshes/bar.msh"), place.path("bar.msh")).unwrap();
+    fs::write(place.path("half.msh"), &fs::read(place.path("bar.msh")).unwrap()[..20_000]).unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh");
+    fs::copy(data.join("box_o2.inp"), place.path("box_o2.inp")).unwrap();
+    // One tetrahedron that is turned (label 11), one beside it, and a node of no element.
+    let deck = "*Node\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n7, 0, 0, 1.00000012\n8, 0, 0, -1\n90, 5, 5, 5\n\
+                *Element, type=C3D4\n21, 1, 3, 2, 8\n11, 1, 3, 2, 7\n";
+    fs::write(place.path("deck.inp"), deck).unwrap();
+    let file = |name: &str| format!("[solid.mesh]\nfile = \"{name}\"\nunit = \"mm\"\n");
+    let held = |further: &str| bar(1, &format!("{ON_ROLLERS}{further}"));
+    let made = |name: &str, further: &str| {
+        format!("[solid.mesh]\ngenerate = \"{name}\"\norder = 1\n{further}\n")
+    };
+    let ring = |sizes: &str, around: u32| {
+        made("ring", &format!("{sizes}\ncells = {{ around = {around}, radial = 2, axial = 2 }}"))
+    };
+    let cage = |width: &str, relief: &str, quarter: u32| {
+        made(
+            "cage",
+            &format!(
+                "pockets = 8\npocket_radius = \"6.1 mm\"\ninner_radius = \"24 mm\"\nouter_radius = \"28 mm\"\nwidth = \"{width}\"\nrelief = {{ depth = \"{relief}\", belt_width = \"13 mm\" }}\ncells = {{ quarter = {quarter}, bar = 1, wall = 1 }}"
+            ),
+        )
+    };
+    let numerics = "[numerics]\nend = \"1 ms\"\n";
+    let cases: &[(&str, &str, String)] = &[
+        ("a bearing too", "check", bar(1, "[bearing]\nkind = \"deep-groove\"\n")),
+        ("conditions of a bearing", "check", bar(1, "[inner_race]\nspeed = \"1 rpm\"\n")),
+        ("no mesh", "check", "[solid]\ndamping = \"1 1/s\"\n".to_string()),
+        ("file and generator", "check", bar(1, "").replace("order", "file = \"a.msh\"\norder")),
+        ("no unit", "check", "[solid.mesh]\nfile = \"bar.msh\"\n".to_string()),
+        ("no such mesh", "check", file("missing.msh")),
+        ("format unknown", "check", file("bar.stl")),
+        ("cut off", "check", file("half.msh")),
+        ("faults of a deck", "check", file("deck.inp")),
+        (
+            "bore too large",
+            "check",
+            "[solid.mesh]\ngenerate = \"housing-a\"\nbore_radius = \"35.5 mm\"\nside = \"60 mm\"\ndepth = \"20 mm\"\norder = 1\ncells = { around = 32, radial = 2, axial = 2 }\n".to_string(),
+        ),
+        (
+            "radii exchanged",
+            "check",
+            ring("inner_radius = \"25 mm\"\nouter_radius = \"20 mm\"\nwidth = \"10 mm\"", 24),
+        ),
+        (
+            "two cells around",
+            "check",
+            ring("inner_radius = \"20 mm\"\nouter_radius = \"25 mm\"\nwidth = \"10 mm\"", 2),
+        ),
+        (
+            "flat cells",
+            "check",
+            ring("inner_radius = \"20 mm\"\nouter_radius = \"20.001 mm\"\nwidth = \"10 mm\"", 24),
+        ),
+        ("pockets that touch", "check", cage("11 mm", "0.5 mm", 2)),
+        ("belt wider than the cage", "check", cage("12.4 mm", "0.5 mm", 2)),
+        ("relief through the wall", "check", cage("16 mm", "5 mm", 2)),
+        ("one cell for a quarter", "check", cage("16 mm", "0.5 mm", 1)),
+        ("shaft not in eighths", "check", made("shaft", "radius = \"10 mm\"\nlength = \"80 mm\"\ncells = { along = 8, around = 12, radial = 1 }")),
+        ("shrinking steps", "check", made("block", "half_width = \"0.1 mm\"\ncells = { per_half_width = 2, deep = 1, growth = 0.5 }")),
+        ("neck wider than the annulus", "check", made("housing-b", "bore_radius = \"26 mm\"\nneck_width = \"80 mm\"\ndepth = \"15 mm\"\ncells = { around = 16, radial = 2, axial = 1 }")),
+        ("base too high by its default", "check", made("housing-c", "bore_radius = \"26 mm\"\ncentre_height = \"27 mm\"\ndepth = \"15 mm\"\ncells = { around = 16, radial = 2, axial = 1 }")),
+        ("bore wider than the annulus", "check", made("housing-d", "bore_radius = \"26 mm\"\nouter_radius = \"20 mm\"\ndepth = \"15 mm\"\ncells = { around = 16, radial = 2, axial = 1 }")),
+        ("load on no set", "check", held("[[solid.load]]\nset = \"x_high\"\nz = \"1 N\"\n[[solid.load]]\nset = \"tip\"\nz = \"1 N\"\n")),
+        ("probe of no set", "check", held("[[solid.probe]]\nset = \"tip\"\n")),
+        ("probes alike", "check", held("[[solid.probe]]\nset = \"y_low\"\nname = \"end\"\n")),
+        ("order lowered", "check", format!("{}order = 1\n", file("box_o2.inp"))),
+        ("no order", "check", bar(1, "").replace("order = 1\n", "")),
+        ("no length", "check", bar(1, "").replace("length = \"40 mm\"\n", "")),
+        ("key of another generator", "check", bar(1, "").replace("order", "pockets = 8\norder")),
+        ("size of a file", "check", format!("{}length = \"1 mm\"\n", file("bar.msh"))),
+        ("misspelt", "check", bar(1, "[[solid.held]]\nsets = \"x_low\"\n")),
+        ("not a list", "check", bar(1, "[solid.held]\nset = \"x_low\"\nx = true\n")),
+        ("nothing held", "check", bar(1, "[[solid.held]]\nset = \"x_low\"\n")),
+        ("no such set", "check", bar(1, "[[solid.held]]\nset = \"left\"\nx = true\n")),
+        ("two ways", "check", held("[[solid.held]]\nset = \"z_high\"\nx = \"1 um\"\n")),
+        ("no load", "check", held("[[solid.load]]\nset = \"x_high\"\n")),
+        (
+            "two loads",
+            "check",
+            held("[[solid.load]]\nset = \"x_high\"\nz = \"1 N\"\npressure = \"1 MPa\"\n"),
+        ),
+        (
+            "pressure on nodes",
+            "check",
+            held(
+                "[[solid.set]]\nname = \"corner\"\nlow = [\"0 mm\", \"-5 mm\", \"-5 mm\"]\nhigh = [\"0 mm\", \"-5 mm\", \"-5 mm\"]\n[[solid.load]]\nset = \"corner\"\npressure = \"1 MPa\"\n",
+            ),
+        ),
+        (
+            "empty set",
+            "check",
+            bar(1, "[[solid.set]]\nname = \"cut\"\nplane = \"x\"\nat = \"41 mm\"\n"),
+        ),
+        (
+            "set inside",
+            "check",
+            bar(1, "[[solid.set]]\nname = \"middle\"\nplane = \"x\"\nat = \"20 mm\"\n"),
+        ),
+        (
+            "set twice",
+            "check",
+            bar(1, "[[solid.set]]\nname = \"x_low\"\nplane = \"x\"\nat = \"0 mm\"\n"),
+        ),
+        ("set nowhere", "check", bar(1, "[[solid.set]]\nname = \"cut\"\n")),
+        ("plane without place", "check", bar(1, "[[solid.set]]\nname = \"cut\"\nplane = \"x\"\n")),
+        ("probe of nothing", "check", bar(1, "[[solid.probe]]\nname = \"tip\"\n")),
+        ("incompressible", "check", bar(1, "").replace("0.3", "0.5")),
+        (
+            "damping as a time",
+            "check",
+            bar(1, "").replace("[solid.mesh]", "[solid]\ndamping = \"77 s\"\n[solid.mesh]"),
+        ),
+        ("free in statics", "statics", bar(1, "[[solid.held]]\nset = \"x_low\"\nx = true\n")),
+        ("no end", "run", held("")),
+        ("step beyond the limit", "run", held("[numerics]\nend = \"1 ms\"\nstep = \"10 us\"\n")),
+        (
+            "interval beyond the end",
+            "run",
+            held("[numerics]\nend = \"1 ms\"\nfields_interval = \"2 ms\"\n"),
+        ),
+        ("bearing's numerics", "run", held(&format!("{numerics}start = \"nominal\"\n"))),
+        ("bearing's plot", "run", held(&format!("{numerics}[output]\nplots = [\"polar\"]\n"))),
+        ("swept", "sweep", held("[sweep]\n\"solid.damping\" = [\"1 1/s\"]\n")),
+        ("swept by the command", "sweep", held("")),
+        (
+            "too fine",
+            "check",
+            bar(1, "").replace("across = 2", "across = 100000").replace("up = 2", "up = 100000"),
+        ),
+        ("more modes than motions", "modes", bar(1, "[modes]\ncount = 500\n")),
+    ];
+    let mut messages = String::new();
+    for (name, verb, text) in cases {
+        let scene = place.scene("scene.toml", text);
+        let output = command(verb, &scene, &[]).current_dir(&place.folder).output().unwrap();
+        let message = stderr(&output).replace(&format!("{}/", place.folder.path().display()), "");
+        assert_eq!(output.status.code(), Some(2), "{name}: {message}");
+        assert_eq!(message.lines().count(), 1, "{name}: {message}");
+        messages += &format!("{name}\n    {message}");
+    }
+    // What `plan` says of a step beyond the limit.
+    let scene = place.scene("scene.toml", &held("[numerics]\nend = \"1 ms\"\nstep = \"10 us\"\n"));
+    let said = succeed(command("plan", &scene, &[]));
+    let line = said.lines().last().unwrap();
+    for part in
+        ["given step", "6.114e-7 s", "WARNING: too long, the run will be refused", "100 steps"]
+    {
+        assert!(line.contains(part), "{part} is not in {line}");
+    }
+    let modes = command("modes", &shipped("deep_groove_tilt.toml"), &[]).output().unwrap();
+    assert_eq!(modes.status.code(), Some(2));
+    assert!(stderr(&modes).contains("modes takes a solid"), "{}", stderr(&modes));
+    insta::assert_snapshot!(messages);
+}
+
+/// A scene that is refused with all of these words, by `check` already.
+fn refused(place: &Place, text: &str, parts: &[&str]) {
+    let output = command("check", &place.scene("refused.toml", text), &[]).output().unwrap();
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    for part in parts {
+        assert!(said.contains(part), "{part} is not in {said}");
+    }
+}
+
+fn accepted(place: &Place, text: &str) -> String {
+    succeed(command("check", &place.scene("accepted.toml", text), &[]))
+}
+
+const CLAMPED: &str = "[[solid.held]]\nset = \"x_low\"\nx = true\ny = true\nz = true\n";
+
+#[test]
+fn loads_that_supports_take_are_told() {
+    let place = Place::new();
+    let load = |set: &str| format!("[[solid.load]]\nset = \"{set}\"\nz = \"-100 N\"\n");
+    let parts = ["solid.load.set", "\"x_low\" is held along z", "Load another set"];
+    refused(&place, &bar(1, &format!("{CLAMPED}{}", load("x_low"))), &parts);
+    let pressure = "[[solid.load]]\nset = \"x_low\"\npressure = \"1 MPa\"\n";
+    refused(&place, &bar(1, &format!("{CLAMPED}{pressure}")), &["held along x"]);
+    let said = accepted(&place, &bar(1, &format!("{CLAMPED}{}", load("x_high"))));
+    assert!(!said.contains("the support takes it"), "{said}");
+    // The upper edge of an end of two cells has a quarter of it.
+    let roof = "[[solid.held]]\nset = \"z_high\"\nz = true\n";
+    let said = accepted(&place, &bar(1, &format!("{roof}{}", load("x_high"))));
+    assert!(said.contains("25 % of the load on set \"x_high\""), "{said}");
+}
+
+#[test]
+fn probes_outside_the_body_or_with_endless_names_are_refused_at_once() {
+    let place = Place::new();
+    let probe = |name: &str, x: &str| {
+        let at = format!("[\"{x}\", \"5 mm\", \"5 mm\"]");
+        bar(1, &format!("{CLAMPED}[[solid.probe]]\nname = \"{name}\"\nat = {at}\n"))
+    };
+    refused(
+        &place,
+        &probe("far", "400 mm"),
+        &["solid.probe.at", "360.0", "outside the body", "0.040000"],
+    );
+    let said = accepted(&place, &probe("near", "42 mm"));
+    assert!(said.contains("probe \"near\" is that of the nearest node"), "{said}");
+    assert!(!accepted(&place, &probe("exact", "40 mm")).contains("nearest node"));
+    let long = "n".repeat(200);
+    refused(&place, &probe(&long, "40 mm"), &["solid.probe.name", "200 letters", "120"]);
+}
+
+#[test]
+fn materials_of_decks_are_not_skipped_for_steel() {
+    let place = Place::new();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh");
+    let deck = fs::read_to_string(data.join("box_o1.inp")).unwrap();
+    let scene = |elastic: &str, density: &str, further: &str| {
+        let material = format!("*MATERIAL, NAME=ALU\n*ELASTIC\n{elastic}\n*DENSITY\n{density},\n");
+        fs::write(place.path("deck.inp"), format!("{deck}\n{material}")).unwrap();
+        format!("[solid.mesh]\nfile = \"deck.inp\"\nunit = \"mm\"\n{further}")
+    };
+    let aluminium = ("70000., 0.33", "2.7e-9");
+    let parts = ["\"ALU\"", "steel", "youngs_modulus = \"70 GPa\"", "0.33", "\"2700 kg/m^3\""];
+    refused(&place, &scene(aluminium.0, aluminium.1, ""), &parts);
+    let named = "[solid.material]\nyoungs_modulus = \"68 GPa\"\npoisson_ratio = 0.33\ndensity = \"2700 kg/m^3\"\n";
+    let said = accepted(&place, &scene(aluminium.0, aluminium.1, named));
+    assert!(said.contains("the deck's material is not used") && said.contains("70 GPa"), "{said}");
+    let said = accepted(&place, &scene("68000., 0.33", "2.7e-9", named));
+    assert!(!said.contains("the deck's material"), "{said}");
+    // Steel by default is steel.
+    let said = accepted(&place, &scene("210000., 0.3", "7.85e-9", ""));
+    assert!(!said.contains("the deck's material"), "{said}");
+}
+
+/// Two tetrahedra of one face, in Gmsh's version 2.2, each in a volume of its own.
+const TWO_VOLUMES: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 \"hub\"\n3 2 \"rim\"\n\
+$EndPhysicalNames\n$Nodes\n5\n1 0 0 0\n2 10 0 0\n3 0 10 0\n4 0 0 10\n5 10 10 10\n$EndNodes\n\
+$Elements\n2\n1 4 2 1 1 1 2 3 4\n2 4 2 2 2 2 3 4 5\n$EndElements\n";
+
+#[test]
+fn several_volumes_of_one_material_are_told() {
+    let place = Place::new();
+    let text = "[solid.mesh]\nfile = \"two.msh\"\nunit = \"mm\"\n";
+    fs::write(place.path("two.msh"), TWO_VOLUMES).unwrap();
+    let said = accepted(&place, text);
+    assert!(said.contains("2 volumes (hub, rim)") && said.contains("one material"), "{said}");
+    let one = TWO_VOLUMES.replace("\n2 4 2 2 2", "\n2 4 2 1 2");
+    fs::write(place.path("two.msh"), one.replace("2\n3 1 \"hub\"\n3 2 \"rim\"", "1\n3 1 \"hub\""))
+        .unwrap();
+    assert!(!accepted(&place, text).contains("volumes"));
+    fs::write(place.path("two.msh"), TWO_VOLUMES.replace("$Nodes\n5", "$Nodes\n-5")).unwrap();
+    refused(&place, text, &["line 10", "\"-5\" is not a count of nodes (a whole number"]);
+}
+
+#[test]
+fn a_file_in_place_of_a_folder_is_named() {
+    let place = Place::new();
+    fs::write(place.path("taken"), "mine").unwrap();
+    let out = place.path("taken");
+    let output =
+        solid_command_common::into_folder("statics", &shipped("deep_groove_tilt.toml"), &out, &[])
+            .output()
+            .unwrap();
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("taken is a file, and a folder is needed there"), "{said}");
+    assert_eq!(fs::read_to_string(place.path("taken")).unwrap(), "mine");
+}
+
+#[test]
+fn modes_that_do_not_settle_say_what_to_ask_for() {
+    let error = ModeError::NotConverged { found: 5, wanted: 12, vectors: 240 }.to_string();
+    for part in ["lowest 5 of the 12 natural modes", "modes.count", "Poisson's ratio"] {
+        assert!(error.contains(part), "{part} is not in {error}");
+    }
+}

@@ -1,0 +1,103 @@
+//! Runs of a solid that are interrupted, killed, extended or fail.
+
+use crate::resume_common;
+use crate::solid_command_common;
+
+use bearing_dynamics::solver::clock::rounded;
+use resume_common::{assert_same_results, signal, start, wait};
+use solid_command_common::{Place, SHORT_RUN, column, into_folder, json, stderr, succeed};
+use std::fs;
+
+#[test]
+fn interrupted_killed_and_extended_runs_end_with_the_same_bytes() {
+    for method in ["central-differences", "runge-kutta"] {
+        let place = Place::new();
+        let numerics = |end: &str| {
+            let fixed = "output_interval = \"10 us\"\nfields_interval = \"0.5 ms\"";
+            format!("{SHORT_RUN}method = \"{method}\"\nend = \"{end}\"\n{fixed}\n")
+        };
+        // A second or so; the end lies off the grid of rows.
+        let scene = place.scene("scene.toml", &numerics("4.003 ms"));
+        let (whole, parts) = (place.path("whole"), place.path("parts"));
+        let child = start(into_folder("run", &scene, &parts, &["--save-every", "1"]));
+        std::thread::sleep(std::time::Duration::from_millis(100));
+        signal(&child, "-TERM");
+        let (code, message) = wait(child);
+        assert_eq!(code, Some(2), "{message}");
+        assert!(
+            message.contains("interrupted at t = ") && message.contains("--resume"),
+            "{message}"
+        );
+        let summary = json(parts.join("summary.json"));
+        assert_eq!(
+            (&summary["complete"], &summary["stopped_by"]),
+            (&false.into(), &"interrupted".into())
+        );
+
+        // Without a word about it nothing is overwritten.
+        let refused = into_folder("run", &scene, &parts, &[]).output().unwrap();
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(stderr(&refused).contains("--resume") && stderr(&refused).contains("--fresh"));
+        assert_eq!(json(parts.join("summary.json")), summary);
+
+        // Killed outright it goes on from the state kept before.
+        let child = start(into_folder("run", &scene, &parts, &["--resume"]));
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        signal(&child, "-KILL");
+        assert_eq!(wait(child).0, None);
+        // As if killed in the middle of a file: gone when the next part has ended.
+        let dead = u32::MAX - 1;
+        for half in ["series.npy", "fields/fields_000001.vtu"] {
+            let path = parts.join(half);
+            let name = path.file_name().unwrap().to_string_lossy();
+            fs::write(path.with_file_name(format!(".{name}.{dead}.partial")), "half").unwrap();
+        }
+        let said = succeed(into_folder("run", &scene, &parts, &["--resume"]));
+        assert!(said.contains("resumed at t = "), "{said}");
+        succeed(into_folder("run", &scene, &whole, &[]));
+        assert_same_results(&whole, &parts);
+
+        // A complete run goes on to a later end.
+        let longer = place.scene("scene.toml", &numerics("5 ms"));
+        succeed(into_folder("run", &longer, &parts, &["--resume"]));
+        succeed(into_folder("run", &longer, &whole, &["--fresh"]));
+        assert_same_results(&whole, &parts);
+
+        // Another scene does not go on from there.
+        let text = numerics("6 ms").replace("20 MPa", "21 MPa");
+        let other = place.scene("other.toml", &text);
+        let refused = into_folder("run", &other, &parts, &["--resume"]).output().unwrap();
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(stderr(&refused).contains("another scene"), "{}", stderr(&refused));
+    }
+}
+
+#[test]
+fn a_run_that_fails_says_where_and_keeps_its_state() {
+    let place = Place::new();
+    let numerics = "end = \"1 ms\"\noutput_interval = \"1 us\"\n";
+    let text = format!("{SHORT_RUN}{numerics}").replace("20 MPa", "200 GPa");
+    let scene = place.scene("scene.toml", &text);
+    let out = place.path("out");
+    let output = into_folder("run", &scene, &out, &[]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let message = stderr(&output);
+    assert!(message.contains("t = ") && message.contains("step "), "{message}");
+    assert!(message.contains("the rows so far and the state at the last row"), "{message}");
+    let summary = json(out.join("summary.json"));
+    assert_eq!(summary["complete"], false);
+    assert!(message.contains(summary["stopped_by"].as_str().unwrap()), "{message}");
+    let state = json(out.join("state.json"));
+    assert_eq!(state["stopped"], "failed");
+    // The state keeps the bits, the summary is for people.
+    let time = rounded(state["time"].as_f64().unwrap());
+    assert_eq!(summary["time"]["value"].as_f64(), Some(time));
+    assert_eq!(summary["output"]["rows"], column(&out, "time").len());
+    // It may be looked at, and a gentler scene may take its folder.
+    succeed(into_folder(
+        "run",
+        &place.scene("g.toml", &format!("{SHORT_RUN}{numerics}")),
+        &out,
+        &[],
+    ));
+}

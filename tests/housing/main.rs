@@ -1,0 +1,13 @@
+//! Laws of bearings in flexible housings.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/dynamics.rs"]
+mod dynamics;
+#[path = "../housing_common/mod.rs"]
+mod housing_common;
+
+mod housing_assembly;
+mod housing_bore;
+mod housing_exchange;
+mod housing_nonlinear;

@@ -1,0 +1,8 @@
+//! Results: files, plots, comparison.
+
+#[path = "../output_common/mod.rs"]
+mod output_common;
+
+mod compare_finds;
+mod output_files;
+mod output_plots;

@@ -1,0 +1,12 @@
+//! Scenes: reading, errors, keys, documents, hostile input.
+
+#[path = "../fuzz_common/mod.rs"]
+mod fuzz_common;
+
+mod scene_docs;
+mod scene_dynamics;
+mod scene_dynamics_errors;
+mod scene_errors;
+mod scene_fuzz;
+mod scene_read;
+mod scene_to_problem;

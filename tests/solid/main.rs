@@ -1,0 +1,10 @@
+//! Laws of flexible solids and of their contact with a cylinder.
+
+#[path = "../solid_common/mod.rs"]
+mod solid_common;
+
+mod bore_contact;
+mod solid_explicit;
+mod solid_statics;
+mod solid_step_limit;
+mod solid_stress;
