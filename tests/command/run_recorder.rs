@@ -306,9 +306,14 @@ fn extremes_are_of_every_step_whatever_the_rows() {
         };
         for (side, what) in ["inner", "outer"].into_iter().enumerate() {
             let most = fine.simulation.extremes.races[side].load.value;
-            // Steps of error control end between rows as well.
+            // Steps of error control end between rows as well, half a microsecond from a peak of 50 kHz.
             assert!(most >= of_rows(what, &fine));
-            assert!(most <= 1.001 * of_rows(what, &fine), "{most} {}", of_rows(what, &fine));
+            let race = fine.simulation.extremes.races[side];
+            assert!(
+                most <= 1.01 * of_rows(what, &fine),
+                "{integrator:?} {race:?} {}",
+                of_rows(what, &fine)
+            );
         }
         // Two rows: they show nothing of the pulse, the extremes all of it.
         let coarse = to_the_end(struck(), &wanted(1e-3));

@@ -498,7 +498,15 @@ fn a_default_of_the_table_is_the_one_in_use() {
     trees.push(base(
         "[inner_race.rotating_load]\nforce = \"1 N\"\nspeed = \"50 rpm\"\n[outer_race]\nmotion = \"6-dof\"\n",
     ));
-    trees.sort_by(|a, b| a.0.cmp(&b.0));
+    // What all shipped scenes state.
+    for (scene, table, key) in
+        [("bar_impact.toml", "solid", "material"), ("interference_fit.toml", "housing", "method")]
+    {
+        let (name, tree) = trees.iter().find(|(name, _)| name.ends_with(scene)).unwrap();
+        let (name, mut tree) = (name.clone(), tree.clone());
+        assert!(tree[table].as_object_mut().unwrap().remove(key).is_some());
+        trees.push((name, tree));
+    }
     let mut untried = Vec::new();
     for key in keys::KEYS.iter().filter(|key| !key.in_list()) {
         let Need::Default { value, .. } = key.need else { continue };
