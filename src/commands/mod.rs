@@ -5,6 +5,7 @@ pub mod compare;
 pub mod echo;
 pub mod echo_run;
 pub mod housed;
+pub mod memory;
 pub mod modes;
 pub mod pack;
 pub mod pictures;

@@ -1,14 +1,17 @@
 //! `bearing modes`: natural frequencies and mode shapes of a solid.
 
 use super::{plan, prepare, record, remove_earlier, say_mesh_notes};
+use crate::commands::memory::watched;
 use crate::commands::{CommandResult, Outcome, refuse_folder_of_run, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, write_list, write_mode};
 use bearing_dynamics::output::solid::summary;
 use bearing_dynamics::scene::{Document, SolidScene};
+use bearing_dynamics::solver::solid::foretold;
 use bearing_dynamics::solver::solid::model::SolidModel;
-use bearing_dynamics::solver::solid::modes::{ModeOptions, modes};
+use bearing_dynamics::solver::solid::modes::{ModeOptions, modes_over};
+use bearing_dynamics::solver::solid::tangent::Unknowns;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -25,7 +28,9 @@ pub fn run(
     let start = Instant::now();
     let model = SolidModel::labelled(setup.problem.clone(), setup.labels.clone())?;
     let options = ModeOptions { mass: scene.mode_mass, ..ModeOptions::new(scene.mode_count) };
-    let found = modes(&model, &options)?;
+    let unknowns = Unknowns::new(&model);
+    let cost = foretold::modes(&model, &unknowns, options.count);
+    let found = watched(&cost, &unknowns, "", || modes_over(&model, &unknowns, &options))??;
     let seconds = vec![
         ("mesh".into(), prepared.mesh_seconds),
         ("solve".into(), start.elapsed().as_secs_f64()),
