@@ -7,13 +7,16 @@ mod commands;
 
 use bearing_dynamics::output::visible::visible_line;
 use clap::{Parser, Subcommand};
-use commands::{Outcome, check, compare, modes, pack, plan, run, schema, statics, sweep};
+use commands::{Outcome, check, compare, memory, modes, pack, plan, run, schema, statics, sweep};
 use std::process::ExitCode;
 
 /// Rolling bearings on flexible supports: describe one in a text file, solve it, trust it.
 #[derive(Parser)]
 #[command(name = "bearing", version, after_help = "Scenes are described in docs/scene.md.")]
 struct Arguments {
+    /// Memory that the program may take in all, GB [default: what the machine has left]
+    #[arg(long, global = true, value_name = "GB", value_parser = memory::parse_gigabytes)]
+    memory: Option<f64>,
     #[command(subcommand)]
     command: Command,
 }
@@ -49,6 +52,7 @@ fn main() -> ExitCode {
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
         }
     };
+    memory::limit_to(arguments.memory);
     let outcome = match arguments.command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),

@@ -6,6 +6,7 @@ pub mod earlier;
 pub mod echo;
 pub mod echo_run;
 pub mod housed;
+pub mod memory;
 pub mod modes;
 pub mod pack;
 pub mod pictures;

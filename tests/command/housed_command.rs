@@ -232,7 +232,17 @@ fn plan_and_check_say_what_is_chosen_and_offered() {
     for part in ["does  explicit housing", "windows of", tested] {
         assert!(said.contains(part), "{part}: {said}");
     }
-    assert!(said.contains("quasi-static instead") && said.contains("not allowed"), "{said}");
+    assert!(said.contains("quasi-static instead") && said.contains("condensing takes"), "{said}");
+    // It factorises nothing: a limit far below what factors need refuses the other plan alone.
+    let little = ["--memory", "0.001"];
+    let said = succeed(command("plan", &place.path("explicit.toml"), &little));
+    assert!(said.contains("windows of") && said.contains("REFUSED"), "{said}");
+    let output = command("plan", &place.path("slow.toml"), &little).output().unwrap();
+    let error = stderr(&output);
+    assert_eq!(output.status.code(), Some(2));
+    for part in ["condensing the housing of", "GB of memory", "(--memory)", "explicit steps"] {
+        assert!(error.contains(part), "{part}: {error}");
+    }
     let said = succeed(command("check", &place.scene("slow.toml", &slow), &[]));
     for part in [
         "housing.width = 20 mm (the bearing's length)",

@@ -374,3 +374,34 @@ fn modes_that_do_not_settle_say_what_to_ask_for() {
         assert!(error.contains(part), "{part} is not in {error}");
     }
 }
+
+/// What does not fit is foretold by the plan and refused before anything is factorised.
+#[test]
+fn factors_that_do_not_fit_are_refused() {
+    let place = Place::new();
+    let scene = place.scene("scene.toml", &bar(2, ON_ROLLERS));
+    let little = ["--memory", "0.001"];
+    let said = succeed(command("plan", &scene, &[]));
+    for part in ["statics takes", "modes takes", "values in the factors", "of memory in all"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert!(!said.contains("REFUSED"), "{said}");
+    let said = succeed(command("plan", &scene, &little));
+    assert!(said.contains("REFUSED: only 1 MB may be taken"), "{said}");
+    for name in ["statics", "modes"] {
+        let output = command(name, &scene, &little).arg("--dry").output().unwrap();
+        let error = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        let start = format!("{name} of ");
+        for part in [&start, "GB of memory", "0.001 GB (--memory)", "coarser mesh", "order = 1"] {
+            assert!(error.contains(part), "{part}: {error}");
+        }
+        assert!(output.stdout.is_empty());
+        succeed(command(name, &scene, &["--dry", "--memory", "1"]));
+    }
+    for wrong in ["0", "-3", "much", "NaN", "inf"] {
+        let output = command("statics", &scene, &["--memory", wrong]).output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains("--memory"), "{}", stderr(&output));
+    }
+}

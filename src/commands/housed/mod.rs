@@ -7,6 +7,7 @@ pub mod explicit;
 pub mod plan;
 pub mod statics;
 
+use super::memory::watched;
 use super::solid::mesh_notes;
 use super::{echo_run, placed, say};
 use bearing_dynamics::mesh::Order;
@@ -26,7 +27,9 @@ use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::run::RunOptions;
 use bearing_dynamics::solver::housing::assembly::{AssemblyOptions, AssemblySearch, AssemblyState};
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
-use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
+use bearing_dynamics::solver::housing::condensed::{
+    CondensedBore, Sizes, condense_over, cost, sizes,
+};
 use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, course_inertia,
 };
@@ -34,6 +37,8 @@ use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, HousedBearing
 use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::support::free_motions;
+use bearing_dynamics::solver::solid::tangent::Unknowns;
+use bearing_dynamics::solver::sparse::Cost;
 use bearing_dynamics::solver::statics::{Condition, StaticProblem};
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -66,8 +71,8 @@ pub fn refuse_moving(document: &Document, scene: &HousedScene) -> Fallible<()> {
     check_constant(scene).map_err(|error| placed(document, error.about(), error))
 }
 
-/// The housing condensed onto the nodes of its bore under the race.
-pub fn condensed(prepared: &Prepared) -> Fallible<CondensedBore> {
+/// What condensing the housing onto the nodes of its bore takes, from its structure alone.
+pub fn condensing(prepared: &Prepared) -> Fallible<(Unknowns, Sizes, Cost)> {
     let setup = &prepared.setup;
     let free = free_motions(&setup.solid.problem);
     if free.count > 0 {
@@ -78,8 +83,22 @@ pub fn condensed(prepared: &Prepared) -> Fallible<CondensedBore> {
         )
         .into());
     }
-    Ok(condense(&setup.model, &setup.nodes, &setup.reach())?)
+    let unknowns = Unknowns::new(&setup.model);
+    let sizes = sizes(&setup.model, &unknowns, &setup.nodes, &setup.reach())?;
+    let cost = cost(&setup.model, &unknowns, &sizes);
+    Ok((unknowns, sizes, cost))
 }
+
+/// The housing condensed onto the nodes of its bore under the race.
+pub fn condensed(prepared: &Prepared) -> Fallible<CondensedBore> {
+    let setup = &prepared.setup;
+    let (unknowns, _, cost) = condensing(prepared)?;
+    let condense = || condense_over(&setup.model, unknowns.clone(), &setup.nodes, &setup.reach());
+    Ok(watched(&cost, &unknowns, INSTEAD, condense)??)
+}
+
+/// What needs no factors.
+const INSTEAD: &str = ", explicit steps (method = \"explicit\" in [housing])";
 
 pub fn search<'b>(scene: &HousedScene, bore: &'b CondensedBore) -> AssemblySearch<'b> {
     let bore = BoreSearch::new(bore, scene.housing.penalty);

@@ -2,13 +2,13 @@
 //! would cost.
 
 use super::{
-    Prepared, along_course, bearing_at, condensed, inertia_estimate, mesh_text, notes, parts,
-    prepare, request, started,
+    Prepared, along_course, bearing_at, condensed, condensing, inertia_estimate, mesh_text, notes,
+    parts, prepare, request, started,
 };
 use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::run::request as bearing_request;
 use crate::commands::solve::plan_lines;
-use crate::commands::{CommandResult, Outcome, say};
+use crate::commands::{CommandResult, Outcome, memory, say};
 use bearing_dynamics::output::housed::course::equilibria;
 use bearing_dynamics::output::housed::summary::largest_error;
 use bearing_dynamics::scene::Document;
@@ -20,7 +20,7 @@ use bearing_dynamics::scene::housing_problem::{
 };
 use bearing_dynamics::solver::clock::{rounded, to_digits};
 use bearing_dynamics::solver::dynamics::model::Rotation;
-use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::condensed::{CondensedBore, Sizes};
 use bearing_dynamics::solver::housing::course_inertia::CourseInertia;
 use bearing_dynamics::solver::housing::inertia::InertiaEstimate;
 use std::error::Error;
@@ -36,14 +36,7 @@ pub fn run(document: &Document, scene: &HousedScene) -> CommandResult {
     let prepared = prepare(document, scene)?;
     let mut lines = lines(scene, &prepared)?;
     lines.extend(notes(&prepared).iter().map(|note| line("notes", "housing mesh", note)));
-    let bore = match check_constant(scene) {
-        Ok(()) => condensed(&prepared).map_err(|error| error.to_string()),
-        Err(error) => Err(error.to_string()),
-    };
-    if let Ok(bore) = &bore {
-        lines.push(condensed_line(scene, bore));
-    }
-    lines.push(quasi_static_line(scene, &prepared, bore.as_ref())?);
+    lines.extend(equilibrium_lines(scene, &prepared)?);
     if let Some(run) = &scene.bearing.dynamics.run {
         if scene.housing.method == HousingMethod::QuasiStatic {
             lines.push(equilibria_line(run));
@@ -136,20 +129,42 @@ fn equilibria_line(run: &RunSettings) -> String {
     line("does ", "equilibria", &format!("{count} equilibria to t = {last} s, one a row"))
 }
 
-fn condensed_line(scene: &HousedScene, bore: &CondensedBore) -> String {
-    let sizes = bore.sizes;
-    let mark = match scene.housing.method {
-        HousingMethod::QuasiStatic => "does ",
-        HousingMethod::Explicit => "notes",
+/// What condensing takes; of the quasi-static method also whether equilibria will do, which needs
+/// the condensed housing. Of an explicit scene nothing is factorised: its run needs no factors.
+fn equilibrium_lines(
+    scene: &HousedScene,
+    prepared: &Prepared,
+) -> Result<Vec<String>, Box<dyn Error>> {
+    let chosen = scene.housing.method == HousingMethod::QuasiStatic;
+    let name = if chosen { "inertia left out" } else { "quasi-static instead" };
+    let foretold = match check_constant(scene) {
+        Ok(()) => condensing(prepared).map_err(|error| error.to_string()),
+        Err(error) => Err(error.to_string()),
     };
-    line(
-        mark,
-        "condensed bore",
-        &format!(
-            "{} unknowns onto {} of {} bore nodes; {} beside the race and {} out of reach are left \
-             out",
-            sizes.unknowns, sizes.kept, sizes.bore, sizes.beside, sizes.out_of_reach
-        ),
+    let (sizes, cost) = match foretold {
+        Ok((_, sizes, cost)) => (sizes, cost),
+        Err(error) => return Ok(vec![line("notes", name, &format!("not possible: {error}"))]),
+    };
+    let mark = if chosen { "does " } else { "notes" };
+    let mut lines = vec![
+        line(mark, "condensed bore", &condensed_text(&sizes)),
+        line("notes", "condensing takes", &memory::text(&cost)),
+    ];
+    lines.push(if chosen {
+        quasi_static_line(scene, prepared, &condensed(prepared)?)?
+    } else {
+        let said = "what leaving out inertia would change is found with the condensed housing: \
+                    `plan` says it with method = \"quasi-static\" in [housing]";
+        line("notes", name, said)
+    });
+    Ok(lines)
+}
+
+fn condensed_text(sizes: &Sizes) -> String {
+    format!(
+        "{} unknowns onto {} of {} bore nodes; {} beside the race and {} out of reach are left \
+         out",
+        sizes.unknowns, sizes.kept, sizes.bore, sizes.beside, sizes.out_of_reach
     )
 }
 
@@ -157,23 +172,11 @@ fn condensed_line(scene: &HousedScene, bore: &CondensedBore) -> String {
 fn quasi_static_line(
     scene: &HousedScene,
     prepared: &Prepared,
-    bore: Result<&CondensedBore, &String>,
+    bore: &CondensedBore,
 ) -> Result<String, Box<dyn Error>> {
-    let chosen = scene.housing.method == HousingMethod::QuasiStatic;
-    let name = if chosen { "inertia left out" } else { "quasi-static instead" };
-    let bore = match bore {
-        Ok(bore) => bore,
-        Err(error) => return Ok(line("notes", name, &format!("not possible: {error}"))),
-    };
-    let estimate = match inertia_estimate(scene, &prepared.setup, bore) {
-        Ok(Some(estimate)) => estimate,
-        Ok(None) => {
-            return Ok(line("notes", name, "nothing holds the outer race under the largest load"));
-        }
-        Err(error) if !chosen => {
-            return Ok(line("notes", name, &format!("not possible: {error}")));
-        }
-        Err(error) => return Err(error),
+    let name = "inertia left out";
+    let Some(estimate) = inertia_estimate(scene, &prepared.setup, bore)? else {
+        return Ok(line("notes", name, "nothing holds the outer race under the largest load"));
     };
     let (along, missing) = match along_course(scene, &prepared.setup, bore) {
         Ok(along) => (along, String::new()),

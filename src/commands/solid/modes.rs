@@ -2,14 +2,17 @@
 
 use super::{plan, prepare, record, say_mesh_notes, say_remarks};
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::memory::watched;
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, write_list, write_mode};
 use bearing_dynamics::output::solid::{remarks, summary};
 use bearing_dynamics::scene::{Document, SolidScene};
+use bearing_dynamics::solver::solid::foretold;
 use bearing_dynamics::solver::solid::model::SolidModel;
-use bearing_dynamics::solver::solid::modes::{ModeOptions, modes};
+use bearing_dynamics::solver::solid::modes::{ModeOptions, modes_over};
+use bearing_dynamics::solver::solid::tangent::Unknowns;
 use serde_json::json;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -31,7 +34,9 @@ pub fn run(
     let start = Instant::now();
     let model = SolidModel::labelled(setup.problem.clone(), setup.labels.clone())?;
     let options = ModeOptions { mass: scene.mode_mass, ..ModeOptions::new(scene.mode_count) };
-    let found = modes(&model, &options)?;
+    let unknowns = Unknowns::new(&model);
+    let cost = foretold::modes(&model, &unknowns, options.count);
+    let found = watched(&cost, &unknowns, "", || modes_over(&model, &unknowns, &options))??;
     let seconds = vec![
         ("mesh".into(), prepared.mesh_seconds),
         ("solve".into(), start.elapsed().as_secs_f64()),

@@ -1,23 +1,28 @@
 //! `bearing plan` of a solid: what each of its commands would do.
 
 use super::{Prepared, mesh_notes, prepare};
-use crate::commands::{CommandResult, Outcome, say};
+use crate::commands::{CommandResult, Outcome, memory, say};
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::solid::session::Grid;
 use bearing_dynamics::scene::solid::{MeshSource, SolidRun};
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, SolidStepping};
-use bearing_dynamics::solver::solid::model::{DampedMotion, SolidError, SolidModel};
+use bearing_dynamics::solver::solid::foretold;
+use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel};
 use bearing_dynamics::solver::solid::step_limit::step_limit;
-use bearing_dynamics::solver::solid::tangent::MassMatrix;
+use bearing_dynamics::solver::solid::tangent::{MassMatrix, Unknowns};
+use bearing_dynamics::solver::sparse::Cost;
 
 pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
     let prepared = prepare(document, scene)?;
     let mut lines = lines(scene, &prepared);
     let notes = mesh_notes(&prepared.built);
     lines.extend(notes.iter().map(|note| format!("notes {:<28} {note}", "mesh")));
+    let model =
+        SolidModel::labelled(prepared.setup.problem.clone(), prepared.setup.labels.clone())?;
+    lines.extend(factor_lines(scene, &prepared, &model));
     if let Some(run) = &scene.run {
-        lines.push(step_line(&prepared, run)?);
+        lines.push(step_line(&model, run));
     }
     say(&lines.iter().map(|line| format!("{line}\n")).collect::<String>())?;
     Ok(Outcome::Done)
@@ -29,11 +34,9 @@ fn line(included: bool, name: &str, reason: &str) -> String {
 }
 
 /// The step of a run, what limits it, and how many there are; as the run finds them.
-fn step_line(prepared: &Prepared, run: &SolidRun) -> Result<String, SolidError> {
-    let model =
-        SolidModel::labelled(prepared.setup.problem.clone(), prepared.setup.labels.clone())?;
+fn step_line(model: &SolidModel, run: &SolidRun) -> String {
     let still = vec![[0.0; 4]; model.mass.len()];
-    let limit = step_limit(&model, &still, run.method);
+    let limit = step_limit(model, &still, run.method);
     let grid = Grid::new(run, &limit);
     let ratio = grid.step_size / limit.step;
     let [x, y, z] = limit.at.map(|at| 1e3 * at);
@@ -55,7 +58,18 @@ fn step_line(prepared: &Prepared, run: &SolidRun) -> Result<String, SolidError> 
         grid.steps,
         run.end
     );
-    Ok(format!("notes {name:<28} {said}"))
+    format!("notes {name:<28} {said}")
+}
+
+/// Memory and time of what takes factors of the stiffness, from its structure alone.
+fn factor_lines(scene: &SolidScene, prepared: &Prepared, model: &SolidModel) -> Vec<String> {
+    let unknowns = Unknowns::new(model);
+    let statics = (prepared.free.count == 0).then(|| foretold::statics(model, &unknowns));
+    let modes = foretold::modes(model, &unknowns, scene.mode_count);
+    let line = |cost: Cost| {
+        format!("notes {:<28} {}", format!("{} takes", cost.task.name), memory::text(&cost))
+    };
+    statics.into_iter().chain([modes]).map(line).collect()
 }
 
 /// One line a stage.

@@ -2,18 +2,24 @@
 
 use super::{Prepared, plan, prepare, record, say_mesh_notes, say_remarks};
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::memory::watched;
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::solid::fields::{file_name, stresses, write_fields, write_list};
 use bearing_dynamics::output::solid::{remarks, summary};
 use bearing_dynamics::scene::{Document, SolidScene};
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_over};
+use bearing_dynamics::solver::solid::foretold;
 use bearing_dynamics::solver::solid::model::SolidModel;
+use bearing_dynamics::solver::solid::tangent::Unknowns;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+
+/// What needs no factors.
+const INSTEAD: &str = ", explicit steps with damping until the body rests (`bearing run`)";
 
 pub fn run(
     path: &Path,
@@ -39,7 +45,13 @@ pub fn run(
     }
     let start = Instant::now();
     let model = SolidModel::labelled(setup.problem.clone(), setup.labels.clone())?;
-    let solution = equilibrium(&model, 0.0, &EquilibriumOptions::default())?;
+    let unknowns = Unknowns::new(&model);
+    let cost = foretold::statics(&model, &unknowns);
+    let options = EquilibriumOptions::default();
+    let solution = watched(&cost, &unknowns, INSTEAD, || {
+        equilibrium_over(&model, unknowns.clone(), 0.0, &options)
+    })??;
+    drop(unknowns);
     let solve_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let stress = stresses(&model, &solution.displacement);

@@ -9,9 +9,10 @@ use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
 use crate::kinematics::vec3::{Vec3, add, dot, scale};
 use crate::solver::dense::DenseSymmetric;
+use crate::solver::solid::foretold;
 use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::tangent::{PRESCRIBED, Unknowns, pattern, stiffness};
-use crate::solver::sparse::{Factor, FactorError};
+use crate::solver::sparse::{Cost, Factor, FactorError};
 use nalgebra::Vector3;
 use thiserror::Error;
 
@@ -102,15 +103,37 @@ pub struct CondensedBore {
     own_displacement: Vec<Vec3>,
 }
 
-/// Condenses `model` at zero displacement onto the nodes of `bore` under the race.
+/// The nodes of the bore under the race that are solved for, and what was left out.
+struct Picked {
+    frame: Frame,
+    nodes: Vec<BoreNode>,
+    sizes: Sizes,
+}
+
+/// Which nodes of `bore` condensing solves for, and over how many unknowns; solves nothing.
 ///
 /// # Errors
-/// A solid that is free to move, supports that move, no node under the race.
-pub fn condense(
+/// As [`condense`], but for a solid that is free to move.
+pub fn sizes(
     model: &SolidModel,
+    unknowns: &Unknowns,
     bore: &[ContactNode],
     reach: &Reach,
-) -> Result<CondensedBore, CondenseError> {
+) -> Result<Sizes, CondenseError> {
+    Ok(pick(model, unknowns, bore, reach)?.sizes)
+}
+
+/// What condensing onto the nodes of those sizes takes.
+pub fn cost(model: &SolidModel, unknowns: &Unknowns, sizes: &Sizes) -> Cost {
+    foretold::condensed(model, unknowns, sizes.kept, BLOCK)
+}
+
+fn pick(
+    model: &SolidModel,
+    unknowns: &Unknowns,
+    bore: &[ContactNode],
+    reach: &Reach,
+) -> Result<Picked, CondenseError> {
     for held in &model.problem.prescribed {
         let value = held.profile.value(0.0);
         if value != 0.0 || !held.profile.is_zero() {
@@ -118,7 +141,6 @@ pub fn condense(
         }
     }
     let frame = Frame::new(&reach.nominal);
-    let unknowns = Unknowns::new(model);
     let mut sizes =
         Sizes { bore: bore.len(), beside: 0, out_of_reach: 0, kept: 0, unknowns: unknowns.count };
     let mut nodes = Vec::with_capacity(bore.len());
@@ -140,6 +162,32 @@ pub fn condense(
     if nodes.is_empty() {
         return Err(CondenseError::NoNodes { bore: bore.len() });
     }
+    Ok(Picked { frame, nodes, sizes })
+}
+
+/// Condenses `model` at zero displacement onto the nodes of `bore` under the race.
+///
+/// # Errors
+/// A solid that is free to move, supports that move, no node under the race.
+pub fn condense(
+    model: &SolidModel,
+    bore: &[ContactNode],
+    reach: &Reach,
+) -> Result<CondensedBore, CondenseError> {
+    condense_over(model, Unknowns::new(model), bore, reach)
+}
+
+/// The same over unknowns that are numbered already.
+///
+/// # Errors
+/// As [`condense`].
+pub fn condense_over(
+    model: &SolidModel,
+    unknowns: Unknowns,
+    bore: &[ContactNode],
+    reach: &Reach,
+) -> Result<CondensedBore, CondenseError> {
+    let Picked { frame, nodes, sizes } = pick(model, &unknowns, bore, reach)?;
     let mut matrix = pattern(&model.problem, &unknowns);
     stiffness(model, &unknowns, &vec![[0.0; 3]; model.mass.len()], &mut matrix);
     let factor = unknowns.factor(&matrix)?;

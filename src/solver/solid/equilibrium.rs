@@ -95,7 +95,20 @@ pub fn equilibrium(
     t: f64,
     options: &EquilibriumOptions,
 ) -> Result<Equilibrium, EquilibriumError> {
-    Ok(solve(Newton::new(model, t, options))?.finish())
+    equilibrium_over(model, Unknowns::new(model), t, options)
+}
+
+/// The same over unknowns that are numbered already.
+///
+/// # Errors
+/// As [`equilibrium`].
+pub fn equilibrium_over(
+    model: &SolidModel,
+    unknowns: Unknowns,
+    t: f64,
+    options: &EquilibriumOptions,
+) -> Result<Equilibrium, EquilibriumError> {
+    Ok(solve(Newton::new(model, unknowns, t, options))?.finish())
 }
 
 /// A solid pressed by a rigid cylinder.
@@ -119,7 +132,7 @@ pub fn equilibrium_in_contact(
     start: Option<&[Vec3]>,
     options: &EquilibriumOptions,
 ) -> Result<ContactEquilibrium, EquilibriumError> {
-    let mut newton = Newton::new(model, t, options);
+    let mut newton = Newton::new(model, Unknowns::new(model), t, options);
     if let Some(start) = start {
         newton.displacement.copy_from_slice(start);
     }
@@ -180,8 +193,12 @@ struct Newton<'a> {
 }
 
 impl<'a> Newton<'a> {
-    fn new(model: &'a SolidModel, t: f64, options: &'a EquilibriumOptions) -> Self {
-        let unknowns = Unknowns::new(model);
+    fn new(
+        model: &'a SolidModel,
+        unknowns: Unknowns,
+        t: f64,
+        options: &'a EquilibriumOptions,
+    ) -> Self {
         let mut external = vec![[0.0; 4]; model.mass.len()];
         match options.gravity {
             MassMatrix::Consistent => model.add_static_forces(t, &mut external),

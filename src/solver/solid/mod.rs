@@ -5,6 +5,7 @@ pub mod contact;
 pub mod energy;
 pub mod equilibrium;
 pub mod explicit;
+pub mod foretold;
 pub mod labels;
 pub mod model;
 pub mod modes;

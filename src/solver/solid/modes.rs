@@ -59,7 +59,15 @@ pub struct Modes {
 
 /// Vectors that are carried on at once: pairs of equal frequencies and the six rigid motions are
 /// then found together, not one after the other by rounding.
-const BLOCK: usize = 6;
+pub const BLOCK: usize = 6;
+
+/// Part of a value by which it changes from block to block while its residual is far too large.
+const STILL: f64 = 1e-8;
+
+/// Solves that usually settle `count` modes.
+pub fn usual_solves(count: usize) -> usize {
+    3 * count + 24
+}
 
 /// Lowest modes about the undeformed state.
 ///
@@ -70,23 +78,44 @@ const BLOCK: usize = 6;
 /// # Errors
 /// More modes than unknowns, a mesh in parts without stiffness, no convergence.
 pub fn modes(model: &SolidModel, options: &ModeOptions) -> Result<Modes, ModeError> {
-    let unknowns = Unknowns::new(model);
+    modes_over(model, &Unknowns::new(model), options)
+}
+
+/// The same over unknowns that are numbered already.
+///
+/// # Errors
+/// As [`modes`].
+pub fn modes_over(
+    model: &SolidModel,
+    unknowns: &Unknowns,
+    options: &ModeOptions,
+) -> Result<Modes, ModeError> {
     let size = unknowns.count;
     if options.count > size {
         return Err(ModeError::TooMany { wanted: options.count, unknowns: size });
     }
-    let mut masses = mass_pattern(&model.problem, &unknowns);
-    mass(model, &unknowns, options.mass, &mut masses);
+    let mut masses = mass_pattern(&model.problem, unknowns);
+    mass(model, unknowns, options.mass, &mut masses);
     let shift = shift(model);
-    let mut shifted = pattern(&model.problem, &unknowns);
-    stiffness(model, &unknowns, &vec![[0.0; 3]; model.mass.len()], &mut shifted);
+    let mut shifted = pattern(&model.problem, unknowns);
+    stiffness(model, unknowns, &vec![[0.0; 3]; model.mass.len()], &mut shifted);
     shifted.add_scaled(-shift, &masses);
     let factor = unknowns.factor(&shifted)?;
 
     let most = (4 * options.count + 60).min(size);
     let mut krylov = Krylov::new(&masses, &factor);
     krylov.start(size.min(BLOCK));
+    let mut before = Vec::new();
     loop {
+        // Residuals are looked at once the values stand still: these settle twice as fast as shapes.
+        let values = krylov.largest(options.count);
+        let still = |(now, old): (&f64, &f64)| (now - old).abs() <= STILL * now.abs();
+        let settling = before.len() == values.len() && values.iter().zip(&before).all(still);
+        let last = krylov.basis.len() >= most;
+        before = values;
+        if !settling && !last && krylov.grow(most) {
+            continue;
+        }
         let found = krylov.ritz(options.count);
         let checked: Vec<_> = found
             .into_iter()
@@ -103,7 +132,7 @@ pub fn modes(model: &SolidModel, options: &ModeOptions) -> Result<Modes, ModeErr
                 .into_iter()
                 .map(|(value, vector, residual)| Mode {
                     frequency: value.max(0.0).sqrt() / TAU,
-                    shape: spread(&unknowns, &vector),
+                    shape: spread(unknowns, &vector),
                     residual,
                 })
                 .collect();
@@ -265,6 +294,15 @@ impl<'a> Krylov<'a> {
         let mut images = std::mem::take(&mut self.images);
         images.truncate(most - self.basis.len().min(most));
         self.take(images)
+    }
+
+    /// The largest eigenvalues of the inverse within the space.
+    fn largest(&self, wanted: usize) -> Vec<f64> {
+        let mut values: Vec<f64> =
+            SymmetricEigen::new(self.projected.clone()).eigenvalues.iter().copied().collect();
+        values.sort_by(|a, b| b.total_cmp(a));
+        values.truncate(wanted);
+        values
     }
 
     /// The best approximations of the eigenvectors with the largest eigenvalues of the inverse.

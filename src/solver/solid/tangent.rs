@@ -1,6 +1,7 @@
 //! Tangent stiffness and consistent mass of a solid as sparse matrices over its free components.
 
 use super::model::{SolidModel, SolidProblem, corners};
+use super::tet4_blocks::Node;
 use crate::elements::tet4::{Tet4, relative};
 use crate::elements::tet10::{self, Tet10};
 use crate::kinematics::strain::Mat3;
@@ -26,6 +27,9 @@ pub struct Unknowns {
     pub elimination: Arc<Elimination>,
     /// How far their factorisation is.
     pub progress: Progress,
+    /// Stored values of a stiffness, and of masses.
+    pub stored: usize,
+    pub mass_stored: usize,
 }
 
 impl Unknowns {
@@ -48,6 +52,7 @@ impl Unknowns {
         let free = |node: u32| (0..3).filter(|i| per_mass[node as usize][*i] != 0.0).count();
         let graph = graph(problem, |node| free(node) > 0);
         let (order, elimination) = sparse::ordered(&graph, &problem.nodes, free, ordering);
+        let (stored, mass_stored) = stored(&graph, per_mass);
         drop(graph);
         let mut count = 0;
         let mut of = vec![[PRESCRIBED; 3]; per_mass.len()];
@@ -60,8 +65,25 @@ impl Unknowns {
             }
         }
         let elimination = Arc::new(elimination);
-        Unknowns { of, count, elimination, progress: Progress::default() }
+        Unknowns { of, count, elimination, progress: Progress::default(), stored, mass_stored }
     }
+}
+
+/// Values of the lower triangle of a stiffness and of a mass matrix.
+fn stored(graph: &Graph, per_mass: &[Node]) -> (usize, usize) {
+    let free = |node: u32| [0, 1, 2].map(|i: usize| usize::from(per_mass[node as usize][i] != 0.0));
+    let (mut stiffness, mut mass) = (0, 0);
+    for node in 0..graph.nodes() as u32 {
+        let own = free(node);
+        let weight: usize = own.iter().sum();
+        stiffness += weight * (weight + 1) / 2;
+        mass += weight;
+        for other in graph.of(node).iter().filter(|other| **other > node).map(|o| free(*o)) {
+            stiffness += weight * other.iter().sum::<usize>();
+            mass += (0..3).map(|i| own[i] * other[i]).sum::<usize>();
+        }
+    }
+    (stiffness, mass)
 }
 
 fn graph(problem: &SolidProblem, kept: impl Fn(u32) -> bool) -> Graph {

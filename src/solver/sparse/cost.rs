@@ -11,9 +11,30 @@ use thiserror::Error;
 const VALUE: f64 = 8.0;
 const ENTRY: f64 = 12.0;
 
+/// What a solution does with factors and holds beside them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Task {
+    /// Such as "statics".
+    pub name: &'static str,
+    pub factorisations: usize,
+    /// How often the factors are read, each time for so many right-hand sides.
+    pub passes: usize,
+    pub columns: usize,
+    /// Stored values of sparse matrices.
+    pub matrix: usize,
+    /// Vectors of all unknowns.
+    pub vectors: usize,
+    /// Bytes of other things.
+    pub other: usize,
+    /// What else takes time, as much as so many multiplications and additions.
+    pub operations: f64,
+}
+
 /// What a solution by factors will take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
+    pub task: Task,
+    pub unknowns: usize,
     /// Values of the factor.
     pub fill: usize,
     /// Multiplications and additions of one factorisation.
@@ -21,18 +42,14 @@ pub struct Cost {
     /// Bytes of the factor, and of all that the solution holds beside it at its peak.
     pub factor_bytes: f64,
     pub other_bytes: f64,
-    pub factorisations: usize,
-    /// Right-hand sides, and how often the factors are read for them.
-    pub passes: usize,
 }
 
 /// A solution that does not fit into memory.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
-    "{what} of {unknowns} unknowns needs {:.2} GB of memory, {:.2} GB of them for the factors of the \
-     stiffness, and {:.2} GB may be used ({limit_from}); take a coarser mesh (half the elements along \
-     each side need about an eighth to a fifteenth of it), four-node elements (`order = 1`){other}, or \
-     allow more with --memory if you know better",
+    "{what} of {unknowns} unknowns needs {:.3} GB of memory, {:.3} GB of it for the factors of the \
+     stiffness, and may take {:.3} GB ({limit_from}); take a coarser mesh (edges twice as long need \
+     about a tenth), four-node elements (order = 1){other}, or allow more with --memory GB",
     1e-9 * bytes, 1e-9 * factor_bytes, 1e-9 * limit
 )]
 pub struct TooLarge {
@@ -50,39 +67,65 @@ pub struct TooLarge {
 }
 
 impl Cost {
-    /// Of `factorisations` and `passes` through the factors; `matrix` stored values of matrices, and
-    /// `vectors` of so many unknowns.
-    pub fn new(
-        elimination: &Elimination,
-        factorisations: usize,
-        passes: usize,
-        matrix: usize,
-        vectors: usize,
-    ) -> Cost {
+    pub fn new(elimination: &Elimination, task: Task) -> Cost {
         let unknowns = elimination.unknowns as f64;
         let structure = 4.0 * elimination.rows.len() as f64
             + (elimination.panels.len() * size_of::<Panel>()) as f64;
-        // Owner and place of each unknown, and the products of the tallest panel.
+        // Owner and place of each unknown, and the largest product.
         let work = 8.0 * unknowns + VALUE * elimination.most_products as f64;
+        let vectors = VALUE * unknowns * task.vectors as f64;
         Cost {
+            task,
+            unknowns: elimination.unknowns,
             fill: elimination.fill,
             operations: elimination.operations,
             factor_bytes: VALUE * elimination.fill as f64 + structure,
-            other_bytes: ENTRY * matrix as f64 + VALUE * unknowns * vectors as f64 + work,
-            factorisations,
-            passes,
+            other_bytes: ENTRY * task.matrix as f64 + vectors + work + task.other as f64,
         }
     }
 
+    /// Beside what the process holds already.
     pub fn bytes(&self) -> f64 {
         self.factor_bytes + self.other_bytes
     }
 
     /// s
     pub fn seconds(&self, speed: &Speed) -> f64 {
-        let factorise = self.operations / speed.operations + VALUE * self.fill as f64 / speed.bytes;
-        let read = 2.0 * VALUE * self.fill as f64 / speed.bytes;
-        self.factorisations as f64 * factorise + self.passes as f64 * read
+        let Task { factorisations, passes, columns, .. } = self.task;
+        let fill = self.fill as f64;
+        let factorise = self.operations / speed.operations + VALUE * fill / speed.bytes;
+        let pass =
+            2.0 * VALUE * fill / speed.bytes + 4.0 * fill * columns as f64 / speed.operations;
+        factorisations as f64 * factorise
+            + passes as f64 * pass
+            + self.task.operations / speed.operations
+    }
+
+    /// Refuses what does not fit, where the process holds `held` bytes already and may take `limit`
+    /// in all.
+    ///
+    /// # Errors
+    /// [`TooLarge`].
+    pub fn refuse_beyond(
+        &self,
+        held: f64,
+        limit: f64,
+        limit_from: &str,
+        other: &'static str,
+    ) -> Result<(), TooLarge> {
+        let bytes = held + self.bytes();
+        if bytes <= limit {
+            return Ok(());
+        }
+        Err(TooLarge {
+            what: self.task.name,
+            unknowns: self.unknowns,
+            bytes,
+            factor_bytes: self.factor_bytes,
+            limit,
+            limit_from: limit_from.into(),
+            other,
+        })
     }
 }
 

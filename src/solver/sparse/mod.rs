@@ -11,7 +11,7 @@ pub mod progress;
 pub mod separator;
 
 use crate::kinematics::vec3::Vec3;
-pub use cost::{Cost, Speed, TooLarge};
+pub use cost::{Cost, Speed, Task, TooLarge};
 use elimination::{Elimination, analyse};
 pub use factor::Factor;
 use graph::Graph;

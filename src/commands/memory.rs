@@ -1,0 +1,158 @@
+//! How much memory a command may take, and what is said of it before and while it works.
+
+use super::say;
+use bearing_dynamics::solver::solid::tangent::Unknowns;
+use bearing_dynamics::solver::sparse::{Cost, Progress, Speed, TooLarge};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::error::Error;
+use std::io::IsTerminal;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Solutions that take longer than so many seconds are announced.
+const WORTH_A_WORD: f64 = 5.0;
+/// How often a progress bar looks.
+const LOOK: Duration = Duration::from_millis(200);
+
+/// Bytes given with `--memory`.
+static GIVEN: OnceLock<f64> = OnceLock::new();
+
+/// A number of gigabytes greater than zero.
+pub fn parse_gigabytes(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(gigabytes) if gigabytes > 0.0 && gigabytes.is_finite() => Ok(gigabytes),
+        _ => Err("a number of gigabytes (1e9 bytes) above zero, such as 8".into()),
+    }
+}
+
+/// Sets the limit of this process, GB; the first time counts.
+pub fn limit_to(gigabytes: Option<f64>) {
+    if let Some(gigabytes) = gigabytes {
+        let _ = GIVEN.set(1e9 * gigabytes);
+    }
+}
+
+/// Bytes that this process holds now; 0 where the system does not say.
+fn held() -> f64 {
+    const PAGE: f64 = 4096.0;
+    let text = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+    let resident = text.split_whitespace().nth(1).and_then(|pages| pages.parse::<f64>().ok());
+    resident.map_or(0.0, |pages| PAGE * pages)
+}
+
+/// Bytes that the machine has left; nothing where the system does not say.
+fn left() -> Option<f64> {
+    let number = |path: &str| std::fs::read_to_string(path).ok()?.trim().parse::<f64>().ok();
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let machine = 1024.0 * line.trim().trim_end_matches("kB").trim().parse::<f64>().ok()?;
+    // A container may have less than its machine.
+    let group = number("/sys/fs/cgroup/memory.max")
+        .zip(number("/sys/fs/cgroup/memory.current"))
+        .map_or(f64::INFINITY, |(most, now)| (most - now).max(0.0));
+    Some(machine.min(group))
+}
+
+/// Bytes this process may take in all, and who says so.
+fn limit(held: f64) -> (f64, &'static str) {
+    match (GIVEN.get(), left()) {
+        (Some(given), _) => (*given, "--memory"),
+        (None, Some(left)) => (held + left, "what this process holds and the machine has left"),
+        (None, None) => (f64::INFINITY, "this system does not say what it has"),
+    }
+}
+
+/// Refuses what does not fit; `other` names another way out, with a leading comma.
+pub fn refuse_beyond(cost: &Cost, other: &'static str) -> Result<(), TooLarge> {
+    let held = held();
+    let (limit, from) = limit(held);
+    cost.refuse_beyond(held, limit, from, other)
+}
+
+/// What a solution takes, in words: memory exactly, time as fast as the machine is now.
+pub fn text(cost: &Cost) -> String {
+    let held = held();
+    let (limit, _) = limit(held);
+    let bytes = held + cost.bytes();
+    let too_large = match bytes <= limit {
+        true => String::new(),
+        false => format!("; REFUSED: only {} may be taken", size(limit)),
+    };
+    format!(
+        "{} unknowns, {} values in the factors; {} of memory in all, about {} here{too_large}",
+        cost.unknowns,
+        cost.fill,
+        size(bytes),
+        duration(cost.seconds(&Speed::measured()))
+    )
+}
+
+fn size(bytes: f64) -> String {
+    match bytes {
+        bytes if bytes < 1e9 => format!("{:.0} MB", 1e-6 * bytes),
+        bytes => format!("{:.2} GB", 1e-9 * bytes),
+    }
+}
+
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 1.0 => "a second or less".into(),
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+/// Refuses, announces and does a long piece of work, with a bar on a terminal.
+pub fn watched<T>(
+    cost: &Cost,
+    unknowns: &Unknowns,
+    other: &'static str,
+    work: impl FnOnce() -> T,
+) -> Result<T, Box<dyn Error>> {
+    refuse_beyond(cost, other)?;
+    // As fast as any machine is: no need to measure for what is quick on all.
+    let quick = Speed { operations: 1e10, bytes: 5e9 };
+    if cost.seconds(&quick) < WORTH_A_WORD {
+        return Ok(work());
+    }
+    say(&format!("{}: {}\n", cost.task.name, text(cost)))?;
+    if !std::io::stderr().is_terminal() {
+        return Ok(work());
+    }
+    let (done, progress) = (AtomicBool::new(false), unknowns.progress.clone());
+    Ok(std::thread::scope(|scope| {
+        scope.spawn(|| draw(cost, &progress, &done));
+        // Also where the work panics: the scope waits for the thread.
+        let _told = Told(&done);
+        work()
+    }))
+}
+
+struct Told<'a>(&'a AtomicBool);
+
+impl Drop for Told<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+fn draw(cost: &Cost, progress: &Progress, done: &AtomicBool) {
+    let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr());
+    if let Ok(style) = ProgressStyle::with_template("{elapsed} {bar:30} {percent} % {msg}") {
+        bar.set_style(style);
+    }
+    while !done.load(Ordering::Relaxed) {
+        let (begun, finished) = progress.factorisations();
+        let part = progress.operations() as f64 / cost.operations;
+        bar.set_position((1000.0 * part.min(1.0)) as u64);
+        bar.set_message(match (begun, progress.solves()) {
+            (0, _) => "assembling the stiffness".to_string(),
+            (_, _) if begun > finished => format!("of factorisation {begun}"),
+            (_, solves) => format!("factorised; {solves} right-hand sides solved"),
+        });
+        std::thread::sleep(LOOK);
+    }
+    bar.finish_and_clear();
+}

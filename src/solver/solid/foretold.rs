@@ -1,0 +1,73 @@
+//! What statics, modes and condensing will take in memory and time, without doing any of it.
+
+use super::model::SolidModel;
+use super::modes;
+use super::tangent::Unknowns;
+use crate::mesh::tet_mesh::Elements;
+use crate::solver::sparse::{Cost, Task};
+
+/// Tangent stiffness and forces of an element take as long as so many multiplications and additions
+/// of dense products.
+const OF_FOUR_NODES: f64 = 5e4;
+const OF_TEN_NODES: f64 = 5e5;
+/// Newton's method on small loads: one factorisation, and the residual falls tenfold or more a step.
+const NEWTON_STEPS: usize = 4;
+/// Right-hand side, old and new displacements (with fourth components), internal and external forces.
+const NEWTON_VECTORS: usize = 8;
+
+fn assembly(model: &SolidModel) -> f64 {
+    match &model.problem.elements {
+        Elements::Linear(list) => OF_FOUR_NODES * list.len() as f64,
+        Elements::Quadratic(list) => OF_TEN_NODES * list.len() as f64,
+    }
+}
+
+/// Equilibrium under loads that leave the solid nearly linear; each further factorisation takes the
+/// same time again, and no more memory.
+pub fn statics(model: &SolidModel, unknowns: &Unknowns) -> Cost {
+    let task = Task {
+        name: "statics",
+        factorisations: 1,
+        passes: NEWTON_STEPS,
+        columns: 1,
+        matrix: unknowns.stored,
+        vectors: NEWTON_VECTORS,
+        other: 0,
+        operations: assembly(model),
+    };
+    Cost::new(&unknowns.elimination, task)
+}
+
+/// The lowest `count` modes.
+pub fn modes(model: &SolidModel, unknowns: &Unknowns, count: usize) -> Cost {
+    let solves = modes::usual_solves(count).min(unknowns.count.max(1));
+    let task = Task {
+        name: "modes",
+        factorisations: 1,
+        passes: solves.div_ceil(modes::BLOCK),
+        columns: modes::BLOCK,
+        matrix: unknowns.stored + unknowns.mass_stored,
+        // The space itself, a block before and after its solution, the modes found in it.
+        vectors: solves + 3 * modes::BLOCK + count,
+        other: 0,
+        // Each new vector is made orthogonal to all others, twice.
+        operations: assembly(model)
+            + (8 * solves * solves + 60 * solves) as f64 * unknowns.count as f64,
+    };
+    Cost::new(&unknowns.elimination, task)
+}
+
+/// A solid condensed onto `kept` nodes of its bore, with `columns` solved at once.
+pub fn condensed(model: &SolidModel, unknowns: &Unknowns, kept: usize, columns: usize) -> Cost {
+    let task = Task {
+        name: "condensing the housing",
+        factorisations: 1,
+        passes: kept.div_ceil(columns) + 1,
+        columns: columns.min(kept),
+        matrix: unknowns.stored,
+        vectors: 2 * columns + 2,
+        other: 8 * kept * kept,
+        operations: assembly(model),
+    };
+    Cost::new(&unknowns.elimination, task)
+}
