@@ -452,7 +452,7 @@ fn the_step_limit_of_a_ball_follows_from_the_state_itself() {
 }
 
 #[test]
-fn the_step_limit_of_a_bearing_that_travels_is_that_of_one_at_rest() {
+fn the_step_limit_of_a_bearing_that_moves_as_a_whole_is_that_of_one_at_rest() {
     let law = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 1e-4 };
     let (problem, state) = held(|problem| {
         problem.traction = law.clone();
@@ -461,17 +461,31 @@ fn the_step_limit_of_a_bearing_that_travels_is_that_of_one_at_rest() {
     });
     let layout = Layout::new(problem.geometry.ball_count, false);
     let resting = limit_at(&problem, &state);
-    for speed in [1.0, 10.0] {
+    // Travelling in any direction, m/s, and turning about the axis, rad/s: nothing slides on anything.
+    for (travel, turn, tolerance) in [
+        // Differences over 1e-7 of the speed: 1 % of the onset's width at 10 m/s, squared.
+        ([5.0, -6.0, 6.0], 0.0, 3e-4),
+        // Besides, gyroscopic moments and the turning of what slides: 300 of 2.5e5 1/s.
+        ([0.0; 3], 300.0, 5e-3),
+    ] {
         let mut moving = state.clone();
+        let along = Vector3::from(travel);
+        let about = Vector3::x() * turn;
         for ball in 0..layout.balls {
-            moving[layout.ball(VELOCITY) + ball] += speed;
+            let mut body = layout.ball_state(&state, ball);
+            body.velocity = (along + about.cross(&Vector3::from(body.position))).into();
+            body.spin = about.into();
+            layout.set_ball(&mut moving, ball, &body);
         }
-        moving[layout.inner() + VELOCITY] += speed;
-        moving[layout.outer() + VELOCITY] += speed;
+        for at in [layout.inner(), layout.outer()] {
+            for i in 0..3 {
+                moving[at + VELOCITY + i] = along[i];
+                moving[at + SPIN + i] = about[i];
+            }
+        }
         let found = limit_at(&problem, &moving);
-        // Differences over 1e-7 of the speed: 1 % of the onset's width at 10 m/s, squared. Velocities round
-        // to 1e-15 m/s of it.
-        assert!((found / resting - 1.0).abs() <= 3e-4, "{speed} m/s: {found} {resting}");
+        println!("{travel:?}, {turn}: {}", found / resting - 1.0);
+        assert!((found / resting - 1.0).abs() <= tolerance, "{travel:?} {turn}: {found} {resting}");
     }
 }
 

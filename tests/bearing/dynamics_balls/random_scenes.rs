@@ -233,7 +233,8 @@ fn two_hundred_random_scenes_end_sound_or_say_why() {
         }
         complete += 1;
         worst = worst.max(outcome.residual);
-        assert!(outcome.residual <= 1e-2, "{seed}: {}\n{text}", outcome.residual);
+        // Measured: 9e-4 at worst, where light parts rattle, which the method damps.
+        assert!(outcome.residual <= 5e-3, "{seed}: {}\n{text}", outcome.residual);
     }
     println!(
         "{complete} complete, {met} with balls that met, worst residual {worst:e}, deepest {deepest:e}, {steps} steps"
