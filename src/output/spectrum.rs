@@ -77,7 +77,8 @@ pub fn spectrum(values: &[f64], interval: f64) -> Option<Spectrum> {
     })
 }
 
-/// Peaks lower than this part of the highest are not listed: so far down a window's side lobes reach.
+/// Peaks lower than this part of the highest beyond the first bin are not listed: so far down a window's
+/// side lobes reach.
 pub const LOWEST: f64 = 1e-3;
 
 /// The `count` highest peaks, highest first: bins higher than both neighbours, not below `floor` (in the
@@ -99,9 +100,10 @@ pub fn peaks(spectrum: &Spectrum, count: usize, floor: f64) -> Vec<Peak> {
     let mut found: Vec<Peak> = (2..bins.len() - 1)
         .filter(|&k| bins[k] > bins[k - 1] && bins[k] >= bins[k + 1])
         .map(|k| parabola(spectrum, k))
-        .chain(slow)
         .collect();
+    // A drift hides nothing.
     let highest = found.iter().map(|peak| peak.amplitude).fold(0.0, f64::max);
+    found.extend(slow);
     found.retain(|peak| peak.amplitude > floor.max(LOWEST * highest));
     found.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
     found.truncate(count);

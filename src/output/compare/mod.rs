@@ -266,7 +266,7 @@ pub fn is_about_steps(channel: &str) -> bool {
     let of_residual = parts.clone().any(|part| LAST.contains(&part));
     // Which of nearly equal values is the largest, the steps decide.
     let place = channel.starts_with("extremes.")
-        && (channel.ends_with(".time") || channel.ends_with(".ball"));
+        && [".time", ".ball", ".contact_angle"].iter().any(|last| channel.ends_with(last));
     of_residual
         || place
         || channel == "scene.title"
