@@ -3,9 +3,11 @@
 
 mod solid_common;
 
+use bearing_dynamics::ch2_housing::bore_contact::{ContactNode, Penalty};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
 use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::contact::closed_limit;
 use bearing_dynamics::solver::solid::explicit::ExplicitMethod;
 use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel, SolidProblem};
 use bearing_dynamics::solver::solid::step_limit::{step_limit, step_limit_within};
@@ -96,6 +98,15 @@ struct Dense {
 }
 
 fn dense(model: &SolidModel, displacement: &[Vec3]) -> Dense {
+    dense_on_springs(model, displacement, &[])
+}
+
+/// With springs from nodes to the ground: node, direction (a unit vector), N/m.
+fn dense_on_springs(
+    model: &SolidModel,
+    displacement: &[Vec3],
+    springs: &[(u32, Vec3, f64)],
+) -> Dense {
     let problem = &model.problem;
     let size = 3 * problem.nodes.len();
     let held = |row: usize| {
@@ -114,6 +125,17 @@ fn dense(model: &SolidModel, displacement: &[Vec3]) -> Dense {
                     let scale = (model.mass[row / 3] * model.mass[column / 3]).sqrt();
                     whole[(row, column)] += matrix[(a, b)] / scale;
                     sums[row] += matrix[(a, b)].abs() / model.mass[row / 3];
+                }
+            }
+        }
+    }
+    for (node, direction, stiffness) in springs {
+        for i in 0..3 {
+            for j in 0..3 {
+                let (row, column) = (3 * *node as usize + i, 3 * *node as usize + j);
+                if !held(row) && !held(column) {
+                    let added = stiffness * direction[i] * direction[j];
+                    whole[(row, column)] += added / model.mass[*node as usize];
                 }
             }
         }
@@ -178,5 +200,59 @@ fn the_bound_is_the_largest_sum_along_a_row() {
                 assert!((exact.bound / exact.highest - 1.0).abs() <= 1e-14);
             }
         }
+    }
+}
+
+/// A contact closed at every node: never slower than the solid on all its springs, and no faster than it
+/// must be where a spring outdoes the solid, or where a single component is free.
+#[test]
+fn the_limit_with_a_closed_contact_is_that_of_the_solid_on_its_springs() {
+    let places = |model: &SolidModel| -> Vec<ContactNode> {
+        let touched = (0..model.problem.nodes.len() as u32).filter(|node| node % 4 == 1);
+        let area = |node: u32| 1e-6 * f64::from(1 + node % 3);
+        touched
+            .map(|node| ContactNode {
+                node,
+                place: model.problem.nodes[node as usize],
+                area: area(node),
+            })
+            .collect()
+    };
+    let direction = |node: u32| {
+        let (sin, cos) = f64::from(node).sin_cos();
+        [0.6, 0.8 * cos, 0.8 * sin]
+    };
+    for order in [Order::Linear, Order::Quadratic] {
+        let model = SolidModel::new(block(order)).unwrap();
+        let still = vec![[0.0; 3]; model.problem.nodes.len()];
+        let alone = step_limit(&model, &padded(&still), METHOD);
+        for penalty in [Penalty::PerNode(2.5e8), Penalty::PerArea(2.5e14), Penalty::PerArea(1e18)] {
+            let nodes = places(&model);
+            let springs: Vec<(u32, Vec3, f64)> = nodes
+                .iter()
+                .map(|node| (node.node, direction(node.node), penalty.of_node(node.area)))
+                .collect();
+            let exact = dense_on_springs(&model, &still, &springs).highest;
+            let found = closed_limit(&model, &nodes, penalty, &alone);
+            // The solid's own limit comes from below by 1e-4 at most.
+            assert!(found.frequency >= exact * (1.0 - 1e-4), "{order:?} {penalty:?}");
+            // The fastest motion has at least a spring's: ω² ≤ ω_solid² + K/m is off by ω_solid² at most.
+            let over = found.frequency * found.frequency - exact * exact;
+            assert!(over <= alone.frequency * alone.frequency, "{order:?} {penalty:?}: {over}");
+            assert!((found.step * found.frequency / 2.0 - 1.0).abs() <= 1e-14);
+        }
+        // One node free along one axis, with its spring along it: the sum itself.
+        let mut problem = block(order);
+        let count = problem.nodes.len() as u32;
+        let all = (0..count).flat_map(|node| [0, 1, 2].map(|axis| (node, axis)));
+        hold(&mut problem, all.filter(|at| *at != (5, 1)));
+        let model = SolidModel::new(problem).unwrap();
+        let alone = step_limit(&model, &padded(&still), METHOD);
+        let node = ContactNode { node: 5, place: model.problem.nodes[5], area: 3e-6 };
+        let penalty = Penalty::PerArea(2.5e14);
+        let springs = [(5, [0.0, 1.0, 0.0], penalty.of_node(node.area))];
+        let exact = dense_on_springs(&model, &still, &springs).highest;
+        let found = closed_limit(&model, &[node], penalty, &alone).frequency;
+        assert!((found / exact - 1.0).abs() <= 1e-6, "{order:?}: {found} {exact}");
     }
 }
