@@ -97,10 +97,12 @@ impl Simulation {
         for (way, distance) in
             [("along its axis", axial.abs() + tilted), ("across its axis", radial)]
         {
-            if !(distance <= allowed) {
-                let (time, step) = (self.time, self.steps);
-                return Err(SimulationError::RaceLeft { way, distance, allowed, time, step });
+            // NaN is too far.
+            if distance <= allowed {
+                continue;
             }
+            let (time, step) = (self.time, self.steps);
+            return Err(SimulationError::RaceLeft { way, distance, allowed, time, step });
         }
         Ok(())
     }

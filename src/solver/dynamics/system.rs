@@ -294,7 +294,10 @@ impl System {
                 spin: self.layout.ball_vector(state, SPIN, ball),
             });
             let Some(contact) = ball_contact(&law, self.laws.ball_radius, &here, &there) else {
-                self.meetings[one] = BallContact::default();
+                // Nothing is written where nothing was.
+                if self.meetings[one].overlap != 0.0 {
+                    self.meetings[one] = BallContact::default();
+                }
                 continue;
             };
             self.meetings[one] = contact;
