@@ -178,18 +178,23 @@ fn given_steps_are_counted_as_the_run_takes_them() {
 
 #[test]
 fn foretold_steps_are_within_the_stated_factor() {
-    // Ringing for good after a blow; a load that grows; bodies that part and hit again; a plain run.
+    // Ringing for good after a blow; faster rolling, and a reversal through a standstill; bodies that part
+    // and hit again; plain runs; a load that grows.
     let mut struck = sliding();
     let blow = Profile::HalfSine { base: -250.0, peak: -3000.0, start: 2e-3, duration: 1e-3 };
     struck.inner.drives[2] = Drive::Load(blow);
     let mut faster = sliding();
     faster.inner.rotation =
         Rotation::Speed(Profile::Ramp { from: 100.0, to: 1000.0, start: 0.0, duration: 20e-3 });
+    let mut reversed = sliding();
+    reversed.inner.rotation =
+        Rotation::Speed(Profile::Ramp { from: 200.0, to: -200.0, start: 2e-3, duration: 6e-3 });
     let accurate = |integrator| (integrator, Stepping::Accuracy(1e-3));
     for (name, problem, (integrator, stepping), end) in [
         ("struck", &struck, accurate(Integrator::Rosenbrock), 20e-3),
         ("faster", &faster, accurate(Integrator::Rosenbrock), 20e-3),
         ("faster", &faster, accurate(Integrator::DormandPrince), 20e-3),
+        ("reversed", &reversed, accurate(Integrator::Rosenbrock), 10e-3),
         ("rattling", &rattling(), accurate(Integrator::DormandPrince), 20e-3),
         ("plain", &sliding(), accurate(Integrator::Rosenbrock), 50e-3),
         ("plain", &frictionless(), accurate(Integrator::DormandPrince), 50e-3),

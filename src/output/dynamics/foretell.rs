@@ -98,7 +98,8 @@ fn looks(problem: &DynamicProblem, end: f64) -> Vec<f64> {
     times.insert(0, 0.0);
     times.push(end);
     let longest = end / PARTS as f64;
-    let parts = |pair: &[f64]| ((pair[1] - pair[0]) / longest).ceil().max(1.0) as usize;
+    // An odd number: halfway a reversal stands still, which is no place to judge it from.
+    let parts = |pair: &[f64]| ((pair[1] - pair[0]) / longest).ceil().max(1.0) as usize | 1;
     let begin = |pair: &[f64]| {
         let (count, [from, to]) = (parts(pair), [pair[0], pair[1]]);
         (0..count).map(move |i| from + (to - from) * i as f64 / count as f64).collect::<Vec<_>>()
@@ -228,15 +229,19 @@ fn trial(
 /// What keeps the run from starting.
 pub fn foretell(problem: &DynamicProblem, request: &RunRequest) -> Result<Foretold, SessionError> {
     let (mut stretches, taken, looks) = trial(problem, request, TO_COUNT, None)?;
-    // What rings goes on, and steps from the limit do not grow again. An explicit method with error
-    // control is bound by traction rather, which rolling faster makes gentler.
+    // Steps from the limit do not grow again. What rang where the first look left off goes on; an explicit
+    // method with error control is bound by traction rather, which rolling faster makes gentler.
     let options = &request.options;
-    let rings = problem.damping == ContactDamping::None
-        && options.integrator == Integrator::Rosenbrock
-        || matches!(options.stepping, Stepping::FractionOfLimit(_));
-    for i in 1..stretches.len() {
-        if rings && stretches[i].anew {
-            stretches[i].rate = stretches[i].rate.max(stretches[i - 1].rate);
+    let from_limit = matches!(options.stepping, Stepping::FractionOfLimit(_));
+    let rings =
+        problem.damping == ContactDamping::None && options.integrator == Integrator::Rosenbrock;
+    let mut carried = 0.0;
+    for stretch in &mut stretches {
+        if stretch.anew && (from_limit || rings) {
+            stretch.rate = stretch.rate.max(carried);
+        }
+        if from_limit || !stretch.anew {
+            carried = stretch.rate;
         }
     }
     let steps = stretches.iter().map(Stretch::steps).sum();
