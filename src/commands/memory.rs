@@ -47,10 +47,13 @@ fn left() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
     let machine = 1024.0 * line.trim().trim_end_matches("kB").trim().parse::<f64>().ok()?;
-    // A container may have less than its machine.
+    // A container may have less than its machine; files that it has read count, but give way.
+    let stat = std::fs::read_to_string("/sys/fs/cgroup/memory.stat").unwrap_or_default();
+    let files = stat.lines().find_map(|line| line.strip_prefix("inactive_file "));
+    let files = files.and_then(|bytes| bytes.trim().parse::<f64>().ok()).unwrap_or(0.0);
     let group = number("/sys/fs/cgroup/memory.max")
         .zip(number("/sys/fs/cgroup/memory.current"))
-        .map_or(f64::INFINITY, |(most, now)| (most - now).max(0.0));
+        .map_or(f64::INFINITY, |(most, now)| (most - now + files).max(0.0));
     Some(machine.min(group))
 }
 

@@ -102,11 +102,14 @@ fn the_foretold_structure_is_that_of_elimination() {
                 }
             }
             assert_eq!(next, unknowns.count);
-            // The empty triangles of the panels and what their merging brings.
+            // The empty triangles of the panels and what their merging brings: much of little.
             let fill = elimination.fill;
-            assert!(fill >= nonzeros && fill as f64 <= 1.5 * nonzeros as f64, "{fill} {nonzeros}");
+            let most = if order == Order::Linear { 2.5 } else { 1.5 };
+            assert!(fill >= nonzeros && fill as f64 <= most * nonzeros as f64, "{fill} {nonzeros}");
+            let stored: usize = elimination.panels.iter().map(|p| p.height() * p.columns).sum();
             let factor = unknowns.factor(&matrix).unwrap();
-            assert_eq!(factor.fill(), foretold::statics(&model, &unknowns).fill);
+            let foretold = foretold::statics(&model, &unknowns).fill;
+            assert_eq!([foretold, factor.fill()], [stored, stored]);
             let done = unknowns.progress.operations() as f64;
             // Whole numbers are counted panel by panel.
             assert!((done / elimination.operations - 1.0).abs() <= 1e-9, "{done}");
@@ -208,16 +211,22 @@ fn lattice(along: usize, across: usize) -> (Graph, Vec<Vec3>) {
     (Graph::of_elements(places.len(), cubes.iter().map(Vec::as_slice), |_| true), places)
 }
 
-/// A bar whose band is five layers thick, of which one has a hole: the smallest cut is found, and it
-/// parts the sides.
+/// A bar whose band is five layers thick, of which one has a hole, the first, an inner or the last one:
+/// the smallest cut is found, and it parts the sides.
 #[test]
 fn cuts_are_smallest_and_part_the_sides() {
+    for hole in [4, 7, 8] {
+        cut_at(hole);
+    }
+}
+
+fn cut_at(hole: usize) {
     let (along, across) = (13, 4);
     let (whole, places) = lattice(along, across);
     let layer = |node: u32| places[node as usize][0] as usize;
-    // Half of layer 7 is gone.
+    // Half of a layer is gone.
     let kept: Vec<u32> = (0..places.len() as u32)
-        .filter(|node| layer(*node) != 7 || places[*node as usize][1] < 2.0)
+        .filter(|node| layer(*node) != hole || places[*node as usize][1] < 2.0)
         .collect();
     let graph = whole.permuted(&kept);
     let layer = |node: u32| layer(kept[node as usize]);

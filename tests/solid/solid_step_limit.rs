@@ -1,5 +1,6 @@
 //! The step limit of a deformed solid against dense matrices: every element's stiffness by numerical
-//! differences of its nodal forces, put together and solved without the code under test.
+//! differences of its nodal forces, put together and solved without the code under test. And its mass
+//! matrices against integrals by a rule of the test's own.
 
 use crate::solid_common;
 
@@ -11,6 +12,7 @@ use bearing_dynamics::solver::solid::contact::closed_limit;
 use bearing_dynamics::solver::solid::explicit::ExplicitMethod;
 use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel, SolidProblem};
 use bearing_dynamics::solver::solid::step_limit::{step_limit, step_limit_within};
+use bearing_dynamics::solver::solid::tangent::{MassMatrix, Unknowns, mass, pattern};
 use nalgebra::{DMatrix, Rotation3, Vector3};
 use solid_common::{cut_cubes, solid};
 
@@ -98,15 +100,18 @@ struct Dense {
 }
 
 fn dense(model: &SolidModel, displacement: &[Vec3]) -> Dense {
-    dense_on_springs(model, displacement, &[])
+    dense_with(model, displacement, &[])
 }
 
-/// With springs from nodes to the ground: node, direction (a unit vector), N/m.
-fn dense_on_springs(
-    model: &SolidModel,
-    displacement: &[Vec3],
-    springs: &[(u32, Vec3, f64)],
-) -> Dense {
+/// A node that a surface holds along a direction.
+struct Spring {
+    node: usize,
+    along: Vector3<f64>,
+    /// N/m.
+    stiffness: f64,
+}
+
+fn dense_with(model: &SolidModel, displacement: &[Vec3], springs: &[Spring]) -> Dense {
     let problem = &model.problem;
     let size = 3 * problem.nodes.len();
     let held = |row: usize| {
@@ -129,14 +134,11 @@ fn dense_on_springs(
             }
         }
     }
-    for (node, direction, stiffness) in springs {
-        for i in 0..3 {
-            for j in 0..3 {
-                let (row, column) = (3 * *node as usize + i, 3 * *node as usize + j);
-                if !held(row) && !held(column) {
-                    let added = stiffness * direction[i] * direction[j];
-                    whole[(row, column)] += added / model.mass[*node as usize];
-                }
+    for Spring { node, along, stiffness } in springs {
+        for (i, j) in (0..9).map(|at| (at / 3, at % 3)) {
+            let (row, column) = (3 * node + i, 3 * node + j);
+            if !held(row) && !held(column) {
+                whole[(row, column)] += stiffness * along[i] * along[j] / model.mass[*node];
             }
         }
     }
@@ -203,56 +205,194 @@ fn the_bound_is_the_largest_sum_along_a_row() {
     }
 }
 
-/// A contact closed at every node: never slower than the solid on all its springs, and no faster than it
-/// must be where a spring outdoes the solid, or where a single component is free.
+/// A contact that is closed at every node, along whatever normals: the limit is never above that of
+/// the assembled matrix, never below what the largest spring can do to it, and the matrix' own where
+/// springs are all that counts.
 #[test]
-fn the_limit_with_a_closed_contact_is_that_of_the_solid_on_its_springs() {
-    let places = |model: &SolidModel| -> Vec<ContactNode> {
-        let touched = (0..model.problem.nodes.len() as u32).filter(|node| node % 4 == 1);
-        let area = |node: u32| 1e-6 * f64::from(1 + node % 3);
-        touched
-            .map(|node| ContactNode {
-                node,
-                place: model.problem.nodes[node as usize],
-                area: area(node),
-            })
-            .collect()
-    };
-    let direction = |node: u32| {
-        let (sin, cos) = f64::from(node).sin_cos();
-        [0.6, 0.8 * cos, 0.8 * sin]
-    };
+fn the_limit_with_a_closed_contact_is_that_of_the_assembled_matrix() {
     for order in [Order::Linear, Order::Quadratic] {
-        let model = SolidModel::new(block(order)).unwrap();
-        let still = vec![[0.0; 3]; model.problem.nodes.len()];
-        let alone = step_limit(&model, &padded(&still), METHOD);
-        for penalty in [Penalty::PerNode(2.5e8), Penalty::PerArea(2.5e14), Penalty::PerArea(1e18)] {
-            let nodes = places(&model);
-            let springs: Vec<(u32, Vec3, f64)> = nodes
-                .iter()
-                .map(|node| (node.node, direction(node.node), penalty.of_node(node.area)))
+        for method in [METHOD, ExplicitMethod::RungeKutta] {
+            let mut problem = block(order);
+            let low = (0..problem.nodes.len() as u32).filter(|n| n % 5 == 0);
+            hold(&mut problem, low.map(|node| (node, node as usize % 3)));
+            let model = SolidModel::new(problem).unwrap();
+            let still = vec![[0.0; 3]; model.mass.len()];
+            let own = step_limit(&model, &padded(&still), method);
+            let alone = dense(&model, &still).highest;
+            // Every third node, with shares of a surface and normals of all kinds, none of them along
+            // a component that is held.
+            let touched: Vec<ContactNode> = (0..model.mass.len() as u32)
+                .filter(|node| node % 3 == 1 && node % 5 != 0)
+                .map(|node| {
+                    let place = model.problem.nodes[node as usize];
+                    ContactNode { node, place, area: 1e-6 * (1.0 + f64::from(node % 7)) }
+                })
                 .collect();
-            let exact = dense_on_springs(&model, &still, &springs).highest;
-            let found = closed_limit(&model, &nodes, penalty, &alone);
-            // The solid's own limit comes from below by 1e-4 at most.
-            assert!(found.frequency >= exact * (1.0 - 1e-4), "{order:?} {penalty:?}");
-            // The fastest motion has at least a spring's: ω² ≤ ω_solid² + K/m is off by ω_solid² at most.
-            let over = found.frequency * found.frequency - exact * exact;
-            assert!(over <= alone.frequency * alone.frequency, "{order:?} {penalty:?}: {over}");
-            assert!((found.step * found.frequency / 2.0 - 1.0).abs() <= 1e-14);
+            let lightest = touched.iter().map(|n| n.area / model.mass[n.node as usize]);
+            let per_stiffness = lightest.fold(0.0, f64::max);
+            // Springs of a hundredth of the body's own stiffness, as stiff, and far stiffer.
+            for share in [0.0, 0.01, 1.0, 1e4] {
+                let stiffness = share * alone * alone / per_stiffness;
+                let per_area = Penalty::PerArea(stiffness);
+                let per_node = Penalty::PerNode(stiffness * 2e-6);
+                for penalty in [per_area, per_node] {
+                    let of_node = |node: &ContactNode| match penalty {
+                        Penalty::PerArea(k) => k * node.area,
+                        Penalty::PerNode(k) => k,
+                    };
+                    let springs: Vec<Spring> = touched
+                        .iter()
+                        .map(|node| {
+                            let turn = 0.9 * f64::from(node.node);
+                            let along =
+                                Vector3::new(turn.cos(), turn.sin(), 0.7 * (3.0 * turn).sin());
+                            let (along, node_at) = (along.normalize(), node.node as usize);
+                            Spring { node: node_at, along, stiffness: of_node(node) }
+                        })
+                        .collect();
+                    let exact = dense_with(&model, &still, &springs).highest;
+                    let found = closed_limit(&model, &touched, penalty, &own);
+                    let (low, high) = (exact * (1.0 - 1e-4), {
+                        let added = springs.iter().map(|s| s.stiffness / model.mass[s.node]);
+                        let added = added.fold(0.0, f64::max);
+                        (alone * alone + added).sqrt() * (1.0 + 1e-12)
+                    });
+                    let frequency = found.frequency;
+                    let said = format!("{order:?} {share} {penalty:?}: {frequency} of {exact}");
+                    // The body's own part is known to 1e-4, from below.
+                    assert!(frequency >= low && frequency <= high, "{said}");
+                    if share == 1e4 {
+                        assert!((frequency / exact - 1.0).abs() <= 1e-3, "{said}");
+                    }
+                    let reach = own.step * own.frequency;
+                    assert!((found.step * frequency / reach - 1.0).abs() <= 1e-14, "{said}");
+                }
+            }
         }
-        // One node free along one axis, with its spring along it: the sum itself.
+    }
+}
+
+/// Gauss' points and weights on 0 … 1, by Newton's method on the Legendre polynomial.
+fn gauss(count: usize) -> Vec<(f64, f64)> {
+    let point = |k: usize| {
+        let n = count as f64;
+        let mut x = (std::f64::consts::PI * (k as f64 + 0.75) / (n + 0.5)).cos();
+        let mut slope = 1.0;
+        for _ in 0..50 {
+            let (mut now, mut before) = (x, 1.0);
+            for degree in 2..=count {
+                let d = degree as f64;
+                (now, before) = (((2.0 * d - 1.0) * x * now - (d - 1.0) * before) / d, now);
+            }
+            slope = n * (x * now - before) / (x * x - 1.0);
+            x -= now / slope;
+        }
+        (0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..count).map(point).collect()
+}
+
+/// Shape functions of a tetrahedron of four or ten nodes at barycentric coordinates.
+fn shapes(nodes: usize, l: [f64; 4]) -> Vec<f64> {
+    if nodes == 4 {
+        return l.to_vec();
+    }
+    const BETWEEN: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+    let corners = l.iter().map(|l| l * (2.0 * l - 1.0));
+    corners.chain(BETWEEN.iter().map(|[a, b]| 4.0 * l[*a] * l[*b])).collect()
+}
+
+/// ρ∫NᵢNⱼ dV of one element: a cube of Gauss' points folded onto the tetrahedron, places by the shape
+/// functions, their slopes by differences.
+fn integrals(places: &[Vec3], density: f64) -> DMatrix<f64> {
+    let count = places.len();
+    let mut sum = DMatrix::zeros(count, count);
+    let corners = |r: [f64; 3]| [1.0 - r[0] - r[1] - r[2], r[0], r[1], r[2]];
+    let place = |r: [f64; 3]| -> Vector3<f64> {
+        let n = shapes(count, corners(r));
+        places.iter().zip(&n).map(|(x, n)| Vector3::from(*x) * *n).sum()
+    };
+    let rule = gauss(8);
+    for at in 0..512 {
+        let [(u, a), (v, b), (w, c)] = [rule[at / 64], rule[at / 8 % 8], rule[at % 8]];
+        let r = [u, v * (1.0 - u), w * (1.0 - u) * (1.0 - v)];
+        let fold = (1.0 - u) * (1.0 - u) * (1.0 - v);
+        // Places are of second degree, so that central differences are exact but for rounding.
+        let slope = |i: usize| {
+            let by =
+                |sign: f64| std::array::from_fn(|j| if i == j { r[j] + sign * 0.1 } else { r[j] });
+            (place(by(1.0)) - place(by(-1.0))) / 0.2
+        };
+        let volume = slope(0).dot(&slope(1).cross(&slope(2)));
+        let n = shapes(count, corners(r));
+        for i in 0..count {
+            for j in 0..count {
+                sum[(i, j)] += density * a * b * c * fold * volume * n[i] * n[j];
+            }
+        }
+    }
+    sum
+}
+
+/// Both mass matrices of a whole body, of straight and of curved elements, against ρ∫NᵢNⱼ dV.
+#[test]
+fn masses_are_the_integrals_of_the_shape_functions() {
+    let weights = gauss(8).iter().map(|(x, w)| w * x.powi(15)).sum::<f64>();
+    assert!((weights * 16.0 - 1.0).abs() <= 1e-13, "{weights}");
+    for (order, bulge) in [(Order::Linear, 0.0), (Order::Quadratic, 0.0), (Order::Quadratic, 0.03)]
+    {
         let mut problem = block(order);
-        let count = problem.nodes.len() as u32;
-        let all = (0..count).flat_map(|node| [0, 1, 2].map(|axis| (node, axis)));
-        hold(&mut problem, all.filter(|at| *at != (5, 1)));
+        // Every node, those between corners too, goes along a bulge that is no quadratic.
+        for x in &mut problem.nodes {
+            let push = bulge * 0.01 * (250.0 * x[0] + 180.0 * x[1] + 320.0 * x[2]).sin();
+            x.iter_mut().for_each(|x| *x += push);
+        }
+        let count = problem.nodes.len();
+        let mut exact = DMatrix::<f64>::zeros(count, count);
+        let mut lumped = vec![0.0; count];
+        for element in 0..problem.elements.len() {
+            let nodes = problem.elements.nodes(element);
+            let places: Vec<Vec3> = nodes.iter().map(|n| problem.nodes[*n as usize]).collect();
+            let own = integrals(&places, problem.density);
+            // Hinton, Rock and Zienkiewicz: the diagonal, scaled to the whole.
+            let scale = own.sum() / own.trace();
+            for (i, a) in nodes.iter().enumerate() {
+                lumped[*a as usize] += scale * own[(i, i)];
+                for (j, b) in nodes.iter().enumerate() {
+                    exact[(*a as usize, *b as usize)] += own[(i, j)];
+                }
+            }
+        }
         let model = SolidModel::new(problem).unwrap();
-        let alone = step_limit(&model, &padded(&still), METHOD);
-        let node = ContactNode { node: 5, place: model.problem.nodes[5], area: 3e-6 };
-        let penalty = Penalty::PerArea(2.5e14);
-        let springs = [(5, [0.0, 1.0, 0.0], penalty.of_node(node.area))];
-        let exact = dense_on_springs(&model, &still, &springs).highest;
-        let found = closed_limit(&model, &[node], penalty, &alone).frequency;
-        assert!((found / exact - 1.0).abs() <= 1e-6, "{order:?}: {found} {exact}");
+        let unknowns = Unknowns::new(&model);
+        let mut matrix = pattern(&model.problem, &unknowns);
+        mass(&model, &unknowns, MassMatrix::Consistent, &mut matrix);
+        let largest = exact.amax();
+        // Products are of fourth degree, which the rule of straight elements takes exactly; a curved
+        // one's volume adds up to three degrees, which the rule sees to a part in 1e4 here.
+        let allowed = if bulge == 0.0 { 1e-12 } else { 1e-3 };
+        let (mut x, mut y) = (vec![0.0; unknowns.count], vec![0.0; unknowns.count]);
+        for b in 0..count {
+            for axis in 0..3 {
+                x.fill(0.0);
+                x[unknowns.of[b][axis]] = 1.0;
+                matrix.multiply(&x, &mut y);
+                for a in 0..count {
+                    for other in 0..3 {
+                        let expected = if axis == other { exact[(a, b)] } else { 0.0 };
+                        let off = (y[unknowns.of[a][other]] - expected).abs() / largest;
+                        assert!(off <= allowed, "{order:?} {bulge} {a} {b}: {off}");
+                    }
+                }
+            }
+            // A whole row is ∫ρNᵢ dV: fifth degree, exact for curved elements too.
+            let row: f64 = y.iter().sum();
+            let expected = exact.row(b).sum();
+            assert!((row - expected).abs() <= 1e-12 * largest, "{order:?} {bulge} {b}: {row}");
+            let off = (model.mass[b] - lumped[b]).abs() / largest;
+            assert!(off <= allowed, "{order:?} {bulge} {b}: lumped off by {off}");
+        }
+        let whole: f64 = model.mass.iter().sum();
+        assert!((whole / exact.sum() - 1.0).abs() <= 1e-13, "{order:?} {bulge}: {whole}");
     }
 }

@@ -8,10 +8,10 @@ use crate::solver::sparse::{Cost, Task};
 
 /// Tangent stiffness and forces of an element take as long as so many multiplications and additions
 /// of dense products.
-const OF_FOUR_NODES: f64 = 5e4;
-const OF_TEN_NODES: f64 = 5e5;
+const OF_FOUR_NODES: f64 = 8e4;
+const OF_TEN_NODES: f64 = 1e6;
 /// Newton's method on small loads: one factorisation, and the residual falls tenfold or more a step.
-const NEWTON_STEPS: usize = 4;
+const NEWTON_STEPS: usize = 3;
 /// Right-hand side, old and new displacements (with fourth components), internal and external forces.
 const NEWTON_VECTORS: usize = 8;
 
@@ -34,6 +34,7 @@ pub fn statics(model: &SolidModel, unknowns: &Unknowns) -> Cost {
         vectors: NEWTON_VECTORS,
         other: 0,
         operations: assembly(model),
+        traffic: 0.0,
     };
     Cost::new(&unknowns.elimination, task)
 }
@@ -50,9 +51,11 @@ pub fn modes(model: &SolidModel, unknowns: &Unknowns, count: usize) -> Cost {
         // The space itself, a block before and after its solution, the modes found in it.
         vectors: solves + 3 * modes::BLOCK + count,
         other: 0,
-        // Each new vector is made orthogonal to all others, twice.
-        operations: assembly(model)
-            + (8 * solves * solves + 60 * solves) as f64 * unknowns.count as f64,
+        operations: assembly(model),
+        // Each new vector is made orthogonal to all others, twice, with reading, changing and writing
+        // (three values a component), and goes five times through the masses.
+        traffic: (24 * solves * solves) as f64 * unknowns.count as f64
+            + (60 * solves) as f64 * unknowns.mass_stored as f64,
     };
     Cost::new(&unknowns.elimination, task)
 }
@@ -68,6 +71,7 @@ pub fn condensed(model: &SolidModel, unknowns: &Unknowns, kept: usize, columns: 
         vectors: 2 * columns + 2,
         other: 8 * kept * kept,
         operations: assembly(model),
+        traffic: 0.0,
     };
     Cost::new(&unknowns.elimination, task)
 }

@@ -66,7 +66,7 @@ const STILL: f64 = 1e-8;
 
 /// Solves that usually settle `count` modes.
 pub fn usual_solves(count: usize) -> usize {
-    3 * count + 24
+    4 * count + 38
 }
 
 /// Lowest modes about the undeformed state.

@@ -7,6 +7,18 @@ use std::hint::black_box;
 use std::time::Instant;
 use thiserror::Error;
 
+// How much slower the parts of a factorisation and a solution are than the products and the reading
+// that `Speed` measures: fitted to processor times at 6000 and 52 000 nodes of ten-node elements, and
+// held against 171 000 (docs/benchmarks.md).
+/// Panels are of all sizes.
+const SMALLER_BLOCKS: f64 = 1.7;
+/// Products are spread over the rows that they belong to.
+const SCATTERED: f64 = 11.0;
+/// Both ways through the factors, with rows picked from the solution.
+const GATHERED: f64 = 1.6;
+/// Few right-hand sides.
+const THIN_BLOCKS: f64 = 2.0;
+
 /// Bytes of a value, and of a value with its row.
 const VALUE: f64 = 8.0;
 const ENTRY: f64 = 12.0;
@@ -26,8 +38,10 @@ pub struct Task {
     pub vectors: usize,
     /// Bytes of other things.
     pub other: usize,
-    /// What else takes time, as much as so many multiplications and additions.
+    /// What else takes time: as much as so many multiplications and additions of dense products, and
+    /// as reading so many bytes.
     pub operations: f64,
+    pub traffic: f64,
 }
 
 /// What a solution by factors will take.
@@ -89,16 +103,18 @@ impl Cost {
         self.factor_bytes + self.other_bytes
     }
 
-    /// s
+    /// On one processor that does nothing else, s.
     pub fn seconds(&self, speed: &Speed) -> f64 {
-        let Task { factorisations, passes, columns, .. } = self.task;
+        let Task { factorisations, passes, columns, operations, traffic, .. } = self.task;
         let fill = self.fill as f64;
-        let factorise = self.operations / speed.operations + VALUE * fill / speed.bytes;
-        let pass =
-            2.0 * VALUE * fill / speed.bytes + 4.0 * fill * columns as f64 / speed.operations;
+        let factorise = SMALLER_BLOCKS * self.operations / speed.operations
+            + SCATTERED * VALUE * fill / speed.bytes;
+        let pass = GATHERED * 2.0 * VALUE * fill / speed.bytes
+            + THIN_BLOCKS * 4.0 * fill * columns as f64 / speed.operations;
         factorisations as f64 * factorise
             + passes as f64 * pass
-            + self.task.operations / speed.operations
+            + operations / speed.operations
+            + traffic / speed.bytes
     }
 
     /// Refuses what does not fit, where the process holds `held` bytes already and may take `limit`

@@ -166,6 +166,8 @@ struct Owed<'a> {
     /// Of the panel at work: which of its rows an unknown is.
     local: Vec<u32>,
     panel: usize,
+    /// Of what one panel owes: the rows it goes to, and the values.
+    places: Vec<u32>,
     products: Vec<f64>,
 }
 
@@ -184,6 +186,7 @@ impl<'a> Owed<'a> {
             reached: vec![0; count],
             local: vec![0; elimination.unknowns],
             panel: 0,
+            places: Vec::new(),
             products: Vec::new(),
         }
     }
@@ -256,32 +259,31 @@ impl<'a> Owed<'a> {
     ) {
         let height = self.panel().height();
         let rows = lower.nrows();
-        let to = |row: usize| self.local[self.unknown(from, start + row)] as usize;
-        let first = to(0);
+        let mut places = std::mem::take(&mut self.places);
+        places.clear();
+        places.extend((start..start + rows).map(|row| self.local[self.unknown(from, row)]));
+        let first = places[0] as usize;
         let right = lower.subrows(0, columns).transpose();
-        if to(rows - 1) - first + 1 == rows {
+        if places[rows - 1] as usize - first + 1 == rows {
             // No gap between its rows: straight into place.
             let width = self.panel().columns;
             let whole = MatMut::from_column_major_slice_mut(block, height, width);
             let place = whole.subcols_mut(first, columns).subrows_mut(first, rows);
             multiply(place, Accum::Add, lower, right, -1.0);
-            return;
-        }
-        let mut products = std::mem::take(&mut self.products);
-        products.resize(products.len().max(rows * columns), 0.0);
-        let place =
-            MatMut::from_column_major_slice_mut(&mut products[..rows * columns], rows, columns);
-        multiply(place, Accum::Replace, lower, right, 1.0);
-        for column in 0..columns {
-            let at = self.local[self.unknown(from, start + column)] as usize;
-            let of_block = &mut block[at * height..(at + 1) * height];
-            let of_products = &products[column * rows..(column + 1) * rows];
-            for row in column..rows {
-                let to = self.local[self.unknown(from, start + row)] as usize;
-                of_block[to] -= of_products[row];
+        } else {
+            self.products.resize(self.products.len().max(rows * columns), 0.0);
+            let products = &mut self.products[..rows * columns];
+            let place = MatMut::from_column_major_slice_mut(products, rows, columns);
+            multiply(place, Accum::Replace, lower, right, 1.0);
+            for (column, of_products) in products.chunks_exact(rows).enumerate() {
+                let at = places[column] as usize;
+                let of_block = &mut block[at * height..(at + 1) * height];
+                for (place, product) in places[column..].iter().zip(&of_products[column..]) {
+                    of_block[*place as usize] -= product;
+                }
             }
         }
-        self.products = products;
+        self.places = places;
     }
 
     /// A finished panel joins those that owe the panel of its first row below.
