@@ -220,7 +220,11 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 1e-6 * curves[i].stiffness(),
             )
             .converged(1e-6 * finer[i].stiffness(), "ten-node elements, 48 × 3 × 3 cells")
-            .relative(0.02, "32 × 3 × 2 cells; a narrow contact gains and loses rows of nodes")
+            .relative(
+                if i == 0 { 0.02 } else { 0.005 },
+                "32 × 3 × 2 cells: 1e-3; with clearance the narrow contact gains and loses rows of nodes, 1.2 %. Interferences that \
+                 nowhere let go are one linear problem: three times the same number",
+            )
             .golden(GoldenTolerance { relative: 1e-6, absolute: 0.0 }),
         );
     }

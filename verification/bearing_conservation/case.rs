@@ -232,7 +232,7 @@ fn energy_drift(context: &mut CaseContext) -> Result<(), CaseError> {
                 order(pair[0], pair[1]),
             )
             .closed_form(5.0, "(ωh)⁶/72 a step is fifth order over a time")
-            .absolute(0.3, "slower modes and the next order"),
+            .absolute(0.05, "slower modes and the next order, 0.007"),
         );
     }
     let points = |values: &[f64]| -> Vec<[f64; 2]> {

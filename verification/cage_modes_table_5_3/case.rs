@@ -38,8 +38,10 @@ const RELIEVED: Cage = Cage {
 const MASS: f64 = 0.069;
 
 /// First pairs in and out of the plane of the literal cage, Hz: converged on fine meshes of ten-node
-/// elements by two other finite-element programs.
+/// elements by two other finite-element programs. Kept as these two numbers alone: unlike
+/// `calculix_comparison` there are neither decks nor output to run anew.
 const CONVERGED: [f64; 2] = [2271.5, 3959.0];
+const OTHERS: &str = "converged by two other finite-element programs; kept as numbers alone, without decks or output";
 
 /// Meshes from coarse to fine.
 const TEN_NODES: [CageMesh; 4] = [
@@ -140,7 +142,7 @@ fn literal_modes(context: &mut CaseContext) -> Result<[f64; 2], CaseError> {
     {
         context.check(
             Check::new(&format!("literal_{key}"), &format!("tet10: {text}"), "Hz", ten.means[i])
-                .independent(CONVERGED[i], "converged by two other finite-element programs")
+                .independent(CONVERGED[i], OTHERS)
                 .relative(0.003, "what the finest mesh of the study leaves")
                 .under("width")
                 .golden(GoldenTolerance::MIXED),
@@ -152,10 +154,10 @@ fn literal_modes(context: &mut CaseContext) -> Result<[f64; 2], CaseError> {
                 "Hz",
                 four.means[i],
             )
-            .independent(CONVERGED[i], "converged by two other finite-element programs")
+            .independent(CONVERGED[i], OTHERS)
             .at_least(
                 0.1 * CONVERGED[i],
-                "linear elements bend too stiffly: 66 000 of them in cut cells are still more than 10 % high",
+                "linear elements bend too stiffly: 66 000 of them in cut cells are seen to be 13 to 17 % high; a tenth is well below that",
             )
             .golden(GoldenTolerance::MIXED),
         );

@@ -29,7 +29,7 @@ pub const CASE: Case = Case {
 /// rad/s.
 const SHAFT: f64 = 600.0 / 60.0 * TAU;
 /// What the ball set is held against.
-const ROLLING: &str = "rolling at the loaded contact angles, roll axis where spin moments balance; the friction curve is the program's";
+const ROLLING: &str = "rolling at the loaded contact angles, roll axis where spin moments balance; the friction curve's coefficients are the scene's";
 /// Settling and window, s.
 const SETTLE: f64 = 0.05;
 const WINDOW: f64 = 0.05;

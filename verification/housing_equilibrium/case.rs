@@ -1,4 +1,4 @@
-//! A bearing in its housing in equilibrium, against a solution that shares the mesh alone.
+//! A bearing in its housing in equilibrium, against a solution that shares the mesh and the nodes' shares of the bore.
 
 use bearing_dynamics::ch2_housing::bore_contact::{Cylinder, Frame, contact_nodes, touch};
 use bearing_dynamics::kinematics::Pose;
@@ -238,7 +238,7 @@ fn compare(context: &mut CaseContext, variant: &Variant) -> Result<Vec<String>, 
     };
     let flat = |forces: &[Vec3]| forces.iter().flatten().copied().collect::<Vec<f64>>();
     let turned: Vec<Vec3> = first.forces.iter().map(world).collect();
-    let of_oracle = "own stiffness, factor, contact and Newton's method on the same mesh, to first order in displacements";
+    let of_oracle = "own stiffness, factor, contact and Newton's method, to first order in displacements; mesh and nodes' shares of the bore are the program's";
     let why = "statics of the bearing is solved to 1e-11 of its loads; the race's soft tilts in its bore multiply that by up to a hundred";
     let (id, text) = (variant.id, variant.text);
     for (what, name, error, limit) in [

@@ -381,8 +381,9 @@ fn dynamic_effects(context: &mut CaseContext) -> Result<(), CaseError> {
                         "lumped race mass on the contacts' linearised stiffness (oracle.rs)",
                     )
                     .relative(
-                        0.03,
-                        "the linear model lets no contact open or close by the swing itself",
+                        if rpm < 10_000.0 { 0.01 } else { 0.03 },
+                        "the linear model lets no contact open or close by the swing itself: up to 0.6 % below 10 000 rpm, 2 % there. \
+                         At 500 and 1000 rpm it says no more than that inertia hardly matters",
                     ),
                 );
                 row.extend([ours, theirs].map(|ratio| format!("{:+.2} %", 100.0 * (ratio - 1.0))));
