@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use bearing_dynamics::ch2_housing::bearing::ball_contact::{BallContactLaw, equal_spheres};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
 use bearing_dynamics::ch2_housing::bearing::geometry::Material;
@@ -41,7 +42,7 @@ pub fn race(loads: [f64; 5], rotation: Rotation) -> RaceBody {
 }
 
 /// The bearing with constant loads on an inner race of constant speed (rad/s): outer race fixed, no
-/// cage, no traction, no damping, no gravity.
+/// cage, no traction, no damping, no gravity. Balls touch as in a scene that says nothing of it.
 pub fn moving(
     lengths: &Lengths,
     ball_phase: f64,
@@ -63,7 +64,14 @@ pub fn moving(
         slices: 15,
         heathcote: false,
         damping: ContactDamping::None,
-        ball_contact: None,
+        ball_contact: Some(BallContactLaw {
+            stiffness: equal_spheres(
+                Material::STEEL.youngs_modulus / (1.0 - Material::STEEL.poisson_ratio.powi(2)),
+                still.geometry.ball_radius,
+            ),
+            friction: 0.1,
+            regularisation_speed: 0.01,
+        }),
         gravity: [0.0; 3],
         rotating_load: None,
         unbalance: 0.0,

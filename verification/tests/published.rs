@@ -307,13 +307,11 @@ fn each_published_value_stands_on_one_line_of_the_index() {
 
 /// Published numbers that stand in code, and why they may: case or helper, number, reason. An entry that
 /// nothing needs is an error.
-const TYPED: &[(&str, f64, &str)] = &[
-    (
-        "cylinder_on_block_table_2_1/case.rs",
-        0.134,
-        "another program's -27.8 and 13.4 %, not a tilt of Table 3.7",
-    ),
-];
+const TYPED: &[(&str, f64, &str)] = &[(
+    "cylinder_on_block_table_2_1/case.rs",
+    0.134,
+    "another program's -27.8 and 13.4 %, not a tilt of Table 3.7",
+)];
 
 /// Number literals of code, without comments, text and unit tests, with their lines.
 fn literals(code: &str) -> Vec<(usize, f64)> {
