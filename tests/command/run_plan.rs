@@ -228,6 +228,12 @@ fn the_plan_chooses_the_method_that_takes_less_work() {
     assert_eq!(choice.integrator, Integrator::Rosenbrock, "{}", choice.reason());
     let [implicit, explicit] = choice.mean_steps.unwrap();
     assert!(implicit > 10.0 * explicit, "{}", choice.reason());
+    // Steep all the way, standing still in between: no start anew may mislead.
+    let mut reversed = steep.clone();
+    reversed.inner.rotation =
+        Rotation::Speed(Profile::Ramp { from: 200.0, to: -200.0, start: 5e-3, duration: 10e-3 });
+    let choice = choose(&reversed, &wanted);
+    assert_eq!(choice.integrator, Integrator::Rosenbrock, "{}", choice.reason());
     let choice = choose(&rattling(), &wanted);
     assert_eq!(choice.integrator, Integrator::DormandPrince, "{}", choice.reason());
 }

@@ -14,7 +14,8 @@ use crate::solver::dynamics::run::{Integrator, RunOptions, Simulation, Start, St
 /// A foretold number of steps is meant to be within this factor of the one taken, up or down.
 pub const WITHIN: f64 = 2.0;
 
-/// Attempts of a trial that counts steps, and of one that chooses a method.
+/// Attempts of a trial that counts steps or that chooses a method where anything changes over time: some
+/// hundred at each look, since a start anew takes that long to settle. And where nothing changes.
 const TO_COUNT: u64 = 4000;
 const TO_CHOOSE: u64 = 900;
 /// Of the other method, at each look.
@@ -256,7 +257,8 @@ pub fn choose(problem: &DynamicProblem, request: &RunRequest) -> Choice {
     let options = RunOptions { integrator: Integrator::Rosenbrock, ..request.options };
     let request = RunRequest { options, ..request.clone() };
     let nothing = Choice { integrator: Integrator::Rosenbrock, mean_steps: None };
-    let Ok((stretches, ..)) = trial(problem, &request, TO_CHOOSE, Some(Integrator::DormandPrince))
+    let budget = if problem.changes() { TO_COUNT } else { TO_CHOOSE };
+    let Ok((stretches, ..)) = trial(problem, &request, budget, Some(Integrator::DormandPrince))
     else {
         return nothing;
     };
