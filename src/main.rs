@@ -15,7 +15,7 @@ use std::process::ExitCode;
 #[command(name = "bearing", version, after_help = "Scenes are described in docs/scene.md.")]
 struct Arguments {
     /// Memory that the program may take in all, GB [default: what the machine has left]
-    #[arg(long, global = true, value_name = "GB", value_parser = memory::parse_gigabytes)]
+    #[arg(long, global = true, value_name = "GB", value_parser = memory::parse_gigabytes, allow_negative_numbers = true)]
     memory: Option<f64>,
     #[command(subcommand)]
     command: Command,

@@ -101,7 +101,7 @@ fn a_sweep_runs_on_the_threads_it_was_given(path: &Path, folder: &Path) {
 }
 
 /// What the samples could miss: a thread that comes and goes. The words for one appear in no
-/// source file of the library, the command or the verification but the sweep's.
+/// source file of the library, the command or the verification but those named here.
 fn only_the_sweep_knows_of_threads() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut sources = Vec::new();
@@ -116,8 +116,14 @@ fn only_the_sweep_knows_of_threads() {
     };
     let mut found: Vec<_> = sources.into_iter().filter(knows).collect();
     found.sort();
-    // A sweep, and a solid that is asked for threads.
-    let known = ["src/commands/sweep/mod.rs", "src/solver/solid/team.rs"];
+    // What watches a long factorisation and sleeps between its looks; a sweep, a solid that is asked for
+    // threads, seeded faults side by side.
+    let known = [
+        "src/commands/memory.rs",
+        "src/commands/sweep/mod.rs",
+        "src/solver/solid/team.rs",
+        "verification/src/mutants/mod.rs",
+    ];
     assert_eq!(found, known.map(|path| root.join(path)));
 }
 

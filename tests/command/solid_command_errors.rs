@@ -363,7 +363,7 @@ fn a_file_in_place_of_a_folder_is_named() {
             .unwrap();
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("taken is a file, and a folder is needed there"), "{said}");
+    assert!(said.contains("taken is a file; move it away, or choose another --out"), "{said}");
     assert_eq!(fs::read_to_string(place.path("taken")).unwrap(), "mine");
 }
 

@@ -42,7 +42,7 @@ fn a_run_writes_its_report_in_three_forms_on_one_thread() {
     let html = text(&folder.path().join("report.html"));
     let markdown = text(&folder.path().join("report.md"));
     for form in [&html, &markdown] {
-        for needed in ["kinematic_frequencies", "spectrum_bin", "Table 5.4", "reproduced"] {
+        for needed in ["kinematic_frequencies", "slowest_cage_ratio", "Table 5.4", "reproduced"] {
             assert!(form.contains(needed), "{needed}");
         }
     }
