@@ -203,9 +203,8 @@ fn only_pockets_that_hold_the_balls_apart_spare_the_test() {
         problem.cage = Some(cage(&geometry, Pocket::Cylindrical, Guidance::OuterRace));
         let BallMeeting::KeptApart { gap } = meeting(&problem) else { panic!("{problem:?}") };
         // Less than in the middle of the pockets, where the play of both is left.
-        let chord = 2.0
-            * geometry.pitch_radius
-            * (3.141_592_653_589_793 / geometry.ball_count as f64).sin();
+        let chord =
+            2.0 * geometry.pitch_radius * (std::f64::consts::PI / geometry.ball_count as f64).sin();
         assert!(gap > 0.0 && gap < chord - 2.0 * geometry.ball_radius - 2.0 * 0.2e-3, "{gap}");
         // Pockets so wide that two balls can meet in them.
         let free = 0.5 * chord - geometry.ball_radius;

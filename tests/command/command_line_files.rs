@@ -36,10 +36,14 @@ fn refused_soon(arguments: &[&str]) -> String {
     refusal(arguments, &run)
 }
 
+/// A name, and what puts it there.
+#[cfg(unix)]
+type Made<'a> = (&'static str, Box<dyn Fn() + 'a>);
+
 /// Makes what nobody should read: a pipe that nobody writes to, a link to a device without end, a
 /// folder.
 #[cfg(unix)]
-fn unreadable(path: &Path) -> [(&'static str, Box<dyn Fn() + '_>); 3] {
+fn unreadable(path: &Path) -> [Made<'_>; 3] {
     [
         (
             "regular file",

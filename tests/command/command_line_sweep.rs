@@ -202,7 +202,8 @@ fn a_journal_that_was_cut_anywhere_is_resumed() {
     let last = ends[1] + 1;
     // The end, where numbers, brackets and the break are, and some bytes before; all of them on request.
     let step = if std::env::var("JOURNAL_CUTS").is_ok_and(|all| all == "all") { 1 } else { 29 };
-    let inside = (last..kept.len()).filter(|at| kept.len() - at < 6 || (at - last) % step == 0);
+    let inside =
+        (last..kept.len()).filter(|at| kept.len() - at < 6 || (at - last).is_multiple_of(step));
     let cuts = inside.chain([0, 1, ends[0] / 2, ends[0], ends[0] + 1]);
     for (count, cut) in cuts.enumerate() {
         let rest: &[u8] = [&b""[..], b"\xff\xfe\n", b"\0\0\0\0"][count % 3];
