@@ -400,7 +400,8 @@ fn factors_that_do_not_fit_are_refused() {
         succeed(command(name, &scene, &["--dry", "--memory", "1"]));
     }
     for wrong in ["0", "-3", "much", "NaN", "inf"] {
-        let output = command("statics", &scene, &["--memory", wrong]).output().unwrap();
+        let given = format!("--memory={wrong}");
+        let output = command("statics", &scene, &[&given, "--dry"]).output().unwrap();
         assert_eq!(output.status.code(), Some(2));
         assert!(stderr(&output).contains("--memory"), "{}", stderr(&output));
     }

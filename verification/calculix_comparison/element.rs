@@ -12,16 +12,19 @@ use crate::case::CaseError;
 use crate::check::Check;
 use crate::context::CaseContext;
 
-/// All entries of a sparse matrix.
-fn dense(matrix: &SymmetricMatrix) -> DMatrix<f64> {
+/// All entries of a sparse matrix, node by node; its own order is that of elimination.
+fn dense(matrix: &SymmetricMatrix, unknowns: &Unknowns) -> DMatrix<f64> {
     let size = matrix.size();
     let mut all = DMatrix::zeros(size, size);
-    for column in 0..size {
+    let places = unknowns.of.as_flattened();
+    for (column, place) in places.iter().enumerate() {
         let mut unit = vec![0.0; size];
-        unit[column] = 1.0;
+        unit[*place] = 1.0;
         let mut image = vec![0.0; size];
         matrix.multiply(&unit, &mut image);
-        all.column_mut(column).copy_from_slice(&image);
+        for (row, place) in places.iter().enumerate() {
+            all[(row, column)] = image[*place];
+        }
     }
     all
 }
@@ -42,9 +45,9 @@ pub fn matrices(context: &mut CaseContext, kind: &Kind) -> Result<(), CaseError>
     let unknowns = Unknowns::new(&model);
     let mut sparse = pattern(&model.problem, &unknowns);
     stiffness(&model, &unknowns, &vec![[0.0; 3]; model.mass.len()], &mut sparse);
-    let our_stiffness = dense(&sparse) / N_PER_MM;
+    let our_stiffness = dense(&sparse, &unknowns) / N_PER_MM;
     mass(&model, &unknowns, MassMatrix::Consistent, &mut sparse);
-    let our_mass = dense(&sparse) / TONNE;
+    let our_mass = dense(&sparse, &unknowns) / TONNE;
     let dof = files::text(&format!("kept/{tag}_element.dof"))?;
     let of =
         |end: &str| kept(&format!("kept/{tag}_element.{end}"), |text| oracle::matrix(text, dof));
