@@ -111,6 +111,8 @@ fn grouped(todo: Group) -> VecDeque<Group> {
         by_program.entry(program).or_default().push((mutant, key));
     }
     let mut groups: Vec<Group> = by_program.into_values().collect();
+    // File by file: putting one fault right and the next one in then changes a single module.
+    groups.iter_mut().for_each(|group| group.sort_by(|a, b| a.0.file.cmp(&b.0.file)));
     groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
     groups.into()
 }
