@@ -18,11 +18,7 @@ fn every_fault_of_the_list_applies_and_names_checks_that_exist() {
     list.check_applies(root).unwrap();
     assert!(list.mutants.len() >= 40, "{} faults", list.mutants.len());
     let has_test = |text: &str, name: &str| text.contains(&format!("fn {name}("));
-    let library: String = ["ch2_housing/bearing", "solver", "solver/dynamics", "kinematics"]
-        .iter()
-        .flat_map(|folder| fs::read_dir(root.join("src").join(folder)).unwrap())
-        .filter_map(|entry| fs::read_to_string(entry.unwrap().path()).ok())
-        .collect();
+    let library = sources_below(&root.join("src"));
     for check in list.mutants.iter().flat_map(|m| &m.caught_by).chain(&list.fallback) {
         let there = match check {
             Check::Test { name, filter } => {
@@ -40,6 +36,17 @@ fn every_fault_of_the_list_applies_and_names_checks_that_exist() {
         };
         assert!(there, "`{check}` does not exist");
     }
+}
+
+/// All Rust sources below a folder, in one text.
+fn sources_below(folder: &Path) -> String {
+    let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    paths
+        .map(|path| match path.is_dir() {
+            true => sources_below(&path),
+            false => fs::read_to_string(&path).unwrap_or_default(),
+        })
+        .collect()
 }
 
 const LIBRARY: &str = "/// Twice its argument.\npub fn twice(x: f64) -> f64 {\n    2.0 * x\n}\n";
