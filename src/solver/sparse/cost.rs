@@ -15,9 +15,9 @@ const SMALLER_BLOCKS: f64 = 1.7;
 /// Products are spread over the rows that they belong to.
 const SCATTERED: f64 = 11.0;
 /// Both ways through the factors, with rows picked from the solution.
-const GATHERED: f64 = 1.6;
+const GATHERED: f64 = 1.9;
 /// Few right-hand sides.
-const THIN_BLOCKS: f64 = 2.0;
+const THIN_BLOCKS: f64 = 2.2;
 
 /// Bytes of a value, and of a value with its row.
 const VALUE: f64 = 8.0;
