@@ -20,9 +20,9 @@ test:
 	@status=0; $(CARGO) test --release --locked --workspace || status=$$?; \
 	if [ -s $(SKIPPED) ]; then printf '\nNot all was tested:\n'; sort -u $(SKIPPED); fi; exit $$status
 
-## Record new golden values: make golden CASE=misalignment_moment REASON="why they changed"
+## Record new golden values: make golden CASE=misalignment_moment REASON="why they changed"; CASE=scenes for the rows of all scenes
 golden:
-	$(VERIFY) golden --case "$(CASE)" --reason "$(REASON)"
+	$(if $(filter scenes,$(CASE)),FREEZE_REASON="$(REASON)" $(CARGO) test --release --locked --test command frozen_scenes,$(VERIFY) golden --case "$(CASE)" --reason "$(REASON)")
 
 ## Kernels under criterion; what an accuracy costs in motion; steps of solids, against plain loops and CalculiX (where installed); bounds fail.
 bench:

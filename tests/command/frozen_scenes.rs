@@ -89,6 +89,9 @@ fn now(name: &str, file: &str) -> Value {
     content = content.replace("\"meshes/", &format!("\"{meshes}/"));
     if let Some((_, from, to)) = CUT.iter().find(|(cut, _, _)| *cut == name) {
         content = changed(&content, &format!("end = \"{from}\""), &format!("end = \"{to}\""));
+        // A window of averages that would begin after the earlier end.
+        let kept = content.lines().filter(|line| !line.starts_with("window_start"));
+        content = kept.map(|line| format!("{line}\n")).collect();
     }
     let command = if content.contains("numerics") {
         "run"
