@@ -48,7 +48,7 @@ const KICK: f64 = 1e-12;
 
 fn kicked(problem: &DynamicProblem, step: f64, end: f64, rows: usize) -> Run {
     let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
-    let mut state = start::at_equilibrium(problem, &layout).expect("a start").0;
+    let mut state = start::at_equilibrium(&problem.assembly()).expect("a start");
     state[layout.inner() + POSITION + 2] += KICK;
     let options = RunOptions {
         integrator: Integrator::Rosenbrock,

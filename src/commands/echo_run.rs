@@ -6,8 +6,9 @@ use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::{Assumption, DefaultUsed, Plot, RunPlot, RunSettings, Scene};
+use bearing_dynamics::solver::dynamics::assembly::BallMeeting;
 use bearing_dynamics::solver::dynamics::model::{
-    BallMeeting, CageBody, Drive, DynamicProblem, RaceBody, Rotation,
+    CageBody, Drive, DynamicProblem, RaceBody, Rotation,
 };
 use bearing_dynamics::solver::dynamics::run::{Start, Stepping};
 use bearing_dynamics::solver::profile::Profile;
@@ -104,7 +105,7 @@ pub fn motion(problem: &DynamicProblem) -> Echo {
     }
     echo.insert("traction".into(), traction(problem)?);
     echo.insert("contact_damping".into(), damping(&problem.damping)?);
-    if !matches!(problem.ball_meeting(), BallMeeting::KeptApart { .. }) {
+    if !matches!(problem.assembly().bearings[0].ball_meeting(), BallMeeting::KeptApart { .. }) {
         echo.insert("ball_contact".into(), ball_contact(problem)?);
     }
     if let Some(load) = &problem.rotating_load {

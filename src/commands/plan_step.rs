@@ -56,12 +56,12 @@ fn refused(error: &SimulationError) -> String {
 }
 
 fn steps(problem: &DynamicProblem, request: &RunRequest, step: f64) -> String {
-    format!("{} steps to t = {} s", given_steps(problem, request, step), request.end)
+    format!("{} steps to t = {} s", given_steps(&problem.assembly(), request, step), request.end)
 }
 
 /// How many steps, and where the number comes from.
 fn foretold(problem: &DynamicProblem, request: &RunRequest) -> String {
-    match foretell(problem, request) {
+    match foretell(&problem.assembly(), request) {
         Err(error) => format!("WARNING: the run will be refused: {error}"),
         Ok(found) if found.whole => {
             format!(
@@ -172,8 +172,11 @@ fn advice(simulation: &mut Simulation, limit: &StepLimit) -> Option<String> {
 }
 
 fn limit_with(simulation: &Simulation, traction: TractionLaw) -> Option<StepLimit> {
-    let problem = DynamicProblem { traction, ..simulation.system.problem.clone() };
-    let mut system = System::new(problem, RunOptions::default().driver);
+    let mut assembly = simulation.system.assembly.clone();
+    for bearing in &mut assembly.bearings {
+        bearing.traction = traction.clone();
+    }
+    let mut system = System::new(assembly, RunOptions::default().driver);
     step_limit(&mut system, simulation.time, &simulation.state)
 }
 
@@ -189,10 +192,13 @@ enum Onset {
 
 /// With an onset that is gentler by `factor`, where a speed of the scene makes it.
 fn onset(system: &System, factor: f64) -> Onset {
-    match &system.problem.traction {
+    let (Some(bearing), Some(set)) = (system.assembly.bearings.first(), system.sets.first()) else {
+        return Onset::Shape;
+    };
+    match &bearing.traction {
         TractionLaw::SlideToRoll { curve, entrainment_floor } => {
             let before = *entrainment_floor;
-            let table = &system.table;
+            let table = &set.table;
             let rolling = table.active.iter().map(|&pair| table.sliding[pair].entrainment.abs());
             let rolling = rolling.fold(0.0, f64::max);
             if rolling > before {

@@ -122,7 +122,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let table = RunTable::new(&session, settings.window_start)?;
     let mut written = pictures(&folder, &scene, &table)?;
     let mut record = record(&scene, &problem, &request, choice.as_ref())?;
-    let remarks = remarks::of_run(&scene, &problem, &session.simulation.extremes);
+    let remarks = remarks::of_run(&scene, &problem, &session.simulation.extremes[0]);
     record.sections.push(("remarks".into(), json!(remarks)));
     record.seconds = vec![
         ("read".into(), read_seconds),
@@ -205,7 +205,7 @@ pub fn planned_request(
             return (request, Some(Choice { integrator, mean_steps: None }));
         }
     }
-    let choice = choose(problem, &request);
+    let choice = choose(&problem.assembly(), &request);
     request.options.integrator = choice.integrator;
     (request, Some(choice))
 }
@@ -293,9 +293,9 @@ fn announcement(
     } else {
         String::new()
     };
-    let problem = &simulation.system.problem;
+    let assembly = &simulation.system.assembly;
     let asked = RunRequest { end: session.end, output_interval: interval, ..request.clone() };
-    let steps = given_steps(problem, &asked, simulation.step_size);
+    let steps = given_steps(assembly, &asked, simulation.step_size);
     text += &format!(
         "{steps} steps to t = {} s, a row every {} steps = {interval:.4e} s{rounded}\n",
         session.end, session.steps_per_row

@@ -20,23 +20,28 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
         let [x, y, z] = mean.map(|value| format!("{value:.6}"));
         line("inner race, mean", format!("{x}, {y}, {z} um (x, y, z over the window)"));
     }
-    let extremes = &session.simulation.extremes;
-    let farthest = &extremes.farthest;
-    let at = rounded(farthest.time);
-    line("inner race, farthest", format!("{:.6} um at t = {at} s", 1e6 * farthest.value));
-    let [inner, outer] = extremes.races.map(|race| race.load);
-    let (load, race) = if outer.value > inner.value { (outer, "outer") } else { (inner, "inner") };
-    if load.value > 0.0 {
-        let (ball, at) = (load.ball + 1, rounded(load.time));
-        let value = format!("{:.6} N, ball {ball}, {race} race, at t = {at} s", load.value);
-        line("largest ball load", value);
+    let simulation = &session.simulation;
+    for (extremes, bearing) in simulation.extremes.iter().zip(&simulation.system.assembly.bearings)
+    {
+        let of = bearing.name.as_ref().map_or(String::new(), |name| format!("{name} "));
+        let farthest = &extremes.farthest;
+        let at = rounded(farthest.time);
+        let place = format!("{:.6} um at t = {at} s", 1e6 * farthest.value);
+        line(&format!("{of}inner race, farthest"), place);
+        let [inner, outer] = extremes.races.map(|race| race.load);
+        let (load, race) =
+            if outer.value > inner.value { (outer, "outer") } else { (inner, "inner") };
+        if load.value > 0.0 {
+            let (ball, at) = (load.ball + 1, rounded(load.time));
+            let value = format!("{:.6} N, ball {ball}, {race} race, at t = {at} s", load.value);
+            line(&format!("{of}largest ball load"), value);
+        }
     }
     if let Some((_, most)) =
         table.all("energy_residual").and_then(|values| largest(values.into_iter().map(f64::abs)))
     {
         line("energy unaccounted for", format!("{most:.3e} J at most"));
     }
-    let simulation = &session.simulation;
     if let Some(shortened) = simulation.step_watch.shortened {
         line(
             "step",

@@ -205,11 +205,11 @@ pub fn resume(
     if file.limit.as_ref().is_some_and(|limit| cause(&limit.cause).is_none()) {
         return Err(damaged("its step limit has a cause that is not known"));
     }
-    if !checkpoint.fits(&problem) {
-        return Err(damaged("its lists have other lengths than the bearing asks for"));
-    }
-    if Extremes::from_numbers(&file.extremes).is_none() {
+    if Extremes::all_from_numbers(&file.extremes).is_none_or(|all| all.is_empty()) {
         return Err(damaged("its extremes are not as many as a bearing has"));
+    }
+    if !checkpoint.fits(&problem.assembly()) {
+        return Err(damaged("its lists have other lengths than the bearing asks for"));
     }
     let by_time = file.control.is_some();
     if by_time != matches!(request.options.stepping, Stepping::Accuracy(_)) {
@@ -268,7 +268,7 @@ pub(crate) fn state_file(
                 last,
             }),
         },
-        extremes: checkpoint.extremes.to_numbers(),
+        extremes: checkpoint.extremes.iter().flat_map(Extremes::to_numbers).collect(),
         end: span.0,
         output_interval: record.output_interval,
         steps_per_row: span.1,
@@ -343,7 +343,7 @@ pub(crate) fn checkpoint(file: &StateFile) -> Checkpoint {
                 .shortened
                 .map(|ShortenedEntry { times, from, last }| Shortened { times, from, last }),
         },
-        extremes: Extremes::from_numbers(&file.extremes).unwrap_or_default(),
+        extremes: Extremes::all_from_numbers(&file.extremes).unwrap_or_default(),
         state: file.state.clone(),
         damping: file.damping.clone(),
         was_loaded: file.was_loaded.clone(),

@@ -5,6 +5,7 @@
 //! make the energy depend on them through the meridian coordinates of each race alone.
 
 use super::ball_start::starting_point;
+use super::mount::Mount;
 use crate::ch2_housing::bearing::contact::{
     MeridianContact, meridian_contact, normal_load, normal_stiffness, strain_energy,
 };
@@ -77,6 +78,34 @@ impl InnerRacePosition {
             axis_xi_xi: Vector3::new(-cos_lambda * cos_xi, 0.0, cos_lambda * sin_xi),
             axis_xi_lambda: Vector3::new(sin_lambda * sin_xi, 0.0, sin_lambda * cos_xi),
         }
+    }
+
+    /// The race that sits at a mount of the body with these coordinates. Derivatives are by the body's
+    /// tilts, and leave out how these move the race's centre: see [`InnerRacePosition::along`].
+    pub fn mounted(coordinates: &SVector<f64, 5>, mount: &Mount) -> Self {
+        let mut race = InnerRacePosition::new(coordinates);
+        if mount.along != 0.0 {
+            race.centre += race.axis * mount.along;
+        }
+        if mount.reversed {
+            let turned = [
+                &mut race.axis,
+                &mut race.axis_xi,
+                &mut race.axis_lambda,
+                &mut race.axis_xi_xi,
+                &mut race.axis_xi_lambda,
+            ];
+            turned.into_iter().for_each(|vector| *vector = -*vector);
+        }
+        race
+    }
+
+    /// First (by ξ, λ) and second derivatives (ξξ, ξλ, λλ) of the centre of a race at a mount by its body's
+    /// tilts, m.
+    pub(super) fn along(&self, mount: &Mount) -> ([Vector3<f64>; 2], [Vector3<f64>; 3]) {
+        let by = if mount.reversed { -mount.along } else { mount.along };
+        let first = [self.axis_xi * by, self.axis_lambda * by];
+        (first, [self.axis_xi_xi * by, self.axis_xi_lambda * by, self.axis * -by])
     }
 }
 
@@ -361,7 +390,8 @@ fn newton_step(slope: &[f64; 2], curvature: &[f64; 3]) -> [f64; 2] {
 }
 
 /// Loads a ball puts on the inner race's five coordinates and their derivative, after the ball has
-/// found its equilibrium: adds ∂V/∂q and ∂²V/∂q² with the ball's coordinates condensed out.
+/// found its equilibrium: adds ∂V/∂q and ∂²V/∂q² with the ball's coordinates condensed out. Returns the force
+/// on the race, N.
 pub fn add_to_race(
     plane: &BallPlane,
     race: &InnerRacePosition,
@@ -369,9 +399,9 @@ pub fn add_to_race(
     ball: &SettledBall,
     gradient: &mut SVector<f64, 5>,
     stiffness: &mut SMatrix<f64, 5, 5>,
-) {
+) -> Vector3<f64> {
     if ball.inner_load == 0.0 {
-        return;
+        return Vector3::zeros();
     }
     let (slope, curvature) = race_and_ball_derivatives(plane, race, contacts, ball.position);
     let outer = contact_energy(
@@ -400,6 +430,7 @@ pub fn add_to_race(
             }
         }
     }
+    Vector3::new(-slope[0], -slope[1], -slope[2])
 }
 
 /// First and second derivatives of the inner contact's energy with respect to the race's five

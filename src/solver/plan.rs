@@ -2,7 +2,8 @@
 //! has, and can be asked why.
 
 use super::channels::ChannelGroup;
-use super::dynamics::model::{BallMeeting, Drive, DynamicProblem, RaceBody, Rotation};
+use super::dynamics::assembly::BallMeeting;
+use super::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
 use super::dynamics::run::{Integrator, RunOptions, Start, Stepping};
 use super::statics::{Condition, StaticProblem};
 use crate::ch2_housing::bearing::cage::Guidance;
@@ -228,7 +229,7 @@ fn cage(problem: &DynamicProblem, left_out: Option<&str>) -> Vec<Stage> {
 fn ball_contact(problem: &DynamicProblem) -> Stage {
     let balls = problem.geometry.ball_count;
     let name = "contact between balls";
-    match problem.ball_meeting() {
+    match problem.assembly().bearings[0].ball_meeting() {
         BallMeeting::Tested => {
             let reason = format!("{balls} pairs of neighbours; a pair apart costs a distance test");
             stage(name, true, reason)

@@ -1,156 +1,420 @@
-//! The search behind [`super::statics`]: Newton's method with a trust radius on the energy, and the
-//! solution's tables.
+//! The search for an equilibrium: Newton's method with a trust radius on the energy, over the coordinates
+//! of all bodies that are loaded. Balls are in equilibrium at every evaluation.
+//!
+//! Force and stiffness are exact in the coordinates of bodies that carry inner races. Where a body with
+//! an outer race moves, its stiffness follows from that of the inner one, since moving both together
+//! changes nothing; what the forces turn by with it is left out, some 1e-4 of it, which costs an iteration.
 
 use super::ball::{
     BallContacts, BallPlane, InnerRacePosition, SettledBall, add_to_race, energy_noise,
     overlap_of_races, settle,
 };
+use super::mount::Mount;
+use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing};
 use super::static_start;
-use super::statics::{
-    BallState, COORDINATE_NAMES, Condition, ContactState, Determinacy, StaticOptions,
-    StaticProblem, StaticSolution, StaticsError,
-};
-use crate::ch2_housing::bearing::contact::{MeridianContact, normal_load};
-use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
-use nalgebra::{SMatrix, SVector, SymmetricEigen, Vector3};
+use super::statics::{COORDINATE_NAMES, Determinacy, StaticOptions, StaticsError};
+use crate::ch2_housing::bearing::contact::normal_load;
+use crate::kinematics::Pose;
+use crate::kinematics::euler::quaternion;
+use nalgebra::{DMatrix, DVector, SMatrix, SVector, SymmetricEigen, UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
 
 /// Stiffness below this fraction of the largest one counts as none. Rounding of the overlaps leaves
 /// about 1e-12; the softest real direction, the swivel of a loaded ball, has about 1e-3.
 const NO_STIFFNESS: f64 = 1e-9;
 
-/// What does not change while the race moves.
-pub(super) struct Model {
-    pub(super) contacts: BallContacts,
-    planes: Vec<BallPlane>,
-    azimuths: Vec<f64>,
-    /// Metres per unit of each coordinate: 1 for lengths, the pitch radius for tilts.
-    scale: SVector<f64, 5>,
+type Five = SVector<f64, 5>;
+
+/// What does not change while bodies move.
+pub(super) struct Model<'a> {
+    pub(super) assembly: &'a StaticAssembly,
+    pub(super) bearings: Vec<BearingModel>,
+    /// First unknown of each body; `None` where it is held.
+    unknowns: Vec<Option<usize>>,
+    /// Metres per unit of each unknown: 1 for lengths, a pitch radius for tilts.
+    scale: DVector<f64>,
 }
 
-impl Model {
-    pub(super) fn new(problem: &StaticProblem) -> Self {
-        let geometry = &problem.geometry;
-        let contacts = static_start::ball_contacts(problem);
-        let outer = problem.outer_pose.relative_to(&problem.frame);
-        let gravity = problem.frame.orientation.inverse_transform_vector(&problem.gravity)
-            * problem.ball_mass;
-        let centrifugal = problem.ball_mass * problem.orbital_speed.powi(2);
-        let azimuths: Vec<f64> = (0..geometry.ball_count)
-            .map(|j| problem.ball_phase + TAU * j as f64 / geometry.ball_count as f64)
-            .collect();
-        let axial = outer.orientation * Vector3::x();
-        let planes = azimuths
-            .iter()
-            .map(|azimuth| {
-                let (sin, cos) = libm::sincos(*azimuth);
-                let radial = outer.orientation * Vector3::new(0.0, cos, sin);
-                let weight = [gravity.dot(&axial), gravity.dot(&radial)];
-                let weight_around = gravity.dot(&axial.cross(&radial));
-                let origin = outer.position;
-                BallPlane { origin, axial, radial, weight, weight_around, centrifugal }
-            })
-            .collect();
-        let pitch = geometry.pitch_radius;
-        Model { contacts, planes, azimuths, scale: SVector::from([1.0, 1.0, 1.0, pitch, pitch]) }
+pub(super) struct BearingModel {
+    pub(super) contacts: BallContacts,
+    pub(super) azimuths: Vec<f64>,
+    /// Where the outer race is held.
+    planes: Vec<BallPlane>,
+}
+
+/// Planes of all balls of a bearing whose outer race is on a body at `outer`.
+fn planes(bearing: &StaticBearing, azimuths: &[f64], outer: &Pose, to: &mut Vec<BallPlane>) {
+    to.clear();
+    let mount = &bearing.mounts[1];
+    let mut outer = *outer;
+    if mount.along != 0.0 {
+        outer.position += outer.orientation * Vector3::x() * mount.along;
+    }
+    if mount.reversed {
+        outer.orientation *=
+            UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(0.0, 0.0, 0.0, 1.0));
+    }
+    let weight_of = &bearing.weight;
+    let axial = outer.orientation * Vector3::x();
+    to.extend(azimuths.iter().map(|azimuth| {
+        let (sin, cos) = libm::sincos(*azimuth);
+        let radial = outer.orientation * Vector3::new(0.0, cos, sin);
+        let weight = [weight_of.dot(&axial), weight_of.dot(&radial)];
+        let weight_around = weight_of.dot(&axial.cross(&radial));
+        let (origin, centrifugal) = (outer.position, bearing.centrifugal);
+        BallPlane { origin, axial, radial, weight, weight_around, centrifugal }
+    }));
+}
+
+impl<'a> Model<'a> {
+    pub(super) fn new(assembly: &'a StaticAssembly) -> Self {
+        let mut unknowns = Vec::with_capacity(assembly.bodies.len());
+        let mut scale = Vec::new();
+        for (index, body) in assembly.bodies.iter().enumerate() {
+            unknowns.push(match body.place {
+                Place::Held(_) => None,
+                Place::Loaded(_) => {
+                    let sits = |bearing: &&StaticBearing| {
+                        bearing.mounts.iter().any(|mount| mount.body == index)
+                    };
+                    let own = assembly.bearings.iter().find(sits);
+                    let pitch = own.map_or(1.0, |bearing| bearing.geometry.pitch_radius);
+                    scale.extend([1.0, 1.0, 1.0, pitch, pitch]);
+                    Some(scale.len() - 5)
+                }
+            });
+        }
+        let bearings = assembly.bearings.iter().map(|bearing| {
+            let count = bearing.geometry.ball_count;
+            let azimuths: Vec<f64> =
+                (0..count).map(|j| bearing.ball_phase + TAU * j as f64 / count as f64).collect();
+            let mut held = Vec::new();
+            if let Place::Held(pose) = &assembly.bodies[bearing.mounts[1].body].place {
+                planes(bearing, &azimuths, pose, &mut held);
+            }
+            BearingModel { contacts: bearing.contacts(), azimuths, planes: held }
+        });
+        let bearings = bearings.collect();
+        Model { assembly, bearings, unknowns, scale: DVector::from_vec(scale) }
+    }
+
+    fn loaded(&self) -> impl Iterator<Item = (usize, usize, &Loaded)> {
+        let bodies = self.assembly.bodies.iter().zip(&self.unknowns).enumerate();
+        bodies.filter_map(|(index, (body, first))| match (&body.place, first) {
+            (Place::Loaded(loaded), Some(first)) => Some((index, *first, loaded)),
+            _ => None,
+        })
+    }
+
+    /// Coordinates of a body.
+    pub(super) fn coordinates(&self, body: usize, at: &DVector<f64>) -> Five {
+        match (&self.assembly.bodies[body].place, self.unknowns[body]) {
+            (Place::Loaded(_), Some(first)) => at.fixed_rows::<5>(first).into_owned(),
+            (Place::Held(pose), _) => five(pose),
+            _ => Five::zeros(),
+        }
+    }
+
+    pub(super) fn first_unknown(&self, body: usize) -> Option<usize> {
+        self.unknowns[body]
     }
 }
 
-/// The bearing at one position of the inner race.
-#[derive(Clone)]
+/// Position and tilts of a pose.
+fn five(pose: &Pose) -> Five {
+    let axis = pose.orientation * Vector3::x();
+    let tilts = [libm::atan2(-axis.z, axis.x), libm::asin(axis.y.clamp(-1.0, 1.0))];
+    let p = pose.position;
+    Five::from([p.x, p.y, p.z, tilts[0], tilts[1]])
+}
+
+fn pose(q: &Five) -> Pose {
+    Pose { position: Vector3::new(q[0], q[1], q[2]), orientation: quaternion(0.0, q[3], q[4]) }
+}
+
+/// Bodies at one place.
+#[derive(Clone, Default)]
 pub(super) struct Evaluation {
-    pub(super) at: SVector<f64, 5>,
-    /// Contact energy minus the work of loads and body forces, J.
+    pub(super) at: DVector<f64>,
+    /// Energy of contacts and springs minus the work of loads and body forces, J.
     pub(super) energy: f64,
-    gradient: SVector<f64, 5>,
-    stiffness: SMatrix<f64, 5, 5>,
-    largest_ball_load: f64,
-    balls: Vec<Option<SettledBall>>,
+    pub(super) gradient: DVector<f64>,
+    pub(super) stiffness: DMatrix<f64>,
+    pub(super) largest_ball_load: f64,
+    /// Of each bearing.
+    pub(super) balls: Vec<Vec<Option<SettledBall>>>,
+    /// Where the outer race is not held.
+    planes: Vec<Vec<BallPlane>>,
+}
+
+impl Evaluation {
+    pub(super) fn planes<'e>(&'e self, model: &'e Model, bearing: usize) -> &'e [BallPlane] {
+        let moved = &self.planes[bearing];
+        if moved.is_empty() { &model.bearings[bearing].planes } else { moved }
+    }
 }
 
 pub(super) struct Search<'a> {
-    model: &'a Model,
-    problem: &'a StaticProblem,
+    pub(super) model: &'a Model<'a>,
     options: &'a StaticOptions,
-    loads: SVector<f64, 5>,
-    free: [bool; 5],
+    pub(super) loads: DVector<f64>,
+    free: Vec<bool>,
+    /// Unknown, stiffness and rest of each spring to the ground.
+    springs: Vec<(usize, f64, f64)>,
     pub(super) saddles_left: usize,
-    iterations: usize,
-    contact_evaluations: usize,
-    spare: Vec<Option<SettledBall>>,
+    pub(super) iterations: usize,
+    pub(super) contact_evaluations: usize,
+    spare: Option<Evaluation>,
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn new(
-        model: &'a Model,
-        problem: &'a StaticProblem,
-        options: &'a StaticOptions,
-    ) -> Self {
-        let mut loads = SVector::zeros();
-        let mut free = [false; 5];
-        for (i, condition) in problem.conditions.iter().enumerate() {
-            if let Condition::Load(load) = condition {
-                loads[i] = *load;
-                free[i] = true;
+    pub(super) fn new(model: &'a Model<'a>, options: &'a StaticOptions) -> Self {
+        let count = model.scale.len();
+        let mut loads = DVector::zeros(count);
+        let mut free = vec![false; count];
+        let mut springs = Vec::new();
+        for (_, first, body) in model.loaded() {
+            for i in 0..5 {
+                if body.given(i).is_none() {
+                    loads[first + i] = body.load(i);
+                    free[first + i] = true;
+                }
+                if body.springs[i] != 0.0 {
+                    springs.push((first + i, body.springs[i], body.rest[i]));
+                }
             }
         }
         Search {
             model,
-            problem,
             options,
             loads,
             free,
+            springs,
             saddles_left: 0,
             iterations: 0,
             contact_evaluations: 0,
-            spare: Vec::with_capacity(model.planes.len()),
+            spare: None,
         }
     }
 
-    pub(super) fn evaluate(&mut self, at: SVector<f64, 5>) -> Evaluation {
-        let race = InnerRacePosition::new(&at);
-        let mut energy = -self.loads.dot(&at);
-        let mut gradient = -self.loads;
-        let mut stiffness = SMatrix::zeros();
-        let mut largest_ball_load = 0.0_f64;
-        let mut balls = std::mem::take(&mut self.spare);
+    /// Where the search begins.
+    pub(super) fn start(&self) -> DVector<f64> {
+        let mut at = DVector::zeros(self.free.len());
+        for (index, first, body) in self.model.loaded() {
+            let start = match body.start {
+                Some(start) => Five::from(start),
+                None => self.guess(index, body),
+            };
+            at.fixed_rows_mut::<5>(first).copy_from(&start);
+        }
+        self.impose(&mut at);
+        at
+    }
+
+    /// Takes given coordinates to their values.
+    pub(super) fn impose(&self, at: &mut DVector<f64>) {
+        for (_, first, body) in self.model.loaded() {
+            for i in 0..5 {
+                if let Some(value) = body.given(i) {
+                    at[first + i] = value;
+                }
+            }
+        }
+    }
+
+    /// Where the loads would take a body that carries one inner race against a held outer one.
+    fn guess(&self, body: usize, loaded: &Loaded) -> Five {
+        let on_it = |bearing: &&StaticBearing| bearing.mounts[0].body == body;
+        let bearing = self.model.assembly.bearings.iter().find(on_it);
+        let Some(bearing) = bearing else { return Five::zeros() };
+        let outer = &self.model.assembly.bodies[bearing.mounts[1].body].place;
+        let origin = match outer {
+            Place::Held(pose) => pose.position,
+            Place::Loaded(_) => Vector3::zeros(),
+        };
+        let loads = [0, 1, 2, 3, 4].map(|i| loaded.load(i));
+        static_start::guess(&bearing.geometry, &bearing.contacts(), &loads, &origin)
+    }
+
+    pub(super) fn evaluate(&mut self, at: &DVector<f64>) -> Evaluation {
+        let count = at.len();
+        let bearings = self.model.bearings.len();
+        let mut here = self.spare.take().unwrap_or_else(|| Evaluation {
+            gradient: DVector::zeros(count),
+            stiffness: DMatrix::zeros(count, count),
+            balls: vec![Vec::new(); bearings],
+            planes: vec![Vec::new(); bearings],
+            ..Evaluation::default()
+        });
+        here.at.clone_from(at);
+        here.energy = -self.loads.dot(at);
+        here.gradient.copy_from(&self.loads);
+        here.gradient.neg_mut();
+        here.stiffness.fill(0.0);
+        here.largest_ball_load = 0.0;
+        for &(i, spring, rest) in &self.springs {
+            let stretch = at[i] - rest;
+            here.energy += 0.5 * spring * stretch * stretch;
+            here.gradient[i] += spring * stretch;
+            here.stiffness[(i, i)] += spring;
+        }
+        for index in 0..bearings {
+            self.add_bearing(index, &mut here);
+        }
+        here
+    }
+
+    /// Energy, force and stiffness of one bearing.
+    fn add_bearing(&mut self, index: usize, here: &mut Evaluation) {
+        let model = self.model;
+        let bearing = &model.assembly.bearings[index];
+        let of = &model.bearings[index];
+        let [inner, outer] = bearing.mounts;
+        let race = InnerRacePosition::mounted(&model.coordinates(inner.body, &here.at), &inner);
+        let moves = model.unknowns[outer.body];
+        if moves.is_some() {
+            let outer = pose(&model.coordinates(outer.body, &here.at));
+            planes(bearing, &of.azimuths, &outer, &mut here.planes[index]);
+        }
+        // A race that is its body writes into the body's rows itself.
+        let direct = model.unknowns[inner.body].filter(|_| inner.is_direct() && moves.is_none());
+        let mut gradient = Five::zeros();
+        if let Some(first) = direct {
+            gradient.copy_from(&here.gradient.fixed_rows::<5>(first));
+        }
+        let mut stiffness = SMatrix::<f64, 5, 5>::zeros();
+        let (mut on_outer, mut about_outer) = (Vector3::zeros(), Vector3::zeros());
+        let mut balls = std::mem::take(&mut here.balls[index]);
         balls.clear();
-        for plane in &self.model.planes {
-            let contacts = &self.model.contacts;
-            let ball = settle(plane, &race, contacts, &mut self.contact_evaluations);
+        let moved = std::mem::take(&mut here.planes[index]);
+        for plane in if moved.is_empty() { &of.planes } else { &moved } {
+            let ball = settle(plane, &race, &of.contacts, &mut self.contact_evaluations);
+            let mut on_race = Vector3::zeros();
             if let Some(ball) = &ball {
-                energy += ball.energy;
-                largest_ball_load = largest_ball_load.max(ball.inner_load).max(ball.outer_load);
-                add_to_race(plane, &race, contacts, ball, &mut gradient, &mut stiffness);
+                here.energy += ball.energy;
+                here.largest_ball_load =
+                    here.largest_ball_load.max(ball.inner_load).max(ball.outer_load);
+                on_race =
+                    add_to_race(plane, &race, &of.contacts, ball, &mut gradient, &mut stiffness);
+            }
+            if moves.is_some() {
+                // Balls ride on the outer race: it takes what the inner one puts on them, and their weight.
+                let place =
+                    ball.as_ref().map_or([0.0, bearing.geometry.pitch_radius], |b| b.position);
+                let pushed = on_race - bearing.weight;
+                on_outer += pushed;
+                about_outer += (plane.axial * place[0] + plane.radial * place[1]).cross(&pushed);
             }
             balls.push(ball);
         }
-        Evaluation { at, energy, gradient, stiffness, largest_ball_load, balls }
+        (here.balls[index], here.planes[index]) = (balls, moved);
+        if let Some(first) = direct {
+            here.gradient.fixed_rows_mut::<5>(first).copy_from(&gradient);
+            let mut block = here.stiffness.fixed_view_mut::<5, 5>(first, first);
+            block += stiffness;
+            return;
+        }
+        // By how much a unit of each unknown moves the inner race against the outer one.
+        let inner_by = motion_of_race(&race, &inner);
+        if let Some(first) = model.unknowns[inner.body] {
+            let mut rows = here.gradient.fixed_rows_mut::<5>(first);
+            rows += inner_by.transpose() * gradient;
+            let mut block = here.stiffness.fixed_view_mut::<5, 5>(first, first);
+            block += inner_by.transpose() * stiffness * inner_by;
+            block += bending(&race, &inner, &gradient);
+        }
+        let Some(first) = moves else { return };
+        let q = model.coordinates(outer.body, &here.at);
+        let outer_race = InnerRacePosition::mounted(&q, &outer);
+        let e3 = quaternion(0.0, q[3], q[4]) * Vector3::z();
+        let mut carried = motion_of_race(&outer_race, &outer);
+        let force = carried.transpose()
+            * Five::from([on_outer.x, on_outer.y, on_outer.z, about_outer.y, about_outer.dot(&e3)]);
+        let mut rows = here.gradient.fixed_rows_mut::<5>(first);
+        rows += force;
+        // The inner race carried along by the outer one.
+        let arm = race.centre - outer_race.centre;
+        for (column, turn) in [(3, Vector3::y()), (4, e3)] {
+            let shift = turn.cross(&arm);
+            for i in 0..3 {
+                carried[(i, column)] += shift[i];
+            }
+        }
+        let mut block = here.stiffness.fixed_view_mut::<5, 5>(first, first);
+        block += carried.transpose() * stiffness * carried;
+        if let Some(of_inner) = model.unknowns[inner.body] {
+            let cross = carried.transpose() * stiffness * inner_by;
+            let mut block = here.stiffness.fixed_view_mut::<5, 5>(first, of_inner);
+            block -= cross;
+            let mut block = here.stiffness.fixed_view_mut::<5, 5>(of_inner, first);
+            block -= cross.transpose();
+        }
     }
 
     /// Largest unbalanced load over the free coordinates, N.
-    fn residual(&self, here: &Evaluation) -> f64 {
-        (0..5)
+    pub(super) fn residual(&self, here: &Evaluation) -> f64 {
+        (0..self.free.len())
             .filter(|&i| self.free[i])
             .map(|i| (here.gradient[i] / self.model.scale[i]).abs())
+            .fold(0.0, f64::max)
+    }
+
+    /// The farthest that a race is from the centre of its bearing, or a bearing from that of its body, m.
+    fn reach(&self) -> f64 {
+        let bearings = self.model.assembly.bearings.iter();
+        bearings.fold(0.0, |most: f64, bearing| {
+            let [inner, outer] = bearing.mounts.map(|mount| mount.along.abs());
+            most.max(bearing.geometry.pitch_radius).max(inner).max(outer)
+        })
+    }
+
+    /// Largest stiffness against one coordinate, N/m.
+    fn stiffest(&self, here: &Evaluation) -> f64 {
+        (0..self.free.len())
+            .map(|i| here.stiffness[(i, i)] / self.model.scale[i].powi(2))
             .fold(0.0, f64::max)
     }
 
     /// Residual at which to stop, N.
     fn allowed(&self, here: &Evaluation) -> f64 {
         let applied = self.loads.component_div(&self.model.scale).amax();
-        let pitch = self.problem.geometry.pitch_radius;
-        let stiffest = (0..5)
-            .map(|i| here.stiffness[(i, i)] / self.model.scale[i].powi(2))
-            .fold(0.0, f64::max);
         // Rounding of positions (some ulps of the pitch radius) times the stiffness cannot go away.
-        let noise = 8.0 * f64::EPSILON * pitch * stiffest;
+        let noise = 8.0 * f64::EPSILON * self.reach() * self.stiffest(here);
         self.options.tolerance * applied.max(here.largest_ball_load) + noise
+    }
+
+    /// What rounding does to the energy, J.
+    fn noise(&self, load: f64) -> f64 {
+        let bearings = self.model.assembly.bearings.iter();
+        bearings
+            .map(|bearing| {
+                let [inner, outer] = bearing.mounts.map(|mount| mount.along.abs());
+                let reach = bearing.geometry.pitch_radius.max(inner).max(outer);
+                energy_noise(load, reach) * bearing.geometry.ball_count as f64
+            })
+            .sum()
+    }
+
+    /// First trust radius, m.
+    fn step_scale(&self) -> f64 {
+        let largest = |coordinates: std::ops::Range<usize>| {
+            self.model
+                .loaded()
+                .flat_map(|(_, _, body)| coordinates.clone().map(|i| body.load(i).abs()))
+                .fold(0.0, f64::max)
+        };
+        let (force, moment) = (largest(0..3), largest(3..5));
+        let bearings = self.model.assembly.bearings.iter().zip(&self.model.bearings);
+        bearings
+            .map(|(bearing, of)| {
+                static_start::step_scale(&bearing.geometry, &of.contacts, force, moment)
+            })
+            .fold(0.0, f64::max)
     }
 
     /// Newton's method with a trust radius on the energy.
     pub(super) fn descend(&mut self, here: &mut Evaluation) -> Result<(), StaticsError> {
-        let mut radius = static_start::step_scale(self.problem, &self.model.contacts);
+        let mut radius = self.step_scale();
         loop {
             let residual = self.residual(here);
             let allowed = self.allowed(here);
@@ -162,23 +426,21 @@ impl<'a> Search<'a> {
             }
             self.iterations += 1;
             let step = self.newton_step(here, radius);
-            let there = self.evaluate(here.at + step.component_div(&self.model.scale));
+            let there = self.evaluate(&(&here.at + step.component_div(&self.model.scale)));
             let predicted = self.predicted_change(here, &step);
             let change = there.energy - here.energy;
             // Near the end the change drowns in rounding, and the unbalanced load decides alone.
-            let load = here.largest_ball_load.max(there.largest_ball_load);
-            let pitch = self.problem.geometry.pitch_radius;
-            let noise = energy_noise(load, pitch) * self.model.planes.len() as f64;
+            let noise = self.noise(here.largest_ball_load.max(there.largest_ball_load));
             let quieter = self.residual(&there) < residual;
             let accepted = change < (1e-4 * predicted).min(-noise) || (change <= noise && quieter);
             if accepted {
                 if change < 0.75 * predicted && step.norm() > 0.9 * radius {
                     radius *= 3.0;
                 }
-                self.spare = std::mem::replace(here, there).balls;
+                self.spare = Some(std::mem::replace(here, there));
                 self.check_travel(here)?;
             } else {
-                self.spare = there.balls;
+                self.spare = Some(there);
                 if residual <= 1e2 * allowed && change.abs() <= noise {
                     // Rounding, not the position, is what is left.
                     return Ok(());
@@ -192,24 +454,27 @@ impl<'a> Search<'a> {
     pub(super) fn check_balls(&self, here: &Evaluation) -> Result<(), StaticsError> {
         /// Newton's last step leaves 1e-11; anything above this is a ball still on its way.
         const SETTLED: f64 = 1e-8;
-        let race = InnerRacePosition::new(&here.at);
-        for (index, (plane, ball)) in self.model.planes.iter().zip(&here.balls).enumerate() {
-            let ball_number = index + 1;
-            match ball {
-                Some(ball) if ball.unbalance > SETTLED || ball.unbalance.is_nan() => {
-                    let unbalance = ball.unbalance;
-                    return Err(StaticsError::BallNotSettled { ball: ball_number, unbalance });
-                }
-                Some(_) => {}
-                None => {
-                    let (overlap, angle) = overlap_of_races(plane, &race, &self.model.contacts);
-                    if overlap > 0.0 && angle.abs() > std::f64::consts::FRAC_PI_2 {
-                        let degrees = angle.to_degrees();
-                        return Err(StaticsError::BallOutside {
-                            ball: ball_number,
-                            overlap,
-                            degrees,
-                        });
+        for (bearing, of) in self.model.assembly.bearings.iter().enumerate() {
+            let inner = &of.mounts[0];
+            let race =
+                InnerRacePosition::mounted(&self.model.coordinates(inner.body, &here.at), inner);
+            let contacts = &self.model.bearings[bearing].contacts;
+            for (index, (plane, ball)) in
+                here.planes(self.model, bearing).iter().zip(&here.balls[bearing]).enumerate()
+            {
+                let named = || format!("ball {}{}", index + 1, of.suffix());
+                match ball {
+                    Some(ball) if ball.unbalance > SETTLED || ball.unbalance.is_nan() => {
+                        let unbalance = ball.unbalance;
+                        return Err(StaticsError::BallNotSettled { ball: named(), unbalance });
+                    }
+                    Some(_) => {}
+                    None => {
+                        let (overlap, angle) = overlap_of_races(plane, &race, contacts);
+                        if overlap > 0.0 && angle.abs() > std::f64::consts::FRAC_PI_2 {
+                            let (ball, degrees) = (named(), angle.to_degrees());
+                            return Err(StaticsError::BallOutside { ball, overlap, degrees });
+                        }
                     }
                 }
             }
@@ -218,35 +483,69 @@ impl<'a> Search<'a> {
     }
 
     fn give_up(&self, here: &Evaluation, residual: f64, allowed: f64) -> Result<(), StaticsError> {
+        // Of the body that is farthest from balance.
+        let worst = |first: usize| {
+            (first..first + 5)
+                .filter(|&i| self.free[i])
+                .map(|i| (here.gradient[i] / self.model.scale[i]).abs())
+                .fold(0.0, f64::max)
+        };
+        let bodies = self.model.loaded().map(|(_, first, _)| first);
+        let at = bodies.max_by(|a, b| worst(*a).total_cmp(&worst(*b))).unwrap_or(0);
         Err(StaticsError::NotConverged {
             iterations: self.iterations,
             residual,
             allowed,
-            position: [here.at[0], here.at[1], here.at[2]],
-            tilts: [here.at[3], here.at[4]],
+            position: [here.at[at], here.at[at + 1], here.at[at + 2]],
+            tilts: [here.at[at + 3], here.at[at + 4]],
         })
     }
 
     fn check_travel(&self, here: &Evaluation) -> Result<(), StaticsError> {
-        let ball_radius = self.model.contacts.ball_radius;
-        for i in (0..5).filter(|&i| self.free[i]) {
-            let travel = here.at[i] * self.model.scale[i];
-            // NaN leaves here too.
-            if travel.is_nan() || travel.abs() > ball_radius {
-                let coordinate = COORDINATE_NAMES[i];
-                return Err(StaticsError::NoEquilibrium { coordinate, travel, ball_radius });
+        for (index, first, body) in self.model.loaded() {
+            let from = Five::from(body.start.unwrap_or([0.0; 5])) + self.carried(index, here);
+            for i in (0..5).filter(|&i| self.free[first + i]) {
+                let travel = (here.at[first + i] - from[i]) * self.model.scale[first + i];
+                // NaN leaves here too.
+                if travel.is_nan() || travel.abs() > body.room {
+                    let body = &self.model.assembly.bodies[index];
+                    return Err(StaticsError::NoEquilibrium {
+                        body: body.name.clone(),
+                        coordinate: COORDINATE_NAMES[i],
+                        travel,
+                        room: match &body.place {
+                            Place::Loaded(loaded) => loaded.room,
+                            Place::Held(_) => 0.0,
+                        },
+                    });
+                }
             }
         }
         Ok(())
     }
 
+    /// How far the body under a body's first outer race has gone: it takes the inner one along.
+    fn carried(&self, body: usize, here: &Evaluation) -> Five {
+        let on_it = |bearing: &&StaticBearing| bearing.mounts[0].body == body;
+        let bearing = self.model.assembly.bearings.iter().find(on_it);
+        let under = bearing.map(|bearing| bearing.mounts[1].body);
+        let Some((under, first)) = under.and_then(|u| Some((u, self.model.unknowns[u]?))) else {
+            return Five::zeros();
+        };
+        let Place::Loaded(loaded) = &self.model.assembly.bodies[under].place else {
+            return Five::zeros();
+        };
+        here.at.fixed_rows::<5>(first) - Five::from(loaded.start.unwrap_or([0.0; 5]))
+    }
+
     /// Gradient and stiffness over metres (tilts times pitch radius), prescribed coordinates
     /// replaced by a unit diagonal so that their step is zero.
-    fn scaled(&self, here: &Evaluation) -> (SVector<f64, 5>, SMatrix<f64, 5, 5>) {
+    fn scaled(&self, here: &Evaluation) -> (DVector<f64>, DMatrix<f64>) {
         let mut gradient = here.gradient.component_div(&self.model.scale);
-        let mut stiffness = here.stiffness;
-        for i in 0..5 {
-            for j in 0..5 {
+        let mut stiffness = here.stiffness.clone();
+        let count = self.free.len();
+        for i in 0..count {
+            for j in 0..count {
                 stiffness[(i, j)] /= self.model.scale[i] * self.model.scale[j];
                 if !(self.free[i] && self.free[j]) {
                     stiffness[(i, j)] = 0.0;
@@ -261,14 +560,14 @@ impl<'a> Search<'a> {
 
     /// Step in metres: Newton's where the stiffness is positive, otherwise with as much of the
     /// identity added as makes it so; never longer than `radius`.
-    fn newton_step(&self, here: &Evaluation, radius: f64) -> SVector<f64, 5> {
+    fn newton_step(&self, here: &Evaluation, radius: f64) -> DVector<f64> {
         let (gradient, stiffness) = self.scaled(here);
         let largest = stiffness.diagonal().amax();
         let floor = if largest > 0.0 { largest } else { gradient.amax() / radius };
         let mut shift = 0.0;
         loop {
-            let mut shifted = stiffness;
-            for i in 0..5 {
+            let mut shifted = stiffness.clone();
+            for i in 0..self.free.len() {
                 shifted[(i, i)] += if self.free[i] { shift } else { floor };
             }
             if let Some(factor) = shifted.cholesky() {
@@ -282,48 +581,51 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn predicted_change(&self, here: &Evaluation, step: &SVector<f64, 5>) -> f64 {
+    fn predicted_change(&self, here: &Evaluation, step: &DVector<f64>) -> f64 {
         let (gradient, stiffness) = self.scaled(here);
         gradient.dot(step) + 0.5 * step.dot(&(stiffness * step))
     }
 
     /// Eigenvalues and eigenvectors of the scaled stiffness over the free coordinates.
-    fn free_modes(&self, here: &Evaluation) -> Vec<(f64, SVector<f64, 5>)> {
+    fn free_modes(&self, here: &Evaluation) -> Vec<(f64, DVector<f64>)> {
+        if self.free.is_empty() {
+            return Vec::new();
+        }
         let (_, stiffness) = self.scaled(here);
         let eigen = SymmetricEigen::new(stiffness);
-        (0..5)
+        let count = self.free.len();
+        (0..count)
             .map(|k| (eigen.eigenvalues[k], eigen.eigenvectors.column(k).into_owned()))
-            .filter(|(_, v)| (0..5).any(|i| self.free[i] && v[i].abs() > 1e-6))
+            .filter(|(_, v)| (0..count).any(|i| self.free[i] && v[i].abs() > 1e-6))
             .collect()
     }
 
     /// A small displacement along the most negative stiffness, if there is one.
-    pub(super) fn falling_direction(&self, here: &Evaluation) -> Option<SVector<f64, 5>> {
+    pub(super) fn falling_direction(&self, here: &Evaluation) -> Option<DVector<f64>> {
         let modes = self.free_modes(here);
         let largest = modes.iter().map(|mode| mode.0.abs()).fold(0.0, f64::max);
         let (value, vector) = modes.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
         if value >= -NO_STIFFNESS * largest {
             return None;
         }
-        let length = 0.1 * static_start::step_scale(self.problem, &self.model.contacts);
+        let length = 0.1 * self.step_scale();
         Some((vector * length).component_div(&self.model.scale))
     }
 
-    fn determinacy(&self, here: &Evaluation) -> Determinacy {
+    pub(super) fn determinacy(&self, here: &Evaluation) -> Determinacy {
         let modes = self.free_modes(here);
         // The scale is that of the whole bearing, so that one lone free coordinate is judged too.
-        let scaled_diagonal = (0..5)
-            .map(|i| here.stiffness[(i, i)] / self.model.scale[i].powi(2))
-            .fold(0.0, f64::max);
+        let scaled_diagonal = self.stiffest(here);
         // An overlap of some ulps of the radius is no contact, and its stiffness none.
-        let contacts = &self.model.contacts;
-        let rounding = 256.0 * f64::EPSILON * contacts.outer.centre_radius;
-        let noise = normal_load(contacts.inner_stiffness.max(contacts.outer_stiffness), rounding);
-        let threshold = if here.largest_ball_load <= noise {
-            f64::INFINITY
-        } else {
-            NO_STIFFNESS * scaled_diagonal
-        };
+        let noise = self.model.bearings.iter().fold(0.0, |most: f64, of| {
+            let contacts = &of.contacts;
+            let rounding = 256.0 * f64::EPSILON * contacts.outer.centre_radius;
+            let stiffest = contacts.inner_stiffness.max(contacts.outer_stiffness);
+            most.max(normal_load(stiffest, rounding))
+        });
+        let nothing_touches = here.largest_ball_load <= noise && self.springs.is_empty();
+        let threshold =
+            if nothing_touches { f64::INFINITY } else { NO_STIFFNESS * scaled_diagonal };
         let free_directions: Vec<_> =
             modes.into_iter().filter(|mode| mode.0 <= threshold).map(|mode| mode.1).collect();
         if free_directions.is_empty() {
@@ -332,116 +634,32 @@ impl<'a> Search<'a> {
             Determinacy::Indeterminate { free_directions }
         }
     }
-
-    pub(super) fn solution(&self, here: Evaluation) -> StaticSolution {
-        let model = self.model;
-        let race = InnerRacePosition::new(&here.at);
-        let mut force_on_inner = Vector3::zeros();
-        let mut moment_on_inner = Vector3::zeros();
-        let mut force_on_outer = Vector3::zeros();
-        let mut moment_on_outer = Vector3::zeros();
-        let mut balls = Vec::with_capacity(model.planes.len());
-        for ((plane, azimuth), settled) in model.planes.iter().zip(&model.azimuths).zip(&here.balls)
-        {
-            let ball = self.ball_state(plane, *azimuth, &race, settled.as_ref());
-            force_on_inner += ball.inner.force_on_race;
-            force_on_outer += ball.outer.force_on_race;
-            moment_on_inner += (ball.position - race.centre).cross(&ball.inner.force_on_race);
-            moment_on_outer += (ball.position - plane.origin).cross(&ball.outer.force_on_race);
-            balls.push(ball);
-        }
-        StaticSolution {
-            coordinates: here.at,
-            loads: here.gradient + self.loads,
-            stiffness: here.stiffness,
-            force_on_inner,
-            moment_on_inner,
-            force_on_outer,
-            moment_on_outer,
-            balls,
-            determinacy: self.determinacy(&here),
-            saddles_left: self.saddles_left,
-            iterations: self.iterations,
-            contact_evaluations: self.contact_evaluations,
-            residual: self.residual(&here),
-        }
-    }
-
-    fn ball_state(
-        &self,
-        plane: &BallPlane,
-        azimuth: f64,
-        race: &InnerRacePosition,
-        settled: Option<&SettledBall>,
-    ) -> BallState {
-        let contacts = &self.model.contacts;
-        // An unloaded ball may be anywhere in its room; it is shown in the middle of it.
-        let in_plane = match settled {
-            Some(ball) => ball.position,
-            None => middle_of_room(plane, race, contacts),
-        };
-        let position = plane.origin + plane.axial * in_plane[0] + plane.radial * in_plane[1];
-        let (inner_contact, outer_contact) =
-            super::ball::contacts_at(plane, race, contacts, in_plane);
-        let (inner_load, outer_load) =
-            settled.map_or((0.0, 0.0), |ball| (ball.inner_load, ball.outer_load));
-        let arm = position - race.centre;
-        let radial = (arm - race.axis * race.axis.dot(&arm)).normalize();
-        let inner_normal = race.axis * inner_contact.normal[0] + radial * inner_contact.normal[1];
-        let outer_normal =
-            plane.axial * outer_contact.normal[0] + plane.radial * outer_contact.normal[1];
-        let inner_angle = libm::atan2(-inner_contact.normal[0], -inner_contact.normal[1]);
-        let outer_angle = libm::atan2(outer_contact.normal[0], outer_contact.normal[1]);
-        let problem = self.problem;
-        let inner = contact_state(
-            &problem.inner_contact,
-            &inner_contact,
-            inner_load,
-            inner_angle,
-            inner_normal,
-        );
-        let outer = contact_state(
-            &problem.outer_contact,
-            &outer_contact,
-            outer_load,
-            outer_angle,
-            outer_normal,
-        );
-        let around = plane.axial.cross(&plane.radial);
-        let contact_force = (inner.force_on_race + outer.force_on_race).dot(&around);
-        let cage_force = contact_force - plane.weight_around;
-        BallState { azimuth, position, inner, outer, cage_force }
-    }
 }
 
-fn middle_of_room(
-    plane: &BallPlane,
-    race: &InnerRacePosition,
-    contacts: &BallContacts,
-) -> [f64; 2] {
-    let outer = [contacts.outer.centre_axial, contacts.outer.centre_radius];
-    let inner = super::ball::inner_centre_in_plane(plane, race, &contacts.inner, outer);
-    let outer_room = contacts.outer.groove_radius - contacts.ball_radius;
-    let inner_room = contacts.inner.groove_radius - contacts.ball_radius;
-    let share = outer_room / (outer_room + inner_room);
-    [outer[0] + share * (inner[0] - outer[0]), outer[1] + share * (inner[1] - outer[1])]
+/// By how much a unit of each coordinate of its body moves a race: centre and tilts.
+fn motion_of_race(race: &InnerRacePosition, mount: &Mount) -> SMatrix<f64, 5, 5> {
+    let mut motion = SMatrix::<f64, 5, 5>::identity();
+    if mount.along != 0.0 {
+        let (first, _) = race.along(mount);
+        for (column, centre) in first.into_iter().enumerate() {
+            for i in 0..3 {
+                motion[(i, 3 + column)] = centre[i];
+            }
+        }
+    }
+    motion
 }
 
-fn contact_state(
-    hertz: &HertzContact,
-    contact: &MeridianContact,
-    normal_load: f64,
-    contact_angle: f64,
-    normal: Vector3<f64>,
-) -> ContactState {
-    let ellipse = contact_ellipse(hertz, normal_load);
-    ContactState {
-        normal_load,
-        approach: contact.overlap,
-        contact_angle,
-        semi_major: ellipse.semi_major,
-        semi_minor: ellipse.semi_minor,
-        peak_pressure: ellipse.peak_pressure,
-        force_on_race: normal * normal_load,
+/// Stiffness that a force on a race has by the curvature of the path of the race's centre.
+fn bending(race: &InnerRacePosition, mount: &Mount, gradient: &Five) -> SMatrix<f64, 5, 5> {
+    let mut stiffness = SMatrix::<f64, 5, 5>::zeros();
+    if mount.along != 0.0 {
+        let force = Vector3::new(gradient[0], gradient[1], gradient[2]);
+        let (_, [xi_xi, xi_lambda, lambda_lambda]) = race.along(mount);
+        stiffness[(3, 3)] = xi_xi.dot(&force);
+        stiffness[(3, 4)] = xi_lambda.dot(&force);
+        stiffness[(4, 3)] = stiffness[(3, 4)];
+        stiffness[(4, 4)] = lambda_lambda.dot(&force);
     }
+    stiffness
 }

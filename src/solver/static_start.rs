@@ -1,39 +1,40 @@
 //! Where the search for a static equilibrium starts, and how far its first step may go.
 
 use super::ball::BallContacts;
-use super::statics::{Condition, StaticProblem};
-use crate::ch2_housing::bearing::hertz::series_stiffness;
-use nalgebra::SVector;
+use crate::ch2_housing::bearing::geometry::BearingGeometry;
+use crate::ch2_housing::bearing::hertz::{HertzContact, series_stiffness};
+use nalgebra::{SVector, Vector3};
 
-pub(super) fn ball_contacts(problem: &StaticProblem) -> BallContacts {
-    let (inner, outer) = (problem.inner_contact.stiffness, problem.outer_contact.stiffness);
+pub(super) fn ball_contacts(
+    geometry: &BearingGeometry,
+    inner_contact: &HertzContact,
+    outer_contact: &HertzContact,
+) -> BallContacts {
+    let (inner, outer) = (inner_contact.stiffness, outer_contact.stiffness);
     // Equal loads: δ_outer/δ_inner = (K_inner/K_outer)^{2/3}.
     let ratio = libm::cbrt(inner / outer).powi(2);
     BallContacts {
-        ball_radius: problem.geometry.ball_radius,
-        inner: problem.geometry.inner,
-        outer: problem.geometry.outer,
+        ball_radius: geometry.ball_radius,
+        inner: geometry.inner,
+        outer: geometry.outer,
         inner_stiffness: inner,
         outer_stiffness: outer,
         outer_share: ratio / (1.0 + ratio),
     }
 }
 
-fn load(condition: &Condition) -> f64 {
-    match condition {
-        Condition::Load(load) => *load,
-        Condition::Displacement(_) => 0.0,
-    }
-}
-
-/// First trust radius in m: the overlap that the loads and the preload make, and the clearance.
-pub(super) fn step_scale(problem: &StaticProblem, contacts: &BallContacts) -> f64 {
-    let force = (0..3).map(|i| load(&problem.conditions[i]).abs()).fold(0.0, f64::max);
-    let moment = (3..5).map(|i| load(&problem.conditions[i]).abs()).fold(0.0, f64::max);
-    let total = force + moment / problem.geometry.pitch_radius;
+/// First trust radius in m: the overlap that a force (N) and a moment (N·m) on a bearing and its preload
+/// make, and the clearance.
+pub(super) fn step_scale(
+    geometry: &BearingGeometry,
+    contacts: &BallContacts,
+    force: f64,
+    moment: f64,
+) -> f64 {
+    let total = force + moment / geometry.pitch_radius;
     let stiffness = series_stiffness(contacts.inner_stiffness, contacts.outer_stiffness);
     let overlap = libm::cbrt(total / stiffness).powi(2);
-    let room = problem.geometry.radial_clearance.abs();
+    let room = geometry.radial_clearance.abs();
     // A preloaded or unloaded bearing still needs a step of visible size: 1e-4 ball radii.
     4.0 * (overlap + room).max(1e-4 * contacts.ball_radius)
 }
@@ -41,12 +42,14 @@ pub(super) fn step_scale(problem: &StaticProblem, contacts: &BallContacts) -> f6
 /// Cold start: the position under the axial load alone where there is one, plus the radial shift
 /// that the radial load alone makes in a bearing with this clearance (Stribeck's estimate that the
 /// most loaded ball carries 5 F/(Z cos α)).
-pub(super) fn guess(problem: &StaticProblem, contacts: &BallContacts) -> SVector<f64, 5> {
-    let geometry = &problem.geometry;
+pub(super) fn guess(
+    geometry: &BearingGeometry,
+    contacts: &BallContacts,
+    loads: &[f64; 5],
+    origin: &Vector3<f64>,
+) -> SVector<f64, 5> {
     let stiffness = series_stiffness(contacts.inner_stiffness, contacts.outer_stiffness);
-    let loads: Vec<f64> = problem.conditions.iter().map(load).collect();
     let balls = geometry.ball_count as f64;
-    let origin = problem.outer_pose.relative_to(&problem.frame).position;
     let mut start = SVector::zeros();
     for i in 0..3 {
         start[i] = origin[i];

@@ -1,16 +1,18 @@
-//! Static equilibrium of one bearing: five coordinates of the inner race, two of every ball.
+//! Static equilibrium: five coordinates of each body, two of every ball.
 //!
 //! The equilibrium is the minimum of contact energy minus the work of the loads. Newton's method
 //! with the analytic stiffness, its step bounded by a trust radius, descends on that energy from a
-//! cold start; the balls are in equilibrium at every evaluation, so that the race's five
-//! coordinates are the only unknowns of the outer loop.
+//! cold start; the balls are in equilibrium at every evaluation, so that the bodies'
+//! coordinates are the only unknowns of the outer loop. A bearing alone is a [`StaticProblem`].
 
-use super::static_search::{Model, Search};
-use super::static_start;
+use super::mount::Mount;
+use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing, StaticBody};
+use super::static_search::{Evaluation, Model, Search};
+use super::static_tables::{BearingState, bearing_state};
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::kinematics::Pose;
-use nalgebra::{SMatrix, SVector, Vector3};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector, Vector3};
 use thiserror::Error;
 
 /// The five coordinates of a race, in this order: x, y, z (m), tilt_y, tilt_z (rad). The tilts are
@@ -103,7 +105,7 @@ pub enum Determinacy {
     /// The position is one of many: these directions (unit vectors over the five coordinates,
     /// tilts multiplied by the pitch radius) meet no stiffness.
     Indeterminate {
-        free_directions: Vec<SVector<f64, 5>>,
+        free_directions: Vec<DVector<f64>>,
     },
 }
 
@@ -141,29 +143,23 @@ pub enum StaticsError {
     #[error("{what} is {value}: every input of the static problem must be finite")]
     NotFinite { what: &'static str, value: f64 },
     #[error(
-        "no equilibrium: the inner race leaves the bearing along {coordinate} \
-         ({travel:.3e} m, farther than a ball radius of {ball_radius:.3e} m); nothing holds it \
-         against the load in this direction: hold the coordinate by a displacement, or turn the load"
+        "no equilibrium: {body} leaves its place along {coordinate} \
+         ({travel:.3e} m, farther than the {room:.3e} m it has); nothing holds it \
+         against the load in this direction: hold the coordinate by a displacement or a spring, turn the load, \
+         or start a motion in nominal positions (numerics.start = \"nominal\")"
     )]
-    NoEquilibrium { coordinate: &'static str, travel: f64, ball_radius: f64 },
+    NoEquilibrium { body: String, coordinate: &'static str, travel: f64, room: f64 },
     #[error(
-        "ball {ball} has found no equilibrium between the races: {unbalance:.1e} of the force on it is \
+        "{ball} has found no equilibrium between the races: {unbalance:.1e} of the force on it is \
          unbalanced; hold or load the inner race differently, or leave the forces on balls out"
     )]
-    BallNotSettled { ball: usize, unbalance: f64 },
+    BallNotSettled { ball: String, unbalance: f64 },
     #[error(
-        "ball {ball} leaves its grooves: pressed {overlap:.3e} m deep at a contact angle of \
+        "{ball} leaves its grooves: pressed {overlap:.3e} m deep at a contact angle of \
          {degrees:.1} deg, past the 90 deg where the races hold it; the load is too large for this \
          bearing, check it and its unit"
     )]
-    BallOutside { ball: usize, overlap: f64, degrees: f64 },
-    #[error(
-        "no equilibrium of the outer race: {force:.3e} N (a moment over the pitch radius) along \
-         {coordinate} are unbalanced after it has moved by {travel:.3e}; hold it by a spring \
-         (outer_race.foundation) or a given motion, or start in nominal positions \
-         (numerics.start = \"nominal\")"
-    )]
-    OuterAdrift { coordinate: &'static str, force: f64, travel: f64 },
+    BallOutside { ball: String, overlap: f64, degrees: f64 },
     #[error(
         "no equilibrium found in {iterations} iterations: unbalanced load {residual:.3e} N against \
          {allowed:.3e} N allowed; last position x, y, z {position:?} m, tilts {tilts:?} rad"
@@ -175,6 +171,24 @@ pub enum StaticsError {
         position: [f64; 3],
         tilts: [f64; 2],
     },
+}
+
+/// Equilibrium of an assembly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssemblySolution {
+    /// x, y, z (m), tilt_y, tilt_z (rad) of each body.
+    pub coordinates: Vec<SVector<f64, 5>>,
+    /// What holds each body that is loaded there, besides its springs: N, N, N, N·m, N·m, conjugate to the
+    /// coordinates; zero for bodies that are held as a whole.
+    pub loads: Vec<SVector<f64, 5>>,
+    /// ∂loads/∂coordinates over the coordinates of all loaded bodies in their order, SI units.
+    pub stiffness: DMatrix<f64>,
+    pub bearings: Vec<BearingState>,
+    pub determinacy: Determinacy,
+    pub saddles_left: usize,
+    pub iterations: usize,
+    pub contact_evaluations: usize,
+    pub residual: f64,
 }
 
 /// Equilibrium from a cold start.
@@ -190,69 +204,168 @@ pub fn solve_from(
     options: &StaticOptions,
 ) -> Result<StaticSolution, StaticsError> {
     check_finite(problem)?;
-    match solve_directly(problem, guess, options) {
+    let assembly = problem.assembly();
+    let near = guess.map(|guess| vec![*guess, SVector::zeros()]);
+    let solution = solve_assembly(&assembly, near.as_deref(), options)?;
+    Ok(StaticSolution::from(solution))
+}
+
+/// The inner race, the outer race.
+const RACES: [usize; 2] = [0, 1];
+
+impl StaticProblem {
+    /// The same as lists: the inner race under its conditions, the outer race held.
+    pub fn assembly(&self) -> StaticAssembly {
+        let inner = Loaded {
+            conditions: self.conditions,
+            springs: [0.0; 5],
+            rest: [0.0; 5],
+            start: None,
+            room: self.geometry.ball_radius,
+        };
+        let weight =
+            self.frame.orientation.inverse_transform_vector(&self.gravity) * self.ball_mass;
+        let bearing = StaticBearing {
+            name: None,
+            geometry: self.geometry,
+            inner_contact: self.inner_contact,
+            outer_contact: self.outer_contact,
+            mounts: RACES.map(Mount::at_centre),
+            ball_phase: self.ball_phase,
+            weight,
+            centrifugal: self.ball_mass * self.orbital_speed.powi(2),
+        };
+        let body = |name: &str, place| StaticBody { name: name.into(), place };
+        StaticAssembly {
+            bodies: vec![
+                body("the inner race", Place::Loaded(inner)),
+                body("the outer race", Place::Held(self.outer_pose.relative_to(&self.frame))),
+            ],
+            bearings: vec![bearing],
+        }
+    }
+}
+
+impl From<AssemblySolution> for StaticSolution {
+    /// Of a bearing alone.
+    fn from(mut solution: AssemblySolution) -> StaticSolution {
+        let BearingState { forces, moments, balls, .. } = solution.bearings.remove(0);
+        StaticSolution {
+            coordinates: solution.coordinates[0],
+            loads: solution.loads[0],
+            stiffness: solution.stiffness.fixed_view::<5, 5>(0, 0).into_owned(),
+            force_on_inner: forces[0],
+            moment_on_inner: moments[0],
+            force_on_outer: forces[1],
+            moment_on_outer: moments[1],
+            balls,
+            determinacy: solution.determinacy,
+            saddles_left: solution.saddles_left,
+            iterations: solution.iterations,
+            contact_evaluations: solution.contact_evaluations,
+            residual: solution.residual,
+        }
+    }
+}
+
+/// Equilibrium of an assembly, looked for `near` coordinates of its bodies (x, y, z in m, tilts in rad);
+/// `None` is a cold start.
+///
+/// # Errors
+/// No equilibrium, or none found.
+pub fn solve_assembly(
+    assembly: &StaticAssembly,
+    near: Option<&[SVector<f64, 5>]>,
+    options: &StaticOptions,
+) -> Result<AssemblySolution, StaticsError> {
+    match solve_directly(assembly, near, options) {
         // A loose bearing under a small load lies in a long curved valley of the energy, along
         // which Newton's method creeps. A larger load straightens it; follow that down.
-        Err(StaticsError::NotConverged { .. }) if guess.is_none() => unload(problem, options),
+        Err(StaticsError::NotConverged { .. }) if near.is_none() => unload(assembly, options),
         result => result,
     }
 }
 
 /// Equilibrium under ever smaller multiples of the loads, down to the loads themselves.
 fn unload(
-    problem: &StaticProblem,
+    assembly: &StaticAssembly,
     options: &StaticOptions,
-) -> Result<StaticSolution, StaticsError> {
-    let mut start = None;
+) -> Result<AssemblySolution, StaticsError> {
+    let mut start: Option<Vec<SVector<f64, 5>>> = None;
     let mut work = (0, 0);
     let patient = StaticOptions { max_iterations: 10 * options.max_iterations, ..*options };
     for halvings in (1..=24).rev() {
         let factor = f64::powi(2.0, halvings);
-        let mut loaded = problem.clone();
-        for condition in &mut loaded.conditions {
-            if let Condition::Load(load) = condition {
-                *load *= factor;
+        let mut loaded = assembly.clone();
+        for body in &mut loaded.bodies {
+            let Place::Loaded(body) = &mut body.place else { continue };
+            for condition in &mut body.conditions {
+                if let Condition::Load(load) = condition {
+                    *load *= factor;
+                }
             }
         }
         // Loads too large for the bearing fail; a smaller multiple starts from where it was.
-        if let Ok(solution) = solve_directly(&loaded, start.as_ref(), options) {
+        if let Ok(solution) = solve_directly(&loaded, start.as_deref(), options) {
             work.0 += solution.iterations;
             work.1 += solution.contact_evaluations;
             start = Some(solution.coordinates);
         }
     }
-    let mut solution = solve_directly(problem, start.as_ref(), &patient)?;
+    let mut solution = solve_directly(assembly, start.as_deref(), &patient)?;
     solution.iterations += work.0;
     solution.contact_evaluations += work.1;
     Ok(solution)
 }
 
 fn solve_directly(
-    problem: &StaticProblem,
-    guess: Option<&SVector<f64, 5>>,
+    assembly: &StaticAssembly,
+    near: Option<&[SVector<f64, 5>]>,
     options: &StaticOptions,
-) -> Result<StaticSolution, StaticsError> {
-    let model = Model::new(problem);
-    let mut at = guess.copied().unwrap_or_else(|| static_start::guess(problem, &model.contacts));
-    for (i, condition) in problem.conditions.iter().enumerate() {
-        if let Condition::Displacement(value) = condition {
-            at[i] = *value;
+) -> Result<AssemblySolution, StaticsError> {
+    let model = Model::new(assembly);
+    let mut search = Search::new(&model, options);
+    let mut at = search.start();
+    for (body, near) in near.into_iter().flatten().enumerate() {
+        if let Some(first) = model.first_unknown(body) {
+            at.fixed_rows_mut::<5>(first).copy_from(near);
         }
     }
-    let mut search = Search::new(&model, problem, options);
-    let mut here = search.evaluate(at);
+    search.impose(&mut at);
+    let mut here = search.evaluate(&at);
     search.descend(&mut here)?;
     // A cold start on a plane of symmetry can end on a saddle, from which a real race would fall;
     // so leave it along the direction of negative stiffness and descend again.
     for _ in 0..5 {
         let Some(direction) = search.falling_direction(&here) else { break };
-        let trials = [1.0, -1.0].map(|sign| search.evaluate(here.at + direction * sign));
+        let trials = [1.0, -1.0].map(|sign| search.evaluate(&(&here.at + &direction * sign)));
         search.saddles_left += 1;
         here = trials.into_iter().min_by(|a, b| a.energy.total_cmp(&b.energy)).unwrap_or(here);
         search.descend(&mut here)?;
     }
     search.check_balls(&here)?;
-    Ok(search.solution(here))
+    Ok(solution(&search, here))
+}
+
+fn solution(search: &Search, here: Evaluation) -> AssemblySolution {
+    let model = search.model;
+    let bodies = 0..model.assembly.bodies.len();
+    let held = &here.gradient + &search.loads;
+    let loads = bodies.clone().map(|body| match model.first_unknown(body) {
+        Some(first) => held.fixed_rows::<5>(first).into_owned(),
+        None => SVector::zeros(),
+    });
+    AssemblySolution {
+        coordinates: bodies.map(|body| model.coordinates(body, &here.at)).collect(),
+        loads: loads.collect(),
+        bearings: (0..model.bearings.len()).map(|i| bearing_state(model, &here, i)).collect(),
+        determinacy: search.determinacy(&here),
+        saddles_left: search.saddles_left,
+        iterations: search.iterations,
+        contact_evaluations: search.contact_evaluations,
+        residual: search.residual(&here),
+        stiffness: here.stiffness,
+    }
 }
 
 fn check_finite(problem: &StaticProblem) -> Result<(), StaticsError> {

@@ -8,9 +8,10 @@ mod random_scenes;
 use bearing_dynamics::ch2_housing::bearing::ball_contact::ball_contact;
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::traction::Motion;
+use bearing_dynamics::solver::dynamics::assembly::BallMeeting;
 use bearing_dynamics::solver::dynamics::bounds::{HERTZ_SCALE, race_limit};
 use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{BallMeeting, Drive, DynamicProblem};
+use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };
@@ -37,7 +38,7 @@ fn loose() -> DynamicProblem {
 /// Balls 1 and 2 a micrometre apart on the pitch circle, as `motions` has them.
 fn two_balls(problem: &DynamicProblem, motions: [Motion; 2]) -> Vec<f64> {
     let layout = Layout::new(problem.geometry.ball_count, false);
-    let mut state = start::nominal(problem, &layout);
+    let mut state = start::nominal(&problem.assembly());
     let geometry = &problem.geometry;
     let half = ((geometry.ball_radius + 0.5e-6) / geometry.pitch_radius).asin();
     for (ball, (sign, motion)) in [-1.0, 1.0].into_iter().zip(motions).enumerate() {
@@ -90,7 +91,7 @@ fn an_impact_head_on_is_that_of_hertz() {
                 .unwrap();
         // Overlaps before and after a step, with the instant between them where it is zero.
         let gap = |simulation: &Simulation| {
-            let layout = simulation.system.layout;
+            let layout = simulation.system.sets[0].layout;
             let [a, b] = [0, 1].map(|ball| layout.ball_vector(&simulation.state, POSITION, ball));
             2.0 * problem.geometry.ball_radius - (Vector3::from(a) - Vector3::from(b)).norm()
         };
@@ -108,7 +109,7 @@ fn an_impact_head_on_is_that_of_hertz() {
                 ends = crossed;
             }
             simulation.snapshot().unwrap();
-            peak = peak.max(simulation.system.meetings[0].normal_load);
+            peak = peak.max(simulation.system.sets[0].meetings[0].normal_load);
             (before, time) = (now, simulation.time);
         }
         println!("{integrator:?}: {peak} N of {force} N, {} s of {duration} s", ends - begins);
@@ -117,7 +118,8 @@ fn an_impact_head_on_is_that_of_hertz() {
         // Crossings are interpolated, where the force begins with the power 3/2 of the overlap; Γ to seven
         // digits.
         assert!(((ends - begins) / duration - 1.0).abs() <= 1e-6, "{} {duration}", ends - begins);
-        let velocity = |ball| simulation.system.layout.ball_state(&simulation.state, ball).velocity;
+        let velocity =
+            |ball| simulation.system.sets[0].layout.ball_state(&simulation.state, ball).velocity;
         // Equal masses exchange their velocities.
         for i in 0..3 {
             // Steps of an accuracy of 1e-5.
@@ -147,7 +149,7 @@ fn an_oblique_impact_with_friction_keeps_momentum_and_books_what_it_loses() {
         let mut met = false;
         while simulation.time < 2e-4 {
             simulation.step().unwrap();
-            met |= simulation.system.meetings[0].normal_load > 0.0;
+            met |= simulation.system.sets[0].meetings[0].normal_load > 0.0;
         }
         assert!(met);
         let after = momenta(&problem, &simulation.state);
@@ -196,7 +198,7 @@ fn balls_that_are_apart_make_no_difference_to_any_bit() {
 
 #[test]
 fn only_pockets_that_hold_the_balls_apart_spare_the_test() {
-    let meeting = |problem: &DynamicProblem| problem.ball_meeting();
+    let meeting = |problem: &DynamicProblem| problem.assembly().bearings[0].ball_meeting();
     for geometry in [table_4_1(-5e-6), table_5_3()] {
         let mut problem = bearing(geometry, [0.0; 5], 0.0);
         assert_eq!(meeting(&problem), BallMeeting::Tested);
@@ -270,16 +272,16 @@ fn a_groove_does_not_close_over_its_ball() {
     let mut problem = bearing(table_4_1(5e-6), [0.0; 5], 0.0);
     problem.ball_phase = 0.0;
     let layout = Layout::new(8, false);
-    let mut state = start::nominal(&problem, &layout);
+    let mut state = start::nominal(&problem.assembly());
     state[layout.inner() + POSITION + 1] = -0.4e-3;
     let (system, ..) = evaluated(&problem, Driver::Plain, 0.0, &state);
-    let contact = system.table.contact[0];
+    let contact = system.sets[0].table.contact[0];
     assert!(contact.overlap < 0.0, "{contact:?}");
     // Walls go on straight: an axial offset of the ball meets them at the groove's half width.
     let room = problem.geometry.inner.groove_radius - problem.geometry.ball_radius;
     state[layout.ball(POSITION)] = room + 1e-6;
     let (system, ..) = evaluated(&problem, Driver::Plain, 0.0, &state);
-    let contact = system.table.contact[0];
+    let contact = system.sets[0].table.contact[0];
     assert!((contact.overlap - 1e-6).abs() <= 1e-15, "{contact:?}");
     assert_eq!(contact.normal, [1.0, 0.0, 0.0]);
 }
@@ -304,7 +306,7 @@ fn a_race_that_leaves_its_bearing_ends_the_run() {
     let mut problem = bearing(table_4_1(5e-6), [0.0, 0.0, -20.0, 0.0, 0.0], 0.0);
     problem.geometry.ball_count = 3;
     let layout = Layout::new(3, false);
-    let mut state = start::nominal(&problem, &layout);
+    let mut state = start::nominal(&problem.assembly());
     for (ball, degrees) in [60.0_f64, 90.0, 120.0].into_iter().enumerate() {
         let mut body = layout.ball_state(&state, ball);
         let (sin, cos) = degrees.to_radians().sin_cos();
@@ -315,11 +317,13 @@ fn a_race_that_leaves_its_bearing_ends_the_run() {
     let accuracy = options(Integrator::Rosenbrock, Stepping::Accuracy(1e-3));
     let mut simulation = Simulation::from_state(problem.clone(), accuracy, state, 0.0).unwrap();
     let error = (0..200_000).find_map(|_| simulation.step().err()).unwrap();
-    let SimulationError::RaceLeft { way, distance, allowed, time, step } = error else {
+    let SimulationError::RaceLeft { bearing: of, way, distance, allowed, time, step } = error
+    else {
         panic!("{error}")
     };
     let radius = problem.geometry.ball_radius;
-    assert_eq!((way, allowed), ("across its axis", race_limit(&problem)));
+    assert_eq!(of, "the bearing");
+    assert_eq!((way, allowed), ("across its axis", race_limit(&problem.geometry)));
     assert!(allowed > radius && allowed < 1.3 * radius, "{allowed}");
     assert!(distance > allowed, "{distance}");
     assert_eq!((time, step), (simulation.time, simulation.steps));
@@ -336,7 +340,7 @@ fn a_race_that_leaves_its_bearing_ends_the_run() {
     let problem = bearing(table_4_1(5e-6), [0.0; 5], 0.0);
     let layout = Layout::new(8, false);
     for (entry, named) in [(0, "along its axis"), (2, "across its axis")] {
-        let mut state = start::nominal(&problem, &layout);
+        let mut state = start::nominal(&problem.assembly());
         state[layout.inner() + entry] = 52e-3;
         let options = options(Integrator::RungeKutta, Stepping::Fixed(1e-12));
         let mut simulation = Simulation::from_state(problem.clone(), options, state, 0.0).unwrap();
@@ -355,7 +359,7 @@ fn parts_inside_each_other_end_the_run() {
     problem.ball_phase = 0.0;
     let radius = problem.geometry.ball_radius;
     let deep = 1.01 * HERTZ_SCALE * radius;
-    let nominal = start::nominal(&problem, &layout);
+    let nominal = start::nominal(&problem.assembly());
     // What is moved, by how much, and who is named.
     let contacts = problem.cage.as_ref().unwrap().contacts;
     let pocket = contacts.pocket_radius - radius + deep;
@@ -388,13 +392,12 @@ fn parts_inside_each_other_end_the_run() {
     // Balls that run into each other without a law for it.
     problem.cage = None;
     let body = |ball: usize, speed: f64| {
-        let mut body = Layout::new(8, false)
-            .ball_state(&start::nominal(&problem, &Layout::new(8, false)), ball);
+        let mut body = Layout::new(8, false).ball_state(&start::nominal(&problem.assembly()), ball);
         let [_, y, z] = body.position;
         body.velocity = [0.0, -z * speed, y * speed];
         body
     };
-    let mut state = start::nominal(&problem, &Layout::new(8, false));
+    let mut state = start::nominal(&problem.assembly());
     Layout::new(8, false).set_ball(&mut state, 7, &body(7, 400.0));
     let options = options(Integrator::RungeKutta, Stepping::Fixed(1e-6));
     let mut simulation = Simulation::from_state(problem.clone(), options, state, 0.0).unwrap();
@@ -416,7 +419,7 @@ fn a_full_complement_runs_with_its_ledger_closed() {
         let (mut met, mut deepest) = (0, 0.0f64);
         while simulation.time < 10e-3 {
             simulation.step().unwrap();
-            let meetings = &simulation.system.meetings;
+            let meetings = &simulation.system.sets[0].meetings;
             met += meetings.iter().filter(|meeting| meeting.normal_load > 0.0).count();
             deepest = meetings.iter().map(|meeting| meeting.overlap).fold(deepest, f64::max);
         }

@@ -80,17 +80,21 @@ impl Choice {
 /// Sum of all normal loads at the last evaluation, N; where damping has cut a load off, what the
 /// overlap alone would carry.
 fn force_scale(system: &System) -> f64 {
-    let layout = system.layout;
+    let layout = system.sets[0].layout;
     let mut races = 0.0;
-    for (side, law) in system.laws.races.iter().enumerate() {
+    for (side, law) in system.sets[0].laws.races.iter().enumerate() {
         for pair in (0..layout.balls).map(|ball| side * layout.padded + ball) {
-            let elastic = normal_load(law.stiffness, system.table.contact[pair].overlap);
-            races += elastic.max(system.table.load[pair]);
+            let elastic = normal_load(law.stiffness, system.sets[0].table.contact[pair].overlap);
+            races += elastic.max(system.sets[0].table.load[pair]);
         }
     }
-    let cage: f64 =
-        system.pockets.iter().chain(&system.guides).map(|contact| contact.normal_load).sum();
-    let balls: f64 = system.meetings.iter().map(|meeting| meeting.normal_load).sum();
+    let cage: f64 = system.sets[0]
+        .pockets
+        .iter()
+        .chain(&system.sets[0].guides)
+        .map(|contact| contact.normal_load)
+        .sum();
+    let balls: f64 = system.sets[0].meetings.iter().map(|meeting| meeting.normal_load).sum();
     races + cage + balls + 1.0
 }
 
@@ -102,7 +106,7 @@ proptest! {
         let problem = choice.problem();
         let state = random_state(&problem, seed);
         for driver in [Driver::Plain, Driver::Lanes] {
-            let (system, rates, _) = evaluated(&problem, driver, 0.0, &state);
+            let (system, rates) = evaluated(&problem, driver, 0.0, &state);
             let (force, moment) = load_sums(&problem, &state, &rates);
             let scale = force_scale(&system);
             // Rounding of some thirty contacts: 30 · 2⁻⁵³ · a few operations each. The gyroscopic
@@ -124,17 +128,17 @@ proptest! {
         problem.gravity = GRAVITY;
         let state = random_state(&problem, seed);
         let turn = Noise(seed ^ 1).turn(1.7);
-        let (system, rates, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+        let (system, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
         let there = moved(&problem, &state, &turn, &Vector3::from(by));
         let mut other = problem.clone();
         other.gravity = (turn * Vector3::from(GRAVITY)).into();
-        let (_, other_rates, _) = evaluated(&other, Driver::Lanes, 0.0, &there);
-        let layout = system.layout;
+        let (_, other_rates) = evaluated(&other, Driver::Lanes, 0.0, &there);
+        let layout = system.sets[0].layout;
         // Rounding of a position at 1 m is 1e-16 m; the stiffest contact, 1e8 N/m, makes 2e-8 N of
         // it, and the slips of 1 m/s change by 1e-16.
         let scale = force_scale(&system);
         for (inertia, at) in bodies(&problem) {
-            let (here, there) = (entries(&layout, &rates, at), entries(&layout, &other_rates, at));
+            let (here, there) = (entries(&rates, at), entries(&other_rates, at));
             let force = (turn * part(&here, VELOCITY) - part(&there, VELOCITY)) * inertia.mass;
             prop_assert!(force.norm() <= 1e-9 * scale, "force off by {} of {scale}", force.norm());
             let moment = (turn * part(&here, SPIN) - part(&there, SPIN)) * inertia.transverse;
@@ -161,7 +165,7 @@ proptest! {
         system.tidy(t, &mut state);
         let mut rates = vec![0.0; state.len()];
         system.evaluate(t, &state, &mut rates);
-        let at = system.layout.ledger();
+        let at = system.sets[0].layout.ledger();
         let power: f64 = rates[at..at + LEDGER].iter().sum();
         let scale = force_scale(&system);
         let step = 1e-9;
@@ -195,8 +199,8 @@ proptest! {
         }
         let state = random_state(&whole, seed);
         let t = 0.013;
-        let (system, rates, _) = evaluated(&whole, Driver::Lanes, t, &state);
-        let booked = &rates[system.layout.ledger()..][..LEDGER];
+        let (system, rates) = evaluated(&whole, Driver::Lanes, t, &state);
+        let booked = &rates[system.sets[0].layout.ledger()..][..LEDGER];
         let scale = force_scale(&system);
         let mut before = whole.clone();
         for entry in [
@@ -244,14 +248,14 @@ proptest! {
     fn traction_and_friction_only_take_energy(choice in any_choice(), seed: u64) {
         let problem = choice.problem();
         let state = random_state(&problem, seed);
-        let (system, rates, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
-        let at = system.layout.ledger();
+        let (system, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+        let at = system.sets[0].layout.ledger();
         // Traction, damping, cage friction, foundation: none may drive.
         for entry in 0..4 {
             prop_assert!(rates[at + entry] <= 0.0, "entry {entry}: {} W", rates[at + entry]);
         }
-        for &pair in &system.table.active {
-            prop_assert!(system.table.traction[pair].power <= 0.0);
+        for &pair in &system.sets[0].table.active {
+            prop_assert!(system.sets[0].table.traction[pair].power <= 0.0);
         }
     }
 
@@ -259,18 +263,17 @@ proptest! {
     fn both_drivers_have_the_same_bits(choice in any_choice(), seed: u64) {
         let problem = choice.problem();
         let state = random_state(&problem, seed);
-        let (_, plain, _) = evaluated(&problem, Driver::Plain, 0.0, &state);
-        let (_, lanes, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+        let (_, plain) = evaluated(&problem, Driver::Plain, 0.0, &state);
+        let (_, lanes) = evaluated(&problem, Driver::Lanes, 0.0, &state);
         prop_assert_eq!(bits(&plain), bits(&lanes));
     }
 }
 
 /// How fast the kinetic energy of all moving bodies grows, W: forces on velocities, moments on spins.
 fn kinetic_power(problem: &DynamicProblem, t: f64, state: &[f64]) -> f64 {
-    let (system, rates, _) = evaluated(problem, Driver::Lanes, t, state);
-    let layout = &system.layout;
+    let (_, rates) = evaluated(problem, Driver::Lanes, t, state);
     let of_body = |(inertia, at): (Inertia, BodyAt)| {
-        let (all, rate) = (entries(layout, state, at), entries(layout, &rates, at));
+        let (all, rate) = (entries(state, at), entries(&rates, at));
         let axis = Vector3::from(BodyState::from_slice(&all).axis());
         let (spin, spin_rate) = (part(&all, SPIN), part(&rate, SPIN));
         inertia.mass * part(&all, VELOCITY).dot(&part(&rate, VELOCITY))
@@ -339,14 +342,14 @@ fn preloaded(law: TractionLaw) -> (DynamicProblem, Layout, Vec<f64>) {
     let mut problem = bearing(table_4_1(-10e-6), [0.0; 5], 0.0);
     problem.traction = law;
     let layout = Layout::new(8, false);
-    let state = start::nominal(&problem, &layout);
+    let state = start::nominal(&problem.assembly());
     (problem, layout, state)
 }
 
 /// Moment on ball 1 about its contact line.
 fn spin_moment(problem: &DynamicProblem, layout: &Layout, state: &[f64]) -> (f64, System) {
-    let (system, rates, _) = evaluated(problem, Driver::Lanes, 0.0, state);
-    let normal = Vector3::from(system.table.contact[layout.padded].normal);
+    let (system, rates) = evaluated(problem, Driver::Lanes, 0.0, state);
+    let normal = Vector3::from(system.sets[0].table.contact[layout.padded].normal);
     let moment = Vector3::from(layout.ball_vector(&rates, SPIN, 0)) * problem.ball.axial;
     (moment.dot(&normal), system)
 }
@@ -366,7 +369,7 @@ fn pure_spin_of_a_ball_is_braked_by_three_eighths() {
         let exact: f64 = [0, layout.padded]
             .map(|pair| {
                 let hertz = [&problem.inner_contact, &problem.outer_contact][pair / layout.padded];
-                let load = system.table.load[pair];
+                let load = system.sets[0].table.load[pair];
                 let ellipse =
                     bearing_dynamics::ch2_housing::bearing::hertz::contact_ellipse(hertz, load);
                 -3.0 * 0.07 * load * ellipse.semi_major / 8.0
@@ -396,7 +399,7 @@ fn slices_converge_where_the_whole_contact_slides() {
     layout.set_ball(&mut state, 0, &ball);
     let mut loads = |slices: usize| {
         problem.slices = slices;
-        let (_, rates, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+        let (_, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
         let force = Vector3::from(layout.ball_vector(&rates, VELOCITY, 0)) * problem.ball.mass;
         let moment = Vector3::from(layout.ball_vector(&rates, SPIN, 0)) * problem.ball.axial;
         (force, moment)
@@ -417,12 +420,12 @@ fn slices_converge_where_the_whole_contact_slides() {
 fn heathcote_brakes_a_ball_that_rolls_without_slip_in_the_middle() {
     let (mut problem, layout, _) = preloaded(CONSTANT);
     problem.inner.rotation = Rotation::Speed(Profile::Constant(1000.0 * RPM));
-    let state = start::nominal(&problem, &layout);
+    let state = start::nominal(&problem.assembly());
     let mut braking = |heathcote: bool| {
         problem.heathcote = heathcote;
-        let (system, rates, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+        let (system, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
         let power = rates[layout.ledger_entry(Ledger::Traction)];
-        (system.laws.curvature, power)
+        (system.sets[0].laws.curvature, power)
     };
     let (flat, without) = braking(false);
     let (curved, with) = braking(true);
@@ -441,21 +444,21 @@ fn slide_to_roll_takes_the_mean_surface_speed_through_the_contact() {
     let (mut problem, layout, _) = preloaded(law);
     let speed = 1000.0 * RPM;
     problem.inner.rotation = Rotation::Speed(Profile::Constant(speed));
-    let mut state = start::nominal(&problem, &layout);
+    let mut state = start::nominal(&problem.assembly());
     // The ball turns in place, 1 % too fast for the outer race and against nothing else.
     let mut ball = layout.ball_state(&state, 0);
     let g = problem.geometry;
     let orbit = Vector3::from(ball.velocity).norm() / g.pitch_radius;
-    let (system, _, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
-    let overlap = system.table.contact[layout.padded].overlap;
+    let (system, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+    let overlap = system.sets[0].table.contact[layout.padded].overlap;
     let reach = g.ball_radius - 0.5 * overlap;
     let at_contact = orbit * (g.pitch_radius + reach);
     // No slip at the outer race: spin · reach equals the speed of the ball's centre.
     let rolling = -orbit * g.pitch_radius / reach;
     ball.spin = [rolling * 1.01, 0.0, 0.0];
     layout.set_ball(&mut state, 0, &ball);
-    let (system, _, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
-    let sliding = system.table.sliding[layout.padded];
+    let (system, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+    let sliding = system.sets[0].table.sliding[layout.padded];
     let slip = 0.01 * rolling * reach;
     // Race and ball pass the contact at these speeds.
     let entrainment = 0.5 * (at_contact + (at_contact - slip));
@@ -464,8 +467,8 @@ fn slide_to_roll_takes_the_mean_surface_speed_through_the_contact() {
     assert!((sliding.entrainment / entrainment - 1.0).abs() <= 1e-12);
     let s = slip.abs() / entrainment;
     let expected = (-0.1 + 22.28 * s) * (-181.46 * s).exp() + 0.1;
-    let traction = system.table.traction[layout.padded];
-    let measured = Vector3::from(traction.force).norm() / system.table.load[layout.padded];
+    let traction = system.sets[0].table.traction[layout.padded];
+    let measured = Vector3::from(traction.force).norm() / system.sets[0].table.load[layout.padded];
     assert!((measured / expected - 1.0).abs() <= 1e-10, "{measured} {expected}");
     // At rest nothing is divided by zero: the floor takes over.
     let (_, layout, mut state) = preloaded(problem.traction.clone());
@@ -473,9 +476,9 @@ fn slide_to_roll_takes_the_mean_surface_speed_through_the_contact() {
     ball.velocity = [0.0; 3];
     ball.spin = [1.0, 0.0, 0.0];
     layout.set_ball(&mut state, 0, &ball);
-    let (system, rates, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+    let (system, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
     assert!(rates.iter().all(|rate| rate.is_finite()));
-    let sliding = system.table.sliding[layout.padded];
+    let sliding = system.sets[0].table.sliding[layout.padded];
     assert!((sliding.slip[0].abs() - reach).abs() <= 1e-15 && sliding.entrainment > 0.002);
 }
 
@@ -497,25 +500,25 @@ fn turning_the_whole_bearing_about_its_axis_changes_no_traction() {
         }
         let mut turning = state.clone();
         for (_, at) in bodies(&problem) {
-            let mut body = BodyState::from_slice(&entries(&layout, &state, at));
+            let mut body = BodyState::from_slice(&entries(&state, at));
             let orbit = Vector3::x().cross(&Vector3::from(body.position)) * 100.0;
             for i in 0..3 {
                 body.velocity[i] += orbit[i];
             }
             body.spin[0] += 100.0;
             match at {
-                BodyAt::Ball(ball) => layout.set_ball(&mut turning, ball, &body),
+                BodyAt::Ball(layout, ball) => layout.set_ball(&mut turning, ball, &body),
                 BodyAt::At(at) => turning[at..at + 13].copy_from_slice(&body.to_array()),
             }
         }
-        let (still, _, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
-        let (orbiting, _, _) = evaluated(&problem, Driver::Lanes, 0.0, &turning);
-        assert!(!still.table.active.is_empty());
-        assert_eq!(still.table.active, orbiting.table.active);
-        for &pair in &still.table.active {
-            let [a, b] =
-                [&still, &orbiting].map(|system| Vector3::from(system.table.traction[pair].force));
-            let load = still.table.load[pair];
+        let (still, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+        let (orbiting, _) = evaluated(&problem, Driver::Lanes, 0.0, &turning);
+        assert!(!still.sets[0].table.active.is_empty());
+        assert_eq!(still.sets[0].table.active, orbiting.sets[0].table.active);
+        for &pair in &still.sets[0].table.active {
+            let [a, b] = [&still, &orbiting]
+                .map(|system| Vector3::from(system.sets[0].table.traction[pair].force));
+            let load = still.sets[0].table.load[pair];
             // Speeds of 3 m/s are added and taken away again: 5e-16 of slips of 1 m/s, times the
             // slope of the friction curve (40 over the entrainment of a few tenths of a m/s).
             assert!((a - b).norm() <= 1e-12 * load, "{a} {b}");
@@ -529,8 +532,8 @@ fn without_traction_no_ball_spin_changes() {
         let problem = bearing(table_5_3(), [0.0; 5], 0.0);
         let layout = Layout::new(11, false);
         let state = random_state(&problem, seed);
-        let (system, rates, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
-        assert!(!system.table.active.is_empty());
+        let (system, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+        assert!(!system.sets[0].table.active.is_empty());
         for ball in 0..layout.balls {
             let moment = Vector3::from(layout.ball_vector(&rates, SPIN, ball)) * problem.ball.axial;
             // Rounding of arm × (−load · normal).

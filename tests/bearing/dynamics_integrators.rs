@@ -145,7 +145,7 @@ fn pushed(
     push: impl Fn(&Layout, &mut [f64]),
 ) -> Simulation {
     let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
-    let mut state = start::at_equilibrium(problem, &layout).unwrap().0;
+    let mut state = start::at_equilibrium(&problem.assembly()).unwrap();
     push(&layout, &mut state);
     let stepping = Stepping::Fixed(step);
     let options =
@@ -334,18 +334,18 @@ fn recorded_contact_forces_hold_the_load_and_the_energy_balances() {
     let stepping = Stepping::Accuracy(1e-3);
     let mut simulation = motion(&problem, Integrator::Rosenbrock, stepping, 5e-3, 50).1;
     let snapshot = simulation.snapshot().unwrap();
-    assert!(snapshot.instant.on_inner.force[2] > 0.0);
+    assert!(simulation.system.sets[0].on_races[0].force[2] > 0.0);
     // Newton's law for the race, whose acceleration is what the rates say, traction included.
-    let at = simulation.system.layout.inner() + 7;
+    let at = simulation.system.sets[0].layout.inner() + 7;
     let mut rates = vec![0.0; simulation.state.len()];
     simulation.system.evaluate(simulation.time, &simulation.state.clone(), &mut rates);
     for (i, load) in [0.0, 0.0, -1500.0].into_iter().enumerate() {
         let expected = problem.inner.inertia.mass * rates[at + i];
-        let sum = snapshot.instant.on_inner.force[i] + load;
+        let sum = simulation.system.sets[0].on_races[0].force[i] + load;
         assert!((sum - expected).abs() <= 1e-9, "{sum} {expected}");
     }
     // Equilibrium but for the race's own slow motion.
-    let forces = snapshot.instant.on_inner.force;
+    let forces = simulation.system.sets[0].on_races[0].force;
     assert!((forces[2] - 1500.0).abs() <= 1.0 && forces[1].abs() <= 1.0, "{forces:?}");
     // Traction takes energy. What is unaccounted for is far below the energy in the contacts; most of
     // it goes in the first steps, before sliding and ringing of the start have died out.
@@ -441,7 +441,7 @@ fn errors_count_by_the_displacement_they_make() {
     let cage = problem.cage.as_ref().unwrap().inertia;
     let simulation = started(&problem, Integrator::Rosenbrock, Stepping::Accuracy(1e-3));
     let control = simulation.control.as_ref().unwrap();
-    let layout = simulation.system.layout;
+    let layout = simulation.system.sets[0].layout;
     let overlap = control.memory.displacement;
     let unit = SHARE * 1e-3 * overlap;
     let hertz = problem.inner_contact.stiffness.min(problem.outer_contact.stiffness);
@@ -479,7 +479,7 @@ fn an_error_that_is_not_a_number_is_never_good_enough() {
     let simulation = started(&rolling(), Integrator::Rosenbrock, Stepping::Accuracy(1e-3));
     let control = simulation.control.as_ref().unwrap();
     let length = simulation.state.len();
-    let layout = simulation.system.layout;
+    let layout = simulation.system.sets[0].layout;
     for at in [layout.ball(POSITION), layout.ball(VELOCITY) + 1, layout.inner() + POSITION] {
         let mut attempt = Attempt::new(length);
         attempt.error.fill(1e-15);
@@ -559,9 +559,9 @@ fn booked_and_summed(
         RunOptions { integrator, stepping, energy_limit: f64::INFINITY, ..RunOptions::default() };
     let mut simulation = Simulation::from_state(problem.clone(), options, state, 0.0).unwrap();
     let powers = |simulation: &Simulation| {
-        let (system, rates, _) =
+        let (system, rates) =
             evaluated(&problem, Driver::Lanes, simulation.time, &simulation.state);
-        ENTRIES.map(|entry| rates[system.layout.ledger_entry(entry)])
+        ENTRIES.map(|entry| rates[system.sets[0].layout.ledger_entry(entry)])
     };
     let (mut sums, mut sizes) = ([0.0; 5], [0.0; 5]);
     let mut before = powers(&simulation);

@@ -44,7 +44,7 @@ fn hunt_and_crossley_lose_alpha_times_the_speed() {
     problem.inner.drives = std::array::from_fn(|_| Drive::Motion(Profile::ZERO));
     problem.ball_phase = 0.0;
     let layout = Layout::new(8, false);
-    let mut state = start::nominal(&problem, &layout);
+    let mut state = start::nominal(&problem.assembly());
     let mut ball = layout.ball_state(&state, 0);
     ball.velocity = [0.0, speed, 0.0];
     layout.set_ball(&mut state, 0, &ball);
@@ -53,7 +53,7 @@ fn hunt_and_crossley_lose_alpha_times_the_speed() {
     let back = (0..20_000).find_map(|_| {
         simulation.step().unwrap();
         let velocity = layout.ball_state(&simulation.state, 0).velocity[1];
-        let open = simulation.system.table.contact[layout.padded].overlap < 0.0;
+        let open = simulation.system.sets[0].table.contact[layout.padded].overlap < 0.0;
         (open && velocity < 0.0).then_some(-velocity)
     });
     let ratio = back.unwrap() / speed;
@@ -79,13 +79,13 @@ fn an_unbalance_is_a_mass_on_the_race() {
     let layout = Layout::new(8, false);
     let at = layout.inner();
     for angle in [0.0, 0.4, 2.5, -1.9] {
-        let mut state = start::nominal(&problem, &layout);
+        let mut state = start::nominal(&problem.assembly());
         let mut inner = BodyState::from_slice(&state[at..]);
         inner.orientation = about(Vector3::x(), angle);
         state[at..at + BODY].copy_from_slice(&inner.to_array());
         let force = [0.0, 2e-4].map(|unbalance| {
             problem.unbalance = unbalance;
-            let (_, rates, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+            let (_, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
             Vector3::from_column_slice(&rates[at + VELOCITY..at + VELOCITY + 3])
                 * problem.inner.inertia.mass
         });
@@ -102,7 +102,7 @@ fn a_start_rolls_without_slip() {
     for geometry in [table_4_1(-5e-6), table_5_3()] {
         let problem = bearing(geometry, [0.0; 5], speed);
         let layout = Layout::new(geometry.ball_count, false);
-        let state = start::nominal(&problem, &layout);
+        let state = start::nominal(&problem.assembly());
         let (sin, cos) = geometry.contact_angle.sin_cos();
         for i in 0..layout.balls {
             let ball = layout.ball_state(&state, i);
@@ -140,7 +140,7 @@ fn ringing(problem: &DynamicProblem, state: Vec<f64>) -> f64 {
         run(&mut simulation, every);
         let ball_phase = problem.ball_phase + orbit * simulation.time;
         let now = DynamicProblem { ball_phase, ..problem.clone() };
-        let fixed = solve(&start::static_problem(&now, 0.0)).unwrap();
+        let fixed = solve(&now.statics(0.0)).unwrap();
         let position = inner_state(&simulation).position;
         off.push([1, 2].map(|i| position[i] - fixed.coordinates[i]));
     }
@@ -171,13 +171,13 @@ fn a_started_bearing_moves_with_its_equilibrium() {
             ..bearing(table_4_1(-5e-6), loads, 1000.0 * RPM)
         };
         let layout = Layout::new(8, false);
-        let moving = start::at_equilibrium(&problem, &layout).unwrap().0;
+        let moving = start::at_equilibrium(&problem.assembly()).unwrap();
         // In statics without traction, the race at rest but for its rotation, balls on the pitch
         // circle's orbit and spin.
         let smooth = DynamicProblem { traction: TractionLaw::None, ..problem.clone() };
-        let mut resting = start::at_equilibrium(&smooth, &layout).unwrap().0;
+        let mut resting = start::at_equilibrium(&smooth.assembly()).unwrap();
         resting[layout.inner() + VELOCITY..layout.inner() + SPIN].fill(0.0);
-        let nominal = start::nominal(&problem, &layout);
+        let nominal = start::nominal(&problem.assembly());
         for i in 0..layout.balls {
             let ball = layout.ball_state(&resting, i);
             let rolling = layout.ball_state(&nominal, i);
@@ -210,7 +210,7 @@ fn a_start_is_as_fast_as_its_equilibrium_moves() {
     };
     problem.rotating_load = rotating(0.0);
     let layout = Layout::new(8, true);
-    let state = start::at_equilibrium(&problem, &layout).unwrap().0;
+    let state = start::at_equilibrium(&problem.assembly()).unwrap();
     let orbital = speed * ratios(8, geometry.ball_radius, geometry.pitch_radius, 0.0).cage;
     // The cage turns with the balls, about the outer race's axis.
     let outer = BodyState::from_slice(&state[layout.outer()..]);
@@ -223,7 +223,7 @@ fn a_start_is_as_fast_as_its_equilibrium_moves() {
     let [after, before] = [dt, -dt].map(|t| {
         let ball_phase = problem.ball_phase + orbital * t;
         let moved = DynamicProblem { ball_phase, rotating_load: rotating(t), ..problem.clone() };
-        start::at_equilibrium(&moved, &layout).unwrap().0
+        start::at_equilibrium(&moved.assembly()).unwrap()
     });
     let rate = |at: usize| (after[at] - before[at]) / (2.0 * dt);
     // Races move by some 10 mm/s. Rates of the start come from equilibria 0.1 ms apart: a third of
@@ -300,7 +300,7 @@ fn a_tilting_moment_does_work_on_its_tilt() {
     problem.inner.inertia = Inertia { mass: 0.2, axial: 1e-4, transverse: 0.7e-4 };
     problem.inner.rotation = Rotation::Torque(Profile::ZERO);
     let mut simulation = simulation(&problem, 20e-6, Start::Nominal);
-    let at = simulation.system.layout.inner();
+    let at = simulation.system.sets[0].layout.inner();
     simulation.state[at + SPIN] = 20.0;
     let first = simulation.snapshot().unwrap().energy.kinetic;
     let mut largest = [0.0_f64; 2];
@@ -451,9 +451,9 @@ fn every_profile_of_a_problem_has_its_corners_there() {
         problem.rotating_load.get_or_insert_with(turning).speed = profile;
     }));
     assert_eq!(places.len(), 2 * 12 + 2);
-    assert!(still().corners().is_empty());
+    assert!(still().assembly().corners().is_empty());
     let check = |problem: &DynamicProblem, profile: &Profile| {
-        let corners = problem.corners();
+        let corners = problem.assembly().corners();
         assert!(corners.windows(2).all(|pair| pair[0] < pair[1]), "{corners:?}");
         for jump in jumps(|t| profile.value(t)).into_iter().filter(|jump| *jump > SEEN_TO) {
             let near = corners.iter().any(|corner| (corner - jump).abs() <= SEEN_TO);
@@ -525,14 +525,13 @@ fn a_run_turns_with_its_whole_scene() {
     for (is_tilted, allowed, of_ledger) in [(false, upright, 1e-4), (true, tilted, 1e-3)] {
         let first_problem = turned(0.0, is_tilted);
         let first = ends(&first_problem);
-        let layout = first.system.layout;
         for angle in [0.7, -2.4, 3.0 * pitch] {
             let problem = turned(angle, is_tilted);
             let there = ends(&problem);
             let by = about(Vector3::x(), angle);
             let should = moved(&first_problem, &first.state, &by, &Vector3::zeros());
             for (_, at) in bodies(&problem) {
-                let (a, b) = (entries(&layout, &should, at), entries(&layout, &there.state, at));
+                let (a, b) = (entries(&should, at), entries(&there.state, at));
                 for (component, allowed) in allowed {
                     let off = (part(&a, component) - part(&b, component)).norm();
                     assert!(off <= allowed, "{angle} {at:?} {component}: {off:e}");
@@ -552,7 +551,7 @@ fn a_run_turns_with_its_whole_scene() {
     let there = ends(&renamed);
     for ball in 0..balls {
         let [a, b] = [(&first, (ball + 1) % balls), (&there, ball)]
-            .map(|(of, ball)| of.system.layout.ball_state(&of.state, ball));
+            .map(|(of, ball)| of.system.sets[0].layout.ball_state(&of.state, ball));
         let off = (Vector3::from(a.position) - Vector3::from(b.position)).norm();
         assert!(off <= 1e-9, "ball {ball}: {off:e}");
         let off = (Vector3::from(a.spin) - Vector3::from(b.spin)).norm();

@@ -88,9 +88,9 @@ struct Point {
 fn linearised(problem: &DynamicProblem, state: Vec<f64>) -> Point {
     let mut system = System::new(problem.clone(), Driver::Lanes);
     let mut rates = vec![0.0; state.len()];
-    let instant = system.evaluate_with(Want::ForcesAndSlopes, 0.0, &state, &mut rates);
+    system.evaluate_with(Want::ForcesAndSlopes, 0.0, &state, &mut rates);
     let mut linearised = Linearised::new(&system);
-    linearised.update(&system, &state, &instant);
+    linearised.update(&system, &state);
     Point { system, state, linearised }
 }
 
@@ -117,11 +117,11 @@ const DISPLACEMENTS: Push = Push { displacement: 1.0, velocity: 0.0, tangential:
 
 impl Point {
     fn push(&self, push: Push, noise: &mut Noise) -> Vec<f64> {
-        let layout = self.system.layout;
-        let geometry = &self.system.problem.geometry;
+        let layout = self.system.sets[0].layout;
+        let geometry = &self.system.assembly.bearings[0].geometry;
         let mut r = vec![0.0; layout.len()];
         for ball in 0..layout.balls {
-            let here = self.system.table.sliding[layout.padded + ball];
+            let here = self.system.sets[0].table.sliding[layout.padded + ball];
             let (along, across) = (here.rolling_direction, here.transverse_direction);
             let mut moved = noise.vector(push.displacement);
             if push.tangential {
@@ -155,11 +155,11 @@ impl Point {
     /// What is left over of the equation for `r`.
     fn left_over(&mut self, scale: f64, r: &[f64]) -> LeftOver {
         let Point { system, state, linearised } = self;
-        let layout = system.layout;
-        let mut arrow = Arrow::new(&layout, system.problem.ball, linearised.hubs.len());
+        let layout = system.sets[0].layout;
+        let mut arrow = Arrow::new(system, linearised);
         arrow.factor(linearised, scale);
         let mut w = vec![0.0; layout.len()];
-        arrow.solve(linearised, &layout, state, &vec![0.0; 3 * layout.padded], r, &mut w);
+        arrow.solve(linearised, &system.sets, state, &vec![0.0; state.len()], r, &mut w);
         // Displacements of 1e-11 m at most, a part 1e-5 of the overlaps, and speeds of 1e-6 m/s.
         let displaced = (0..3)
             .flat_map(|i| &w[layout.ball(i)..layout.ball(i) + layout.balls])
@@ -177,9 +177,9 @@ impl Point {
         system.evaluate_with(Want::ForcesAndSlopes, 0.0, state, &mut vec![0.0; layout.len()]);
         let error: Vec<f64> = (0..layout.len()).map(|i| r[i] - w[i] + change[i]).collect();
         let mut left = LeftOver(Vec::new());
-        let radius = system.problem.geometry.ball_radius;
+        let radius = system.assembly.bearings[0].geometry.ball_radius;
         for ball in 0..layout.balls {
-            let contact = system.table.contact[layout.padded + ball];
+            let contact = system.sets[0].table.contact[layout.padded + ball];
             let tangent = cross([1.0, 0.0, 0.0], contact.outward);
             let directions = [
                 (Part::Normal, contact.normal),
@@ -237,7 +237,7 @@ const AXIAL: f64 = 100.0;
 /// close.
 fn shaken(problem: &DynamicProblem, shake: f64, noise: &mut Noise) -> Vec<f64> {
     let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
-    let mut state = start::at_equilibrium(problem, &layout).unwrap().0;
+    let mut state = start::at_equilibrium(&problem.assembly()).unwrap();
     let radius = problem.geometry.ball_radius;
     for ball in 0..layout.balls {
         let (fast, spin) = (noise.vector(shake), noise.vector(shake / radius));
@@ -358,7 +358,7 @@ fn all_moved_alike_nothing_changes() {
     // Nothing to the ground.
     problem.outer = Some(free_race());
     let point = linearised(&problem, state);
-    let layout = point.system.layout;
+    let layout = point.system.sets[0].layout;
     let by = [0.3, -0.5, 0.8];
     let mut r = vec![0.0; layout.len()];
     for i in 0..3 {
@@ -366,11 +366,11 @@ fn all_moved_alike_nothing_changes() {
         r[layout.inner() + POSITION + i] = by[i];
         r[layout.outer() + POSITION + i] = by[i];
     }
-    let mut arrow = Arrow::new(&layout, problem.ball, point.linearised.hubs.len());
+    let mut arrow = Arrow::new(&point.system, &point.linearised);
     arrow.factor(&point.linearised, 1e-6);
     let mut w = vec![0.0; layout.len()];
-    let drift = vec![0.0; 3 * layout.padded];
-    arrow.solve(&point.linearised, &layout, &point.state, &drift, &r, &mut w);
+    let drift = vec![0.0; layout.len()];
+    arrow.solve(&point.linearised, &point.system.sets, &point.state, &drift, &r, &mut w);
     // Normals are unit vectors to 1e-16, and accelerations of a ball that moves alone s k/m = 1e4.
     for (w, r) in w.iter().zip(&r) {
         assert!((w - r).abs() <= 1e-8, "{w} {r}");
@@ -382,7 +382,7 @@ fn drives_of_given_motions_do_the_work_of_the_contacts() {
     let mut problem = bearing(table_5_3(), [AXIAL, 0.0, 0.0, 0.0, 0.0], 1000.0 * RPM);
     problem.traction = CONSTANT;
     let layout = Layout::new(problem.geometry.ball_count, false);
-    let state = start::at_equilibrium(&problem, &layout).unwrap().0;
+    let state = start::at_equilibrium(&problem.assembly()).unwrap();
     // The same place, now given together with a velocity; nothing else is driven by a load.
     for i in 0..3 {
         let (from, rate) = (state[layout.inner() + POSITION + i], [1e-3, -2e-3, 3e-3][i]);
@@ -416,7 +416,7 @@ fn caged(
     contacts.regularisation_speed = 1.0;
     let gap = contacts.race_clearance;
     let layout = Layout::new(problem.geometry.ball_count, true);
-    let mut state = start::at_equilibrium(&problem, &layout).unwrap().0;
+    let mut state = start::at_equilibrium(&problem.assembly()).unwrap();
     let guiding = if guidance == Guidance::InnerRace { layout.inner() } else { layout.outer() };
     let race = BodyState::from_slice(&state[guiding..]);
     let at = layout.cage();
@@ -430,7 +430,8 @@ fn caged(
     for _ in 0..5 {
         let mut system = System::new(problem.clone(), Driver::Lanes);
         system.evaluate(0.0, &state, &mut rates);
-        let deepest = system.pockets.iter().map(|pocket| pocket.penetration).fold(-1.0, f64::max);
+        let deepest =
+            system.sets[0].pockets.iter().map(|pocket| pocket.penetration).fold(-1.0, f64::max);
         turn += (1e-6 - deepest) / pitch;
         let q = race.orientation * UnitQuaternion::from_scaled_axis(Vector3::x() * turn);
         state[at + ORIENTATION..at + VELOCITY].copy_from_slice(&[q.w, q.i, q.j, q.k]);
@@ -447,8 +448,8 @@ fn the_cage_is_held_by_pockets_and_guides() {
             let (problem, state) = caged(pocket, guidance, friction, speed);
             for (kind, push) in [("velocities", VELOCITIES), ("displacements", DISPLACEMENTS)] {
                 let mut point = linearised(&problem, state.clone());
-                assert!(point.system.pockets.iter().any(|pocket| pocket.normal_load > 0.0));
-                assert!(point.system.guides.iter().all(|guide| guide.normal_load > 0.0));
+                assert!(point.system.sets[0].pockets.iter().any(|pocket| pocket.normal_load > 0.0));
+                assert!(point.system.sets[0].guides.iter().all(|guide| guide.normal_load > 0.0));
                 let mut noise = Noise(4);
                 let r = point.push(push, &mut noise);
                 let left = point.left_over(scale, &r);

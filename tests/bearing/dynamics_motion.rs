@@ -78,7 +78,7 @@ fn a_free_inner_race_is_a_top() {
     problem.inner = free_race();
     let inertia = problem.inner.inertia;
     let mut simulation = simulation(&problem, 1e-5, Start::Nominal);
-    let at = simulation.system.layout.inner();
+    let at = simulation.system.sets[0].layout.inner();
     simulation.state[at + SPIN..at + SPIN + 3].copy_from_slice(&[480.0, 10.0, -15.0]);
     check_top(&mut simulation, at, &inertia, 100_000);
     assert_eq!(simulation.system.work.loaded_contacts, 0);
@@ -94,7 +94,7 @@ fn a_free_cage_is_a_top() {
     let inertia = body.inertia;
     problem.cage = Some(body);
     let mut simulation = simulation(&problem, 1e-5, Start::Nominal);
-    let at = simulation.system.layout.cage();
+    let at = simulation.system.sets[0].layout.cage();
     simulation.state[at + SPIN..at + SPIN + 3].copy_from_slice(&[300.0, 200.0, -250.0]);
     check_top(&mut simulation, at, &inertia, 100_000);
 }
@@ -109,7 +109,7 @@ fn smooth() -> DynamicProblem {
 
 fn smooth_start(problem: &DynamicProblem) -> Vec<f64> {
     let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
-    let mut state = start::nominal(problem, &layout);
+    let mut state = start::nominal(&problem.assembly());
     let at = layout.inner();
     state[at + VELOCITY..at + VELOCITY + 3].copy_from_slice(&[0.02, 0.05, -0.04]);
     state[at + SPIN..at + SPIN + 3].copy_from_slice(&[200.0, 1.0, -2.0]);
@@ -118,10 +118,9 @@ fn smooth_start(problem: &DynamicProblem) -> Vec<f64> {
 
 /// Largest difference of velocities (m/s) and spins × ball radius at the end of `time`.
 fn difference(problem: &DynamicProblem, a: &[f64], b: &[f64]) -> f64 {
-    let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
     let mut largest = 0.0_f64;
     for (_, at) in bodies(problem) {
-        let (a, b) = (entries(&layout, a, at), entries(&layout, b, at));
+        let (a, b) = (entries(a, at), entries(b, at));
         let velocity = (part(&a, VELOCITY) - part(&b, VELOCITY)).norm();
         let spin = (part(&a, SPIN) - part(&b, SPIN)).norm() * problem.geometry.ball_radius;
         largest = largest.max(velocity).max(spin);
@@ -175,7 +174,7 @@ fn making_and_breaking_contact_costs_order() {
     let starts = 24;
     let mut logs = [0.0; 4];
     for seed in 0..starts {
-        let mut state = start::nominal(&problem, &layout);
+        let mut state = start::nominal(&problem.assembly());
         let velocity = Noise(seed).vector(0.2);
         let at = layout.inner();
         state[at + VELOCITY..at + VELOCITY + 3].copy_from_slice(&velocity);
@@ -242,12 +241,11 @@ fn a_short_run_turns_with_the_frame() {
         let turned = moved(&problem, &here.state, &turn, &by);
         // Rounding of a position at 1 m (1e-16 m) on contacts of 1e8 N/m: 2e-8 N on a ball of
         // 7 g for 1e-4 s is 3e-10 m/s, beside speeds of about 1 m/s.
-        let layout = here.system.layout;
         let off = difference(&problem, &turned, &there.state);
         println!("seed {seed}: velocities off by {off} m/s");
         assert!(off <= 1e-9, "{off}");
         for (_, at) in bodies(&problem) {
-            let (a, b) = (entries(&layout, &turned, at), entries(&layout, &there.state, at));
+            let (a, b) = (entries(&turned, at), entries(&there.state, at));
             // 1e-9 of the distance travelled at 1 m/s, and the rounding of the position itself.
             assert!((part(&a, POSITION) - part(&b, POSITION)).norm() <= 1e-13 + 2e-15);
         }
@@ -287,7 +285,7 @@ fn lost_kinetic_energy_is_in_the_ledger() {
     problem.heathcote = true;
     problem.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
     let layout = Layout::new(8, true);
-    let mut state = start::nominal(&problem, &layout);
+    let mut state = start::nominal(&problem.assembly());
     let at = layout.inner();
     state[at + SPIN] = 500.0;
     state[at + VELOCITY + 2] = 0.05;

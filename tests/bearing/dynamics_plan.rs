@@ -56,7 +56,7 @@ fn value_bits(values: &[f64]) -> Vec<u64> {
 fn check_twins(one: &DynamicProblem, other: &DynamicProblem) {
     let ends = [one, other].map(|problem| {
         let end = after(problem, 300);
-        without_cage(&end.system.layout, &end.state)
+        without_cage(&end.system.sets[0].layout, &end.state)
     });
     assert!(ends[0].iter().any(|value| *value != 0.0));
     assert_eq!(value_bits(&ends[0]), value_bits(&ends[1]));
@@ -87,13 +87,14 @@ fn no_cage_equals_a_cage_of_no_stiffness() {
         body.contacts.race_clearance = 10e-6;
         other.cage = Some(body);
         let mut touching = simulation(&other, STEP, Start::Equilibrium);
-        let at = touching.system.layout.cage();
+        let at = touching.system.sets[0].layout.cage();
         touching.state[at..at + 3].copy_from_slice(&[0.1e-3, 0.1e-3, 0.0]);
         run(&mut touching, 300);
-        assert!(touching.system.pockets.iter().all(|pocket| pocket.penetration > 0.0));
-        assert!(touching.system.guides.iter().all(|guide| guide.penetration > 0.0));
+        assert!(touching.system.sets[0].pockets.iter().all(|pocket| pocket.penetration > 0.0));
+        assert!(touching.system.sets[0].guides.iter().all(|guide| guide.penetration > 0.0));
         let end = after(&one, 300);
-        let ends = [&end, &touching].map(|end| without_cage(&end.system.layout, &end.state));
+        let ends =
+            [&end, &touching].map(|end| without_cage(&end.system.sets[0].layout, &end.state));
         assert_eq!(value_bits(&ends[0]), value_bits(&ends[1]));
     }
 }
@@ -107,7 +108,7 @@ fn a_cage_without_friction_turns_no_ball() {
         body.contacts.pocket_radius = problem.geometry.ball_radius + 50e-6;
         problem.cage = Some(body);
         let mut simulation = simulation(&problem, STEP, Start::Equilibrium);
-        let layout = simulation.system.layout;
+        let layout = simulation.system.sets[0].layout;
         let at = layout.cage() + VELOCITY;
         simulation.state[at..at + 3].copy_from_slice(&[0.5, -0.3, 0.4]);
         let spins = |state: &[f64]| -> Vec<Vector3<f64>> {
@@ -117,7 +118,7 @@ fn a_cage_without_friction_turns_no_ball() {
         let mut largest = 0.0_f64;
         for _ in 0..300 {
             simulation.step().unwrap();
-            let loads = simulation.system.pockets.iter().map(|pocket| pocket.normal_load);
+            let loads = simulation.system.sets[0].pockets.iter().map(|pocket| pocket.normal_load);
             largest = loads.fold(largest, f64::max);
         }
         assert!(largest > 10.0, "no ball was hit: {largest} N");
@@ -155,8 +156,8 @@ fn plane_contact_equals_heathcote_without_curvature() {
     let ends = [false, true].map(|flattened| {
         let problem = if flattened { &other } else { &one };
         let mut simulation = simulation(problem, STEP, Start::Equilibrium);
-        assert_eq!(simulation.system.laws.curvature != [0.0; 2], flattened);
-        simulation.system.laws.curvature = [0.0; 2];
+        assert_eq!(simulation.system.sets[0].laws.curvature != [0.0; 2], flattened);
+        simulation.system.sets[0].laws.curvature = [0.0; 2];
         run(&mut simulation, 300);
         simulation.state
     });
@@ -218,7 +219,7 @@ fn a_fixed_outer_race_equals_one_held_by_drives() {
         let end = after(problem, 300);
         let mut all = end.state.clone();
         // The outer race's own entries only mean something if it moves.
-        let at = end.system.layout.outer();
+        let at = end.system.sets[0].layout.outer();
         all[at..at + BODY].fill(0.0);
         all
     });

@@ -14,7 +14,6 @@ use bearing_dynamics::solver::dynamics::model::{
 };
 use bearing_dynamics::solver::dynamics::race::tilts_of;
 use bearing_dynamics::solver::dynamics::run::{Simulation, SimulationError, Start};
-use bearing_dynamics::solver::dynamics::start::static_problem;
 use bearing_dynamics::solver::dynamics::state::{BodyState, Layout, POSITION, SPIN, VELOCITY};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::{StaticsError, solve};
@@ -30,9 +29,10 @@ fn table_3_5() -> BearingGeometry {
 
 /// Puts every ball back into the plane through the outer race's axis in which statics holds it.
 fn hold_azimuths(simulation: &mut Simulation) {
-    let layout = simulation.system.layout;
+    let layout = simulation.system.sets[0].layout;
     for ball in 0..layout.balls {
-        let angle = simulation.system.problem.ball_phase + TAU * ball as f64 / layout.balls as f64;
+        let angle = simulation.system.assembly.bearings[0].ball_phase
+            + TAU * ball as f64 / layout.balls as f64;
         let tangent = Vector3::new(0.0, -angle.sin(), angle.cos());
         let mut body = layout.ball_state(&simulation.state, ball);
         let across = |v: [f64; 3]| -> [f64; 3] {
@@ -58,7 +58,7 @@ fn a_damped_bearing_settles_into_static_equilibrium() {
         (angular, [800.0, 0.0, -100.0, 1.5, 1.0]),
     ];
     for (geometry, loads) in cases {
-        let expected = solve(&static_problem(&bearing(geometry, loads, 0.0), 0.0)).unwrap();
+        let expected = solve(&bearing(geometry, loads, 0.0).statics(0.0)).unwrap();
         // From the equilibrium of 0.8 of the load; slowly beside the balls' swing across their
         // grooves (above 5e3 rad/s): it moves no contact along its normal, so that without friction
         // nothing damps it.
@@ -94,7 +94,8 @@ fn a_damped_bearing_settles_into_static_equilibrium() {
             worst = worst.max((there[i] - expected.coordinates[i] * scale[i]).abs());
         }
         for (ball, at) in expected.balls.iter().enumerate() {
-            let here = simulation.system.layout.ball_vector(&simulation.state, POSITION, ball);
+            let here =
+                simulation.system.sets[0].layout.ball_vector(&simulation.state, POSITION, ball);
             // An unloaded ball may be anywhere in its room.
             if at.outer.normal_load > 0.0 {
                 worst = worst.max((Vector3::from(here) - at.position).norm());
@@ -135,7 +136,8 @@ fn means(problem: &DynamicProblem, step: f64, settle_pitches: usize, pitches: us
     let samples = 100 * pitches;
     for _ in 0..samples {
         run(&mut simulation, every);
-        let instant = simulation.snapshot().unwrap().instant;
+        simulation.snapshot().unwrap();
+        let set = &simulation.system.sets[0];
         // Mean deviation of the balls from equal spacing, and their mean speed of orbit.
         let (mut phase, mut orbit) = (0.0, 0.0);
         let first = azimuth(&simulation.state, 0);
@@ -148,7 +150,7 @@ fn means(problem: &DynamicProblem, step: f64, settle_pitches: usize, pitches: us
             let around = position[1] * velocity[2] - position[2] * velocity[1];
             orbit += around / (position[1].powi(2) + position[2].powi(2)) / layout.balls as f64;
         }
-        let mut still = static_problem(problem, simulation.time);
+        let mut still = problem.statics(simulation.time);
         still.orbital_speed = orbit;
         let (ours, theirs) = if matches!(problem.inner.drives[3], Drive::Motion(_)) {
             // Everything is given: each ball stands alone, and at its own angle.
@@ -158,11 +160,11 @@ fn means(problem: &DynamicProblem, step: f64, settle_pitches: usize, pitches: us
                 let alone = solve(&still).unwrap().balls[0];
                 moment += alone.position.cross(&alone.inner.force_on_race);
             }
-            (instant.on_inner.moment, [moment[0], moment[1], moment[2]])
+            (set.on_races[0].moment, [moment[0], moment[1], moment[2]])
         } else {
             still.ball_phase = first + phase;
             let at = solve(&still).unwrap().coordinates;
-            (instant.inner.state.position, [at[0], at[1], at[2]])
+            (set.races[0].state.position, [at[0], at[1], at[2]])
         };
         for i in 0..3 {
             dynamic[i] += ours[i] / samples as f64;
@@ -208,14 +210,14 @@ fn centrifugal_force_loads_the_outer_race_at_10_000_rpm() {
     problem.inner.rotation = Rotation::Speed(Profile::Constant(10_000.0 * RPM));
     let mut simulation = simulation(&problem, 2e-6, Start::Equilibrium);
     run(&mut simulation, 1000);
-    let layout = simulation.system.layout;
+    let layout = simulation.system.sets[0].layout;
     let g = problem.geometry;
     let (mut difference, mut expected, samples) = (0.0, 0.0, 2000);
     for _ in 0..samples {
         run(&mut simulation, 1);
         simulation.snapshot().unwrap();
         for ball in 0..layout.balls {
-            let table = &simulation.system.table;
+            let table = &simulation.system.sets[0].table;
             difference += table.load[layout.padded + ball] - table.load[ball];
             let body = layout.ball_state(&simulation.state, ball);
             let speed = Vector3::from(body.velocity).norm();
@@ -245,7 +247,7 @@ fn cage_speed_from_rest(law: TractionLaw, time: f64) -> f64 {
     let options = fixed_step(2e-6, Start::Nominal);
     let mut simulation = Simulation::from_state(problem.clone(), options, start, 0.0).unwrap();
     run(&mut simulation, (time / 2e-6) as usize);
-    let at = simulation.system.layout.cage();
+    let at = simulation.system.sets[0].layout.cage();
     let cage = BodyState::from_slice(&simulation.state[at..]);
     Vector3::from(cage.spin).dot(&Vector3::from(cage.axis())) / speed
 }
@@ -276,9 +278,9 @@ fn cage_slip_grows_as_traction_falls() {
         problem.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
         let mut simulation = simulation(&problem, 2e-6, Start::Equilibrium);
         run(&mut simulation, 10_000);
-        let at = simulation.system.layout.cage();
+        let at = simulation.system.sets[0].layout.cage();
         let angle = |simulation: &Simulation| {
-            let layout = simulation.system.layout;
+            let layout = simulation.system.sets[0].layout;
             (0..layout.balls)
                 .map(|ball| {
                     let [_, y, z] = layout.ball_vector(&simulation.state, POSITION, ball);
@@ -315,7 +317,7 @@ fn equilibrium_starts_under_all_loads() {
     let mut simulation = simulation(&problem, 1e-6, Start::Equilibrium);
     let mut rates = vec![0.0; simulation.state.len()];
     simulation.system.evaluate(0.0, &simulation.state, &mut rates);
-    let at = simulation.system.layout.inner();
+    let at = simulation.system.sets[0].layout.inner();
     let inertia = problem.inner.inertia;
     // Statics stops at 1e-11 of the largest load, some 200 N.
     for i in 0..3 {
@@ -377,7 +379,7 @@ fn both_races_start_in_equilibrium() {
         ("guided", guided),
     ] {
         let mut simulation = simulation(&problem, 1e-6, Start::Equilibrium);
-        let layout = simulation.system.layout;
+        let layout = simulation.system.sets[0].layout;
         let mut rates = vec![0.0; simulation.state.len()];
         simulation.system.evaluate(0.0, &simulation.state, &mut rates);
         let inner = unbalanced(&problem, &rates, layout.inner(), problem.inner.inertia);
@@ -422,14 +424,14 @@ fn a_race_that_nothing_holds_has_no_equilibrium() {
     problem.outer = Some(free_race());
     let error = Simulation::new(problem.clone(), fixed_step(1e-6, Start::Equilibrium)).err();
     assert!(
-        matches!(error, Some(SimulationError::Start(StaticsError::OuterAdrift { .. }))),
+        matches!(error, Some(SimulationError::Start(StaticsError::NoEquilibrium { .. }))),
         "{error:?}"
     );
     // Without loads it stays where it was put. Under loads that cancel each other it would not: statics
     // holds the balls at their azimuths, and what that takes (some 0.1 N) is missing at the races.
     problem.inner.drives[2] = Drive::Load(Profile::ZERO);
     let start = simulation(&problem, 1e-6, Start::Equilibrium);
-    assert_eq!(start.state[start.system.layout.outer() + 2], 0.0);
+    assert_eq!(start.state[start.system.sets[0].layout.outer() + 2], 0.0);
 }
 
 #[test]
@@ -441,7 +443,7 @@ fn unbalance_takes_part_in_the_equilibrium_at_the_start() {
         let mut simulation = simulation(&problem, 1e-6, Start::Equilibrium);
         let mut rates = vec![0.0; simulation.state.len()];
         simulation.system.evaluate(0.0, &simulation.state, &mut rates);
-        let at = simulation.system.layout.inner();
+        let at = simulation.system.sets[0].layout.inner();
         // 98.7 N along the race's own Y.
         for (i, force) in
             unbalanced(&problem, &rates, at, problem.inner.inertia).into_iter().take(3).enumerate()

@@ -21,18 +21,17 @@ use nalgebra::Vector3;
 
 /// How far two runs at the same step, one of them nudged at the start, are apart at the end: m/s.
 fn nudged_apart(problem: &DynamicProblem, state: &[f64], step: f64, steps: usize) -> f64 {
-    let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
     let mut nudged = state.to_vec();
     let mut noise = Noise(5);
     let size = 1e-8;
     for (_, at) in bodies(problem) {
-        let mut body = BodyState::from_slice(&entries(&layout, state, at));
+        let mut body = BodyState::from_slice(&entries(state, at));
         for i in 0..3 {
             body.velocity[i] += size * noise.next();
             body.spin[i] += size / problem.geometry.ball_radius * noise.next();
         }
         match at {
-            BodyAt::Ball(ball) => layout.set_ball(&mut nudged, ball, &body),
+            BodyAt::Ball(layout, ball) => layout.set_ball(&mut nudged, ball, &body),
             BodyAt::At(at) => nudged[at..at + 13].copy_from_slice(&body.to_array()),
         }
     }
@@ -49,7 +48,7 @@ fn nudged_apart(problem: &DynamicProblem, state: &[f64], step: f64, steps: usize
     });
     let mut apart = 0.0_f64;
     for (_, at) in bodies(problem) {
-        let (a, b) = (entries(&layout, &a, at), entries(&layout, &b, at));
+        let (a, b) = (entries(&a, at), entries(&b, at));
         let speed = (part(&a, VELOCITY) - part(&b, VELOCITY)).norm();
         let spin = (part(&a, SPIN) - part(&b, SPIN)).norm() * problem.geometry.ball_radius;
         apart = apart.max(speed).max(spin);
@@ -131,7 +130,7 @@ fn a_50_g_impact_on_the_foundation_passes() {
     outer.drives[2] = Drive::Load(impact);
     problem.outer = Some(outer);
     let mut simulation = simulation(&problem, 1e-6, Start::Equilibrium);
-    let at = simulation.system.layout.outer();
+    let at = simulation.system.sets[0].layout.outer();
     let (mut highest, mut residual, mut strain) = (0.0_f64, 0.0_f64, 0.0_f64);
     for step in 0..6000 {
         simulation.step().unwrap();
@@ -162,7 +161,7 @@ fn clearance_is_lost_and_comes_back() {
     for _ in 0..8000 {
         simulation.step().unwrap();
         let snapshot = simulation.snapshot().unwrap();
-        let loaded = simulation.system.table.active.len() > 2;
+        let loaded = simulation.system.sets[0].table.active.len() > 2;
         changes += usize::from(loaded != was_loaded);
         was_loaded = loaded;
         peak = peak.max(snapshot.energy.contact);
@@ -185,7 +184,7 @@ fn a_cage_collision_conserves_momentum_and_energy() {
     body.contacts.friction = 0.0;
     problem.cage = Some(body);
     let layout = Layout::new(8, true);
-    let mut state = start::nominal(&problem, &layout);
+    let mut state = start::nominal(&problem.assembly());
     let at = layout.cage();
     state[at + VELOCITY..at + VELOCITY + 3].copy_from_slice(&[0.5, 2.0, -1.0]);
     let (momentum, angular) = momenta(&problem, &state);
@@ -195,7 +194,8 @@ fn a_cage_collision_conserves_momentum_and_energy() {
     let mut peak = 0.0_f64;
     for _ in 0..4000 {
         simulation.step().unwrap();
-        let cage = simulation.system.pockets.iter().chain(&simulation.system.guides);
+        let cage =
+            simulation.system.sets[0].pockets.iter().chain(&simulation.system.sets[0].guides);
         peak = peak.max(cage.map(|contact| contact.normal_load).fold(0.0, f64::max));
     }
     let snapshot = simulation.snapshot().unwrap();
@@ -240,12 +240,12 @@ fn a_ball_forced_out_is_a_typed_error() {
     );
     // A ball that flies off between two steps.
     let layout = Layout::new(8, false);
-    let mut state = start::nominal(&problem, &layout);
+    let mut state = start::nominal(&problem.assembly());
     state[layout.ball(VELOCITY) + 2] = 1.1e7 * problem.geometry.ball_radius;
     let mut simulation = Simulation::from_state(problem, options, state, 0.0).unwrap();
     match simulation.step().err() {
         Some(SimulationError::BallOutside { ball, time, step, distance, ball_radius }) => {
-            assert_eq!(ball, 3);
+            assert_eq!(ball, "ball 3");
             assert!(distance > ball_radius);
             assert_eq!(step, simulation.steps);
             assert_eq!(time, simulation.time);
@@ -297,7 +297,7 @@ fn energy_that_goes_missing_is_a_typed_error() {
 fn a_value_that_is_not_finite_is_named() {
     let problem = bearing(table_4_1(-5e-6), [0.0, 0.0, -500.0, 0.0, 0.0], 1000.0 * RPM);
     let mut simulation = simulation(&problem, 1e-6, Start::Equilibrium);
-    let at = simulation.system.layout.inner();
+    let at = simulation.system.sets[0].layout.inner();
     simulation.state[at + VELOCITY + 1] = f64::NAN;
     let error = (0..3).find_map(|_| simulation.step().err());
     assert!(matches!(error, Some(SimulationError::NotFinite { .. })), "{error:?}");
@@ -329,7 +329,7 @@ fn lankarani_and_nikravesh_give_back_the_restitution() {
         }
         problem.ball_phase = 0.0;
         let layout = Layout::new(8, false);
-        let mut state = start::nominal(&problem, &layout);
+        let mut state = start::nominal(&problem.assembly());
         let mut ball = layout.ball_state(&state, 0);
         ball.velocity = [0.0, 0.3, 0.0];
         layout.set_ball(&mut state, 0, &ball);
@@ -337,15 +337,18 @@ fn lankarani_and_nikravesh_give_back_the_restitution() {
         let mut simulation = Simulation::from_state(problem, options, state, 0.0).unwrap();
         let back = (0..20_000).find_map(|_| {
             simulation.step().unwrap();
-            let velocity = simulation.system.layout.ball_state(&simulation.state, 0).velocity[1];
-            let open = simulation.system.table.contact[layout.padded].overlap < 0.0;
+            let velocity =
+                simulation.system.sets[0].layout.ball_state(&simulation.state, 0).velocity[1];
+            let open = simulation.system.sets[0].table.contact[layout.padded].overlap < 0.0;
             (open && velocity < 0.0).then_some(-velocity)
         });
         let ratio = back.unwrap() / 0.3;
         println!("restitution {restitution}: {ratio}, exact {}", rebound(restitution));
         // The contact begins within a step of 0.1 µs, undamped until it ends: 1e-3 of the duration.
         assert!((ratio - rebound(restitution)).abs() <= 1e-3);
-        assert!(Vector3::from(simulation.system.table.contact[layout.padded].normal)[1] > 0.999);
+        assert!(
+            Vector3::from(simulation.system.sets[0].table.contact[layout.padded].normal)[1] > 0.999
+        );
     }
 }
 
@@ -377,14 +380,13 @@ fn the_reason_names_what_binds_the_step() {
         (founded(1e8, 1e6), "dashpot of the foundation: motion decays"),
         (founded(1e12, 0.0), "spring of the foundation: oscillation"),
     ] {
-        let layout = Layout::new(8, false);
-        let state = start::at_equilibrium(&problem, &layout).unwrap().0;
+        let state = start::at_equilibrium(&problem.assembly()).unwrap();
         let mut system = System::new(problem.clone(), Driver::Lanes);
         let limit = step_limit(&mut system, 0.0, &state).unwrap();
         println!("{}: {:e} s", limit.reason(), limit.step);
         assert!(limit.reason().starts_with(expected), "{} instead of {expected}", limit.reason());
         // Nothing was taken out for good.
-        assert_eq!(system.problem, problem);
+        assert_eq!(system.assembly, problem.assembly());
         assert_eq!(step_limit(&mut system, 0.0, &state), Some(limit));
     }
 }
@@ -396,8 +398,7 @@ fn held(free: impl Fn(&mut DynamicProblem)) -> (DynamicProblem, Vec<f64>) {
         *drive = Drive::Motion(Profile::ZERO);
     }
     free(&mut problem);
-    let layout = Layout::new(problem.geometry.ball_count, false);
-    let state = start::nominal(&problem, &layout);
+    let state = start::nominal(&problem.assembly());
     (problem, state)
 }
 
@@ -415,12 +416,12 @@ fn the_step_limit_of_a_ball_follows_from_the_state_itself() {
     let (problem, state) = held(|_| {});
     let (system, ..) = evaluated(&problem, Driver::Plain, 0.0, &state);
     let per_mass = 1.0 / problem.ball.mass;
-    let layout = system.layout;
+    let layout = system.sets[0].layout;
     let sum: f64 = [0, 1]
         .map(|side| {
-            let overlap = system.table.contact[side * layout.padded].overlap;
+            let overlap = system.sets[0].table.contact[side * layout.padded].overlap;
             assert!(overlap > 20e-9 && overlap < 100e-9, "{overlap}");
-            1.5 * system.laws.races[side].stiffness * overlap.sqrt()
+            1.5 * system.sets[0].laws.races[side].stiffness * overlap.sqrt()
         })
         .iter()
         .sum();
@@ -439,8 +440,8 @@ fn the_step_limit_of_a_ball_follows_from_the_state_itself() {
     let [mut shift, mut both, mut roll] = [0.0; 3];
     for (side, sign) in [(0, -1.0), (1, 1.0)] {
         let pair = side * layout.padded;
-        let reach = problem.geometry.ball_radius - 0.5 * system.table.contact[pair].overlap;
-        let slope = 0.07 / u0 * system.table.load[pair];
+        let reach = problem.geometry.ball_radius - 0.5 * system.sets[0].table.contact[pair].overlap;
+        let slope = 0.07 / u0 * system.sets[0].table.load[pair];
         shift += slope * per_mass;
         both += sign * slope * reach * (per_mass / inertia).sqrt();
         roll += slope * reach * reach / inertia;

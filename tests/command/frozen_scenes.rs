@@ -1,6 +1,6 @@
 //! Every scene of `scenes/` gives what it gave before: rows and states to the bit, work to the count.
 //!
-//! `golden/scenes.json` holds a digest of each column, of the last state and of what was counted. Long
+//! `golden/scenes/digests.json` holds a digest of each column, of the last state and of what was counted. Long
 //! runs are cut. What goes through the factor of a large matrix is held to 1e-9 in place of bits, since
 //! the order of sums there is the processor's.
 //!
@@ -36,7 +36,7 @@ const FACTORED: [&str; 6] = [
 const FACTORED_DIFFERENCE: f64 = 1e-9;
 
 fn golden() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("golden/scenes.json")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("golden/scenes/digests.json")
 }
 
 /// FNV-1a over the bits of numbers.
@@ -152,7 +152,8 @@ fn differences(before: &Value, now: &Value, at: &str, to: &mut Vec<String>) {
             for (before, now) in before.iter().zip(now) {
                 let difference = (number(before) - number(now)).abs();
                 // NaN is a difference.
-                if !(difference <= FACTORED_DIFFERENCE * largest) {
+                let alike = difference <= FACTORED_DIFFERENCE * largest;
+                if !alike {
                     to.push(format!("{at}: {before} became {now}"));
                 }
             }

@@ -169,7 +169,7 @@ fn given_steps_are_counted_as_the_run_takes_them() {
             for end in [203.4e-6, 200e-6, 55.31e-6, 0.4e-6, 74e-6] {
                 let wanted = RunRequest { end, output_interval: interval, ..request(step, 1) };
                 let (foretold, taken) =
-                    (given_steps(&problem, &wanted, step), taken(&problem, &wanted));
+                    (given_steps(&problem.assembly(), &wanted, step), taken(&problem, &wanted));
                 assert_eq!(foretold, taken, "rows {interval}, end {end}");
             }
         }
@@ -204,7 +204,7 @@ fn foretold_steps_are_within_the_stated_factor() {
             RunOptions { integrator, stepping, energy_limit: 1.0, ..RunOptions::default() };
         let output_interval = 0.2e-3;
         let wanted = RunRequest { options, end, output_interval, channels: Vec::new() };
-        let foretold = foretell(problem, &wanted).unwrap();
+        let foretold = foretell(&problem.assembly(), &wanted).unwrap();
         let taken = taken(problem, &wanted) as f64;
         let factor = foretold.steps / taken;
         println!("{name}, {}: {:.0} foretold, {taken} taken", integrator.name(), foretold.steps);
@@ -224,7 +224,7 @@ fn the_plan_chooses_the_method_that_takes_less_work() {
         traction: TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 5e-4 },
         ..frictionless()
     };
-    let choice = choose(&steep, &wanted);
+    let choice = choose(&steep.assembly(), &wanted);
     assert_eq!(choice.integrator, Integrator::Rosenbrock, "{}", choice.reason());
     let [implicit, explicit] = choice.mean_steps.unwrap();
     assert!(implicit > 10.0 * explicit, "{}", choice.reason());
@@ -232,8 +232,8 @@ fn the_plan_chooses_the_method_that_takes_less_work() {
     let mut reversed = steep.clone();
     reversed.inner.rotation =
         Rotation::Speed(Profile::Ramp { from: 200.0, to: -200.0, start: 5e-3, duration: 10e-3 });
-    let choice = choose(&reversed, &wanted);
+    let choice = choose(&reversed.assembly(), &wanted);
     assert_eq!(choice.integrator, Integrator::Rosenbrock, "{}", choice.reason());
-    let choice = choose(&rattling(), &wanted);
+    let choice = choose(&rattling().assembly(), &wanted);
     assert_eq!(choice.integrator, Integrator::DormandPrince, "{}", choice.reason());
 }

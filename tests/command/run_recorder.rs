@@ -70,7 +70,7 @@ fn what_makes_no_run_is_refused() {
         assert!(matches!(start(wanted), SessionError::Interval(_)));
     }
     let rows = usize::MAX / 64;
-    let error = Recorder::new(&frictionless(), &[], rows).err().unwrap();
+    let error = Recorder::new(&frictionless().assembly(), &[], rows).err().unwrap();
     assert!(matches!(error, RecorderError::Memory { .. }));
 }
 
@@ -86,7 +86,7 @@ fn no_row_asks_for_more_memory() {
 #[test]
 fn only_what_is_asked_for_is_there() {
     let names = |problem: &DynamicProblem, groups: &[ChannelGroup]| {
-        let recorder = Recorder::new(problem, groups, 1).unwrap();
+        let recorder = Recorder::new(&problem.assembly(), groups, 1).unwrap();
         recorder.columns().iter().map(|column| column.name.clone()).collect::<Vec<_>>()
     };
     // The ledger is always kept, and without friction, cage and gravity it is short.
@@ -117,7 +117,7 @@ fn only_what_is_asked_for_is_there() {
 fn channels_are_the_bodies_motion() {
     let session = to_the_end(complete(), &request(1e-6, 30));
     let last = |name: &str| *column(&session, name).last().unwrap();
-    let (layout, state) = (session.simulation.system.layout, &session.simulation.state);
+    let (layout, state) = (session.simulation.system.sets[0].layout, &session.simulation.state);
     let at = |body: usize, entry: usize| state[body + entry];
     for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
         assert_eq!(last(&format!("inner_{axis}")), at(layout.inner(), i));
@@ -181,7 +181,7 @@ fn slip_is_the_difference_of_surface_speeds() {
     // The brake takes energy that no ledger knows of.
     wanted.options.energy_limit = 1e9;
     let mut session = Session::start(problem.clone(), &wanted).unwrap();
-    let layout = session.simulation.system.layout;
+    let layout = session.simulation.system.sets[0].layout;
     let before: Vec<f64> = session.recorder.row(0).to_vec();
     session.simulation.state[layout.ball(10)] += 10.0;
     let snapshot = session.simulation.snapshot().unwrap();
@@ -231,7 +231,7 @@ fn steps_end_at_corners_and_are_even_between_them() {
         times.push(session.simulation.time);
     }
     times.push(session.simulation.time);
-    let corners = problem.corners();
+    let corners = problem.assembly().corners();
     assert_eq!(corners.len(), 6);
     for corner in corners {
         assert!(times.contains(&corner), "no step ends at {corner}");
@@ -266,7 +266,7 @@ fn the_work_of_a_jolt_is_in_the_ledger() {
         wanted.options.integrator = integrator;
         wanted.options.stepping = stepping;
         let session = to_the_end(jolted(), &wanted);
-        let mass = session.simulation.system.problem.inner.inertia.mass;
+        let mass = session.simulation.system.assembly.bodies[0].inertia().unwrap().mass;
         let speed = 3e-6 / (0.08e-3 - 0.0341e-3);
         let jump: f64 = 0.5 * mass * speed * speed;
         let residual = column(&session, "energy_residual");
@@ -305,10 +305,10 @@ fn extremes_are_of_every_step_whatever_the_rows() {
             channels.flatten().fold(0.0, f64::max)
         };
         for (side, what) in ["inner", "outer"].into_iter().enumerate() {
-            let most = fine.simulation.extremes.races[side].load.value;
+            let most = fine.simulation.extremes[0].races[side].load.value;
             // Steps of error control end between rows as well, half a microsecond from a peak of 50 kHz.
             assert!(most >= of_rows(what, &fine));
-            let race = fine.simulation.extremes.races[side];
+            let race = fine.simulation.extremes[0].races[side];
             assert!(
                 most <= 1.01 * of_rows(what, &fine),
                 "{integrator:?} {race:?} {}",
@@ -318,7 +318,7 @@ fn extremes_are_of_every_step_whatever_the_rows() {
         // Two rows: they show nothing of the pulse, the extremes all of it.
         let coarse = to_the_end(struck(), &wanted(1e-3));
         let [of_fine, of_coarse] =
-            [&fine, &coarse].map(|session| session.simulation.extremes.races[0].load);
+            [&fine, &coarse].map(|session| session.simulation.extremes[0].races[0].load);
         assert!(of_coarse.value >= 1.5 * of_rows("inner", &coarse), "{of_coarse:?}");
         match integrator {
             // But for rounding of the times at which the pulse is read.
@@ -336,7 +336,7 @@ fn extremes_are_of_every_step_whatever_the_rows() {
             let all = x.iter().zip(&y).zip(&z).map(|((x, y), z)| (x * x + y * y + z * z).sqrt());
             all.fold(0.0, f64::max)
         };
-        let farthest = coarse.simulation.extremes.farthest.value;
+        let farthest = coarse.simulation.extremes[0].farthest.value;
         assert!((farthest / far(&fine) - 1.0).abs() <= 1e-2, "{farthest} {}", far(&fine));
         assert!(farthest >= 1.2 * far(&coarse));
     }

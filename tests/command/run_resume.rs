@@ -229,7 +229,7 @@ fn numbers_come_back_to_the_bit() {
     session.advance(42).unwrap();
     // What decimal text could lose: signed zero, the smallest and the largest numbers.
     let odd = [-0.0, f64::from_bits(1), f64::MAX, f64::MIN_POSITIVE, 0.1 + 0.2, 1e23, 1.0];
-    session.simulation.system.damping[..odd.len()].copy_from_slice(&odd);
+    session.simulation.system.sets[0].damping[..odd.len()].copy_from_slice(&odd);
     save(folder.path(), &session, &record(&problem, &wanted, Stopped::Running)).unwrap();
     let back = go_on(folder.path(), &problem, &wanted);
     let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
@@ -249,7 +249,7 @@ fn numbers_come_back_to_the_bit() {
     assert_eq!(flipped.simulation.checkpoint().was_loaded, file.was_loaded);
     // What JSON cannot hold is not written, and the state that is there stays.
     let before = fs::read(folder.path().join(state::STATE)).unwrap();
-    session.simulation.system.damping[0] = f64::NAN;
+    session.simulation.system.sets[0].damping[0] = f64::NAN;
     let refused = save(folder.path(), &session, &record(&problem, &wanted, Stopped::Running));
     assert!(matches!(refused, Err(StateError::NotFinite { .. })));
     assert_eq!(fs::read(folder.path().join(state::STATE)).unwrap(), before);
@@ -263,12 +263,12 @@ fn a_run_that_fails_keeps_the_state_before_the_failing_step() {
     session.advance(33).unwrap();
     let before = session.simulation.checkpoint();
     // Shoot ball 3 out of its races.
-    let layout = session.simulation.system.layout;
+    let layout = session.simulation.system.sets[0].layout;
     session.simulation.state[layout.ball(7) + 2] = 1e7;
     let thrown = session.simulation.checkpoint();
     let error = session.advance(50).unwrap_err();
-    let SimulationError::BallOutside { ball, step, .. } = error else { panic!("{error}") };
-    assert_eq!((ball, step), (3, 34));
+    let SimulationError::BallOutside { ball, step, .. } = &error else { panic!("{error}") };
+    assert_eq!((ball.as_str(), *step), ("ball 3", 34));
     let (kept, rows) = session.resumable();
     assert_eq!((kept.steps, rows), (33, 4));
     assert_eq!(kept, thrown);

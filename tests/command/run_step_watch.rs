@@ -30,7 +30,7 @@ fn limit(problem: &DynamicProblem) -> f64 {
 
 /// The largest stable step of a simulation as it stands.
 fn limit_of(simulation: &Simulation) -> f64 {
-    let mut system = System::new(simulation.system.problem.clone(), Driver::Lanes);
+    let mut system = System::new(simulation.system.assembly.clone(), Driver::Lanes);
     step_limit(&mut system, simulation.time, &simulation.state).unwrap().step
 }
 

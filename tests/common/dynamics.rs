@@ -9,6 +9,7 @@ use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, Material
 use bearing_dynamics::ch2_housing::bearing::hertz::effective_modulus;
 use bearing_dynamics::ch2_housing::bearing::inertia::{self, Inertia};
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
+use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::contacts::Driver;
 use bearing_dynamics::solver::dynamics::energy::Energy;
 use bearing_dynamics::solver::dynamics::model::{
@@ -17,9 +18,9 @@ use bearing_dynamics::solver::dynamics::model::{
 use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, Start, Stepping};
 use bearing_dynamics::solver::dynamics::start;
 use bearing_dynamics::solver::dynamics::state::{
-    BodyState, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY,
+    BodyState, Layout, Ledger, ORIENTATION, POSITION, Places, SPIN, VELOCITY,
 };
-use bearing_dynamics::solver::dynamics::system::{Instant, System};
+use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::profile::Profile;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -155,7 +156,7 @@ fn shaken(
 /// Nominal positions shaken so that about half the contacts are closed, everything in motion.
 pub fn random_state(problem: &DynamicProblem, seed: u64) -> Vec<f64> {
     let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
-    let mut state = start::nominal(problem, &layout);
+    let mut state = start::nominal(&problem.assembly());
     let mut noise = Noise(seed);
     for ball in 0..layout.balls {
         let body = shaken(layout.ball_state(&state, ball), &mut noise, 15e-6, 3.0, 0.5, 300.0);
@@ -175,50 +176,50 @@ pub fn random_state(problem: &DynamicProblem, seed: u64) -> Vec<f64> {
     state
 }
 
-/// A system with its state, its rates and what was evaluated.
+/// A system as evaluated at a state, and the rates.
 pub fn evaluated(
     problem: &DynamicProblem,
     driver: Driver,
     t: f64,
     state: &[f64],
-) -> (System, Vec<f64>, Instant) {
+) -> (System, Vec<f64>) {
     let mut system = System::new(problem.clone(), driver);
     let mut rates = vec![0.0; state.len()];
-    let instant = system.evaluate(t, state, &mut rates);
-    (system, rates, instant)
+    system.evaluate(t, state, &mut rates);
+    (system, rates)
 }
 
 /// Energy of a state.
 pub fn energy(system: &mut System, t: f64, state: &[f64]) -> Energy {
     let mut rates = vec![0.0; state.len()];
-    let instant = system.evaluate(t, state, &mut rates);
-    system.energy(state, &instant)
+    system.evaluate(t, state, &mut rates);
+    system.energy(state)
 }
 
 /// Inertia and place in the state vector of every body that moves.
-pub fn bodies(problem: &DynamicProblem) -> Vec<(Inertia, BodyAt)> {
-    let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
-    let mut all: Vec<_> = (0..layout.balls).map(|i| (problem.ball, BodyAt::Ball(i))).collect();
-    all.push((problem.inner.inertia, BodyAt::At(layout.inner())));
-    if let Some(outer) = &problem.outer {
-        all.push((outer.inertia, BodyAt::At(layout.outer())));
+pub fn bodies(of: impl Into<Assembly>) -> Vec<(Inertia, BodyAt)> {
+    let assembly = of.into();
+    let mut all = Vec::new();
+    for (bearing, layout) in assembly.bearings.iter().zip(Layout::of(&assembly)) {
+        all.extend((0..layout.balls).map(|i| (bearing.ball, BodyAt::Ball(layout, i))));
     }
-    if let Some(cage) = &problem.cage {
-        all.push((cage.inertia, BodyAt::At(layout.cage())));
+    let places = Places::of(&assembly);
+    for (index, body) in assembly.bodies.iter().enumerate() {
+        all.extend(body.inertia().map(|inertia| (*inertia, BodyAt::At(places.body(index)))));
     }
     all
 }
 
 #[derive(Clone, Copy, Debug)]
 pub enum BodyAt {
-    Ball(usize),
+    Ball(Layout, usize),
     At(usize),
 }
 
 /// A body's entries of a state vector or of its rates.
-pub fn entries(layout: &Layout, vector: &[f64], at: BodyAt) -> [f64; 13] {
+pub fn entries(vector: &[f64], at: BodyAt) -> [f64; 13] {
     std::array::from_fn(|i| match at {
-        BodyAt::Ball(ball) => vector[layout.ball(i) + ball],
+        BodyAt::Ball(layout, ball) => vector[layout.ball(i) + ball],
         BodyAt::At(at) => vector[at + i],
     })
 }
@@ -228,11 +229,10 @@ pub fn part(entries: &[f64; 13], at: usize) -> Vector3<f64> {
 }
 
 /// Momentum and angular momentum about the origin of all moving bodies.
-pub fn momenta(problem: &DynamicProblem, state: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
-    let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
+pub fn momenta(of: impl Into<Assembly>, state: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
     let mut sums = (Vector3::zeros(), Vector3::zeros());
-    for (inertia, at) in bodies(problem) {
-        let all = entries(&layout, state, at);
+    for (inertia, at) in bodies(of) {
+        let all = entries(state, at);
         let body = BodyState::from_slice(&all);
         let momentum = part(&all, VELOCITY) * inertia.mass;
         let (axis, spin) = (Vector3::from(body.axis()), part(&all, SPIN));
@@ -251,11 +251,10 @@ pub fn load_sums(
     state: &[f64],
     rates: &[f64],
 ) -> (Vector3<f64>, Vector3<f64>) {
-    let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
     let mut sums = (Vector3::zeros(), Vector3::zeros());
     for (inertia, at) in bodies(problem) {
-        let all = entries(&layout, state, at);
-        let rate = entries(&layout, rates, at);
+        let all = entries(state, at);
+        let rate = entries(rates, at);
         let force = part(&rate, VELOCITY) * inertia.mass;
         let axis = Vector3::from(BodyState::from_slice(&all).axis());
         let (spin, spin_rate) = (part(&all, SPIN), part(&rate, SPIN));
@@ -276,10 +275,9 @@ pub fn moved(
     turn: &UnitQuaternion<f64>,
     by: &Vector3<f64>,
 ) -> Vec<f64> {
-    let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
     let mut all = state.to_vec();
     for (_, at) in bodies(problem) {
-        let body = BodyState::from_slice(&entries(&layout, state, at));
+        let body = BodyState::from_slice(&entries(state, at));
         let rotate = |v: [f64; 3]| -> [f64; 3] { (turn * Vector3::from(v)).into() };
         let body = BodyState {
             position: (turn * Vector3::from(body.position) + by).into(),
@@ -289,7 +287,7 @@ pub fn moved(
         };
         for (i, value) in body.to_array().into_iter().enumerate() {
             match at {
-                BodyAt::Ball(ball) => all[layout.ball(i) + ball] = value,
+                BodyAt::Ball(layout, ball) => all[layout.ball(i) + ball] = value,
                 BodyAt::At(at) => all[at + i] = value,
             }
         }
@@ -318,11 +316,11 @@ pub fn run(simulation: &mut Simulation, steps: usize) {
 }
 
 pub fn inner_state(simulation: &Simulation) -> BodyState {
-    BodyState::from_slice(&simulation.state[simulation.system.layout.inner()..])
+    BodyState::from_slice(&simulation.state[simulation.system.sets[0].layout.inner()..])
 }
 
 pub fn ledger(simulation: &Simulation, entry: Ledger) -> f64 {
-    simulation.state[simulation.system.layout.ledger_entry(entry)]
+    simulation.state[simulation.system.sets[0].layout.ledger_entry(entry)]
 }
 
 /// Bits of a state vector, without the orientation of the padding.

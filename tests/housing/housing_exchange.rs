@@ -115,7 +115,7 @@ fn start_with(
 }
 
 fn total_momentum(housed: &mut HousedBearing) -> Vector3<f64> {
-    let bearing = momenta(&housed.bearing.system.problem, &housed.bearing.state).0;
+    let bearing = momenta(housed.bearing.system.assembly.clone(), &housed.bearing.state).0;
     // Between kicks the rates of central differences are those of the bearing's time.
     let mut sum = bearing;
     for (rate, mass) in housed.solid.rates().iter().zip(&housed.solid.model.mass) {
@@ -128,7 +128,7 @@ fn total_momentum(housed: &mut HousedBearing) -> Vector3<f64> {
 fn what_the_housing_gets_the_race_gets() {
     // Nothing is held: a bearing that flies against a free ring.
     let mut housed = start(mounted([0.0; 5]), false, 0.0, f64::INFINITY);
-    let layout = housed.bearing.system.layout;
+    let layout = housed.bearing.system.sets[0].layout;
     for i in 0..layout.balls {
         housed.bearing.state[layout.ball(VELOCITY + 2) + i] += 0.05;
     }
@@ -150,7 +150,7 @@ fn what_the_housing_gets_the_race_gets() {
 
 /// Of races, balls and housing about the origin, a point that stands still.
 fn total_angular_momentum(housed: &HousedBearing) -> Vector3<f64> {
-    let mut sum = momenta(&housed.bearing.system.problem, &housed.bearing.state).1;
+    let mut sum = momenta(housed.bearing.system.assembly.clone(), &housed.bearing.state).1;
     // Places half a step ahead of the rates: along them, which is no lever.
     let model = &housed.solid.model;
     let places = model.problem.nodes.iter().zip(&housed.solid.displacement);
@@ -165,14 +165,15 @@ fn total_angular_momentum(housed: &HousedBearing) -> Vector3<f64> {
 fn a_tilting_race_turns_the_housing_as_much_as_it_is_held_back() {
     // Nothing is held: the outer race tilts and flies against a free ring.
     let mut housed = start(mounted([0.0; 5]), false, 0.0, f64::INFINITY);
-    let at = housed.bearing.system.layout.outer();
+    let at = housed.bearing.system.sets[0].layout.outer();
     for (entry, value) in
         [(VELOCITY + 2, 0.05), (VELOCITY + 1, -0.03), (SPIN + 1, 2.0), (SPIN + 2, 1.0)]
     {
         housed.bearing.state[at + entry] = value;
     }
-    let of_races =
-        |housed: &HousedBearing| momenta(&housed.bearing.system.problem, &housed.bearing.state).1;
+    let of_races = |housed: &HousedBearing| {
+        momenta(housed.bearing.system.assembly.clone(), &housed.bearing.state).1
+    };
     let (before, races_before) = (total_angular_momentum(&housed), of_races(&housed));
     let (mut largest, mut handed) = (0.0f64, 0.0f64);
     for _ in 0..1000 {
@@ -227,7 +228,7 @@ fn the_energy_of_a_blow_balances() {
 fn what_is_turned_over_at_the_start_is_the_preload() {
     let mut housed = start(mounted([0.0; 5]), true, 0.0, f64::INFINITY);
     let snapshot = housed.snapshot().unwrap();
-    let problem = &housed.bearing.system.problem;
+    let problem = &housed.bearing.system.assembly.bearings[0];
     let [inner, outer] = [problem.inner_contact.stiffness, problem.outer_contact.stiffness];
     // One load: overlaps as stiffness to the power −2/3, 5 µm in sum on either side of a ball.
     let shares = [inner, outer].map(|k: f64| k.powf(-2.0 / 3.0));
@@ -397,7 +398,7 @@ fn a_tilted_race_keeps_its_rims() {
 #[test]
 fn a_race_that_leaves_its_bore_ends_the_run() {
     let mut housed = start(mounted([0.0; 5]), true, 77.0, f64::INFINITY);
-    let layout = housed.bearing.system.layout;
+    let layout = housed.bearing.system.sets[0].layout;
     for at in [layout.inner(), layout.outer()] {
         housed.bearing.state[at + VELOCITY] = 20.0;
     }
@@ -423,7 +424,7 @@ fn a_race_that_hangs_in_the_wall_ends_the_run() {
         let short = rated(0.8, 2e-5, 2e-6);
         let mut housed =
             HousedBearing::new(mounted([0.0; 5]), model, soft(nodes), at, &short).unwrap();
-        let layout = housed.bearing.system.layout;
+        let layout = housed.bearing.system.sets[0].layout;
         for at in [layout.inner(), layout.outer()] {
             housed.bearing.state[at + VELOCITY + axis] = -40.0;
         }

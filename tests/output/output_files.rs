@@ -11,7 +11,7 @@ use bearing_dynamics::output::pack::{PackError, PackInput, verify_pack, write_pa
 use bearing_dynamics::output::results::{ResultsError, static_summary, write_static_results};
 use bearing_dynamics::output::series::{Column, Series, SeriesError};
 use bearing_dynamics::solver::statics::{Determinacy, StaticSolution};
-use nalgebra::SVector;
+use nalgebra::DVector;
 use ndarray::Array2;
 use output_common::{run, solution};
 use proptest::prelude::*;
@@ -134,7 +134,7 @@ fn the_summary_holds_the_solution_with_units() {
 #[test]
 fn an_indeterminate_solution_says_so() {
     let mut solution = solution();
-    let direction = SVector::from([0.0, 1.0, 0.0, 0.0, 0.0]);
+    let direction = DVector::from_vec(vec![0.0, 1.0, 0.0, 0.0, 0.0]);
     solution.determinacy = Determinacy::Indeterminate { free_directions: vec![direction] };
     let summary = static_summary(&solution, &run()).unwrap();
     assert_eq!(summary["determinacy"]["kind"], "indeterminate");

@@ -58,7 +58,7 @@ fn preloaded() -> Result<DynamicProblem, CaseError> {
 /// Races pushed and turning, balls in their nominal places.
 fn preloaded_start(problem: &DynamicProblem) -> Vec<f64> {
     let layout = Layout::new(problem.geometry.ball_count, false);
-    let mut state = start::nominal(problem, &layout);
+    let mut state = start::nominal(&problem.assembly());
     let at = layout.inner();
     state[at + VELOCITY..at + VELOCITY + 3].copy_from_slice(&[0.02, 0.05, -0.04]);
     state[at + SPIN..at + SPIN + 3].copy_from_slice(&[200.0, 1.0, -2.0]);
@@ -124,7 +124,7 @@ fn tops(context: &mut CaseContext) -> Result<(), CaseError> {
     });
     let options = RunOptions { start: Start::Nominal, ..motion::fixed_step(1e-5) };
     let mut simulation = Simulation::new(problem, options)?;
-    let layout = simulation.system.layout;
+    let layout = simulation.system.sets[0].layout;
     let bodies = [
         (
             "race",

@@ -124,7 +124,7 @@ fn make_and_break(context: &mut CaseContext, curves: &mut Vec<Curve>) -> Result<
     let steps = [1e-6, 0.5e-6, 0.25e-6, 0.125e-6];
     let (mut logs, mut loaded) = ([0.0; 4], 0.0);
     for seed in 0..STARTS {
-        let mut state = start::nominal(&problem, &layout);
+        let mut state = start::nominal(&problem.assembly());
         for i in 0..3 {
             state[layout.inner() + VELOCITY + i] = 0.2 * spread(3 * seed + i);
         }

@@ -50,7 +50,7 @@ fn braking(slices: usize) -> Result<f64, CaseError> {
     problem.traction = TractionLaw::Constant { coefficient: FRICTION, regularisation_speed: 1e-9 };
     problem.slices = slices;
     let layout = Layout::new(problem.geometry.ball_count, false);
-    let mut state = start::nominal(&problem, &layout);
+    let mut state = start::nominal(&problem.assembly());
     let (sin, cos) = problem.ball_phase.sin_cos();
     let mut ball = layout.ball_state(&state, 0);
     ball.spin = [0.0, 40.0 * cos, 40.0 * sin];

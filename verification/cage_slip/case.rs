@@ -308,7 +308,7 @@ fn impacts(context: &mut CaseContext) -> Result<(), CaseError> {
                 3e-5,
                 "steps of 0.1 µs in 41 µs miss the deepest point by up to (π/2 · 0.1/41)²/2 = 7e-6",
             ),
-            penetration: |system| system.guides[0].penetration,
+            penetration: |system| system.sets[0].guides[0].penetration,
         },
         Blow {
             what: "pockets",
@@ -321,7 +321,7 @@ fn impacts(context: &mut CaseContext) -> Result<(), CaseError> {
                 1e-3,
                 "the pockets meet the balls 0.018 rad askew, whose cosine is 1.6e-4 less than one; steps of 0.1 µs in 13",
             ),
-            penetration: |system| system.pockets[0].penetration,
+            penetration: |system| system.sets[0].pockets[0].penetration,
         },
     ];
     for blow in blows {

@@ -6,7 +6,6 @@ use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::dynamics::start::static_problem;
 use bearing_dynamics::solver::dynamics::state::{BODY, BodyState};
 use bearing_dynamics::solver::housing::assembly::AssemblyState;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
@@ -65,7 +64,7 @@ fn loads(part: f64) -> [f64; 5] {
 
 fn equilibrium(bore: &CondensedBore, problem: &DynamicProblem) -> Result<AssemblyState, CaseError> {
     let held = DynamicProblem { outer: None, ..problem.clone() };
-    let still = static_problem(&held, 0.0);
+    let still = held.statics(0.0);
     Ok(housings::search(bore).solve(&still, &housings::fit(0.0), [0.0; 3])?)
 }
 
@@ -110,7 +109,7 @@ fn settle(letter: char, cells: [usize; 3], order: Order) -> Result<Settled, Case
         housed.exchange()?;
     }
     let snapshot = housed.snapshot()?;
-    let at = housed.bearing.system.layout.inner();
+    let at = housed.bearing.system.sets[0].layout.inner();
     let inner = BodyState::from_slice(&housed.bearing.state[at..at + BODY]).position;
     let outer = outer_state(&housed.bearing).position;
     Ok(Settled {

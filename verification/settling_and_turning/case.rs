@@ -82,9 +82,10 @@ const SETTLED: [Settled; 5] = [
 
 /// Puts every ball back into the plane through the outer race's axis in which statics holds it.
 fn hold_azimuths(simulation: &mut Simulation) {
-    let layout = simulation.system.layout;
+    let layout = simulation.system.sets[0].layout;
     for ball in 0..layout.balls {
-        let angle = simulation.system.problem.ball_phase + TAU * ball as f64 / layout.balls as f64;
+        let angle = simulation.system.assembly.bearings[0].ball_phase
+            + TAU * ball as f64 / layout.balls as f64;
         let (sin, cos) = angle.sin_cos();
         let across = |v: [f64; 3]| {
             let along = v[2] * cos - v[1] * sin;
@@ -117,7 +118,7 @@ fn settled_off(lengths: &Lengths, loads: [f64; 5]) -> Result<[f64; 2], CaseError
     simulation.snapshot()?;
     let expected =
         bearings::oracle(lengths, Hertz::Fit, phase).solve(&loads.map(Known::Load), None);
-    let layout = simulation.system.layout;
+    let layout = simulation.system.sets[0].layout;
     let units = [1.0, 1.0, 1.0, lengths.pitch_radius, lengths.pitch_radius];
     let ours = motion::inner_coordinates(&simulation);
     let (mut moved, mut off) = (0.0_f64, 0.0_f64);
@@ -127,7 +128,7 @@ fn settled_off(lengths: &Lengths, loads: [f64; 5]) -> Result<[f64; 2], CaseError
     }
     let (mut heaviest, mut load_off) = (0.0_f64, 0.0_f64);
     for (ball, theirs) in expected.balls.iter().enumerate() {
-        let table = &simulation.system.table.load;
+        let table = &simulation.system.sets[0].table.load;
         for (ours, theirs) in
             [(table[ball], theirs.inner.load), (table[layout.padded + ball], theirs.outer.load)]
         {
@@ -205,21 +206,22 @@ fn turn(problem: &DynamicProblem, known: &[Known; 5], moment: bool) -> Result<Tu
     let mut turn = Turn::default();
     for sample in 1..=PITCHES * SAMPLES {
         motion::run(&mut simulation, every)?;
-        let instant = simulation.snapshot()?.instant;
+        simulation.snapshot()?;
+        let set = &simulation.system.sets[0];
         let balls = BallSet::of(&simulation);
         let still = balls.oracle(&INTERFERENCE).solve(known, None);
         let (ours, theirs) = if moment {
-            (-instant.on_inner.moment[1], still.loads[3])
+            (-set.on_races[0].moment[1], still.loads[3])
         } else {
-            (instant.inner.state.position[2], still.coordinates[2])
+            (set.races[0].state.position[2], still.coordinates[2])
         };
         let at = sample as f64 / SAMPLES as f64;
         turn.dynamic.push([at, ours]);
         turn.fixed.push([at, theirs]);
         turn.uneven = balls.ahead().iter().fold(turn.uneven, |most, angle| most.max(angle.abs()));
-        let layout = simulation.system.layout;
+        let layout = simulation.system.sets[0].layout;
         for (ball, still) in still.balls.iter().enumerate() {
-            let load = simulation.system.table.load[layout.padded + ball];
+            let load = simulation.system.sets[0].table.load[layout.padded + ball];
             turn.loads.push([balls.azimuths[ball], load]);
             turn.static_loads.push([balls.azimuths[ball], still.outer.load]);
         }

@@ -152,7 +152,7 @@ pub fn simulate(
     for _ in 0..(settle / INTERVAL).round() as u64 * steps_per_sample {
         simulation.step()?;
     }
-    let layout = simulation.system.layout;
+    let layout = simulation.system.sets[0].layout;
     let outer = layout.outer();
     // Where there is no cage the outer race stands in for it.
     let cage = if layout.has_cage { layout.cage() } else { outer };

@@ -112,7 +112,7 @@ pub struct BallSet {
 
 impl BallSet {
     pub fn of(simulation: &Simulation) -> BallSet {
-        let layout = simulation.system.layout;
+        let layout = simulation.system.sets[0].layout;
         let (mut azimuths, mut speeds) = (Vec::new(), Vec::new());
         for ball in 0..layout.balls {
             let [_, y, z] = layout.ball_vector(&simulation.state, POSITION, ball);
@@ -120,7 +120,7 @@ impl BallSet {
             azimuths.push(z.atan2(y));
             speeds.push((y * w - z * v) / (y * y + z * z));
         }
-        BallSet { azimuths, speeds, mass: simulation.system.problem.ball.mass }
+        BallSet { azimuths, speeds, mass: simulation.system.assembly.bearings[0].ball.mass }
     }
 
     /// How far each ball is ahead of its even place behind ball 1, rad.
@@ -145,7 +145,8 @@ impl BallSet {
 
 /// x, y, z (m) and both tilts (rad) of the inner race.
 pub fn inner_coordinates(simulation: &Simulation) -> [f64; 5] {
-    let inner = BodyState::from_slice(&simulation.state[simulation.system.layout.inner()..]);
+    let inner =
+        BodyState::from_slice(&simulation.state[simulation.system.sets[0].layout.inner()..]);
     let [x, y, z] = inner.position;
     let [tilt_y, tilt_z] = tilts_of(inner.axis());
     [x, y, z, tilt_y, tilt_z]

@@ -4,6 +4,7 @@ use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
+use bearing_dynamics::solver::dynamics::assembly::INNER;
 use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, VELOCITY};
 use bearing_dynamics::solver::housing::bore_equilibrium::{BoreSearch, RaceLoad};
@@ -102,8 +103,8 @@ fn run_with([young, damping]: [f64; 2]) -> Result<History, CaseError> {
         for _ in 0..EVERY {
             housed.exchange()?;
         }
-        let snapshot = housed.bearing.snapshot()?;
-        let force = snapshot.instant.on_outer.force[2];
+        housed.bearing.snapshot()?;
+        let force = housed.bearing.system.sets[0].on_races[1].force[2];
         history.impulse += 0.5 * (force + before) * EVERY as f64 * housed.window;
         history.times.push(housed.time());
         history.force.push(force);
@@ -115,12 +116,13 @@ fn run_with([young, damping]: [f64; 2]) -> Result<History, CaseError> {
     }
     history.windows = housed.exchanges;
     let bearing = &housed.bearing;
-    let layout = bearing.system.layout;
+    let layout = bearing.system.sets[0].layout;
     let inner = BodyState::from_slice(&bearing.state[layout.inner()..layout.inner() + BODY]);
     let ball = |i| layout.ball_vector(&bearing.state, VELOCITY, i)[2];
     let balls: f64 = (0..layout.balls).map(ball).sum();
-    history.momentum = bearing.system.problem.inner.inertia.mass * inner.velocity[2]
-        + bearing.system.problem.ball.mass * balls;
+    let mass = bearing.system.assembly.bodies[INNER].inertia().map_or(0.0, |inertia| inertia.mass);
+    history.momentum =
+        mass * inner.velocity[2] + bearing.system.assembly.bearings[0].ball.mass * balls;
     Ok(history)
 }
 

@@ -138,8 +138,9 @@ fn pitch(setting: &Setting) -> Result<Pitch, CaseError> {
         simulation.snapshot()?;
         let [_, y, z, ..] = motion::inner_coordinates(&simulation);
         pitch.dynamic.push(y, z);
-        let loaded =
-            (0..lengths.balls).filter(|&ball| simulation.system.table.load[ball] > 0.0).count();
+        let loaded = (0..lengths.balls)
+            .filter(|&ball| simulation.system.sets[0].table.load[ball] > 0.0)
+            .count();
         pitch.fewest_loaded = pitch.fewest_loaded.min(loaded);
         let balls = BallSet::of(&simulation);
         let ahead = balls.ahead();

@@ -192,7 +192,7 @@ pub fn along_course(
         start: 0.0,
         end: run.end,
         count: (a_turn * turns).clamp(fewest, most) as usize,
-        corners: dynamic_problem(&scene.bearing)?.corners(),
+        corners: dynamic_problem(&scene.bearing)?.assembly().corners(),
         masses,
         free,
         damping: setup.solid.problem.damping,

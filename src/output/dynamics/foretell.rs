@@ -8,7 +8,7 @@
 
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::output::dynamics::session::{RunRequest, Session, SessionError, Status};
-use crate::solver::dynamics::model::DynamicProblem;
+use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::run::{Integrator, RunOptions, Simulation, Start, Stepping};
 
 /// A foretold number of steps is meant to be within this factor of the one taken, up or down.
@@ -88,11 +88,11 @@ impl Stretch {
 }
 
 /// Times at which looks begin, the end last.
-fn looks(problem: &DynamicProblem, end: f64) -> Vec<f64> {
-    if !problem.changes() {
+fn looks(assembly: &Assembly, end: f64) -> Vec<f64> {
+    if !assembly.changes() {
         return vec![0.0, end];
     }
-    let mut times: Vec<f64> = problem.corners().into_iter().filter(|t| *t < end).collect();
+    let mut times: Vec<f64> = assembly.corners().into_iter().filter(|t| *t < end).collect();
     if times.len() > CORNERS {
         times.clear();
     }
@@ -111,7 +111,7 @@ fn looks(problem: &DynamicProblem, end: f64) -> Vec<f64> {
 }
 
 fn started(
-    problem: &DynamicProblem,
+    assembly: &Assembly,
     request: &RunRequest,
     at: f64,
     budget: u64,
@@ -126,17 +126,17 @@ fn started(
         output_interval: request.output_interval,
         channels: Vec::new(),
     };
-    let problem = if at == 0.0 { problem.clone() } else { problem.from_time(at) };
-    Session::start(problem, &part)
+    let assembly = if at == 0.0 { assembly.clone() } else { assembly.from_time(at) };
+    Session::start(assembly, &part)
 }
 
 /// Attempts a second that another method takes from the state of a session.
 fn of_other(session: &Session, integrator: Integrator) -> Option<f64> {
     let simulation = &session.simulation;
     let options = RunOptions { integrator, ..*simulation.options() };
-    let problem = simulation.system.problem.clone();
+    let assembly = simulation.system.assembly.clone();
     let state = simulation.state.clone();
-    let mut other = Simulation::from_state(problem, options, state, simulation.time).ok()?;
+    let mut other = Simulation::from_state(assembly, options, state, simulation.time).ok()?;
     if let (Some(of), Some(from)) = (&mut other.control, &simulation.control) {
         of.memory.displacement = from.memory.displacement;
     }
@@ -153,12 +153,12 @@ fn of_other(session: &Session, integrator: Integrator) -> Option<f64> {
 }
 
 fn trial(
-    problem: &DynamicProblem,
+    assembly: &Assembly,
     request: &RunRequest,
     budget: u64,
     other: Option<Integrator>,
 ) -> Result<(Vec<Stretch>, u64, usize), SessionError> {
-    let times = looks(problem, request.end);
+    let times = looks(assembly, request.end);
     let mut stretches: Vec<Stretch> = Vec::new();
     let mut spent = 0;
     let mut begun = 0;
@@ -173,7 +173,7 @@ fn trial(
             Some(same) => same,
             None => {
                 begun += 1;
-                let mut session = started(problem, request, from, budget)?;
+                let mut session = started(assembly, request, from, budget)?;
                 if let Some(control) = &mut session.simulation.control {
                     control.memory.displacement = control.memory.displacement.max(scale);
                 }
@@ -228,14 +228,14 @@ fn trial(
 ///
 /// # Errors
 /// What keeps the run from starting.
-pub fn foretell(problem: &DynamicProblem, request: &RunRequest) -> Result<Foretold, SessionError> {
-    let (mut stretches, taken, looks) = trial(problem, request, TO_COUNT, None)?;
+pub fn foretell(assembly: &Assembly, request: &RunRequest) -> Result<Foretold, SessionError> {
+    let (mut stretches, taken, looks) = trial(assembly, request, TO_COUNT, None)?;
     // Steps from the limit do not grow again. What rang where the first look left off goes on; an explicit
     // method with error control is bound by traction rather, which rolling faster makes gentler.
     let options = &request.options;
     let from_limit = matches!(options.stepping, Stepping::FractionOfLimit(_));
-    let rings =
-        problem.damping == ContactDamping::None && options.integrator == Integrator::Rosenbrock;
+    let undamped = assembly.bearings.iter().any(|b| b.damping == ContactDamping::None);
+    let rings = undamped && options.integrator == Integrator::Rosenbrock;
     let mut carried = 0.0;
     for stretch in &mut stretches {
         if stretch.anew && (from_limit || rings) {
@@ -253,12 +253,12 @@ pub fn foretell(problem: &DynamicProblem, request: &RunRequest) -> Result<Foreto
 
 /// The method with error control that takes less work, by a trial that is short enough to be made
 /// before each run.
-pub fn choose(problem: &DynamicProblem, request: &RunRequest) -> Choice {
+pub fn choose(assembly: &Assembly, request: &RunRequest) -> Choice {
     let options = RunOptions { integrator: Integrator::Rosenbrock, ..request.options };
     let request = RunRequest { options, ..request.clone() };
     let nothing = Choice { integrator: Integrator::Rosenbrock, mean_steps: None };
-    let budget = if problem.changes() { TO_COUNT } else { TO_CHOOSE };
-    let Ok((stretches, ..)) = trial(problem, &request, budget, Some(Integrator::DormandPrince))
+    let budget = if assembly.changes() { TO_COUNT } else { TO_CHOOSE };
+    let Ok((stretches, ..)) = trial(assembly, &request, budget, Some(Integrator::DormandPrince))
     else {
         return nothing;
     };

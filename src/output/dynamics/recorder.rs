@@ -6,11 +6,11 @@ use crate::ch2_housing::bearing::traction::{Motion, Sliding, TractionLaw, slidin
 use crate::kinematics::vec3::{dot, sub};
 use crate::output::series::{Column, Series, SeriesError};
 use crate::solver::channels::ChannelGroup;
-use crate::solver::dynamics::model::{BallMeeting, DynamicProblem};
+use crate::solver::dynamics::assembly::{Assembly, BallMeeting, Bearing};
+use crate::solver::dynamics::ball_set::BallSet;
 use crate::solver::dynamics::race::{RaceNow, tilts_of};
 use crate::solver::dynamics::run::{Simulation, Snapshot};
-use crate::solver::dynamics::state::{BODY, BodyState, Ledger, POSITION, SPIN, VELOCITY};
-use crate::solver::dynamics::system::System;
+use crate::solver::dynamics::state::{Ledger, POSITION, SPIN, VELOCITY};
 use nalgebra::Vector3;
 use ndarray::Array2;
 use std::f64::consts::TAU;
@@ -55,7 +55,7 @@ impl Recorder {
     /// # Errors
     /// When that does not fit in memory.
     pub fn new(
-        problem: &DynamicProblem,
+        assembly: &Assembly,
         asked: &[ChannelGroup],
         rows: usize,
     ) -> Result<Recorder, RecorderError> {
@@ -64,12 +64,12 @@ impl Recorder {
         let groups: Vec<ChannelGroup> = ChannelGroup::ALL
             .into_iter()
             .filter(|group| asked.contains(group) || *group == ChannelGroup::Energy)
-            .filter(|group| problem.cage.is_some() || !needs_cage(group))
+            .filter(|group| has_cage(assembly) || !needs_cage(group))
             .collect();
-        let terms = terms(problem);
+        let terms = terms(assembly);
         let mut columns = vec![Column::new("time", "s")];
         for &group in &groups {
-            add_columns(problem, group, &terms, &mut columns);
+            add_columns(assembly, group, &terms, &mut columns);
         }
         let mut values = Vec::new();
         let memory = RecorderError::Memory { rows, columns: columns.len() };
@@ -136,31 +136,22 @@ impl Recorder {
         let (at, width) = (self.values.len(), self.columns.len());
         let before = at.checked_sub(width);
         self.values.push(snapshot.time);
+        let system = &simulation.system;
         for index in 0..self.groups.len() {
-            match self.groups[index] {
-                ChannelGroup::Races => self.races(simulation, snapshot),
-                ChannelGroup::Cage => self.cage(simulation, snapshot, before, at),
-                ChannelGroup::Orbits => self.orbits(simulation, snapshot, before, at),
-                ChannelGroup::Loads => {
-                    let System { layout, table, .. } = &simulation.system;
-                    for ball in 0..layout.balls {
-                        let loads = [table.load[ball], table.load[layout.padded + ball]];
-                        self.values.extend(loads);
-                    }
+            let group = self.groups[index];
+            if group == ChannelGroup::Energy {
+                for index in 0..self.terms.len() {
+                    self.values.push(energy_term(self.terms[index], snapshot));
                 }
-                ChannelGroup::Pockets => {
-                    let pockets = &simulation.system.pockets;
-                    self.values.extend(pockets.iter().map(|contact| contact.normal_load));
-                }
-                ChannelGroup::Slip => self.slip(simulation, snapshot),
-                ChannelGroup::Forces => {
-                    for loads in [&snapshot.instant.on_inner, &snapshot.instant.on_outer] {
-                        self.values.extend(loads.force);
-                    }
-                }
-                ChannelGroup::Energy => {
-                    for index in 0..self.terms.len() {
-                        self.values.push(energy_term(self.terms[index], snapshot));
+                continue;
+            }
+            for (set, bearing) in system.sets.iter().zip(&system.assembly.bearings) {
+                self.bearing(group, simulation, (set, bearing), before, at);
+            }
+            if group == ChannelGroup::Races {
+                for (body, now) in system.assembly.bodies.iter().zip(&system.bodies) {
+                    if body.label.is_some() {
+                        self.race(now);
                     }
                 }
             }
@@ -168,10 +159,40 @@ impl Recorder {
         debug_assert_eq!(self.values.len(), at + width);
     }
 
-    fn races(&mut self, simulation: &Simulation, snapshot: &Snapshot) {
-        self.race(&snapshot.instant.inner);
-        if simulation.system.problem.outer.is_some() {
-            self.race(&snapshot.instant.outer);
+    /// What one bearing has for a group.
+    fn bearing(
+        &mut self,
+        group: ChannelGroup,
+        simulation: &Simulation,
+        (set, bearing): (&BallSet, &Bearing),
+        before: Option<usize>,
+        row: usize,
+    ) {
+        let BallSet { layout, table, .. } = set;
+        match group {
+            ChannelGroup::Races => {
+                self.race(&set.races[0]);
+                if simulation.system.assembly.bodies[bearing.mounts[1].body].moves() {
+                    self.race(&set.races[1]);
+                }
+            }
+            ChannelGroup::Cage => self.cage(set, bearing, before, row),
+            ChannelGroup::Orbits => self.orbits(simulation, set, bearing, before, row),
+            ChannelGroup::Loads => {
+                for ball in 0..layout.balls {
+                    self.values.extend([table.load[ball], table.load[layout.padded + ball]]);
+                }
+            }
+            ChannelGroup::Pockets if bearing.cage.is_some() => {
+                self.values.extend(set.pockets.iter().map(|contact| contact.normal_load));
+            }
+            ChannelGroup::Slip => self.slip(simulation, set),
+            ChannelGroup::Forces => {
+                for loads in &set.on_races {
+                    self.values.extend(loads.force);
+                }
+            }
+            ChannelGroup::Pockets | ChannelGroup::Energy => {}
         }
     }
 
@@ -182,39 +203,29 @@ impl Recorder {
         self.values.push(dot(now.state.spin, now.motion.axis));
     }
 
-    fn cage(
-        &mut self,
-        simulation: &Simulation,
-        snapshot: &Snapshot,
-        before: Option<usize>,
-        row: usize,
-    ) {
-        let system = &simulation.system;
-        let (Some(body), Some(now)) = (&system.problem.cage, &snapshot.instant.cage) else {
-            return;
-        };
-        let at = system.layout.cage();
-        let cage = BodyState::from_slice(&simulation.state[at..at + BODY]);
-        let [_, y, z]: [f64; 3] = (cage.orientation * Vector3::y()).into();
-        let speed = dot(now.spin, now.axis);
-        self.values.extend(now.position);
-        self.values.extend(tilts_of(now.axis).map(f64::to_degrees));
+    fn cage(&mut self, set: &BallSet, bearing: &Bearing, before: Option<usize>, row: usize) {
+        let (Some(caged), Some(now)) = (&bearing.cage, &set.cage) else { return };
+        let [_, y, z]: [f64; 3] = (now.state.orientation * Vector3::y()).into();
+        let speed = dot(now.motion.spin, now.motion.axis);
+        self.values.extend(now.motion.position);
+        self.values.extend(tilts_of(now.motion.axis).map(f64::to_degrees));
         self.turned(libm::atan2(z, y), speed, before, row);
         self.values.push(speed);
-        if body.contacts.guidance != Guidance::Balls {
-            self.values.push(system.guides[0].normal_load + system.guides[1].normal_load);
+        if caged.contacts.guidance != Guidance::Balls {
+            self.values.push(set.guides[0].normal_load + set.guides[1].normal_load);
         }
     }
 
     fn orbits(
         &mut self,
         simulation: &Simulation,
-        snapshot: &Snapshot,
+        set: &BallSet,
+        bearing: &Bearing,
         before: Option<usize>,
         row: usize,
     ) {
-        let layout = simulation.system.layout;
-        let outer = &snapshot.instant.outer.state;
+        let layout = set.layout;
+        let outer = &set.races[1].state;
         for ball in 0..layout.balls {
             let vector = |component| layout.ball_vector(&simulation.state, component, ball);
             let [_, y, z] = sub(vector(POSITION), outer.position);
@@ -223,9 +234,8 @@ impl Recorder {
             self.turned(libm::atan2(z, y), speed, before, row);
             self.values.push(speed);
         }
-        let races = [&snapshot.instant.inner, &snapshot.instant.outer];
-        for (side, race) in races.into_iter().enumerate() {
-            self.values.push(contact_angle(&simulation.system, side, race).to_degrees());
+        for side in 0..2 {
+            self.values.push(contact_angle(set, bearing, side).to_degrees());
         }
     }
 
@@ -246,11 +256,10 @@ impl Recorder {
         self.values.push(angle.to_degrees());
     }
 
-    fn slip(&mut self, simulation: &Simulation, snapshot: &Snapshot) {
-        let System { layout, table, laws, .. } = &simulation.system;
-        let races = [&snapshot.instant.inner, &snapshot.instant.outer];
+    fn slip(&mut self, simulation: &Simulation, set: &BallSet) {
+        let BallSet { layout, table, laws, races, .. } = set;
         for ball in 0..layout.balls {
-            for (side, race) in races.into_iter().enumerate() {
+            for (side, race) in races.iter().enumerate() {
                 let pair = side * layout.padded + ball;
                 let mut here = Sliding::default();
                 // Nothing slides where nothing touches.
@@ -283,47 +292,77 @@ impl Recorder {
 
 /// Mean contact angle on one race, rad, each ball by its load; the nominal one where nothing touches.
 /// Positive where the inner race is pushed towards +X.
-fn contact_angle(system: &System, side: usize, race: &RaceNow) -> f64 {
-    let table = &system.table;
+fn contact_angle(set: &BallSet, bearing: &Bearing, side: usize) -> f64 {
+    let table = &set.table;
     let sign = if side == 0 { -1.0 } else { 1.0 };
     let (mut sum, mut load) = (0.0, 0.0);
-    for &pair in table.active.iter().filter(|&&pair| pair / system.layout.padded == side) {
-        let sine = sign * dot(table.contact[pair].normal, race.motion.axis);
+    for &pair in table.active.iter().filter(|&&pair| pair / set.layout.padded == side) {
+        let sine = sign * dot(table.contact[pair].normal, set.races[side].motion.axis);
         sum += table.load[pair] * libm::asin(sine.clamp(-1.0, 1.0));
         load += table.load[pair];
     }
-    if load > 0.0 { sum / load } else { system.problem.geometry.contact_angle }
+    if load > 0.0 { sum / load } else { bearing.geometry.contact_angle }
 }
 
+fn has_cage(assembly: &Assembly) -> bool {
+    assembly.bearings.iter().any(|bearing| bearing.cage.is_some())
+}
+
+const RACE_COLUMNS: [(&str, &str); 9] = [
+    ("x", "m"),
+    ("y", "m"),
+    ("z", "m"),
+    ("tilt_y", "deg"),
+    ("tilt_z", "deg"),
+    ("velocity_x", "m/s"),
+    ("velocity_y", "m/s"),
+    ("velocity_z", "m/s"),
+    ("speed", "rad/s"),
+];
+
 fn add_columns(
-    problem: &DynamicProblem,
+    assembly: &Assembly,
     group: ChannelGroup,
     terms: &[Term],
     columns: &mut Vec<Column>,
 ) {
-    let mut add = |name: String, unit: &str| columns.push(Column::new(name, unit));
-    let balls = 1..=problem.geometry.ball_count;
+    if group == ChannelGroup::Energy {
+        columns.extend(terms.iter().map(|term| Column::new(term_name(*term), "J")));
+        return;
+    }
+    for bearing in &assembly.bearings {
+        bearing_columns(assembly, bearing, group, columns);
+    }
+    if group == ChannelGroup::Races {
+        for label in assembly.bodies.iter().filter_map(|body| body.label.as_ref()) {
+            let own = RACE_COLUMNS.map(|(name, unit)| Column::new(format!("{label}_{name}"), unit));
+            columns.extend(own);
+        }
+    }
+}
+
+fn bearing_columns(
+    assembly: &Assembly,
+    bearing: &Bearing,
+    group: ChannelGroup,
+    columns: &mut Vec<Column>,
+) {
+    let prefix = bearing.prefix();
+    let mut add = |name: String, unit: &str| {
+        columns.push(Column::new(format!("{prefix}{name}"), unit));
+    };
+    let balls = 1..=bearing.geometry.ball_count;
     match group {
         ChannelGroup::Races => {
-            let outer = problem.outer.as_ref().map(|_| "outer");
-            for race in ["inner"].into_iter().chain(outer) {
-                for (name, unit) in [
-                    ("x", "m"),
-                    ("y", "m"),
-                    ("z", "m"),
-                    ("tilt_y", "deg"),
-                    ("tilt_z", "deg"),
-                    ("velocity_x", "m/s"),
-                    ("velocity_y", "m/s"),
-                    ("velocity_z", "m/s"),
-                    ("speed", "rad/s"),
-                ] {
+            let moves = assembly.bodies[bearing.mounts[1].body].moves();
+            for race in ["inner"].into_iter().chain(moves.then_some("outer")) {
+                for (name, unit) in RACE_COLUMNS {
                     add(format!("{race}_{name}"), unit);
                 }
             }
         }
         ChannelGroup::Cage => {
-            let Some(cage) = &problem.cage else { return };
+            let Some(cage) = &bearing.cage else { return };
             for (name, unit) in [
                 ("x", "m"),
                 ("y", "m"),
@@ -352,7 +391,7 @@ fn add_columns(
             add(format!("ball_{ball}_inner_load"), "N");
             add(format!("ball_{ball}_outer_load"), "N");
         }),
-        ChannelGroup::Pockets => {
+        ChannelGroup::Pockets if bearing.cage.is_some() => {
             balls.for_each(|ball| add(format!("ball_{ball}_pocket_load"), "N"));
         }
         ChannelGroup::Slip => balls.for_each(|ball| {
@@ -369,31 +408,29 @@ fn add_columns(
                 }
             }
         }
-        ChannelGroup::Energy => {
-            for term in terms {
-                add(term_name(*term).into(), "J");
-            }
-        }
+        ChannelGroup::Pockets | ChannelGroup::Energy => {}
     }
 }
 
 /// What can differ from zero in this problem.
-fn terms(problem: &DynamicProblem) -> Vec<Term> {
-    let cage = problem.cage.is_some();
-    let meet = problem.ball_meeting() == BallMeeting::Tested;
-    let on_foundation = [Some(&problem.inner), problem.outer.as_ref()]
-        .into_iter()
-        .flatten()
+fn terms(assembly: &Assembly) -> Vec<Term> {
+    let any = |of: &dyn Fn(&Bearing) -> bool| assembly.bearings.iter().any(of);
+    let cage = has_cage(assembly);
+    let meet = any(&|bearing| bearing.ball_meeting() == BallMeeting::Tested);
+    let traction = any(&|bearing| bearing.traction != TractionLaw::None);
+    let damping = any(&|bearing| bearing.damping != ContactDamping::None);
+    let mut driven = assembly.bodies.iter().filter_map(|body| body.driven());
+    let on_foundation = driven
         .any(|body| body.foundation_stiffness != [0.0; 5] || body.foundation_damping != [0.0; 5]);
     let terms = [
         (Term::Kinetic, true),
         (Term::Contact, true),
         (Term::CageContact, cage),
-        (Term::Gravity, problem.gravity != [0.0; 3]),
+        (Term::Gravity, assembly.gravity != [0.0; 3]),
         (Term::Foundation, on_foundation),
         (Term::BallContact, meet),
-        (Term::Work(Ledger::Traction), problem.traction != TractionLaw::None),
-        (Term::Work(Ledger::ContactDamping), problem.damping != ContactDamping::None),
+        (Term::Work(Ledger::Traction), traction),
+        (Term::Work(Ledger::ContactDamping), damping),
         (Term::Work(Ledger::CageFriction), cage),
         (Term::Work(Ledger::Foundation), on_foundation),
         (Term::Work(Ledger::BallFriction), meet),

@@ -10,8 +10,9 @@
 
 use crate::output::dynamics::recorder::{Recorder, RecorderError};
 use crate::solver::channels::ChannelGroup;
+use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::checkpoint::Checkpoint;
-use crate::solver::dynamics::model::{DynamicProblem, next_corner};
+use crate::solver::dynamics::model::next_corner;
 use crate::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Stepping};
 use crate::solver::dynamics::step_watch::LOOK_EVERY;
 use thiserror::Error;
@@ -71,7 +72,7 @@ pub struct Session {
     sound: Checkpoint,
     sound_rows: usize,
     failed: bool,
-    /// Times of corners; see [`DynamicProblem::corners`].
+    /// Times of corners; see [`Assembly::corners`].
     corners: Vec<f64>,
     /// Time between rows as asked for, s.
     output_interval: f64,
@@ -85,7 +86,10 @@ impl Session {
     ///
     /// # Errors
     /// No equilibrium to start from, no step or one that is too long, no time to simulate, more rows than fit in memory.
-    pub fn start(problem: DynamicProblem, request: &RunRequest) -> Result<Session, SessionError> {
+    pub fn start(
+        assembly: impl Into<Assembly>,
+        request: &RunRequest,
+    ) -> Result<Session, SessionError> {
         if !(request.end > 0.0 && request.end.is_finite()) {
             return Err(SessionError::End(request.end));
         }
@@ -93,7 +97,7 @@ impl Session {
         if !(interval > 0.0 && interval.is_finite()) {
             return Err(SessionError::Interval(interval));
         }
-        let mut simulation = Simulation::new(problem, request.options)?;
+        let mut simulation = Simulation::new(assembly, request.options)?;
         let steps_per_row = match request.options.stepping {
             Stepping::FractionOfLimit(_) => {
                 let steps = whole_steps(interval, simulation.step_size);
@@ -119,7 +123,7 @@ impl Session {
     /// # Panics
     /// If the checkpoint does not [fit](Checkpoint::fits) the problem.
     pub fn from_checkpoint(
-        problem: DynamicProblem,
+        assembly: impl Into<Assembly>,
         request: &RunRequest,
         checkpoint: &Checkpoint,
         steps_per_row: u64,
@@ -127,7 +131,7 @@ impl Session {
         if !(request.end > 0.0 && request.end.is_finite()) {
             return Err(SessionError::End(request.end));
         }
-        let simulation = Simulation::from_checkpoint(problem, request.options, checkpoint)?;
+        let simulation = Simulation::from_checkpoint(assembly, request.options, checkpoint)?;
         Session::new(simulation, request, steps_per_row)
     }
 
@@ -142,12 +146,12 @@ impl Session {
         };
         // The first row, the last one off the grid, and one for rounding.
         let rows = (request.end / interval) as usize + 3;
-        let recorder = Recorder::new(&simulation.system.problem, &request.channels, rows)?;
+        let recorder = Recorder::new(&simulation.system.assembly, &request.channels, rows)?;
         Ok(Session {
             sound: simulation.checkpoint(),
             sound_rows: 0,
             failed: false,
-            corners: simulation.system.problem.corners(),
+            corners: simulation.system.assembly.corners(),
             output_interval: request.output_interval,
             recorder,
             end: request.end,
@@ -345,9 +349,9 @@ impl Session {
 
 /// Steps that a run with a given step takes, as [`Session`] takes them: rows of whole steps, the way to
 /// the next row divided evenly between its corners, a last step that ends at the end.
-pub fn given_steps(problem: &DynamicProblem, request: &RunRequest, step: f64) -> u64 {
+pub fn given_steps(assembly: &Assembly, request: &RunRequest, step: f64) -> u64 {
     let interval = (request.output_interval / step).round().max(1.0) * step;
-    let corners = problem.corners();
+    let corners = assembly.corners();
     let slack = 1e-6 * step;
     // Steps of about `step` to a time that is `left` away, and the last of a run.
     let to_stop = |left: f64| (left / step * (1.0 - 1e-9)).ceil().max(1.0);

@@ -10,6 +10,7 @@ use crate::output::series::{Column, Series, columns_path};
 use crate::output::spectrum::{LEAKAGE, LOWEST, Spectrum, WINDOW, peaks};
 use crate::output::state::SERIES;
 use crate::solver::clock::rounded;
+use crate::solver::dynamics::assembly::Bearing;
 use crate::solver::dynamics::control::SHARE;
 use crate::solver::dynamics::extremes::Extreme;
 use crate::solver::dynamics::run::{Integrator, Stepping};
@@ -289,11 +290,34 @@ fn rolling_ratio(geometry: &BearingGeometry, [inner, outer]: [f64; 2]) -> f64 {
     (pitch - inner) / (2.0 * pitch - inner + outer)
 }
 
+/// A section for each bearing under its name, or that of the only one itself.
+fn each_bearing(
+    session: &Session,
+    of: impl Fn(usize, &Bearing) -> Result<Option<Value>, ResultsError>,
+) -> Result<Option<Value>, ResultsError> {
+    let mut named = Map::new();
+    for (index, bearing) in session.simulation.system.assembly.bearings.iter().enumerate() {
+        let section = of(index, bearing)?;
+        match (&bearing.name, section) {
+            (None, section) => return Ok(section),
+            (Some(name), Some(section)) => {
+                named.insert(name.clone(), section);
+            }
+            (Some(_), None) => {}
+        }
+    }
+    Ok((!named.is_empty()).then_some(Value::Object(named)))
+}
+
 /// Mean speeds over the window beside those of pure rolling at the contact angles that the balls had.
 fn kinematics(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsError> {
-    let geometry = &session.simulation.system.problem.geometry;
+    each_bearing(session, |_, bearing| kinematics_of(bearing, table))
+}
+
+fn kinematics_of(bearing: &Bearing, table: &RunTable) -> Result<Option<Value>, ResultsError> {
+    let (geometry, prefix) = (&bearing.geometry, bearing.prefix());
     let mean = |channel: &str| {
-        let values = table.windowed(channel)?;
+        let values = table.windowed(&format!("{prefix}{channel}"))?;
         Some(values.iter().sum::<f64>() / values.len() as f64)
     };
     let Some(inner) = mean("inner_speed").filter(|speed| *speed != 0.0) else { return Ok(None) };
@@ -345,9 +369,13 @@ fn kinematics(session: &Session, table: &RunTable) -> Result<Option<Value>, Resu
 
 /// Largest values over all steps, whatever rows were written.
 fn extremes(session: &Session) -> Result<Value, ResultsError> {
-    let simulation = &session.simulation;
-    let problem = &simulation.system.problem;
-    let extremes = &simulation.extremes;
+    let sections =
+        each_bearing(session, |index, bearing| extremes_of(session, index, bearing).map(Some))?;
+    Ok(sections.unwrap_or_default())
+}
+
+fn extremes_of(session: &Session, index: usize, bearing: &Bearing) -> Result<Value, ResultsError> {
+    let extremes = &session.simulation.extremes[index];
     let mut section = Map::new();
     for (name, extreme) in
         [("inner_race_farthest", extremes.farthest), ("races_farthest_apart", extremes.apart)]
@@ -358,7 +386,7 @@ fn extremes(session: &Session) -> Result<Value, ResultsError> {
         });
         section.insert(name.into(), entry);
     }
-    let contacts = [("inner_race", &problem.inner_contact), ("outer_race", &problem.outer_contact)];
+    let contacts = [("inner_race", &bearing.inner_contact), ("outer_race", &bearing.outer_contact)];
     for ((name, contact), race) in contacts.into_iter().zip(&extremes.races) {
         let load = race.load.value;
         let at = |extreme: &Extreme| -> Result<[(&'static str, Value); 2], ResultsError> {

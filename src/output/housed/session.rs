@@ -138,7 +138,7 @@ impl HousedSession {
         energy_limit: f64,
     ) -> Result<HousedSession, HousedRunError> {
         let rows = grid.rows as usize + 2;
-        let recorder = Recorder::new(&housed.bearing.system.problem, channels, rows)?;
+        let recorder = Recorder::new(&housed.bearing.system.assembly, channels, rows)?;
         Ok(HousedSession {
             housed,
             grid,

@@ -245,7 +245,7 @@ pub fn resume(
     }
     bearing_state::check_finite(bearing)?;
     let of_bearing = bearing_state::checkpoint(bearing);
-    if !of_bearing.fits(&parts.problem) {
+    if !of_bearing.fits(&parts.problem.assembly()) {
         return Err(damaged("its lists have other lengths than the bearing asks for"));
     }
     let arrays = read_arrays(folder, &housing.arrays, parts.model.problem.nodes.len())?;

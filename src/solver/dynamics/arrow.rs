@@ -1,86 +1,91 @@
 //! The matrix of a linearly implicit step, M + hγ D + h²γ² K over all velocities: balls touch hubs
 //! (races, cage) and never each other, so that each ball is eliminated into the hubs and what
-//! remains is 6, 12 or 18 equations.
+//! remains is six equations for each body that moves.
 //!
 //! Balls are eliminated a block of [`LANES`] at a time, with every driver.
 
+use super::ball_set::BallSet;
 use super::elimination::{
-    Block, MOST, ZERO, add_product, factor_dense, factor_lanes, solve_columns, solve_dense,
-    solve_lanes, subtract_product, total,
+    Block, Dense, ZERO, add_product, factor_lanes, solve_columns, solve_lanes, subtract_product,
+    total,
 };
-use super::linearised::{Hub, Lane, LaneContact, Linearised, from_basis, to_basis};
+use super::linearised::{BallBlock, Hub, Lane, LaneContact, Linearised, from_basis, to_basis};
 use super::state::{LANES, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
+use super::system::System;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use nalgebra::Quaternion;
 
-/// Most hubs a bearing has: two races and a cage.
+/// Most hubs a ball touches: two races and a cage.
 const HUBS: usize = 3;
 
 /// A factored matrix and room to solve with it.
 #[derive(Clone, Debug)]
 pub struct Arrow {
-    ball: Inertia,
-    hub_count: usize,
+    /// Of each bearing.
+    ball: Vec<Inertia>,
     /// hγ.
     scale: f64,
     /// LDLᵀ of each block's 6 × 6, upper triangle, reciprocal pivots on the diagonal.
     factors: Vec<Block>,
-    /// Ball's matrix⁻¹ · coupling to each hub.
+    /// Ball's matrix⁻¹ · coupling to each hub that a block touches.
     eliminated: Vec<[Block; HUBS]>,
     /// Which of them are not zero.
     coupled: Vec<[bool; HUBS]>,
-    schur: [[f64; MOST]; MOST],
+    schur: Dense,
     balls: Vec<[Lane; 6]>,
+    /// Of all hubs: right-hand side and rates, and what they have moved.
+    hubs: Vec<f64>,
+    moved: Vec<[f64; 6]>,
 }
 
 impl Arrow {
-    pub fn new(layout: &Layout, ball: Inertia, hub_count: usize) -> Arrow {
-        let blocks = layout.padded / LANES;
+    pub fn new(system: &System, linearised: &Linearised) -> Arrow {
+        let blocks = linearised.blocks.len();
+        let hubs = linearised.hubs.len();
         Arrow {
-            ball,
-            hub_count,
+            ball: system.assembly.bearings.iter().map(|bearing| bearing.ball).collect(),
             scale: 0.0,
             factors: vec![[[ZERO; 6]; 6]; blocks],
             eliminated: vec![[[[ZERO; 6]; 6]; HUBS]; blocks],
             coupled: vec![[false; HUBS]; blocks],
-            schur: [[0.0; MOST]; MOST],
+            schur: Dense::new(6 * hubs),
             balls: vec![[ZERO; 6]; blocks],
+            hubs: vec![0.0; 6 * hubs],
+            moved: vec![[0.0; 6]; hubs],
         }
     }
 
     /// Factors the matrix for a step with hγ = `scale`.
     pub fn factor(&mut self, linearised: &Linearised, scale: f64) {
         self.scale = scale;
-        let count = 6 * self.hub_count;
-        for row in &mut self.schur[..count] {
-            row[..count].fill(0.0);
-        }
+        self.schur.clear();
         for (index, hub) in linearised.hubs.iter().enumerate() {
             for i in 0..6 {
-                self.schur[6 * index + i][6 * index + i] =
+                *self.schur.at(6 * index + i, 6 * index + i) =
                     hub.inertia[i] + scale * (hub.damping[i] + scale * hub.stiffness[i]);
             }
         }
         add_guides(linearised, scale, &mut self.schur);
-        for (block, contacts) in linearised.contacts.iter().enumerate() {
-            self.factor_block(block, contacts);
+        for (index, block) in linearised.blocks.iter().enumerate() {
+            self.factor_block(index, block);
         }
-        factor_dense(&mut self.schur, count);
+        self.schur.factor();
     }
 
-    fn factor_block(&mut self, block: usize, contacts: &[LaneContact; 3]) {
+    fn factor_block(&mut self, block: usize, of: &BallBlock) {
         let scale = self.scale;
+        let ball = &self.ball[of.bearing];
         let factors = &mut self.factors[block];
         for i in 0..6 {
             for j in i..6 {
                 factors[i][j] = ZERO;
             }
-            factors[i][i] = [if i < 3 { self.ball.mass } else { self.ball.axial }; LANES];
+            factors[i][i] = [if i < 3 { ball.mass } else { ball.axial }; LANES];
         }
         let mut couplings = [[[ZERO; 6]; 6]; HUBS];
         let coupled = &mut self.coupled[block];
         *coupled = [false; HUBS];
-        for contact in contacts {
+        for (slot, contact) in of.contacts.iter().enumerate() {
             if contact.rows == 0 {
                 continue;
             }
@@ -94,47 +99,46 @@ impl Arrow {
             }
             let Some(hub) = contact.hub else { continue };
             let pushed = weigh(contact, &contact.on_hub, scale);
-            coupled[hub] = true;
+            coupled[slot] = true;
             for i in 0..6 {
                 for j in 0..6 {
                     let mut sum = ZERO;
                     for r in 0..contact.rows {
                         add_product(&mut sum, &contact.on_ball[r][i], &pushed[r][j]);
                     }
-                    couplings[hub][i][j] = sum;
+                    couplings[slot][i][j] = sum;
                 }
                 for j in i..6 {
                     let mut sum = ZERO;
                     for r in 0..contact.rows {
                         add_product(&mut sum, &contact.on_hub[r][i], &pushed[r][j]);
                     }
-                    self.schur[6 * hub + i][6 * hub + j] += total(&sum);
+                    *self.schur.at(6 * hub + i, 6 * hub + j) += total(&sum);
                 }
             }
         }
         factor_lanes(factors);
-        for hub in 0..self.hub_count {
-            if !coupled[hub] {
-                continue;
-            }
-            let eliminated = &mut self.eliminated[block][hub];
-            *eliminated = couplings[hub];
+        for slot in (0..HUBS).filter(|slot| coupled[*slot]) {
+            let eliminated = &mut self.eliminated[block][slot];
+            *eliminated = couplings[slot];
             solve_columns(factors, eliminated);
         }
-        for row in 0..self.hub_count {
-            for column in row..self.hub_count {
-                if !(coupled[row] && coupled[column]) {
-                    continue;
-                }
-                let eliminated = &self.eliminated[block][column];
+        let hub = |slot: usize| of.contacts[slot].hub.filter(|_| coupled[slot]);
+        for first in 0..HUBS {
+            for second in first..HUBS {
+                let (Some(one), Some(other)) = (hub(first), hub(second)) else { continue };
+                // The upper triangle alone is kept.
+                let (rows, columns) = if one <= other { (first, second) } else { (second, first) };
+                let (row, column) = (one.min(other), one.max(other));
+                let eliminated = &self.eliminated[block][columns];
                 for i in 0..6 {
                     let from = if row == column { i } else { 0 };
                     for j in from..6 {
                         let mut sum = ZERO;
                         for k in 0..6 {
-                            add_product(&mut sum, &couplings[row][k][i], &eliminated[k][j]);
+                            add_product(&mut sum, &couplings[rows][k][i], &eliminated[k][j]);
                         }
-                        self.schur[6 * row + i][6 * column + j] -= total(&sum);
+                        *self.schur.at(6 * row + i, 6 * column + j) -= total(&sum);
                     }
                 }
             }
@@ -148,7 +152,7 @@ impl Arrow {
     pub fn solve(
         &mut self,
         linearised: &Linearised,
-        layout: &Layout,
+        sets: &[BallSet],
         at: &[f64],
         drift: &[f64],
         r: &[f64],
@@ -156,8 +160,7 @@ impl Arrow {
     ) {
         w.copy_from_slice(r);
         let scale = self.scale;
-        let mut hubs = [0.0; MOST];
-        let mut moved = [[0.0; 6]; HUBS];
+        let Arrow { ball, factors, eliminated, coupled, schur, balls, hubs, moved, .. } = self;
         for (index, hub) in linearised.hubs.iter().enumerate() {
             moved[index] = displacement(hub, at, r);
             let rate = to_basis(hub, vector(r, hub.at + VELOCITY), vector(r, hub.at + SPIN));
@@ -166,90 +169,94 @@ impl Arrow {
                     hub.inertia[i] * rate[i] - scale * hub.stiffness[i] * moved[index][i];
             }
         }
-        guide_forces(linearised, scale, &moved, &mut hubs);
-        for (block, contacts) in linearised.contacts.iter().enumerate() {
-            let right = &mut self.balls[block];
+        guide_forces(linearised, scale, moved, hubs);
+        for (index, block) in linearised.blocks.iter().enumerate() {
+            let right = &mut balls[index];
+            let layout = &sets[block.bearing].layout;
+            let ball = &ball[block.bearing];
             let lanes = |component: usize| {
-                let from = layout.ball(component) + block * LANES;
+                let from = layout.ball(component) + block.first;
                 let mut lane = ZERO;
                 lane.copy_from_slice(&r[from..from + LANES]);
                 lane
             };
             let position: [Lane; 3] = [0, 1, 2].map(|i| lanes(POSITION + i));
-            let drift = lanes_of(drift, layout, block);
+            let drift = lanes_of(drift, layout, block.first);
             for i in 0..3 {
                 let (force, moment) = (lanes(VELOCITY + i), lanes(SPIN + i));
                 for l in 0..LANES {
-                    right[i][l] = self.ball.mass * force[l];
-                    right[3 + i][l] = self.ball.axial * moment[l];
+                    right[i][l] = ball.mass * force[l];
+                    right[3 + i][l] = ball.axial * moment[l];
                 }
             }
-            for contact in contacts.iter().filter(|contact| contact.rows > 0) {
-                spring_back(contact, scale, [&position, &drift], &moved, right, &mut hubs);
+            for contact in block.contacts.iter().filter(|contact| contact.rows > 0) {
+                spring_back(contact, scale, [&position, &drift], moved, right, hubs);
             }
-            for hub in 0..self.hub_count {
-                if !self.coupled[block][hub] {
+            for (slot, eliminated) in eliminated[index].iter().enumerate() {
+                let Some(hub) = block.contacts[slot].hub.filter(|_| coupled[index][slot]) else {
                     continue;
-                }
+                };
                 for j in 0..6 {
                     let mut sum = ZERO;
                     for i in 0..6 {
-                        add_product(&mut sum, &self.eliminated[block][hub][i][j], &right[i]);
+                        add_product(&mut sum, &eliminated[i][j], &right[i]);
                     }
                     hubs[6 * hub + j] -= total(&sum);
                 }
             }
-            solve_lanes(&self.factors[block], right);
+            solve_lanes(&factors[index], right);
         }
-        solve_dense(&self.schur, 6 * self.hub_count, &mut hubs);
-        let rates: [[f64; 6]; HUBS] =
-            std::array::from_fn(|hub| std::array::from_fn(|i| hubs[6 * hub + i]));
-        for (moved, rate) in moved.iter_mut().zip(&rates) {
+        schur.solve(hubs);
+        let rates: &[[f64; 6]] = hubs.as_chunks().0;
+        for (moved, rate) in moved.iter_mut().zip(rates) {
             for i in 0..6 {
                 moved[i] += scale * rate[i];
             }
         }
         let mut power = 0.0;
-        for (block, right) in self.balls.iter_mut().enumerate() {
-            for hub in 0..self.hub_count {
-                if !self.coupled[block][hub] {
+        for (index, (block, right)) in linearised.blocks.iter().zip(balls).enumerate() {
+            let layout = &sets[block.bearing].layout;
+            for (slot, eliminated) in eliminated[index].iter().enumerate() {
+                let Some(hub) = block.contacts[slot].hub.filter(|_| coupled[index][slot]) else {
                     continue;
-                }
+                };
                 for i in 0..6 {
                     for j in 0..6 {
-                        let change = hubs[6 * hub + j];
+                        let change = rates[hub][j];
                         for l in 0..LANES {
-                            right[i][l] -= self.eliminated[block][hub][i][j][l] * change;
+                            right[i][l] -= eliminated[i][j][l] * change;
                         }
                     }
                 }
             }
             let mut position = [ZERO; 3];
             for (i, lane) in position.iter_mut().enumerate() {
-                let from = layout.ball(POSITION + i) + block * LANES;
+                let from = layout.ball(POSITION + i) + block.first;
                 for l in 0..LANES {
                     lane[l] = r[from + l] + scale * right[i][l];
                 }
             }
-            let drift = lanes_of(drift, layout, block);
-            for contact in &linearised.contacts[block][..2] {
+            let drift = lanes_of(drift, layout, block.first);
+            for contact in &block.contacts[..2] {
                 if let (4, Some(hub)) = (contact.rows, contact.hub) {
                     let at = [&position, &drift];
                     power += drive_power(contact, at, &moved[hub], right, &rates[hub]);
                 }
             }
             // Lanes beyond the last ball stand still.
-            let used = LANES.min(layout.balls - (block * LANES).min(layout.balls));
+            let used = LANES.min(layout.balls - block.first.min(layout.balls));
             for i in 0..3 {
-                let place = |component: usize| layout.ball(component + i) + block * LANES;
+                let place = |component: usize| layout.ball(component + i) + block.first;
                 let (x, v, s) = (place(POSITION), place(VELOCITY), place(SPIN));
                 w[v..v + used].copy_from_slice(&right[i][..used]);
                 w[s..s + used].copy_from_slice(&right[3 + i][..used]);
                 w[x..x + used].copy_from_slice(&position[i][..used]);
             }
         }
-        w[layout.ledger_entry(Ledger::Drives)] += scale * power;
-        for (hub, rate) in linearised.hubs.iter().zip(&rates) {
+        if let Some(set) = sets.first() {
+            w[set.layout.ledger_entry(Ledger::Drives)] += scale * power;
+        }
+        for (hub, rate) in linearised.hubs.iter().zip(rates) {
             let (linear, turning) = from_basis(hub, rate);
             let q = [0, 1, 2, 3].map(|i| at[hub.at + ORIENTATION + i]);
             let turned = quaternion_rate(q, turning);
@@ -266,10 +273,10 @@ impl Arrow {
 }
 
 /// Three components of a block's balls.
-fn lanes_of(values: &[f64], layout: &Layout, block: usize) -> [Lane; 3] {
+fn lanes_of(values: &[f64], layout: &Layout, first: usize) -> [Lane; 3] {
     let mut lanes = [ZERO; 3];
     for (i, lane) in lanes.iter_mut().enumerate() {
-        let from = i * layout.padded + block * LANES;
+        let from = layout.ball(POSITION + i) + first;
         lane.copy_from_slice(&values[from..from + LANES]);
     }
     lanes
@@ -346,9 +353,17 @@ fn reaction(
     if contact.rows == 4 {
         let mut between = *position;
         if contact.hub.is_some() {
+            let mut shift = [moved[0], moved[1], moved[2]];
+            if let Some(turned) = &contact.shifts {
+                for (by, turn) in turned.iter().zip(&moved[3..]) {
+                    for i in 0..3 {
+                        shift[i] += turn * by[i];
+                    }
+                }
+            }
             for i in 0..3 {
                 for l in 0..LANES {
-                    between[i][l] -= moved[i];
+                    between[i][l] -= shift[i];
                 }
             }
         }
@@ -403,11 +418,11 @@ fn spring_back(
     contact: &LaneContact,
     scale: f64,
     at: [&[Lane; 3]; 2],
-    moved: &[[f64; 6]; HUBS],
+    moved: &[[f64; 6]],
     right: &mut [Lane; 6],
-    hubs: &mut [f64; MOST],
+    hubs: &mut [f64],
 ) {
-    let of_hub = &moved[contact.hub.unwrap_or(0)];
+    let of_hub = contact.hub.map_or(&[0.0; 6], |hub| &moved[hub]);
     let mut pushes = reaction(contact, at, of_hub, None);
     let rows = if contact.rows == 4 { 4 } else { 1 };
     for (row, push) in pushes.iter_mut().enumerate().take(rows) {
@@ -445,23 +460,21 @@ fn drive_power(
     total(&driven)
 }
 
-/// Both ends of the cage on its guiding race: (hub, lever) pairs of the bodies that move.
-fn ends(linearised: &Linearised) -> [Option<usize>; 2] {
-    [linearised.guiding_hub, linearised.cage_hub]
-}
-
-fn add_guides(linearised: &Linearised, scale: f64, schur: &mut [[f64; MOST]; MOST]) {
-    for guide in linearised.guides.iter().filter(|guide| guide.loaded) {
+fn add_guides(linearised: &Linearised, scale: f64, schur: &mut Dense) {
+    for guide in linearised.guides.iter().flatten().filter(|guide| guide.loaded) {
         let weight =
             [scale * scale * guide.stiffness, scale * guide.slope[0], scale * guide.slope[1]];
-        let bodies = ends(linearised);
-        for (a, row) in bodies.into_iter().enumerate() {
-            for (b, column) in bodies.into_iter().enumerate() {
+        for (a, row) in guide.hubs.into_iter().enumerate() {
+            for (b, column) in guide.hubs.into_iter().enumerate() {
                 let (Some(row), Some(column)) = (row, column) else { continue };
+                // The upper triangle alone is kept.
+                if row > column {
+                    continue;
+                }
                 for i in 0..6 {
                     for j in 0..6 {
                         for (r, weight) in weight.iter().enumerate() {
-                            schur[6 * row + i][6 * column + j] +=
+                            *schur.at(6 * row + i, 6 * column + j) +=
                                 guide.levers[a][r][i] * weight * guide.levers[b][r][j];
                         }
                     }
@@ -471,20 +484,15 @@ fn add_guides(linearised: &Linearised, scale: f64, schur: &mut [[f64; MOST]; MOS
     }
 }
 
-fn guide_forces(
-    linearised: &Linearised,
-    scale: f64,
-    moved: &[[f64; 6]; HUBS],
-    hubs: &mut [f64; MOST],
-) {
-    for guide in linearised.guides.iter().filter(|guide| guide.loaded) {
+fn guide_forces(linearised: &Linearised, scale: f64, moved: &[[f64; 6]], hubs: &mut [f64]) {
+    for guide in linearised.guides.iter().flatten().filter(|guide| guide.loaded) {
         let mut push = 0.0;
-        for (lever, hub) in guide.levers.iter().zip(ends(linearised)) {
+        for (lever, hub) in guide.levers.iter().zip(guide.hubs) {
             let Some(hub) = hub else { continue };
             push += (0..6).map(|j| lever[0][j] * moved[hub][j]).sum::<f64>();
         }
         push *= scale * guide.stiffness;
-        for (lever, hub) in guide.levers.iter().zip(ends(linearised)) {
+        for (lever, hub) in guide.levers.iter().zip(guide.hubs) {
             let Some(hub) = hub else { continue };
             for j in 0..6 {
                 hubs[6 * hub + j] -= lever[0][j] * push;

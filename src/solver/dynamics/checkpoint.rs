@@ -1,13 +1,13 @@
 //! Everything a simulation needs to go on with the same bits.
 
+use super::assembly::Assembly;
 use super::contacts::Work;
 use super::control::Memory;
 use super::energy::Energy;
 use super::extremes::Extremes;
-use super::model::DynamicProblem;
 use super::run::{ContactTurnover, RunOptions, Simulation, SimulationError, Stepping};
 use super::stability::StepLimit;
-use super::state::Layout;
+use super::state::{Layout, Places};
 use super::step_watch::StepWatch;
 
 /// A simulation at the end of a step, as plain numbers.
@@ -20,7 +20,8 @@ pub struct Checkpoint {
     pub step_size: f64,
     pub limit: Option<StepLimit>,
     pub step_watch: StepWatch,
-    pub extremes: Extremes,
+    /// Of each bearing.
+    pub extremes: Vec<Extremes>,
     /// The whole state vector; see [`super::state`].
     pub state: Vec<f64>,
     /// Contact damping of each pair and whether it carried load: the history of contacts.
@@ -37,12 +38,13 @@ pub struct Checkpoint {
 
 impl Checkpoint {
     /// Whether its lists have the lengths that the problem asks for.
-    pub fn fits(&self, problem: &DynamicProblem) -> bool {
-        let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
-        let pairs = 2 * layout.padded;
-        self.state.len() == layout.len()
+    pub fn fits(&self, assembly: &Assembly) -> bool {
+        let layouts = Layout::of(assembly);
+        let pairs: usize = layouts.iter().map(|layout| 2 * layout.padded).sum();
+        self.state.len() == Places::of(assembly).state_len()
             && self.damping.len() == pairs
             && self.was_loaded.len() == pairs
+            && self.extremes.len() == layouts.len()
     }
 }
 
@@ -60,9 +62,12 @@ impl Simulation {
         checkpoint.step_size = self.step_size;
         checkpoint.limit = self.limit;
         checkpoint.step_watch = self.step_watch;
-        checkpoint.extremes = self.extremes;
+        checkpoint.extremes.clone_from(&self.extremes);
         checkpoint.state.clone_from(&self.state);
-        checkpoint.damping.clone_from(&self.system.damping);
+        checkpoint.damping.clear();
+        for set in &self.system.sets {
+            checkpoint.damping.extend_from_slice(&set.damping);
+        }
         checkpoint.was_loaded.clone_from(&self.was_loaded);
         checkpoint.first_energy = self.first_energy;
         checkpoint.largest_contact_energy = self.largest_contact_energy;
@@ -80,11 +85,12 @@ impl Simulation {
     /// # Panics
     /// If the checkpoint does not [fit](Checkpoint::fits) the problem.
     pub fn from_checkpoint(
-        problem: DynamicProblem,
+        assembly: impl Into<Assembly>,
         options: RunOptions,
         checkpoint: &Checkpoint,
     ) -> Result<Simulation, SimulationError> {
-        assert!(checkpoint.fits(&problem), "a checkpoint of another problem");
+        let assembly = assembly.into();
+        assert!(checkpoint.fits(&assembly), "a checkpoint of another problem");
         let stepping = match options.stepping {
             Stepping::Accuracy(_) => options.stepping,
             Stepping::Fixed(_) | Stepping::FractionOfLimit(_) => {
@@ -93,7 +99,7 @@ impl Simulation {
         };
         let known = RunOptions { stepping, ..options };
         let state = checkpoint.state.clone();
-        let mut simulation = Simulation::from_state(problem, known, state, checkpoint.time)?;
+        let mut simulation = Simulation::from_state(assembly, known, state, checkpoint.time)?;
         simulation.options = options;
         simulation.step_size = checkpoint.step_size;
         if let (Some(control), Some(memory)) = (&mut simulation.control, checkpoint.control) {
@@ -102,8 +108,13 @@ impl Simulation {
         simulation.steps = checkpoint.steps;
         simulation.limit = checkpoint.limit;
         simulation.step_watch = checkpoint.step_watch;
-        simulation.extremes = checkpoint.extremes;
-        simulation.system.damping.copy_from_slice(&checkpoint.damping);
+        simulation.extremes.clone_from(&checkpoint.extremes);
+        let mut damping = checkpoint.damping.as_slice();
+        for set in &mut simulation.system.sets {
+            let (own, others) = damping.split_at(set.damping.len());
+            set.damping.copy_from_slice(own);
+            damping = others;
+        }
         simulation.take_first_rates();
         simulation.system.work = checkpoint.work;
         simulation.was_loaded.copy_from_slice(&checkpoint.was_loaded);

@@ -6,8 +6,8 @@
 //! of these quotients, over `accuracy` times [`SHARE`], is the norm that an accepted step keeps
 //! below one.
 
-use super::model::DynamicProblem;
-use super::state::{BODY, LANES, Layout, ORIENTATION, POSITION, SPIN, VELOCITY};
+use super::assembly::{Assembly, Bearing};
+use super::state::{BODY, LANES, Layout, ORIENTATION, POSITION, Places, SPIN, VELOCITY};
 use super::system::System;
 use crate::ch2_housing::bearing::contact::normal_stiffness;
 
@@ -54,9 +54,9 @@ pub struct Controller {
     /// Order of the error estimate.
     order: f64,
     stiffness: f64,
-    layout: Layout,
-    ball: Scale,
-    /// First entry of each race and the cage that moves, with its scales.
+    /// Of each bearing.
+    balls: Vec<(Layout, Scale)>,
+    /// First entry of each body that moves, with its scales.
     bodies: Vec<(usize, Scale)>,
 }
 
@@ -68,46 +68,60 @@ struct Scale {
     arm: f64,
 }
 
+/// Pitch radius of the first bearing that a body belongs to.
+fn arm(assembly: &Assembly, body: usize) -> f64 {
+    let belongs = |bearing: &&Bearing| {
+        bearing.mounts.iter().any(|mount| mount.body == body)
+            || bearing.cage.as_ref().is_some_and(|cage| cage.body == body)
+    };
+    let own = assembly.bearings.iter().find(belongs).or(assembly.bearings.first());
+    own.map_or(1.0, |bearing| bearing.geometry.pitch_radius)
+}
+
 impl Controller {
-    pub fn new(problem: &DynamicProblem, accuracy: f64, order: f64) -> Controller {
-        let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
-        let geometry = &problem.geometry;
-        let race = |mass| Scale { mass, arm: geometry.pitch_radius };
-        let mut bodies = vec![(layout.inner(), race(problem.inner.inertia.mass))];
-        if let Some(outer) = &problem.outer {
-            bodies.push((layout.outer(), race(outer.inertia.mass)));
-        }
-        if let Some(cage) = &problem.cage {
-            bodies.push((layout.cage(), race(cage.inertia.mass)));
-        }
-        let stiffness = problem.inner_contact.stiffness.min(problem.outer_contact.stiffness);
+    pub fn new(assembly: &Assembly, accuracy: f64, order: f64) -> Controller {
+        let places = Places::of(assembly);
+        let bearings = &assembly.bearings;
+        let least =
+            |of: &dyn Fn(&Bearing) -> f64| bearings.iter().map(of).fold(f64::INFINITY, f64::min);
+        let balls = bearings.iter().zip(Layout::of(assembly)).map(|(bearing, layout)| {
+            (layout, Scale { mass: bearing.ball.mass, arm: bearing.geometry.ball_radius })
+        });
+        let bodies = assembly.bodies.iter().enumerate().filter_map(|(index, body)| {
+            let mass = body.inertia()?.mass;
+            Some((places.body(index), Scale { mass, arm: arm(assembly, index) }))
+        });
         Controller {
             memory: Memory {
-                displacement: FLOOR * geometry.ball_radius,
+                displacement: FLOOR * least(&|bearing| bearing.geometry.ball_radius),
                 previous_error: 1.0,
                 smallest: 0.0,
                 largest: 0.0,
             },
             accuracy,
             order,
-            stiffness,
-            layout,
-            ball: Scale { mass: problem.ball.mass, arm: geometry.ball_radius },
-            bodies,
+            stiffness: least(&|bearing| {
+                bearing.inner_contact.stiffness.min(bearing.outer_contact.stiffness)
+            }),
+            balls: balls.collect(),
+            bodies: bodies.collect(),
         }
     }
 
     /// Takes note of the overlaps that `system` has evaluated last.
     pub fn see(&mut self, system: &System) {
-        for pair in &system.table.active {
-            let overlap = system.table.contact[*pair].overlap;
-            self.memory.displacement = self.memory.displacement.max(overlap);
+        for table in system.sets.iter().map(|set| &set.table) {
+            for pair in &table.active {
+                let overlap = table.contact[*pair].overlap;
+                self.memory.displacement = self.memory.displacement.max(overlap);
+            }
         }
     }
 
     /// A first step far below every period.
     pub fn first_step(&self) -> f64 {
-        libm::cbrt(self.accuracy) / self.frequency(&self.ball)
+        let frequency = self.balls.iter().map(|(_, ball)| self.frequency(ball));
+        libm::cbrt(self.accuracy) / frequency.fold(0.0, f64::max)
     }
 
     /// Of a body on one contact at the largest overlap, rad/s.
@@ -118,7 +132,6 @@ impl Controller {
     /// Norm of the error of an attempt; not above one is good enough.
     pub fn norm(&self, attempt: &Attempt) -> f64 {
         let error = &attempt.error;
-        let layout = &self.layout;
         let largest = |at: usize, count: usize| {
             error[at..at + count].iter().fold(0.0f64, |largest, e| {
                 // NaN stays.
@@ -133,13 +146,15 @@ impl Controller {
             }
         };
         let per = 1.0 / (SHARE * self.accuracy * self.memory.displacement);
-        let per_speed = per / self.frequency(&self.ball);
-        for i in 0..3 {
-            for first in (0..layout.balls).step_by(LANES) {
-                let count = LANES.min(layout.balls - first);
-                take(per * largest(layout.ball(POSITION + i) + first, count));
-                take(per_speed * largest(layout.ball(VELOCITY + i) + first, count));
-                take(per_speed * self.ball.arm * largest(layout.ball(SPIN + i) + first, count));
+        for (layout, ball) in &self.balls {
+            let per_speed = per / self.frequency(ball);
+            for i in 0..3 {
+                for first in (0..layout.balls).step_by(LANES) {
+                    let count = LANES.min(layout.balls - first);
+                    take(per * largest(layout.ball(POSITION + i) + first, count));
+                    take(per_speed * largest(layout.ball(VELOCITY + i) + first, count));
+                    take(per_speed * ball.arm * largest(layout.ball(SPIN + i) + first, count));
+                }
             }
         }
         for (at, scale) in &self.bodies {

@@ -7,9 +7,6 @@ use super::linearised::Lane;
 use super::state::LANES;
 
 pub const ZERO: Lane = [0.0; LANES];
-/// Most equations of the dense matrix: six for each race and the cage.
-pub const MOST: usize = 18;
-
 /// One matrix for each ball of a block.
 pub type Block = [[Lane; 6]; 6];
 
@@ -85,30 +82,59 @@ pub fn solve_columns(factors: &Block, columns: &mut Block) {
     }
 }
 
-pub fn factor_dense(matrix: &mut [[f64; MOST]; MOST], count: usize) {
-    for k in 0..count {
-        let per_pivot = 1.0 / matrix[k][k];
-        for i in k + 1..count {
-            let factor = matrix[k][i] * per_pivot;
-            for j in i..count {
-                matrix[i][j] -= factor * matrix[k][j];
-            }
-        }
-        matrix[k][k] = per_pivot;
-    }
+/// One small dense matrix, its upper triangle row by row.
+#[derive(Clone, Debug, Default)]
+pub struct Dense {
+    size: usize,
+    values: Vec<f64>,
 }
 
-pub fn solve_dense(factors: &[[f64; MOST]; MOST], count: usize, right: &mut [f64; MOST]) {
-    for k in 0..count {
-        let scaled = right[k] * factors[k][k];
-        for i in k + 1..count {
-            right[i] -= factors[k][i] * scaled;
+impl Dense {
+    pub fn new(size: usize) -> Dense {
+        Dense { size, values: vec![0.0; size * size] }
+    }
+
+    pub fn clear(&mut self) {
+        self.values.fill(0.0);
+    }
+
+    #[inline(always)]
+    pub fn at(&mut self, row: usize, column: usize) -> &mut f64 {
+        &mut self.values[row * self.size + column]
+    }
+
+    pub fn factor(&mut self) {
+        let n = self.size;
+        for k in 0..n {
+            let (above, below) = self.values.split_at_mut((k + 1) * n);
+            let pivot_row = &mut above[k * n..];
+            let per_pivot = 1.0 / pivot_row[k];
+            for (row, i) in below.chunks_exact_mut(n).zip(k + 1..) {
+                let factor = pivot_row[i] * per_pivot;
+                for (value, pivot) in row[i..].iter_mut().zip(&pivot_row[i..]) {
+                    *value -= factor * pivot;
+                }
+            }
+            pivot_row[k] = per_pivot;
         }
     }
-    for k in (0..count).rev() {
-        for j in k + 1..count {
-            right[k] -= factors[k][j] * right[j];
+
+    pub fn solve(&self, right: &mut [f64]) {
+        let n = self.size;
+        let row = |k: usize| &self.values[k * n..(k + 1) * n];
+        for k in 0..n {
+            let factors = row(k);
+            let scaled = right[k] * factors[k];
+            for i in k + 1..n {
+                right[i] -= factors[i] * scaled;
+            }
         }
-        right[k] *= factors[k][k];
+        for k in (0..n).rev() {
+            let factors = row(k);
+            for j in k + 1..n {
+                right[k] -= factors[j] * right[j];
+            }
+            right[k] *= factors[k];
+        }
     }
 }

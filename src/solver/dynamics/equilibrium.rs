@@ -1,362 +1,363 @@
-//! Static equilibrium of both races at the start: the inner one by [`crate::solver::statics`], a
-//! moving outer race by Newton's method around it.
+//! Where bodies and balls of an assembly stand still: the place that a motion starts from and settles into.
 //!
-//! What is unknown of the outer race are the coordinates that loads drive. For each trial position
-//! statics finds the inner race and the balls; what then pulls at the outer race (contacts, weight,
-//! loads, the springs of its foundation) has to vanish.
+//! One search over the coordinates of all bodies ([`solve_assembly`]). Loads that follow the place they
+//! act at (an unbalance, the traction that holds rolling balls in their orbits) are taken as they are at the
+//! last place until they change no more.
 
-use super::model::{Drive, DynamicProblem, RaceBody};
-use super::race;
-use super::start::{inner_angle, inner_speed, static_problem};
+use super::assembly::{Assembly, Bearing, Body};
+use super::model::{Drive, RaceBody, Rotation};
+use crate::ch2_housing::bearing::frequencies::ratios;
 use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient};
 use crate::kinematics::Pose;
 use crate::kinematics::euler::{about, quaternion};
+use crate::solver::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing, StaticBody};
+use crate::solver::static_tables::BearingState;
 use crate::solver::statics::{
-    COORDINATE_NAMES, Condition, StaticOptions, StaticProblem, StaticSolution, StaticsError, solve,
-    solve_from,
+    AssemblySolution, Condition, StaticOptions, StaticsError, solve_assembly,
 };
-use nalgebra::{SMatrix, SVector, Vector3};
+use nalgebra::{SVector, Vector3};
 
 type Five = SVector<f64, 5>;
 
-/// Where both races and the balls stand still, in the world.
-#[derive(Clone, Debug)]
-pub struct Equilibrium {
-    /// Coordinates and ball positions are in the world.
-    pub solution: StaticSolution,
-    /// Position x, y, z (m) and tilts (rad) of the outer race.
-    pub outer: [f64; 5],
+/// Where all bodies and the balls stand still, in the world.
+pub type Equilibrium = AssemblySolution;
+
+impl Equilibrium {
+    /// Position (m) and tilts (rad) of a body.
+    pub fn place(&self, assembly: &Assembly, body: usize) -> [f64; 5] {
+        let of = &assembly.bodies[body];
+        if of.moves() { self.coordinates[body].into() } else { of.rest }
+    }
 }
 
+/// How far a body that springs or loads hold may go, m. Soft springs give way by millimetres; nothing that
+/// holds gives way by a metre.
+const FARTHEST: f64 = 1.0;
+
 /// Equilibrium under the loads at t = 0. Forces that turn stand still in the direction that they
-/// have then: the rotating load at its phase, an unbalance along the inner race's own Y. Balls that
+/// have then: the rotating load at its phase, an unbalance along its body's own Y. Balls that
 /// roll are held in their orbit by traction, where there is any.
 ///
 /// # Errors
 /// When the loads have no equilibrium.
-pub fn at_start(problem: &DynamicProblem) -> Result<Equilibrium, StaticsError> {
-    at(problem, 0.0, None)
+pub fn at_start(assembly: &Assembly) -> Result<Equilibrium, StaticsError> {
+    at(assembly, 0.0, &[], None)
 }
 
-/// The same under the loads at `t`, looked for `near` one that is known.
+/// The same under the loads at `t`, the balls of each bearing moved on by `turned` (rad; none where it is
+/// empty), looked for `near` one that is known.
 ///
 /// # Errors
 /// When the loads have no equilibrium.
 pub(super) fn at(
-    problem: &DynamicProblem,
+    assembly: &Assembly,
     t: f64,
+    turned: &[f64],
     near: Option<&Equilibrium>,
 ) -> Result<Equilibrium, StaticsError> {
-    let guess = near.map(|near| &near.solution.coordinates);
-    let Some(body) = &problem.outer else {
-        let outer = problem.outer_start;
-        return Ok(Equilibrium { solution: inner_race(problem, t, &outer, guess)?, outer });
-    };
-    let mut outer = Five::from(near.map_or(problem.outer_start, |near| near.outer));
-    let mut free = [true; 5];
-    for i in 0..5 {
-        if let Drive::Motion(profile) = &body.drives[i] {
-            (outer[i], free[i]) = (profile.value(t), false);
-        }
-    }
-    let search = Search { problem, t, body, free };
-    let here = search.try_at(outer, guess)?;
-    search.descend(here)
-}
-
-/// The outer race at a trial position.
-struct Trial {
-    at: Five,
-    solution: StaticSolution,
-    /// What pulls at its free coordinates: N, and N·m over the pitch radius.
-    force: Five,
-    /// Largest force at which it counts as none, N.
-    allowed: f64,
-}
-
-struct Search<'a> {
-    problem: &'a DynamicProblem,
-    /// s.
-    t: f64,
-    body: &'a RaceBody,
-    free: [bool; 5],
-}
-
-impl Search<'_> {
-    /// Metres per unit of each coordinate.
-    fn scale(&self) -> Five {
-        let pitch = self.problem.geometry.pitch_radius;
-        Five::from([1.0, 1.0, 1.0, pitch, pitch])
-    }
-
-    fn try_at(&self, at: Five, guess: Option<&Five>) -> Result<Trial, StaticsError> {
-        let outer: [f64; 5] = at.into();
-        let solution = inner_race(self.problem, self.t, &outer, guess)?;
-        let now = race::fixed(&outer);
-        let [e2, e3] = now.tilt_directions.map(Vector3::from);
-        let on_race =
-            solution.force_on_outer + Vector3::from(self.problem.gravity) * self.body.inertia.mass;
-        let moment = solution.moment_on_outer;
-        // Conjugate to the coordinates, as the equations of motion have them (race::rates).
-        let mut force = Five::from([
-            on_race.x,
-            on_race.y,
-            on_race.z,
-            moment.dot(&e2) * now.cos_lambda,
-            moment.dot(&e3),
-        ]);
-        let mut largest = force.component_div(&self.scale()).amax();
-        for i in 0..5 {
-            let Drive::Load(profile) = &self.body.drives[i] else {
-                force[i] = 0.0;
-                continue;
-            };
-            let spring = self.body.foundation_stiffness[i] * (at[i] - self.problem.outer_start[i]);
-            force[i] += profile.value(self.t) - spring;
-            largest = largest.max(profile.value(self.t).abs() / self.scale()[i]);
-        }
-        for ball in &solution.balls {
-            largest = largest.max(ball.inner.normal_load).max(ball.outer.normal_load);
-        }
-        // As statics: a part of the largest load, and what rounding of positions leaves; what
-        // statics has left over itself shows at both races.
-        let stiffness = solution.stiffness.diagonal();
-        let stiffest = (0..5).map(|i| stiffness[i] / self.scale()[i].powi(2)).fold(0.0, f64::max);
-        let reach = self.problem.geometry.pitch_radius + at.fixed_rows::<3>(0).amax();
-        let allowed = StaticOptions::default().tolerance * largest
-            + 8.0 * f64::EPSILON * reach * stiffest
-            + 2.0 * solution.residual;
-        Ok(Trial { at, solution, force: force.component_div(&self.scale()), allowed })
-    }
-
-    /// Newton's method, its step bounded by a radius: it follows the force as long as that does not
-    /// turn against the step by more than it pulled along it.
-    fn descend(&self, mut here: Trial) -> Result<Equilibrium, StaticsError> {
-        let ball_radius = self.problem.geometry.ball_radius;
-        let mut radius = 1e-3 * ball_radius;
-        for _ in 0..200 {
-            if here.force.amax() <= here.allowed {
-                return Ok(self.finish(here));
-            }
-            // Moved so far that statics finds nothing: adrift.
-            let Ok(step) = self.newton_step(&here, radius) else { break };
-            let there = self.try_at(
-                here.at + step.component_div(&self.scale()),
-                Some(&here.solution.coordinates),
-            );
-            match there {
-                Ok(there) if there.force.dot(&step) >= -0.9 * here.force.dot(&step) => {
-                    if step.norm() > 0.9 * radius {
-                        radius *= 3.0;
-                    }
-                    let settled = here.force.amax() <= 1e2 * here.allowed;
-                    if settled && there.force.amax() >= here.force.amax() {
-                        // Rounding, not the position, is what is left.
-                        return Ok(self.finish(here));
-                    }
-                    here = there;
-                }
-                _ => radius = 0.25 * radius.min(step.norm()),
-            }
-            // Soft springs give way by millimetres; nothing that holds gives way by a metre.
-            let travel = self.travel(&here).component_mul(&self.scale());
-            if !(travel.amax() <= 1.0 && radius > f64::EPSILON * ball_radius) {
-                break;
-            }
-        }
-        let worst = here.force.iamax();
-        Err(StaticsError::OuterAdrift {
-            coordinate: COORDINATE_NAMES[worst],
-            force: here.force[worst],
-            travel: self.travel(&here)[worst],
-        })
-    }
-
-    fn travel(&self, trial: &Trial) -> Five {
-        trial.at - Five::from(self.problem.outer_start)
-    }
-
-    /// Step in metres; with as much of the identity added to the stiffness as makes it positive.
-    fn newton_step(&self, here: &Trial, radius: f64) -> Result<Five, StaticsError> {
-        // Small beside overlaps of 0.1 µm and more, large beside what statics leaves (1e-11).
-        const DIFFERENCE: f64 = 1e-9;
-        let mut stiffness = SMatrix::<f64, 5, 5>::zeros();
-        for column in (0..5).filter(|&i| self.free[i]) {
-            let mut moved = here.at;
-            moved[column] += DIFFERENCE / self.scale()[column];
-            let there = self.try_at(moved, Some(&here.solution.coordinates))?;
-            stiffness.set_column(column, &((here.force - there.force) / DIFFERENCE));
-        }
-        let stiffness = 0.5 * (stiffness + stiffness.transpose());
-        let largest = stiffness.diagonal().amax();
-        let floor = if largest > 0.0 { largest } else { here.force.amax() / radius };
-        let mut shift = 0.0;
-        loop {
-            let mut shifted = stiffness;
-            for i in 0..5 {
-                if self.free[i] {
-                    shifted[(i, i)] += shift;
-                } else {
-                    shifted.fill_row(i, 0.0);
-                    shifted.fill_column(i, 0.0);
-                    shifted[(i, i)] = floor;
-                }
-            }
-            if let Some(factor) = shifted.cholesky() {
-                let step = factor.solve(&here.force);
-                let length = step.norm();
-                if length.is_finite() {
-                    return Ok(if length > radius { step * (radius / length) } else { step });
-                }
-            }
-            shift = if shift == 0.0 { 1e-4 * floor } else { 4.0 * shift };
-        }
-    }
-
-    fn finish(&self, trial: Trial) -> Equilibrium {
-        Equilibrium { solution: trial.solution, outer: trial.at.into() }
-    }
-}
-
-/// Equilibrium of the inner race and the balls with the outer race at `outer`, in the world.
-fn inner_race(
-    problem: &DynamicProblem,
-    t: f64,
-    outer: &[f64; 5],
-    guess: Option<&Five>,
-) -> Result<StaticSolution, StaticsError> {
-    let mut statics = static_problem(problem, t);
-    let at = Vector3::new(outer[0], outer[1], outer[2]);
-    let start = problem.outer_start;
-    // Statics looks for the inner race near its origin: it follows an outer race that gives way.
-    let shift = at - Vector3::new(start[0], start[1], start[2]);
-    statics.frame = Pose { position: shift, ..Pose::identity() };
-    statics.outer_pose = Pose { position: at, orientation: quaternion(0.0, outer[3], outer[4]) };
-    let mut tilts = [0.0; 2];
-    for i in 0..5 {
-        if let Condition::Displacement(value) = &mut statics.conditions[i] {
-            if i < 3 {
-                *value -= shift[i];
-            } else {
-                tilts[i - 3] = *value;
-            }
-        }
-    }
-    let moved = |coordinates: &Five, by: Vector3<f64>| {
-        let mut moved = *coordinates;
-        for i in 0..3 {
-            moved[i] += by[i];
-        }
-        moved
-    };
-    let near = guess.map(|guess| {
-        tilts = [guess[3], guess[4]];
-        moved(guess, -shift)
-    });
-    let speed = inner_speed(problem, t);
-    let size = problem.unbalance * speed * speed;
-    let without = statics.conditions;
-    let turned = about(Vector3::x(), inner_angle(problem, t)) * Vector3::y();
-    let rolls = speed != 0.0 && problem.traction != TractionLaw::None;
-    let mut held = Held::default();
-    let (mut near, mut before) = (near, [f64::NAN; 2]);
+    let plain = static_assembly(assembly, t, turned);
+    let options = StaticOptions::default();
+    let mut near = near.map(|near| near.coordinates.clone());
+    let mut tilts = near.clone().unwrap_or_else(|| given(&plain));
+    let mut extra = Extra::none(assembly);
+    let follows: Vec<bool> = assembly.bodies.iter().map(|body| unbalanced(body, t)).collect();
+    let mut before: Option<Vec<Five>> = None;
+    let mut solution = None;
     // An unbalance follows the race's tilts, by at most tilt · F/(k R) of what they were before;
     // traction that holds balls in their orbit changes by its own shift over the pitch radius.
     for _ in 0..20 {
-        statics.conditions = without;
-        let along = about(Vector3::y(), tilts[0]) * about(Vector3::z(), tilts[1]) * turned;
-        for (i, condition) in statics.conditions.iter_mut().enumerate() {
-            let Condition::Load(load) = condition else { continue };
-            if size != 0.0 && i < 3 {
-                *load += size * along[i];
+        let mut loaded = plain.clone();
+        for (index, body) in loaded.bodies.iter_mut().enumerate() {
+            let Place::Loaded(place) = &mut body.place else { continue };
+            let mut add = extra.loads[index];
+            if follows[index] {
+                let at = &tilts[index];
+                add += unbalance(&assembly.bodies[index], t, [at[3], at[4]]);
             }
-            if rolls {
-                *load += held.on_inner[i];
+            for (condition, add) in place.conditions.iter_mut().zip(add.iter()) {
+                if let Condition::Load(load) = condition
+                    && *add != 0.0
+                {
+                    *load += add;
+                }
             }
         }
-        let mut solution = match &near {
-            Some(near) => solve_from(&statics, Some(near), &StaticOptions::default())
-                .or_else(|_| solve(&statics))?,
-            None => solve(&statics)?,
+        let mut found = match &near {
+            Some(at) => solve_assembly(&loaded, Some(at), &options)
+                .or_else(|_| solve_assembly(&loaded, None, &options))?,
+            None => solve_assembly(&loaded, None, &options)?,
         };
-        let now = [solution.coordinates[3], solution.coordinates[4]];
-        let change = (now[0] - tilts[0]).abs().max((now[1] - tilts[1]).abs());
-        let mut settled = size == 0.0 || change <= 1e-14 || now == before;
-        if rolls {
-            let next = Held::of(problem, t, &statics, &solution);
-            let largest =
-                solution.balls.iter().fold(0.0f64, |most, b| most.max(b.inner.normal_load));
-            // Below what statics itself leaves over.
-            settled &= next.differs(&held) <= StaticOptions::default().tolerance * largest;
-            held = next;
-        }
-        if settled {
-            solution.force_on_outer += held.on_outer[0];
-            solution.moment_on_outer += held.on_outer[1];
-            solution.coordinates = moved(&solution.coordinates, shift);
-            for ball in &mut solution.balls {
-                ball.position += shift;
+        // As they are given, and not as a pose has them.
+        for (coordinates, body) in found.coordinates.iter_mut().zip(&assembly.bodies) {
+            if let Some(at) = body.driven().and_then(|race| all_given(race, t)) {
+                *coordinates = at.into();
             }
-            return Ok(solution);
         }
-        near = Some(solution.coordinates);
-        (before, tilts) = (tilts, now);
+        let now = &found.coordinates;
+        let next = Extra::of(assembly, t, &found);
+        let largest = largest_load(&found.bearings);
+        // Below what statics itself leaves over.
+        let mut settled = next.differs(&extra) <= options.tolerance * largest;
+        if follows.contains(&true) {
+            let change = |a: &[Five]| {
+                let tilts = a.iter().zip(now).zip(&follows).filter(|(_, follows)| **follows);
+                tilts.fold(0.0f64, |most, ((a, b), _)| {
+                    most.max((a[3] - b[3]).abs()).max((a[4] - b[4]).abs())
+                })
+            };
+            let circles = before.as_ref().is_some_and(|before| change(before) == 0.0);
+            settled &= change(&tilts) <= 1e-14 || circles;
+            before = Some(std::mem::replace(&mut tilts, now.clone()));
+        }
+        near = Some(now.clone());
+        extra = next;
+        solution = Some(found);
+        if settled {
+            break;
+        }
     }
-    solve(&statics)
+    // Twenty rounds at most are made, and one at least.
+    solution.ok_or(StaticsError::NotFinite { what: "rounds", value: f64::NAN })
+}
+
+/// Coordinates as far as they are given.
+fn given(assembly: &StaticAssembly) -> Vec<Five> {
+    let of = |body: &StaticBody| match &body.place {
+        Place::Held(_) => Five::zeros(),
+        Place::Loaded(loaded) => Five::from_fn(|i, _| loaded.given(i).unwrap_or(0.0)),
+    };
+    assembly.bodies.iter().map(of).collect()
+}
+
+fn largest_load(bearings: &[BearingState]) -> f64 {
+    let balls = bearings.iter().flat_map(|bearing| &bearing.balls);
+    balls.fold(0.0f64, |most, ball| most.max(ball.inner.normal_load))
+}
+
+/// The static problem of an assembly at time `t`; a rotating load stands still where it is then, an
+/// unbalance is left out.
+pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAssembly {
+    let carries_outer =
+        |body: usize| assembly.bearings.iter().any(|bearing| bearing.mounts[1].body == body);
+    let room = |body: usize| {
+        let on = assembly.bearings.iter().filter(|bearing| bearing.mounts[0].body == body);
+        let ball = on.map(|bearing| bearing.geometry.ball_radius).fold(FARTHEST, f64::min);
+        if carries_outer(body) { FARTHEST } else { ball }
+    };
+    let bodies = assembly.bodies.iter().enumerate().map(|(index, body)| {
+        let rest = &body.rest;
+        let place = match body.driven() {
+            None => held_at(rest),
+            Some(race) if let Some(at) = all_given(race, t) => held_at(&at),
+            Some(race) => {
+                // A race alone against one that is held is looked for where its load would take it.
+                let alone = !carries_outer(index)
+                    && assembly.bearings.len() == 1
+                    && is_held(&assembly.bodies[assembly.bearings[0].mounts[1].body]);
+                Place::Loaded(Loaded {
+                    conditions: conditions(assembly, body, race, t),
+                    springs: race.foundation_stiffness,
+                    rest: *rest,
+                    start: (!alone).then_some(*rest),
+                    room: room(index),
+                })
+            }
+        };
+        StaticBody { name: body.name.clone(), place }
+    });
+    let bearings = assembly.bearings.iter().enumerate().map(|(index, bearing)| StaticBearing {
+        name: bearing.name.clone(),
+        geometry: bearing.geometry,
+        inner_contact: bearing.inner_contact,
+        outer_contact: bearing.outer_contact,
+        mounts: bearing.mounts,
+        ball_phase: bearing.ball_phase + turned.get(index).copied().unwrap_or(0.0),
+        weight: Vector3::from(assembly.gravity) * bearing.ball.mass,
+        centrifugal: bearing.ball.mass * orbital_speed(assembly, bearing, t).powi(2),
+    });
+    StaticAssembly { bodies: bodies.collect(), bearings: bearings.collect() }
+}
+
+/// What is given of a body's coordinates or acts along them at time `t`: its drives, weight, rotating load.
+pub(super) fn conditions(
+    assembly: &Assembly,
+    body: &Body,
+    race: &RaceBody,
+    t: f64,
+) -> [Condition; 5] {
+    let mut others = [0.0; 5];
+    for (other, gravity) in others.iter_mut().zip(assembly.gravity) {
+        *other = race.inertia.mass * gravity;
+    }
+    if let Some(load) = &body.rotating_load {
+        for (other, force) in others.iter_mut().zip(load.force(t)) {
+            *other += force;
+        }
+    }
+    std::array::from_fn(|i| match &race.drives[i] {
+        Drive::Load(profile) => Condition::Load(profile.value(t) + others[i]),
+        Drive::Motion(profile) => Condition::Displacement(profile.value(t)),
+    })
+}
+
+fn held_at(at: &[f64; 5]) -> Place {
+    Place::Held(Pose {
+        position: Vector3::new(at[0], at[1], at[2]),
+        orientation: quaternion(0.0, at[3], at[4]),
+    })
+}
+
+/// Coordinates of a body all of which are given.
+fn all_given(race: &RaceBody, t: f64) -> Option<[f64; 5]> {
+    let mut at = [0.0; 5];
+    for (at, drive) in at.iter_mut().zip(&race.drives) {
+        let Drive::Motion(profile) = drive else { return None };
+        *at = profile.value(t);
+    }
+    Some(at)
+}
+
+/// Whether nothing is looked for of a body.
+fn is_held(body: &Body) -> bool {
+    body.driven().is_none_or(|race| all_given(race, 0.0).is_some())
+}
+
+/// Given speed of a body about its own axis at `t`, rad/s; zero when it is driven by a torque, or fixed.
+pub(super) fn given_speed(body: &Body, t: f64) -> f64 {
+    match body.driven().map(|race| &race.rotation) {
+        Some(Rotation::Speed(profile)) => profile.value(t),
+        Some(Rotation::Torque(_)) | None => 0.0,
+    }
+}
+
+/// Angle by which the given speed has turned a body since t = 0, rad.
+pub(super) fn given_angle(body: &Body, t: f64) -> f64 {
+    match body.driven().map(|race| &race.rotation) {
+        Some(Rotation::Speed(profile)) => profile.integral(t),
+        Some(Rotation::Torque(_)) | None => 0.0,
+    }
+}
+
+/// Given speeds of both races of a bearing about the bearing's axis, rad/s.
+pub(super) fn race_speeds(assembly: &Assembly, bearing: &Bearing, t: f64) -> [f64; 2] {
+    bearing.mounts.map(|mount| {
+        let speed = given_speed(&assembly.bodies[mount.body], t);
+        if mount.reversed { -speed } else { speed }
+    })
+}
+
+/// Speed of the ball set by pure rolling about the bearing's axis, rad/s.
+pub(super) fn orbital_speed(assembly: &Assembly, bearing: &Bearing, t: f64) -> f64 {
+    let g = &bearing.geometry;
+    let ratio = ratios(g.ball_count, g.ball_radius, g.pitch_radius, g.contact_angle).cage;
+    let [inner, outer] = race_speeds(assembly, bearing, t);
+    // Both races' surfaces move past the balls: the outer one's share is the rest.
+    if outer == 0.0 { ratio * inner } else { ratio * inner + (1.0 - ratio) * outer }
+}
+
+fn unbalanced(body: &Body, t: f64) -> bool {
+    let speed = given_speed(body, t);
+    body.unbalance * speed * speed != 0.0
+}
+
+/// Centrifugal force of an unbalance on x, y and z with the body at these tilts.
+fn unbalance(body: &Body, t: f64, [xi, lambda]: [f64; 2]) -> Five {
+    let speed = given_speed(body, t);
+    let size = body.unbalance * speed * speed;
+    let turned = about(Vector3::x(), given_angle(body, t)) * Vector3::y();
+    let along = about(Vector3::y(), xi) * about(Vector3::z(), lambda) * turned;
+    Five::from([size * along.x, size * along.y, size * along.z, 0.0, 0.0])
 }
 
 /// Largest slip of rolling contacts over their rolling speed.
 const CREEP: f64 = 0.01;
 
-/// Traction on the races that holds rolling balls in their orbit.
+/// Loads on bodies besides those that are given, conjugate to their coordinates.
 ///
 /// Normal loads, whose lines do not quite meet, and weight push a ball along its orbit. Statics
-/// holds it there; in a bearing that rolls steadily traction does, half of it at each race so that
-/// the ball's spin stays as it is, and as far as a slip of [`CREEP`] gives that much.
-#[derive(Clone, Copy, Debug, Default)]
-struct Held {
-    /// Conjugate to x, y, z (N) and the tilts (N·m) of the inner race.
-    on_inner: [f64; 5],
-    /// N; N·m about its centre.
-    on_outer: [Vector3<f64>; 2],
+/// holds it there, on the outer race; in a bearing that rolls steadily traction does, half of it at each race so
+/// that the ball's spin stays as it is, and as far as a slip of [`CREEP`] gives that much. Nothing
+/// holds the balls of one that does not roll.
+#[derive(Clone, Debug)]
+struct Extra {
+    loads: Vec<Five>,
 }
 
-impl Held {
-    fn of(
-        problem: &DynamicProblem,
-        t: f64,
-        statics: &StaticProblem,
-        solution: &StaticSolution,
-    ) -> Held {
-        let q = &solution.coordinates;
-        let tilted = about(Vector3::y(), q[3]) * about(Vector3::z(), q[4]) * Vector3::z();
-        let centres =
-            [Vector3::new(q[0], q[1], q[2]), statics.outer_pose.position - statics.frame.position];
-        let rolling_speed = 0.5 * (inner_speed(problem, t) * problem.geometry.pitch_radius).abs();
-        let grip = coefficient(&problem.traction, CREEP * rolling_speed, rolling_speed);
-        let mut sums = [[Vector3::zeros(); 2]; 2];
-        for ball in &solution.balls {
-            let contacts = [&ball.inner, &ball.outer];
-            if contacts.iter().any(|contact| contact.normal_load <= 0.0) {
-                continue;
-            }
-            let (sin, cos) = libm::sincos(ball.azimuth);
-            let around = statics.outer_pose.orientation * Vector3::new(0.0, -sin, cos);
-            let most = grip * ball.inner.normal_load.min(ball.outer.normal_load);
-            let force = around * (-0.5 * ball.cage_force).clamp(-most, most);
-            for ((sum, contact), centre) in sums.iter_mut().zip(contacts).zip(centres) {
-                let towards_race = contact.force_on_race / contact.force_on_race.norm();
-                let point = ball.position + towards_race * problem.geometry.ball_radius;
-                sum[0] += force;
-                sum[1] += (point - centre).cross(&force);
-            }
-        }
-        let [[force, moment], on_outer] = sums;
-        Held { on_inner: [force.x, force.y, force.z, moment.y, moment.dot(&tilted)], on_outer }
+impl Extra {
+    fn none(assembly: &Assembly) -> Extra {
+        Extra { loads: vec![Five::zeros(); assembly.bodies.len()] }
     }
 
-    /// Largest difference of a force on the inner race, N.
-    fn differs(&self, other: &Held) -> f64 {
-        (0..3).map(|i| (self.on_inner[i] - other.on_inner[i]).abs()).fold(0.0, f64::max)
+    fn of(assembly: &Assembly, t: f64, solution: &AssemblySolution) -> Extra {
+        let mut extra = Extra::none(assembly);
+        for (bearing, state) in assembly.bearings.iter().zip(&solution.bearings) {
+            let [inner, outer] = race_speeds(assembly, bearing, t);
+            let rolls = inner != outer && bearing.traction != TractionLaw::None;
+            let moves = !is_held(&assembly.bodies[bearing.mounts[1].body]);
+            if !(rolls || moves) {
+                continue;
+            }
+            let rolling_speed = 0.5 * ((inner - outer) * bearing.geometry.pitch_radius).abs();
+            let grip = coefficient(&bearing.traction, CREEP * rolling_speed, rolling_speed);
+            let outer_body = &solution.coordinates[bearing.mounts[1].body];
+            let orientation = outer_orientation(assembly, bearing, outer_body);
+            for ball in &state.balls {
+                let (sin, cos) = libm::sincos(ball.azimuth);
+                let around = orientation * Vector3::new(0.0, -sin, cos);
+                if moves {
+                    // What statics has put on the outer race in the cage's place.
+                    let by_cage = around * ball.cage_force;
+                    extra.add(solution, bearing, 1, &ball.position, &by_cage);
+                }
+                let contacts = [&ball.inner, &ball.outer];
+                if !rolls || contacts.iter().any(|contact| contact.normal_load <= 0.0) {
+                    continue;
+                }
+                let most = grip * ball.inner.normal_load.min(ball.outer.normal_load);
+                let force = around * (-0.5 * ball.cage_force).clamp(-most, most);
+                for (side, contact) in contacts.into_iter().enumerate() {
+                    let towards_race = contact.force_on_race / contact.force_on_race.norm();
+                    let point = ball.position + towards_race * bearing.geometry.ball_radius;
+                    extra.add(solution, bearing, side, &point, &force);
+                }
+            }
+        }
+        extra
     }
+
+    /// Adds a force at a point of one of a bearing's races.
+    fn add(
+        &mut self,
+        solution: &AssemblySolution,
+        bearing: &Bearing,
+        side: usize,
+        point: &Vector3<f64>,
+        force: &Vector3<f64>,
+    ) {
+        let body = bearing.mounts[side].body;
+        let q = &solution.coordinates[body];
+        let moment = (point - Vector3::new(q[0], q[1], q[2])).cross(force);
+        let tilted = about(Vector3::y(), q[3]) * about(Vector3::z(), q[4]) * Vector3::z();
+        self.loads[body] += Five::from([force.x, force.y, force.z, moment.y, moment.dot(&tilted)]);
+    }
+
+    /// Largest difference of a force, N.
+    fn differs(&self, other: &Extra) -> f64 {
+        let forces = self.loads.iter().zip(&other.loads);
+        forces.fold(0.0, |most: f64, (a, b)| most.max((a - b).fixed_rows::<3>(0).amax()))
+    }
+}
+
+/// Of a bearing's outer race, as its body's coordinates have it.
+fn outer_orientation(
+    assembly: &Assembly,
+    bearing: &Bearing,
+    coordinates: &Five,
+) -> nalgebra::UnitQuaternion<f64> {
+    let mount = &bearing.mounts[1];
+    let body = &assembly.bodies[mount.body];
+    let [xi, lambda] =
+        if body.moves() { [coordinates[3], coordinates[4]] } else { [body.rest[3], body.rest[4]] };
+    let turn = quaternion(0.0, xi, lambda);
+    if mount.reversed { turn * about(Vector3::z(), std::f64::consts::PI) } else { turn }
 }

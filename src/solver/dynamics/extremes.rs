@@ -1,9 +1,9 @@
 //! The largest of what every accepted step has led to, whatever rows are written: of the contacts of an
 //! evaluation that the step makes anyway.
 
-use super::state::{BodyState, POSITION};
+use super::race::{RaceNow, mounted};
 use super::system::System;
-use crate::kinematics::vec3::{Vec3, dot, norm, sub};
+use crate::kinematics::vec3::{dot, norm, sub};
 
 /// A largest value, the ball it belongs to, counted from 0, and its time, s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -50,21 +50,23 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Takes note of a state and of the contacts that `system` has evaluated for it last.
-    pub fn see(&mut self, system: &System, time: f64, state: &[f64]) {
-        let layout = &system.layout;
-        let (inner, outer) = (layout.inner(), layout.outer());
-        let position = |at: usize| -> Vec3 { std::array::from_fn(|i| state[at + POSITION + i]) };
-        self.farthest.take(norm(position(inner)), 0, time);
-        self.apart.take(norm(sub(position(inner), position(outer))), 0, time);
-        let axes = [inner, outer].map(|at| BodyState::from_slice(&state[at..]).axis());
-        let geometry = &system.problem.geometry;
+    /// Takes note of a state and of the contacts that a bearing has evaluated for it last.
+    pub fn see(&mut self, system: &System, index: usize, time: f64, state: &[f64]) {
+        let (set, bearing) = (&system.sets[index], &system.assembly.bearings[index]);
+        let layout = &set.layout;
+        let [inner, outer] = bearing.mounts.map(|mount| {
+            mounted(&RaceNow::new(system.body_state(state, mount.body)), &mount).motion
+        });
+        self.farthest.take(norm(inner.position), 0, time);
+        self.apart.take(norm(sub(inner.position, outer.position)), 0, time);
+        let axes = [inner.axis, outer.axis];
+        let geometry = &bearing.geometry;
         let grooves = [geometry.inner.groove_radius, geometry.outer.groove_radius];
-        for &pair in &system.table.active {
+        for &pair in &set.table.active {
             let (side, ball) = (pair / layout.padded, pair % layout.padded);
-            let contact = &system.table.contact[pair];
+            let contact = &set.table.contact[pair];
             let race = &mut self.races[side];
-            let load = system.table.load[pair];
+            let load = set.table.load[pair];
             race.load.take(load, ball, time);
             if load < WORTH_A_LOOK * race.load.value {
                 continue;
@@ -73,7 +75,7 @@ impl Extremes {
             // the inner one's.
             let sine = dot(contact.normal, axes[side]) * if side == 0 { -1.0 } else { 1.0 };
             race.reversed.take(-sine, ball, time);
-            let law = &system.laws.races[side];
+            let law = &set.laws.races[side];
             let half = law.semi_major_factor * contact.overlap.max(0.0).sqrt() / grooves[side];
             // sin(α + ε) <= sin α + ε: most contacts need no arc sine.
             if sine.abs() + half > libm::sin(race.edge.value.min(std::f64::consts::FRAC_PI_2)) {
@@ -94,6 +96,11 @@ impl Extremes {
             all.into_iter().flatten().chain([race.edge_angle])
         });
         races.chain(of(&self.farthest)).chain(of(&self.apart)).collect()
+    }
+
+    /// Of several bearings, from [`Extremes::to_numbers`] of each; `None` if they are not as many.
+    pub fn all_from_numbers(numbers: &[f64]) -> Option<Vec<Extremes>> {
+        numbers.chunks(Extremes::default().to_numbers().len()).map(Extremes::from_numbers).collect()
     }
 
     /// From [`Extremes::to_numbers`]; `None` if they are not as many.

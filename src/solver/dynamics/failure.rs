@@ -46,18 +46,25 @@ pub enum SimulationError {
     )]
     NotFinite { body: String, time: f64, step: u64 },
     #[error(
-        "ball {ball} has left its races at t = {at} s, step {step}: it is {distance:.3e} m from \
+        "{ball} has left its races at t = {at} s, step {step}: it is {distance:.3e} m from \
          the pitch circle, farther than its radius of {ball_radius:.3e} m",
         at = rounded(*time)
     )]
-    BallOutside { ball: usize, time: f64, step: u64, distance: f64, ball_radius: f64 },
+    BallOutside { ball: String, time: f64, step: u64, distance: f64, ball_radius: f64 },
     #[error(
-        "the inner race has left the bearing at t = {at} s, step {step}: it is {distance:.3e} m off {way}, \
+        "the inner race has left {bearing} at t = {at} s, step {step}: it is {distance:.3e} m off {way}, \
          farther than the {allowed:.3e} m of a ball's radius and all play of the grooves; nothing holds \
          it against its loads or given motion (balls gathered on one side, an axial load that opens the bearing?)",
         at = rounded(*time)
     )]
-    RaceLeft { way: &'static str, distance: f64, allowed: f64, time: f64, step: u64 },
+    RaceLeft {
+        bearing: String,
+        way: &'static str,
+        distance: f64,
+        allowed: f64,
+        time: f64,
+        step: u64,
+    },
     #[error(
         "{one} is {depth:.3e} m inside {other} at t = {at} s, step {step}, deeper than the {allowed:.3e} m \
          of a tenth of a ball's radius, where no contact law holds any more; check loads and stiffnesses, \

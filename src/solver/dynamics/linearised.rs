@@ -12,13 +12,15 @@
 //! ball leaves its frame's axes, how traction follows the entrainment speed,
 //! the Heathcote moments and gyroscopic moments. A W-method keeps its order without them.
 
-use super::model::Drive;
-use super::model::{DynamicProblem, RaceBody, Rotation};
+use super::assembly::{Bearing, Caged, Mobility};
+use super::ball_set::{BallSet, guiding_side};
+use super::model::{Drive, RaceBody, Rotation};
 use super::race::{RaceNow, directions};
 use super::state::{LANES, POSITION};
-use super::system::{Instant, System};
-use crate::ch2_housing::bearing::cage::{CageContact, Guidance, cage_stiffness};
+use super::system::System;
+use crate::ch2_housing::bearing::cage::{CageContact, CageContacts, cage_stiffness};
 use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
+use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
 
@@ -51,12 +53,16 @@ pub struct LaneContact {
     pub per_load: [Lane; 3],
     /// Motion along the four rows that the hub's prescribed velocities make.
     pub driven: [Lane; 4],
+    /// How turns of the hub shift the race's centre, where it does not sit at the hub's.
+    pub shifts: Option<[[f64; 3]; 3]>,
 }
 
-/// A contact of the cage with its guiding race.
+/// A contact of a cage with its guiding race.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GuideContact {
     pub loaded: bool,
+    /// Of the race (`None` if it is fixed) and of the cage.
+    pub hubs: [Option<usize>; 2],
     /// On the race, on the cage.
     pub levers: [Lever<f64>; 2],
     pub stiffness: f64,
@@ -82,120 +88,143 @@ pub struct Hub {
     pub prescribed: [f64; 6],
 }
 
+/// A block of balls of one bearing.
+#[derive(Clone, Debug, Default)]
+pub struct BallBlock {
+    pub bearing: usize,
+    /// First ball.
+    pub first: usize,
+    /// With the inner race, the outer race, the pockets.
+    pub contacts: [LaneContact; 3],
+}
+
 /// Everything that pushes back at one state.
 #[derive(Clone, Debug, Default)]
 pub struct Linearised {
-    /// Block by block: inner race, outer race, pocket.
-    pub contacts: Vec<[LaneContact; 3]>,
-    pub guides: [GuideContact; 2],
-    /// Inner race; outer race if it moves; cage.
+    pub blocks: Vec<BallBlock>,
+    /// Both ends of each cage that a race guides.
+    pub guides: Vec<[GuideContact; 2]>,
+    /// Bodies that move, in their order.
     pub hubs: Vec<Hub>,
-    pub guiding_hub: Option<usize>,
-    pub cage_hub: Option<usize>,
+    /// Of each body of the assembly.
+    pub hub_of: Vec<Option<usize>>,
 }
 
 impl Linearised {
     pub fn new(system: &System) -> Linearised {
-        let problem = &system.problem;
-        let layout = system.layout;
-        let mut hubs = vec![race_hub(&problem.inner, layout.inner())];
-        let mut outer_hub = None;
-        if let Some(outer) = &problem.outer {
-            outer_hub = Some(hubs.len());
-            hubs.push(race_hub(outer, layout.outer()));
+        let assembly = &system.assembly;
+        let mut hubs = Vec::new();
+        let hub_of: Vec<Option<usize>> = assembly
+            .bodies
+            .iter()
+            .enumerate()
+            .map(|(index, body)| {
+                let at = system.places.body(index);
+                hubs.push(match &body.mobility {
+                    Mobility::Fixed => return None,
+                    Mobility::Driven(race) => race_hub(race, at),
+                    Mobility::Free(inertia) => {
+                        Hub { at, inertia: six(inertia), free: [1.0; 6], ..Hub::default() }
+                    }
+                });
+                Some(hubs.len() - 1)
+            })
+            .collect();
+        let (mut blocks, mut guides) = (Vec::new(), Vec::new());
+        for (index, (set, bearing)) in system.sets.iter().zip(&assembly.bearings).enumerate() {
+            let races = bearing.mounts.map(|mount| hub_of[mount.body]);
+            let cage = bearing.cage.as_ref().and_then(|cage| hub_of[cage.body]);
+            let contacts =
+                [races[0], races[1], cage].map(|hub| LaneContact { hub, ..LaneContact::default() });
+            for first in (0..set.layout.padded).step_by(LANES) {
+                blocks.push(BallBlock { bearing: index, first, contacts: contacts.clone() });
+            }
+            let side = bearing.cage.as_ref().and_then(|cage| guiding_side(cage.contacts.guidance));
+            let hubs = [side.and_then(|side| races[side]), cage];
+            guides.push([GuideContact { hubs, ..GuideContact::default() }; 2]);
         }
-        let cage_hub = problem.cage.as_ref().map(|cage| {
-            let (mass, axial, transverse) =
-                (cage.inertia.mass, cage.inertia.axial, cage.inertia.transverse);
-            hubs.push(Hub {
-                at: layout.cage(),
-                inertia: [mass, mass, mass, axial, transverse, transverse],
-                free: [1.0; 6],
-                ..Hub::default()
-            });
-            hubs.len() - 1
-        });
-        let guiding_hub = match system.guidance() {
-            Guidance::InnerRace => Some(0),
-            Guidance::OuterRace => outer_hub,
-            Guidance::Balls => None,
-        };
-        let block =
-            [Some(0), outer_hub, cage_hub].map(|hub| LaneContact { hub, ..LaneContact::default() });
-        Linearised {
-            contacts: vec![block; layout.padded / LANES],
-            guides: [GuideContact::default(); 2],
-            hubs,
-            guiding_hub,
-            cage_hub,
-        }
+        Linearised { blocks, guides, hubs, hub_of }
     }
 
     /// Takes up the contacts that `system` has just evaluated, slopes included.
-    pub fn update(&mut self, system: &System, state: &[f64], instant: &Instant) {
-        let races = [&instant.inner, &instant.outer];
-        turn_race(&mut self.hubs[0], &system.problem.inner, races[0]);
-        if let (Some(hub), Some(body)) = (self.contacts[0][1].hub, &system.problem.outer) {
-            turn_race(&mut self.hubs[hub], body, races[1]);
-        }
-        if let (Some(hub), Some(cage)) = (self.cage_hub, &instant.cage) {
-            let ([e2, e3], _) = directions(cage.axis);
-            self.hubs[hub].basis = [cage.axis, e2, e3];
-        }
-        for block in 0..self.contacts.len() {
-            for (side, race) in races.into_iter().enumerate() {
-                let contact = &mut self.contacts[block][side];
-                let hub = contact.hub.map(|hub| &self.hubs[hub]);
-                race_contacts(system, state, race, side, block * LANES, hub, contact);
-            }
-            if let (Some(hub), Some(cage)) = (self.cage_hub, &instant.cage) {
-                let contact = &mut self.contacts[block][2];
-                pockets(system, state, cage.position, block * LANES, &self.hubs[hub], contact);
+    pub fn update(&mut self, system: &System, state: &[f64]) {
+        let Linearised { blocks, guides, hubs, hub_of } = self;
+        for ((body, now), hub) in system.assembly.bodies.iter().zip(&system.bodies).zip(hub_of) {
+            let Some(hub) = hub.map(|hub| &mut hubs[hub]) else { continue };
+            match body.driven() {
+                Some(race) => turn_race(hub, race, now),
+                None => {
+                    let ([e2, e3], _) = directions(now.motion.axis);
+                    hub.basis = [now.motion.axis, e2, e3];
+                }
             }
         }
-        self.update_guides(system, instant);
+        for block in blocks {
+            let (set, bearing) =
+                (&system.sets[block.bearing], &system.assembly.bearings[block.bearing]);
+            for (side, mount) in bearing.mounts.iter().enumerate() {
+                let contact = &mut block.contacts[side];
+                let hub = contact.hub.map(|hub| &hubs[hub]);
+                let centre = system.bodies[mount.body].motion.position;
+                race_contacts(set, state, side, block.first, (hub, centre), contact);
+            }
+            let contact = &mut block.contacts[2];
+            if let (Some(hub), Some(caged)) = (contact.hub, &bearing.cage) {
+                pockets(set, caged, state, block.first, &hubs[hub], contact);
+            }
+        }
+        for ((guides, set), bearing) in
+            guides.iter_mut().zip(&system.sets).zip(&system.assembly.bearings)
+        {
+            update_guides(guides, set, bearing, &system.bodies, hubs);
+        }
     }
+}
 
-    fn update_guides(&mut self, system: &System, instant: &Instant) {
-        let (Some(cage_hub), Some(cage)) = (self.cage_hub, &instant.cage) else { return };
-        let Some(body) = &system.problem.cage else { return };
-        let race = match body.contacts.guidance {
-            Guidance::Balls => return,
-            Guidance::InnerRace => &instant.inner,
-            Guidance::OuterRace => &instant.outer,
-        };
-        for (guide, contact) in self.guides.iter_mut().zip(&system.guides) {
-            guide.loaded = contact.normal_load > 0.0;
-            if !guide.loaded {
-                continue;
-            }
-            let (directions, slope) = friction(contact, &system.problem);
-            guide.stiffness = cage_stiffness(&body.contacts.force, contact.penetration);
-            guide.slope = slope;
-            for (row, direction) in directions.into_iter().enumerate() {
-                let lever = |hub: &Hub, centre: Vec3, sign: f64| {
-                    let turning = cross(sub(contact.point, centre), direction);
-                    on_hub(hub, scale(direction, sign), scale(turning, sign))
-                };
-                guide.levers[0][row] = match self.guiding_hub {
-                    Some(hub) => lever(&self.hubs[hub], race.motion.position, 1.0),
-                    None => [0.0; 6],
-                };
-                guide.levers[1][row] = lever(&self.hubs[cage_hub], cage.position, -1.0);
+fn update_guides(
+    guides: &mut [GuideContact; 2],
+    set: &BallSet,
+    bearing: &Bearing,
+    bodies: &[RaceNow],
+    hubs: &[Hub],
+) {
+    let Some(caged) = &bearing.cage else { return };
+    let Some(side) = guiding_side(caged.contacts.guidance) else { return };
+    let centres = [bearing.mounts[side].body, caged.body].map(|body| bodies[body].motion.position);
+    for (guide, contact) in guides.iter_mut().zip(&set.guides) {
+        guide.loaded = contact.normal_load > 0.0;
+        if !guide.loaded {
+            continue;
+        }
+        let (directions, slope) = friction(contact, &caged.contacts);
+        guide.stiffness = cage_stiffness(&caged.contacts.force, contact.penetration);
+        guide.slope = slope;
+        for (row, direction) in directions.into_iter().enumerate() {
+            for ((lever, sign), (hub, centre)) in
+                guide.levers.iter_mut().zip([1.0, -1.0]).zip(guide.hubs.into_iter().zip(centres))
+            {
+                let turning = cross(sub(contact.point, centre), direction);
+                lever[row] = hub.map_or([0.0; 6], |hub| {
+                    on_hub(&hubs[hub], scale(direction, sign), scale(turning, sign))
+                });
             }
         }
     }
+}
+
+/// Mass and moments of inertia of a hub.
+fn six(inertia: &Inertia) -> [f64; 6] {
+    let Inertia { mass, axial, transverse, .. } = *inertia;
+    [mass, mass, mass, axial, transverse, transverse]
 }
 
 fn race_hub(body: &RaceBody, at: usize) -> Hub {
     let free = |given: bool| if given { 0.0 } else { 1.0 };
     let held = |i: usize| free(matches!(body.drives[i], Drive::Motion(_)));
     let turned = free(matches!(body.rotation, Rotation::Speed(_)));
-    let (mass, axial, transverse) =
-        (body.inertia.mass, body.inertia.axial, body.inertia.transverse);
     Hub {
         at,
-        inertia: [mass, mass, mass, axial, transverse, transverse],
+        inertia: six(&body.inertia),
         free: [held(0), held(1), held(2), turned, held(3), held(4)],
         ..Hub::default()
     }
@@ -244,16 +273,19 @@ fn joined(a: Vec3, b: Vec3) -> [f64; 6] {
 }
 
 fn race_contacts(
-    system: &System,
+    set: &BallSet,
     state: &[f64],
-    race: &RaceNow,
     side: usize,
     first: usize,
-    hub: Option<&Hub>,
+    (hub, hub_centre): (Option<&Hub>, Vec3),
     to: &mut LaneContact,
 ) {
-    let System { layout, laws, table, .. } = system;
+    let BallSet { layout, laws, table, .. } = set;
+    let race = &set.races[side];
     let law = &laws.races[side];
+    // Levers count about the hub's centre, from where the race's may be some way along the shaft.
+    let off = sub(race.motion.position, hub_centre);
+    to.shifts = hub.filter(|_| off != [0.0; 3]).map(|hub| hub.basis.map(|axis| cross(axis, off)));
     to.rows = 0;
     let rows = if laws.traction == TractionLaw::None { 1 } else { ROWS };
     for lane in 0..LANES {
@@ -276,11 +308,12 @@ fn race_contacts(
         // K δ^{3/2} (1 + c δ̇).
         let share = table.load[pair] / elastic;
         to.stiffness[lane] = share * normal_stiffness(law.stiffness, contact.overlap);
-        to.damping[lane] = elastic * system.damping[pair];
+        to.damping[lane] = elastic * set.damping[pair];
         let between = sub(layout.ball_vector(state, POSITION, ball), motion.position);
         put(&mut to.on_ball[0], lane, joined(normal, [0.0; 3]));
         if let Some(hub) = hub {
-            let (linear, turning) = (scale(normal, -1.0), cross(normal, between));
+            let (linear, turning) =
+                (scale(normal, -1.0), cross(normal, from_hub(to, between, off)));
             put(&mut to.on_hub[0], lane, on_hub(hub, linear, turning));
             to.driven[0][lane] = driven(hub, linear, turning);
         }
@@ -322,7 +355,7 @@ fn race_contacts(
             put(&mut to.on_ball[row], lane, joined(direction, cross(here.arm_on_ball, direction)));
             if let Some(hub) = hub {
                 let (linear, turning) =
-                    (scale(direction, -1.0), cross(direction, here.arm_on_race));
+                    (scale(direction, -1.0), cross(direction, from_hub(to, here.arm_on_race, off)));
                 put(&mut to.on_hub[row], lane, on_hub(hub, linear, turning));
                 to.driven[row][lane] = driven(hub, linear, turning);
             }
@@ -335,8 +368,13 @@ fn race_contacts(
     }
 }
 
+/// An arm from a race's centre as one from the centre of its hub.
+fn from_hub(contact: &LaneContact, arm: Vec3, off: Vec3) -> Vec3 {
+    if contact.shifts.is_some() { add(arm, off) } else { arm }
+}
+
 /// Push, direction of sliding and the one across; slope of the friction along the latter two.
-fn friction(contact: &CageContact, problem: &DynamicProblem) -> ([Vec3; 3], [f64; 2]) {
+fn friction(contact: &CageContact, law: &CageContacts) -> ([Vec3; 3], [f64; 2]) {
     let push = contact.push;
     let speed = norm(contact.slip);
     let along = if speed > 0.0 {
@@ -347,23 +385,21 @@ fn friction(contact: &CageContact, problem: &DynamicProblem) -> ([Vec3; 3], [f64
         let across = cross(push, aside);
         scale(across, 1.0 / norm(across))
     };
-    let Some(cage) = &problem.cage else { return ([push, along, cross(push, along)], [0.0; 2]) };
-    let u0 = cage.contacts.regularisation_speed;
+    let u0 = law.regularisation_speed;
     let square = speed * speed + u0 * u0;
-    let secant = cage.contacts.friction * contact.normal_load / square.sqrt();
+    let secant = law.friction * contact.normal_load / square.sqrt();
     ([push, along, cross(push, along)], [secant * u0 * u0 / square, secant])
 }
 
 fn pockets(
-    system: &System,
+    set: &BallSet,
+    caged: &Caged,
     state: &[f64],
-    cage: Vec3,
     first: usize,
     hub: &Hub,
     to: &mut LaneContact,
 ) {
-    let System { layout, pockets, problem, .. } = system;
-    let Some(body) = &problem.cage else { return };
+    let BallSet { layout, pockets, cage: Some(cage), .. } = set else { return };
     to.rows = 0;
     for lane in 0..LANES {
         let ball = first + lane;
@@ -376,12 +412,12 @@ fn pockets(
             continue;
         };
         to.rows = 3;
-        let (directions, slope) = friction(contact, problem);
-        to.stiffness[lane] = cage_stiffness(&body.contacts.force, contact.penetration);
+        let (directions, slope) = friction(contact, &caged.contacts);
+        to.stiffness[lane] = cage_stiffness(&caged.contacts.force, contact.penetration);
         to.slope[0][lane] = slope[0];
         to.slope[3][lane] = slope[1];
         let arm_on_ball = sub(contact.point, layout.ball_vector(state, POSITION, ball));
-        let arm_on_cage = sub(contact.point, cage);
+        let arm_on_cage = sub(contact.point, cage.motion.position);
         for (row, direction) in directions.into_iter().enumerate() {
             put(&mut to.on_ball[row], lane, joined(direction, cross(arm_on_ball, direction)));
             let turning = cross(direction, arm_on_cage);

@@ -1,11 +1,13 @@
 //! The bearing in motion: every part a rigid body with six degrees of freedom (2.2.1, 4.2.1).
 //!
-//! `model` says what is simulated, `state` where it lies, `contacts` and `race` turn states into
-//! loads, `system` into rates, `energy` into energies; `rk4`, `dormand_prince` and `rosenbrock`
+//! `assembly` says what is simulated (a bearing alone is written as a `model`), `state` where it lies, `contacts`
+//! and `race` turn states into loads, each bearing's `ball_set` into loads on its bodies, `system` into rates, `energy` into energies; `rk4`, `dormand_prince` and `rosenbrock`
 //! integrate (the last through `linearised` contacts, the `arrow` matrix and each ball's `orbit_frame`),
 //! `bounds` says where a state has lost its meaning, `control` chooses steps for an accuracy, `extremes` remembers the largest loads,
 //! `run` drives a simulation from start to end.
 pub mod arrow;
+pub mod assembly;
+pub mod ball_set;
 pub mod bounds;
 pub mod checkpoint;
 pub mod contacts;

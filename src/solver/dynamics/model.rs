@@ -1,6 +1,7 @@
-//! What is simulated: bodies, contacts, loads and prescribed motions, as plain data.
+//! Loads and given motions of bodies, and a bearing alone as plain data.
 
-use super::bounds::HERTZ_SCALE;
+use super::assembly::{Assembly, INNER};
+use super::equilibrium::{conditions, orbital_speed};
 use crate::ch2_housing::bearing::ball_contact::BallContactLaw;
 use crate::ch2_housing::bearing::cage::CageContacts;
 use crate::ch2_housing::bearing::contact::ContactDamping;
@@ -8,8 +9,11 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::bearing::traction::TractionLaw;
+use crate::kinematics::Pose;
+use crate::kinematics::euler::quaternion;
 use crate::solver::profile::Profile;
-use std::f64::consts::PI;
+use crate::solver::statics::StaticProblem;
+use nalgebra::Vector3;
 
 /// One degree of freedom of a race: driven by a load, or its motion given.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,33 +78,6 @@ pub struct CageBody {
     pub contacts: CageContacts,
 }
 
-impl RaceBody {
-    /// Profiles of what is given, not loaded: coordinates and the speed.
-    fn given(&self) -> impl Iterator<Item = &Profile> {
-        let coordinates = self.drives.iter().filter_map(|drive| match drive {
-            Drive::Motion(profile) => Some(profile),
-            Drive::Load(_) => None,
-        });
-        let speed = match &self.rotation {
-            Rotation::Speed(profile) => Some(profile),
-            Rotation::Torque(_) => None,
-        };
-        coordinates.chain(speed)
-    }
-
-    fn loads(&self) -> impl Iterator<Item = &Profile> {
-        let coordinates = self.drives.iter().filter_map(|drive| match drive {
-            Drive::Load(profile) => Some(profile),
-            Drive::Motion(_) => None,
-        });
-        let torque = match &self.rotation {
-            Rotation::Torque(profile) => Some(profile),
-            Rotation::Speed(_) => None,
-        };
-        coordinates.chain(torque)
-    }
-}
-
 /// A bearing in motion, SI units, inertial axes X axial, Y lateral, Z up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynamicProblem {
@@ -132,100 +109,31 @@ pub struct DynamicProblem {
 }
 
 impl DynamicProblem {
-    fn races(&self) -> impl Iterator<Item = &RaceBody> {
-        std::iter::once(&self.inner).chain(&self.outer)
+    /// The same as lists of bodies and bearings.
+    pub fn assembly(&self) -> Assembly {
+        Assembly::from(self)
     }
 
-    /// Times after t = 0 at which a load or a given motion has a corner, in order, each once: no
-    /// step should cross them.
-    pub fn corners(&self) -> Vec<f64> {
-        let turning = self.rotating_load.iter().flat_map(|load| [&load.force, &load.speed]);
-        let profiles =
-            self.races().flat_map(|race| race.loads().chain(race.given())).chain(turning);
-        let mut corners: Vec<f64> = profiles.flat_map(Profile::corners).collect();
-        corners.retain(|time| *time > 0.0 && time.is_finite());
-        corners.sort_by(f64::total_cmp);
-        corners.dedup();
-        corners
-    }
-
-    /// The same with loads and given motions as they are from `t0` (s) on.
-    pub fn from_time(&self, t0: f64) -> DynamicProblem {
-        let mut later = self.clone();
-        for race in std::iter::once(&mut later.inner).chain(&mut later.outer) {
-            for drive in &mut race.drives {
-                match drive {
-                    Drive::Load(profile) | Drive::Motion(profile) => {
-                        *profile = profile.from_time(t0)
-                    }
-                }
-            }
-            match &mut race.rotation {
-                Rotation::Torque(profile) | Rotation::Speed(profile) => {
-                    *profile = profile.from_time(t0);
-                }
-            }
+    /// The bearing at time `t` with its outer race held where it starts; a rotating load stands still where it
+    /// is then, an unbalance is left out.
+    pub fn statics(&self, t: f64) -> StaticProblem {
+        let assembly = self.assembly();
+        let [x, y, z, xi, lambda] = self.outer_start;
+        StaticProblem {
+            geometry: self.geometry,
+            inner_contact: self.inner_contact,
+            outer_contact: self.outer_contact,
+            ball_phase: self.ball_phase,
+            ball_mass: self.ball.mass,
+            gravity: Vector3::from(self.gravity),
+            orbital_speed: orbital_speed(&assembly, &assembly.bearings[0], t),
+            frame: Pose::identity(),
+            outer_pose: Pose {
+                position: Vector3::new(x, y, z),
+                orientation: quaternion(0.0, xi, lambda),
+            },
+            conditions: conditions(&assembly, &assembly.bodies[INNER], &self.inner, t),
         }
-        if let Some(load) = &mut later.rotating_load {
-            let phase = load.angle(t0);
-            *load = RotatingLoad {
-                force: load.force.from_time(t0),
-                speed: load.speed.from_time(t0),
-                phase,
-            };
-        }
-        later
-    }
-
-    /// Whether a load or a given motion changes over time; one that turns at a speed of its own does.
-    pub fn changes(&self) -> bool {
-        let mut own = self.races().flat_map(|race| race.loads().chain(race.given()));
-        own.any(|profile| !matches!(profile, Profile::Constant(_))) || self.rotating_load.is_some()
-    }
-
-    /// Whether a given motion has a corner at `time`, so that velocities may jump.
-    pub fn jolts_at(&self, time: f64) -> bool {
-        let mut given = self.races().flat_map(RaceBody::given);
-        given.any(|profile| profile.corners().contains(&time))
-    }
-}
-
-/// Whether neighbouring balls can meet.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum BallMeeting {
-    /// Their contact is part of every evaluation.
-    Tested,
-    /// No law is given for it.
-    NoLaw,
-    /// The pockets keep them apart by at least `gap` (m).
-    KeptApart { gap: f64 },
-}
-
-/// How far inside the pitch circle a ball may come for its pocket to keep it apart, in ball radii:
-/// more than the grooves leave it, by far.
-const INWARDS: f64 = 0.5;
-
-/// The gap (m) that the pockets of a cage keep between neighbouring balls; `None` where they may meet.
-///
-/// Each ball stays on its side of the plane halfway between two pockets as long as it lies no deeper
-/// in its pocket's wall than any run goes on with.
-pub fn gap_in_pockets(geometry: &BearingGeometry, cage: &CageContacts) -> Option<f64> {
-    let radius = geometry.ball_radius;
-    let aside = cage.pocket_radius - radius + HERTZ_SCALE * radius;
-    let pitch = geometry.pitch_radius.min(cage.pocket_pitch_radius);
-    let (sin, cos) = libm::sincos(PI / geometry.ball_count as f64);
-    let inmost = pitch - INWARDS * radius - aside;
-    Some(2.0 * (inmost * sin - aside * cos - radius)).filter(|gap| *gap > 0.0)
-}
-
-impl DynamicProblem {
-    pub fn ball_meeting(&self) -> BallMeeting {
-        if self.ball_contact.is_none() {
-            return BallMeeting::NoLaw;
-        }
-        let kept =
-            self.cage.as_ref().and_then(|cage| gap_in_pockets(&self.geometry, &cage.contacts));
-        kept.map_or(BallMeeting::Tested, |gap| BallMeeting::KeptApart { gap })
     }
 }
 

@@ -42,14 +42,14 @@ impl OrbitFrames {
         }
     }
 
-    /// Writes `time` times the velocities at which the frames carry the balls of `state`, component
-    /// by component. To a frame the races and the pockets go round the other way; that is a change
+    /// Writes `time` times the velocities at which the frames carry the balls of `state` to the places of
+    /// their positions. To a frame the races and the pockets go round the other way; that is a change
     /// with time which a linearly implicit step has to know, since contacts close by it.
     pub fn drift(&self, layout: &Layout, time: f64, state: &[f64], to: &mut [f64]) {
         for (ball, rate) in self.rates.iter().enumerate() {
             let [_, y, z] = layout.ball_vector(state, POSITION, ball);
-            to[layout.padded + ball] = -time * rate * z;
-            to[2 * layout.padded + ball] = time * rate * y;
+            to[layout.ball(1) + ball] = -time * rate * z;
+            to[layout.ball(2) + ball] = time * rate * y;
         }
     }
 

@@ -1,11 +1,13 @@
 //! Motion of a race: what is prescribed is imposed, the rest follows from loads.
 
+use super::assembly::{Body, Mobility};
 use super::model::{Drive, RaceBody, Rotation};
 use super::state::BodyState;
 use crate::ch2_housing::bearing::cage::AxisMotion;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::kinematics::euler::about;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
+use crate::solver::mount::Mount;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// A race at one instant.
@@ -21,7 +23,7 @@ pub struct RaceNow {
 }
 
 impl RaceNow {
-    fn new(state: BodyState) -> RaceNow {
+    pub fn new(state: BodyState) -> RaceNow {
         let motion = motion_of(&state);
         let (tilt_directions, cos_lambda) = directions(motion.axis);
         RaceNow { state, motion, tilt_directions, cos_lambda }
@@ -100,6 +102,15 @@ pub fn now(body: &RaceBody, t: f64, mut state: BodyState) -> RaceNow {
     RaceNow::new(state)
 }
 
+/// A body of an assembly as its state has it at time `t`, given motions imposed.
+pub fn body_now(body: &Body, t: f64, state: BodyState) -> RaceNow {
+    match &body.mobility {
+        Mobility::Fixed => fixed(&body.rest),
+        Mobility::Driven(race) => now(race, t, state),
+        Mobility::Free(_) => RaceNow::new(state),
+    }
+}
+
 /// The same spin angle under new tilts.
 fn with_tilts(orientation: &UnitQuaternion<f64>, tilts: [f64; 2]) -> UnitQuaternion<f64> {
     let turn = |[xi, lambda]: [f64; 2]| about(Vector3::y(), xi) * about(Vector3::z(), lambda);
@@ -116,13 +127,42 @@ pub fn fixed(at: &[f64; 5]) -> RaceNow {
     RaceNow::new(state)
 }
 
-/// Forces on a race: what acts besides the contacts, and what results.
+/// The race that sits on a body at a mount.
+pub fn mounted(body: &RaceNow, mount: &Mount) -> RaceNow {
+    if mount.is_direct() {
+        return *body;
+    }
+    let arm = scale(body.motion.axis, mount.along);
+    let mut state = body.state;
+    state.position = add(state.position, arm);
+    state.velocity = add(state.velocity, cross(state.spin, arm));
+    if mount.reversed {
+        // Half a turn about Z: X and Y the other way round.
+        state.orientation *= UnitQuaternion::new_unchecked(Quaternion::new(0.0, 0.0, 0.0, 1.0));
+    }
+    RaceNow::new(state)
+}
+
+/// Force and moment on a body.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RaceLoads {
     /// Contacts, gravity, rotating load, unbalance; N, inertial axes.
     pub force: Vec3,
-    /// About the race's centre, N·m.
+    /// About the body's centre, N·m.
     pub moment: Vec3,
+}
+
+impl RaceLoads {
+    /// Adds a force at a point to the loads about `centre`.
+    pub fn add_at(&mut self, centre: Vec3, point: Vec3, force: Vec3) {
+        self.force = add(self.force, force);
+        self.moment = add(self.moment, cross(sub(point, centre), force));
+    }
+
+    pub fn add(&mut self, other: &RaceLoads) {
+        self.force = add(self.force, other.force);
+        self.moment = add(self.moment, other.moment);
+    }
 }
 
 /// Acceleration of a race and the powers that go into the ledger.

@@ -46,7 +46,8 @@ pub const ERROR_ORDER: f64 = 3.0;
 pub struct Rosenbrock {
     linearised: Linearised,
     arrow: Arrow,
-    frames: OrbitFrames,
+    /// Of each bearing.
+    frames: Vec<OrbitFrames>,
     first: Vec<f64>,
     stages: [Vec<f64>; STAGES],
     stage: Vec<f64>,
@@ -58,25 +59,27 @@ pub struct Rosenbrock {
 impl Rosenbrock {
     pub fn new(system: &System) -> Rosenbrock {
         let linearised = Linearised::new(system);
-        let room = || vec![0.0; system.layout.len()];
+        let room = || vec![0.0; system.places.state_len()];
         Rosenbrock {
-            arrow: Arrow::new(&system.layout, system.problem.ball, linearised.hubs.len()),
+            arrow: Arrow::new(system, &linearised),
             linearised,
-            frames: OrbitFrames::new(&system.layout),
+            frames: system.sets.iter().map(|set| OrbitFrames::new(&set.layout)).collect(),
             first: room(),
             stages: std::array::from_fn(|_| room()),
             stage: room(),
             rates: room(),
             shift: room(),
-            drift: vec![0.0; 3 * system.layout.padded],
+            drift: room(),
         }
     }
 
     /// What all attempts of a step from `state` at `t` share: the first stage and the contacts.
     pub fn begin(&mut self, system: &mut System, t: f64, state: &[f64]) {
-        let instant = system.evaluate_with(Want::ForcesAndSlopes, t, state, &mut self.first);
-        self.linearised.update(system, state, &instant);
-        self.frames.follow(&system.layout, state);
+        system.evaluate_with(Want::ForcesAndSlopes, t, state, &mut self.first);
+        self.linearised.update(system, state);
+        for (frames, set) in self.frames.iter_mut().zip(&system.sets) {
+            frames.follow(&set.layout, state);
+        }
     }
 
     /// Goes on from `state`, reached by an accepted step at `t`.
@@ -93,7 +96,7 @@ impl Rosenbrock {
     ) {
         let entries =
             [Ledger::Traction, Ledger::ContactDamping, Ledger::CageFriction, Ledger::BallFriction]
-                .map(|e| system.layout.ledger_entry(e));
+                .map(|e| system.places.ledger_entry(e));
         let first = entries.map(|at| self.first[at]);
         self.begin(system, t, state);
         for (at, first) in entries.into_iter().zip(first) {
@@ -112,14 +115,15 @@ impl Rosenbrock {
     ) {
         let Rosenbrock { linearised, arrow, frames, first, stages, stage, rates, shift, drift } =
             self;
-        let layout = system.layout;
         arrow.factor(linearised, GAMMA * step);
         system.work.factorisations += 1;
         rates.copy_from_slice(first);
-        frames.turn(0.0);
-        frames.rates_to_frame(&layout, state, rates);
-        frames.drift(&layout, 1.0, state, drift);
-        arrow.solve(linearised, &layout, state, drift, rates, &mut stages[0]);
+        for (frames, set) in frames.iter_mut().zip(&system.sets) {
+            frames.turn(0.0);
+            frames.rates_to_frame(&set.layout, state, rates);
+            frames.drift(&set.layout, 1.0, state, drift);
+        }
+        arrow.solve(linearised, &system.sets, state, drift, rates, &mut stages[0]);
         for i in 1..STAGES {
             let (before, rest) = stages.split_at_mut(i);
             stage.copy_from_slice(state);
@@ -129,14 +133,19 @@ impl Rosenbrock {
                 add_scaled(shift, GAMMAS[i][j] / GAMMA, k);
             }
             let after = step * ALPHA[i].iter().sum::<f64>();
-            frames.turn(after);
-            frames.to_inertial(&layout, stage);
+            for (frames, set) in frames.iter_mut().zip(&system.sets) {
+                frames.turn(after);
+                frames.to_inertial(&set.layout, stage);
+            }
             system.evaluate(t + after, stage, rates);
-            frames.rates_to_frame(&layout, stage, rates);
-            add_scaled(rates, 1.0, shift);
             // Time goes on at rate 1 in every stage.
-            frames.drift(&layout, 1.0 + GAMMAS[i].iter().sum::<f64>() / GAMMA, state, drift);
-            arrow.solve(linearised, &layout, state, drift, rates, &mut rest[0]);
+            let going = 1.0 + GAMMAS[i].iter().sum::<f64>() / GAMMA;
+            for (frames, set) in frames.iter().zip(&system.sets) {
+                frames.rates_to_frame(&set.layout, stage, rates);
+                frames.drift(&set.layout, going, state, drift);
+            }
+            add_scaled(rates, 1.0, shift);
+            arrow.solve(linearised, &system.sets, state, drift, rates, &mut rest[0]);
             add_scaled(&mut rest[0], -1.0, shift);
         }
         to.state.copy_from_slice(state);
@@ -145,8 +154,10 @@ impl Rosenbrock {
             add_scaled(&mut to.state, step * WEIGHTS[j], k);
             add_scaled(&mut to.error, step * (WEIGHTS[j] - EMBEDDED[j]), k);
         }
-        frames.turn(step);
-        frames.to_inertial(&layout, &mut to.state);
+        for (frames, set) in frames.iter_mut().zip(&system.sets) {
+            frames.turn(step);
+            frames.to_inertial(&set.layout, &mut to.state);
+        }
     }
 }
 

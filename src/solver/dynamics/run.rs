@@ -1,19 +1,19 @@
 //! A simulation: state, time, step after step, watched.
 
+use super::assembly::Assembly;
 use super::contacts::Driver;
 use super::control::{Attempt, Controller};
 use super::dormand_prince::{self, DormandPrince};
 use super::energy::Energy;
 use super::extremes::Extremes;
-use super::model::DynamicProblem;
 use super::race::RaceLoads;
 use super::rk4::RungeKutta;
 use super::rosenbrock::{self, Rosenbrock};
 use super::stability::{StepLimit, step_limit};
 use super::start;
-use super::state::{LEDGER, Layout, Ledger};
+use super::state::{LEDGER, Ledger};
 use super::step_watch::{StepWatch, Stiffness, stiffness};
-use super::system::{Instant, System};
+use super::system::System;
 
 pub use super::failure::SimulationError;
 
@@ -100,9 +100,9 @@ pub struct Simulation {
     pub limit: Option<StepLimit>,
     /// How the step compares with what the contacts allow since.
     pub step_watch: StepWatch,
-    /// Of every state that a step has led to, as far as it has been evaluated: of Runge–Kutta's that is
+    /// Of each bearing, over every state that a step has led to, as far as it has been evaluated: of Runge–Kutta's that is
     /// the one before the last step, unless a snapshot was taken.
-    pub extremes: Extremes,
+    pub extremes: Vec<Extremes>,
     /// With error control only.
     pub control: Option<Controller>,
     pub(super) options: RunOptions,
@@ -135,7 +135,6 @@ enum Stepper {
 #[derive(Clone, Copy, Debug)]
 pub struct Snapshot {
     pub time: f64,
-    pub instant: Instant,
     pub energy: Energy,
     /// Work and losses since the start, J, in the order of [`super::state::Ledger`].
     pub ledger: [f64; LEDGER],
@@ -146,7 +145,7 @@ pub struct Snapshot {
 /// # Errors
 /// Steps that the integrator cannot choose.
 fn controller(
-    problem: &DynamicProblem,
+    assembly: &Assembly,
     options: &RunOptions,
 ) -> Result<Option<Controller>, SimulationError> {
     match (options.integrator, options.stepping) {
@@ -156,10 +155,10 @@ fn controller(
         (Integrator::RungeKutta, Stepping::Accuracy(_)) => Err(SimulationError::NoErrorEstimate),
         (Integrator::RungeKutta, _) | (_, Stepping::Fixed(_)) => Ok(None),
         (Integrator::DormandPrince, Stepping::Accuracy(accuracy)) => {
-            Ok(Some(Controller::new(problem, accuracy, dormand_prince::ERROR_ORDER)))
+            Ok(Some(Controller::new(assembly, accuracy, dormand_prince::ERROR_ORDER)))
         }
         (Integrator::Rosenbrock, Stepping::Accuracy(accuracy)) => {
-            Ok(Some(Controller::new(problem, accuracy, rosenbrock::ERROR_ORDER)))
+            Ok(Some(Controller::new(assembly, accuracy, rosenbrock::ERROR_ORDER)))
         }
         (other, Stepping::FractionOfLimit(_)) => {
             Err(SimulationError::FractionOfOther(other.name()))
@@ -206,19 +205,26 @@ fn accepted(
     }
 }
 
+/// Every bearing's extremes take note of a state that has been evaluated.
+fn see(extremes: &mut [Extremes], system: &System, time: f64, state: &[f64]) {
+    for (index, extremes) in extremes.iter_mut().enumerate() {
+        extremes.see(system, index, time, state);
+    }
+}
+
 impl Simulation {
     /// # Errors
     /// No equilibrium to start from, or no step.
     pub fn new(
-        problem: DynamicProblem,
+        assembly: impl Into<Assembly>,
         options: RunOptions,
     ) -> Result<Simulation, SimulationError> {
-        let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
+        let assembly = assembly.into();
         let state = match options.start {
-            Start::Equilibrium => start::at_equilibrium(&problem, &layout)?.0,
-            Start::Nominal => start::nominal(&problem, &layout),
+            Start::Equilibrium => start::at_equilibrium(&assembly)?,
+            Start::Nominal => start::nominal(&assembly),
         };
-        let mut simulation = Simulation::from_state(problem, options, state, 0.0)?;
+        let mut simulation = Simulation::from_state(assembly, options, state, 0.0)?;
         simulation.system.tidy(0.0, &mut simulation.state);
         Ok(simulation)
     }
@@ -229,19 +235,19 @@ impl Simulation {
     /// # Errors
     /// No step.
     pub fn from_state(
-        problem: DynamicProblem,
+        assembly: impl Into<Assembly>,
         options: RunOptions,
         state: Vec<f64>,
         time: f64,
     ) -> Result<Simulation, SimulationError> {
-        let mut system = System::new(problem, options.driver);
+        let mut system = System::new(assembly, options.driver);
         let length = state.len();
         let integrator = match options.integrator {
             Integrator::RungeKutta => Stepper::RungeKutta(RungeKutta::new(length)),
             Integrator::DormandPrince => Stepper::DormandPrince(DormandPrince::new(length)),
             Integrator::Rosenbrock => Stepper::Rosenbrock(Box::new(Rosenbrock::new(&system))),
         };
-        let control = controller(&system.problem, &options)?;
+        let control = controller(&system.assembly, &options)?;
         let (mut step_size, limit) = match options.stepping {
             Stepping::Fixed(step) => (step, None),
             Stepping::FractionOfLimit(fraction) => {
@@ -256,18 +262,18 @@ impl Simulation {
         }
         let mut rates = vec![0.0; state.len()];
         system.work = Default::default();
-        let instant = system.evaluate(time, &state, &mut rates);
-        let first_energy = system.energy(&state, &instant);
-        let mut extremes = Extremes::default();
-        extremes.see(&system, time, &state);
+        system.evaluate(time, &state, &mut rates);
+        let first_energy = system.energy(&state);
+        let mut extremes = vec![Extremes::default(); system.sets.len()];
+        see(&mut extremes, &system, time, &state);
         let step_watch = StepWatch {
             smallest: limit.map(|limit| limit.step),
             stiffest: if limit.is_some() { stiffness(&system) } else { Stiffness::default() },
             ..StepWatch::default()
         };
-        let at = system.layout.ledger();
+        let at = system.places.ledger();
         let ledger_before = state[at..at + LEDGER].iter().sum();
-        let mut was_loaded = vec![false; system.damping.len()];
+        let mut was_loaded = vec![false; system.pairs()];
         system.commit_damping(&mut was_loaded);
         let control = control.map(|mut control| {
             control.see(&system);
@@ -320,9 +326,9 @@ impl Simulation {
         }
     }
 
-    /// Lets a housing push the outer race from now on; its work goes with that of foundations.
-    pub fn set_housing_load(&mut self, load: RaceLoads) {
-        self.system.housing_load = load;
+    /// Lets something outside push a body from now on; its work goes with that of foundations.
+    pub fn set_outside_load(&mut self, body: usize, load: RaceLoads) {
+        self.system.outside[body] = Some(load);
         self.take_first_rates();
     }
 
@@ -346,7 +352,7 @@ impl Simulation {
             Stepper::RungeKutta(integrator) => {
                 let t = self.time;
                 integrator.step(system, t, step, state, |system, state| {
-                    extremes.see(system, t, state);
+                    see(extremes, system, t, state);
                 });
                 step
             }
@@ -361,7 +367,7 @@ impl Simulation {
                 integrator.accept();
                 std::mem::swap(state, &mut attempt.state);
                 // The last stage is the step itself.
-                extremes.see(system, t + taken, state);
+                see(extremes, system, t + taken, state);
                 taken
             }
             Stepper::Rosenbrock(integrator) => {
@@ -375,7 +381,7 @@ impl Simulation {
                 std::mem::swap(state, &mut attempt.state);
                 system.tidy(t + taken, state);
                 integrator.accept(system, t + taken, taken, &attempt.state, state);
-                extremes.see(system, t + taken, state);
+                see(extremes, system, t + taken, state);
                 taken
             }
         };
@@ -393,21 +399,21 @@ impl Simulation {
     /// that the contacts do not feel.
     pub fn cross_corner(&mut self, corner: f64) {
         let Simulation { system, state, rates, time, .. } = self;
-        if !system.problem.jolts_at(corner) {
+        if !system.assembly.jolts_at(corner) {
             system.latest = f64::INFINITY;
             self.take_first_rates();
             return;
         }
         let time = time.max(corner);
         let mut energy = |system: &mut System, state: &[f64]| {
-            let instant = system.evaluate(time, state, rates);
-            system.energy(state, &instant).total()
+            system.evaluate(time, state, rates);
+            system.energy(state).total()
         };
         let before = energy(system, state);
         system.latest = f64::INFINITY;
         system.tidy(time, state);
         let after = energy(system, state);
-        state[system.layout.ledger_entry(Ledger::Drives)] += after - before;
+        state[system.places.ledger_entry(Ledger::Drives)] += after - before;
         self.take_first_rates();
     }
 
@@ -416,10 +422,10 @@ impl Simulation {
     /// # Errors
     /// More energy unaccounted for than the options allow.
     pub fn snapshot(&mut self) -> Result<Snapshot, SimulationError> {
-        let instant = self.system.evaluate(self.time, &self.state, &mut self.rates);
-        self.extremes.see(&self.system, self.time, &self.state);
-        let energy = self.system.energy(&self.state, &instant);
-        let at = self.system.layout.ledger();
+        self.system.evaluate(self.time, &self.state, &mut self.rates);
+        see(&mut self.extremes, &self.system, self.time, &self.state);
+        let energy = self.system.energy(&self.state);
+        let at = self.system.places.ledger();
         let mut ledger = [0.0; LEDGER];
         ledger.copy_from_slice(&self.state[at..at + LEDGER]);
         let residual = energy.total()
@@ -440,7 +446,7 @@ impl Simulation {
         }
         let limit = self.options.energy_limit;
         if residual.abs() <= limit * turned_over || turned_over == 0.0 {
-            return Ok(Snapshot { time: self.time, instant, energy, ledger, residual });
+            return Ok(Snapshot { time: self.time, energy, ledger, residual });
         }
         let (time, step) = (self.time, self.steps);
         Err(SimulationError::Energy { residual, turned_over, time, step, limit })

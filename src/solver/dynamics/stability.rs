@@ -1,5 +1,7 @@
 //! The step that Runge–Kutta can take: from the Jacobian's eigenvalues at a state.
 
+use super::assembly::{Bearing, Body};
+use super::ball_set::BallSet;
 use super::model::RaceBody;
 use super::state::{ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use super::system::System;
@@ -60,38 +62,46 @@ impl Cause {
 
     /// Takes it out of the equations; whether there was anything to take out.
     fn remove(self, system: &mut System) -> bool {
-        let races = |system: &mut System, pick: fn(&mut RaceBody) -> &mut [f64; 5]| {
-            let problem = &mut system.problem;
+        let foundations = |system: &mut System, pick: fn(&mut RaceBody) -> &mut [f64; 5]| {
             let mut any = false;
-            for race in std::iter::once(&mut problem.inner).chain(&mut problem.outer) {
+            for race in system.assembly.bodies.iter_mut().filter_map(Body::driven_mut) {
                 any |= *pick(race) != [0.0; 5];
                 *pick(race) = [0.0; 5];
+            }
+            any
+        };
+        let bearings = |system: &mut System, take: &dyn Fn(&mut BallSet, &mut Bearing) -> bool| {
+            let System { sets, assembly, .. } = system;
+            let mut any = false;
+            for (set, bearing) in sets.iter_mut().zip(&mut assembly.bearings) {
+                any |= take(set, bearing);
             }
             any
         };
         match self {
             // What is left when it is nothing else.
             Cause::Contact => false,
-            Cause::Traction => {
-                std::mem::replace(&mut system.laws.traction, TractionLaw::None) != TractionLaw::None
-            }
-            Cause::ContactDamping => {
-                let any = system.damping.iter().any(|factor| *factor != 0.0);
-                system.damping.fill(0.0);
-                any
-            }
-            Cause::CageContact => system.problem.cage.as_mut().is_some_and(|cage| {
-                cage.contacts.force = CageForce::Penalty { stiffness: 0.0 };
-                true
+            Cause::Traction => bearings(system, &|set, _| {
+                std::mem::replace(&mut set.laws.traction, TractionLaw::None) != TractionLaw::None
             }),
-            Cause::CageFriction => system
-                .problem
-                .cage
-                .as_mut()
-                .is_some_and(|cage| std::mem::replace(&mut cage.contacts.friction, 0.0) != 0.0),
-            Cause::BallContact | Cause::BallFriction => {
-                let touching = system.meetings.iter().any(|meeting| meeting.normal_load > 0.0);
-                let Some(law) = system.problem.ball_contact.as_mut().filter(|_| touching) else {
+            Cause::ContactDamping => bearings(system, &|set, _| {
+                let any = set.damping.iter().any(|factor| *factor != 0.0);
+                set.damping.fill(0.0);
+                any
+            }),
+            Cause::CageContact => bearings(system, &|_, bearing| {
+                bearing.cage.as_mut().is_some_and(|cage| {
+                    cage.contacts.force = CageForce::Penalty { stiffness: 0.0 };
+                    true
+                })
+            }),
+            Cause::CageFriction => bearings(system, &|_, bearing| {
+                let cage = bearing.cage.as_mut();
+                cage.is_some_and(|cage| std::mem::replace(&mut cage.contacts.friction, 0.0) != 0.0)
+            }),
+            Cause::BallContact | Cause::BallFriction => bearings(system, &|set, bearing| {
+                let touching = set.meetings.iter().any(|meeting| meeting.normal_load > 0.0);
+                let Some(law) = bearing.ball_contact.as_mut().filter(|_| touching) else {
                     return false;
                 };
                 let part = match self {
@@ -99,9 +109,9 @@ impl Cause {
                     _ => &mut law.friction,
                 };
                 std::mem::replace(part, 0.0) != 0.0
-            }
-            Cause::FoundationSpring => races(system, |race| &mut race.foundation_stiffness),
-            Cause::FoundationDashpot => races(system, |race| &mut race.foundation_damping),
+            }),
+            Cause::FoundationSpring => foundations(system, |race| &mut race.foundation_stiffness),
+            Cause::FoundationDashpot => foundations(system, |race| &mut race.foundation_damping),
         }
     }
 }
@@ -192,7 +202,8 @@ pub fn jacobian(system: &mut System, t: f64, state: &[f64]) -> DMatrix<f64> {
     let mut rates = vec![0.0; state.len()];
     let mut shifted = state.to_vec();
     let mut matrix = DMatrix::zeros(directions.len(), directions.len());
-    let radius = system.problem.geometry.ball_radius;
+    let radii = system.assembly.bearings.iter().map(|bearing| bearing.geometry.ball_radius);
+    let radius = radii.fold(f64::INFINITY, f64::min);
     for (column, direction) in directions.iter().enumerate() {
         let step = direction.step(state, radius);
         for sign in [1.0, -1.0] {
@@ -208,7 +219,6 @@ pub fn jacobian(system: &mut System, t: f64, state: &[f64]) -> DMatrix<f64> {
 }
 
 fn directions(system: &System) -> Vec<Direction> {
-    let layout = system.layout;
     let mut directions = Vec::new();
     let mut add = |of: &dyn Fn(usize) -> usize| {
         for i in 0..3 {
@@ -217,18 +227,20 @@ fn directions(system: &System) -> Vec<Direction> {
             directions.push(Direction::Rate(of(SPIN + i)));
         }
     };
-    for ball in 0..layout.balls {
-        add(&|component| layout.ball(component) + ball);
+    for layout in system.sets.iter().map(|set| set.layout) {
+        for ball in 0..layout.balls {
+            add(&|component| layout.ball(component) + ball);
+        }
     }
-    let races_and_cage = [
-        (layout.inner(), true),
-        (layout.outer(), system.problem.outer.is_some()),
-        (layout.cage(), layout.has_cage),
-    ];
-    for (body, _) in races_and_cage.iter().filter(|(_, moves)| *moves) {
+    let bodies = system.assembly.bodies.iter().enumerate();
+    let moving: Vec<usize> = bodies
+        .filter(|(_, body)| body.moves())
+        .map(|(index, _)| system.places.body(index))
+        .collect();
+    for body in &moving {
         add(&|component| body + component);
     }
-    for (body, _) in races_and_cage.into_iter().filter(|(_, moves)| *moves) {
+    for body in moving {
         directions.extend((0..3).map(|axis| Direction::Turn { body, axis }));
     }
     directions
@@ -257,14 +269,18 @@ fn cause(system: &mut System, t: f64, state: &[f64], step: f64, eigenvalue: Comp
     };
     let mut found = (1.1 * step, Cause::Contact);
     for &candidate in candidates {
-        let (problem, laws, damping) =
-            (system.problem.clone(), system.laws.clone(), system.damping.clone());
+        let assembly = system.assembly.clone();
+        let sets: Vec<_> =
+            system.sets.iter().map(|set| (set.laws.clone(), set.damping.clone())).collect();
         let longer = if candidate.remove(system) {
             limiting(system, t, state).map_or(f64::INFINITY, |limit| limit.0)
         } else {
             step
         };
-        (system.problem, system.laws, system.damping) = (problem, laws, damping);
+        system.assembly = assembly;
+        for (set, (laws, damping)) in system.sets.iter_mut().zip(sets) {
+            (set.laws, set.damping) = (laws, damping);
+        }
         if longer > found.0 {
             found = (longer, candidate);
         }

@@ -1,159 +1,120 @@
 //! Where a simulation starts: at equilibrium and rolling, or at rest in nominal positions.
 
-use super::equilibrium::{Equilibrium, at_start};
-use super::model::{Drive, DynamicProblem, Rotation};
+use super::assembly::{Assembly, Bearing};
+use super::equilibrium::{at_start, given_speed, orbital_speed, race_speeds};
+use super::model::Drive;
 use super::quasi_static::{self, Rates};
-use super::race;
-use super::state::{BodyState, Layout};
-use crate::ch2_housing::bearing::frequencies::ratios;
-use crate::kinematics::Pose;
-use crate::kinematics::euler::quaternion;
+use super::race::{self, RaceNow, mounted};
+use super::state::{BODY, BodyState, Layout, Places};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
-use crate::solver::statics::{Condition, StaticProblem, StaticSolution, StaticsError};
+use crate::solver::statics::StaticsError;
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 
-/// The static problem that the dynamic one settles into at time `t` with the outer race where it
-/// started; a rotating load stands still where it is then, an unbalance is left out.
-pub fn static_problem(problem: &DynamicProblem, t: f64) -> StaticProblem {
-    let mut others = [0.0; 5];
-    for (other, gravity) in others.iter_mut().zip(problem.gravity) {
-        *other = problem.inner.inertia.mass * gravity;
-    }
-    if let Some(load) = &problem.rotating_load {
-        for (other, force) in others.iter_mut().zip(load.force(t)) {
-            *other += force;
-        }
-    }
-    let conditions = std::array::from_fn(|i| match &problem.inner.drives[i] {
-        Drive::Load(profile) => Condition::Load(profile.value(t) + others[i]),
-        Drive::Motion(profile) => Condition::Displacement(profile.value(t)),
-    });
-    let at = &problem.outer_start;
-    StaticProblem {
-        geometry: problem.geometry,
-        inner_contact: problem.inner_contact,
-        outer_contact: problem.outer_contact,
-        ball_phase: problem.ball_phase,
-        ball_mass: problem.ball.mass,
-        gravity: Vector3::from(problem.gravity),
-        orbital_speed: orbital_speed(problem, t),
-        frame: Pose::identity(),
-        outer_pose: Pose {
-            position: Vector3::new(at[0], at[1], at[2]),
-            orientation: quaternion(0.0, at[3], at[4]),
-        },
-        conditions,
-    }
-}
-
-/// Prescribed speed of the inner race at `t`, rad/s; zero when it is driven by a torque.
-pub(super) fn inner_speed(problem: &DynamicProblem, t: f64) -> f64 {
-    match &problem.inner.rotation {
-        Rotation::Speed(profile) => profile.value(t),
-        Rotation::Torque(_) => 0.0,
-    }
-}
-
-/// Angle by which the prescribed speed has turned the inner race since t = 0, rad.
-pub(super) fn inner_angle(problem: &DynamicProblem, t: f64) -> f64 {
-    match &problem.inner.rotation {
-        Rotation::Speed(profile) => profile.integral(t),
-        Rotation::Torque(_) => 0.0,
-    }
-}
-
-/// Speed of the ball set by pure rolling with the outer race at rest, rad/s.
-fn orbital_speed(problem: &DynamicProblem, t: f64) -> f64 {
-    let g = &problem.geometry;
-    let ratio = ratios(g.ball_count, g.ball_radius, g.pitch_radius, g.contact_angle).cage;
-    ratio * inner_speed(problem, t)
-}
-
-/// State vector at equilibrium of both races under the loads at t = 0, balls and cage rolling and
+/// State vector at equilibrium of all bodies under the loads at t = 0, balls and cages rolling and
 /// all as fast as the equilibrium moves on (see [`quasi_static`]); what turns stands still for the
 /// equilibrium itself (see [`at_start`]).
 ///
 /// # Errors
 /// When the loads have no equilibrium.
-pub fn at_equilibrium(
-    problem: &DynamicProblem,
-    layout: &Layout,
-) -> Result<(Vec<f64>, StaticSolution), StaticsError> {
-    let now = at_start(problem)?;
-    let rates = quasi_static::rates(problem, &now, orbital_speed(problem, 0.0));
-    let Equilibrium { solution, outer } = now;
-    let mut state = vec![0.0; layout.len()];
-    let q = &solution.coordinates;
-    let positions: Vec<Vec3> = solution.balls.iter().map(|ball| ball.position.into()).collect();
-    let inner = [q[0], q[1], q[2], q[3], q[4]];
-    fill(problem, layout, &mut state, [&inner, &outer], &positions, &rates);
-    Ok((state, solution))
+pub fn at_equilibrium(assembly: &Assembly) -> Result<Vec<f64>, StaticsError> {
+    let now = at_start(assembly)?;
+    let rates = quasi_static::rates(assembly, &now);
+    let bodies: Vec<[f64; 5]> =
+        (0..assembly.bodies.len()).map(|body| now.place(assembly, body)).collect();
+    let positions: Vec<Vec<Vec3>> = now
+        .bearings
+        .iter()
+        .map(|bearing| bearing.balls.iter().map(|ball| ball.position.into()).collect())
+        .collect();
+    Ok(fill(assembly, &bodies, Some(&positions), &rates))
 }
 
-/// State vector with everything in its nominal position, balls and cage rolling at the prescribed
-/// speed; loads hit it suddenly.
-pub fn nominal(problem: &DynamicProblem, layout: &Layout) -> Vec<f64> {
-    let mut state = vec![0.0; layout.len()];
-    let g = &problem.geometry;
-    let outer = race::fixed(&problem.outer_start);
+/// State vector with everything in its nominal position, balls and cages rolling at the given
+/// speeds; loads hit it suddenly.
+pub fn nominal(assembly: &Assembly) -> Vec<f64> {
+    let place = |body: &super::assembly::Body| {
+        let mut at = body.rest;
+        if let Some(race) = body.driven() {
+            for (coordinate, drive) in at.iter_mut().zip(&race.drives) {
+                if let Drive::Motion(profile) = drive {
+                    *coordinate = profile.value(0.0);
+                }
+            }
+        }
+        at
+    };
+    let bodies: Vec<[f64; 5]> = assembly.bodies.iter().map(place).collect();
+    fill(assembly, &bodies, None, &Rates::rest(assembly))
+}
+
+/// Positions of a bearing's balls on the pitch circle of its outer race.
+fn on_pitch_circle(bearing: &Bearing, outer: &RaceNow) -> Vec<Vec3> {
+    let g = &bearing.geometry;
     let turn = outer.state.orientation;
-    let positions: Vec<Vec3> = (0..layout.balls)
-        .map(|ball| {
-            let angle =
-                problem.ball_phase + std::f64::consts::TAU * ball as f64 / layout.balls as f64;
-            let (sin, cos) = libm::sincos(angle);
-            let local = Vector3::new(0.0, g.pitch_radius * cos, g.pitch_radius * sin);
-            add(outer.state.position, (turn * local).into())
-        })
-        .collect();
-    let mut inner = [0.0; 5];
-    for (coordinate, drive) in inner.iter_mut().zip(&problem.inner.drives) {
-        if let Drive::Motion(profile) = drive {
-            *coordinate = profile.value(0.0);
+    let position = |ball: usize| {
+        let angle = bearing.ball_phase + TAU * ball as f64 / g.ball_count as f64;
+        let (sin, cos) = libm::sincos(angle);
+        let local = Vector3::new(0.0, g.pitch_radius * cos, g.pitch_radius * sin);
+        add(outer.state.position, (turn * local).into())
+    };
+    (0..g.ball_count).map(position).collect()
+}
+
+/// The state with bodies at these coordinates; balls stand on their pitch circles where no `positions` are given.
+fn fill(
+    assembly: &Assembly,
+    bodies: &[[f64; 5]],
+    positions: Option<&[Vec<Vec3>]>,
+    rates: &Rates,
+) -> Vec<f64> {
+    let places = Places::of(assembly);
+    let mut state = vec![0.0; places.state_len()];
+    let write = |state: &mut [f64], at: usize, body: &BodyState| {
+        state[at..at + BODY].copy_from_slice(&body.to_array());
+    };
+    let mut now = Vec::with_capacity(bodies.len());
+    for (index, (body, at)) in assembly.bodies.iter().zip(bodies).enumerate() {
+        let moved = moving(at, &rates.bodies[index], given_speed(body, 0.0));
+        write(&mut state, places.body(index), &moved);
+        now.push(RaceNow::new(moved));
+    }
+    for (index, (bearing, layout)) in assembly.bearings.iter().zip(Layout::of(assembly)).enumerate()
+    {
+        let [inner, outer] = bearing.mounts.map(|mount| mounted(&now[mount.body], &mount));
+        let orbital_speed = orbital_speed(assembly, bearing, 0.0);
+        let at_rest = on_pitch_circle(bearing, &outer);
+        let positions = positions.map_or(&at_rest, |positions| &positions[index]);
+        // What turns with the outer race's tilts and not about its axis.
+        let axis = outer.motion.axis;
+        let [_, outer_speed] = race_speeds(assembly, bearing, 0.0);
+        let tilting = if outer_speed == 0.0 {
+            outer.state.spin
+        } else {
+            add_scaled(outer.state.spin, -outer_speed, axis)
+        };
+        if layout.has_cage {
+            let mut cage = outer.state;
+            cage.spin = add_scaled(tilting, orbital_speed, axis);
+            write(&mut state, layout.cage(), &cage);
+        }
+        for (ball, position) in positions.iter().enumerate() {
+            let mut body = BodyState::at_rest(*position);
+            let from_axis = sub(*position, outer.motion.position);
+            let outward = add_scaled(from_axis, -dot(from_axis, axis), axis);
+            let with_outer = add(outer.motion.velocity, cross(tilting, from_axis));
+            let [along, away] = rates.balls[index][ball];
+            let own = add_scaled(scale(axis, along), away / norm(outward), outward);
+            body.velocity = add(cross(scale(axis, orbital_speed), outward), add(with_outer, own));
+            body.spin = rolling_spin(bearing, [&inner, &outer], outer_speed, &body, outward);
+            layout.set_ball(&mut state, ball, &body);
+        }
+        // Lanes beyond the last ball hold a ball that stands in the groove and is never looked at.
+        for ball in layout.balls..layout.padded {
+            layout.set_ball(&mut state, ball, &BodyState::at_rest(positions[0]));
         }
     }
-    let rest = Rates::rest(layout.balls);
-    fill(problem, layout, &mut state, [&inner, &problem.outer_start], &positions, &rest);
     state
-}
-
-fn fill(
-    problem: &DynamicProblem,
-    layout: &Layout,
-    state: &mut [f64],
-    [inner, outer]: [&[f64; 5]; 2],
-    positions: &[Vec3],
-    rates: &Rates,
-) {
-    let orbital_speed = orbital_speed(problem, 0.0);
-    let write = |state: &mut [f64], at: usize, body: &BodyState| {
-        state[at..at + super::state::BODY].copy_from_slice(&body.to_array());
-    };
-    let inner = moving(inner, &rates.inner, inner_speed(problem, 0.0));
-    write(state, layout.inner(), &inner);
-    let outer = moving(outer, &rates.outer, 0.0);
-    write(state, layout.outer(), &outer);
-    let axis = outer.axis();
-    if layout.has_cage {
-        let mut cage = outer;
-        cage.spin = add_scaled(outer.spin, orbital_speed, axis);
-        write(state, layout.cage(), &cage);
-    }
-    for (ball, position) in positions.iter().enumerate() {
-        let mut body = BodyState::at_rest(*position);
-        let from_axis = sub(*position, outer.position);
-        let outward = add_scaled(from_axis, -dot(from_axis, axis), axis);
-        let with_outer = add(outer.velocity, cross(outer.spin, from_axis));
-        let [along, away] = rates.balls[ball];
-        let own = add_scaled(scale(axis, along), away / norm(outward), outward);
-        body.velocity = add(cross(scale(axis, orbital_speed), outward), add(with_outer, own));
-        body.spin = rolling_spin(problem, &inner, &body, axis, outward);
-        layout.set_ball(state, ball, &body);
-    }
-    // Lanes beyond the last ball hold a ball that stands in the groove and is never looked at.
-    for ball in layout.balls..layout.padded {
-        layout.set_ball(state, ball, &BodyState::at_rest(positions[0]));
-    }
 }
 
 /// A race at x, y, z, tilt_y, tilt_z, whose coordinates change at `rates`, turning at `speed`.
@@ -169,26 +130,33 @@ fn moving(at: &[f64; 5], rates: &[f64; 5], speed: f64) -> BodyState {
 }
 
 /// Spin that rolls without slip on both races: about the meridian direction across the line from
-/// the outer to the inner contact, as fast as the inner race's surface asks for.
+/// the outer to the inner contact, as fast as the races' surfaces ask for.
 fn rolling_spin(
-    problem: &DynamicProblem,
-    inner: &BodyState,
+    bearing: &Bearing,
+    [inner, outer]: [&RaceNow; 2],
+    outer_speed: f64,
     ball: &BodyState,
-    axis: Vec3,
     outward: Vec3,
 ) -> Vec3 {
-    let angle = problem.geometry.contact_angle;
+    let angle = bearing.geometry.contact_angle;
+    let axis = outer.motion.axis;
     let out = scale(outward, 1.0 / norm(outward));
     let (sin, cos) = libm::sincos(angle);
     let normal = add_scaled(scale(out, cos), sin, axis);
     let tangent = cross(axis, out);
     let roll_axis = cross(tangent, normal);
-    let radius = problem.geometry.ball_radius;
+    let radius = bearing.geometry.ball_radius;
     let inner_point = scale(normal, -radius);
-    let from_inner = sub(add(ball.position, inner_point), inner.position);
-    let race_surface = add(inner.velocity, cross(inner.spin, from_inner));
-    // Centre plus spin × arm: the outer point stands still, the inner one moves with the race.
-    let half_difference = 0.5 * dot(race_surface, tangent);
+    let surface = |race: &RaceNow, point: Vec3| {
+        let arm = sub(add(ball.position, point), race.motion.position);
+        dot(add(race.motion.velocity, cross(race.motion.spin, arm)), tangent)
+    };
+    let mut difference = surface(inner, inner_point);
+    if outer_speed != 0.0 {
+        difference -= surface(outer, scale(inner_point, -1.0));
+    }
+    // Centre plus spin × arm on either side: half of what the surfaces differ by.
+    let half_difference = 0.5 * difference;
     let per_spin = dot(cross(roll_axis, inner_point), tangent);
     scale(roll_axis, half_difference / per_spin)
 }

@@ -1,11 +1,44 @@
 //! Layout of the state vector: one flat array, so that integrators, error control and restart see
 //! plain numbers.
 //!
-//! Balls lie component by component (all x, all y, …), padded to whole lanes; each race and the
-//! cage follow body by body; the energy ledger comes last.
+//! The balls of each bearing lie component by component (all x, all y, …), padded to whole lanes; bodies
+//! (races, cages, shafts) follow one by one; the energy ledger comes last.
 
+use super::assembly::Assembly;
 use crate::kinematics::vec3::Vec3;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+/// Where bodies and ledger are in the state vector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Places {
+    first_body: usize,
+    bodies: usize,
+}
+
+impl Places {
+    pub fn of(assembly: &Assembly) -> Places {
+        let balls = assembly.bearings.iter().map(|bearing| bearing.geometry.ball_count);
+        Places { first_body: balls.map(ball_entries).sum(), bodies: assembly.bodies.len() }
+    }
+
+    /// First of the 13 entries of a body.
+    pub fn body(&self, body: usize) -> usize {
+        self.first_body + BODY * body
+    }
+
+    pub fn ledger(&self) -> usize {
+        self.body(self.bodies)
+    }
+
+    pub fn ledger_entry(&self, entry: Ledger) -> usize {
+        self.ledger() + entry as usize
+    }
+
+    /// Entries of the whole state.
+    pub fn state_len(&self) -> usize {
+        self.ledger() + LEDGER
+    }
+}
 
 /// Lanes that the contact loops run over.
 pub const LANES: usize = 8;
@@ -31,20 +64,66 @@ pub enum Ledger {
 
 pub const LEDGER: usize = 6;
 
-/// Where everything is in the state vector.
+/// Where a bearing's balls and bodies are in the state vector: the balls of all bearings come first, then the
+/// bodies, then the ledger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     pub balls: usize,
     /// Balls rounded up to whole lanes; the extra ones stand still and touch nothing.
     pub padded: usize,
     pub has_cage: bool,
+    /// First entries of the balls, the bodies of both races, the cage (the ledger's if
+    /// there is none) and the ledger.
+    first: usize,
+    races: [usize; 2],
+    cage: usize,
+    ledger: usize,
+}
+
+/// Entries that a bearing's balls take.
+fn ball_entries(balls: usize) -> usize {
+    BODY * balls.next_multiple_of(LANES)
 }
 
 impl Layout {
+    /// Of a bearing alone.
     pub fn new(balls: usize, has_cage: bool) -> Layout {
-        Layout { balls, padded: balls.next_multiple_of(LANES), has_cage }
+        let inner = ball_entries(balls);
+        let (outer, cage) = (inner + BODY, inner + 2 * BODY);
+        Layout {
+            balls,
+            padded: balls.next_multiple_of(LANES),
+            has_cage,
+            first: 0,
+            races: [inner, outer],
+            cage,
+            ledger: if has_cage { cage + BODY } else { cage },
+        }
     }
 
+    /// Of each bearing of an assembly.
+    pub fn of(assembly: &Assembly) -> Vec<Layout> {
+        let places = Places::of(assembly);
+        let mut first = 0;
+        let mut layouts = Vec::with_capacity(assembly.bearings.len());
+        for bearing in &assembly.bearings {
+            let balls = bearing.geometry.ball_count;
+            let races = bearing.mounts.map(|mount| places.body(mount.body));
+            layouts.push(Layout {
+                balls,
+                padded: balls.next_multiple_of(LANES),
+                has_cage: bearing.cage.is_some(),
+                first,
+                races,
+                cage: bearing.cage.as_ref().map_or(places.ledger(), |cage| places.body(cage.body)),
+                ledger: places.ledger(),
+            });
+            first += ball_entries(balls);
+        }
+        layouts
+    }
+
+    /// Of the whole state.
     pub fn len(&self) -> usize {
         self.ledger() + LEDGER
     }
@@ -54,25 +133,26 @@ impl Layout {
     }
 
     /// First entry of component `component` (0 … 12) of the balls.
+    #[inline(always)]
     pub fn ball(&self, component: usize) -> usize {
-        component * self.padded
+        self.first + component * self.padded
     }
 
     pub fn inner(&self) -> usize {
-        BODY * self.padded
+        self.races[0]
     }
 
     pub fn outer(&self) -> usize {
-        self.inner() + BODY
+        self.races[1]
     }
 
     /// The cage's 13 entries, if there is one.
     pub fn cage(&self) -> usize {
-        self.outer() + BODY
+        self.cage
     }
 
     pub fn ledger(&self) -> usize {
-        self.cage() + if self.has_cage { BODY } else { 0 }
+        self.ledger
     }
 
     pub fn ledger_entry(&self, entry: Ledger) -> usize {

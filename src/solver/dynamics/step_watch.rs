@@ -6,6 +6,8 @@
 //! nothing, and the Jacobian where they have become so stiff that the limit may have come down to
 //! the step. A step that was given is refused then; one that follows from the limit is shortened.
 
+use super::assembly::Bearing;
+use super::ball_set::BallSet;
 use super::run::{Integrator, Simulation, SimulationError, Stepping};
 use super::stability::step_limit;
 use super::system::System;
@@ -60,28 +62,35 @@ impl Stiffness {
 
 /// Stiffness of the contacts as they were evaluated last.
 pub fn stiffness(system: &System) -> Stiffness {
-    let problem = &system.problem;
-    let radius = system.laws.ball_radius;
-    let per_mass = 1.0 / problem.ball.mass;
-    // A force at the surface moves it by force/mass and by turning the ball.
-    let at_surface = per_mass + radius * radius / problem.ball.axial;
     let mut most = Stiffness::default();
-    for &pair in &system.table.active {
-        let law = &system.laws.races[pair / system.layout.padded];
-        let overlap = system.table.contact[pair].overlap.max(0.0);
+    for (set, bearing) in system.sets.iter().zip(&system.assembly.bearings) {
+        most = most.largest(&stiffness_of(system, set, bearing));
+    }
+    most
+}
+
+fn stiffness_of(system: &System, set: &BallSet, bearing: &Bearing) -> Stiffness {
+    let radius = set.laws.ball_radius;
+    let per_mass = 1.0 / bearing.ball.mass;
+    // A force at the surface moves it by force/mass and by turning the ball.
+    let at_surface = per_mass + radius * radius / bearing.ball.axial;
+    let mut most = Stiffness::default();
+    for &pair in &set.table.active {
+        let law = &set.laws.races[pair / set.layout.padded];
+        let overlap = set.table.contact[pair].overlap.max(0.0);
         let elastic = normal_load(law.stiffness, overlap);
-        let slope = match &system.laws.traction {
+        let slope = match &set.laws.traction {
             TractionLaw::None => 0.0,
-            law => coefficient_and_slope(law, 0.0, system.table.sliding[pair].entrainment).1,
+            law => coefficient_and_slope(law, 0.0, set.table.sliding[pair].entrainment).1,
         };
         most = most.largest(&Stiffness {
             oscillation: 1.5 * law.stiffness * overlap.sqrt() * per_mass,
-            decay: (slope * system.table.load[pair] * at_surface)
-                .max(system.damping[pair] * elastic * per_mass),
+            decay: (slope * set.table.load[pair] * at_surface)
+                .max(set.damping[pair] * elastic * per_mass),
         });
     }
-    if let Some(law) = &problem.ball_contact {
-        for meeting in system.meetings.iter().filter(|meeting| meeting.normal_load > 0.0) {
+    if let Some(law) = &bearing.ball_contact {
+        for meeting in set.meetings.iter().filter(|meeting| meeting.normal_load > 0.0) {
             most = most.largest(&Stiffness {
                 // Both balls move.
                 oscillation: 2.0 * per_mass * normal_stiffness(law.stiffness, meeting.overlap),
@@ -90,7 +99,7 @@ pub fn stiffness(system: &System) -> Stiffness {
             });
         }
     }
-    let Some(cage) = &problem.cage else { return most };
+    let Some(cage) = &bearing.cage else { return most };
     let of_cage = |load: f64, depth: f64, moved: f64| Stiffness {
         oscillation: moved
             * match cage.contacts.force {
@@ -99,9 +108,10 @@ pub fn stiffness(system: &System) -> Stiffness {
             },
         decay: cage.contacts.friction * load / cage.contacts.regularisation_speed * moved,
     };
-    let per_cage = 1.0 / cage.inertia.mass;
-    let pockets = system.pockets.iter().map(|contact| (contact, at_surface + per_cage));
-    let guides = system.guides.iter().map(|contact| (contact, per_cage));
+    let per_cage =
+        system.assembly.bodies[cage.body].inertia().map_or(0.0, |inertia| 1.0 / inertia.mass);
+    let pockets = set.pockets.iter().map(|contact| (contact, at_surface + per_cage));
+    let guides = set.guides.iter().map(|contact| (contact, per_cage));
     for (contact, moved) in pockets.chain(guides).filter(|(contact, _)| contact.normal_load > 0.0) {
         most = most.largest(&of_cage(contact.normal_load, contact.penetration, moved));
     }
@@ -151,9 +161,10 @@ impl Simulation {
     /// A given step above the largest stable one.
     pub fn watch_step(&mut self) -> Result<Option<f64>, SimulationError> {
         let now = stiffness(&self.system);
-        let damped = self.system.damping.iter().any(|damping| *damping > 0.0);
+        let sets = &self.system.sets;
+        let damped = sets.iter().flat_map(|set| &set.damping).any(|damping| *damping > 0.0);
         let steps = self.steps;
-        let on_schedule = self.system.laws.traction != TractionLaw::None
+        let on_schedule = sets.iter().any(|set| set.laws.traction != TractionLaw::None)
             && (steps.is_power_of_two() || steps.is_multiple_of(JUDGE_EVERY));
         let due = on_schedule || self.step_watch.is_due(&now, self.step_size, self.bound(), damped);
         if due { self.judge_step(now) } else { Ok(None) }

@@ -13,11 +13,12 @@ use crate::ch2_housing::bore_contact::{
 };
 use crate::kinematics::Pose;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, dot, norm, scale, sub};
+use crate::solver::dynamics::assembly::OUTER;
 use crate::solver::dynamics::model::DynamicProblem;
 use crate::solver::dynamics::race::{self, RaceLoads};
 use crate::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Snapshot};
 use crate::solver::dynamics::start;
-use crate::solver::dynamics::state::{BODY, BodyState, Layout, Ledger};
+use crate::solver::dynamics::state::{BODY, BodyState, Ledger, Places};
 use crate::solver::profile::Profile;
 use crate::solver::solid::contact::{closed_limit, moved, press};
 use crate::solver::solid::energy::SolidLedger;
@@ -321,10 +322,13 @@ impl HousedBearing {
             impulse.moment = add_scaled(impulse.moment, step, self.contact.moment);
         }
         self.impulse = add(self.impulse, impulse.force);
-        self.bearing.set_housing_load(RaceLoads {
-            force: scale(impulse.force, 1.0 / self.window),
-            moment: scale(impulse.moment, 1.0 / self.window),
-        });
+        self.bearing.set_outside_load(
+            OUTER,
+            RaceLoads {
+                force: scale(impulse.force, 1.0 / self.window),
+                moment: scale(impulse.moment, 1.0 / self.window),
+            },
+        );
         self.exchanges += 1;
         let target = self.window * self.exchanges as f64;
         let mut left = target - self.bearing.time;
@@ -360,7 +364,7 @@ impl HousedBearing {
         let (cylinder, frame) = self.ahead();
         let (time, step) = (self.bearing.time, self.exchanges);
         let [along, across, up] = frame.centre;
-        let start = self.bearing.system.problem.outer_start;
+        let start = self.bearing.system.assembly.bodies[OUTER].rest;
         // Nodes no longer stand for what is under the race, or it hangs in the wall.
         for (way, distance, allowed) in [
             ("along the axis", (along - start[0]).abs(), self.rim),
@@ -450,7 +454,7 @@ impl HousedBearing {
 
 /// The outer race of a simulation.
 pub fn outer_state(bearing: &Simulation) -> BodyState {
-    let at = bearing.system.layout.outer();
+    let at = bearing.system.places.body(OUTER);
     BodyState::from_slice(&bearing.state[at..at + BODY])
 }
 
@@ -465,10 +469,10 @@ fn pose_after(race: &BodyState, time: f64) -> Pose {
 
 /// State of a bearing in equilibrium whose outer race is held where it starts.
 fn held_start(problem: &DynamicProblem) -> Result<Vec<f64>, StaticsError> {
-    let held = DynamicProblem { outer: None, ..problem.clone() };
-    let layout = Layout::new(problem.geometry.ball_count, problem.cage.is_some());
-    let mut state = start::at_equilibrium(&held, &layout)?.0;
+    let held = DynamicProblem { outer: None, ..problem.clone() }.assembly();
+    let mut state = start::at_equilibrium(&held)?;
     let outer = race::fixed(&problem.outer_start).state.to_array();
-    state[layout.outer()..layout.outer() + BODY].copy_from_slice(&outer);
+    let at = Places::of(&held).body(OUTER);
+    state[at..at + BODY].copy_from_slice(&outer);
     Ok(state)
 }

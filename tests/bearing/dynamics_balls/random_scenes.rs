@@ -7,10 +7,10 @@ use bearing_dynamics::output::dynamics::session::{RunRequest, Session, SessionEr
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{self, Format};
 use bearing_dynamics::solver::channels::ChannelGroup;
+use bearing_dynamics::solver::dynamics::ball_set::neighbours;
 use bearing_dynamics::solver::dynamics::bounds::HERTZ_SCALE;
 use bearing_dynamics::solver::dynamics::run::{Simulation, SimulationError};
 use bearing_dynamics::solver::dynamics::state::POSITION;
-use bearing_dynamics::solver::dynamics::system::neighbours;
 
 /// Numbers of one scene.
 struct Draw(Noise);
@@ -149,14 +149,19 @@ pub struct Outcome {
 /// Depths at the present state, found here and not by the program's own watch.
 fn depths(simulation: &Simulation) -> (f64, f64) {
     let system = &simulation.system;
-    let layout = system.layout;
-    let radius = system.problem.geometry.ball_radius;
+    let layout = system.sets[0].layout;
+    let radius = system.assembly.bearings[0].geometry.ball_radius;
     let place = |ball| layout.ball_vector(&simulation.state, POSITION, ball);
     let apart = |one: usize| norm(sub(place(one), place((one + 1) % layout.balls)));
     let balls = (0..neighbours(layout.balls)).map(|one| 2.0 * radius - apart(one));
     let balls = balls.fold(0.0, f64::max);
-    let races = system.table.active.iter().map(|&pair| system.table.contact[pair].overlap);
-    let cage = system.pockets.iter().chain(&system.guides).map(|contact| contact.penetration);
+    let races =
+        system.sets[0].table.active.iter().map(|&pair| system.sets[0].table.contact[pair].overlap);
+    let cage = system.sets[0]
+        .pockets
+        .iter()
+        .chain(&system.sets[0].guides)
+        .map(|contact| contact.penetration);
     (balls / radius, races.chain(cage).fold(balls, f64::max) / radius)
 }
 
@@ -197,7 +202,7 @@ pub fn run_scene(text: &str) -> Outcome {
         let (balls, all) = depths(simulation);
         outcome.deepest_balls = outcome.deepest_balls.max(balls);
         outcome.deepest = outcome.deepest.max(all);
-        let met = simulation.system.meetings.iter().filter(|m| m.normal_load > 0.0).count();
+        let met = simulation.system.sets[0].meetings.iter().filter(|m| m.normal_load > 0.0).count();
         outcome.meetings += met as u64;
         if session.recorder.rows() > rows {
             rows = session.recorder.rows();

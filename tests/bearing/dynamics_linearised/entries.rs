@@ -11,11 +11,12 @@ use bearing_dynamics::ch2_housing::bearing::cage::{
 use bearing_dynamics::ch2_housing::bearing::traction::{
     ExponentialCurve, Slices, Sliding, integrate, integrate_slope,
 };
+use bearing_dynamics::solver::dynamics::assembly::CAGE;
 use bearing_dynamics::solver::dynamics::state::LANES;
 
 /// What one contact between a ball and a race is made of: δ̇, slip along t and s, spin about n.
 fn motion_of(point: &Point, pair: usize) -> [f64; 4] {
-    let table = &point.system.table;
+    let table = &point.system.sets[0].table;
     let sliding = &table.sliding[pair];
     let [along, across] = sliding.slip;
     [table.contact[pair].closing_speed, along, across, sliding.relative_spin[2]]
@@ -23,7 +24,7 @@ fn motion_of(point: &Point, pair: usize) -> [f64; 4] {
 
 /// Traction along t and s and moment about n on the ball.
 fn pushes_of(point: &Point, pair: usize, before: &Sliding, normal: Vec3) -> [f64; 3] {
-    let traction = &point.system.table.traction[pair];
+    let traction = &point.system.sets[0].table.traction[pair];
     [
         dot(traction.force, before.rolling_direction),
         dot(traction.force, before.transverse_direction),
@@ -67,15 +68,15 @@ fn close(found: f64, expected: f64, scale: f64, tolerance: f64, what: &dyn Fn() 
 
 /// All entries of the contacts of balls with races at a point.
 fn races_hold(name: &str, point: &mut Point, judge_slopes: bool) {
-    let layout = point.system.layout;
-    let geometry = point.system.problem.geometry;
+    let layout = point.system.sets[0].layout;
+    let geometry = point.system.assembly.bearings[0].geometry;
     let mut judged = 0;
-    for pair in point.system.table.active.clone() {
+    for pair in point.system.sets[0].table.active.clone() {
         let (side, ball) = (pair / layout.padded, pair % layout.padded);
         let (block, lane) = (ball / LANES, ball % LANES);
-        let contact = point.linearised.contacts[block][side].clone();
-        let here = point.system.table.sliding[pair];
-        let normal = point.system.table.contact[pair].normal;
+        let contact = point.linearised.blocks[block].contacts[side].clone();
+        let here = point.system.sets[0].table.sliding[pair];
+        let normal = point.system.sets[0].table.contact[pair].normal;
         let what = |part: &str| format!("{name}, race {side}, ball {}, {part}", ball + 1);
         judged += 1;
         // Levers: motions of a contact are linear in the velocities.
@@ -116,7 +117,7 @@ fn races_hold(name: &str, point: &mut Point, judge_slopes: bool) {
                 }
             }
         };
-        let load = |point: &Point| [point.system.table.load[pair]];
+        let load = |point: &Point| [point.system.sets[0].table.load[pair]];
         let [found] = point.slope(1e-11, along(normal, POSITION), load);
         let stiffness = contact.stiffness[lane];
         // δ̇ changes as well where the race turns, by ω for a unit of displacement.
@@ -241,7 +242,7 @@ fn given_velocities_drive_contacts_along_their_rows() {
     let mut problem = light(FAST);
     problem.traction = CONSTANT;
     let layout = Layout::new(problem.geometry.ball_count, false);
-    let state = start::at_equilibrium(&problem, &layout).unwrap().0;
+    let state = start::at_equilibrium(&problem.assembly()).unwrap();
     for i in 0..3 {
         let (from, rate) = (state[layout.inner() + POSITION + i], [1e-3, -2e-3, 3e-3][i]);
         problem.inner.drives[i] =
@@ -256,8 +257,8 @@ fn given_velocities_drive_contacts_along_their_rows() {
     }
     still.inner.rotation = Rotation::Speed(Profile::ZERO);
     let resting = linearised(&still, state);
-    for &pair in point.system.table.active.iter().filter(|pair| **pair < layout.padded) {
-        let contact = &point.linearised.contacts[pair / LANES][0];
+    for &pair in point.system.sets[0].table.active.iter().filter(|pair| **pair < layout.padded) {
+        let contact = &point.linearised.blocks[pair / LANES].contacts[0];
         let (moved, rested) = (motion_of(&point, pair), motion_of(&resting, pair));
         for row in 0..4 {
             let driven = contact.driven[row][pair % LANES];
@@ -305,18 +306,18 @@ fn entries_of_cage_contacts_with_either_law() {
                     CageForce::Hertz { stiffness: 1e10 };
             }
             let mut point = linearised(&problem, state);
-            let layout = point.system.layout;
+            let layout = point.system.sets[0].layout;
             let cage_at = layout.cage();
-            let cage_hub = point.linearised.hubs[point.linearised.cage_hub.unwrap()];
+            let cage_hub = point.linearised.hubs[point.linearised.hub_of[CAGE].unwrap()];
             let mut judged = 0;
             for ball in 0..layout.balls {
-                let contact = point.system.pockets[ball];
+                let contact = point.system.sets[0].pockets[ball];
                 if contact.normal_load == 0.0 {
                     continue;
                 }
                 judged += 1;
                 let (block, lane) = (ball / LANES, ball % LANES);
-                let row = point.linearised.contacts[block][2].clone();
+                let row = point.linearised.blocks[block].contacts[2].clone();
                 let what =
                     |part: &str| format!("{pocket:?} hertz {hertz} ball {}: {part}", ball + 1);
                 // Load over penetration, as the ball moves along the push.
@@ -327,7 +328,7 @@ fn entries_of_cage_contacts_with_either_law() {
                     }
                 };
                 let [load, depth] = point.slope(1e-10, shift, |point| {
-                    let pocket = &point.system.pockets[ball];
+                    let pocket = &point.system.sets[0].pockets[ball];
                     [pocket.normal_load, pocket.penetration]
                 });
                 let stiffness = row.stiffness[lane];
@@ -367,15 +368,15 @@ fn entries_of_cage_contacts_with_either_law() {
                         }
                     };
                     let [found] = point.slope(1e-4, shift, |point| {
-                        [dot(point.system.pockets[ball].force, direction)]
+                        [dot(point.system.sets[0].pockets[ball].force, direction)]
                     });
                     let slope = row.slope[entry][lane];
                     close(-found, slope, slope, 1e-6, &|| what(&format!("friction {r}")));
                 }
             }
             assert!(judged > 0);
-            for (end, guide) in point.linearised.guides.into_iter().enumerate() {
-                let contact = point.system.guides[end];
+            for (end, guide) in point.linearised.guides[0].into_iter().enumerate() {
+                let contact = point.system.sets[0].guides[end];
                 assert!(guide.loaded);
                 let push = contact.push;
                 let along = move |at: usize, direction: Vec3| {
@@ -386,7 +387,7 @@ fn entries_of_cage_contacts_with_either_law() {
                     }
                 };
                 let [load, depth] = point.slope(1e-10, along(POSITION, push), |point| {
-                    let guide = &point.system.guides[end];
+                    let guide = &point.system.sets[0].guides[end];
                     [guide.normal_load, guide.penetration]
                 });
                 let what = |part: &str| format!("{guidance:?} hertz {hertz} end {end}: {part}");
@@ -395,7 +396,7 @@ fn entries_of_cage_contacts_with_either_law() {
                     let direction: Vec3 = [0, 1, 2].map(|i: usize| -guide.levers[1][r][i]);
                     let shift = along(VELOCITY, direction);
                     let [found] = point.slope(1e-4, shift, |point| {
-                        [dot(point.system.guides[end].force, direction)]
+                        [dot(point.system.sets[0].guides[end].force, direction)]
                     });
                     let slope = guide.slope[r - 1];
                     close(-found, slope, slope, 1e-6, &|| what(&format!("friction {r}")));

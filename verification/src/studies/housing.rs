@@ -8,7 +8,6 @@ use std::f64::consts::TAU;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::dynamics::start::static_problem;
 use bearing_dynamics::solver::housing::exchange::{HousedBearing, outer_state};
 use bearing_dynamics::solver::profile::Profile;
 
@@ -204,7 +203,7 @@ fn still(mesh: &TetMesh) -> Result<[f64; 3], CaseError> {
     let mut found = [0.0; 3];
     for (stiffness, direction) in found.iter_mut().zip(DIRECTIONS) {
         let held = DynamicProblem { outer: None, ..housings::mounted(loads(direction))? };
-        let problem = static_problem(&held, 0.0);
+        let problem = held.statics(0.0);
         let state = search.solve(&problem, &housings::fit(0.0), [0.0; 3])?;
         *stiffness = along(outer_place(&state), direction);
     }

@@ -108,7 +108,7 @@ pub fn follow(
         ..RunOptions::default()
     };
     let mut simulation = Simulation::new(problem.clone(), options)?;
-    let layout = simulation.system.layout;
+    let layout = simulation.system.sets[0].layout;
     let mut history = History::default();
     let first = simulation.system.work.evaluations;
     let mut before = angles(&layout, &simulation.state);

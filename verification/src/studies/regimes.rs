@@ -166,7 +166,7 @@ fn run(context: &mut ParetoContext) -> Result<(), CaseError> {
         let name = regime.0;
         let (problem, request) = request(regime)?;
         let watch = Stopwatch::start();
-        let choice = choose(&problem, &request);
+        let choice = choose(&problem.assembly(), &request);
         let choosing = watch.seconds();
         let by_explicit = take(&problem, &request, Method::accurate(DormandPrince, 1e-6))?.history;
         let by_implicit = take(&problem, &request, Method::accurate(Rosenbrock, 1e-5))?.history;
@@ -221,7 +221,7 @@ fn run(context: &mut ParetoContext) -> Result<(), CaseError> {
         let others = against(cheapest(&|m| m.integrator != default.integrator));
         let all = against(cheapest(&|_| true));
         let foretold = foretell(
-            &problem,
+            &problem.assembly(),
             &RunRequest {
                 options: RunOptions { integrator: default.integrator, ..request.options },
                 ..request.clone()

@@ -1,0 +1,92 @@
+//! What is in equilibrium: bodies that are held or loaded, and the bearings between them.
+
+use super::ball::BallContacts;
+use super::mount::Mount;
+use super::static_start::ball_contacts;
+use super::statics::Condition;
+use crate::ch2_housing::bearing::geometry::BearingGeometry;
+use crate::ch2_housing::bearing::hertz::HertzContact;
+use crate::kinematics::Pose;
+use nalgebra::Vector3;
+
+/// Bodies and bearings in one frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StaticAssembly {
+    pub bodies: Vec<StaticBody>,
+    pub bearings: Vec<StaticBearing>,
+}
+
+/// A rigid body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StaticBody {
+    /// As messages name it.
+    pub name: String,
+    pub place: Place,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// It stands there, whatever pulls at it.
+    Held(Pose),
+    /// Its coordinates x, y, z (m), tilt_y, tilt_z (rad) are looked for, or given one by one.
+    Loaded(Loaded),
+}
+
+/// A body with five coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loaded {
+    pub conditions: [Condition; 5],
+    /// Springs to the ground, N/m and N·m/rad, and where they are at rest.
+    pub springs: [f64; 5],
+    pub rest: [f64; 5],
+    /// Where the search begins; [`None`] leaves it to an estimate for a bearing alone.
+    pub start: Option<[f64; 5]>,
+    /// How far a coordinate that is free may go from there, m (tilts over the pitch radius).
+    pub room: f64,
+}
+
+/// Balls between two races.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StaticBearing {
+    /// As messages name it; `None` where there is one only.
+    pub name: Option<String>,
+    pub geometry: BearingGeometry,
+    pub inner_contact: HertzContact,
+    pub outer_contact: HertzContact,
+    /// Inner race, outer race.
+    pub mounts: [Mount; 2],
+    /// Azimuth of ball 1 in the outer race's frame, from +Y towards +Z, rad.
+    pub ball_phase: f64,
+    /// Of each ball, N.
+    pub weight: Vector3<f64>,
+    /// Centrifugal force on a ball per distance from the axis, N/m.
+    pub centrifugal: f64,
+}
+
+impl StaticBearing {
+    pub(super) fn contacts(&self) -> BallContacts {
+        ball_contacts(&self.geometry, &self.inner_contact, &self.outer_contact)
+    }
+
+    /// " of bearing left", for messages; nothing where there is one only.
+    pub fn suffix(&self) -> String {
+        self.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"))
+    }
+}
+
+impl Loaded {
+    /// Value of coordinate `i` where it is given.
+    pub fn given(&self, i: usize) -> Option<f64> {
+        match self.conditions[i] {
+            Condition::Displacement(value) => Some(value),
+            Condition::Load(_) => None,
+        }
+    }
+
+    pub fn load(&self, i: usize) -> f64 {
+        match self.conditions[i] {
+            Condition::Displacement(_) => 0.0,
+            Condition::Load(load) => load,
+        }
+    }
+}
