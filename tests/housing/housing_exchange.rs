@@ -333,6 +333,30 @@ fn nodes_out_of_reach_are_not_tested_and_not_missed() {
     assert_eq!(near + far, some.seat.nodes.len());
 }
 
+/// A race that stands still and grows comes within reach as one that moves.
+#[test]
+fn nodes_that_a_growing_race_reaches_are_not_missed() {
+    let run = |reach| {
+        let (model, nodes) = housing(true, 77.0);
+        let (from, to) = (RADIUS - 40e-6, RADIUS + 5e-6);
+        let radius = Profile::SmoothRamp { from, to, start: 0.0, duration: 2e-4 };
+        let seat = Seat { radius, ..seat(nodes, reach) };
+        let at = still(&model);
+        let mut housed =
+            HousedBearing::new(mounted([0.0; 5]), model, seat, at, &options()).unwrap();
+        while housed.time() < 3e-4 {
+            housed.exchange().unwrap();
+        }
+        housed
+    };
+    let (all, some) = (run(f64::INFINITY), run(10e-6));
+    assert!(some.tested < all.tested, "{} of {}", some.tested, all.tested);
+    assert!(all.contact.touching > 0);
+    assert_eq!(some.contact.touching, all.contact.touching);
+    assert_eq!(bits(&all.bearing.state), bits(&some.bearing.state));
+    assert_eq!(all.solid.displacement, some.solid.displacement);
+}
+
 #[test]
 fn a_contact_a_thousand_times_as_stiff_takes_shorter_windows_and_balances() {
     let run = |factor: f64, end: f64| {

@@ -690,3 +690,19 @@ fn a_direction_is_the_same_a_turn_further() {
     let exact = ToleranceClass::F64Exact;
     assert_eq!(differing([-45.0, 0.0, 1.0], [315.0, 0.0, 1.0], "deg", exact), 1);
 }
+
+/// Means and extremes over time of the components of one vector share a scale.
+#[test]
+fn extremes_over_time_share_the_scale_of_their_vector() {
+    let root = tempfile::tempdir().unwrap();
+    let [a, b] = ["a.csv", "b.csv"].map(|name| root.path().join(name));
+    for of in ["mean", "smallest", "largest", "peak_to_peak"] {
+        let header = format!("inner_y.{of} [m],inner_z.{of} [m]");
+        fs::write(&a, format!("{header}\n2.0,-500.0\n")).unwrap();
+        fs::write(&b, format!("{header}\n1e30,-500.0\n")).unwrap();
+        let allowed = allowed_at(&compared(&a, &b, CLASSES[0]));
+        // Floor, relative part, and a share of the larger component.
+        let expected = 1e-14 + 2e-9 + 500e-10;
+        assert!((allowed / expected - 1.0).abs() <= 1e-12, "{of}: {allowed:e}");
+    }
+}
