@@ -431,3 +431,13 @@ fn flight_is_no_displacement_to_be_told_of() {
     let summary = solid_command_common::json(out.join("summary.json"));
     assert!(!summary["remarks"].to_string().contains("body's size"), "{}", summary["remarks"]);
 }
+
+/// Two rows, at the start and at the end.
+#[test]
+fn an_interval_may_be_as_long_as_the_run() {
+    let place = Place::new();
+    for key in ["output_interval", "fields_interval"] {
+        let numerics = format!("{CLAMPED}[numerics]\nend = \"1 ms\"\n{key} = \"1 ms\"\n");
+        accepted(&place, &bar(1, &numerics));
+    }
+}
