@@ -159,3 +159,22 @@ fn draw(cost: &Cost, progress: &Progress, done: &AtomicBool) {
     }
     bar.finish_and_clear();
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_and_sizes_are_told_in_units_that_suit_them() {
+        for (seconds, told) in [
+            (0.3, "a second or less"),
+            (42.4, "42 s"),
+            (600.0, "10 min"),
+            (7140.0, "119 min"),
+            (9000.0, "2.5 h"),
+        ] {
+            assert_eq!(duration(seconds), told);
+        }
+        assert_eq!([15.2e6, 999.4e6, 2.5e9].map(size), ["15 MB", "999 MB", "2.50 GB"]);
+    }
+}

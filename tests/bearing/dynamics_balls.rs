@@ -350,6 +350,30 @@ fn a_race_that_leaves_its_bearing_ends_the_run() {
     }
 }
 
+/// What counts is how far the races are from each other, not where in the world they are.
+#[test]
+fn a_bearing_far_from_the_origin_has_not_come_apart() {
+    let mut problem = bearing(table_4_1(5e-6), [0.0; 5], 0.0);
+    let far = 52e-3;
+    problem.outer_start[1] = far;
+    assert!(far > race_limit(&problem));
+    let layout = Layout::new(8, false);
+    let mut state = start::nominal(&problem, &layout);
+    let y = layout.inner() + POSITION + 1;
+    state[y] = far;
+    let options = options(Integrator::RungeKutta, Stepping::Fixed(1e-12));
+    let started =
+        |state: &[f64]| Simulation::from_state(problem.clone(), options, state.to_vec(), 0.0);
+    started(&state).unwrap().step().unwrap();
+    // The inner race left behind at the origin.
+    state[y] = 0.0;
+    let error = started(&state).unwrap().step().unwrap_err();
+    let SimulationError::RaceLeft { way, distance, .. } = error else { panic!("{error}") };
+    assert_eq!(way, "across its axis");
+    // A step of 1e-12 s moves nothing.
+    assert!((distance - far).abs() <= 1e-12, "{distance}");
+}
+
 #[test]
 fn parts_inside_each_other_end_the_run() {
     let layout = Layout::new(8, true);

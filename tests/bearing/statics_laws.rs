@@ -507,3 +507,17 @@ fn an_unloaded_ball_is_shown_inside_its_room() {
         assert!((ball.position.z.abs() - height).abs() <= 1e-16);
     }
 }
+
+/// The race may tilt until its groove has moved by a ball radius at the pitch circle, some 13°; a bearing with
+/// much clearance tilts by half a degree before anything resists.
+#[test]
+fn a_loose_race_tilts_far_under_a_small_moment() {
+    let geometry = table_4_1(60e-6);
+    let mut conditions = [Condition::Displacement(0.0); 5];
+    conditions[3] = Condition::Load(1.0);
+    let solution = solve(&problem(geometry, conditions)).unwrap();
+    let tilt = solution.coordinates[3];
+    assert!(tilt > geometry.ball_radius && tilt < 2.0 * geometry.ball_radius, "{tilt}");
+    // Statics leaves 1e-11 of its loads.
+    assert!((solution.loads[3] - 1.0).abs() <= 1e-9, "{}", solution.loads[3]);
+}

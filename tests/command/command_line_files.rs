@@ -394,3 +394,18 @@ fn nothing_from_a_file_commands_the_terminal() {
     // Seen as what it is.
     assert!(said.contains("\\u001b[2J") && said.contains("\\u009b"), "{said}");
 }
+
+/// The points of a sweep that was killed are not written over by another command.
+#[test]
+fn the_journal_of_a_sweep_keeps_its_folder() {
+    let root = tempdir().unwrap();
+    let path = short_run(root.path(), "a.toml", "250 N");
+    let folder = root.path().join("killed");
+    fs::create_dir(&folder).unwrap();
+    fs::write(folder.join("sweep.journal"), "{\"sweep\":\"of another day\"}\n").unwrap();
+    for verb in ["run", "statics", "pack"] {
+        let message = refused(&[verb, &path, "--out", &text(&folder)]);
+        assert!(message.contains("holds a sweep"), "{verb}: {message}");
+    }
+    assert_eq!(files(&folder), ["sweep.journal"]);
+}

@@ -321,3 +321,17 @@ fn inertia_is_judged_by_the_displacement() {
     let swing = planned("250 N");
     assert!(swing.contains("WARNING"), "{swing}");
 }
+
+/// A bore is described only where the results beside it have one.
+#[test]
+fn results_without_a_bore_leave_none_of_earlier_ones() {
+    let place = Place::new();
+    let out = place.path("out");
+    let tables = |method: &str| {
+        let scene = place.scene("scene.toml", &scene_text(&format!("method = \"{method}\""), ""));
+        succeed(into_folder("statics", &scene, &out, &[]));
+        ["bore.csv", "fields.pvd", "series.csv"].map(|name| out.join(name).exists())
+    };
+    assert_eq!(tables("quasi-static"), [true; 3]);
+    assert_eq!(tables("rigid"), [false, false, true]);
+}

@@ -671,3 +671,85 @@ end = "0.5 ms"
     let slow = fast.replace("15000 rpm", "600 rpm");
     assert!(!gyroscopic(&remarks(&slow)[1]));
 }
+
+/// A number behind some words of a text.
+fn number_after(text: &str, words: &str) -> f64 {
+    let at = text.find(words).unwrap_or_else(|| panic!("{words:?} is not in {text}"));
+    let rest = &text[at + words.len()..];
+    let end = rest.find(|c: char| !"0123456789.-e".contains(c)).unwrap_or(rest.len());
+    rest[..end].parse().unwrap_or_else(|_| panic!("no number behind {words:?} in {text}"))
+}
+
+/// The numbers in remarks are those of the balls that they name.
+#[test]
+fn remarks_tell_numbers_of_the_results() {
+    let place = Place::new();
+    let results = |text: &str| {
+        let path = place.scene("scene.toml", text);
+        let out = place.path("statics");
+        let arguments = ["statics", path.to_str().unwrap(), "--out", out.to_str().unwrap()];
+        let output = bearing(&arguments);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        json(out.join("summary.json"))
+    };
+    let remark = |summary: &Value, part: &str| {
+        let remarks = summary["remarks"].as_array().unwrap().iter();
+        let mut found = remarks.filter_map(|r| r.as_str().filter(|r| r.contains(part)));
+        found.next().unwrap_or_else(|| panic!("{part}: {}", summary["remarks"])).to_string()
+    };
+    let of = |value: &Value| value["value"].as_f64().unwrap_or_else(|| panic!("{value}"));
+    // A contact past the shoulder of either race: told to a tenth of a degree.
+    let short = scene("end = \"0.1 ms\"", "").replace("0.05 deg", "0.3 deg");
+    for (race, own, shoulder) in [
+        ("inner", "bore_radius", "shoulder_radius = \"20.1 mm\", bore_radius"),
+        (
+            "outer",
+            "groove_radius = \"6.310 mm\"",
+            "groove_radius = \"6.310 mm\", shoulder_radius = \"31.9 mm\"",
+        ),
+    ] {
+        let summary = results(&short.replace(own, shoulder));
+        let said = remark(&summary, "past the shoulder");
+        assert!(said.contains(&format!("with the {race} race")), "{said}");
+        let ball = number_after(&said, "the contact of ball ") as usize;
+        let exact = of(&summary["balls"][ball - 1][race]["contact_angle"]).abs();
+        let told = number_after(&said, "(contact angle ");
+        assert!((told - exact).abs() <= 0.0501, "{said} {exact}");
+    }
+    // All balls alike under an axial load: J ω Ω sin α against 2 r μ Q.
+    let fast = r#"
+[bearing]
+kind = "angular-contact"
+balls = 11
+pitch_radius = "30 mm"
+contact_angle = "35 deg"
+clearance = { radial = "0 um" }
+inner_race = { groove_radius = "6.6 mm" }
+outer_race = { groove_radius = "6.6 mm" }
+ball = { radius = "5.953 mm" }
+[inner_race]
+x = { load = "200 N" }
+y = { displacement = "0 um" }
+z = { displacement = "0 um" }
+tilt_y = { tilt = "0 deg" }
+tilt_z = { tilt = "0 deg" }
+speed = "15000 rpm"
+[ball_forces]
+centrifugal = true
+"#;
+    let summary = results(fast);
+    let said = remark(&summary, "no gyroscopic moment");
+    let (radius, pitch, shaft) = (5.953e-3f64, 30e-3, 15e3 * std::f64::consts::PI / 30.0);
+    let mass = 7850.0 * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+    let outer = &summary["balls"][0]["outer"];
+    let angle = of(&outer["contact_angle"]).to_radians();
+    let orbit = 0.5 * (1.0 - radius / pitch * 35f64.to_radians().cos()) * shaft;
+    let own = orbit * (pitch + radius * angle.cos()) / radius;
+    let moment = 0.4 * mass * radius * radius * own * orbit * angle.sin();
+    let traction = 100.0 * moment / (2.0 * radius * of(&outer["load"]));
+    // Told to a tenth of a per cent, and to 1e-4 N mm.
+    let told = number_after(&said, "which takes traction of ");
+    assert!((told - traction).abs() <= 0.0501, "{said} {traction}");
+    let told = number_after(&said, "up to ");
+    assert!((told - 1e3 * moment).abs() <= 0.501e-4, "{said} {moment}");
+}

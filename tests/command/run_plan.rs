@@ -215,6 +215,24 @@ fn foretold_steps_are_within_the_stated_factor() {
     }
 }
 
+/// What happens after the end of a run costs it nothing.
+#[test]
+fn corners_after_the_end_foretell_no_steps() {
+    let mut problem = sliding();
+    let blow = Profile::HalfSine { base: -250.0, peak: -3000.0, start: 0.2, duration: 1e-3 };
+    problem.inner.drives[2] = Drive::Load(blow);
+    let options = RunOptions {
+        integrator: Integrator::Rosenbrock,
+        stepping: Stepping::Accuracy(1e-3),
+        ..RunOptions::default()
+    };
+    let wanted = RunRequest { options, end: 10e-3, output_interval: 0.2e-3, channels: Vec::new() };
+    let foretold = foretell(&problem, &wanted).unwrap();
+    let taken = taken(&problem, &wanted) as f64;
+    let factor = foretold.steps / taken;
+    assert!((1.0 / WITHIN..=WITHIN).contains(&factor), "{foretold:?} {taken}");
+}
+
 /// Implicit where friction is steep, explicit where nothing is.
 #[test]
 fn the_plan_chooses_the_method_that_takes_less_work() {

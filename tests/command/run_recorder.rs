@@ -9,6 +9,7 @@ use bearing_dynamics::output::dynamics::table::RunTable;
 use bearing_dynamics::solver::channels::ChannelGroup;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
+use bearing_dynamics::solver::dynamics::state::POSITION;
 use bearing_dynamics::solver::profile::Profile;
 use run_common::{common, complete, frictionless, jolted, request, sliding};
 
@@ -339,6 +340,36 @@ fn extremes_are_of_every_step_whatever_the_rows() {
         let farthest = coarse.simulation.extremes[0].farthest.value;
         assert!((farthest / far(&fine) - 1.0).abs() <= 1e-2, "{farthest} {}", far(&fine));
         assert!(farthest >= 1.2 * far(&coarse));
+    }
+}
+
+/// Value and time of an extreme belong to one state.
+#[test]
+fn an_extreme_has_the_time_of_its_state() {
+    for (integrator, stepping) in [
+        (Integrator::RungeKutta, Stepping::Fixed(1e-6)),
+        (Integrator::DormandPrince, Stepping::Accuracy(1e-3)),
+        (Integrator::Rosenbrock, Stepping::Accuracy(1e-3)),
+    ] {
+        let options = RunOptions { integrator, stepping, ..RunOptions::default() };
+        let wanted = RunRequest { options, end: 1e-3, output_interval: 1e-3, ..request(1e-6, 1) };
+        let mut session = Session::start(struck(), &wanted).unwrap();
+        let at = session.simulation.system.layout.inner() + POSITION;
+        let (mut farthest, mut when) = (0.0f64, 0.0);
+        loop {
+            let [x, y, z] = [0, 1, 2].map(|i| session.simulation.state[at + i]);
+            let distance = (x * x + y * y + z * z).sqrt();
+            if distance > farthest {
+                (farthest, when) = (distance, session.simulation.time);
+            }
+            if session.advance(1).unwrap() == Status::Complete {
+                break;
+            }
+        }
+        let found = session.simulation.extremes.farthest;
+        // Rounding of a sum of three squares, and of the time at which a step ends.
+        assert!((found.value / farthest - 1.0).abs() <= 1e-14, "{integrator:?} {found:?}");
+        assert!((found.time - when).abs() <= 1e-15, "{integrator:?} {found:?} {when}");
     }
 }
 

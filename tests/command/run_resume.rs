@@ -9,8 +9,9 @@ use bearing_dynamics::output::journal::JournalError;
 use bearing_dynamics::output::state::{
     self, StateError, StateRecord, Stopped, fingerprint, read, resume, save,
 };
-use bearing_dynamics::solver::dynamics::model::DynamicProblem;
+use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
 use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Start, Stepping};
+use bearing_dynamics::solver::profile::Profile;
 use run_common::{complete, frictionless, jolted, pressed, rattling, request};
 use std::fs;
 use std::path::Path;
@@ -179,6 +180,29 @@ fn an_extended_run_has_the_bits_of_a_long_one() {
     let session = go_on(&extended, &problem, &long);
     finish(&extended, &problem, &long, session);
     assert_same_files(&at_once, &extended);
+}
+
+/// A load that jumps: the step after it begins with what comes after it, in a run that goes on as in one that
+/// starts there.
+#[test]
+fn interrupted_where_a_load_jumps_the_files_are_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let corner = 0.0123e-3;
+    let mut problem = frictionless();
+    let jump = Profile::Ramp { from: -250.0, to: -750.0, start: corner, duration: 0.0 };
+    problem.inner.drives[2] = Drive::Load(jump);
+    for integrator in [Integrator::DormandPrince, Integrator::Rosenbrock] {
+        let mut request = request(STEP, 4);
+        request.options.integrator = integrator;
+        request.options.stepping = Stepping::Accuracy(1e-3);
+        let mut session = Session::start(problem.clone(), &request).unwrap();
+        while session.simulation.time < corner {
+            session.advance(1).unwrap();
+        }
+        assert_eq!(session.simulation.time, corner);
+        let steps = session.simulation.steps;
+        interrupt(folder.path(), integrator.name(), &problem, &request, &[vec![steps]]);
+    }
 }
 
 #[test]

@@ -240,6 +240,36 @@ fn supports_that_move_close_the_ledger() {
     assert!(!column(&out, "reaction_x_low_z").iter().all(|force| *force == 0.0));
 }
 
+/// A body that is driven along as a whole takes its mass times the acceleration from its support.
+#[test]
+fn a_support_that_moves_carries_inertia() {
+    let place = Place::new();
+    let (way, duration) = (1e-3, 1e-3);
+    let driven = r#"[[solid.set]]
+name = "all"
+low = ["-1 mm", "-20 mm", "-20 mm"]
+high = ["50 mm", "20 mm", "20 mm"]
+[[solid.held]]
+set = "all"
+x = { smooth_ramp = ["0 mm", "1 mm"], duration = "1 ms" }
+[numerics]
+end = "1 ms"
+output_interval = "0.1 ms"
+"#;
+    let out = place.path("out");
+    succeed(into_folder("run", &place.scene("scene.toml", &bar(1, driven)), &out, &[]));
+    let mass = DENSITY * 40e-3 * 10e-3 * 10e-3;
+    let largest = mass * 10.0 / 3f64.sqrt() * way / (duration * duration);
+    let [times, forces] = ["time", "reaction_all_x"].map(|name| column(&out, name));
+    assert!(times.len() >= 11);
+    for (time, force) in times.iter().zip(forces) {
+        let f = time / duration;
+        let acceleration = 60.0 * f * (1.0 - f) * (1.0 - 2.0 * f) * way / (duration * duration);
+        // Rows lie on steps: rounding of their times, and of element forces that sum to nothing.
+        assert!((force - mass * acceleration).abs() <= 1e-6 * largest, "{time}: {force}");
+    }
+}
+
 #[test]
 fn paraview_opens_fields_and_modes() {
     let Some(python) = python_with_vtk("paraview_opens_fields_and_modes") else { return };

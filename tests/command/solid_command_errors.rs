@@ -406,3 +406,38 @@ fn factors_that_do_not_fit_are_refused() {
         assert!(stderr(&output).contains("--memory"), "{}", stderr(&output));
     }
 }
+
+/// Meshes may be far longer than tables of results: comments make this one of 17 MiB.
+#[test]
+fn long_meshes_are_read() {
+    let place = Place::new();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh");
+    let deck = fs::read_to_string(data.join("box_o1.inp")).unwrap();
+    let comment = format!("** {}\n", "-".repeat(1020));
+    fs::write(place.path("long.inp"), deck + &comment.repeat(17 << 10)).unwrap();
+    let said = accepted(&place, "[solid.mesh]\nfile = \"long.inp\"\nunit = \"mm\"\n");
+    assert!(said.contains("elements of 4"), "{said}");
+}
+
+/// A body that nothing holds may fly farther than it is long.
+#[test]
+fn flight_is_no_displacement_to_be_told_of() {
+    let place = Place::new();
+    let text = bar(1, "[numerics]\nend = \"0.1 ms\"\n");
+    let text = format!("[solid]\nvelocity = [\"1000 m/s\", \"0 m/s\", \"0 m/s\"]\n{text}");
+    let out = place.path("out");
+    let scene = place.scene("flight.toml", &text);
+    succeed(solid_command_common::into_folder("run", &scene, &out, &[]));
+    let summary = solid_command_common::json(out.join("summary.json"));
+    assert!(!summary["remarks"].to_string().contains("body's size"), "{}", summary["remarks"]);
+}
+
+/// Two rows, at the start and at the end.
+#[test]
+fn an_interval_may_be_as_long_as_the_run() {
+    let place = Place::new();
+    for key in ["output_interval", "fields_interval"] {
+        let numerics = format!("{CLAMPED}[numerics]\nend = \"1 ms\"\n{key} = \"1 ms\"\n");
+        accepted(&place, &bar(1, &numerics));
+    }
+}

@@ -387,3 +387,20 @@ fn millimetres_read_as_metres_are_noticed() {
     let loaded = read_abaqus(small.as_bytes(), LengthUnit::Millimetre).unwrap();
     assert!(matches!(loaded.notes[..], [Note::UnlikelySize { .. }]), "{:?}", loaded.notes);
 }
+
+/// Nodes of a file may come with their parameters on the entity: one on a curve, two on a surface, three in a
+/// volume.
+#[test]
+fn parameters_of_nodes_are_passed_over() {
+    let text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 1 1 1\n\
+        1 0 0 0 1 0 0 0 0\n1 0 0 0 1 1 0 0 0\n1 0 0 0 1 1 1 1 7 0\n$EndEntities\n\
+        $Nodes\n3 4 1 4\n\
+        1 1 1 2\n1\n2\n0 0 0 0.1\n1 0 0 0.9\n\
+        2 1 1 1\n3\n0 1 0 0.5 0.6\n\
+        3 1 1 1\n4\n0 0 1 0.2 0.3 0.4\n$EndNodes\n\
+        $Elements\n1 1 1 1\n3 1 4 1\n1 1 2 3 4\n$EndElements\n";
+    let mesh = read_gmsh(text.as_bytes(), LengthUnit::Metre).unwrap().mesh;
+    let places = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    assert_eq!(mesh.nodes, places);
+    assert_eq!(mesh.elements.len(), 1);
+}

@@ -7,6 +7,7 @@ use bearing_dynamics::output::compare::tolerance::{GivenTolerance, ToleranceClas
 use bearing_dynamics::output::compare::{
     CompareError, Comparison, DivergenceKind, Options, compare, is_ignored_by_name, report, to_json,
 };
+use bearing_dynamics::output::npy::{self, NpyError};
 use bearing_dynamics::output::results::write_static_results;
 use bearing_dynamics::output::series::Series;
 use output_common::{run, solution};
@@ -689,4 +690,38 @@ fn a_direction_is_the_same_a_turn_further() {
     assert_eq!(differing([-45.0, 0.0, 1.0], [315.0, 0.0, 1.0], "m", usual), 1);
     let exact = ToleranceClass::F64Exact;
     assert_eq!(differing([-45.0, 0.0, 1.0], [315.0, 0.0, 1.0], "deg", exact), 1);
+}
+
+/// Rows may be many, columns not.
+#[test]
+fn npy_has_more_room_for_rows_than_for_columns() {
+    let file = |rows: usize, columns: usize| {
+        let header =
+            format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}\n");
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend((header.len() as u16).to_le_bytes());
+        bytes.extend(header.as_bytes());
+        bytes.extend(std::iter::repeat_n(0u8, 8 * rows * columns));
+        npy::parse(&bytes)
+    };
+    let most = npy::MOST_COLUMNS;
+    assert_eq!(file(most + 1, 2).unwrap().dim(), (most + 1, 2));
+    assert_eq!(file(2, most).unwrap().dim(), (2, most));
+    assert!(matches!(file(2, most + 1), Err(NpyError::Columns { columns }) if columns == most + 1));
+}
+
+/// Means and extremes over time of the components of one vector share a scale.
+#[test]
+fn extremes_over_time_share_the_scale_of_their_vector() {
+    let root = tempfile::tempdir().unwrap();
+    let [a, b] = ["a.csv", "b.csv"].map(|name| root.path().join(name));
+    for of in ["mean", "smallest", "largest", "peak_to_peak"] {
+        let header = format!("inner_y.{of} [m],inner_z.{of} [m]");
+        fs::write(&a, format!("{header}\n2.0,-500.0\n")).unwrap();
+        fs::write(&b, format!("{header}\n1e30,-500.0\n")).unwrap();
+        let allowed = allowed_at(&compared(&a, &b, CLASSES[0]));
+        // Floor, relative part, and a share of the larger component.
+        let expected = 1e-14 + 2e-9 + 500e-10;
+        assert!((allowed / expected - 1.0).abs() <= 1e-12, "{of}: {allowed:e}");
+    }
 }

@@ -10,6 +10,7 @@ use bearing_dynamics::output::compare::{Options, compare, report};
 use bearing_dynamics::output::pack::{PackError, PackInput, verify_pack, write_pack};
 use bearing_dynamics::output::results::{ResultsError, static_summary, write_static_results};
 use bearing_dynamics::output::series::{Column, Series, SeriesError};
+use bearing_dynamics::output::visible::{visible, visible_line};
 use bearing_dynamics::solver::statics::{Determinacy, StaticSolution};
 use nalgebra::DVector;
 use ndarray::Array2;
@@ -302,4 +303,15 @@ fn half_written_files_of_killed_runs_are_removed() {
     let left = names.iter().filter(|name| folder.path().join(name).exists()).collect::<Vec<_>>();
     assert_eq!(left, names[1..].iter().collect::<Vec<_>>());
     remove_partials(&folder.path().join("missing"));
+}
+
+/// All that turns the direction of writing, and the separators of lines and paragraphs.
+#[test]
+fn no_character_that_turns_the_writing_is_passed_on() {
+    let turning = [0x200e..=0x200f, 0x2028..=0x202e, 0x2066..=0x2069];
+    for code in turning.into_iter().flatten() {
+        let text = format!("a{}b", char::from_u32(code).unwrap());
+        let shown = format!("a\\u{code:04x}b");
+        assert_eq!([visible(&text), visible_line(&text)], [shown.as_str(), shown.as_str()]);
+    }
 }

@@ -14,7 +14,7 @@ use bearing_dynamics::solver::solid::tangent::{
 use bearing_dynamics::solver::sparse::dissection::nested_dissection;
 use bearing_dynamics::solver::sparse::graph::Graph;
 use bearing_dynamics::solver::sparse::separator::{Side, smallest_cuts};
-use bearing_dynamics::solver::sparse::{Ordering, SymmetricMatrix};
+use bearing_dynamics::solver::sparse::{Cost, Ordering, SymmetricMatrix, Task};
 use solid_common::{cut_cubes, solid};
 use std::collections::BTreeSet;
 
@@ -266,4 +266,16 @@ fn dissection_orders_every_node_once() {
     let mut order = nested_dissection(&graph, &vec![[1.0; 3]; places.len()]);
     order.sort_unstable();
     assert!(order.iter().copied().eq(0..places.len() as u32));
+}
+
+/// A stored value of a sparse matrix has eight bytes, and four for its row.
+#[test]
+fn sparse_matrices_are_foretold_with_their_rows() {
+    let model = block([4, 3, 2], Order::Quadratic);
+    let unknowns = Unknowns::new(&model);
+    let cost = foretold::statics(&model, &unknowns);
+    let without = Task { matrix: 0, ..cost.task };
+    let left = Cost::new(&unknowns.elimination, without).other_bytes;
+    assert_eq!(cost.task.matrix, stiffness_of(&model, &unknowns).stored());
+    assert_eq!(cost.other_bytes - left, 12.0 * cost.task.matrix as f64);
 }

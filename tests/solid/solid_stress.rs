@@ -3,11 +3,12 @@
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::strain::{Sym3, full, principal, von_mises};
 use bearing_dynamics::kinematics::vec3::Vec3;
-use bearing_dynamics::mesh::generate::bar;
+use bearing_dynamics::mesh::generate::{Ring, RingMesh, bar, ring};
 use bearing_dynamics::mesh::measure::{Share, tributary_areas};
 use bearing_dynamics::mesh::node_order::EDGES;
 use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
 use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::energy::strain_energy;
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
 use bearing_dynamics::solver::solid::model::{
     DampedMotion, Load, Prescribed, SolidModel, SolidProblem,
@@ -284,5 +285,36 @@ fn jumps_of_stress_say_how_much_a_mesh_misses() {
             assert!(told >= least * missing && told <= missing, "{told} {missing}");
             assert_eq!(locks, missing > 0.9, "{missing}");
         }
+    }
+}
+
+/// Points of curved elements stand for different volumes; the energy of the stresses is that of the strains.
+#[test]
+fn the_energy_of_stresses_counts_each_point_with_its_volume() {
+    let shape = Ring { inner_radius: 0.02, outer_radius: 0.04, width: 0.01 };
+    let cells = RingMesh { around: 6, radial: 1, axial: 1, radial_growth: 1.0 };
+    for mesh in [
+        ring(&shape, &cells).unwrap().mesh,
+        ring(&shape, &cells).unwrap().quadratic().unwrap().mesh,
+    ] {
+        let model = SolidModel::new(SolidProblem {
+            nodes: mesh.nodes,
+            elements: mesh.elements,
+            material: LinearElastic::new(YOUNG, POISSON).unwrap(),
+            density: 7800.0,
+            damping: 0.0,
+            damped_motion: DampedMotion::Absolute,
+            prescribed: Vec::new(),
+            loads: Vec::new(),
+            gravity: [0.0; 3],
+        })
+        .unwrap();
+        // Strains up to 1e-6 that vary over an element.
+        let u = moved(&model, |[x, y, z]| [1e-5 * x * y, 2e-5 * y * z, -1e-5 * y * y]);
+        let padded: Vec<_> = u.iter().map(|u| [u[0], u[1], u[2], 0.0]).collect();
+        let exact = strain_energy(&model, &padded);
+        let found = energy_error(&model, &u, &nodal_stresses(&model, &u)).energy;
+        // Cauchy's stress is that of the strain energy to the size of the strains.
+        assert!((found / exact - 1.0).abs() <= 1e-5, "{found:e} {exact:e}");
     }
 }
