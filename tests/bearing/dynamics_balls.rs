@@ -356,9 +356,9 @@ fn a_bearing_far_from_the_origin_has_not_come_apart() {
     let mut problem = bearing(table_4_1(5e-6), [0.0; 5], 0.0);
     let far = 52e-3;
     problem.outer_start[1] = far;
-    assert!(far > race_limit(&problem));
+    assert!(far > race_limit(&problem.geometry));
     let layout = Layout::new(8, false);
-    let mut state = start::nominal(&problem, &layout);
+    let mut state = start::nominal(&problem.assembly());
     let y = layout.inner() + POSITION + 1;
     state[y] = far;
     let options = options(Integrator::RungeKutta, Stepping::Fixed(1e-12));
