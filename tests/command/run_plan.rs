@@ -227,7 +227,7 @@ fn corners_after_the_end_foretell_no_steps() {
         ..RunOptions::default()
     };
     let wanted = RunRequest { options, end: 10e-3, output_interval: 0.2e-3, channels: Vec::new() };
-    let foretold = foretell(&problem, &wanted).unwrap();
+    let foretold = foretell(&problem.assembly(), &wanted).unwrap();
     let taken = taken(&problem, &wanted) as f64;
     let factor = foretold.steps / taken;
     assert!((1.0 / WITHIN..=WITHIN).contains(&factor), "{foretold:?} {taken}");

@@ -354,7 +354,7 @@ fn an_extreme_has_the_time_of_its_state() {
         let options = RunOptions { integrator, stepping, ..RunOptions::default() };
         let wanted = RunRequest { options, end: 1e-3, output_interval: 1e-3, ..request(1e-6, 1) };
         let mut session = Session::start(struck(), &wanted).unwrap();
-        let at = session.simulation.system.layout.inner() + POSITION;
+        let at = session.simulation.system.sets[0].layout.inner() + POSITION;
         let (mut farthest, mut when) = (0.0f64, 0.0);
         loop {
             let [x, y, z] = [0, 1, 2].map(|i| session.simulation.state[at + i]);
@@ -366,7 +366,7 @@ fn an_extreme_has_the_time_of_its_state() {
                 break;
             }
         }
-        let found = session.simulation.extremes.farthest;
+        let found = session.simulation.extremes[0].farthest;
         // Rounding of a sum of three squares, and of the time at which a step ends.
         assert!((found.value / farthest - 1.0).abs() <= 1e-14, "{integrator:?} {found:?}");
         assert!((found.time - when).abs() <= 1e-15, "{integrator:?} {found:?} {when}");
