@@ -82,10 +82,16 @@ impl InnerRacePosition {
 
     /// The race that sits at a mount of the body with these coordinates. Derivatives are by the body's
     /// tilts, and leave out how these move the race's centre: see [`InnerRacePosition::along`].
-    pub fn mounted(coordinates: &SVector<f64, 5>, mount: &Mount) -> Self {
+    /// Its centre counts from `origin` (m), so that far from the axes' own origin no digits are lost.
+    pub fn mounted(coordinates: &SVector<f64, 5>, mount: &Mount, origin: &Vector3<f64>) -> Self {
         let mut race = InnerRacePosition::new(coordinates);
-        if mount.along != 0.0 {
-            race.centre += race.axis * mount.along;
+        if mount.along != 0.0 || *origin != Vector3::zeros() {
+            // The axis less X: 1 − cos λ cos ξ without a difference of numbers near one.
+            let half = |angle: f64| libm::sin(0.5 * angle).powi(2);
+            let (xi, lambda) = (half(coordinates[3]), half(coordinates[4]));
+            let shortening = 2.0 * (xi + lambda) - 4.0 * xi * lambda;
+            let off = Vector3::new(-shortening, race.axis.y, race.axis.z);
+            race.centre += (Vector3::x() * mount.along - origin) + off * mount.along;
         }
         if mount.reversed {
             let turned = [

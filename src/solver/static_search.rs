@@ -38,18 +38,27 @@ pub(super) struct Model<'a> {
 pub(super) struct BearingModel {
     pub(super) contacts: BallContacts,
     pub(super) azimuths: Vec<f64>,
+    /// Places of races and balls count from here.
+    pub(super) origin: Vector3<f64>,
     /// Where the outer race is held.
     planes: Vec<BallPlane>,
 }
 
-/// Planes of all balls of a bearing whose outer race is on a body at `outer`.
-fn planes(bearing: &StaticBearing, azimuths: &[f64], outer: &Pose, to: &mut Vec<BallPlane>) {
+/// Planes of all balls of a bearing whose outer race is on a body at `outer`, from `origin`.
+fn planes(
+    bearing: &StaticBearing,
+    azimuths: &[f64],
+    outer: &Pose,
+    origin: &Vector3<f64>,
+    to: &mut Vec<BallPlane>,
+) {
     to.clear();
     let mount = &bearing.mounts[1];
     let mut outer = *outer;
     if mount.along != 0.0 {
         outer.position += outer.orientation * Vector3::x() * mount.along;
     }
+    outer.position -= origin;
     if mount.reversed {
         outer.orientation *=
             UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(0.0, 0.0, 0.0, 1.0));
@@ -64,6 +73,22 @@ fn planes(bearing: &StaticBearing, azimuths: &[f64], outer: &Pose, to: &mut Vec<
         let (origin, centrifugal) = (outer.position, bearing.centrifugal);
         BallPlane { origin, axial, radial, weight, weight_around, centrifugal }
     }));
+}
+
+/// Where a bearing's outer race stands as far as it is known beforehand; for one whose races are bodies
+/// themselves that of the frame.
+fn origin(assembly: &StaticAssembly, bearing: &StaticBearing) -> Vector3<f64> {
+    let [inner, outer] = &bearing.mounts;
+    if inner.is_direct() && outer.is_direct() {
+        return Vector3::zeros();
+    }
+    match &assembly.bodies[outer.body].place {
+        Place::Held(pose) => pose.position + pose.orientation * Vector3::x() * outer.along,
+        Place::Loaded(loaded) => {
+            let [x, y, z, ..] = loaded.start.unwrap_or(loaded.rest);
+            Vector3::new(x + outer.along, y, z)
+        }
+    }
 }
 
 impl<'a> Model<'a> {
@@ -89,10 +114,11 @@ impl<'a> Model<'a> {
             let azimuths: Vec<f64> =
                 (0..count).map(|j| bearing.ball_phase + TAU * j as f64 / count as f64).collect();
             let mut held = Vec::new();
+            let origin = origin(assembly, bearing);
             if let Place::Held(pose) = &assembly.bodies[bearing.mounts[1].body].place {
-                planes(bearing, &azimuths, pose, &mut held);
+                planes(bearing, &azimuths, pose, &origin, &mut held);
             }
-            BearingModel { contacts: bearing.contacts(), azimuths, planes: held }
+            BearingModel { contacts: bearing.contacts(), azimuths, origin, planes: held }
         });
         let bearings = bearings.collect();
         Model { assembly, bearings, unknowns, scale: DVector::from_vec(scale) }
@@ -113,6 +139,13 @@ impl<'a> Model<'a> {
             (Place::Held(pose), _) => five(pose),
             _ => Five::zeros(),
         }
+    }
+
+    /// A race of a bearing, its centre from the bearing's origin.
+    pub(super) fn race(&self, bearing: usize, side: usize, at: &DVector<f64>) -> InnerRacePosition {
+        let mount = &self.assembly.bearings[bearing].mounts[side];
+        let coordinates = self.coordinates(mount.body, at);
+        InnerRacePosition::mounted(&coordinates, mount, &self.bearings[bearing].origin)
     }
 
     pub(super) fn first_unknown(&self, body: usize) -> Option<usize> {
@@ -270,11 +303,11 @@ impl<'a> Search<'a> {
         let bearing = &model.assembly.bearings[index];
         let of = &model.bearings[index];
         let [inner, outer] = bearing.mounts;
-        let race = InnerRacePosition::mounted(&model.coordinates(inner.body, &here.at), &inner);
+        let race = model.race(index, 0, &here.at);
         let moves = model.unknowns[outer.body];
         if moves.is_some() {
             let outer = pose(&model.coordinates(outer.body, &here.at));
-            planes(bearing, &of.azimuths, &outer, &mut here.planes[index]);
+            planes(bearing, &of.azimuths, &outer, &of.origin, &mut here.planes[index]);
         }
         // A race that is its body writes into the body's rows itself.
         let direct = model.unknowns[inner.body].filter(|_| inner.is_direct() && moves.is_none());
@@ -325,7 +358,7 @@ impl<'a> Search<'a> {
         }
         let Some(first) = moves else { return };
         let q = model.coordinates(outer.body, &here.at);
-        let outer_race = InnerRacePosition::mounted(&q, &outer);
+        let outer_race = model.race(index, 1, &here.at);
         let e3 = quaternion(0.0, q[3], q[4]) * Vector3::z();
         let mut carried = motion_of_race(&outer_race, &outer);
         let force = carried.transpose()
@@ -359,13 +392,10 @@ impl<'a> Search<'a> {
             .fold(0.0, f64::max)
     }
 
-    /// The farthest that a race is from the centre of its bearing, or a bearing from that of its body, m.
+    /// Largest pitch radius, m.
     fn reach(&self) -> f64 {
         let bearings = self.model.assembly.bearings.iter();
-        bearings.fold(0.0, |most: f64, bearing| {
-            let [inner, outer] = bearing.mounts.map(|mount| mount.along.abs());
-            most.max(bearing.geometry.pitch_radius).max(inner).max(outer)
-        })
+        bearings.fold(0.0, |most: f64, bearing| most.max(bearing.geometry.pitch_radius))
     }
 
     /// Largest stiffness against one coordinate, N/m.
@@ -388,9 +418,8 @@ impl<'a> Search<'a> {
         let bearings = self.model.assembly.bearings.iter();
         bearings
             .map(|bearing| {
-                let [inner, outer] = bearing.mounts.map(|mount| mount.along.abs());
-                let reach = bearing.geometry.pitch_radius.max(inner).max(outer);
-                energy_noise(load, reach) * bearing.geometry.ball_count as f64
+                let geometry = &bearing.geometry;
+                energy_noise(load, geometry.pitch_radius) * geometry.ball_count as f64
             })
             .sum()
     }
@@ -455,9 +484,7 @@ impl<'a> Search<'a> {
         /// Newton's last step leaves 1e-11; anything above this is a ball still on its way.
         const SETTLED: f64 = 1e-8;
         for (bearing, of) in self.model.assembly.bearings.iter().enumerate() {
-            let inner = &of.mounts[0];
-            let race =
-                InnerRacePosition::mounted(&self.model.coordinates(inner.body, &here.at), inner);
+            let race = self.model.race(bearing, 0, &here.at);
             let contacts = &self.model.bearings[bearing].contacts;
             for (index, (plane, ball)) in
                 here.planes(self.model, bearing).iter().zip(&here.balls[bearing]).enumerate()

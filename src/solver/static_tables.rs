@@ -23,8 +23,7 @@ pub struct BearingState {
 pub(super) fn bearing_state(model: &Model, here: &Evaluation, index: usize) -> BearingState {
     let bearing = &model.assembly.bearings[index];
     let of = &model.bearings[index];
-    let inner = &bearing.mounts[0];
-    let race = InnerRacePosition::mounted(&model.coordinates(inner.body, &here.at), inner);
+    let race = model.race(index, 0, &here.at);
     let planes = here.planes(model, index);
     let mut forces = [Vector3::zeros(); 2];
     let mut moments = [Vector3::zeros(); 2];
@@ -35,10 +34,10 @@ pub(super) fn bearing_state(model: &Model, here: &Evaluation, index: usize) -> B
         forces[1] += ball.outer.force_on_race;
         moments[0] += (ball.position - race.centre).cross(&ball.inner.force_on_race);
         moments[1] += (ball.position - plane.origin).cross(&ball.outer.force_on_race);
-        balls.push(ball);
+        balls.push(BallState { position: ball.position + of.origin, ..ball });
     }
     let outer = planes.first().map_or(Vector3::zeros(), |plane| plane.origin);
-    BearingState { forces, moments, centres: [race.centre, outer], balls }
+    BearingState { forces, moments, centres: [race.centre + of.origin, outer + of.origin], balls }
 }
 
 fn ball_state(

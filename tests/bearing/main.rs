@@ -17,5 +17,6 @@ mod dynamics_settling;
 mod dynamics_stability;
 mod free_balls;
 mod geometry_laws;
+mod shafts;
 mod statics_laws;
 mod work_counts;

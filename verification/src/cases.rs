@@ -46,6 +46,8 @@ mod rod_wave;
 mod rotating_load_orbit;
 #[path = "../settling_and_turning/case.rs"]
 mod settling_and_turning;
+#[path = "../shaft_on_two_bearings/case.rs"]
+mod shaft_on_two_bearings;
 #[path = "../solid_elements/case.rs"]
 mod solid_elements;
 #[path = "../solid_energy_and_steps/case.rs"]
@@ -67,6 +69,7 @@ pub const CASES: &[Case] = &[
     hertz_elliptic::CASE,
     rotating_load_orbit::CASE,
     statics_independent::CASE,
+    shaft_on_two_bearings::CASE,
     misalignment_moment::CASE,
     settling_and_turning::CASE,
     varying_compliance_statics::CASE,

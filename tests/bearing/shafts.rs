@@ -1,0 +1,476 @@
+//! Several bearings on one rigid shaft: closed forms, balance, equilibrium and motion.
+
+use crate::common;
+use crate::dynamics;
+
+use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
+use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
+use bearing_dynamics::ch2_housing::bearing::hertz::series_stiffness;
+use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
+use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::solver::dynamics::assembly::{Assembly, Bearing, Body, Mobility};
+use bearing_dynamics::solver::dynamics::contacts::Driver;
+use bearing_dynamics::solver::dynamics::equilibrium::at_start;
+use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
+use bearing_dynamics::solver::dynamics::run::{
+    Integrator, RunOptions, Simulation, Start, Stepping,
+};
+use bearing_dynamics::solver::dynamics::start;
+use bearing_dynamics::solver::dynamics::state::{BodyState, POSITION, SPIN, VELOCITY};
+use bearing_dynamics::solver::dynamics::system::System;
+use bearing_dynamics::solver::mount::Mount;
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::static_assembly::{
+    Loaded, Place, StaticAssembly, StaticBearing, StaticBody,
+};
+use bearing_dynamics::solver::statics::{Condition, StaticOptions, solve_assembly};
+use common::{FREE, problem, table_4_1, table_5_3};
+use dynamics::*;
+use nalgebra::{Matrix2, Vector2, Vector3};
+use std::f64::consts::TAU;
+
+fn body(name: &str, mobility: Mobility, rest: [f64; 5]) -> Body {
+    Body { name: name.into(), label: None, mobility, rest, rotating_load: None, unbalance: 0.0 }
+}
+
+/// A steel shaft of 30 mm, 120 mm long, under constant loads.
+fn shaft(loads: [f64; 5], speed: f64) -> RaceBody {
+    RaceBody {
+        inertia: hollow_cylinder(0.0, 15e-3, 120e-3, 7850.0),
+        ..race(loads, Rotation::Speed(Profile::Constant(speed)))
+    }
+}
+
+/// A bearing of these lengths between the body at `along` and the fixed body `outer`.
+fn seated(
+    geometry: BearingGeometry,
+    name: &str,
+    along: f64,
+    reversed: bool,
+    outer: usize,
+) -> Bearing {
+    let alone = bearing(geometry, [0.0; 5], 0.0).assembly().bearings.remove(0);
+    Bearing {
+        name: Some(name.into()),
+        mounts: [Mount { body: 0, along, reversed }, Mount { body: outer, along: 0.0, reversed }],
+        ..alone
+    }
+}
+
+/// A shaft on two angular-contact bearings back to back, 80 mm apart and preloaded by 6 µm each.
+fn on_two(loads: [f64; 5], speed: f64) -> Assembly {
+    let geometry = table_5_3();
+    Assembly {
+        bodies: vec![
+            body("the shaft", Mobility::Driven(shaft(loads, speed).into()), [0.0; 5]),
+            body("the left outer race", Mobility::Fixed, [-40e-3 - 6e-6, 0.0, 0.0, 0.0, 0.0]),
+            body("the right outer race", Mobility::Fixed, [40e-3 + 6e-6, 0.0, 0.0, 0.0, 0.0]),
+        ],
+        bearings: vec![
+            seated(geometry, "left", -40e-3, false, 1),
+            seated(geometry, "right", 40e-3, true, 2),
+        ],
+        gravity: GRAVITY,
+    }
+}
+
+/// The static pair of angular-contact bearings, half the spacing apart from the shaft's centre, that share
+/// a closing of `preload` (m) each; `reversed` tells which of the two is put in the other way round.
+fn pair(
+    half: f64,
+    preload: [f64; 2],
+    reversed: [bool; 2],
+    conditions: [Condition; 5],
+) -> StaticAssembly {
+    let geometry = table_5_3();
+    let still = problem(geometry, FREE);
+    let loaded = Loaded {
+        conditions,
+        springs: [0.0; 5],
+        rest: [0.0; 5],
+        start: Some([0.0; 5]),
+        room: geometry.ball_radius,
+    };
+    let held =
+        |x: f64| Place::Held(Pose { position: Vector3::new(x, 0.0, 0.0), ..Pose::identity() });
+    let named = |name: &str, place| StaticBody { name: name.into(), place };
+    let at = [-half, half];
+    let bearings = [0, 1].map(|side| StaticBearing {
+        name: Some(["left", "right"][side].into()),
+        geometry,
+        inner_contact: still.inner_contact,
+        outer_contact: still.outer_contact,
+        mounts: [
+            Mount { body: 0, along: at[side], reversed: reversed[side] },
+            Mount { body: 1 + side, along: 0.0, reversed: reversed[side] },
+        ],
+        ball_phase: 0.1,
+        weight: Vector3::zeros(),
+        centrifugal: 0.0,
+    });
+    StaticAssembly {
+        bodies: vec![
+            named("the shaft", Place::Loaded(loaded)),
+            named("the left outer race", held(at[0] + preload[0])),
+            named("the right outer race", held(at[1] + preload[1])),
+        ],
+        bearings: bearings.into(),
+    }
+}
+
+/// Load and stiffnesses along and across the line of contact of one ball when its inner groove's centre
+/// goes by `axial` from where contacts just close: closed form of two Hertz contacts in a row.
+struct Squeezed {
+    load: f64,
+    /// Axial, radial.
+    normal: Vector2<f64>,
+    stiffness: Matrix2<f64>,
+}
+
+fn squeezed(geometry: &BearingGeometry, axial: f64) -> Squeezed {
+    let still = problem(*geometry, FREE);
+    let k = series_stiffness(still.inner_contact.stiffness, still.outer_contact.stiffness);
+    let room =
+        geometry.inner.groove_radius + geometry.outer.groove_radius - 2.0 * geometry.ball_radius;
+    let between = Vector2::new(
+        geometry.inner.centre_axial - geometry.outer.centre_axial + axial,
+        geometry.inner.centre_radius - geometry.outer.centre_radius,
+    );
+    let normal = between.normalize();
+    let overlap = between.norm() - room;
+    let load = k * overlap * overlap.sqrt();
+    let along = 1.5 * k * overlap.sqrt();
+    let across = load / between.norm();
+    let outer = normal * normal.transpose();
+    Squeezed { load, normal, stiffness: outer * along + (Matrix2::identity() - outer) * across }
+}
+
+/// Back to back, face to face and in tandem: axial and tilting stiffness of the pair follow from one ball's
+/// stiffness, the contact angle, the pitch and the distance.
+#[test]
+fn duplex_pairs_have_the_stiffness_of_their_contact_angles_and_distances() {
+    let geometry = table_5_3();
+    let half = 12e-3;
+    let closing = 5e-6;
+    // The inner race of a bearing that is not reversed is pushed towards +X, against its outer one, and
+    // its lines of contact meet the axis on the side of −X.
+    let back_to_back = ([-closing, closing], [false, true]);
+    let face_to_face = ([closing, -closing], [true, false]);
+    let tandem = ([-closing, -closing], [false, false]);
+    let balls = geometry.ball_count as f64;
+    let one = squeezed(&geometry, closing);
+    let radius = geometry.inner.centre_radius;
+    for (name, (preload, reversed)) in
+        [("back to back", back_to_back), ("face to face", face_to_face), ("tandem", tandem)]
+    {
+        let given = pair(half, preload, reversed, [Condition::Displacement(0.0); 5]);
+        let found = solve_assembly(&given, None, &StaticOptions::default()).unwrap();
+        // What each bearing carries along its axis, on the side that its angle faces.
+        let axial = balls * one.load * one.normal[0];
+        for (bearing, reversed) in found.bearings.iter().zip(reversed) {
+            let expected = if reversed { axial } else { -axial };
+            let error = (bearing.forces[0].x - expected).abs() / axial;
+            println!("{name}: {} N of {expected}", bearing.forces[0].x);
+            // Both are closed forms of the same two contacts; positions are rounded at 1e-12 of overlaps.
+            assert!(error <= 1e-9, "{name}: {error:e}");
+        }
+        let stiffness = |i: usize| found.stiffness[(i, i)];
+        let expected = 2.0 * balls * one.stiffness[(0, 0)];
+        let error = (stiffness(0) / expected - 1.0).abs();
+        println!("{name}: {} of {expected} N/m along the axis", stiffness(0));
+        assert!(error <= 1e-9, "{name}: {error:e}");
+        // A tilt θ moves the groove's centre over the ball at azimuth φ by θ cos φ along (R, ±half); what
+        // its curved path adds to that is the moment of the preload: some δ/R of it.
+        let tilting: f64 = [-half, half]
+            .into_iter()
+            .zip(reversed)
+            .map(|(at, reversed)| {
+                let facing = if reversed { -1.0 } else { 1.0 };
+                let lever = Vector2::new(radius, -facing * at - geometry.inner.centre_axial);
+                0.5 * balls * lever.dot(&(one.stiffness * lever))
+            })
+            .sum();
+        let error = (stiffness(4) / tilting - 1.0).abs();
+        println!("{name}: {} of {tilting} N m/rad, {error:.1e}", stiffness(4));
+        // 7.6e-5, 9.7e-4 and 1.4e-4 of it.
+        assert!(error <= 1.2e-3, "{name}: {error:e}");
+        assert!((stiffness(3) / stiffness(4) - 1.0).abs() <= 1e-3, "alike about Y and Z");
+    }
+    // The one thing a pair is chosen for.
+    let tilting = |(preload, reversed): ([f64; 2], [bool; 2])| {
+        let given = pair(half, preload, reversed, [Condition::Displacement(0.0); 5]);
+        solve_assembly(&given, None, &StaticOptions::default()).unwrap().stiffness[(4, 4)]
+    };
+    assert!(tilting(back_to_back) > 2.0 * tilting(face_to_face));
+}
+
+/// Stiffness of the pair against differences of loads, all coordinates shaken.
+#[test]
+fn the_stiffness_of_a_shaft_is_the_slope_of_its_loads() {
+    let at = [2e-6, -3e-6, 4e-6, 1e-4, -1.5e-4];
+    let step = [1e-9, 1e-9, 1e-9, 3e-8, 3e-8];
+    let load = |q: [f64; 5]| {
+        let given = pair(25e-3, [-4e-6, 5e-6], [false, true], q.map(Condition::Displacement));
+        solve_assembly(&given, None, &StaticOptions::default()).unwrap()
+    };
+    let here = load(at);
+    for column in 0..5 {
+        let moved = |sign: f64| {
+            let mut q = at;
+            q[column] += sign * step[column];
+            load(q).loads[0]
+        };
+        let slope = (moved(1.0) - moved(-1.0)) / (2.0 * step[column]);
+        for row in 0..5 {
+            let exact = here.stiffness[(row, column)];
+            let scale = (here.stiffness[(row, row)] * here.stiffness[(column, column)]).sqrt();
+            let error = (slope[row] - exact).abs() / scale;
+            // Differences: (step/overlap)² of the curvature, and rounding of loads over the step.
+            assert!(error <= 1e-6, "({row}, {column}): {error:e}");
+        }
+    }
+}
+
+fn rates(assembly: &Assembly, state: &[f64]) -> (System, Vec<f64>) {
+    let mut system = System::new(assembly.clone(), Driver::Lanes);
+    let mut rates = vec![0.0; state.len()];
+    system.evaluate(0.0, state, &mut rates);
+    (system, rates)
+}
+
+/// Where statics stops no body and no ball is accelerated, and both bearings carry the load together.
+#[test]
+fn a_shaft_starts_in_equilibrium_on_both_bearings() {
+    let loads = [150.0, 80.0, -600.0, 3.0, -2.0];
+    let assembly = on_two(loads, 0.0);
+    let state = start::at_equilibrium(&assembly).unwrap();
+    let (system, rates) = rates(&assembly, &state);
+    let at = system.places.body(0);
+    let inertia = assembly.bodies[0].inertia().unwrap();
+    for i in 0..3 {
+        let force = rates[at + VELOCITY + i] * inertia.mass;
+        assert!(force.abs() <= 1e-8 * 600.0, "{i}: {force:e} N");
+        let moment = rates[at + SPIN + i] * inertia.transverse;
+        assert!(moment.abs() <= 1e-8 * 600.0 * 40e-3, "{i}: {moment:e} N m");
+    }
+    let weight = inertia.mass * 9.81;
+    let sum = system
+        .sets
+        .iter()
+        .fold([0.0; 3], |sum, set| [0, 1, 2].map(|i| sum[i] + set.on_races[0].force[i]));
+    for (i, applied) in [loads[0], loads[1], loads[2] - weight].into_iter().enumerate() {
+        assert!((sum[i] + applied).abs() <= 1e-10 * 600.0, "{i}: {:e} N", sum[i] + applied);
+    }
+    // Either bearing's balls stand still but for what the cage takes, a part of 1e-5 of the load.
+    for (set, bearing) in system.sets.iter().zip(&assembly.bearings) {
+        for ball in 0..set.layout.balls {
+            let force =
+                set.layout.ball_vector(&rates, VELOCITY, ball).map(|a| a * bearing.ball.mass);
+            let [_, y, z] = set.layout.ball_vector(&state, POSITION, ball);
+            let outward = (force[1] * y + force[2] * z) / y.hypot(z);
+            assert!(outward.abs().max(force[0].abs()) <= 1e-8 * 600.0, "{force:?}");
+        }
+    }
+}
+
+/// One bearing whose shaft is its inner race, and the same with the shaft's centre 70 mm away along its axis.
+#[test]
+fn where_a_shaft_has_its_centre_changes_nothing() {
+    let geometry = table_4_1(-5e-6);
+    let shifted = |along: f64| {
+        let mut problem = bearing(geometry, [0.0; 5], 0.0);
+        problem.traction = CONSTANT;
+        problem.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
+        let mut assembly = problem.assembly();
+        assembly.bearings[0].mounts[0].along = along;
+        // The same place in the world.
+        assembly.bodies[1].rest[0] = along;
+        // Of so much more inertia about its centre that the same turns follow.
+        let race = assembly.bodies[0].driven_mut().unwrap();
+        race.rotation = Rotation::Speed(Profile::Constant(300.0));
+        race.drives = [0.0, 2e-6, -6e-6, 0.0, 0.0].map(|at| Drive::Motion(Profile::Constant(at)));
+        let options = RunOptions {
+            start: Start::Equilibrium,
+            integrator: Integrator::Rosenbrock,
+            stepping: Stepping::Accuracy(1e-5),
+            ..RunOptions::default()
+        };
+        let mut simulation = Simulation::new(assembly, options).unwrap();
+        while simulation.time < 2e-3 {
+            simulation.step().unwrap();
+        }
+        simulation.snapshot().unwrap();
+        let [inner, outer] = simulation.system.sets[0].on_races;
+        (inner.force, outer.moment, simulation.steps)
+    };
+    let ((near, near_moment, steps), (far, far_moment, far_steps)) = (shifted(0.0), shifted(70e-3));
+    println!("{near:?} {far:?}, {steps} and {far_steps} steps");
+    for i in 0..3 {
+        // Positions 70 mm out are rounded at 1e-17 m, some 1e-12 of an overlap, and steps adapt to that.
+        assert!((near[i] - far[i]).abs() <= 1e-5 * 500.0, "{i}: {} {}", near[i], far[i]);
+        assert!((near_moment[i] - far_moment[i]).abs() <= 1e-5, "{i}");
+    }
+}
+
+/// Nothing but balls between a free shaft and two free rings: momentum and energy stay.
+#[test]
+fn a_free_shaft_and_its_bearings_keep_momentum_and_energy() {
+    let mut assembly = on_two([0.0; 5], 0.0);
+    assembly.gravity = [0.0; 3];
+    assembly.bodies[0].mobility = Mobility::Driven(
+        RaceBody { rotation: Rotation::Torque(Profile::ZERO), ..shaft([0.0; 5], 0.0) }.into(),
+    );
+    let ring = hollow_cylinder(36e-3, 40e-3, 16e-3, 7850.0);
+    for index in [1, 2] {
+        assembly.bodies[index].mobility =
+            Mobility::Driven(RaceBody { inertia: ring, ..free_race() }.into());
+    }
+    let mut state = start::nominal(&assembly);
+    let places = bearing_dynamics::solver::dynamics::state::Places::of(&assembly);
+    let at = places.body(0);
+    for (entry, value) in [(VELOCITY + 1, 0.02), (VELOCITY, 0.01), (SPIN, 90.0), (SPIN + 2, 0.5)] {
+        state[at + entry] += value;
+    }
+    let (momentum, angular) = momenta(assembly.clone(), &state);
+    let options = fixed_step(2e-7, Start::Nominal);
+    let mut simulation = Simulation::from_state(assembly.clone(), options, state, 0.0).unwrap();
+    for _ in 0..20_000 {
+        simulation.step().unwrap();
+    }
+    let (momentum_end, angular_end) = momenta(assembly, &simulation.state);
+    let snapshot = simulation.snapshot().unwrap();
+    let scale = momentum.norm();
+    assert!((momentum_end - momentum).norm() <= 1e-11 * scale, "{momentum_end}");
+    assert!((angular_end - angular).norm() <= 1e-10 * angular.norm(), "{angular_end}");
+    let met = snapshot.energy.contact;
+    println!("residual {:e} of {met:e} J in contacts", snapshot.residual);
+    assert!(snapshot.residual.abs() <= 1e-7 * simulation.checkpoint().largest_contact_energy);
+}
+
+/// The linearly implicit method with its matrix over shaft, rings and balls goes where Runge–Kutta goes.
+#[test]
+fn both_methods_take_a_shaft_the_same_way() {
+    let mut assembly = on_two([100.0, 0.0, -400.0, 1.0, 0.0], 1000.0 * RPM);
+    for bearing in &mut assembly.bearings {
+        bearing.traction = CONSTANT;
+        bearing.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
+    }
+    let shaft = assembly.bodies[0].driven_mut().unwrap();
+    shaft.drives[2] =
+        Drive::Load(Profile::HalfSine { base: -400.0, peak: -600.0, start: 0.0, duration: 1e-3 });
+    let end = |integrator, stepping| {
+        let options =
+            RunOptions { start: Start::Equilibrium, integrator, stepping, ..RunOptions::default() };
+        let mut simulation = Simulation::new(assembly.clone(), options).unwrap();
+        while simulation.time < 2e-3 {
+            let left = 2e-3 - simulation.time;
+            simulation.step_by(simulation.step_size.min(left)).unwrap();
+            if left < 1e-12 {
+                break;
+            }
+        }
+        let at = simulation.system.places.body(0);
+        (BodyState::from_slice(&simulation.state[at..at + 13]), simulation.steps)
+    };
+    let (exact, _) = end(Integrator::RungeKutta, Stepping::Fixed(1e-7));
+    let mut errors = Vec::new();
+    for accuracy in [1e-2, 1e-3, 1e-4] {
+        let (found, steps) = end(Integrator::Rosenbrock, Stepping::Accuracy(accuracy));
+        let error =
+            (0..3).map(|i| (found.position[i] - exact.position[i]).abs()).fold(0.0, f64::max);
+        println!("accuracy {accuracy}: {error:e} m in {steps} steps");
+        errors.push(error);
+    }
+    // The deepest contact is some 5 µm.
+    assert!(errors[1] <= 1e-3 * 5e-6 && errors[2] <= 1e-4 * 5e-6, "{errors:?}");
+}
+
+/// Names and the order of the lists are no physics.
+#[test]
+fn the_order_of_bodies_and_bearings_changes_nothing() {
+    let loads = [100.0, 50.0, -400.0, 1.0, 0.5];
+    let one = on_two(loads, 500.0 * RPM);
+    let mut other = one.clone();
+    // Shaft last, outer races the other way round, bearings too.
+    other.bodies = vec![one.bodies[2].clone(), one.bodies[1].clone(), one.bodies[0].clone()];
+    other.bearings.reverse();
+    for bearing in &mut other.bearings {
+        bearing.name = bearing.name.as_ref().map(|name| format!("the {name} one"));
+        for mount in &mut bearing.mounts {
+            mount.body = 2 - mount.body;
+        }
+    }
+    let after = |assembly: &Assembly, shaft: usize| {
+        let mut simulation =
+            Simulation::new(assembly.clone(), fixed_step(1e-6, Start::Equilibrium)).unwrap();
+        for _ in 0..500 {
+            simulation.step().unwrap();
+        }
+        let at = simulation.system.places.body(shaft);
+        simulation.state[at..at + 13].to_vec()
+    };
+    let (first, second) = (after(&one, 0), after(&other, 2));
+    let largest =
+        |part: std::ops::Range<usize>| first[part].iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    for (i, (a, b)) in first.iter().zip(&second).enumerate() {
+        let scale = match i {
+            0..3 => largest(0..3),
+            3..7 => 1.0,
+            // Of swinging through these displacements, and by the shaft's own turns.
+            7..10 => 1e4 * largest(0..3),
+            _ => largest(10..13),
+        };
+        assert!((a - b).abs() <= 1e-9 * scale, "{i}: {a:e} {b:e}");
+    }
+}
+
+/// A shaft under dashpots ends where statics has it, as a bearing alone does.
+#[test]
+fn a_damped_shaft_settles_into_static_equilibrium() {
+    let loads = [300.0, 100.0, -500.0, 2.0, -1.0];
+    let mut assembly = on_two(loads, 0.0);
+    assembly.gravity = [0.0; 3];
+    let expected = at_start(&assembly).unwrap();
+    for bearing in &mut assembly.bearings {
+        bearing.damping = ContactDamping::HuntCrossley { alpha: 3.0 };
+    }
+    let shaft = assembly.bodies[0].driven_mut().unwrap();
+    shaft.drives = loads.map(|load| {
+        let (start, duration) = (0.0, 60e-3);
+        Drive::Load(Profile::SmoothRamp { from: 0.8 * load, to: load, start, duration })
+    });
+    // As fast as those of a bearing alone for the mass and inertia that a shaft has.
+    shaft.foundation_damping = [1e4, 1e4, 1e4, 8.0, 8.0];
+    let mut simulation = Simulation::new(assembly, fixed_step(2e-6, Start::Equilibrium)).unwrap();
+    for _ in 0..40_000 {
+        simulation.step().unwrap();
+        hold_azimuths(&mut simulation);
+    }
+    let at = simulation.system.places.body(0);
+    let end = BodyState::from_slice(&simulation.state[at..at + 13]);
+    let expected = &expected.coordinates[0];
+    let largest = (0..3).map(|i| expected[i].abs()).fold(0.0, f64::max);
+    let off = (0..3).map(|i| (end.position[i] - expected[i]).abs()).fold(0.0, f64::max);
+    println!("off by {:e} of {largest:e} m", off / largest);
+    assert!(off <= 1e-6 * largest, "{off:e} of {largest:e}");
+}
+
+/// Puts every ball back into the plane through its outer race's axis in which statics holds it.
+fn hold_azimuths(simulation: &mut Simulation) {
+    let Simulation { system, state, .. } = simulation;
+    for (set, bearing) in system.sets.iter().zip(&system.assembly.bearings) {
+        let facing = if bearing.mounts[1].reversed { -1.0 } else { 1.0 };
+        for ball in 0..set.layout.balls {
+            let angle = bearing.ball_phase + TAU * ball as f64 / set.layout.balls as f64;
+            let tangent = Vector3::new(0.0, -facing * angle.sin(), angle.cos());
+            let mut body = set.layout.ball_state(state, ball);
+            let across = |v: [f64; 3]| -> [f64; 3] {
+                let v = Vector3::from(v);
+                (v - tangent * tangent.dot(&v)).into()
+            };
+            body.position = across(body.position);
+            body.velocity = across(body.velocity);
+            set.layout.set_ball(state, ball, &body);
+        }
+    }
+}
