@@ -1,6 +1,7 @@
 //! What is in equilibrium: bodies that are held or loaded, and the bearings between them.
 
 use super::ball::BallContacts;
+use super::dynamics::connection::Connection;
 use super::mount::Mount;
 use super::static_start::ball_contacts;
 use super::statics::Condition;
@@ -14,6 +15,8 @@ use nalgebra::Vector3;
 pub struct StaticAssembly {
     pub bodies: Vec<StaticBody>,
     pub bearings: Vec<StaticBearing>,
+    /// Their dashpots are at rest.
+    pub connections: Vec<Connection>,
 }
 
 /// A rigid body.

@@ -9,6 +9,8 @@ use super::ball::{
     BallContacts, BallPlane, InnerRacePosition, SettledBall, add_to_race, energy_noise,
     overlap_of_races, settle,
 };
+use super::dynamics::connection::Connection;
+use super::dynamics::race;
 use super::mount::Mount;
 use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing};
 use super::static_start;
@@ -16,12 +18,16 @@ use super::statics::{COORDINATE_NAMES, Determinacy, StaticOptions, StaticsError}
 use crate::ch2_housing::bearing::contact::normal_load;
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
+use crate::kinematics::vec3::{Vec3, add, cross, sub};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector, SymmetricEigen, UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
 
 /// Stiffness below this fraction of the largest one counts as none. Rounding of the overlaps leaves
 /// about 1e-12; the softest real direction, the swivel of a loaded ball, has about 1e-3.
 const NO_STIFFNESS: f64 = 1e-9;
+
+/// First trust radius where nothing but springs holds, m: it grows by itself.
+const WITHOUT_BEARING: f64 = 1e-4;
 
 type Five = SVector<f64, 5>;
 
@@ -294,7 +300,47 @@ impl<'a> Search<'a> {
         for index in 0..bearings {
             self.add_bearing(index, &mut here);
         }
+        for connection in &self.model.assembly.connections {
+            self.add_connection(connection, &mut here);
+        }
         here
+    }
+
+    /// Energy, force and stiffness of springs between two bodies.
+    fn add_connection(&self, connection: &Connection, here: &mut Evaluation) {
+        let model = self.model;
+        let bodies = connection.ends.map(|mount| {
+            let q = model.coordinates(mount.body, &here.at);
+            (race::fixed(&q.into()), quaternion(0.0, q[3], q[4]) * Vector3::z())
+        });
+        let ends = [0, 1].map(|end| race::mounted(&bodies[end].0, &connection.ends[end]));
+        let ends = [&ends[0], &ends[1]];
+        let pull = connection.pull(ends);
+        here.energy += pull.energy;
+        // Of a force at a section along its body's coordinates.
+        let conjugate = |end: usize, force: Vec3, moment: Vec3| {
+            let (body, e3) = &bodies[end];
+            let arm = sub(ends[end].motion.position, body.motion.position);
+            let moment = Vector3::from(add(moment, cross(arm, force)));
+            Five::from([force[0], force[1], force[2], moment.y, moment.dot(e3)])
+        };
+        let firsts = connection.ends.map(|mount| model.unknowns[mount.body]);
+        for end in 0..2 {
+            let Some(first) = firsts[end] else { continue };
+            let loads = &pull.on[end];
+            let mut rows = here.gradient.fixed_rows_mut::<5>(first);
+            rows -= conjugate(end, loads.force, loads.moment);
+        }
+        for row in connection.rows(ends).iter().filter(|row| row.stiffness != 0.0) {
+            let levers = [0, 1].map(|end| conjugate(end, row.on[end][0], row.on[end][1]));
+            for (a, one) in firsts.into_iter().enumerate() {
+                for (b, other) in firsts.into_iter().enumerate() {
+                    let (Some(one), Some(other)) = (one, other) else { continue };
+                    let mut block = here.stiffness.fixed_view_mut::<5, 5>(one, other);
+                    block += levers[a] * levers[b].transpose() * row.stiffness;
+                }
+            }
+        }
     }
 
     /// Energy, force and stiffness of one bearing.
@@ -434,6 +480,9 @@ impl<'a> Search<'a> {
         };
         let (force, moment) = (largest(0..3), largest(3..5));
         let bearings = self.model.assembly.bearings.iter().zip(&self.model.bearings);
+        if self.model.bearings.is_empty() {
+            return WITHOUT_BEARING;
+        }
         bearings
             .map(|(bearing, of)| {
                 static_start::step_scale(&bearing.geometry, &of.contacts, force, moment)
@@ -459,7 +508,11 @@ impl<'a> Search<'a> {
             let predicted = self.predicted_change(here, &step);
             let change = there.energy - here.energy;
             // Near the end the change drowns in rounding, and the unbalanced load decides alone.
-            let noise = self.noise(here.largest_ball_load.max(there.largest_ball_load));
+            let mut noise = self.noise(here.largest_ball_load.max(there.largest_ball_load));
+            if !self.model.assembly.connections.is_empty() {
+                // Springs may hold far more energy than contacts.
+                noise += 16.0 * f64::EPSILON * here.energy.abs().max(there.energy.abs());
+            }
             let quieter = self.residual(&there) < residual;
             let accepted = change < (1e-4 * predicted).min(-noise) || (change <= noise && quieter);
             if accepted {
@@ -650,7 +703,8 @@ impl<'a> Search<'a> {
             let stiffest = contacts.inner_stiffness.max(contacts.outer_stiffness);
             most.max(normal_load(stiffest, rounding))
         });
-        let nothing_touches = here.largest_ball_load <= noise && self.springs.is_empty();
+        let springs = !self.springs.is_empty() || !self.model.assembly.connections.is_empty();
+        let nothing_touches = here.largest_ball_load <= noise && !springs;
         let threshold =
             if nothing_touches { f64::INFINITY } else { NO_STIFFNESS * scaled_diagonal };
         let free_directions: Vec<_> =

@@ -242,6 +242,7 @@ impl StaticProblem {
                 body("the outer race", Place::Held(self.outer_pose.relative_to(&self.frame))),
             ],
             bearings: vec![bearing],
+            connections: Vec::new(),
         }
     }
 }

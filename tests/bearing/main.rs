@@ -5,6 +5,7 @@ mod common;
 #[path = "../common/dynamics.rs"]
 mod dynamics;
 
+mod connections;
 mod dynamics_balls;
 mod dynamics_cage;
 mod dynamics_contacts;

@@ -70,6 +70,7 @@ fn on_two(loads: [f64; 5], speed: f64) -> Assembly {
             seated(geometry, "left", -40e-3, false, 1),
             seated(geometry, "right", 40e-3, true, 2),
         ],
+        connections: Vec::new(),
         gravity: GRAVITY,
     }
 }
@@ -115,6 +116,7 @@ fn pair(
             named("the right outer race", held(at[1] + preload[1])),
         ],
         bearings: bearings.into(),
+        connections: Vec::new(),
     }
 }
 

@@ -124,7 +124,7 @@ impl Shaft {
                 centrifugal: 0.0,
             });
         }
-        Ok(StaticAssembly { bodies, bearings })
+        Ok(StaticAssembly { bodies, bearings, connections: Vec::new() })
     }
 
     /// What the independent solver makes of it.

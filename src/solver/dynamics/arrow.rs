@@ -65,7 +65,7 @@ impl Arrow {
                     hub.inertia[i] + scale * (hub.damping[i] + scale * hub.stiffness[i]);
             }
         }
-        add_guides(linearised, scale, &mut self.schur);
+        add_joints(linearised, scale, &mut self.schur);
         for (index, block) in linearised.blocks.iter().enumerate() {
             self.factor_block(index, block);
         }
@@ -169,7 +169,7 @@ impl Arrow {
                     hub.inertia[i] * rate[i] - scale * hub.stiffness[i] * moved[index][i];
             }
         }
-        guide_forces(linearised, scale, moved, hubs);
+        joint_forces(linearised, scale, moved, hubs);
         for (index, block) in linearised.blocks.iter().enumerate() {
             let right = &mut balls[index];
             let layout = &sets[block.bearing].layout;
@@ -460,22 +460,22 @@ fn drive_power(
     total(&driven)
 }
 
-fn add_guides(linearised: &Linearised, scale: f64, schur: &mut Dense) {
-    for guide in linearised.guides.iter().flatten().filter(|guide| guide.loaded) {
-        let weight =
-            [scale * scale * guide.stiffness, scale * guide.slope[0], scale * guide.slope[1]];
-        for (a, row) in guide.hubs.into_iter().enumerate() {
-            for (b, column) in guide.hubs.into_iter().enumerate() {
-                let (Some(row), Some(column)) = (row, column) else { continue };
-                // The upper triangle alone is kept.
-                if row > column {
-                    continue;
-                }
-                for i in 0..6 {
-                    for j in 0..6 {
-                        for (r, weight) in weight.iter().enumerate() {
-                            *schur.at(6 * row + i, 6 * column + j) +=
-                                guide.levers[a][r][i] * weight * guide.levers[b][r][j];
+fn add_joints(linearised: &Linearised, scale: f64, schur: &mut Dense) {
+    for joint in &linearised.joints {
+        for row in &joint.rows[..joint.count] {
+            let spring = scale * scale * row.stiffness;
+            let weight = if row.damping == 0.0 { spring } else { spring + scale * row.damping };
+            for (a, rows) in joint.hubs.into_iter().enumerate() {
+                for (b, columns) in joint.hubs.into_iter().enumerate() {
+                    let (Some(rows), Some(columns)) = (rows, columns) else { continue };
+                    // The upper triangle alone is kept.
+                    if rows > columns {
+                        continue;
+                    }
+                    for i in 0..6 {
+                        for j in 0..6 {
+                            *schur.at(6 * rows + i, 6 * columns + j) +=
+                                row.levers[a][i] * weight * row.levers[b][j];
                         }
                     }
                 }
@@ -484,18 +484,20 @@ fn add_guides(linearised: &Linearised, scale: f64, schur: &mut Dense) {
     }
 }
 
-fn guide_forces(linearised: &Linearised, scale: f64, moved: &[[f64; 6]], hubs: &mut [f64]) {
-    for guide in linearised.guides.iter().flatten().filter(|guide| guide.loaded) {
-        let mut push = 0.0;
-        for (lever, hub) in guide.levers.iter().zip(guide.hubs) {
-            let Some(hub) = hub else { continue };
-            push += (0..6).map(|j| lever[0][j] * moved[hub][j]).sum::<f64>();
-        }
-        push *= scale * guide.stiffness;
-        for (lever, hub) in guide.levers.iter().zip(guide.hubs) {
-            let Some(hub) = hub else { continue };
-            for j in 0..6 {
-                hubs[6 * hub + j] -= lever[0][j] * push;
+fn joint_forces(linearised: &Linearised, scale: f64, moved: &[[f64; 6]], hubs: &mut [f64]) {
+    for joint in &linearised.joints {
+        for row in joint.rows[..joint.count].iter().filter(|row| row.stiffness != 0.0) {
+            let mut push = 0.0;
+            for (lever, hub) in row.levers.iter().zip(joint.hubs) {
+                let Some(hub) = hub else { continue };
+                push += (0..6).map(|j| lever[j] * moved[hub][j]).sum::<f64>();
+            }
+            push *= scale * row.stiffness;
+            for (lever, hub) in row.levers.iter().zip(joint.hubs) {
+                let Some(hub) = hub else { continue };
+                for j in 0..6 {
+                    hubs[6 * hub + j] -= lever[j] * push;
+                }
             }
         }
     }

@@ -4,6 +4,7 @@
 //! one body, as two bearings of a shaft do. The order of the lists is the order of every sum.
 
 use super::bounds::HERTZ_SCALE;
+use super::connection::Connection;
 use super::model::{CageBody, Drive, DynamicProblem, RaceBody, RotatingLoad, Rotation};
 use crate::ch2_housing::bearing::ball_contact::BallContactLaw;
 use crate::ch2_housing::bearing::cage::CageContacts;
@@ -21,6 +22,8 @@ use std::f64::consts::PI;
 pub struct Assembly {
     pub bodies: Vec<Body>,
     pub bearings: Vec<Bearing>,
+    /// Between bodies, besides the bearings.
+    pub connections: Vec<Connection>,
     /// m/s².
     pub gravity: [f64; 3],
 }
@@ -301,6 +304,11 @@ impl From<&DynamicProblem> for Assembly {
             damping: problem.damping,
             ball_contact: problem.ball_contact,
         };
-        Assembly { bodies, bearings: vec![bearing], gravity: problem.gravity }
+        Assembly {
+            bodies,
+            bearings: vec![bearing],
+            connections: Vec::new(),
+            gravity: problem.gravity,
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! What is stored in a state: kinetic energy, contacts, gravity, springs.
 
+use super::race::mounted;
 use super::state::{POSITION, SPIN, VELOCITY};
 use super::system::System;
 use crate::ch2_housing::bearing::cage::cage_energy;
@@ -17,7 +18,7 @@ pub struct Energy {
     pub cage_contact: f64,
     /// −m g·r of all bodies.
     pub gravity: f64,
-    /// Stored in the foundation's springs.
+    /// Stored in springs to the ground and between bodies.
     pub foundation: f64,
     /// Stored in contacts between balls.
     pub ball_contact: f64,
@@ -85,6 +86,10 @@ impl System {
                 let stretch = value - body.rest[i];
                 energy.foundation += 0.5 * driven.foundation_stiffness[i] * stretch * stretch;
             }
+        }
+        for connection in &assembly.connections {
+            let ends = connection.ends.map(|mount| mounted(&self.bodies[mount.body], &mount));
+            energy.foundation += connection.pull([&ends[0], &ends[1]]).energy;
         }
         energy
     }

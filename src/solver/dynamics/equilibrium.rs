@@ -175,7 +175,11 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
         weight: Vector3::from(assembly.gravity) * bearing.ball.mass,
         centrifugal: bearing.ball.mass * orbital_speed(assembly, bearing, t).powi(2),
     });
-    StaticAssembly { bodies: bodies.collect(), bearings: bearings.collect() }
+    StaticAssembly {
+        bodies: bodies.collect(),
+        bearings: bearings.collect(),
+        connections: assembly.connections.clone(),
+    }
 }
 
 /// What is given of a body's coordinates or acts along them at time `t`: its drives, weight, rotating load.

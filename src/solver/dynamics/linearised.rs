@@ -14,8 +14,9 @@
 
 use super::assembly::{Bearing, Caged, Mobility};
 use super::ball_set::{BallSet, guiding_side};
+use super::connection::{self, Connection};
 use super::model::{Drive, RaceBody, Rotation};
-use super::race::{RaceNow, directions};
+use super::race::{RaceNow, directions, mounted};
 use super::state::{LANES, POSITION};
 use super::system::System;
 use crate::ch2_housing::bearing::cage::{CageContact, CageContacts, cage_stiffness};
@@ -57,17 +58,25 @@ pub struct LaneContact {
     pub shifts: Option<[[f64; 3]; 3]>,
 }
 
-/// A contact of a cage with its guiding race.
+/// What pushes back between two hubs: a cage on its guiding race, a spring with its dashpot.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct GuideContact {
-    pub loaded: bool,
-    /// Of the race (`None` if it is fixed) and of the cage.
+pub struct Joint {
+    /// `None` for an end that is fixed.
     pub hubs: [Option<usize>; 2],
-    /// On the race, on the cage.
-    pub levers: [Lever<f64>; 2],
+    /// Rows in use; none where nothing touches.
+    pub count: usize,
+    pub rows: [JointRow; connection::ROWS],
+}
+
+/// One direction of a joint.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct JointRow {
+    /// Relative motion that the six velocities of each hub make.
+    pub levers: [[f64; 6]; 2],
+    /// N/m, N·m/rad.
     pub stiffness: f64,
-    /// Along both tangents, N·s/m.
-    pub slope: [f64; 2],
+    /// N·s/m, N·m·s/rad; of friction the slope by sliding.
+    pub damping: f64,
 }
 
 /// A body that many balls touch. Its rotations count about `basis`.
@@ -102,8 +111,8 @@ pub struct BallBlock {
 #[derive(Clone, Debug, Default)]
 pub struct Linearised {
     pub blocks: Vec<BallBlock>,
-    /// Both ends of each cage that a race guides.
-    pub guides: Vec<[GuideContact; 2]>,
+    /// Both ends of the cage of each bearing on its guiding race, two a bearing; then connections.
+    pub joints: Vec<Joint>,
     /// Bodies that move, in their order.
     pub hubs: Vec<Hub>,
     /// Of each body of the assembly.
@@ -130,7 +139,7 @@ impl Linearised {
                 Some(hubs.len() - 1)
             })
             .collect();
-        let (mut blocks, mut guides) = (Vec::new(), Vec::new());
+        let (mut blocks, mut joints) = (Vec::new(), Vec::new());
         for (index, (set, bearing)) in system.sets.iter().zip(&assembly.bearings).enumerate() {
             let races = bearing.mounts.map(|mount| hub_of[mount.body]);
             let cage = bearing.cage.as_ref().and_then(|cage| hub_of[cage.body]);
@@ -141,14 +150,18 @@ impl Linearised {
             }
             let side = bearing.cage.as_ref().and_then(|cage| guiding_side(cage.contacts.guidance));
             let hubs = [side.and_then(|side| races[side]), cage];
-            guides.push([GuideContact { hubs, ..GuideContact::default() }; 2]);
+            joints.extend([Joint { hubs, ..Joint::default() }; 2]);
         }
-        Linearised { blocks, guides, hubs, hub_of }
+        joints.extend(assembly.connections.iter().map(|connection| {
+            let hubs = connection.ends.map(|mount| hub_of[mount.body]);
+            Joint { hubs, count: connection::ROWS, ..Joint::default() }
+        }));
+        Linearised { blocks, joints, hubs, hub_of }
     }
 
     /// Takes up the contacts that `system` has just evaluated, slopes included.
     pub fn update(&mut self, system: &System, state: &[f64]) {
-        let Linearised { blocks, guides, hubs, hub_of } = self;
+        let Linearised { blocks, joints, hubs, hub_of } = self;
         for ((body, now), hub) in system.assembly.bodies.iter().zip(&system.bodies).zip(hub_of) {
             let Some(hub) = hub.map(|hub| &mut hubs[hub]) else { continue };
             match body.driven() {
@@ -173,16 +186,20 @@ impl Linearised {
                 pockets(set, caged, state, block.first, &hubs[hub], contact);
             }
         }
+        let (guides, others) = joints.split_at_mut(2 * system.sets.len());
         for ((guides, set), bearing) in
-            guides.iter_mut().zip(&system.sets).zip(&system.assembly.bearings)
+            guides.chunks_mut(2).zip(&system.sets).zip(&system.assembly.bearings)
         {
             update_guides(guides, set, bearing, &system.bodies, hubs);
+        }
+        for (joint, connection) in others.iter_mut().zip(&system.assembly.connections) {
+            update_connection(joint, connection, &system.bodies, hubs);
         }
     }
 }
 
 fn update_guides(
-    guides: &mut [GuideContact; 2],
+    guides: &mut [Joint],
     set: &BallSet,
     bearing: &Bearing,
     bodies: &[RaceNow],
@@ -192,22 +209,40 @@ fn update_guides(
     let Some(side) = guiding_side(caged.contacts.guidance) else { return };
     let centres = [bearing.mounts[side].body, caged.body].map(|body| bodies[body].motion.position);
     for (guide, contact) in guides.iter_mut().zip(&set.guides) {
-        guide.loaded = contact.normal_load > 0.0;
-        if !guide.loaded {
+        guide.count = if contact.normal_load > 0.0 { 3 } else { 0 };
+        if guide.count == 0 {
             continue;
         }
         let (directions, slope) = friction(contact, &caged.contacts);
-        guide.stiffness = cage_stiffness(&caged.contacts.force, contact.penetration);
-        guide.slope = slope;
+        let stiffness = cage_stiffness(&caged.contacts.force, contact.penetration);
         for (row, direction) in directions.into_iter().enumerate() {
+            let to = &mut guide.rows[row];
+            to.stiffness = if row == 0 { stiffness } else { 0.0 };
+            to.damping = if row == 0 { 0.0 } else { slope[row - 1] };
             for ((lever, sign), (hub, centre)) in
-                guide.levers.iter_mut().zip([1.0, -1.0]).zip(guide.hubs.into_iter().zip(centres))
+                to.levers.iter_mut().zip([1.0, -1.0]).zip(guide.hubs.into_iter().zip(centres))
             {
                 let turning = cross(sub(contact.point, centre), direction);
-                lever[row] = hub.map_or([0.0; 6], |hub| {
+                *lever = hub.map_or([0.0; 6], |hub| {
                     on_hub(&hubs[hub], scale(direction, sign), scale(turning, sign))
                 });
             }
+        }
+    }
+}
+
+fn update_connection(joint: &mut Joint, of: &Connection, bodies: &[RaceNow], hubs: &[Hub]) {
+    let ends = of.ends.map(|mount| mounted(&bodies[mount.body], &mount));
+    let rows = of.rows([&ends[0], &ends[1]]);
+    for (to, row) in joint.rows.iter_mut().zip(rows) {
+        (to.stiffness, to.damping) = (row.stiffness, row.damping);
+        for (end, [linear, turning]) in row.on.into_iter().enumerate() {
+            // Levers count about the hub's centre, from where the section may be some way along the shaft.
+            let body = &bodies[of.ends[end].body];
+            let off = sub(ends[end].motion.position, body.motion.position);
+            to.levers[end] = joint.hubs[end].map_or([0.0; 6], |hub| {
+                on_hub(&hubs[hub], linear, add(turning, cross(off, linear)))
+            });
         }
     }
 }

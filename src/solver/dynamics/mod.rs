@@ -10,6 +10,7 @@ pub mod assembly;
 pub mod ball_set;
 pub mod bounds;
 pub mod checkpoint;
+pub mod connection;
 pub mod contacts;
 pub mod control;
 pub mod dormand_prince;

@@ -31,10 +31,12 @@ pub enum Cause {
     CageFriction,
     BallFriction,
     FoundationDashpot,
+    ConnectionSpring,
+    ConnectionDashpot,
 }
 
 impl Cause {
-    pub const ALL: [Cause; 9] = [
+    pub const ALL: [Cause; 11] = [
         Cause::Contact,
         Cause::CageContact,
         Cause::BallContact,
@@ -44,6 +46,8 @@ impl Cause {
         Cause::CageFriction,
         Cause::BallFriction,
         Cause::FoundationDashpot,
+        Cause::ConnectionSpring,
+        Cause::ConnectionDashpot,
     ];
 
     pub fn name(self) -> &'static str {
@@ -57,6 +61,8 @@ impl Cause {
             Cause::CageFriction => "friction onset of the cage",
             Cause::BallFriction => "friction onset between balls",
             Cause::FoundationDashpot => "dashpot of the foundation",
+            Cause::ConnectionSpring => "spring between bodies",
+            Cause::ConnectionDashpot => "dashpot between bodies",
         }
     }
 
@@ -112,6 +118,13 @@ impl Cause {
             }),
             Cause::FoundationSpring => foundations(system, |race| &mut race.foundation_stiffness),
             Cause::FoundationDashpot => foundations(system, |race| &mut race.foundation_damping),
+            Cause::ConnectionSpring | Cause::ConnectionDashpot => {
+                let mut any = false;
+                for connection in &mut system.assembly.connections {
+                    any |= connection.take_out(self == Cause::ConnectionSpring);
+                }
+                any
+            }
         }
     }
 }
@@ -263,9 +276,10 @@ fn cause(system: &mut System, t: f64, state: &[f64], step: f64, eigenvalue: Comp
             Cause::CageFriction,
             Cause::BallFriction,
             Cause::FoundationDashpot,
+            Cause::ConnectionDashpot,
         ]
     } else {
-        &[Cause::CageContact, Cause::BallContact, Cause::FoundationSpring]
+        &[Cause::CageContact, Cause::BallContact, Cause::FoundationSpring, Cause::ConnectionSpring]
     };
     let mut found = (1.1 * step, Cause::Contact);
     for &candidate in candidates {

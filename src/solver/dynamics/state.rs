@@ -56,7 +56,7 @@ pub enum Ledger {
     Traction,
     ContactDamping,
     CageFriction,
-    /// Dashpots of a foundation, or all that a housing does to the outer race.
+    /// Dashpots to the ground and between bodies, or all that a housing does to the outer race.
     Foundation,
     Drives,
     BallFriction,

@@ -4,7 +4,7 @@ use super::assembly::{Assembly, Body, Mobility};
 use super::ball_set::{BallSet, onto_body};
 use super::contacts::{Driver, Want, Work};
 use super::model::Rotation;
-use super::race::{self, RaceLoads, RaceNow};
+use super::race::{self, RaceLoads, RaceNow, mounted};
 use super::state::{
     BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, POSITION, Places, SPIN, VELOCITY,
     quaternion_rate,
@@ -95,6 +95,15 @@ impl System {
             }
             if let Some(cage) = &bearing.cage {
                 self.loads[cage.body].add(&set.on_cage);
+            }
+        }
+        for connection in &self.assembly.connections {
+            let ends = connection.ends.map(|mount| mounted(&self.bodies[mount.body], &mount));
+            let pull = connection.pull([&ends[0], &ends[1]]);
+            ledger[Ledger::Foundation as usize] += pull.loss;
+            for ((mount, end), loads) in connection.ends.iter().zip(&ends).zip(&pull.on) {
+                let body = &self.bodies[mount.body];
+                self.loads[mount.body].add(&onto_body(mount, end, body, loads));
             }
         }
         for index in 0..self.assembly.bodies.len() {

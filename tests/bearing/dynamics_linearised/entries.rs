@@ -375,9 +375,9 @@ fn entries_of_cage_contacts_with_either_law() {
                 }
             }
             assert!(judged > 0);
-            for (end, guide) in point.linearised.guides[0].into_iter().enumerate() {
+            for (end, guide) in point.linearised.joints.clone().into_iter().enumerate() {
                 let contact = point.system.sets[0].guides[end];
-                assert!(guide.loaded);
+                assert_eq!(guide.count, 3);
                 let push = contact.push;
                 let along = move |at: usize, direction: Vec3| {
                     move |state: &mut [f64], by: f64| {
@@ -391,14 +391,20 @@ fn entries_of_cage_contacts_with_either_law() {
                     [guide.normal_load, guide.penetration]
                 });
                 let what = |part: &str| format!("{guidance:?} hertz {hertz} end {end}: {part}");
-                close(load / depth, guide.stiffness, guide.stiffness, 1e-6, &|| what("stiffness"));
+                close(
+                    load / depth,
+                    guide.rows[0].stiffness,
+                    guide.rows[0].stiffness,
+                    1e-6,
+                    &|| what("stiffness"),
+                );
                 for r in 1..3 {
-                    let direction: Vec3 = [0, 1, 2].map(|i: usize| -guide.levers[1][r][i]);
+                    let direction: Vec3 = [0, 1, 2].map(|i: usize| -guide.rows[r].levers[1][i]);
                     let shift = along(VELOCITY, direction);
                     let [found] = point.slope(1e-4, shift, |point| {
                         [dot(point.system.sets[0].guides[end].force, direction)]
                     });
-                    let slope = guide.slope[r - 1];
+                    let slope = guide.rows[r].damping;
                     close(-found, slope, slope, 1e-6, &|| what(&format!("friction {r}")));
                 }
             }

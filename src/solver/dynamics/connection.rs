@@ -1,0 +1,181 @@
+//! What joins two sections of bodies besides bearings, one `match` each: the load it puts on both ends with
+//! its energy and loss, and the directions in which it pushes back.
+//!
+//! A section is a [`Mount`] and the axes of its body. Whatever the second end gets the first gets too, with the
+//! other sign and at the same point, so that momentum is kept; loads are the slopes of an energy, however far
+//! the ends have turned against each other.
+
+use super::race::{RaceLoads, RaceNow};
+use crate::kinematics::vec3::{Vec3, add, cross, dot, sub};
+use crate::solver::mount::Mount;
+use nalgebra::{Matrix3, Vector3};
+
+/// A connection and what it joins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Connection {
+    /// As messages name it.
+    pub name: String,
+    /// The first end's axes are those in which the law is written.
+    pub ends: [Mount; 2],
+    pub law: Law,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Law {
+    /// Linear in the displacement of the second end against the first.
+    SpringDashpot(SpringDashpot),
+}
+
+/// Six springs and dashpots along and about the axes X, Y, Z of the first end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpringDashpot {
+    /// N/m, N·m/rad.
+    pub stiffness: [f64; 6],
+    /// N·s/m, N·m·s/rad.
+    pub damping: [f64; 6],
+    /// Place of the second end in the first one's axes where no spring pulls, m.
+    pub rest: Vec3,
+}
+
+/// What a connection does at one instant.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pull {
+    /// On each end, about its own centre.
+    pub on: [RaceLoads; 2],
+    /// Stored, J.
+    pub energy: f64,
+    /// Power of its dashpots, W, ≤ 0.
+    pub loss: f64,
+}
+
+/// One direction in which a connection pushes back.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Row {
+    /// Linear and turning part of the relative motion that a unit of each end's velocity makes, about each
+    /// end's own centre, inertial axes.
+    pub on: [[Vec3; 2]; 2],
+    pub stiffness: f64,
+    pub damping: f64,
+}
+
+/// Rows that a connection can have.
+pub const ROWS: usize = 6;
+
+impl Connection {
+    /// Loads on both ends where they are.
+    pub fn pull(&self, ends: [&RaceNow; 2]) -> Pull {
+        match &self.law {
+            Law::SpringDashpot(law) => spring_dashpot(law, ends),
+        }
+    }
+
+    /// Directions, stiffness and damping of what pushes back, for the matrix of a linearly implicit
+    /// step and of statics. Exact at rest; turned ends leave out the curvature of large turns.
+    pub fn rows(&self, ends: [&RaceNow; 2]) -> [Row; ROWS] {
+        match &self.law {
+            Law::SpringDashpot(law) => spring_dashpot_rows(law, ends),
+        }
+    }
+
+    /// Takes its springs or its dashpots out; whether there were any.
+    pub fn take_out(&mut self, springs: bool) -> bool {
+        match &mut self.law {
+            Law::SpringDashpot(law) => {
+                let part = if springs { &mut law.stiffness } else { &mut law.damping };
+                std::mem::take(part) != [0.0; 6]
+            }
+        }
+    }
+
+    /// Whether nothing of it pushes or brakes, so that it may be left out.
+    pub fn is_void(&self) -> bool {
+        match &self.law {
+            Law::SpringDashpot(law) => law.stiffness == [0.0; 6] && law.damping == [0.0; 6],
+        }
+    }
+}
+
+/// Rotation vector of the second end against the first, in the first one's axes, rad (below half a turn).
+fn turn_between(ends: [&RaceNow; 2]) -> Vector3<f64> {
+    let [first, second] = ends.map(|end| end.state.orientation);
+    let relative = first.inverse() * second;
+    let (part, cos) = (relative.imag(), relative.w);
+    let sin = part.norm();
+    // The nearer way round; of no turn twice the imaginary part.
+    let (part, cos) = if cos < 0.0 { (-part, -cos) } else { (part, cos) };
+    let angle = 2.0 * libm::atan2(sin, cos);
+    if sin > 0.0 { part * (angle / sin) } else { part * 2.0 }
+}
+
+/// How a rotation vector changes with an angular velocity in the first end's axes: the inverse of the
+/// left Jacobian of rotations.
+fn turn_rate(turn: &Vector3<f64>) -> Matrix3<f64> {
+    let angle = turn.norm();
+    let spin = turn.cross_matrix();
+    // (1 − θ/2 cot θ/2)/θ², whose series serves small turns.
+    let factor = if angle < 1e-2 {
+        (1.0 + angle * angle / 60.0) / 12.0
+    } else {
+        let half = 0.5 * angle;
+        (1.0 - half * libm::cos(half) / libm::sin(half)) / (angle * angle)
+    };
+    Matrix3::identity() - spin * 0.5 + spin * spin * factor
+}
+
+/// Axes of the first end in inertial ones.
+fn axes(ends: [&RaceNow; 2]) -> [Vec3; 3] {
+    let turn = ends[0].state.orientation;
+    [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| (turn * axis).into())
+}
+
+/// Rate of the second end's place in the first one's axes, and of their turn, all in these axes.
+fn rates(ends: [&RaceNow; 2], axes: &[Vec3; 3]) -> (Vec3, Vector3<f64>) {
+    let [first, second] = ends.map(|end| &end.motion);
+    let arm = sub(second.position, first.position);
+    let carried = add(first.velocity, cross(first.spin, arm));
+    let along = |v: Vec3| axes.map(|axis| dot(axis, v));
+    (along(sub(second.velocity, carried)), along(sub(second.spin, first.spin)).into())
+}
+
+fn spring_dashpot(law: &SpringDashpot, ends: [&RaceNow; 2]) -> Pull {
+    let axes = axes(ends);
+    let arm = sub(ends[1].motion.position, ends[0].motion.position);
+    let (speed, turning) = rates(ends, &axes);
+    let turn = turn_between(ends);
+    let turn_rate = turn_rate(&turn);
+    let turned = turn_rate * turning;
+    let mut pull = Pull::default();
+    let (mut force, mut moment) = ([0.0; 3], Vector3::zeros());
+    for i in 0..3 {
+        let stretch = dot(axes[i], arm) - law.rest[i];
+        let (spring, dashpot) = (law.stiffness[i] * stretch, law.damping[i] * speed[i]);
+        force[i] = -(spring + dashpot);
+        moment[i] = -(law.stiffness[3 + i] * turn[i] + law.damping[3 + i] * turned[i]);
+        pull.energy += 0.5 * spring * stretch + 0.5 * law.stiffness[3 + i] * turn[i] * turn[i];
+        pull.loss -= dashpot * speed[i] + law.damping[3 + i] * turned[i] * turned[i];
+    }
+    let moment = turn_rate.transpose() * moment;
+    let world = |parts: [f64; 3]| -> Vec3 {
+        [0, 1, 2].map(|i| (0..3).map(|k| axes[k][i] * parts[k]).sum())
+    };
+    let (force, moment) = (world(force), world(moment.into()));
+    let back = |v: Vec3| v.map(|part| -part);
+    pull.on[1] = RaceLoads { force, moment };
+    pull.on[0] = RaceLoads { force: back(force), moment: back(add(moment, cross(arm, force))) };
+    pull
+}
+
+fn spring_dashpot_rows(law: &SpringDashpot, ends: [&RaceNow; 2]) -> [Row; ROWS] {
+    let axes = axes(ends);
+    let arm = sub(ends[1].motion.position, ends[0].motion.position);
+    let back = |v: Vec3| v.map(|part| -part);
+    std::array::from_fn(|i| {
+        let axis = axes[i % 3];
+        let on = if i < 3 {
+            [[back(axis), back(cross(arm, axis))], [axis, [0.0; 3]]]
+        } else {
+            [[[0.0; 3], back(axis)], [[0.0; 3], axis]]
+        };
+        Row { on, stiffness: law.stiffness[i], damping: law.damping[i] }
+    })
+}
