@@ -6,7 +6,7 @@ use crate::dynamics;
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, Mobility};
-use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot, Torsion};
 use bearing_dynamics::solver::dynamics::contacts::Driver;
 use bearing_dynamics::solver::dynamics::model::{RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::race::{RaceNow, mounted};
@@ -28,15 +28,23 @@ fn kinds() -> Vec<Connection> {
         Mount { body: 0, along: 0.03, reversed: false },
         Mount { body: 1, along: -0.02, reversed: true },
     ];
-    vec![Connection {
-        name: "spring".into(),
-        ends,
-        law: Law::SpringDashpot(SpringDashpot {
-            stiffness: [2e6, 3e6, 5e6, 40.0, 900.0, 700.0],
-            damping: [200.0, 100.0, 300.0, 0.05, 0.4, 0.7],
-            rest: [1e-3, -2e-3, 0.5e-3],
-        }),
-    }]
+    // Twist means something as long as the axes do not point against each other.
+    let alike = ends.map(|end| Mount { reversed: false, ..end });
+    let torsion = Law::Torsion(Torsion { stiffness: 800.0, damping: 0.5 });
+    vec![
+        Connection { name: "spring".into(), ends, law: Law::SpringDashpot(SPRING) },
+        Connection { name: "torsion".into(), ends: alike, law: torsion },
+    ]
+}
+
+const SPRING: SpringDashpot = SpringDashpot {
+    stiffness: [2e6, 3e6, 5e6, 40.0, 900.0, 700.0],
+    damping: [200.0, 100.0, 300.0, 0.05, 0.4, 0.7],
+    rest: [1e-3, -2e-3, 0.5e-3],
+};
+
+fn spring() -> Connection {
+    kinds().remove(0)
 }
 
 /// Two bodies in any motion, turned by about `turn` rad.
@@ -86,8 +94,7 @@ fn what_one_end_gets_the_other_gets_too() {
         for seed in 0..50 {
             let bodies = pair(seed, 1.5);
             let ([first, second], ..) = pull(&connection, &bodies);
-            let size = first[0].norm();
-            assert!((first[0] + second[0]).norm() <= 1e-13 * size);
+            assert!((first[0] + second[0]).norm() <= 1e-13 * first[0].norm());
             let at = |body: usize| Vector3::from(bodies[body].motion.position);
             // About the origin.
             let moments = first[1] + at(0).cross(&first[0]) + second[1] + at(1).cross(&second[0]);
@@ -167,8 +174,9 @@ fn rows_are_the_slopes_of_loads() {
         // No load at rest, so that no row is bent by one.
         let mut connection = connection;
         let at = ends(&connection, &bodies);
-        let Law::SpringDashpot(law) = &mut connection.law;
-        law.rest = [0, 1, 2].map(|i| at[1].motion.position[i] - at[0].motion.position[i]);
+        if let Law::SpringDashpot(law) = &mut connection.law {
+            law.rest = [0, 1, 2].map(|i| at[1].motion.position[i] - at[0].motion.position[i]);
+        }
         // The second end is put in the other way round: half a turn about Z between the two.
         connection.ends[1].reversed = false;
         let bodies = bodies.map(|body| RaceNow::new(body.state));
@@ -304,8 +312,7 @@ fn nothing_is_left_of_a_connection_of_zeros() {
 /// Where statics puts a body between springs nothing accelerates it.
 #[test]
 fn a_body_on_springs_stands_where_its_load_is_carried() {
-    let [connection] = <[Connection; 1]>::try_from(kinds()).unwrap();
-    let mut connection = connection;
+    let mut connection = spring();
     connection.ends = [Mount::at_centre(1), Mount { body: 0, along: 0.01, reversed: false }];
     let loads = [200.0, -100.0, 300.0, 1.5, -2.0];
     let held = Place::Held(Pose::identity());
@@ -358,11 +365,11 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
 /// The step of a stiff spring between bodies is bound by it, and said so.
 #[test]
 fn a_stiff_connection_binds_the_step_by_name() {
-    let [connection] = <[Connection; 1]>::try_from(kinds()).unwrap();
+    let connection = spring();
     for (spring, expected) in
         [(true, "spring between bodies: oscillation"), (false, "dashpot between bodies: motion")]
     {
-        let mut assembly = on_two_bodies(connection.clone(), spring);
+        let assembly = on_two_bodies(connection.clone(), spring);
         let state = start::nominal(&assembly);
         let mut system = System::new(assembly.clone(), Driver::Lanes);
         let limit = step_limit(&mut system, 0.0, &state).unwrap();
@@ -371,13 +378,15 @@ fn a_stiff_connection_binds_the_step_by_name() {
         assert_eq!(system.assembly, assembly);
         // The period of two masses on the spring, 2.83/ω of Runge-Kutta.
         if spring {
-            let Law::SpringDashpot(law) = &mut assembly.connections[0].law;
             let mass = assembly.bodies[0].inertia().unwrap().mass;
-            let expected = 2.0 * 2f64.sqrt() / (law.stiffness[0] * 2.0 / mass).sqrt();
+            let expected = 2.0 * 2f64.sqrt() / (STIFF * 2.0 / mass).sqrt();
             assert!((limit.step / expected - 1.0).abs() <= 1e-3, "{} {expected}", limit.step);
         }
     }
 }
+
+/// N/m.
+const STIFF: f64 = 1e12;
 
 /// Two free bodies and, far softer, a bearing between the first and the ground.
 fn on_two_bodies(mut connection: Connection, spring: bool) -> Assembly {
@@ -385,7 +394,7 @@ fn on_two_bodies(mut connection: Connection, spring: bool) -> Assembly {
     assembly.bodies = vec![free("one"), assembly.bodies[1].clone(), free("other")];
     connection.ends = [Mount::at_centre(0), Mount::at_centre(2)];
     connection.law = Law::SpringDashpot(match spring {
-        true => SpringDashpot { stiffness: [1e12, 0.0, 0.0, 0.0, 0.0, 0.0], ..Default::default() },
+        true => SpringDashpot { stiffness: [STIFF, 0.0, 0.0, 0.0, 0.0, 0.0], ..Default::default() },
         false => SpringDashpot { damping: [0.0, 0.0, 1e7, 0.0, 0.0, 0.0], ..Default::default() },
     });
     assembly.connections = vec![connection];

@@ -24,6 +24,8 @@ pub struct Connection {
 pub enum Law {
     /// Linear in the displacement of the second end against the first.
     SpringDashpot(SpringDashpot),
+    /// Against twist about the first end's axis alone.
+    Torsion(Torsion),
 }
 
 /// Six springs and dashpots along and about the axes X, Y, Z of the first end.
@@ -35,6 +37,17 @@ pub struct SpringDashpot {
     pub damping: [f64; 6],
     /// Place of the second end in the first one's axes where no spring pulls, m.
     pub rest: Vec3,
+}
+
+/// A spring and a dashpot against the twist of the second end about the first one's X axis; bending and all
+/// displacements are free. Twist counts up to half a turn either way, and needs axes that do not point
+/// against each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Torsion {
+    /// N·m/rad.
+    pub stiffness: f64,
+    /// N·m·s/rad.
+    pub damping: f64,
 }
 
 /// What a connection does at one instant.
@@ -66,6 +79,7 @@ impl Connection {
     pub fn pull(&self, ends: [&RaceNow; 2]) -> Pull {
         match &self.law {
             Law::SpringDashpot(law) => spring_dashpot(law, ends),
+            Law::Torsion(law) => torsion(law, ends),
         }
     }
 
@@ -74,6 +88,7 @@ impl Connection {
     pub fn rows(&self, ends: [&RaceNow; 2]) -> [Row; ROWS] {
         match &self.law {
             Law::SpringDashpot(law) => spring_dashpot_rows(law, ends),
+            Law::Torsion(law) => torsion_rows(law, ends),
         }
     }
 
@@ -84,6 +99,10 @@ impl Connection {
                 let part = if springs { &mut law.stiffness } else { &mut law.damping };
                 std::mem::take(part) != [0.0; 6]
             }
+            Law::Torsion(law) => {
+                let part = if springs { &mut law.stiffness } else { &mut law.damping };
+                std::mem::take(part) != 0.0
+            }
         }
     }
 
@@ -91,6 +110,7 @@ impl Connection {
     pub fn is_void(&self) -> bool {
         match &self.law {
             Law::SpringDashpot(law) => law.stiffness == [0.0; 6] && law.damping == [0.0; 6],
+            Law::Torsion(law) => law.stiffness == 0.0 && law.damping == 0.0,
         }
     }
 }
@@ -178,4 +198,36 @@ fn spring_dashpot_rows(law: &SpringDashpot, ends: [&RaceNow; 2]) -> [Row; ROWS] 
         };
         Row { on, stiffness: law.stiffness[i], damping: law.damping[i] }
     })
+}
+
+/// Twist of the second end about the first one's axis, rad, and the direction (inertial axes) along which
+/// relative spin makes it: with q the relative rotation φ = 2 atan(q_x/q_w).
+fn twist(ends: [&RaceNow; 2]) -> (f64, Vec3) {
+    let [first, second] = ends.map(|end| end.state.orientation);
+    let q = first.inverse() * second;
+    let (w, x, y, z) = (q.w, q.i, q.j, q.k);
+    let size = w * w + x * x;
+    let angle = if w < 0.0 { libm::atan2(-x, -w) } else { libm::atan2(x, w) };
+    let along = Vector3::new(1.0, (w * z + x * y) / size, (x * z - w * y) / size);
+    (2.0 * angle, (first * along).into())
+}
+
+fn torsion(law: &Torsion, ends: [&RaceNow; 2]) -> Pull {
+    let (angle, along) = twist(ends);
+    let rate = dot(along, sub(ends[1].motion.spin, ends[0].motion.spin));
+    let moment = along.map(|part| -part * (law.stiffness * angle + law.damping * rate));
+    let on = |moment| RaceLoads { force: [0.0; 3], moment };
+    Pull {
+        on: [on(moment.map(|part| -part)), on(moment)],
+        energy: 0.5 * law.stiffness * angle * angle,
+        loss: -law.damping * rate * rate,
+    }
+}
+
+fn torsion_rows(law: &Torsion, ends: [&RaceNow; 2]) -> [Row; ROWS] {
+    let (_, along) = twist(ends);
+    let on = [[[0.0; 3], along.map(|part| -part)], [[0.0; 3], along]];
+    let mut rows = [Row::default(); ROWS];
+    rows[0] = Row { on, stiffness: law.stiffness, damping: law.damping };
+    rows
 }
