@@ -5,9 +5,8 @@ use super::plan::dynamic_plan_lines;
 use super::run_figures::key_figures;
 use super::{CommandResult, Outcome, echo, echo_run, remarks, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
-use bearing_dynamics::output::dynamics::foretell::{Choice, choose};
 use bearing_dynamics::output::dynamics::pictures::{Picture, draw};
-use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status, given_steps};
+use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status};
 use bearing_dynamics::output::dynamics::summary::{RunReport, write_run_results};
 use bearing_dynamics::output::dynamics::table::RunTable;
 use bearing_dynamics::output::results::RunRecord;
@@ -18,7 +17,8 @@ use bearing_dynamics::scene::{
     Document, Plot, RunPlot, RunSettings, Scene, Subject, resolve_subject,
 };
 use bearing_dynamics::solver::channels::ChannelGroup;
-use bearing_dynamics::solver::clock::rounded;
+use bearing_dynamics::solver::clock::{given_steps, rounded};
+use bearing_dynamics::solver::dynamics::foretell::{Choice, choose};
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Stepping};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -153,7 +153,7 @@ fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) ->
             "interrupted at t = {} s of {} s, after {} steps; what there is so far is in {}. To \
              go on: bearing run {} --out {} --resume",
             rounded(simulation.time),
-            session.end,
+            session.clock.end,
             simulation.steps,
             folder.display(),
             arguments.scene.display(),
@@ -182,6 +182,7 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
         options: settings.options,
         end: settings.end,
         output_interval: settings.output_interval,
+        fields_interval: None,
         channels,
     }
 }
@@ -261,8 +262,8 @@ fn announcement(
             "{integrator}, accuracy {accuracy}: steps follow from it, the first of {:.4e} s\n\
              to t = {} s, a row every {:.4e} s\n{by_plan}",
             simulation.step_size,
-            session.end,
-            session.interval()
+            session.clock.end,
+            session.clock.row_interval()
         );
         text += &resumed(kept);
         return text;
@@ -287,18 +288,17 @@ fn announcement(
             rounded(time)
         );
     }
-    let (interval, asked) = (session.interval(), request.output_interval);
+    let (interval, asked) = (session.clock.row_interval(), request.output_interval);
     let rounded = if (interval / asked - 1.0).abs() > 1e-9 {
         format!(" ({asked} s asked for, rounded to whole steps)")
     } else {
         String::new()
     };
-    let problem = &simulation.system.problem;
-    let asked = RunRequest { end: session.end, output_interval: interval, ..request.clone() };
-    let steps = given_steps(problem, &asked, simulation.step_size);
+    let clock = &session.clock;
+    let steps = given_steps(&clock.corners, interval, clock.end, clock.step);
     text += &format!(
         "{steps} steps to t = {} s, a row every {} steps = {interval:.4e} s{rounded}\n",
-        session.end, session.steps_per_row
+        session.clock.end, session.clock.steps_per_row
     );
     text += &resumed(kept);
     text
@@ -340,7 +340,7 @@ fn simulate(
             bar.set_position(permille(session));
             bar.set_message(format!(
                 "t = {:.5} of {} s, step {:.2e} s",
-                simulation.time, session.end, simulation.step_size
+                simulation.time, session.clock.end, simulation.step_size
             ));
         }
     };
@@ -350,7 +350,7 @@ fn simulate(
 
 /// How much of the run is done, of a thousand.
 fn permille(session: &Session) -> u64 {
-    (1000.0 * session.simulation.time / session.end) as u64
+    (1000.0 * session.simulation.time / session.clock.end) as u64
 }
 
 fn progress_bar(session: &Session) -> ProgressBar {

@@ -140,7 +140,7 @@ pub enum StateError {
 /// output interval, which is compared by itself.
 pub fn fingerprint(problem: &DynamicProblem, request: &RunRequest) -> String {
     // Debug text has every field, and the shortest decimals that tell two numbers apart.
-    let RunRequest { options, channels, end: _, output_interval: _ } = request;
+    let RunRequest { options, channels, .. } = request;
     let groups: Vec<&str> =
         ChannelGroup::ALL.into_iter().filter(|g| channels.contains(g)).map(|g| g.name()).collect();
     let text = format!("{} {problem:?} {options:?} {groups:?}", env!("CARGO_PKG_VERSION"));
@@ -164,7 +164,7 @@ pub struct StateRecord {
 /// A number that is not finite (the state there stays), a file that cannot be written.
 pub fn save(folder: &Path, session: &Session, record: &StateRecord) -> Result<(), StateError> {
     let (checkpoint, rows) = session.resumable();
-    let span = (session.end, session.steps_per_row);
+    let span = (session.clock.end, session.clock.steps_per_row);
     let file = state_file(&checkpoint, rows, span, record);
     check_finite(&file)?;
     session.recorder.series(session.recorder.rows())?.write_npy(&folder.join(SERIES))?;
@@ -227,7 +227,7 @@ pub fn resume(
     let mut session = Session::from_checkpoint(problem, &kept, &checkpoint, file.steps_per_row)?;
     let series_path = folder.join(SERIES);
     let series = Series::read_npy(&series_path)?;
-    if !session.recorder.restore(&series, file.rows) {
+    if !session.restore_rows(&series, file.rows) {
         return Err(StateError::Rows { path: series_path });
     }
     Ok(session)

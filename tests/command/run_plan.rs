@@ -3,11 +3,12 @@
 use crate::run_common;
 
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::output::dynamics::foretell::{WITHIN, choose, foretell};
-use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status, given_steps};
+use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status};
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{self, CageInRun, Format};
 use bearing_dynamics::solver::channels::ChannelGroup;
+use bearing_dynamics::solver::clock::given_steps;
+use bearing_dynamics::solver::dynamics::foretell::{WITHIN, choose, foretell};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
 use bearing_dynamics::solver::plan;
@@ -168,8 +169,10 @@ fn given_steps_are_counted_as_the_run_takes_them() {
         for interval in [1e-6, 10e-6, 12.34e-6, 37e-6, 1e-3] {
             for end in [203.4e-6, 200e-6, 55.31e-6, 0.4e-6, 74e-6] {
                 let wanted = RunRequest { end, output_interval: interval, ..request(step, 1) };
-                let (foretold, taken) =
-                    (given_steps(&problem, &wanted, step), taken(&problem, &wanted));
+                let (foretold, taken) = (
+                    given_steps(&problem.corners(), wanted.output_interval, wanted.end, step),
+                    taken(&problem, &wanted),
+                );
                 assert_eq!(foretold, taken, "rows {interval}, end {end}");
             }
         }
@@ -203,7 +206,8 @@ fn foretold_steps_are_within_the_stated_factor() {
         let options =
             RunOptions { integrator, stepping, energy_limit: 1.0, ..RunOptions::default() };
         let output_interval = 0.2e-3;
-        let wanted = RunRequest { options, end, output_interval, channels: Vec::new() };
+        let wanted =
+            RunRequest { options, end, output_interval, channels: Vec::new(), ..request(1e-6, 1) };
         let foretold = foretell(problem, &wanted).unwrap();
         let taken = taken(problem, &wanted) as f64;
         let factor = foretold.steps / taken;
@@ -219,7 +223,7 @@ fn foretold_steps_are_within_the_stated_factor() {
 #[test]
 fn the_plan_chooses_the_method_that_takes_less_work() {
     let options = RunOptions { stepping: Stepping::Accuracy(1e-3), ..RunOptions::default() };
-    let wanted = RunRequest { options, end: 20e-3, output_interval: 0.1e-3, channels: Vec::new() };
+    let wanted = RunRequest { options, end: 20e-3, output_interval: 0.1e-3, ..request(1e-6, 1) };
     let steep = DynamicProblem {
         traction: TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 5e-4 },
         ..frictionless()

@@ -48,16 +48,16 @@ fn rows_lie_on_whole_steps_and_the_run_ends_at_its_end() {
 fn a_given_step_rounds_the_interval_and_a_derived_step_fits_it() {
     let given = RunRequest { output_interval: 1.234e-5, ..request(1e-6, 5) };
     let session = Session::start(frictionless(), &given).unwrap();
-    assert_eq!((session.steps_per_row, session.simulation.step_size), (12, 1e-6));
+    assert_eq!((session.clock.steps_per_row, session.simulation.step_size), (12, 1e-6));
     let stepping = Stepping::FractionOfLimit(0.5);
     let derived =
         RunRequest { options: RunOptions { stepping, ..RunOptions::default() }, ..given.clone() };
     let session = Session::start(frictionless(), &derived).unwrap();
     let limit = session.simulation.limit.unwrap().step;
     assert!(session.simulation.step_size <= 0.5 * limit);
-    assert!((session.interval() / 1.234e-5 - 1.0).abs() <= 1e-15);
+    assert!((session.clock.row_interval() / 1.234e-5 - 1.0).abs() <= 1e-15);
     let finer = RunRequest { output_interval: 1e-9, ..given };
-    assert_eq!(Session::start(frictionless(), &finer).unwrap().steps_per_row, 1);
+    assert_eq!(Session::start(frictionless(), &finer).unwrap().clock.steps_per_row, 1);
 }
 
 #[test]

@@ -90,8 +90,9 @@ fn a_given_step_that_becomes_too_long_ends_the_run() {
     let (kept, rows) = session.resumable();
     assert_eq!(kept.steps + 1, session.simulation.steps);
     let mut again =
-        Session::from_checkpoint(problem.clone(), &wanted, &kept, session.steps_per_row).unwrap();
-    assert!(again.recorder.restore(&session.recorder.series(rows).unwrap(), rows));
+        Session::from_checkpoint(problem.clone(), &wanted, &kept, session.clock.steps_per_row)
+            .unwrap();
+    assert!(again.restore_rows(&session.recorder.series(rows).unwrap(), rows));
     assert_eq!(run(&mut again).unwrap_err(), error);
 }
 

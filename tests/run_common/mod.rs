@@ -149,6 +149,7 @@ pub fn request(step: f64, rows: usize) -> RunRequest {
         options: RunOptions { stepping: Stepping::Fixed(step), ..RunOptions::default() },
         end: step * (10.0 * rows as f64 + 3.4),
         output_interval: 10.0 * step,
+        fields_interval: None,
         channels: ChannelGroup::ALL.to_vec(),
     }
 }

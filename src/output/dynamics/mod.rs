@@ -9,7 +9,6 @@
 //! | `state.json` | what the run goes on from; see [`crate::output::state`] |
 //!
 //! Lengths in m, loads in N, angles in degrees, speeds in rad/s.
-pub mod foretell;
 pub mod pictures;
 pub mod recorder;
 pub mod session;

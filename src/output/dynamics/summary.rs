@@ -104,7 +104,7 @@ pub fn run_summary(
     if let Some(reason) = &report.stopped_by {
         summary.insert("stopped_by".into(), json!(reason));
     }
-    summary.insert("end".into(), quantity("end", session.end, "s")?);
+    summary.insert("end".into(), quantity("end", session.clock.end, "s")?);
     summary.insert("time".into(), quantity("time", last_time(table), "s")?);
     summary.insert("step".into(), step(session, report)?);
     summary.insert("output".into(), output(session, table)?);
@@ -214,7 +214,7 @@ fn step(session: &Session, report: &RunReport) -> Result<Value, ResultsError> {
 fn output(session: &Session, table: &RunTable) -> Result<Value, ResultsError> {
     Ok(json!({
         "interval": quantity("interval", table.interval, "s")?,
-        "steps_per_row": session.steps_per_row,
+        "steps_per_row": session.clock.steps_per_row,
         "rows": table.series.data().nrows(),
         "rows_at_equal_intervals": session.rows_on_grid(),
     }))

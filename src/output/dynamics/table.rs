@@ -28,7 +28,7 @@ impl RunTable {
     /// Never for a session's own columns.
     pub fn new(session: &Session, window_start: f64) -> Result<RunTable, SeriesError> {
         let series = session.recorder.series(session.recorder.rows())?;
-        let interval = session.interval();
+        let interval = session.clock.row_interval();
         let end = session.rows_on_grid();
         // A start that lies on a row but for rounding takes that row.
         let from = window_start - 1e-6 * interval;

@@ -4,10 +4,12 @@
 //! loads, `system` into rates, `energy` into energies; `rk4`, `dormand_prince` and `rosenbrock`
 //! integrate (the last through `linearised` contacts, the `arrow` matrix and each ball's `orbit_frame`),
 //! `bounds` says where a state has lost its meaning, `control` chooses steps for an accuracy, `extremes` remembers the largest loads,
-//! `run` drives a simulation from start to end.
+//! `run` takes a simulation from step to step,
+//! `clocked` up to what is due next, `foretell` for a while.
 pub mod arrow;
 pub mod bounds;
 pub mod checkpoint;
+pub mod clocked;
 pub mod contacts;
 pub mod control;
 pub mod dormand_prince;
@@ -16,6 +18,7 @@ pub mod energy;
 pub mod equilibrium;
 pub mod extremes;
 pub mod failure;
+pub mod foretell;
 pub mod linearised;
 pub mod model;
 pub mod orbit_frame;

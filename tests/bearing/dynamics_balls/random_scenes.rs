@@ -170,6 +170,7 @@ pub fn run_scene(text: &str) -> Outcome {
         options: settings.options,
         end: settings.end,
         output_interval: settings.output_interval,
+        fields_interval: None,
         channels: vec![ChannelGroup::Energy],
     };
     let mut outcome = Outcome {

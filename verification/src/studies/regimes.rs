@@ -4,11 +4,11 @@
 //! An error of the implicit method or of Runge–Kutta is one against a converged run of the explicit one with
 //! error control, and the other way round.
 
-use bearing_dynamics::output::dynamics::foretell::{choose, foretell};
 use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status};
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{self, Format};
 use bearing_dynamics::solver::channels::ChannelGroup;
+use bearing_dynamics::solver::dynamics::foretell::{choose, foretell};
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
 
@@ -101,6 +101,7 @@ fn request(regime: &Regime) -> Result<(DynamicProblem, RunRequest), CaseError> {
         options: settings.options,
         end: settings.end,
         output_interval: settings.output_interval,
+        fields_interval: None,
         channels: vec![ChannelGroup::Races],
     };
     Ok((problem, request))

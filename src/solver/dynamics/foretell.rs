@@ -6,10 +6,11 @@
 //! looks steps go on at the rate they had at the end of the last one; without damping what rings goes
 //! on ringing, so that the rate does not fall.
 
+use super::clocked::{self, RunRequest};
+use super::model::DynamicProblem;
+use super::run::{Integrator, RunOptions, Simulation, SimulationError, Start, Stepping};
 use crate::ch2_housing::bearing::contact::ContactDamping;
-use crate::output::dynamics::session::{RunRequest, Session, SessionError, Status};
-use crate::solver::dynamics::model::DynamicProblem;
-use crate::solver::dynamics::run::{Integrator, RunOptions, Simulation, Start, Stepping};
+use crate::solver::clock::Clock;
 
 /// A foretold number of steps is meant to be within this factor of the one taken, up or down.
 pub const WITHIN: f64 = 2.0;
@@ -110,12 +111,42 @@ fn looks(problem: &DynamicProblem, end: f64) -> Vec<f64> {
     all
 }
 
+/// A run under way whose rows nobody keeps.
+struct Trial {
+    simulation: Simulation,
+    clock: Clock,
+    is_complete: bool,
+}
+
+impl Trial {
+    /// A step as the run takes it; what is looked at on the way is what a run looks at.
+    fn advance(&mut self) -> Result<(), SimulationError> {
+        let arrival = clocked::step(&mut self.simulation, &self.clock)?;
+        if arrival.row {
+            self.row()?;
+        }
+        self.is_complete = arrival.completes;
+        clocked::watch(&mut self.simulation, &mut self.clock, self.is_complete)
+    }
+
+    fn row(&mut self) -> Result<(), SimulationError> {
+        self.simulation.snapshot()?;
+        self.clock.count_row(self.simulation.time);
+        Ok(())
+    }
+
+    /// Attempts so far.
+    fn tried(&self) -> u64 {
+        self.simulation.steps + self.simulation.system.work.rejected_steps
+    }
+}
+
 fn started(
     problem: &DynamicProblem,
     request: &RunRequest,
     at: f64,
     budget: u64,
-) -> Result<Session, SessionError> {
+) -> Result<Trial, SimulationError> {
     // Rows have at least a step: no more room is needed.
     let room = request.output_interval * (budget + 1) as f64;
     let start = if at == 0.0 { request.options.start } else { Start::Equilibrium };
@@ -124,15 +155,19 @@ fn started(
         options,
         end: (request.end - at).min(room),
         output_interval: request.output_interval,
+        fields_interval: None,
         channels: Vec::new(),
     };
     let problem = if at == 0.0 { problem.clone() } else { problem.from_time(at) };
-    Session::start(problem, &part)
+    let (simulation, clock) = clocked::start(problem, &part)?;
+    let mut trial = Trial { simulation, clock, is_complete: false };
+    trial.row()?;
+    Ok(trial)
 }
 
-/// Attempts a second that another method takes from the state of a session.
-fn of_other(session: &Session, integrator: Integrator) -> Option<f64> {
-    let simulation = &session.simulation;
+/// Attempts a second that another method takes from where a trial is.
+fn of_other(trial: &Trial, integrator: Integrator) -> Option<f64> {
+    let simulation = &trial.simulation;
     let options = RunOptions { integrator, ..*simulation.options() };
     let problem = simulation.system.problem.clone();
     let state = simulation.state.clone();
@@ -149,76 +184,75 @@ fn of_other(session: &Session, integrator: Integrator) -> Option<f64> {
         }
     }
     let rate = (tried(&other) - half.1) as f64 / (other.time - half.0);
-    Some(rate.max(1.0 / session.interval()))
+    Some(rate.max(1.0 / trial.clock.row_interval()))
 }
 
-fn trial(
+fn look_through(
     problem: &DynamicProblem,
     request: &RunRequest,
     budget: u64,
     other: Option<Integrator>,
-) -> Result<(Vec<Stretch>, u64, usize), SessionError> {
+) -> Result<(Vec<Stretch>, u64, usize), SimulationError> {
     let times = looks(problem, request.end);
     let mut stretches: Vec<Stretch> = Vec::new();
     let mut spent = 0;
     let mut begun = 0;
     let mut scale = 0.0;
-    let mut under_way: Option<(Session, f64)> = None;
+    let mut under_way: Option<(Trial, f64)> = None;
     for (index, pair) in times.windows(2).enumerate() {
         let [from, to] = [pair[0], pair[1]];
         // Later ones keep a share: what has begun goes on as long as it can, with all that rings.
         let parts = times.len() as u64 - 1;
         let kept = budget / (2 * parts) * (parts - 1 - index as u64);
-        let (mut session, offset) = match under_way.take() {
+        let (mut trial, offset) = match under_way.take() {
             Some(same) => same,
             None => {
                 begun += 1;
-                let mut session = started(problem, request, from, budget)?;
-                if let Some(control) = &mut session.simulation.control {
+                let mut trial = started(problem, request, from, budget)?;
+                if let Some(control) = &mut trial.simulation.control {
                     control.memory.displacement = control.memory.displacement.max(scale);
                 }
-                (session, from)
+                (trial, from)
             }
         };
-        let tried = |s: &Session| s.simulation.steps + s.simulation.system.work.rejected_steps;
-        let [first, before] = [session.simulation.steps, tried(&session)];
-        let begin = session.simulation.time;
+        let [first, before] = [trial.simulation.steps, trial.tried()];
+        let begin = trial.simulation.time;
         let left = budget.saturating_sub(spent + kept).max(16);
         let mut half = (begin, first, before);
         let mut through = false;
-        while tried(&session) - before < left && session.simulation.step_watch.judged < JACOBIANS {
-            if session.status == Status::Complete || session.simulation.time + offset >= to {
+        while trial.tried() - before < left && trial.simulation.step_watch.judged < JACOBIANS {
+            if trial.is_complete || trial.simulation.time + offset >= to {
                 through = true;
                 break;
             }
-            if session.advance(1).is_err() {
+            if trial.advance().is_err() {
                 break;
             }
-            if tried(&session) - before <= left / 2 {
-                half = (session.simulation.time, session.simulation.steps, tried(&session));
+            if trial.tried() - before <= left / 2 {
+                half = (trial.simulation.time, trial.simulation.steps, trial.tried());
             }
         }
-        through |= session.status == Status::Complete || session.simulation.time + offset >= to;
-        let now = &session.simulation;
+        through |= trial.is_complete || trial.simulation.time + offset >= to;
+        let now = &trial.simulation;
         if through && now.time - half.0 < 0.25 * (now.time - begin) {
             half = (begin, first, before);
         }
         let over = now.time - half.0;
         let per = |count: u64| if over > 0.0 { count as f64 / over } else { 0.0 };
-        let (steps, attempts) = (now.steps - half.1, tried(&session) - half.2);
-        spent += tried(&session) - before;
+        let (steps, attempts) = (now.steps - half.1, trial.tried() - half.2);
+        spent += trial.tried() - before;
         stretches.push(Stretch {
             duration: to - from,
             counted: (now.steps - first) as f64,
             covered: (now.time - begin).min(to - from),
             rate: per(steps),
             attempts: per(attempts),
-            other: other.and_then(|integrator| of_other(&session, integrator)),
+            other: other.and_then(|integrator| of_other(&trial, integrator)),
             anew: offset > 0.0,
         });
         scale = now.control.as_ref().map_or(0.0, |control| control.memory.displacement);
-        if through && session.status == Status::Running {
-            under_way = Some((session, offset));
+        if through && !trial.is_complete {
+            under_way = Some((trial, offset));
         }
     }
     Ok((stretches, spent, begun))
@@ -228,8 +262,11 @@ fn trial(
 ///
 /// # Errors
 /// What keeps the run from starting.
-pub fn foretell(problem: &DynamicProblem, request: &RunRequest) -> Result<Foretold, SessionError> {
-    let (mut stretches, taken, looks) = trial(problem, request, TO_COUNT, None)?;
+pub fn foretell(
+    problem: &DynamicProblem,
+    request: &RunRequest,
+) -> Result<Foretold, SimulationError> {
+    let (mut stretches, taken, looks) = look_through(problem, request, TO_COUNT, None)?;
     // Steps from the limit do not grow again. What rang where the first look left off goes on; an explicit
     // method with error control is bound by traction rather, which rolling faster makes gentler.
     let options = &request.options;
@@ -258,7 +295,8 @@ pub fn choose(problem: &DynamicProblem, request: &RunRequest) -> Choice {
     let request = RunRequest { options, ..request.clone() };
     let nothing = Choice { integrator: Integrator::Rosenbrock, mean_steps: None };
     let budget = if problem.changes() { TO_COUNT } else { TO_CHOOSE };
-    let Ok((stretches, ..)) = trial(problem, &request, budget, Some(Integrator::DormandPrince))
+    let Ok((stretches, ..)) =
+        look_through(problem, &request, budget, Some(Integrator::DormandPrince))
     else {
         return nothing;
     };
