@@ -14,7 +14,6 @@ pub mod plan;
 pub mod plan_step;
 mod remarks;
 pub mod run;
-pub mod run_figures;
 pub mod schema;
 pub mod solid;
 pub mod solve;

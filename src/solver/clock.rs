@@ -50,7 +50,9 @@ pub struct Clock {
     pub corners: Vec<f64>,
     /// Whether the step has been shortened on the way.
     pub shortened: bool,
-    /// Rows from one file of fields to the next, where there are any on the way.
+    /// Wanted time between files of fields, s, and rows from one to the next, where there are any on
+    /// the way.
+    pub fields_interval: Option<f64>,
     pub rows_per_fields: Option<u64>,
     /// Rows so far, and the time of the last one, s.
     pub rows: u64,
@@ -77,6 +79,11 @@ impl Clock {
             0 => self.interval,
             steps => steps as f64 * self.step,
         }
+    }
+
+    /// Rows of the whole run, with the first, a last one off the grid, and one for rounding.
+    pub fn rows_in_all(&self) -> usize {
+        ((self.end / self.row_interval()) as usize).saturating_add(3)
     }
 
     /// Counts a row at `time` (s).
@@ -234,6 +241,11 @@ pub fn given_steps(corners: &[f64], interval: f64, end: f64, step: f64) -> u64 {
         }
         row = time;
     }
+}
+
+/// How many steps, or rows, of this length come nearest to the `end` (s); one at least.
+pub fn whole_number(end: f64, length: f64) -> u64 {
+    (end / length).round().max(1.0) as u64
 }
 
 /// Steps no longer than `step` that make an interval.

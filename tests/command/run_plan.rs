@@ -3,7 +3,7 @@
 use crate::run_common;
 
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status};
+use bearing_dynamics::output::session::{RunRequest, Session, Status};
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{self, CageInRun, Format};
 use bearing_dynamics::solver::channels::ChannelGroup;
@@ -13,7 +13,7 @@ use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation}
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
 use bearing_dynamics::solver::plan;
 use bearing_dynamics::solver::profile::Profile;
-use run_common::{frictionless, jolted, pressed, rattling, request, sliding};
+use run_common::{frictionless, jolted, pressed, rattling, request, simulation, sliding};
 
 const BEARING: &str = r#"
 [bearing]
@@ -159,7 +159,7 @@ fn skipped_stages_do_no_work() {
 fn taken(problem: &DynamicProblem, request: &RunRequest) -> u64 {
     let mut session = Session::start(problem.clone(), request).unwrap();
     while session.advance(1000).unwrap() == Status::Running {}
-    session.simulation.steps
+    simulation(&session).steps
 }
 
 #[test]

@@ -4,7 +4,6 @@ pub mod check;
 pub mod echo;
 pub mod modes;
 pub mod plan;
-pub mod run;
 pub mod statics;
 
 use super::{placed, say};

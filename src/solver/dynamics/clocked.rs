@@ -20,19 +20,6 @@ pub struct RunRequest {
     pub channels: Vec<ChannelGroup>,
 }
 
-impl RunRequest {
-    /// Rows a run has unless its scene says otherwise.
-    const DEFAULT_ROWS: f64 = 1000.0;
-
-    /// Whether `interval` may take the place of the wanted one: it is the same, or both follow
-    /// from the end of their run (at `end`).
-    pub fn accepts_interval(&self, interval: f64, end: f64) -> bool {
-        let follows = |interval: f64, end: f64| interval == end / Self::DEFAULT_ROWS;
-        interval == self.output_interval
-            || (follows(interval, end) && follows(self.output_interval, self.end))
-    }
-}
-
 /// What a step has come to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arrival {

@@ -1,4 +1,6 @@
-//! Fields of a solid as ParaView opens them: displacement, velocity, stress.
+//! Fields of a solid as ParaView opens them: displacement, velocity, stress, and what a race does to its bore.
+
+pub mod bore;
 
 use crate::kinematics::strain::{Sym3, von_mises};
 use crate::kinematics::vec3::Vec3;
@@ -7,6 +9,7 @@ use crate::mesh::{MeshError, TetMesh};
 use crate::output::atomic::{WriteError, write_atomic};
 use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::stress::{element_stresses, nodal_stresses};
+use bore::{BoreNodeState, on_nodes};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -46,7 +49,8 @@ pub fn stresses(model: &SolidModel, displacement: &[Vec3]) -> Stresses {
     }
 }
 
-/// Writes a `.vtu` with displacements, velocities where there are any, and stresses.
+/// Writes a `.vtu` with displacements, velocities where there are any, stresses, and of a housing the
+/// force and pressure of the race on each node of its bore.
 ///
 /// # Errors
 /// A value that is not finite, a file that cannot be written.
@@ -56,21 +60,7 @@ pub fn write_fields(
     displacement: &[Vec3],
     velocity: Option<&[Vec3]>,
     stresses: &Stresses,
-) -> Result<(), FieldError> {
-    write_fields_and(path, mesh, displacement, velocity, stresses, &[])
-}
-
-/// The same with further fields of the nodes.
-///
-/// # Errors
-/// As [`write_fields`].
-pub fn write_fields_and(
-    path: &Path,
-    mesh: &TetMesh,
-    displacement: &[Vec3],
-    velocity: Option<&[Vec3]>,
-    stresses: &Stresses,
-    further: &[Field],
+    bore: Option<&[BoreNodeState]>,
 ) -> Result<(), FieldError> {
     let mut points =
         vec![Field { name: "displacement", components: 3, values: displacement.as_flattened() }];
@@ -79,7 +69,12 @@ pub fn write_fields_and(
     }
     let nodal = &stresses.node_von_mises;
     points.push(Field { name: "von_mises_nodal", components: 1, values: nodal });
-    points.extend_from_slice(further);
+    let of_bore = bore.map(|bore| on_nodes(bore, mesh.nodes.len()));
+    if let Some((forces, pressure)) = &of_bore {
+        let values = forces.as_flattened();
+        points.push(Field { name: "contact_force", components: 3, values });
+        points.push(Field { name: "contact_pressure", components: 1, values: pressure });
+    }
     let cells = [
         Field { name: "von_mises", components: 1, values: &stresses.cell_von_mises },
         Field { name: "cauchy_stress", components: 6, values: stresses.cell.as_flattened() },

@@ -1,10 +1,10 @@
 //! Plots of a run.
 
-use crate::output::dynamics::table::RunTable;
 use crate::output::plots::{
     Axis, Curve, OrbitPlot, PlotError, PolarPlot, Style, XyPlot, orbit, polar, xy,
 };
 use crate::output::spectrum::WINDOW;
+use crate::output::table::RunTable;
 use crate::solver::clock::to_digits;
 
 /// A plot a run can be asked for.

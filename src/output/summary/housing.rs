@@ -1,25 +1,19 @@
-//! Parts of `summary.json` that a housing adds.
+//! What a housing says of its seat, its equilibrium, its inertia and its windows.
 
+use super::{Part, solid::limit_section};
 use crate::kinematics::vec3::Vec3;
-use crate::mesh::TetMesh;
-use crate::output::dynamics::summary::{energy, final_values, window};
-use crate::output::dynamics::table::RunTable;
-use crate::output::housed::course::{HousedCourse, outer_place};
-use crate::output::housed::rows::SeatRow;
-use crate::output::housed::session::HousedSession;
-use crate::output::results::{ResultsError, RunRecord, insert_record, quantity};
-use crate::output::solid::fields::Stresses;
-use crate::output::solid::summary::{extremes, limit_section, mesh_section};
+use crate::output::course::outer_place;
+use crate::output::recorder::seat::SeatRow;
+use crate::output::results::{ResultsError, quantity};
+use crate::output::session::Motion;
 use crate::scene::housing_problem::{Excitation, HousingSetup};
-use crate::scene::solid_mesh::BuiltMesh;
 use crate::solver::housing::assembly::AssemblyState;
 use crate::solver::housing::bore_equilibrium::POSE_NAMES;
 use crate::solver::housing::condensed::{CondensedBore, geometry_error};
 use crate::solver::housing::course_inertia::CourseInertia;
+use crate::solver::housing::exchange::HousedBearing;
 use crate::solver::housing::inertia::InertiaEstimate;
 use serde_json::{Map, Value, json};
-
-type Part = Result<Value, ResultsError>;
 
 /// What a largest pressure of bore nodes is worth: measured on housings of 2.4.2, where it moved by 24 %
 /// between meshes whose displacements are 0.7 % apart.
@@ -171,133 +165,36 @@ pub fn equilibrium_section(
     }))
 }
 
-/// Largest displacement and stresses, and the mesh they are of.
-///
-/// # Errors
-/// A value that is not finite.
-pub fn field_sections(
-    built: &BuiltMesh,
-    displacement: &[Vec3],
-    stresses: &Stresses,
-) -> Result<Vec<(String, Value)>, ResultsError> {
-    let mesh: &TetMesh = &built.mesh;
-    Ok(vec![
-        ("mesh".into(), mesh_section(built)?),
-        ("largest".into(), extremes(mesh, displacement, stresses)?),
-    ])
-}
-
-fn head(
-    method: &str,
-    complete: bool,
-    end: f64,
-    stopped_by: Option<&str>,
-) -> Result<Map<String, Value>, ResultsError> {
-    let mut summary = Map::new();
-    summary.insert("kind".into(), json!("run"));
-    summary.insert("housing_method".into(), json!(method));
-    summary.insert("complete".into(), json!(complete));
-    if let Some(reason) = stopped_by {
-        summary.insert("stopped_by".into(), json!(reason));
+/// How a housing takes part in a run.
+pub(super) fn method(motion: &Motion) -> Option<&'static str> {
+    match motion {
+        Motion::Bearing(_) | Motion::Solid(_) => None,
+        Motion::Housed(_) => Some("explicit"),
+        Motion::Course(_) => Some("quasi-static"),
     }
-    summary.insert("end".into(), quantity("end", end, "s")?);
-    Ok(summary)
 }
 
-fn tail(mut summary: Map<String, Value>, table: &RunTable, record: &RunRecord) -> Part {
-    let last = table.series.data().column(0).last().copied().unwrap_or(0.0);
-    summary.insert("time".into(), quantity("time", last, "s")?);
-    summary.insert(
-        "output".into(),
-        json!({
-            "interval": quantity("interval", table.interval, "s")?,
-            "rows": table.series.data().nrows(),
-        }),
-    );
-    summary.insert("final".into(), final_values(table)?);
-    if table.window.is_empty() {
-        let note = "the run has not come to the window yet";
-        summary.insert("window".into(), json!({ "rows": 0, "note": note }));
-    } else {
-        summary.insert("window".into(), window(table)?);
-    }
-    insert_record(&mut summary, record)?;
-    Ok(Value::Object(summary))
+pub(super) fn step(housed: &HousedBearing) -> Part {
+    Ok(json!({
+        "window": quantity("window", housed.window, "s")?,
+        "housing": quantity("step", housed.solid.step_size, "s")?,
+        "housing_steps_a_window": housed.solid_steps,
+        "bearing_at_most": quantity("step", housed.bearing.step_size.min(housed.window), "s")?,
+        "housing_limit": limit_section(&housed.solid.limit, &housed.solid.model.labels)?,
+    }))
 }
 
-/// Summary of a course of equilibria.
-///
-/// # Errors
-/// A value that is not finite.
-pub fn course_summary(
-    course: &HousedCourse,
-    end: f64,
-    table: &RunTable,
-    stopped_by: Option<&str>,
-    record: &RunRecord,
-) -> Part {
-    let complete = course.rows() >= course.count && stopped_by.is_none();
-    let mut summary = head("quasi-static", complete, end, stopped_by)?;
-    summary.insert(
-        "work".into(),
-        json!({
-            "equilibria": course.rows(),
-            "rounds": course.rounds,
-            "contact_changes": course.contact_changes,
-        }),
-    );
-    let residual = quantity("residual", course.largest_residual, "1")?;
-    summary.insert("largest_unbalanced_part_of_load".into(), residual);
-    tail(summary, table, record)
-}
-
-/// Summary of a run in explicit steps.
-///
-/// # Errors
-/// A value that is not finite.
-pub fn run_summary(
-    session: &HousedSession,
-    end: f64,
-    table: &RunTable,
-    stopped_by: Option<&str>,
-    record: &RunRecord,
-) -> Part {
-    let housed = &session.housed;
-    let complete = session.is_complete() && stopped_by.is_none();
-    let mut summary = head("explicit", complete, end, stopped_by)?;
+pub(super) fn work(housed: &HousedBearing) -> Value {
     let (tested, out_of_reach) = housed.counts();
-    summary.insert(
-        "step".into(),
-        json!({
-            "window": quantity("window", housed.window, "s")?,
-            "housing": quantity("step", housed.solid.step_size, "s")?,
-            "housing_steps_a_window": housed.solid_steps,
-            "bearing_at_most": quantity("step", housed.bearing.step_size.min(housed.window), "s")?,
-            "housing_limit": limit_section(&housed.solid.limit, &housed.solid.model.labels)?,
-        }),
-    );
-    summary.insert(
-        "work".into(),
-        json!({
-            "windows": housed.exchanges,
-            "housing_steps": housed.solid.steps,
-            "bearing_steps": housed.bearing.steps,
-            "elements_evaluated": housed.solid.work.elements,
-            "bearing_evaluations": housed.bearing.system.work.evaluations,
-            "bore_nodes_in_reach": tested,
-            "bore_nodes_out_of_reach": out_of_reach,
-            "bore_node_tests": housed.tested,
-            "sorts_by_reach": housed.sorts,
-        }),
-    );
-    if let Some(mut ledger) = energy(table)? {
-        let watch = session.watch;
-        ledger["turned_over"] = quantity("energy", watch.turned_over, "J")?;
-        ledger["largest_residual"] = quantity("energy", watch.largest_residual, "J")?;
-        let part =
-            if watch.turned_over > 0.0 { watch.largest_residual / watch.turned_over } else { 0.0 };
-        ledger["largest_residual_part"] = quantity("part", part, "1")?;
-        summary.insert("energy".into(), ledger);
-    }
-    tail(summary, table, record)
+    json!({
+        "windows": housed.exchanges,
+        "housing_steps": housed.solid.steps,
+        "bearing_steps": housed.bearing.steps,
+        "elements_evaluated": housed.solid.work.elements,
+        "bearing_evaluations": housed.bearing.system.work.evaluations,
+        "bore_nodes_in_reach": tested,
+        "bore_nodes_out_of_reach": out_of_reach,
+        "bore_node_tests": housed.tested,
+        "sorts_by_reach": housed.sorts,
+    })
 }

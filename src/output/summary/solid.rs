@@ -1,20 +1,19 @@
-//! `summary.json` of a solid: mesh, statics, modes, runs.
+//! What a solid says of its mesh, statics, modes and steps.
 
+use super::{PEAKS, Part, RunReport};
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::quality::{Quality, Worst};
 use crate::mesh::{Order, TetMesh};
+use crate::output::fields::Stresses;
+use crate::output::recorder::{length, mean, probe_columns, sum};
 use crate::output::results::{ResultsError, RunRecord, insert_record, quantity};
 use crate::output::series::{Series, SeriesError};
-use crate::output::solid::fields::Stresses;
-use crate::output::solid::session::{SolidSession, length, mean, probe_columns, sum};
 use crate::output::spectrum::{LEAKAGE, Spectrum, WINDOW, peaks};
-use crate::scene::solid::SolidRun;
 use crate::scene::solid_mesh::BuiltMesh;
 use crate::scene::solid_problem::SolidSetup;
-use crate::solver::clock::rounded;
 use crate::solver::solid::energy::strain_energy;
 use crate::solver::solid::equilibrium::Equilibrium;
-use crate::solver::solid::explicit::{ExplicitMethod, SolidStepping, padded};
+use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
 use crate::solver::solid::labels::Labels;
 use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::modes::Modes;
@@ -22,11 +21,6 @@ use crate::solver::solid::step_limit::SolidStepLimit;
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
 use std::f64::consts::TAU;
-
-type Part = Result<Value, ResultsError>;
-
-/// Peaks listed of each spectrum.
-const PEAKS: usize = 8;
 
 fn vector(name: &str, of: Vec3, unit: &str) -> Part {
     let part = |axis: &str, value: f64| quantity(&format!("{name} {axis}"), value, unit);
@@ -91,7 +85,10 @@ fn quality_section(quality: &Quality, labels: &Labels) -> Part {
 }
 
 /// Mass from nodes, and from density and volume.
-fn mass_section(model: &SolidModel, built: &BuiltMesh) -> Part {
+///
+/// # Errors
+/// A value that is not finite.
+pub fn mass_section(model: &SolidModel, built: &BuiltMesh) -> Part {
     let by_volume = model.problem.density * built.quality.total_volume;
     Ok(json!({
         "of_nodes": quantity("mass", model.mass.iter().sum(), "kg")?,
@@ -109,7 +106,7 @@ fn head(kind: &str, model: &SolidModel, built: &BuiltMesh, record: &RunRecord) -
 }
 
 /// Largest displacement and von Mises stresses, with their places.
-pub(crate) fn extremes(mesh: &TetMesh, displacement: &[Vec3], stresses: &Stresses) -> Part {
+fn extremes(mesh: &TetMesh, displacement: &[Vec3], stresses: &Stresses) -> Part {
     let largest = |values: &mut dyn Iterator<Item = f64>| {
         let mut best = (0, 0.0);
         for (index, value) in values.enumerate() {
@@ -255,74 +252,45 @@ pub(crate) fn limit_section(limit: &SolidStepLimit, labels: &Labels) -> Part {
     }))
 }
 
-/// The summary of a run.
-///
-/// # Errors
-/// A value that is not finite.
-pub fn run(
-    session: &SolidSession,
-    settings: &SolidRun,
-    built: &BuiltMesh,
-    stresses: &Stresses,
-    spectra: &[(String, Spectrum)],
-    stopped_by: Option<&str>,
-    record: &RunRecord,
-) -> Part {
-    let solid = &session.solid;
-    let (model, grid) = (&solid.model, &session.grid);
-    let mut summary = head("run of a solid", model, built, record)?;
-    summary["complete"] = json!(solid.steps >= grid.steps && stopped_by.is_none());
-    if let Some(reason) = stopped_by {
-        summary["stopped_by"] = json!(reason);
-    }
-    summary["time"] = quantity("time", rounded(solid.time), "s")?;
-    let chosen = match settings.stepping {
-        SolidStepping::Fixed(_) => "given".to_string(),
-        SolidStepping::FractionOfLimit(part) => format!("{part} of the limit, in whole rows"),
+pub(super) fn step(solid: &ExplicitSolid, report: &RunReport) -> Part {
+    let chosen = match report.solid_stepping {
+        Some(SolidStepping::FractionOfLimit(part)) => format!("{part} of the limit, in whole rows"),
+        Some(SolidStepping::Fixed(_)) | None => "given".to_string(),
     };
-    summary["step"] = json!({
+    Ok(json!({
         "method": match solid.method {
             ExplicitMethod::CentralDifferences => "central-differences",
             ExplicitMethod::RungeKutta => "runge-kutta",
         },
-        "size": quantity("step", grid.step_size, "s")?,
+        "size": quantity("step", solid.step_size, "s")?,
         "chosen": chosen,
-        "of_limit": quantity("step over limit", grid.step_size / solid.limit.step, "1")?,
-        "limit": limit_section(&solid.limit, &model.labels)?,
-    });
-    summary["work"] = json!({
+        "of_limit": quantity("step over limit", solid.step_size / solid.limit.step, "1")?,
+        "limit": limit_section(&solid.limit, &solid.model.labels)?,
+    }))
+}
+
+pub(super) fn work(solid: &ExplicitSolid) -> Value {
+    json!({
         "steps": solid.steps,
         "force_evaluations": solid.work.evaluations,
         "elements_evaluated": solid.work.elements,
-    });
-    let last = session.rows().saturating_sub(1);
-    let mut finals = Map::new();
-    let mut energy = Map::new();
-    for (column, value) in session.columns().iter().zip(session.row(last)) {
-        let entry = quantity(&column.name, *value, &column.unit)?;
-        let ledger = column.unit == "J";
-        if ledger { &mut energy } else { &mut finals }.insert(column.name.clone(), entry);
-    }
-    energy.insert("at_start".into(), quantity("energy", session.first_balance, "J")?);
-    energy.insert("turned_over".into(), quantity("energy", session.turned_over, "J")?);
-    let residual = session.largest_residual;
-    energy.insert("largest_residual".into(), quantity("energy", residual, "J")?);
-    summary["energy"] = Value::Object(energy);
-    summary["final"] = Value::Object(finals);
-    summary["largest"] = extremes(&built.mesh, &session.displacement(), stresses)?;
-    summary["output"] = json!({
-        "rows": session.rows(),
-        "interval": quantity("interval", grid.interval(), "s")?,
-        "fields_interval": quantity(
-            "fields interval", grid.interval() * grid.rows_per_fields as f64, "s")?,
-    });
-    if !spectra.is_empty() {
-        summary["spectra"] = spectra_section(spectra)?;
-    }
-    Ok(summary)
+    })
 }
 
-fn spectra_section(spectra: &[(String, Spectrum)]) -> Part {
+/// The mesh, and the largest displacement and stresses on it.
+///
+/// # Errors
+/// A value that is not finite.
+pub fn field_sections(
+    built: &BuiltMesh,
+    displacement: &[Vec3],
+    stresses: &Stresses,
+) -> Result<Vec<(String, Value)>, ResultsError> {
+    let largest = extremes(&built.mesh, displacement, stresses)?;
+    Ok(vec![("mesh".into(), mesh_section(built)?), ("largest".into(), largest)])
+}
+
+pub(super) fn spectra_section(spectra: &[(String, Spectrum)]) -> Part {
     let mut section = Map::new();
     section.insert("window".into(), json!(WINDOW));
     section.insert("leakage".into(), json!(LEAKAGE));

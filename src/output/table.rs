@@ -1,7 +1,7 @@
 //! The time series of a run as its summary and its plots look at it.
 
-use crate::output::dynamics::session::Session;
 use crate::output::series::{Series, SeriesError};
+use crate::output::session::Session;
 use crate::output::spectrum::{Spectrum, spectrum};
 use crate::solver::clock::to_digits;
 use std::ops::Range;
@@ -21,13 +21,19 @@ pub const SPECTRAL_CHANNELS: [&str; 9] = [
     "inner_x", "inner_y", "inner_z", "outer_x", "outer_y", "outer_z", "cage_x", "cage_y", "cage_z",
 ];
 
+/// Time of row number `row` as people write it, s; rows on the grid are `interval` (s) apart.
+pub fn readable(row: usize, time: f64, interval: f64) -> f64 {
+    let on_grid = row as f64 * interval;
+    to_digits(if (time - on_grid).abs() <= 1e-6 * interval { on_grid } else { time }, 12)
+}
+
 impl RunTable {
     /// The window starts at `window_start` (s) and ends with the run.
     ///
     /// # Errors
     /// Never for a session's own columns.
     pub fn new(session: &Session, window_start: f64) -> Result<RunTable, SeriesError> {
-        let series = session.recorder.series(session.recorder.rows())?;
+        let series = session.series()?;
         let interval = session.clock.row_interval();
         let end = session.rows_on_grid();
         // A start that lies on a row but for rounding takes that row.
@@ -40,9 +46,7 @@ impl RunTable {
     /// Time of a row as people write it, s: of rows on the grid by their number, so that the rounding
     /// of many steps does not show.
     pub fn time(&self, row: usize) -> f64 {
-        let on_grid = row as f64 * self.interval;
-        let time = self.series.data()[(row, 0)];
-        to_digits(if (time - on_grid).abs() <= 1e-6 * self.interval { on_grid } else { time }, 12)
+        readable(row, self.series.data()[(row, 0)], self.interval)
     }
 
     /// Values of a channel in the window, or `None` if it is not recorded.
@@ -62,9 +66,9 @@ impl RunTable {
     }
 
     /// Spectra of the [`SPECTRAL_CHANNELS`] over the window.
-    pub fn spectra(&self) -> Vec<(&'static str, Spectrum)> {
+    pub fn spectra(&self) -> Vec<(String, Spectrum)> {
         let of = |channel: &'static str| {
-            Some((channel, spectrum(&self.windowed(channel)?, self.interval)?))
+            Some((channel.to_string(), spectrum(&self.windowed(channel)?, self.interval)?))
         };
         SPECTRAL_CHANNELS.into_iter().filter_map(of).collect()
     }

@@ -3,8 +3,8 @@
 
 use crate::kinematics::vec3::{Vec3, norm, scale};
 use crate::mesh::Order;
-use crate::output::solid::fields::Stresses;
-use crate::output::solid::session::SolidSession;
+use crate::output::fields::Stresses;
+use crate::output::session::Session;
 use crate::solver::clock::{rounded, to_digits};
 use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::modes::Modes;
@@ -40,25 +40,25 @@ pub fn of_motion(model: &SolidModel, displacement: &[Vec3], stresses: &Stresses)
     of_locking(model).into_iter().chain(of_law(&state, " at the end of the run")).collect()
 }
 
-/// Remarks on a run, from all its rows.
-pub fn of_run(session: &SolidSession, stresses: &Stresses) -> Vec<String> {
-    let model = &session.solid.model;
-    let column = |name: &str| session.columns().iter().position(|column| column.name == name);
+/// Remarks on the run of a solid by itself, from all its rows.
+pub fn of_run(session: &Session, model: &SolidModel, stresses: &Stresses) -> Vec<String> {
+    let recorder = &session.recorder;
+    let column = |name: &str| recorder.columns().iter().position(|column| column.name == name);
     let (Some(stress), Some(moved)) = (column("largest_von_mises"), column("largest_displacement"))
     else {
         return Vec::new();
     };
     let largest = |column: usize| {
-        (0..session.rows())
-            .map(|row| (session.row(row)[column], row))
-            .fold((0.0, 0), |most, now| if now.0 > most.0 { now } else { most })
+        (0..recorder.rows())
+            .map(|row| (recorder.row(row)[column], recorder.row(row)[0]))
+            .fold((0.0, 0.0), |most, now| if now.0 > most.0 { now } else { most })
     };
     let mut state = Strained::of(model, &session.displacement(), &stresses.cell);
-    let (of_rows, row) = largest(stress);
+    let (of_rows, time) = largest(stress);
     let mut when = String::new();
     if of_rows > state.stress.value {
         state.stress.value = of_rows;
-        when = format!(" at t = {} s", rounded(session.row_time(row)));
+        when = format!(" at t = {} s", rounded(time));
     }
     // A body that is free to move may go as far as it likes.
     if !model.problem.prescribed.is_empty() {

@@ -1,10 +1,11 @@
-//! The time series of a run: which columns it has, and one row of them at a time.
+//! Columns of a bearing in motion.
 
+use super::Recorder;
 use crate::ch2_housing::bearing::cage::Guidance;
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::{Motion, Sliding, TractionLaw, sliding};
 use crate::kinematics::vec3::{dot, sub};
-use crate::output::series::{Column, Series, SeriesError};
+use crate::output::series::Column;
 use crate::solver::channels::ChannelGroup;
 use crate::solver::dynamics::model::{BallMeeting, DynamicProblem};
 use crate::solver::dynamics::race::{RaceNow, tilts_of};
@@ -12,13 +13,11 @@ use crate::solver::dynamics::run::{Simulation, Snapshot};
 use crate::solver::dynamics::state::{BODY, BodyState, Ledger, POSITION, SPIN, VELOCITY};
 use crate::solver::dynamics::system::System;
 use nalgebra::Vector3;
-use ndarray::Array2;
 use std::f64::consts::TAU;
-use thiserror::Error;
 
 /// Parts of the energy and of the ledger that a problem can have any of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Term {
+pub(super) enum Term {
     Kinetic,
     Contact,
     CageContact,
@@ -29,36 +28,20 @@ enum Term {
     Residual,
 }
 
-/// Rows of the time series, in memory; room for all of them is made at the start.
-pub struct Recorder {
+/// What is recorded of a bearing.
+pub(super) struct BearingColumns {
     groups: Vec<ChannelGroup>,
     terms: Vec<Term>,
-    columns: Vec<Column>,
-    values: Vec<f64>,
 }
 
-#[derive(Debug, Error)]
-pub enum RecorderError {
-    #[error(
-        "{rows} rows of {columns} channels do not fit in memory; take a longer output interval or \
-         fewer channels"
-    )]
-    Memory { rows: usize, columns: usize },
-    #[error(transparent)]
-    Series(#[from] SeriesError),
-}
-
-impl Recorder {
-    /// Room for `rows` rows of the groups that are asked for and that the problem has something
-    /// for; the energy ledger is always among them.
-    ///
-    /// # Errors
-    /// When that does not fit in memory.
+impl BearingColumns {
+    /// The groups that are asked for and that the problem has something for; the energy ledger is always
+    /// among them.
     pub fn new(
         problem: &DynamicProblem,
         asked: &[ChannelGroup],
-        rows: usize,
-    ) -> Result<Recorder, RecorderError> {
+        columns: &mut Vec<Column>,
+    ) -> BearingColumns {
         let needs_cage =
             |group: &ChannelGroup| matches!(group, ChannelGroup::Cage | ChannelGroup::Pockets);
         let groups: Vec<ChannelGroup> = ChannelGroup::ALL
@@ -67,77 +50,22 @@ impl Recorder {
             .filter(|group| problem.cage.is_some() || !needs_cage(group))
             .collect();
         let terms = terms(problem);
-        let mut columns = vec![Column::new("time", "s")];
         for &group in &groups {
-            add_columns(problem, group, &terms, &mut columns);
+            add_columns(problem, group, &terms, columns);
         }
-        let mut values = Vec::new();
-        let memory = RecorderError::Memory { rows, columns: columns.len() };
-        let wanted = rows.checked_mul(columns.len());
-        match wanted.map(|wanted| values.try_reserve_exact(wanted)) {
-            Some(Ok(())) => Ok(Recorder { groups, terms, columns, values }),
-            _ => Err(memory),
-        }
+        BearingColumns { groups, terms }
     }
+}
 
-    pub fn columns(&self) -> &[Column] {
-        &self.columns
-    }
-
-    /// Rows recorded so far.
-    pub fn rows(&self) -> usize {
-        self.values.len() / self.columns.len()
-    }
-
-    /// Rows that have room.
-    pub fn capacity(&self) -> usize {
-        self.values.capacity() / self.columns.len()
-    }
-
-    /// Forgets the rows from number `rows` on.
-    pub fn truncate(&mut self, rows: usize) {
-        self.values.truncate(rows * self.columns.len());
-    }
-
-    /// A row of the table, in the order of the columns.
-    pub fn row(&self, row: usize) -> &[f64] {
-        let width = self.columns.len();
-        &self.values[row * width..(row + 1) * width]
-    }
-
-    /// The first `rows` rows as a table.
-    ///
-    /// # Errors
-    /// Never for columns made by [`Recorder::new`].
-    pub fn series(&self, rows: usize) -> Result<Series, SeriesError> {
-        let width = self.columns.len();
-        let values = self.values[..rows * width].to_vec();
-        let data = Array2::from_shape_vec((rows, width), values)
-            .expect("every row has one value a column");
-        Series::new(self.columns.clone(), data)
-    }
-
-    /// Takes over the first `rows` rows of a table that an earlier part of the run left.
-    ///
-    /// Returns whether the table has these columns and as many rows.
-    pub fn restore(&mut self, series: &Series, rows: usize) -> bool {
-        if series.columns() != self.columns || series.data().nrows() < rows {
-            return false;
-        }
-        self.values.clear();
-        for row in series.data().rows().into_iter().take(rows) {
-            self.values.extend(row);
-        }
-        true
-    }
-
+impl Recorder {
     /// Adds a row; call with the simulation's own snapshot of the present time.
     pub fn record(&mut self, simulation: &Simulation, snapshot: &Snapshot) {
-        let (at, width) = (self.values.len(), self.columns.len());
-        let before = at.checked_sub(width);
+        let at = self.values.len();
+        let before = at.checked_sub(self.columns.len());
         self.values.push(snapshot.time);
-        for index in 0..self.groups.len() {
-            match self.groups[index] {
+        let Some(BearingColumns { groups, terms }) = self.bearing.take() else { return };
+        for group in &groups {
+            match group {
                 ChannelGroup::Races => self.races(simulation, snapshot),
                 ChannelGroup::Cage => self.cage(simulation, snapshot, before, at),
                 ChannelGroup::Orbits => self.orbits(simulation, snapshot, before, at),
@@ -159,13 +87,11 @@ impl Recorder {
                     }
                 }
                 ChannelGroup::Energy => {
-                    for index in 0..self.terms.len() {
-                        self.values.push(energy_term(self.terms[index], snapshot));
-                    }
+                    self.values.extend(terms.iter().map(|term| energy_term(*term, snapshot)));
                 }
             }
         }
-        debug_assert_eq!(self.values.len(), at + width);
+        self.bearing = Some(BearingColumns { groups, terms });
     }
 
     fn races(&mut self, simulation: &Simulation, snapshot: &Snapshot) {

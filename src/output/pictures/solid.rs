@@ -1,9 +1,10 @@
 //! Plots of a solid's run: energies and probes over time, spectra of the probes.
 
-use crate::output::dynamics::pictures::thin;
+use super::bearing::thin;
 use crate::output::plots::{Axis, Curve, PlotError, Style, XyPlot, xy};
 use crate::output::series::Series;
 use crate::output::spectrum::{Spectrum, WINDOW, spectrum};
+use crate::output::table::RunTable;
 use crate::scene::solid_problem::NamedNodes;
 
 /// Points that are drawn of a curve.
@@ -70,24 +71,18 @@ pub fn series_plots(
     Ok(plots)
 }
 
-/// Spectra of the probes' displacements over the first `rows` rows, which are `interval` apart.
-pub fn probe_spectra(
-    series: &Series,
-    probes: &[NamedNodes],
-    rows: usize,
-    interval: f64,
-) -> Vec<(String, Spectrum)> {
+/// Spectra of the probes' displacements over the window.
+pub fn probe_spectra(table: &RunTable, probes: &[NamedNodes]) -> Vec<(String, Spectrum)> {
     let mut found = Vec::new();
     for probe in probes {
         for axis in ["x", "y", "z"] {
             let column = format!("{}_{axis}", probe.name);
-            let Some(values) = series.column(&column) else { continue };
-            let values: Vec<f64> = values.iter().take(rows).copied().collect();
+            let Some(values) = table.windowed(&column) else { continue };
             // A component that never moves has none.
             if values.iter().all(|value| *value == values[0]) {
                 continue;
             }
-            if let Some(spectrum) = spectrum(&values, interval) {
+            if let Some(spectrum) = spectrum(&values, table.interval) {
                 found.push((column, spectrum));
             }
         }
