@@ -50,7 +50,11 @@ pub fn write_run_results(
 ) -> Result<Vec<PathBuf>, ResultsError> {
     let summary = run_summary(session, table, spectra, report)?;
     let [csv, npy, json] = ["series.csv", SERIES, "summary.json"].map(|name| folder.join(name));
-    readable_times(table)?.write_csv(&csv)?;
+    match session.motion {
+        // Times of windows and equilibria are no sums of steps.
+        Motion::Housed(_) | Motion::Course(_) => table.series.write_csv(&csv)?,
+        Motion::Bearing(_) | Motion::Solid(_) => readable_times(table)?.write_csv(&csv)?,
+    }
     table.series.write_npy(&npy)?;
     let mut written = vec![csv, columns_path(&npy), npy];
     if let Some(series) = spectrum_series(table, spectra)? {
