@@ -268,18 +268,8 @@ pub fn record(
     plan: Vec<String>,
     seconds: Vec<(String, f64)>,
 ) -> Fallible<RunRecord> {
-    let assumptions = scene.bearing.assumptions.iter().map(|a| (a.name.clone(), a.text.clone()));
-    let defaults = defaults(scene)
-        .into_iter()
-        .map(|used| (used.key, format!("{} ({})", used.value, used.reason)));
-    Ok(RunRecord {
-        scene: echo::scene(scene)?,
-        plan,
-        assumptions: assumptions.chain(defaults).collect(),
-        threads: 1,
-        seconds,
-        sections: Vec::new(),
-    })
+    let assumptions = &scene.bearing.assumptions;
+    Ok(super::record(echo::scene(scene)?, plan, assumptions, &defaults(scene), seconds))
 }
 
 /// Nodes and elements as a person counts them.

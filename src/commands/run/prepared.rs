@@ -1,7 +1,7 @@
 //! From a scene to what moves in its run: the one place that asks what the scene is of.
 
 use crate::commands::plan::dynamic_plan_lines;
-use crate::commands::{echo, echo_run, housed, solid};
+use crate::commands::{self, echo, echo_run, housed, solid};
 use bearing_dynamics::output::course::CourseParts;
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::session::{Parts, RunRequest, SolidParts};
@@ -198,20 +198,13 @@ impl<'s> Prepared<'s> {
     ) -> Fallible<RunRecord> {
         match self {
             Prepared::Bearing { scene, problem, .. } => {
-                let assumptions =
-                    scene.assumptions.iter().map(|a| (a.name.clone(), a.text.clone()));
-                let defaults = echo_run::defaults(scene)
-                    .into_iter()
-                    .map(|used| (used.key, format!("{} ({})", used.value, used.reason)));
-                Ok(RunRecord {
-                    scene: echo::scene(scene)?,
-                    plan: dynamic_plan_lines(scene, problem, request, choice),
-                    assumptions: assumptions.chain(defaults).collect(),
-                    // All of a rigid bearing's work is done by one.
-                    threads: 1,
-                    seconds,
-                    sections: vec![("motion".into(), echo_run::motion(problem)?)],
-                })
+                let defaults = echo_run::defaults(scene);
+                let plan = dynamic_plan_lines(scene, problem, request, choice);
+                let assumptions = &scene.assumptions;
+                let mut record =
+                    commands::record(echo::scene(scene)?, plan, assumptions, &defaults, seconds);
+                record.sections.push(("motion".into(), echo_run::motion(problem)?));
+                Ok(record)
             }
             Prepared::Solid { scene, mesh, .. } => {
                 solid::record(scene, solid::plan::lines(scene, mesh), seconds)

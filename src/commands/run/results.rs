@@ -6,7 +6,7 @@ use crate::commands::housed::{along_course, inertia_estimate, plan::verdict, wri
 use crate::commands::{remarks, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::bore::bore_nodes;
-use bearing_dynamics::output::fields::{file_name, stresses, write_fields, write_list};
+use bearing_dynamics::output::fields::{FOLDER, file_name, stresses, write_fields, write_list};
 use bearing_dynamics::output::pictures::bearing::{Picture, draw};
 use bearing_dynamics::output::pictures::solid::{probe_spectra, series_plots, spectrum_plot};
 use bearing_dynamics::output::remarks as of_solid;
@@ -105,7 +105,8 @@ pub(super) fn write_results(
         say(&format!("{line}\n"))?;
     }
     // State beside them.
-    let files = written.len() + plots.len() + said.files + 1;
+    let fields = std::fs::read_dir(folder.join(FOLDER)).map_or(0, |files| files.count() + 1);
+    let files = written.len() + plots.len() + fields + said.files + 1;
     say(&format!("wrote {files} files to {}\n", folder.display()))
 }
 
@@ -119,7 +120,6 @@ fn solid_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fal
     said.sections.extend(field_sections(built, &displacement, &stress)?);
     said.remarks = of_solid::of_run(session, model, &stress);
     said.sections.push(("remarks".into(), json!(said.remarks)));
-    said.files += fields_files(session);
     Ok(())
 }
 
@@ -157,7 +157,7 @@ fn housing_results(
             said.sections.extend(field_sections(&mesh.built, &displacement, &stress)?);
             said.sections.push(("housing_remarks".into(), json!(said.remarks)));
             write_bore(folder, &bore_nodes(&session.motion, &setup.model))?;
-            said.files += 1 + fields_files(session);
+            said.files += 1;
         }
     }
     let Some((bore, _)) = bore else {
@@ -176,15 +176,6 @@ fn housing_results(
     let failed = inertia.as_ref().err().into_iter().chain(along.as_ref().err());
     said.lines.extend(failed.map(|why| format!("inertia left out       no estimate: {why}")));
     Ok(())
-}
-
-/// Files of fields, and the list of them.
-fn fields_files(session: &Session) -> usize {
-    let row = session.recorder.rows().saturating_sub(1);
-    let regular = session.clock.rows_per_fields.map(|every| row / every as usize + 1);
-    let last = matches!(session.motion, Motion::Housed(_) | Motion::Course(_))
-        && session.clock.fields_due().is_none();
-    regular.unwrap_or(0) + usize::from(last) + 1
 }
 
 /// The fields of the present state as file number `index`, and the list of all files.
@@ -252,7 +243,7 @@ fn pictures(
     let mut drawn = Vec::new();
     if let Prepared::Solid { scene, .. } = prepared {
         if scene.draw_series {
-            drawn.extend(series_plots(&title, &table.series, &session.recorder.probes)?);
+            drawn.extend(series_plots(&title, table, &session.recorder.probes)?);
         }
         drawn.extend(spectrum_plot(&title, spectra)?);
     }

@@ -23,7 +23,7 @@ pub enum Picture {
 }
 
 /// Points that a curve is thinned to: two a pixel.
-const POINTS: usize = 1500;
+pub(super) const POINTS: usize = 1500;
 /// Degrees of azimuth over which the loads of all balls are averaged for the polar plot.
 const SECTOR: usize = 3;
 /// Bins below this part of the highest are not drawn: rounding.
@@ -54,7 +54,7 @@ fn point(x: f64, y: f64) -> [f64; 2] {
 }
 
 /// `[time, scale · value]` of the channels that are recorded.
-fn over_time(table: &RunTable, channels: &[(&str, &str)], scale: f64) -> Vec<Curve> {
+pub(super) fn over_time(table: &RunTable, channels: &[(&str, &str)], scale: f64) -> Vec<Curve> {
     let Some(times) = table.all("time").filter(|times| !times.is_empty()) else {
         return Vec::new();
     };
@@ -91,7 +91,7 @@ fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
     Ok(drawn)
 }
 
-fn add_series(
+pub(super) fn add_series(
     drawn: &mut Vec<(String, String)>,
     file: String,
     title: String,
@@ -257,7 +257,7 @@ fn loads_over_azimuth(title: &str, table: &RunTable) -> Result<Vec<(String, Stri
 
 /// At most about `wanted` points: of each stretch the lowest and the highest, in their order, so
 /// that no peak is lost.
-pub(crate) fn thin(points: Vec<[f64; 2]>, wanted: usize) -> Vec<[f64; 2]> {
+pub(super) fn thin(points: Vec<[f64; 2]>, wanted: usize) -> Vec<[f64; 2]> {
     if points.len() <= wanted {
         return points;
     }

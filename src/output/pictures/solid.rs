@@ -1,31 +1,15 @@
 //! Plots of a solid's run: energies and probes over time, spectra of the probes.
 
-use super::bearing::thin;
+use super::bearing::{POINTS, add_series, over_time, thin};
 use crate::output::plots::{Axis, Curve, PlotError, Style, XyPlot, xy};
-use crate::output::series::Series;
 use crate::output::spectrum::{Spectrum, WINDOW, spectrum};
 use crate::output::table::RunTable;
 use crate::scene::solid_problem::NamedNodes;
 
-/// Points that are drawn of a curve.
-const POINTS: usize = 1500;
 /// Part of the highest peak of all that the peak of a component must reach to be drawn.
 const LEAST: f64 = 1e-3;
 /// Part of a component's highest amplitude below which nothing is drawn.
 const FLOOR: f64 = 1e-6;
-
-/// `[time, scale · value]` of a column.
-fn over_time(series: &Series, column: &str, name: &str, scale: f64) -> Option<Curve> {
-    let (times, values) = (series.column("time")?, series.column(column)?);
-    let points: Vec<[f64; 2]> =
-        times.iter().zip(values).map(|(t, value)| [*t, drawn(scale * value)]).collect();
-    (!points.is_empty()).then(|| Curve::new(name, thin(points, POINTS)))
-}
-
-/// What is left of a motion that has died out is drawn as nothing.
-fn drawn(value: f64) -> f64 {
-    if value.abs() < 1e-150 { 0.0 } else { value }
-}
 
 /// Names and contents of the plots over time.
 ///
@@ -33,10 +17,9 @@ fn drawn(value: f64) -> f64 {
 /// A value too large to draw.
 pub fn series_plots(
     title: &str,
-    series: &Series,
+    table: &RunTable,
     probes: &[NamedNodes],
 ) -> Result<Vec<(String, String)>, PlotError> {
-    let time = || Axis::linear("time", "s");
     let energies = [
         ("energy_strain", "strain"),
         ("energy_kinetic", "kinetic"),
@@ -44,29 +27,16 @@ pub fn series_plots(
         ("work_damping", "work of damping"),
         ("energy_residual", "unaccounted for"),
     ];
-    let curves = energies.iter().filter_map(|(c, name)| over_time(series, c, name, 1.0));
-    let mut plots = vec![(
-        "energies.svg".to_string(),
-        xy(&XyPlot {
-            title: format!("{title}: energies"),
-            x: time(),
-            y: Axis::linear("energy", "J"),
-            style: Style::Lines,
-            curves: curves.collect(),
-        })?,
-    )];
-    for probe in probes {
-        let curves = ["x", "y", "z"]
-            .iter()
-            .filter_map(|axis| over_time(series, &format!("{}_{axis}", probe.name), axis, 1e6));
-        let plot = XyPlot {
-            title: format!("{title}: {}", probe.name),
-            x: time(),
-            y: Axis::linear("displacement", "um"),
-            style: Style::Lines,
-            curves: curves.collect(),
-        };
-        plots.push((format!("probe_{}.svg", probe.name), xy(&plot)?));
+    let mut plots = Vec::new();
+    let curves = over_time(table, &energies, 1.0);
+    let heading = format!("{title}: energies");
+    add_series(&mut plots, "energies.svg".into(), heading, "energy", "J", curves)?;
+    for NamedNodes { name, .. } in probes {
+        let columns = ["x", "y", "z"].map(|axis| (format!("{name}_{axis}"), axis));
+        let columns = columns.each_ref().map(|(column, axis)| (column.as_str(), *axis));
+        let curves = over_time(table, &columns, 1e6);
+        let (file, heading) = (format!("probe_{name}.svg"), format!("{title}: {name}"));
+        add_series(&mut plots, file, heading, "displacement", "um", curves)?;
     }
     Ok(plots)
 }

@@ -215,7 +215,9 @@ fn energy(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsE
         let watch = &session.watch;
         let (residual, turned_over) = (watch.largest_residual, watch.turned_over);
         let part = if turned_over > 0.0 { residual / turned_over } else { 0.0 };
-        terms.insert("at_start".into(), quantity("energy", watch.first, "J")?);
+        if matches!(session.motion, Motion::Solid(_)) {
+            terms.insert("at_start".into(), quantity("energy", watch.first, "J")?);
+        }
         terms.insert("turned_over".into(), quantity("energy", turned_over, "J")?);
         terms.insert("largest_residual".into(), quantity("energy", residual, "J")?);
         terms.insert("largest_residual_part".into(), quantity("part", part, "1")?);
