@@ -1,10 +1,10 @@
 //! What lies in a results folder before a command writes there: what may be replaced, and its removal.
 
 use super::{pictures, say};
+use bearing_dynamics::output::fields;
 use bearing_dynamics::output::folder::{Holds, ResultsFolder, claim, holds};
 use bearing_dynamics::output::json;
-use bearing_dynamics::output::solid::fields;
-use bearing_dynamics::output::solid::state::remove_arrays;
+use bearing_dynamics::output::state::arrays::remove_arrays;
 use bearing_dynamics::solver::clock::rounded;
 use std::error::Error;
 use std::path::Path;
@@ -65,8 +65,8 @@ fn refuse_other(folder: &Path, writes: Writes) -> Result<(), Box<dyn Error>> {
 /// Refuses to write over a run of any kind that stands half way.
 pub fn refuse_half_way(folder: &Path) -> Result<(), Box<dyn Error>> {
     let state = json::read(&folder.join("state.json")).unwrap_or_default();
-    // That of a bearing in its housing lies a level deeper.
-    let of = if state["bearing"].is_object() { &state["bearing"] } else { &state };
+    // That of a bearing in its housing lay a level deeper in versions before.
+    let of = if state["bearing"]["stopped"].is_string() { &state["bearing"] } else { &state };
     if !matches!(of["stopped"].as_str(), Some("running" | "interrupted")) {
         return Ok(());
     }

@@ -14,7 +14,6 @@ pub mod plan;
 pub mod plan_step;
 mod remarks;
 pub mod run;
-pub mod run_figures;
 pub mod schema;
 pub mod solid;
 pub mod solve;
@@ -22,9 +21,11 @@ pub mod statics;
 pub mod sweep;
 pub mod table;
 
+use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::visible::visible;
-use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::about::About;
+use bearing_dynamics::scene::{Assumption, DefaultUsed, Document};
+use serde_json::Value;
 use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -59,6 +60,27 @@ pub fn placed(
     match about {
         Some(about) => format!("{}: {error}", document.place_of(&about)).into(),
         None => error.into(),
+    }
+}
+
+/// What every summary has of a scene: itself, its plan, assumptions and defaults.
+pub fn record(
+    scene: Value,
+    plan: Vec<String>,
+    assumptions: &[Assumption],
+    defaults: &[DefaultUsed],
+    seconds: Vec<(String, f64)>,
+) -> RunRecord {
+    let assumptions = assumptions.iter().map(|a| (a.name.clone(), a.text.clone()));
+    let default =
+        |used: &DefaultUsed| (used.key.clone(), format!("{} ({})", used.value, used.reason));
+    RunRecord {
+        scene,
+        plan,
+        assumptions: assumptions.chain(defaults.iter().map(default)).collect(),
+        threads: 1,
+        seconds,
+        sections: Vec::new(),
     }
 }
 

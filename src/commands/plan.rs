@@ -4,12 +4,12 @@ use super::plan_step::step_lines;
 use super::run::planned_request;
 use super::solve::{lines, plan_lines};
 use super::{CommandResult, Outcome, say};
-use bearing_dynamics::output::dynamics::foretell::Choice;
-use bearing_dynamics::output::dynamics::session::RunRequest;
+use bearing_dynamics::output::session::RunRequest;
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{
     CageInRun, Document, Scene, Subject, resolve_subject, statics::static_problem,
 };
+use bearing_dynamics::solver::dynamics::foretell::Choice;
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::plan;
 use std::path::PathBuf;

@@ -2,9 +2,9 @@
 //! longer.
 
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::output::dynamics::foretell::{WITHIN, foretell};
-use bearing_dynamics::output::dynamics::session::{RunRequest, given_steps, whole_steps};
-use bearing_dynamics::solver::clock::to_digits;
+use bearing_dynamics::solver::clock::{given_steps, to_digits, whole_steps};
+use bearing_dynamics::solver::dynamics::clocked::RunRequest;
+use bearing_dynamics::solver::dynamics::foretell::{WITHIN, foretell};
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, SimulationError, Stepping,
@@ -56,7 +56,9 @@ fn refused(error: &SimulationError) -> String {
 }
 
 fn steps(problem: &DynamicProblem, request: &RunRequest, step: f64) -> String {
-    format!("{} steps to t = {} s", given_steps(&problem.assembly(), request, step), request.end)
+    let RunRequest { end, output_interval, .. } = request;
+    let count = given_steps(&problem.assembly().corners(), *output_interval, *end, step);
+    format!("{count} steps to t = {end} s")
 }
 
 /// How many steps, and where the number comes from.

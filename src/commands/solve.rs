@@ -24,22 +24,14 @@ pub fn solve_scene(scene: &Scene, read_seconds: f64) -> Result<Solved, Box<dyn E
     let start = Instant::now();
     let solution = solve(&problem)?;
     let solve_seconds = start.elapsed().as_secs_f64();
-    let assumptions = scene.assumptions.iter().map(|a| (a.name.clone(), a.text.clone()));
-    let defaults = scene
-        .defaults_used
-        .iter()
-        .map(|used| (used.key.clone(), format!("{} ({})", used.value, used.reason)));
     let mut sections = echo::sections(scene, &problem)?;
     let remarks = remarks::of_statics(scene, &problem, &solution);
     sections.push(("remarks".into(), json!(remarks)));
-    let record = RunRecord {
-        scene: echo::scene(scene)?,
-        plan: plan_lines(&problem),
-        assumptions: assumptions.chain(defaults).collect(),
-        threads: 1,
-        seconds: vec![("read".into(), read_seconds), ("solve".into(), solve_seconds)],
-        sections,
-    };
+    let seconds = vec![("read".into(), read_seconds), ("solve".into(), solve_seconds)];
+    let (assumptions, defaults) = (&scene.assumptions, &scene.defaults_used);
+    let plan = plan_lines(&problem);
+    let mut record = super::record(echo::scene(scene)?, plan, assumptions, defaults, seconds);
+    record.sections = sections;
     Ok(Solved { problem, solution, remarks, record })
 }
 

@@ -1,5 +1,4 @@
-//! What runs of bearings and of solids have in common in the state that they go on from: its names,
-//! why the run stood still, how it is read and written.
+//! The file that a run goes on from: its name, why the run stood still, how it is read and written.
 
 use crate::output::atomic::{WriteError, remove_partials, write_atomic};
 use crate::output::results::pretty;
@@ -35,18 +34,34 @@ pub enum JournalError {
         path.display(), env!("CARGO_PKG_VERSION")
     )]
     Version { path: PathBuf, found: String },
+    #[error(
+        "{} has the form of another version of this program; finish the run with that one, or start anew \
+         (--fresh)",
+        path.display()
+    )]
+    Form { path: PathBuf },
 }
 
-/// Reads `state.json` of a results folder; `None` if there is none.
+/// Reads `state.json` of a results folder, of the given form; `None` if there is none.
 ///
 /// # Errors
-/// A file that cannot be read, or is the state of something else.
-pub fn read<T: DeserializeOwned>(folder: &Path) -> Result<Option<T>, JournalError> {
+/// A file that cannot be read, is of another form, or is the state of something else.
+pub fn read<T: DeserializeOwned>(folder: &Path, form: u32) -> Result<Option<T>, JournalError> {
+    /// All that is looked at first.
+    #[derive(Deserialize)]
+    struct Head {
+        form: Option<u32>,
+    }
     let path = folder.join(STATE);
     match input_file::read(&path, LARGEST_JSON) {
-        Ok(bytes) => serde_json::from_slice(&bytes)
-            .map(Some)
-            .map_err(|source| JournalError::Json { path, source }),
+        Ok(bytes) => {
+            let json = |source| JournalError::Json { path: path.clone(), source };
+            let head: Head = serde_json::from_slice(&bytes).map_err(json)?;
+            if head.form != Some(form) {
+                return Err(JournalError::Form { path: path.clone() });
+            }
+            serde_json::from_slice(&bytes).map(Some).map_err(json)
+        }
         Err(error) if error.is_missing() => Ok(None),
         Err(source) => Err(JournalError::Read { path, source }),
     }

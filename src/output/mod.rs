@@ -2,32 +2,52 @@
 //!
 //! - [`series`]: tables of numbers with named columns and units, as `.csv` and `.npy`
 //! - [`results`]: the results folder of one static solution
-//! - [`dynamics`]: a run, its time series, its results folder, and [`mod@state`] to resume it from
-//! - [`solid`]: fields, series and runs of a flexible solid by itself
-//! - [`housed`]: a bearing in a flexible housing
+//! - [`session`]: a run of whatever moves; [`recorder`] keeps its rows, [`mod@state`] is what it resumes from,
+//!   [`table`] and [`summary`] say what came of it
+//! - [`course`]: a bearing in a condensed housing, one equilibrium a row
+//! - [`fields`], [`remarks`]: a solid as ParaView opens it, and what to know before using it
+//! - [`pictures`]: plots of a run; [`plots`]: SVG pictures from plain data
 //! - [`folder`]: who may write into a results folder, and over what
 //! - [`json`], [`npy`]: readers that take what a file promises for no more than it is
-//! - [`journal`]: what the states of both kinds of runs share
+//! - [`journal`]: how the file of a state is read and written
 //! - [`mod@spectrum`]: amplitude spectra of time series
-//! - [`plots`]: SVG pictures from plain data
 //! - [`compare`]: where does a candidate depart from a reference, and by how much
 //! - [`visible`]: texts of files made fit for a terminal
 //! - [`pack`]: a scene with its expected results, tolerances and hashes
+//!
+//! # The folder of a run
+//!
+//! | file | content |
+//! |---|---|
+//! | `summary.json` | every scalar as `{"value", "unit"}`; written last |
+//! | `series.csv`, `series.npy`, `series.columns.json` | one row an output interval |
+//! | `spectrum.csv` | amplitude spectra, where they were asked for |
+//! | `bore.csv` | of a housing: one row a node of the bore |
+//! | `fields.pvd`, `fields/*.vtu` | of a solid: displacement, stress, contact force over time |
+//! | `*.svg` | the plots that were asked for |
+//! | `state.json`, `state-N.npy` | what the run goes on from |
+//!
+//! Lengths in m, loads in N, angles in degrees, speeds in rad/s.
 pub mod atomic;
 pub mod compare;
-pub mod dynamics;
+pub mod course;
+pub mod fields;
 pub mod folder;
-pub mod housed;
 pub mod journal;
 pub mod json;
 pub mod npy;
 pub mod pack;
+pub mod pictures;
 pub mod plots;
+pub mod recorder;
+pub mod remarks;
 pub mod results;
 pub mod series;
-pub mod solid;
+pub mod session;
 pub mod spectrum;
 pub mod state;
+pub mod summary;
+pub mod table;
 pub mod visible;
 
 pub use atomic::{WriteError, write_atomic};

@@ -30,7 +30,7 @@ fn interrupted_killed_and_extended_runs_end_with_the_same_bytes() {
     let (code, message) = wait(child);
     assert_eq!(code, Some(2), "{message}");
     assert!(message.contains("--resume"), "{message}");
-    let stood = json(parts.join("state.json"))["bearing"]["time"].as_f64().unwrap();
+    let stood = json(parts.join("state.json"))["time"].as_f64().unwrap();
     assert!(stood > 0.0 && stood < 2e-3, "{stood}");
     assert_eq!(json(parts.join("summary.json"))["complete"], false);
     // It is not written over.
@@ -58,6 +58,45 @@ fn interrupted_killed_and_extended_runs_end_with_the_same_bytes() {
 }
 
 #[test]
+fn interrupted_and_extended_courses_end_with_the_same_bytes() {
+    let place = Place::new();
+    let numerics = |end: &str| {
+        let run = format!(
+            "[numerics]\nend = \"{end}\"\noutput_interval = \"10 us\"\nfields_interval = \"2 ms\"\n"
+        );
+        let pulse =
+            "z = { load = { half_sine = \"-500 N\", start = \"0.2 ms\", duration = \"30 ms\" } }";
+        scene_text("fit.radial = \"-2 um\"", &run).replace("z = { load = \"-250 N\" }", pulse)
+    };
+    let scene = place.scene("scene.toml", &numerics("15 ms"));
+    let (whole, parts) = (place.path("whole"), place.path("parts"));
+    let child = start(into_folder("run", &scene, &parts, &["--save-every", "1"]));
+    std::thread::sleep(Duration::from_millis(60));
+    signal(&child, "-TERM");
+    let (code, message) = wait(child);
+    assert_eq!(code, Some(2), "{message}");
+    assert!(message.contains("interrupted at t = ") && message.contains("--resume"), "{message}");
+    assert_eq!(json(parts.join("state.json"))["stopped"], "interrupted");
+    let output = into_folder("run", &scene, &parts, &[]).output().unwrap();
+    assert!(stderr(&output).contains("--resume"), "{}", stderr(&output));
+    let said = succeed(into_folder("run", &scene, &parts, &["--resume"]));
+    assert!(said.contains("resumed at"), "{said}");
+    succeed(into_folder("run", &scene, &whole, &[]));
+    assert_same_results(&whole, &parts);
+    // To a later end.
+    let longer = place.path("longer");
+    let scene = place.scene("scene.toml", &numerics("17 ms"));
+    succeed(into_folder("run", &scene, &longer, &[]));
+    succeed(into_folder("run", &scene, &whole, &["--resume"]));
+    assert_same_results(&longer, &whole);
+    // Of another scene it is refused.
+    let other = numerics("18 ms").replace("-500 N", "-400 N");
+    let other = place.scene("other.toml", &other);
+    let output = into_folder("run", &other, &longer, &["--resume"]).output().unwrap();
+    assert!(stderr(&output).contains("another scene"), "{}", stderr(&output));
+}
+
+#[test]
 fn a_run_that_fails_keeps_its_last_row() {
     let place = Place::new();
     // Nothing holds the race along its axis, and a force pulls it out of a narrow seat.
@@ -70,9 +109,9 @@ fn a_run_that_fails_keeps_its_last_row() {
     let message = stderr(&output);
     assert!(message.contains("has left its bore") && message.contains("t = "), "{message}");
     let state = json(out.join("state.json"));
-    assert_eq!(state["bearing"]["stopped"], "failed");
+    assert_eq!(state["stopped"], "failed");
     let rows = column(&out.join("series.csv"), "outer_x");
-    assert_eq!(state["bearing"]["rows"].as_u64(), Some(rows.len() as u64));
+    assert_eq!(state["rows"].as_u64(), Some(rows.len() as u64));
     assert!(*rows.last().unwrap() > 1e-3, "{rows:?}");
     let summary = json(out.join("summary.json"));
     assert_eq!(summary["complete"], false);

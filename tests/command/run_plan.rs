@@ -3,16 +3,17 @@
 use crate::run_common;
 
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::output::dynamics::foretell::{WITHIN, choose, foretell};
-use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status, given_steps};
+use bearing_dynamics::output::session::{RunRequest, Session, Status};
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{self, CageInRun, Format};
 use bearing_dynamics::solver::channels::ChannelGroup;
+use bearing_dynamics::solver::clock::given_steps;
+use bearing_dynamics::solver::dynamics::foretell::{WITHIN, choose, foretell};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
 use bearing_dynamics::solver::plan;
 use bearing_dynamics::solver::profile::Profile;
-use run_common::{frictionless, jolted, pressed, rattling, request, sliding};
+use run_common::{frictionless, jolted, pressed, rattling, request, simulation, sliding};
 
 const BEARING: &str = r#"
 [bearing]
@@ -158,7 +159,7 @@ fn skipped_stages_do_no_work() {
 fn taken(problem: &DynamicProblem, request: &RunRequest) -> u64 {
     let mut session = Session::start(problem.clone(), request).unwrap();
     while session.advance(1000).unwrap() == Status::Running {}
-    session.simulation.steps
+    simulation(&session).steps
 }
 
 #[test]
@@ -168,8 +169,15 @@ fn given_steps_are_counted_as_the_run_takes_them() {
         for interval in [1e-6, 10e-6, 12.34e-6, 37e-6, 1e-3] {
             for end in [203.4e-6, 200e-6, 55.31e-6, 0.4e-6, 74e-6] {
                 let wanted = RunRequest { end, output_interval: interval, ..request(step, 1) };
-                let (foretold, taken) =
-                    (given_steps(&problem.assembly(), &wanted, step), taken(&problem, &wanted));
+                let (foretold, taken) = (
+                    given_steps(
+                        &problem.assembly().corners(),
+                        wanted.output_interval,
+                        wanted.end,
+                        step,
+                    ),
+                    taken(&problem, &wanted),
+                );
                 assert_eq!(foretold, taken, "rows {interval}, end {end}");
             }
         }
@@ -203,7 +211,8 @@ fn foretold_steps_are_within_the_stated_factor() {
         let options =
             RunOptions { integrator, stepping, energy_limit: 1.0, ..RunOptions::default() };
         let output_interval = 0.2e-3;
-        let wanted = RunRequest { options, end, output_interval, channels: Vec::new() };
+        let wanted =
+            RunRequest { options, end, output_interval, channels: Vec::new(), ..request(1e-6, 1) };
         let foretold = foretell(&problem.assembly(), &wanted).unwrap();
         let taken = taken(problem, &wanted) as f64;
         let factor = foretold.steps / taken;
@@ -226,7 +235,13 @@ fn corners_after_the_end_foretell_no_steps() {
         stepping: Stepping::Accuracy(1e-3),
         ..RunOptions::default()
     };
-    let wanted = RunRequest { options, end: 10e-3, output_interval: 0.2e-3, channels: Vec::new() };
+    let wanted = RunRequest {
+        options,
+        end: 10e-3,
+        output_interval: 0.2e-3,
+        channels: Vec::new(),
+        ..request(1e-6, 1)
+    };
     let foretold = foretell(&problem.assembly(), &wanted).unwrap();
     let taken = taken(&problem, &wanted) as f64;
     let factor = foretold.steps / taken;
@@ -237,7 +252,7 @@ fn corners_after_the_end_foretell_no_steps() {
 #[test]
 fn the_plan_chooses_the_method_that_takes_less_work() {
     let options = RunOptions { stepping: Stepping::Accuracy(1e-3), ..RunOptions::default() };
-    let wanted = RunRequest { options, end: 20e-3, output_interval: 0.1e-3, channels: Vec::new() };
+    let wanted = RunRequest { options, end: 20e-3, output_interval: 0.1e-3, ..request(1e-6, 1) };
     let steep = DynamicProblem {
         traction: TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 5e-4 },
         ..frictionless()

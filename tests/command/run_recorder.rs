@@ -2,18 +2,20 @@
 
 use crate::run_common;
 
-use bearing_dynamics::output::dynamics::recorder::{Recorder, RecorderError};
-use bearing_dynamics::output::dynamics::session::{RunRequest, Session, SessionError, Status};
-use bearing_dynamics::output::dynamics::summary::{RunReport, run_summary};
-use bearing_dynamics::output::dynamics::table::RunTable;
+use bearing_dynamics::output::recorder::Recorder;
+use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status};
+use bearing_dynamics::output::summary::{RunReport, run_summary};
+use bearing_dynamics::output::table::RunTable;
 use bearing_dynamics::solver::channels::ChannelGroup;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
 use bearing_dynamics::solver::dynamics::state::POSITION;
 use bearing_dynamics::solver::profile::Profile;
-use run_common::{common, complete, frictionless, jolted, request, sliding};
+use run_common::{
+    common, complete, frictionless, jolted, request, simulation, simulation_mut, sliding,
+};
 
-fn to_the_end(problem: DynamicProblem, request: &RunRequest) -> Session {
+fn to_the_end(problem: DynamicProblem, request: &RunRequest) -> Session<'static> {
     let mut session = Session::start(problem, request).unwrap();
     while session.advance(1000).unwrap() == Status::Running {}
     session
@@ -38,27 +40,27 @@ fn rows_lie_on_whole_steps_and_the_run_ends_at_its_end() {
         // 200 sums of 1e-6, each rounded to 1e-20 at most.
         assert!((time - 1e-5 * row as f64).abs() <= 1e-17, "row {row}: {time}");
     }
-    assert_eq!(session.simulation.steps, 204);
+    assert_eq!(simulation(&session).steps, 204);
     // An end on a row: no row is off the grid.
     let session = to_the_end(frictionless(), &RunRequest { end: 2e-4, ..wanted });
     assert_eq!((session.recorder.rows(), session.rows_on_grid()), (21, 21));
-    assert_eq!((session.simulation.steps, session.simulation.time), (200, 2e-4));
+    assert_eq!((simulation(&session).steps, simulation(&session).time), (200, 2e-4));
 }
 
 #[test]
 fn a_given_step_rounds_the_interval_and_a_derived_step_fits_it() {
     let given = RunRequest { output_interval: 1.234e-5, ..request(1e-6, 5) };
     let session = Session::start(frictionless(), &given).unwrap();
-    assert_eq!((session.steps_per_row, session.simulation.step_size), (12, 1e-6));
+    assert_eq!((session.clock.steps_per_row, simulation(&session).step_size), (12, 1e-6));
     let stepping = Stepping::FractionOfLimit(0.5);
     let derived =
         RunRequest { options: RunOptions { stepping, ..RunOptions::default() }, ..given.clone() };
     let session = Session::start(frictionless(), &derived).unwrap();
-    let limit = session.simulation.limit.unwrap().step;
-    assert!(session.simulation.step_size <= 0.5 * limit);
-    assert!((session.interval() / 1.234e-5 - 1.0).abs() <= 1e-15);
+    let limit = simulation(&session).limit.unwrap().step;
+    assert!(simulation(&session).step_size <= 0.5 * limit);
+    assert!((session.clock.row_interval() / 1.234e-5 - 1.0).abs() <= 1e-15);
     let finer = RunRequest { output_interval: 1e-9, ..given };
-    assert_eq!(Session::start(frictionless(), &finer).unwrap().steps_per_row, 1);
+    assert_eq!(Session::start(frictionless(), &finer).unwrap().clock.steps_per_row, 1);
 }
 
 #[test]
@@ -71,8 +73,9 @@ fn what_makes_no_run_is_refused() {
         assert!(matches!(start(wanted), SessionError::Interval(_)));
     }
     let rows = usize::MAX / 64;
-    let error = Recorder::new(&frictionless().assembly(), &[], rows).err().unwrap();
-    assert!(matches!(error, RecorderError::Memory { .. }));
+    let error =
+        Recorder::new(&frictionless().assembly().into(), &[]).with_room(rows).err().unwrap();
+    assert!(matches!(error, SessionError::Memory { .. }));
 }
 
 #[test]
@@ -87,7 +90,7 @@ fn no_row_asks_for_more_memory() {
 #[test]
 fn only_what_is_asked_for_is_there() {
     let names = |problem: &DynamicProblem, groups: &[ChannelGroup]| {
-        let recorder = Recorder::new(&problem.assembly(), groups, 1).unwrap();
+        let recorder = Recorder::new(&problem.clone().into(), groups);
         recorder.columns().iter().map(|column| column.name.clone()).collect::<Vec<_>>()
     };
     // The ledger is always kept, and without friction, cage and gravity it is short.
@@ -118,7 +121,7 @@ fn only_what_is_asked_for_is_there() {
 fn channels_are_the_bodies_motion() {
     let session = to_the_end(complete(), &request(1e-6, 30));
     let last = |name: &str| *column(&session, name).last().unwrap();
-    let (layout, state) = (session.simulation.system.sets[0].layout, &session.simulation.state);
+    let (layout, state) = (simulation(&session).system.sets[0].layout, &simulation(&session).state);
     let at = |body: usize, entry: usize| state[body + entry];
     for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
         assert_eq!(last(&format!("inner_{axis}")), at(layout.inner(), i));
@@ -182,11 +185,11 @@ fn slip_is_the_difference_of_surface_speeds() {
     // The brake takes energy that no ledger knows of.
     wanted.options.energy_limit = 1e9;
     let mut session = Session::start(problem.clone(), &wanted).unwrap();
-    let layout = session.simulation.system.sets[0].layout;
+    let layout = simulation(&session).system.sets[0].layout;
     let before: Vec<f64> = session.recorder.row(0).to_vec();
-    session.simulation.state[layout.ball(10)] += 10.0;
-    let snapshot = session.simulation.snapshot().unwrap();
-    session.recorder.record(&session.simulation, &snapshot);
+    simulation_mut(&mut session).state[layout.ball(10)] += 10.0;
+    let snapshot = simulation_mut(&mut session).snapshot().unwrap();
+    session.recorder.record(session.motion.bearing().unwrap(), &snapshot);
     let at = |name: &str| {
         let columns = session.recorder.columns();
         let index = columns.iter().position(|column| column.name == name).unwrap();
@@ -201,10 +204,10 @@ fn slip_is_the_difference_of_surface_speeds() {
     // Spin about the outer normal, which points along the ball's radius.
     let mut session = Session::start(problem, &wanted).unwrap();
     let angle: f64 = 0.1;
-    session.simulation.state[layout.ball(11)] += 5.0 * angle.cos();
-    session.simulation.state[layout.ball(12)] += 5.0 * angle.sin();
-    let snapshot = session.simulation.snapshot().unwrap();
-    session.recorder.record(&session.simulation, &snapshot);
+    simulation_mut(&mut session).state[layout.ball(11)] += 5.0 * angle.cos();
+    simulation_mut(&mut session).state[layout.ball(12)] += 5.0 * angle.sin();
+    let snapshot = simulation_mut(&mut session).snapshot().unwrap();
+    session.recorder.record(session.motion.bearing().unwrap(), &snapshot);
     let columns = session.recorder.columns();
     let index = columns.iter().position(|c| c.name == "ball_1_outer_spin").unwrap();
     let spin = session.recorder.row(1)[index] - session.recorder.row(0)[index];
@@ -229,9 +232,9 @@ fn steps_end_at_corners_and_are_even_between_them() {
     let mut session = Session::start(problem.clone(), &wanted).unwrap();
     let mut times = vec![0.0];
     while session.advance(1).unwrap() == Status::Running {
-        times.push(session.simulation.time);
+        times.push(simulation(&session).time);
     }
-    times.push(session.simulation.time);
+    times.push(simulation(&session).time);
     let corners = problem.assembly().corners();
     assert_eq!(corners.len(), 6);
     for corner in corners {
@@ -267,7 +270,7 @@ fn the_work_of_a_jolt_is_in_the_ledger() {
         wanted.options.integrator = integrator;
         wanted.options.stepping = stepping;
         let session = to_the_end(jolted(), &wanted);
-        let mass = session.simulation.system.assembly.bodies[0].inertia().unwrap().mass;
+        let mass = simulation(&session).system.assembly.bodies[0].inertia().unwrap().mass;
         let speed = 3e-6 / (0.08e-3 - 0.0341e-3);
         let jump: f64 = 0.5 * mass * speed * speed;
         let residual = column(&session, "energy_residual");
@@ -306,10 +309,10 @@ fn extremes_are_of_every_step_whatever_the_rows() {
             channels.flatten().fold(0.0, f64::max)
         };
         for (side, what) in ["inner", "outer"].into_iter().enumerate() {
-            let most = fine.simulation.extremes[0].races[side].load.value;
+            let most = simulation(&fine).extremes[0].races[side].load.value;
             // Steps of error control end between rows as well, half a microsecond from a peak of 50 kHz.
             assert!(most >= of_rows(what, &fine));
-            let race = fine.simulation.extremes[0].races[side];
+            let race = simulation(&fine).extremes[0].races[side];
             assert!(
                 most <= 1.01 * of_rows(what, &fine),
                 "{integrator:?} {race:?} {}",
@@ -319,7 +322,7 @@ fn extremes_are_of_every_step_whatever_the_rows() {
         // Two rows: they show nothing of the pulse, the extremes all of it.
         let coarse = to_the_end(struck(), &wanted(1e-3));
         let [of_fine, of_coarse] =
-            [&fine, &coarse].map(|session| session.simulation.extremes[0].races[0].load);
+            [&fine, &coarse].map(|session| simulation(&session).extremes[0].races[0].load);
         assert!(of_coarse.value >= 1.5 * of_rows("inner", &coarse), "{of_coarse:?}");
         match integrator {
             // But for rounding of the times at which the pulse is read.
@@ -337,7 +340,7 @@ fn extremes_are_of_every_step_whatever_the_rows() {
             let all = x.iter().zip(&y).zip(&z).map(|((x, y), z)| (x * x + y * y + z * z).sqrt());
             all.fold(0.0, f64::max)
         };
-        let farthest = coarse.simulation.extremes[0].farthest.value;
+        let farthest = simulation(&coarse).extremes[0].farthest.value;
         assert!((farthest / far(&fine) - 1.0).abs() <= 1e-2, "{farthest} {}", far(&fine));
         assert!(farthest >= 1.2 * far(&coarse));
     }
@@ -354,19 +357,19 @@ fn an_extreme_has_the_time_of_its_state() {
         let options = RunOptions { integrator, stepping, ..RunOptions::default() };
         let wanted = RunRequest { options, end: 1e-3, output_interval: 1e-3, ..request(1e-6, 1) };
         let mut session = Session::start(struck(), &wanted).unwrap();
-        let at = session.simulation.system.sets[0].layout.inner() + POSITION;
+        let at = simulation(&session).system.sets[0].layout.inner() + POSITION;
         let (mut farthest, mut when) = (0.0f64, 0.0);
         loop {
-            let [x, y, z] = [0, 1, 2].map(|i| session.simulation.state[at + i]);
+            let [x, y, z] = [0, 1, 2].map(|i| simulation(&session).state[at + i]);
             let distance = (x * x + y * y + z * z).sqrt();
             if distance > farthest {
-                (farthest, when) = (distance, session.simulation.time);
+                (farthest, when) = (distance, simulation(&session).time);
             }
             if session.advance(1).unwrap() == Status::Complete {
                 break;
             }
         }
-        let found = session.simulation.extremes[0].farthest;
+        let found = simulation(&session).extremes[0].farthest;
         // Rounding of a sum of three squares, and of the time at which a step ends.
         assert!((found.value / farthest - 1.0).abs() <= 1e-14, "{integrator:?} {found:?}");
         assert!((found.time - when).abs() <= 1e-15, "{integrator:?} {found:?} {when}");

@@ -2,17 +2,20 @@
 
 use crate::run_common;
 
-use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status};
-use bearing_dynamics::output::dynamics::summary::{RunReport, write_run_results};
-use bearing_dynamics::output::dynamics::table::RunTable;
 use bearing_dynamics::output::journal::JournalError;
+use bearing_dynamics::output::session::{RunRequest, Session, Status};
 use bearing_dynamics::output::state::{
     self, StateError, StateRecord, Stopped, fingerprint, read, resume, save,
 };
+use bearing_dynamics::output::summary::{RunReport, write_run_results};
+use bearing_dynamics::output::table::RunTable;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
 use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Start, Stepping};
 use bearing_dynamics::solver::profile::Profile;
-use run_common::{complete, frictionless, jolted, pressed, rattling, request};
+use run_common::{
+    complete, frictionless, jolted, of_steps, pressed, rattling, request, resumable, simulation,
+    simulation_mut,
+};
 use std::fs;
 use std::path::Path;
 
@@ -20,10 +23,9 @@ const STEP: f64 = 1e-6;
 
 fn record(problem: &DynamicProblem, request: &RunRequest, stopped: Stopped) -> StateRecord {
     StateRecord {
-        fingerprint: fingerprint(problem, request),
+        fingerprint: fingerprint(&problem.clone().into(), request),
         stopped,
         error: None,
-        output_interval: request.output_interval,
         seconds: 0.0,
     }
 }
@@ -31,23 +33,22 @@ fn record(problem: &DynamicProblem, request: &RunRequest, stopped: Stopped) -> S
 /// Runs to the end, writes everything, as the command does.
 fn finish(folder: &Path, problem: &DynamicProblem, request: &RunRequest, mut session: Session) {
     while session.advance(7).unwrap() == Status::Running {}
-    write(folder, problem, request, &session, Stopped::Complete);
+    write(folder, problem, request, &mut session, Stopped::Complete);
 }
 
 fn write(
     folder: &Path,
     problem: &DynamicProblem,
     request: &RunRequest,
-    session: &Session,
+    session: &mut Session,
     stopped: Stopped,
 ) {
     let table = RunTable::new(session, 0.0).unwrap();
-    let report = RunReport { spectra: true, ..RunReport::default() };
-    write_run_results(folder, session, &table, &report).unwrap();
+    write_run_results(folder, session, &table, &table.spectra(), &RunReport::default()).unwrap();
     save(folder, session, &record(problem, request, stopped)).unwrap();
 }
 
-fn go_on(folder: &Path, problem: &DynamicProblem, request: &RunRequest) -> Session {
+fn go_on(folder: &Path, problem: &DynamicProblem, request: &RunRequest) -> Session<'static> {
     let file = read(folder).unwrap().expect("a state was written");
     resume(folder, &file, problem.clone(), request).unwrap()
 }
@@ -126,9 +127,9 @@ fn interrupt(
         for &stop in stops {
             assert_eq!(session.advance(stop - steps).unwrap(), Status::Running);
             steps = stop;
-            write(&parts, problem, request, &session, Stopped::Interrupted);
+            write(&parts, problem, request, &mut session, Stopped::Interrupted);
             session = go_on(&parts, problem, request);
-            assert_eq!(session.simulation.steps, steps);
+            assert_eq!(simulation(&session).steps, steps);
         }
         finish(&parts, problem, request, session);
         assert_same_files(&whole, &parts);
@@ -144,10 +145,10 @@ fn where_the_step_was_shortened_the_files_are_the_same_too() {
     long.options.stepping = Stepping::FractionOfLimit(0.5);
     // Where the step is shortened first, in the middle of a row.
     let mut session = Session::start(problem.clone(), &long).unwrap();
-    while session.simulation.step_watch.shortened.is_none() {
+    while simulation(&session).step_watch.shortened.is_none() {
         assert_eq!(session.advance(1).unwrap(), Status::Running);
     }
-    let (at, time) = (session.simulation.steps, session.simulation.time);
+    let (at, time) = (simulation(&session).steps, simulation(&session).time);
     println!("shortened after step {at}, at t = {time} s");
     let stops = [vec![at - 1], vec![at], vec![at + 1], vec![at - 16, at + 16], vec![at + 100]];
     interrupt(folder.path(), "shortened", &problem, &long, &stops);
@@ -196,11 +197,11 @@ fn interrupted_where_a_load_jumps_the_files_are_the_same() {
         request.options.integrator = integrator;
         request.options.stepping = Stepping::Accuracy(1e-3);
         let mut session = Session::start(problem.clone(), &request).unwrap();
-        while session.simulation.time < corner {
+        while simulation(&session).time < corner {
             session.advance(1).unwrap();
         }
-        assert_eq!(session.simulation.time, corner);
-        let steps = session.simulation.steps;
+        assert_eq!(simulation(&session).time, corner);
+        let steps = simulation(&session).steps;
         interrupt(folder.path(), integrator.name(), &problem, &request, &[vec![steps]]);
     }
 }
@@ -213,7 +214,7 @@ fn a_state_of_something_else_is_refused() {
     assert!(read(folder).unwrap().is_none());
     let mut session = Session::start(problem.clone(), &wanted).unwrap();
     session.advance(25).unwrap();
-    write(folder, &problem, &wanted, &session, Stopped::Interrupted);
+    write(folder, &problem, &wanted, &mut session, Stopped::Interrupted);
     let file = read(folder).unwrap().unwrap();
     let try_with = |file: &state::StateFile, problem: DynamicProblem, request: &RunRequest| {
         resume(folder, file, problem, request).err().expect("it is refused")
@@ -235,12 +236,14 @@ fn a_state_of_something_else_is_refused() {
         StateError::Journal(JournalError::Version { .. })
     ));
     let mut cut = file.clone();
-    cut.state.pop();
+    cut.bearing.as_mut().unwrap().state.pop();
     assert!(matches!(try_with(&cut, problem.clone(), &wanted), StateError::Damaged { .. }));
     let more_rows = state::StateFile { rows: 4, ..file.clone() };
     assert!(matches!(try_with(&more_rows, problem.clone(), &wanted), StateError::Rows { .. }));
     // The file itself.
     let text = fs::read_to_string(folder.join(state::STATE)).unwrap();
+    fs::write(folder.join(state::STATE), text.replace("\"form\": 2", "\"form\": 1")).unwrap();
+    assert!(matches!(read(folder), Err(StateError::Journal(JournalError::Form { .. }))));
     fs::write(folder.join(state::STATE), &text[..text.len() / 2]).unwrap();
     assert!(matches!(read(folder), Err(StateError::Journal(JournalError::Json { .. }))));
 }
@@ -253,11 +256,11 @@ fn numbers_come_back_to_the_bit() {
     session.advance(42).unwrap();
     // What decimal text could lose: signed zero, the smallest and the largest numbers.
     let odd = [-0.0, f64::from_bits(1), f64::MAX, f64::MIN_POSITIVE, 0.1 + 0.2, 1e23, 1.0];
-    session.simulation.system.sets[0].damping[..odd.len()].copy_from_slice(&odd);
-    save(folder.path(), &session, &record(&problem, &wanted, Stopped::Running)).unwrap();
+    simulation_mut(&mut session).system.sets[0].damping[..odd.len()].copy_from_slice(&odd);
+    save(folder.path(), &mut session, &record(&problem, &wanted, Stopped::Running)).unwrap();
     let back = go_on(folder.path(), &problem, &wanted);
     let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
-    let (a, b) = (session.simulation.checkpoint(), back.simulation.checkpoint());
+    let (a, b) = (simulation(&session).checkpoint(), simulation(&back).checkpoint());
     assert_eq!(bits(&a.state), bits(&b.state));
     assert_eq!(bits(&a.damping), bits(&b.damping));
     assert_eq!(a, b);
@@ -268,13 +271,15 @@ fn numbers_come_back_to_the_bit() {
     }
     // The history is the file's, not that of the state it came with.
     let mut file = read(folder.path()).unwrap().unwrap();
-    file.was_loaded[3] = !file.was_loaded[3];
+    let entry = file.bearing.as_mut().unwrap();
+    entry.was_loaded[3] = !entry.was_loaded[3];
+    let expected = entry.was_loaded.clone();
     let flipped = resume(folder.path(), &file, problem.clone(), &wanted).unwrap();
-    assert_eq!(flipped.simulation.checkpoint().was_loaded, file.was_loaded);
+    assert_eq!(simulation(&flipped).checkpoint().was_loaded, expected);
     // What JSON cannot hold is not written, and the state that is there stays.
     let before = fs::read(folder.path().join(state::STATE)).unwrap();
-    session.simulation.system.sets[0].damping[0] = f64::NAN;
-    let refused = save(folder.path(), &session, &record(&problem, &wanted, Stopped::Running));
+    simulation_mut(&mut session).system.sets[0].damping[0] = f64::NAN;
+    let refused = save(folder.path(), &mut session, &record(&problem, &wanted, Stopped::Running));
     assert!(matches!(refused, Err(StateError::NotFinite { .. })));
     assert_eq!(fs::read(folder.path().join(state::STATE)).unwrap(), before);
 }
@@ -285,15 +290,15 @@ fn a_run_that_fails_keeps_the_state_before_the_failing_step() {
     let (problem, wanted) = (frictionless(), request(STEP, 10));
     let mut session = Session::start(problem.clone(), &wanted).unwrap();
     session.advance(33).unwrap();
-    let before = session.simulation.checkpoint();
+    let before = simulation(&session).checkpoint();
     // Shoot ball 3 out of its races.
-    let layout = session.simulation.system.sets[0].layout;
-    session.simulation.state[layout.ball(7) + 2] = 1e7;
-    let thrown = session.simulation.checkpoint();
-    let error = session.advance(50).unwrap_err();
+    let layout = simulation(&session).system.sets[0].layout;
+    simulation_mut(&mut session).state[layout.ball(7) + 2] = 1e7;
+    let thrown = simulation(&session).checkpoint();
+    let error = of_steps(session.advance(50).unwrap_err());
     let SimulationError::BallOutside { ball, step, .. } = &error else { panic!("{error}") };
     assert_eq!((ball.as_str(), *step), ("ball 3", 34));
-    let (kept, rows) = session.resumable();
+    let (kept, rows) = resumable(&mut session);
     assert_eq!((kept.steps, rows), (33, 4));
     assert_eq!(kept, thrown);
     assert_ne!(kept, before);
@@ -301,7 +306,7 @@ fn a_run_that_fails_keeps_the_state_before_the_failing_step() {
         error: Some(error.to_string()),
         ..record(&problem, &wanted, Stopped::Failed)
     };
-    save(folder.path(), &session, &failed).unwrap();
+    save(folder.path(), &mut session, &failed).unwrap();
     let file = read(folder.path()).unwrap().unwrap();
     assert_eq!((file.stopped, file.steps, file.rows), (Stopped::Failed, 33, 4));
     assert!(file.error.unwrap().contains("ball 3"));

@@ -6,9 +6,9 @@ use crate::run_common;
 
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::output::dynamics::session::{RunRequest, Session, SessionError, Status};
-use bearing_dynamics::output::dynamics::summary::{RunReport, run_summary};
-use bearing_dynamics::output::dynamics::table::RunTable;
+use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status};
+use bearing_dynamics::output::summary::{RunReport, run_summary};
+use bearing_dynamics::output::table::RunTable;
 use bearing_dynamics::solver::dynamics::contacts::Driver;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
 use bearing_dynamics::solver::dynamics::run::{Simulation, SimulationError, Stepping};
@@ -16,7 +16,7 @@ use bearing_dynamics::solver::dynamics::stability::step_limit;
 use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::profile::Profile;
 use dynamics::{RPM, bearing, traction_laws};
-use run_common::common::table_4_1;
+use run_common::{common::table_4_1, of_steps, resumable, simulation, simulation_mut};
 use run_common::{pressed, request, sliding};
 
 /// The largest stable step at the start.
@@ -43,7 +43,7 @@ fn too_long(error: &SimulationError) -> Option<(f64, f64, f64)> {
 
 /// Steps until the end or an error.
 fn run(session: &mut Session) -> Result<(), SimulationError> {
-    while session.advance(100)? == Status::Running {}
+    while session.advance(100).map_err(of_steps)? == Status::Running {}
     Ok(())
 }
 
@@ -80,18 +80,20 @@ fn a_given_step_that_becomes_too_long_ends_the_run() {
     let mut session = Session::start(problem.clone(), &wanted).unwrap();
     let error = run(&mut session).unwrap_err();
     let (size, limit, time) = too_long(&error).unwrap_or_else(|| panic!("{error}"));
-    println!("{error}; judged {}", session.simulation.step_watch.judged);
+    println!("{error}; judged {}", simulation(&session).step_watch.judged);
     // Past the limit by no more than a row of looks, and in the middle of the ramp.
     assert!(size > 1.1 * limit && size < 1.2 * limit, "{size} {limit}");
     assert!(time > 300.0 * step && time < 2200.0 * step, "{time}");
-    assert!(session.simulation.step_watch.judged <= 50);
+    assert!(simulation(&session).step_watch.judged <= 50);
     // The state is that before the step after which it was found, and a run that goes on from
     // there fails in the same place.
-    let (kept, rows) = session.resumable();
-    assert_eq!(kept.steps + 1, session.simulation.steps);
-    let mut again =
-        Session::from_checkpoint(problem.clone(), &wanted, &kept, session.steps_per_row).unwrap();
-    assert!(again.recorder.restore(&session.recorder.series(rows).unwrap(), rows));
+    let (kept, rows) = resumable(&mut session);
+    assert_eq!(kept.steps + 1, simulation(&session).steps);
+    let (clock, sound) = (session.clock.clone(), session.resumable());
+    let series = session.recorder.series(rows).unwrap();
+    let mut again = Session::resume(problem.clone(), &wanted, clock, sound, &series)
+        .unwrap()
+        .expect("its own rows");
     assert_eq!(run(&mut again).unwrap_err(), error);
 }
 
@@ -102,20 +104,20 @@ fn a_step_that_follows_from_the_limit_is_shortened_when_the_limit_comes_down() {
     let mut wanted = RunRequest { end: 3000.0 * step, ..request(step, 300) };
     wanted.options.stepping = Stepping::FractionOfLimit(0.5);
     let mut session = Session::start(problem.clone(), &wanted).unwrap();
-    let first = session.simulation.step_size;
+    let first = simulation(&session).step_size;
     run(&mut session).unwrap();
-    let watch = session.simulation.step_watch;
+    let watch = simulation(&session).step_watch;
     let shortened = watch.shortened.expect("the limit comes down to a tenth");
     // Each time by a third or more: from half the first limit to half of a tenth of it.
     assert!((3..=6).contains(&shortened.times), "{shortened:?}");
     assert_eq!(shortened.from, first);
     assert!(shortened.last > 300.0 * step && shortened.last < 2200.0 * step, "{shortened:?}");
     assert_eq!(watch.exceeded, None);
-    let last = session.simulation.step_size;
+    let last = simulation(&session).step_size;
     assert!(last < 0.3 * first && last > 0.05 * first, "{first} {last}");
     // It ends below the limit of where it ends, and not needlessly far below.
-    session.simulation.judge_step_now().unwrap();
-    let smallest = session.simulation.step_watch.smallest.unwrap();
+    simulation_mut(&mut session).judge_step_now().unwrap();
+    let smallest = simulation(&session).step_watch.smallest.unwrap();
     assert!(last <= smallest && last >= 0.25 * smallest, "{last} {smallest}");
     // Rows stay where they were asked for.
     assert_eq!(session.recorder.rows(), 301);
@@ -157,9 +159,9 @@ fn contacts_that_stay_as_they_are_ask_for_no_jacobian() {
         wanted.options.stepping = Stepping::FractionOfLimit(0.5);
         let mut session = Session::start(problem, &wanted).unwrap();
         run(&mut session).unwrap();
-        assert_eq!(session.simulation.step_watch.judged, judged);
-        assert_eq!(session.simulation.step_watch.exceeded, None);
-        assert_eq!(session.simulation.step_watch.shortened, None);
+        assert_eq!(simulation(&session).step_watch.judged, judged);
+        assert_eq!(simulation(&session).step_watch.exceeded, None);
+        assert_eq!(simulation(&session).step_watch.shortened, None);
     }
 }
 
@@ -179,10 +181,10 @@ fn slip_that_comes_back_to_its_onset_shortens_the_step_and_refuses_a_given_one()
     wanted.options.stepping = Stepping::FractionOfLimit(0.5);
     let mut session = Session::start(problem.clone(), &wanted).unwrap();
     run(&mut session).unwrap();
-    let now = limit_of(&session.simulation);
+    let now = limit_of(simulation(&session));
     assert!(now < 0.5 * at_start, "{at_start} {now}");
-    assert!(session.simulation.step_size <= 0.76 * now, "{now}");
-    let snapshot = session.simulation.snapshot().unwrap();
+    assert!(simulation(&session).step_size <= 0.76 * now, "{now}");
+    let snapshot = simulation_mut(&mut session).snapshot().unwrap();
     assert!(snapshot.residual.abs() <= 1e-6, "{}", snapshot.residual);
     // 0.9 of the limit at the start is far above that of a moment later.
     wanted.options.stepping = Stepping::Fixed(0.9 * at_start);
@@ -208,7 +210,7 @@ fn a_damped_contact_that_is_pressed_harder_shortens_the_step() {
     wanted.options.stepping = Stepping::FractionOfLimit(0.5);
     let mut session = Session::start(problem, &wanted).unwrap();
     run(&mut session).unwrap();
-    let now = limit_of(&session.simulation);
-    assert!(session.simulation.step_size <= 0.8 * now, "{now}");
-    assert!(session.simulation.step_watch.shortened.is_some());
+    let now = limit_of(simulation(&session));
+    assert!(simulation(&session).step_size <= 0.8 * now, "{now}");
+    assert!(simulation(&session).step_watch.shortened.is_some());
 }

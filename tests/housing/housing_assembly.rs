@@ -7,8 +7,8 @@ use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::output::housed::course::outer_place;
-use bearing_dynamics::output::housed::rows::SeatRow;
+use bearing_dynamics::output::course::outer_place;
+use bearing_dynamics::output::recorder::seat::SeatRow;
 use bearing_dynamics::solver::dynamics::model::RotatingLoad;
 use bearing_dynamics::solver::housing::assembly::{
     AssemblyError, AssemblyOptions, AssemblySearch, AssemblyState,

@@ -8,12 +8,13 @@ use bearing_dynamics::ch2_housing::bearing::cage::{CageContacts, CageForce, Guid
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::{self, Inertia};
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
-use bearing_dynamics::output::dynamics::session::RunRequest;
+use bearing_dynamics::output::session::{Checkpoint, RunRequest, Session, SessionError};
 use bearing_dynamics::solver::channels::ChannelGroup;
+use bearing_dynamics::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
 use bearing_dynamics::solver::dynamics::model::{
     CageBody, Drive, DynamicProblem, RaceBody, Rotation,
 };
-use bearing_dynamics::solver::dynamics::run::{RunOptions, Stepping};
+use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Stepping};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::Condition;
 
@@ -149,6 +150,33 @@ pub fn request(step: f64, rows: usize) -> RunRequest {
         options: RunOptions { stepping: Stepping::Fixed(step), ..RunOptions::default() },
         end: step * (10.0 * rows as f64 + 3.4),
         output_interval: 10.0 * step,
+        fields_interval: None,
         channels: ChannelGroup::ALL.to_vec(),
+    }
+}
+
+/// The bearing that a session moves.
+pub fn simulation<'s>(session: &'s Session) -> &'s Simulation {
+    session.motion.bearing().expect("a bearing moves")
+}
+
+pub fn simulation_mut<'s>(session: &'s mut Session) -> &'s mut Simulation {
+    session.motion.bearing_mut().expect("a bearing moves")
+}
+
+/// What ended the steps of a bearing.
+pub fn of_steps(error: SessionError) -> SimulationError {
+    match error {
+        SessionError::Simulation(error) => error,
+        other => panic!("{other}"),
+    }
+}
+
+/// What a bearing goes on from, and its rows.
+pub fn resumable(session: &mut Session) -> (BearingCheckpoint, usize) {
+    let sound = session.resumable();
+    match sound.checkpoint {
+        Checkpoint::Bearing(kept) => (*kept, sound.rows),
+        other => panic!("{other:?}"),
     }
 }

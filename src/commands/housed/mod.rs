@@ -1,9 +1,7 @@
 //! The commands on a scene with a bearing in a flexible housing; here what they share.
 
 pub mod check;
-pub mod course;
 pub mod echo;
-pub mod explicit;
 pub mod plan;
 pub mod statics;
 
@@ -11,12 +9,10 @@ use super::memory::watched;
 use super::solid::mesh_notes;
 use super::{echo_run, placed, say};
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::output::dynamics::table::RunTable;
-use bearing_dynamics::output::housed::course::{masses, moments, on_inner, on_outer};
-use bearing_dynamics::output::housed::fields::{BoreNodeState, bore_series};
-use bearing_dynamics::output::housed::state::{HousedParts, HousedRequest};
+use bearing_dynamics::output::course::{masses, moments, on_inner, on_outer};
+use bearing_dynamics::output::fields::bore::{BoreNodeState, bore_series};
 use bearing_dynamics::output::results::RunRecord;
-use bearing_dynamics::output::series::Series;
+use bearing_dynamics::output::session::{HousedParts, RunRequest};
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
 use bearing_dynamics::scene::housing_problem::{HousingSetup, check_constant, excitations, setup};
@@ -33,7 +29,7 @@ use bearing_dynamics::solver::housing::condensed::{
 use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, course_inertia,
 };
-use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, HousedBearing, Seat};
+use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, Seat};
 use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::support::free_motions;
@@ -234,29 +230,10 @@ pub fn parts(
     Ok(HousedParts { problem, model: setup.model.clone(), seat, options })
 }
 
-pub fn request(scene: &HousedScene, run: &RunSettings) -> HousedRequest {
-    HousedRequest {
-        end: run.end,
-        output_interval: run.output_interval,
-        fields_interval: scene.housing.fields_interval,
-        // With those that a plot needs.
-        channels: super::run::request(&scene.bearing, run).channels,
-        energy_limit: run.options.energy_limit,
-    }
-}
-
-/// At the start, windows that divide the rows; returns how many a row has.
-pub fn started(parts: HousedParts, interval: f64) -> Fallible<(HousedBearing, u64)> {
-    let HousedParts { problem, model, seat, options } = parts;
-    let still = vec![[0.0; 3]; model.mass.len()];
-    let mut housed = HousedBearing::new(problem, model, seat, still, &options)?;
-    let windows = housed.divide(interval)?;
-    Ok((housed, windows))
-}
-
-pub fn run_settings(path: &Path, scene: &HousedScene) -> Fallible<RunSettings> {
-    let missing = || format!("{}: a run needs `end` in [numerics]", path.display());
-    Ok(scene.bearing.dynamics.run.clone().ok_or_else(missing)?)
+pub fn request(scene: &HousedScene, run: &RunSettings) -> RunRequest {
+    // With the channels that a plot needs.
+    let request = super::run::request(&scene.bearing, run);
+    RunRequest { fields_interval: scene.housing.fields_interval, ..request }
 }
 
 /// Defaults in use for bearing, seat and housing; of a course of equilibria without what only
@@ -291,22 +268,8 @@ pub fn record(
     plan: Vec<String>,
     seconds: Vec<(String, f64)>,
 ) -> Fallible<RunRecord> {
-    let assumptions = scene.bearing.assumptions.iter().map(|a| (a.name.clone(), a.text.clone()));
-    let defaults = defaults(scene)
-        .into_iter()
-        .map(|used| (used.key, format!("{} ({})", used.value, used.reason)));
-    Ok(RunRecord {
-        scene: echo::scene(scene)?,
-        plan,
-        assumptions: assumptions.chain(defaults).collect(),
-        threads: 1,
-        seconds,
-        sections: Vec::new(),
-    })
-}
-
-pub fn title(scene: &HousedScene) -> String {
-    scene.bearing.title.clone().unwrap_or_else(|| "Bearing in its housing".into())
+    let assumptions = &scene.bearing.assumptions;
+    Ok(super::record(echo::scene(scene)?, plan, assumptions, &defaults(scene), seconds))
 }
 
 /// Nodes and elements as a person counts them.
@@ -334,16 +297,6 @@ pub fn notes(prepared: &Prepared) -> Vec<String> {
 /// Says these.
 pub fn say_notes(prepared: &Prepared) -> Fallible<()> {
     notes(prepared).iter().try_for_each(|note| say(&format!("note: {note}\n")))
-}
-
-/// Rows at equal intervals with the window that starts at a time.
-pub fn run_table(series: Series, interval: f64, window_start: f64) -> RunTable {
-    // A start that lies on a row but for rounding takes that row.
-    let from = window_start - 1e-6 * interval;
-    let times = series.data().column(0);
-    let rows = times.len();
-    let start = times.iter().position(|time| *time >= from).unwrap_or(rows);
-    RunTable { series, interval, window: start..rows }
 }
 
 /// Writes the table of the bore's nodes.

@@ -3,14 +3,13 @@
 
 use super::{
     Prepared, along_course, bearing_at, condensed, condensing, inertia_estimate, mesh_text, notes,
-    parts, prepare, request, started,
+    parts, prepare,
 };
 use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::run::request as bearing_request;
 use crate::commands::solve::plan_lines;
 use crate::commands::{CommandResult, Outcome, memory, say};
-use bearing_dynamics::output::housed::course::equilibria;
-use bearing_dynamics::output::housed::summary::largest_error;
+use bearing_dynamics::output::summary::housing::largest_error;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::RunSettings;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
@@ -18,7 +17,7 @@ use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
 use bearing_dynamics::scene::housing_problem::{
     BALLS_PASSING, Excitation, check_constant, excitations,
 };
-use bearing_dynamics::solver::clock::{rounded, to_digits};
+use bearing_dynamics::solver::clock::{rounded, to_digits, whole_number};
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, Sizes};
 use bearing_dynamics::solver::housing::course_inertia::CourseInertia;
@@ -124,7 +123,7 @@ fn with_centrifugal(of_statics: String) -> String {
 
 /// As many as a run solves.
 fn equilibria_line(run: &RunSettings) -> String {
-    let count = equilibria(run.end, run.output_interval);
+    let count = whole_number(run.end, run.output_interval) + 1;
     let last = rounded((count - 1) as f64 * run.output_interval);
     line("does ", "equilibria", &format!("{count} equilibria to t = {last} s, one a row"))
 }
@@ -278,11 +277,9 @@ fn timed(
     prepared: &Prepared,
     run: &RunSettings,
 ) -> Result<String, Box<dyn Error>> {
-    let request = request(scene, run);
     let parts = parts(scene, &prepared.setup, run)?;
-    let (mut housed, windows) = started(parts, run.output_interval)?;
-    let grid = request.grid(run.output_interval, windows);
-    let all = grid.rows * windows;
+    let (mut housed, windows) = parts.started(run.output_interval)?;
+    let all = whole_number(run.end, run.output_interval) * windows;
     let (tested, out_of_reach) = housed.counts();
     let sorted = match out_of_reach {
         0 => String::new(),

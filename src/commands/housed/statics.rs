@@ -8,15 +8,16 @@ use super::{
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
 use crate::commands::solid::say_remarks;
 use crate::commands::{CommandResult, Outcome, pictures, results_folder, say, table};
-use bearing_dynamics::output::housed::course::{bore_nodes, outer_place};
-use bearing_dynamics::output::housed::fields::write_housing_fields;
-use bearing_dynamics::output::housed::rows::SeatRow;
-use bearing_dynamics::output::housed::summary::{
-    PEAK_PRESSURE, equilibrium_section, field_sections, inertia_section,
-};
+use bearing_dynamics::output::course::outer_place;
+use bearing_dynamics::output::fields::bore::condensed_nodes;
+use bearing_dynamics::output::fields::{file_name, stresses, write_fields, write_list};
+use bearing_dynamics::output::recorder::seat::SeatRow;
+use bearing_dynamics::output::remarks;
 use bearing_dynamics::output::results::write_static_results;
-use bearing_dynamics::output::solid::fields::{file_name, stresses, write_list};
-use bearing_dynamics::output::solid::remarks;
+use bearing_dynamics::output::summary::housing::{
+    PEAK_PRESSURE, equilibrium_section, inertia_section,
+};
+use bearing_dynamics::output::summary::solid::field_sections;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::Plot;
 use bearing_dynamics::scene::housing::HousedScene;
@@ -86,11 +87,11 @@ pub fn run(
     // The other plots move the bearing on, which would move the outer race.
     drawn.plots.retain(|plot| *plot == Plot::LoadZone);
     let mut written = pictures::write(&folder, &drawn, &problem, &state.bearing)?;
-    let nodes = bore_nodes(setup, &bore, &state);
+    let nodes = condensed_nodes(&setup.model, &bore, &state);
     written.push(write_bore(&folder, &nodes)?);
     let file = file_name("fields", 0);
     let fields = folder.join(&file);
-    write_housing_fields(&fields, &built.mesh, &displacement, None, &stress, &nodes)?;
+    write_fields(&fields, &built.mesh, &displacement, None, &stress, Some(&nodes))?;
     written.push(fields);
     written.push(write_list(&folder, &[(0.0, file)])?);
     written.extend(write_static_results(&folder, &state.bearing, &record)?);

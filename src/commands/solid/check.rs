@@ -3,9 +3,9 @@
 use super::{echo, mesh_notes, prepare};
 use crate::commands::{CommandResult, Outcome, echo_run, say};
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::output::recorder::sum;
 use bearing_dynamics::output::results::pretty;
-use bearing_dynamics::output::solid::session::sum;
-use bearing_dynamics::output::solid::summary::mesh_section;
+use bearing_dynamics::output::summary::solid::mesh_section;
 use bearing_dynamics::output::visible::visible_line;
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::model::SolidModel;

@@ -4,7 +4,6 @@ pub mod check;
 pub mod echo;
 pub mod modes;
 pub mod plan;
-pub mod run;
 pub mod statics;
 
 use super::{placed, say};
@@ -68,17 +67,6 @@ pub fn record(
     plan: Vec<String>,
     seconds: Vec<(String, f64)>,
 ) -> Result<RunRecord, Box<dyn Error>> {
-    let assumptions = scene.assumptions.iter().map(|a| (a.name.clone(), a.text.clone()));
-    let defaults = scene
-        .defaults_used
-        .iter()
-        .map(|used| (used.key.clone(), format!("{} ({})", used.value, used.reason)));
-    Ok(RunRecord {
-        scene: echo::scene(scene)?,
-        plan,
-        assumptions: assumptions.chain(defaults).collect(),
-        threads: 1,
-        seconds,
-        sections: Vec::new(),
-    })
+    let (assumptions, defaults) = (&scene.assumptions, &scene.defaults_used);
+    Ok(super::record(echo::scene(scene)?, plan, assumptions, defaults, seconds))
 }

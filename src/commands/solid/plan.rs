@@ -3,9 +3,9 @@
 use super::{Prepared, mesh_notes, prepare};
 use crate::commands::{CommandResult, Outcome, memory, say};
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::output::solid::session::Grid;
 use bearing_dynamics::scene::solid::{MeshSource, SolidRun};
 use bearing_dynamics::scene::{Document, SolidScene};
+use bearing_dynamics::solver::clock::whole_number;
 use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, SolidStepping};
 use bearing_dynamics::solver::solid::foretold;
 use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel};
@@ -37,8 +37,8 @@ fn line(included: bool, name: &str, reason: &str) -> String {
 fn step_line(model: &SolidModel, run: &SolidRun) -> String {
     let still = vec![[0.0; 4]; model.mass.len()];
     let limit = step_limit(model, &still, run.method);
-    let grid = Grid::new(run, &limit);
-    let ratio = grid.step_size / limit.step;
+    let (step, _) = run.stepping.divide(run.output_interval, limit.step);
+    let ratio = step / limit.step;
     let [x, y, z] = limit.at.map(|at| 1e3 * at);
     let bound =
         if limit.is_bound { " (a safe bound: the search for it did not settle)" } else { "" };
@@ -52,10 +52,10 @@ fn step_line(model: &SolidModel, run: &SolidRun) -> String {
     let said = format!(
         "{:.3e} s is {ratio:.3} of the stability limit {:.3e} s{bound}{verdict}; the fastest element \
          is {} at x {x:.3}, y {y:.3}, z {z:.3} mm; {} steps to t = {} s",
-        grid.step_size,
+        step,
         limit.step,
         model.labels.element(limit.element),
-        grid.steps,
+        whole_number(run.end, step),
         run.end
     );
     format!("notes {name:<28} {said}")

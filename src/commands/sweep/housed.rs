@@ -5,9 +5,9 @@
 
 use super::point::of_bearing;
 use crate::commands::housed::{Prepared, condensed, equilibrium_at, search};
-use bearing_dynamics::output::housed::course::outer_place;
-use bearing_dynamics::output::housed::rows::SeatRow;
-use bearing_dynamics::output::solid::fields::stresses;
+use bearing_dynamics::output::course::outer_place;
+use bearing_dynamics::output::fields::stresses;
+use bearing_dynamics::output::recorder::seat::SeatRow;
 use bearing_dynamics::scene::bore_shape::BorePlace;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::scene::housing_problem::setup;

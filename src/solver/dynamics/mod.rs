@@ -4,12 +4,14 @@
 //! and `race` turn states into loads, each bearing's `ball_set` into loads on its bodies, `system` into rates, `energy` into energies; `rk4`, `dormand_prince` and `rosenbrock`
 //! integrate (the last through `linearised` contacts, the `arrow` matrix and each ball's `orbit_frame`),
 //! `bounds` says where a state has lost its meaning, `control` chooses steps for an accuracy, `extremes` remembers the largest loads,
-//! `run` drives a simulation from start to end.
+//! `run` takes a simulation from step to step,
+//! `clocked` up to what is due next, `foretell` for a while.
 pub mod arrow;
 pub mod assembly;
 pub mod ball_set;
 pub mod bounds;
 pub mod checkpoint;
+pub mod clocked;
 pub mod connection;
 pub mod contacts;
 pub mod control;
@@ -19,6 +21,7 @@ pub mod energy;
 pub mod equilibrium;
 pub mod extremes;
 pub mod failure;
+pub mod foretell;
 pub mod linearised;
 pub mod model;
 pub mod orbit_frame;

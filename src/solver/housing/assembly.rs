@@ -11,7 +11,7 @@
 //! outer race, so that what is put on the inner race arrives at the bore, whole.
 
 use super::bore_equilibrium::{
-    BoreError, BoreSearch, BoreState, Fit, RaceLoad, Tether, check_load,
+    BoreError, BoreMemory, BoreSearch, BoreState, Fit, RaceLoad, Tether, check_load,
 };
 use super::condensed::placed;
 use crate::kinematics::vec3::{Vec3, add};
@@ -66,6 +66,16 @@ pub struct AssemblyState {
     pub contact_evaluations: usize,
 }
 
+/// What a search goes on from with the same bits.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SearchMemory {
+    /// Coordinates of the inner race, once it has been found (m, rad).
+    pub inner: Option<[f64; 5]>,
+    /// Of the outer race: y, z (m), tilts about Y and Z (rad).
+    pub outer: [f64; 4],
+    pub bore: BoreMemory,
+}
+
 /// A search that starts from what it found last.
 pub struct AssemblySearch<'a> {
     bore: BoreSearch<'a>,
@@ -81,6 +91,20 @@ impl<'a> AssemblySearch<'a> {
 
     pub fn bore(&self) -> &BoreSearch<'a> {
         &self.bore
+    }
+
+    pub fn memory(&self) -> SearchMemory {
+        let inner = self.inner.map(Into::into);
+        SearchMemory { inner, outer: self.outer, bore: self.bore.memory() }
+    }
+
+    /// Goes on from what a search in the same bore remembered.
+    ///
+    /// # Errors
+    /// As [`BoreSearch::recall`].
+    pub fn recall(&mut self, memory: &SearchMemory) -> Result<(), BoreError> {
+        (self.inner, self.outer) = (memory.inner.map(SVector::from), memory.outer);
+        self.bore.recall(&memory.bore)
     }
 
     /// Equilibrium of `bearing`, whose `outer_pose` is what is looked for, in the bore; `weight` is

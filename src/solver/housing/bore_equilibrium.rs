@@ -76,6 +76,8 @@ pub enum BoreError {
     BeyondReach { motion: f64, travel: f64 },
     #[error("contact has not settled after {changes} changes of the nodes that touch")]
     NotSettled { changes: usize },
+    #[error("node {node} of the bore is to touch; it has {count} nodes")]
+    NoSuchNode { node: usize, count: usize },
     #[error(transparent)]
     Factor(#[from] FactorError),
 }
@@ -132,6 +134,15 @@ impl BoreState {
 pub(super) struct Tether {
     pub stiffness: Matrix4<f64>,
     pub place: Vector4<f64>,
+}
+
+/// What a search starts from besides its bore.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BoreMemory {
+    /// y, z (m), tilts about Y and Z (rad).
+    pub pose: [f64; 4],
+    /// Nodes of the bore, ascending.
+    pub touching: Vec<usize>,
 }
 
 /// Nodes in contact with the factors that belong to them.
@@ -196,6 +207,25 @@ impl<'a> BoreSearch<'a> {
 
     pub fn bore(&self) -> &'a CondensedBore {
         self.bore
+    }
+
+    /// Where the race was last, and which nodes touched.
+    pub fn memory(&self) -> BoreMemory {
+        let touching = self.contact.as_ref().map_or_else(Vec::new, |c| c.nodes.clone());
+        BoreMemory { pose: self.pose.into(), touching }
+    }
+
+    /// Goes on from what a search of the same bore remembered, with its bits.
+    ///
+    /// # Errors
+    /// Nodes that the bore does not have, or a factor that there is not.
+    pub fn recall(&mut self, memory: &BoreMemory) -> Result<(), BoreError> {
+        check_finite("the race's pose", memory.pose.iter().sum())?;
+        if let Some(&node) = memory.touching.iter().find(|&&node| node >= self.levers.len()) {
+            return Err(BoreError::NoSuchNode { node, count: self.levers.len() });
+        }
+        self.pose = Vector4::from(memory.pose);
+        self.make_contact(memory.touching.clone())
     }
 
     pub fn penalty(&self) -> Penalty {

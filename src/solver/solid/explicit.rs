@@ -6,6 +6,7 @@ use super::rigid_motion::{RigidMotion, rigid_motion};
 use super::step_limit::{SolidStepLimit, step_limit};
 use super::tet4_blocks::Node;
 use crate::kinematics::vec3::Vec3;
+use crate::solver::clock::whole_steps;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExplicitMethod {
@@ -22,6 +23,21 @@ pub enum SolidStepping {
     Fixed(f64),
     /// This fraction of the stability limit at the start.
     FractionOfLimit(f64),
+}
+
+impl SolidStepping {
+    /// The step (s) of a run with rows `interval` (s) apart, and how many make a row. One that follows from
+    /// the stability `limit` (s) is shortened so that a whole number makes an interval; with a given step
+    /// the interval is rounded to whole steps.
+    pub fn divide(self, interval: f64, limit: f64) -> (f64, u64) {
+        match self {
+            SolidStepping::FractionOfLimit(fraction) => {
+                let steps = whole_steps(interval, fraction * limit);
+                (interval / steps as f64, steps)
+            }
+            SolidStepping::Fixed(step) => (step, (interval / step).round().max(1.0) as u64),
+        }
+    }
 }
 
 /// Work done, for tests that pin it.

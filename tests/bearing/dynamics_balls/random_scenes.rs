@@ -3,7 +3,7 @@
 
 use crate::dynamics::Noise;
 use bearing_dynamics::kinematics::vec3::{norm, sub};
-use bearing_dynamics::output::dynamics::session::{RunRequest, Session, SessionError, Status};
+use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status};
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{self, Format};
 use bearing_dynamics::solver::channels::ChannelGroup;
@@ -175,6 +175,7 @@ pub fn run_scene(text: &str) -> Outcome {
         options: settings.options,
         end: settings.end,
         output_interval: settings.output_interval,
+        fields_interval: None,
         channels: vec![ChannelGroup::Energy],
     };
     let mut outcome = Outcome {
@@ -193,11 +194,14 @@ pub fn run_scene(text: &str) -> Outcome {
     let (mut rows, mut contact) = (0, 0.0f64);
     loop {
         let advanced = session.advance(1);
-        let simulation = &mut session.simulation;
+        let simulation = session.motion.bearing().expect("a bearing moves");
         outcome.steps = simulation.steps;
         let status = match advanced {
             Ok(status) => status,
-            Err(error) => return Outcome { error: Some(error), ..outcome },
+            Err(SessionError::Simulation(error)) => {
+                return Outcome { error: Some(error), ..outcome };
+            }
+            Err(other) => panic!("{other}\n{text}"),
         };
         let (balls, all) = depths(simulation);
         outcome.deepest_balls = outcome.deepest_balls.max(balls);
@@ -206,7 +210,8 @@ pub fn run_scene(text: &str) -> Outcome {
         outcome.meetings += met as u64;
         if session.recorder.rows() > rows {
             rows = session.recorder.rows();
-            if let Ok(snapshot) = session.simulation.snapshot() {
+            let simulation = session.motion.bearing_mut().expect("a bearing moves");
+            if let Ok(snapshot) = simulation.snapshot() {
                 contact = contact.max(snapshot.energy.contact + snapshot.energy.ball_contact);
                 let turned = contact
                     + snapshot.energy.kinetic

@@ -4,11 +4,11 @@
 //! An error of the implicit method or of Runge–Kutta is one against a converged run of the explicit one with
 //! error control, and the other way round.
 
-use bearing_dynamics::output::dynamics::foretell::{choose, foretell};
-use bearing_dynamics::output::dynamics::session::{RunRequest, Session, Status};
+use bearing_dynamics::output::session::{RunRequest, Session, Status};
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{self, Format};
 use bearing_dynamics::solver::channels::ChannelGroup;
+use bearing_dynamics::solver::dynamics::foretell::{choose, foretell};
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
 
@@ -101,6 +101,7 @@ fn request(regime: &Regime) -> Result<(DynamicProblem, RunRequest), CaseError> {
         options: settings.options,
         end: settings.end,
         output_interval: settings.output_interval,
+        fields_interval: None,
         channels: vec![ChannelGroup::Races],
     };
     Ok((problem, request))
@@ -135,9 +136,10 @@ fn take(
     let column = |name: &str| series.column(name).map(|c| c.to_vec()).unwrap_or_default();
     let [x, y, z] = ["inner_x", "inner_y", "inner_z"].map(column);
     let race = (0..rows).map(|row| [x[row], y[row], z[row]]).collect();
-    let evaluations = session.simulation.system.work.evaluations;
+    let simulation = session.motion.bearing().expect("a bearing moves");
+    let evaluations = simulation.system.work.evaluations;
     let history = History { race, evaluations, seconds, ..History::default() };
-    Ok(Taken { history, steps: session.simulation.steps })
+    Ok(Taken { history, steps: simulation.steps })
 }
 
 /// The cheapest of so many runs.

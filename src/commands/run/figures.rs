@@ -1,0 +1,126 @@
+//! The few numbers of a run that `bearing run` ends with.
+
+use bearing_dynamics::output::course::Course;
+use bearing_dynamics::output::session::{Motion, Session};
+use bearing_dynamics::output::summary::housing::PEAK_PRESSURE;
+use bearing_dynamics::output::table::RunTable;
+use bearing_dynamics::solver::clock::rounded;
+use bearing_dynamics::solver::dynamics::run::Simulation;
+
+type Lines = Vec<(String, String)>;
+
+/// Where the races were, the largest loads, what is missing of the energy, and the effort. A mean is
+/// one over the rows of the window, an extreme one over all steps of a bearing by itself, over all rows of
+/// one in its housing.
+pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String {
+    let mut lines = Lines::new();
+    match &session.motion {
+        Motion::Bearing(simulation) => of_bearing(simulation, table, &mut lines),
+        Motion::Solid(_) => {}
+        Motion::Housed(_) => {
+            let [y, z] = ["outer_y", "outer_z"].map(|name| 1e6 * largest(table, name));
+            let said = format!("{y:.6} um along y, {z:.6} um along z");
+            lines.push(("outer race, farthest".into(), said));
+        }
+        Motion::Course(_) => races_apart(table, &mut lines),
+    }
+    if matches!(session.motion, Motion::Housed(_) | Motion::Course(_)) {
+        let deepest = 1e6 * largest(table, "bore_deepest_penetration");
+        let touching = largest(table, "bore_nodes_touching");
+        let pressure = 1e-6 * largest(table, "bore_peak_pressure");
+        let said = format!(
+            "penetration up to {deepest:.6} um, up to {touching} nodes touching, pressure up to \
+             {pressure:.4} MPa, {PEAK_PRESSURE}"
+        );
+        lines.push(("bore".into(), said));
+    }
+    if session.motion.solid().is_some() {
+        let (most, of) = (session.watch.largest_residual, session.watch.turned_over);
+        let said = format!("{most:.3e} J at most, of {of:.3e} J turned over");
+        lines.push(("energy unaccounted for".into(), said));
+    }
+    let done = session.motion.done();
+    lines.push(match &session.motion {
+        Motion::Bearing(_) | Motion::Solid(_) => {
+            ("steps".into(), format!("{done} in {seconds:.2} s"))
+        }
+        Motion::Housed(housed) => {
+            let (of_housing, of_bearing) = (housed.solid.steps, housed.bearing.steps);
+            let said = format!(
+                "{done} in {seconds:.2} s; {of_housing} steps of the housing, {of_bearing} of the bearing"
+            );
+            ("windows".into(), said)
+        }
+        Motion::Course(course) => ("equilibria".into(), effort(course, seconds)),
+    });
+    lines.iter().map(|(label, value)| format!("{label:<22} {value}\n")).collect()
+}
+
+/// Largest size of a column over all rows.
+fn largest(table: &RunTable, name: &str) -> f64 {
+    table.all(name).unwrap_or_default().iter().fold(0.0f64, |a, b| a.max(b.abs()))
+}
+
+fn effort(course: &Course, seconds: f64) -> String {
+    let effort = &course.effort;
+    format!(
+        "{} in {seconds:.2} s, {} rounds, {} changes of contact, unbalanced part of the load up to \
+         {:.1e}",
+        course.found, effort.rounds, effort.contact_changes, effort.largest_residual
+    )
+}
+
+fn races_apart(table: &RunTable, lines: &mut Lines) {
+    for race in ["inner", "outer"] {
+        let [y, z] = ["y", "z"].map(|axis| table.all(&format!("{race}_{axis}")));
+        let (Some(y), Some(z)) = (y, z) else { continue };
+        let most = y.iter().zip(&z).map(|(y, z)| libm::hypot(*y, *z)).fold(0.0, f64::max);
+        let said = format!("{:.6} um across the axis", 1e6 * most);
+        lines.push((format!("{race} race, farthest"), said));
+    }
+}
+
+fn of_bearing(simulation: &Simulation, table: &RunTable, lines: &mut Lines) {
+    let mut line = |label: &str, value: String| lines.push((label.into(), value));
+    let names = ["inner_x", "inner_y", "inner_z"];
+    if let [Some(x), Some(y), Some(z)] = names.map(|name| table.windowed(name))
+        && !x.is_empty()
+    {
+        let mean = [x, y, z].map(|values| 1e6 * values.iter().sum::<f64>() / values.len() as f64);
+        let [x, y, z] = mean.map(|value| format!("{value:.6}"));
+        line("inner race, mean", format!("{x}, {y}, {z} um (x, y, z over the window)"));
+    }
+    for (extremes, bearing) in simulation.extremes.iter().zip(&simulation.system.assembly.bearings)
+    {
+        let of = bearing.name.as_ref().map_or(String::new(), |name| format!("{name} "));
+        let farthest = &extremes.farthest;
+        let at = rounded(farthest.time);
+        let place = format!("{:.6} um at t = {at} s", 1e6 * farthest.value);
+        line(&format!("{of}inner race, farthest"), place);
+        let [inner, outer] = extremes.races.map(|race| race.load);
+        let (load, race) =
+            if outer.value > inner.value { (outer, "outer") } else { (inner, "inner") };
+        if load.value > 0.0 {
+            let (ball, at) = (load.ball + 1, rounded(load.time));
+            let value = format!("{:.6} N, ball {ball}, {race} race, at t = {at} s", load.value);
+            line(&format!("{of}largest ball load"), value);
+        }
+    }
+    if table.all("energy_residual").is_some() {
+        let most = largest(table, "energy_residual");
+        line("energy unaccounted for", format!("{most:.3e} J at most"));
+    }
+    if let Some(shortened) = simulation.step_watch.shortened {
+        line(
+            "step",
+            format!(
+                "shortened {} times where contacts got stiffer, from {:.4e} s to {:.4e} s, last at \
+                 t = {} s",
+                shortened.times,
+                shortened.from,
+                simulation.step_size,
+                rounded(shortened.last)
+            ),
+        );
+    }
+}

@@ -1,0 +1,230 @@
+//! `bearing run SCENE`: whatever the scene has in motion, from row to row, and the folder it leaves.
+
+mod figures;
+mod prepared;
+mod results;
+mod texts;
+
+pub use prepared::{planned_request, request};
+
+use super::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
+use super::{CommandResult, Outcome, results_folder, say};
+use bearing_dynamics::output::session::{Motion, Session, SessionError, Status};
+use bearing_dynamics::output::state::{self, StateFile, StateRecord, Stopped};
+use bearing_dynamics::scene::{Document, resolve_subject};
+use indicatif::{ProgressBar, ProgressStyle};
+use prepared::{Prepared, check_end};
+use results::{Seconds, write_fields_file, write_results};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Steps of a bearing between two looks at signals and clock: under a millisecond.
+const STEPS_AT_ONCE: u64 = 50;
+/// Elements evaluated between two looks: some milliseconds.
+const ELEMENTS_AT_ONCE: u64 = 200_000;
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scene file (.toml or .json) with a [numerics] table
+    scene: PathBuf,
+    /// Results folder [default: results/<name of the scene>]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Go on from the state in the results folder; the scene's end may be later than it was
+    #[arg(long)]
+    resume: bool,
+    /// Discard an unfinished run, or results of another kind, in the results folder
+    #[arg(long, conflicts_with = "resume")]
+    fresh: bool,
+    /// Threads the run may use, with the same bits; a bearing of rigid parts uses one
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: u16,
+    /// Wall time between two states kept on the way, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 30,
+          value_parser = clap::value_parser!(u64).range(1..))]
+    save_every: u64,
+}
+
+/// How the stepping ended.
+enum End {
+    Complete,
+    Interrupted,
+    Failed(SessionError),
+}
+
+pub fn run(arguments: &Arguments) -> CommandResult {
+    let start = Instant::now();
+    let document = Document::read_file(&arguments.scene)?;
+    let subject = resolve_subject(&document)?;
+    check_end(&arguments.scene, &subject)?;
+    let folder = results_folder(&arguments.scene, &arguments.out);
+    let folder = claimed(&folder, Writes::Run { fresh: arguments.fresh })?;
+    let kept = kept_state(arguments, &folder)?;
+    let prepared = Prepared::new(&document, &subject)?;
+    let parts = || prepared.parts(usize::from(arguments.threads));
+    let (request, choice) = prepared.request(kept.as_ref())?;
+    let mut seconds = Seconds { read: start.elapsed().as_secs_f64(), ..Seconds::default() };
+
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = interrupted.clone();
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))?;
+
+    let start = Instant::now();
+    let record = StateRecord {
+        fingerprint: state::fingerprint(&parts()?, &request),
+        stopped: Stopped::Running,
+        error: None,
+        seconds: kept.as_ref().map_or(0.0, |file| file.seconds),
+    };
+    let mut session = match &kept {
+        Some(file) => state::resume(&folder, file, parts()?, &request)?,
+        None => {
+            remove_earlier(&folder)?;
+            Session::start(parts()?, &request)?
+        }
+    };
+    seconds.start = start.elapsed().as_secs_f64();
+    for note in prepared.notes() {
+        say(&format!("note: {note}\n"))?;
+    }
+    say(&texts::announcement(&session, &prepared, &request, choice.as_ref(), kept.as_ref()))?;
+
+    let start = Instant::now();
+    let run = Running {
+        prepared: &prepared,
+        folder: &folder,
+        record: &record,
+        interrupted: &interrupted,
+        save_every: Duration::from_secs(arguments.save_every),
+    };
+    if kept.is_none() && session.clock.fields_due() == Some(0) {
+        write_fields_file(&folder, &prepared, &mut session, 0)?;
+    }
+    let end = run.simulate(&mut session)?;
+    seconds.simulate = record.seconds + start.elapsed().as_secs_f64();
+    let (stopped, stopped_by) = match &end {
+        End::Complete => (Stopped::Complete, None),
+        End::Interrupted => (Stopped::Interrupted, Some("interrupted".to_string())),
+        End::Failed(error) => (Stopped::Failed, Some(error.to_string())),
+    };
+    let error = stopped_by.clone().filter(|_| stopped == Stopped::Failed);
+    // The state first: whatever goes wrong with plots and tables, the run is not lost.
+    let last = StateRecord { stopped, error, seconds: seconds.simulate, ..record };
+    state::save(&folder, &mut session, &last)?;
+    write_results(&folder, &prepared, &mut session, (&request, choice), stopped_by, &seconds)?;
+    outcome(arguments, &folder, &session, end)
+}
+
+fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) -> CommandResult {
+    let (out, scene) = (folder.display(), arguments.scene.display());
+    match end {
+        End::Complete => Ok(Outcome::Done),
+        End::Interrupted => Err(format!(
+            "interrupted at {}; what there is so far is in {out}. To go on: bearing run {scene} \
+             --out {out} --resume",
+            texts::place(session)
+        )
+        .into()),
+        End::Failed(error) => {
+            let kept = match session.motion {
+                Motion::Bearing(_) => "before that step",
+                Motion::Solid(_) | Motion::Housed(_) | Motion::Course(_) => "at the last row",
+            };
+            Err(format!("{error}; the rows so far and the state {kept} are in {out}").into())
+        }
+    }
+}
+
+/// The state to go on from, if that was asked for.
+fn kept_state(arguments: &Arguments, folder: &Path) -> Result<Option<StateFile>, Box<dyn Error>> {
+    if arguments.resume {
+        let none = || {
+            format!(
+                "{} holds no run to go on with (there is no {}); name the folder of one with --out, or \
+                 start anew without --resume",
+                folder.display(),
+                state::STATE
+            )
+        };
+        return Ok(Some(state::read(folder)?.ok_or_else(none)?));
+    }
+    if !arguments.fresh {
+        refuse_half_way(folder)?;
+    }
+    Ok(None)
+}
+
+/// What goes with a run under way.
+struct Running<'r> {
+    prepared: &'r Prepared<'r>,
+    folder: &'r Path,
+    record: &'r StateRecord,
+    interrupted: &'r AtomicBool,
+    save_every: Duration,
+}
+
+impl Running<'_> {
+    /// Steps until the end, a signal or an error; keeps a state every now and then.
+    fn simulate(&self, session: &mut Session) -> Result<End, Box<dyn Error>> {
+        let bar = progress_bar(session);
+        let start = Instant::now();
+        let mut saved = start;
+        let at_once = at_once(session);
+        let end = loop {
+            match session.advance(at_once) {
+                Ok(Status::Complete) => break End::Complete,
+                Ok(Status::Running) => {}
+                Ok(Status::Fields(index)) => {
+                    write_fields_file(self.folder, self.prepared, session, index)?;
+                }
+                Err(error) => break End::Failed(error),
+            }
+            if self.interrupted.load(Ordering::Relaxed) {
+                break End::Interrupted;
+            }
+            if saved.elapsed() >= self.save_every {
+                let seconds = self.record.seconds + start.elapsed().as_secs_f64();
+                state::save(self.folder, session, &StateRecord { seconds, ..self.record.clone() })?;
+                saved = Instant::now();
+            }
+            if !bar.is_hidden() {
+                bar.set_position(permille(session));
+                bar.set_message(texts::progress(session));
+            }
+        };
+        bar.finish_and_clear();
+        Ok(end)
+    }
+}
+
+/// Steps, windows or equilibria between two looks at signals and clock.
+fn at_once(session: &Session) -> u64 {
+    let elements = session.motion.solid().map_or(1, |solid| solid.model.problem.elements.len());
+    match &session.motion {
+        Motion::Bearing(_) => STEPS_AT_ONCE,
+        Motion::Course(_) => 1,
+        Motion::Solid(_) => (ELEMENTS_AT_ONCE / elements as u64).max(1),
+        Motion::Housed(housed) => {
+            (ELEMENTS_AT_ONCE / (elements * housed.solid_steps) as u64).max(1)
+        }
+    }
+}
+
+/// How much of the run is done, of a thousand.
+fn permille(session: &Session) -> u64 {
+    (1000.0 * session.motion.time() / session.clock.end) as u64
+}
+
+fn progress_bar(session: &Session) -> ProgressBar {
+    // Hidden by itself when standard error is not a terminal.
+    let bar = ProgressBar::new(1000);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {msg}, {eta} left") {
+        bar.set_style(style);
+    }
+    bar.set_position(permille(session));
+    bar.reset_eta();
+    bar
+}

@@ -1,0 +1,167 @@
+//! What a run says of its steps: before, on the way, and where it stopped.
+
+use super::prepared::Prepared;
+use bearing_dynamics::output::session::{Motion, RunRequest, Session};
+use bearing_dynamics::output::state::StateFile;
+use bearing_dynamics::solver::clock::{Clock, given_steps, rounded};
+use bearing_dynamics::solver::dynamics::foretell::Choice;
+use bearing_dynamics::solver::dynamics::run::{Integrator, Simulation, Stepping};
+use bearing_dynamics::solver::housing::exchange::HousedBearing;
+use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
+
+/// Step, its reason, how many there will be, and where it goes on from.
+pub(super) fn announcement(
+    session: &Session,
+    prepared: &Prepared,
+    request: &RunRequest,
+    choice: Option<&Choice>,
+    kept: Option<&StateFile>,
+) -> String {
+    let clock = &session.clock;
+    let mut text = match (&session.motion, prepared) {
+        (Motion::Bearing(simulation), _) => of_bearing(simulation, clock, request, choice),
+        (Motion::Solid(moving), _) => of_solid(&moving.solid, clock),
+        (Motion::Housed(housed), _) => of_housed(housed, clock),
+        (Motion::Course(_), Prepared::Housed { bore: Some((bore, seconds)), .. }) => {
+            let (unknowns, kept) = (bore.sizes.unknowns, bore.sizes.kept);
+            let count = clock.last.unwrap_or(0);
+            format!(
+                "{unknowns} unknowns condensed onto {kept} bore nodes in {seconds:.2} s\n\
+                 {count} equilibria to t = {} s, a row every {:.4e} s\n",
+                rounded(count.saturating_sub(1) as f64 * clock.interval),
+                clock.interval
+            )
+        }
+        (Motion::Course(_), _) => String::new(),
+    };
+    if let Some(file) = kept {
+        let (time, name) = (rounded(file.time), step_name(session));
+        text += &format!("resumed at t = {time} s, {name} {}\n", file.steps);
+    }
+    text
+}
+
+fn of_bearing(
+    simulation: &Simulation,
+    clock: &Clock,
+    request: &RunRequest,
+    choice: Option<&Choice>,
+) -> String {
+    let integrator = request.options.integrator.name();
+    if let Stepping::Accuracy(accuracy) = request.options.stepping {
+        let by_plan =
+            choice.map_or(String::new(), |choice| format!("chosen: {}\n", choice.reason()));
+        return format!(
+            "{integrator}, accuracy {accuracy}: steps follow from it, the first of {:.4e} s\n\
+             to t = {} s, a row every {:.4e} s\n{by_plan}",
+            simulation.step_size, clock.end, clock.interval
+        );
+    }
+    let reason = match &simulation.limit {
+        Some(limit) => format!("{} (stable up to {:.4e} s)", limit.reason(), limit.step),
+        None => match simulation.step_watch.smallest {
+            Some(limit) => {
+                format!("given ({:.3} of the largest stable one)", simulation.step_size / limit)
+            }
+            None => "given".into(),
+        },
+    };
+    let method = match request.options.integrator {
+        Integrator::RungeKutta => String::new(),
+        other => format!("{}, ", other.name()),
+    };
+    let mut text = format!("{method}step {:.4e} s: {reason}\n", simulation.step_size);
+    if let Some([ratio, time]) = simulation.step_watch.exceeded {
+        text += &format!(
+            "WARNING: the step is {ratio:.3} times the largest stable one at t = {} s\n",
+            rounded(time)
+        );
+    }
+    let steps = given_steps(&clock.corners, clock.row_interval(), clock.end, clock.step);
+    text + &format!("{steps} steps to t = {} s, {}\n", clock.end, rows(clock, "steps"))
+}
+
+fn of_solid(solid: &ExplicitSolid, clock: &Clock) -> String {
+    let limit = &solid.limit;
+    let [x, y, z] = limit.at.map(|at| 1e3 * at);
+    let steps = clock.last.unwrap_or(0);
+    format!(
+        "step {:.4e} s, {:.3} of the stability limit {:.4e} s{}; the fastest element, {}, lies at x {x:.3}, \
+         y {y:.3}, z {z:.3} mm\n{steps} steps to t = {} s, {}, fields every {} rows\n",
+        clock.step,
+        clock.step / limit.step,
+        limit.step,
+        if limit.is_bound { " (a safe bound: the search for it did not settle)" } else { "" },
+        solid.model.labels.element(limit.element),
+        rounded(steps as f64 * clock.step),
+        rows(clock, "steps"),
+        clock.rows_per_fields.unwrap_or(0)
+    )
+}
+
+fn of_housed(housed: &HousedBearing, clock: &Clock) -> String {
+    let limit = &housed.solid.limit;
+    let [x, y, z] = limit.at.map(|at| 1e3 * at);
+    let (tested, out_of_reach) = housed.counts();
+    let windows = clock.last.unwrap_or(0);
+    let steps = match housed.solid_steps {
+        1 => "one step".into(),
+        count => format!("{count} steps"),
+    };
+    format!(
+        "window {:.4e} s, {steps} of the housing in it; limit of the housing {:.4e} s, its fastest element, {}, \
+         at x {x:.3}, y {y:.3}, z {z:.3} mm; bearing steps up to {:.4e} s\n\
+         {tested} bore nodes in reach, {out_of_reach} out of it\n\
+         {windows} windows to t = {} s, {}\n",
+        housed.window,
+        limit.step,
+        housed.solid.model.labels.element(limit.element),
+        housed.bearing.step_size,
+        rounded(windows as f64 * housed.window),
+        rows(clock, "windows")
+    )
+}
+
+/// How far rows are apart, and how far they were to be.
+fn rows(clock: &Clock, of: &str) -> String {
+    let (interval, asked) = (clock.row_interval(), clock.interval);
+    let off = if (interval / asked - 1.0).abs() > 1e-9 {
+        format!(" ({asked} s asked for, rounded to whole {of})")
+    } else {
+        String::new()
+    };
+    format!("a row every {} {of} = {interval:.4e} s{off}", clock.steps_per_row)
+}
+
+/// What a run counts.
+fn step_name(session: &Session) -> &'static str {
+    match session.motion {
+        Motion::Bearing(_) | Motion::Solid(_) => "step",
+        Motion::Housed(_) => "window",
+        Motion::Course(_) => "equilibrium",
+    }
+}
+
+/// Where a run stands.
+pub(super) fn place(session: &Session) -> String {
+    let (time, done) = (rounded(session.motion.time()), session.motion.done());
+    let counted = match session.motion {
+        Motion::Bearing(_) | Motion::Solid(_) => "steps",
+        Motion::Housed(_) => "windows",
+        Motion::Course(_) => "equilibria",
+    };
+    format!("t = {time} s of {} s, after {done} {counted}", session.clock.end)
+}
+
+/// The same beside a bar.
+pub(super) fn progress(session: &Session) -> String {
+    let (time, end) = (session.motion.time(), session.clock.end);
+    let name = step_name(session);
+    match (&session.motion, session.clock.last) {
+        (Motion::Course(_), Some(all)) => format!("{name} {} of {all}", session.motion.done()),
+        (Motion::Bearing(simulation), _) => {
+            format!("t = {time:.5} of {end} s, {name} {:.2e} s", simulation.step_size)
+        }
+        _ => format!("t = {time:.5e} of {end:.3e} s, {name} {:.2e} s", session.clock.step),
+    }
+}

@@ -1,0 +1,116 @@
+//! The bore of a housing under its bearing: force and pressure as fields, and a table of its nodes.
+
+use crate::kinematics::vec3::{Vec3, dot};
+use crate::output::series::{Column, Series, SeriesError};
+use crate::output::session::Motion;
+use crate::solver::housing::assembly::AssemblyState;
+use crate::solver::housing::condensed::CondensedBore;
+use crate::solver::solid::model::SolidModel;
+use ndarray::Array2;
+
+/// A node of the bore and what the race does to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoreNodeState {
+    pub node: u32,
+    /// Undeformed, m.
+    pub place: Vec3,
+    /// m².
+    pub area: f64,
+    /// Into the race, m; negative is a gap.
+    pub penetration: f64,
+    /// On the node, N.
+    pub force: Vec3,
+}
+
+/// Nodes of the bore now, with `model` that of the housing: of explicit steps those that touch; empty
+/// where there is no bore, or no equilibrium yet.
+pub fn bore_nodes(motion: &Motion, model: &SolidModel) -> Vec<BoreNodeState> {
+    match motion {
+        Motion::Bearing(_) | Motion::Solid(_) => Vec::new(),
+        Motion::Course(course) => {
+            let of = |state: &AssemblyState| condensed_nodes(model, course.bore(), state);
+            course.latest.as_ref().map_or_else(Vec::new, |moment| of(&moment.state))
+        }
+        Motion::Housed(housed) => {
+            let penalty = housed.seat.penalty;
+            let touching = housed.nodal_forces().into_iter();
+            let state = |(node, force): (crate::ch2_housing::bore_contact::ContactNode, Vec3)| {
+                let load = dot(force, force).sqrt();
+                BoreNodeState {
+                    node: node.node,
+                    place: node.place,
+                    area: node.area,
+                    penetration: load / penalty.of_node(node.area),
+                    force,
+                }
+            };
+            touching.map(state).collect()
+        }
+    }
+}
+
+/// Nodes of a condensed bore in an equilibrium.
+pub fn condensed_nodes(
+    model: &SolidModel,
+    bore: &CondensedBore,
+    state: &AssemblyState,
+) -> Vec<BoreNodeState> {
+    bore.nodes
+        .iter()
+        .zip(&state.bore.penetration)
+        .zip(bore.nodal_forces(&state.bore.loads))
+        .map(|((node, penetration), (_, force))| BoreNodeState {
+            node: node.node,
+            place: model.problem.nodes[node.node as usize],
+            area: node.area,
+            penetration: *penetration,
+            force,
+        })
+        .collect()
+}
+
+/// Forces (N, three a node) and pressures (Pa) on the nodes of a mesh that has so many.
+pub(super) fn on_nodes(bore: &[BoreNodeState], nodes: usize) -> (Vec<Vec3>, Vec<f64>) {
+    let (mut forces, mut pressure) = (vec![[0.0; 3]; nodes], vec![0.0; nodes]);
+    for state in bore {
+        forces[state.node as usize] = state.force;
+        pressure[state.node as usize] = pressure_of(state);
+    }
+    (forces, pressure)
+}
+
+fn pressure_of(state: &BoreNodeState) -> f64 {
+    dot(state.force, state.force).sqrt() / state.area
+}
+
+/// One row a node: place, azimuth from +Y towards +Z, area, penetration, force, pressure.
+///
+/// # Errors
+/// Never for these columns.
+pub fn bore_series(bore: &[BoreNodeState]) -> Result<Series, SeriesError> {
+    let columns = [
+        ("x", "m"),
+        ("y", "m"),
+        ("z", "m"),
+        ("azimuth", "deg"),
+        ("area", "m^2"),
+        ("penetration", "m"),
+        ("force_x", "N"),
+        ("force_y", "N"),
+        ("force_z", "N"),
+        ("pressure", "Pa"),
+    ];
+    let columns: Vec<Column> =
+        columns.iter().map(|(name, unit)| Column::new(*name, *unit)).collect();
+    let mut values = Vec::with_capacity(columns.len() * bore.len());
+    for state in bore {
+        let azimuth = libm::atan2(state.place[2], state.place[1]).to_degrees();
+        values.extend(state.place);
+        values.extend([azimuth, state.area, state.penetration]);
+        values.extend(state.force);
+        values.push(pressure_of(state));
+    }
+    let data = Array2::from_shape_vec((bore.len(), columns.len()), values)
+        .expect("every node gives one value per column");
+    Series::new(columns, data)
+}

@@ -1,0 +1,108 @@
+//! Fields of a solid as ParaView opens them: displacement, velocity, stress, and what a race does to its bore.
+
+pub mod bore;
+
+use crate::kinematics::strain::{Sym3, von_mises};
+use crate::kinematics::vec3::Vec3;
+use crate::mesh::write::{Field, write_pvd, write_vtu};
+use crate::mesh::{MeshError, TetMesh};
+use crate::output::atomic::{WriteError, write_atomic};
+use crate::solver::solid::model::SolidModel;
+use crate::solver::solid::stress::{element_stresses, nodal_stresses};
+use bore::{BoreNodeState, on_nodes};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Folder of the `.vtu` files, and the list of them beside it.
+pub const FOLDER: &str = "fields";
+pub const LIST: &str = "fields.pvd";
+
+#[derive(Debug, Error)]
+pub enum FieldError {
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// Stress of a deformed solid, Pa.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stresses {
+    /// Cauchy stress of each element, the mean over its points by volume: XX YY ZZ XY YZ ZX.
+    pub cell: Vec<Sym3>,
+    pub cell_von_mises: Vec<f64>,
+    /// Stress at nodes as [`nodal_stresses`] finds it there.
+    pub nodal: Vec<Sym3>,
+    /// Von Mises stress at nodes, of the stress that [`nodal_stresses`] finds there.
+    pub node_von_mises: Vec<f64>,
+}
+
+/// Stresses of a model at given displacements (m, one for each node).
+pub fn stresses(model: &SolidModel, displacement: &[Vec3]) -> Stresses {
+    let cell = element_stresses(model, displacement);
+    let nodal = nodal_stresses(model, displacement);
+    Stresses {
+        cell_von_mises: cell.iter().map(von_mises).collect(),
+        node_von_mises: nodal.iter().map(von_mises).collect(),
+        nodal,
+        cell,
+    }
+}
+
+/// Writes a `.vtu` with displacements, velocities where there are any, stresses, and of a housing the
+/// force and pressure of the race on each node of its bore.
+///
+/// # Errors
+/// A value that is not finite, a file that cannot be written.
+pub fn write_fields(
+    path: &Path,
+    mesh: &TetMesh,
+    displacement: &[Vec3],
+    velocity: Option<&[Vec3]>,
+    stresses: &Stresses,
+    bore: Option<&[BoreNodeState]>,
+) -> Result<(), FieldError> {
+    let mut points =
+        vec![Field { name: "displacement", components: 3, values: displacement.as_flattened() }];
+    if let Some(velocity) = velocity {
+        points.push(Field { name: "velocity", components: 3, values: velocity.as_flattened() });
+    }
+    let nodal = &stresses.node_von_mises;
+    points.push(Field { name: "von_mises_nodal", components: 1, values: nodal });
+    let of_bore = bore.map(|bore| on_nodes(bore, mesh.nodes.len()));
+    if let Some((forces, pressure)) = &of_bore {
+        let values = forces.as_flattened();
+        points.push(Field { name: "contact_force", components: 3, values });
+        points.push(Field { name: "contact_pressure", components: 1, values: pressure });
+    }
+    let cells = [
+        Field { name: "von_mises", components: 1, values: &stresses.cell_von_mises },
+        Field { name: "cauchy_stress", components: 6, values: stresses.cell.as_flattened() },
+    ];
+    Ok(write_atomic(path, &write_vtu(mesh, &points, &cells)?)?)
+}
+
+/// Writes the `.vtu` of a mode shape.
+///
+/// # Errors
+/// As [`write_fields`].
+pub fn write_mode(path: &Path, mesh: &TetMesh, shape: &[Vec3]) -> Result<(), FieldError> {
+    let points = [Field { name: "mode_shape", components: 3, values: shape.as_flattened() }];
+    Ok(write_atomic(path, &write_vtu(mesh, &points, &[])?)?)
+}
+
+/// Name of file number `index`, relative to the results folder.
+pub fn file_name(kind: &str, index: usize) -> String {
+    format!("{FOLDER}/{kind}_{index:06}.vtu")
+}
+
+/// Writes the list that ParaView opens: times (s), or frequencies of modes (Hz), and file names.
+///
+/// # Errors
+/// As [`write_fields`].
+pub fn write_list(folder: &Path, steps: &[(f64, String)]) -> Result<PathBuf, FieldError> {
+    let steps: Vec<(f64, &str)> = steps.iter().map(|(time, name)| (*time, name.as_str())).collect();
+    let path = folder.join(LIST);
+    write_atomic(&path, write_pvd(&steps)?.as_bytes())?;
+    Ok(path)
+}

@@ -1,0 +1,293 @@
+//! Plots of a run.
+
+use crate::output::plots::{
+    Axis, Curve, OrbitPlot, PlotError, PolarPlot, Style, XyPlot, orbit, polar, xy,
+};
+use crate::output::spectrum::WINDOW;
+use crate::output::table::RunTable;
+use crate::solver::clock::to_digits;
+
+/// A plot a run can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Picture {
+    /// Displacements of races and cage, loads of ball 1 and unaccounted energy over time.
+    Series,
+    /// Races and cage in the Y–Z plane, over the window.
+    Orbit,
+    /// Amplitude spectra of races and cage, over the window.
+    Spectrum,
+    /// Slip and spin of a ball's contacts over its azimuth, as in Figs 3.32 and 3.33.
+    SlipSpin,
+    /// Normal load over ball azimuth, as in Fig. 3.31.
+    Polar,
+}
+
+/// Points that a curve is thinned to: two a pixel.
+pub(super) const POINTS: usize = 1500;
+/// Degrees of azimuth over which the loads of all balls are averaged for the polar plot.
+const SECTOR: usize = 3;
+/// Bins below this part of the highest are not drawn: rounding.
+const SPECTRUM_FLOOR: f64 = 1e-9;
+
+/// File names and SVG of a picture; a part whose channels were not recorded, or that has no row
+/// yet, is left out.
+///
+/// # Errors
+/// A value that is not finite.
+pub fn draw(
+    picture: Picture,
+    title: &str,
+    table: &RunTable,
+) -> Result<Vec<(String, String)>, PlotError> {
+    match picture {
+        Picture::Series => series(title, table),
+        Picture::Orbit => orbits(title, table),
+        Picture::Spectrum => spectra(title, table),
+        Picture::SlipSpin => slip_spin(title, table),
+        Picture::Polar => loads_over_azimuth(title, table),
+    }
+}
+
+/// What is left of a motion that has died out is drawn as nothing.
+fn point(x: f64, y: f64) -> [f64; 2] {
+    [x, y].map(|value| if value.abs() < 1e-150 { 0.0 } else { value })
+}
+
+/// `[time, scale · value]` of the channels that are recorded.
+pub(super) fn over_time(table: &RunTable, channels: &[(&str, &str)], scale: f64) -> Vec<Curve> {
+    let Some(times) = table.all("time").filter(|times| !times.is_empty()) else {
+        return Vec::new();
+    };
+    let curve = |&(channel, name): &(&str, &str)| {
+        let values = table.all(channel)?;
+        let points = times.iter().zip(values).map(|(&t, value)| point(t, scale * value)).collect();
+        Some(Curve::new(name, thin(points, POINTS)))
+    };
+    channels.iter().filter_map(curve).collect()
+}
+
+fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
+    let displacement = ["x", "y", "z"];
+    let mut drawn = Vec::new();
+    for (body, name) in [("inner", "inner race"), ("outer", "outer race"), ("cage", "cage")] {
+        let channels = displacement.map(|axis| (format!("{body}_{axis}"), axis));
+        let channels = channels.each_ref().map(|(channel, axis)| (channel.as_str(), *axis));
+        let curves = over_time(table, &channels, 1e6);
+        let file = format!("series_{}.svg", name.replace(' ', "_"));
+        add_series(&mut drawn, file, format!("{title}: {name}"), "displacement", "um", curves)?;
+    }
+    let loads = [
+        ("ball_1_inner_load", "ball 1 on inner race"),
+        ("ball_1_outer_load", "ball 1 on outer race"),
+        ("ball_1_pocket_load", "ball 1 in its pocket"),
+        ("cage_guide_load", "cage on its guide"),
+    ];
+    let curves = over_time(table, &loads, 1.0);
+    let heading = format!("{title}: loads");
+    add_series(&mut drawn, "series_loads.svg".into(), heading, "normal load", "N", curves)?;
+    let curves = over_time(table, &[("energy_residual", "unaccounted for")], 1.0);
+    let heading = format!("{title}: energy ledger");
+    add_series(&mut drawn, "series_energy.svg".into(), heading, "energy", "J", curves)?;
+    Ok(drawn)
+}
+
+pub(super) fn add_series(
+    drawn: &mut Vec<(String, String)>,
+    file: String,
+    title: String,
+    quantity: &str,
+    unit: &str,
+    curves: Vec<Curve>,
+) -> Result<(), PlotError> {
+    if curves.is_empty() {
+        return Ok(());
+    }
+    let (x, y) = (Axis::linear("time", "s"), Axis::linear(quantity, unit));
+    drawn.push((file, xy(&XyPlot { title, x, y, style: Style::Lines, curves })?));
+    Ok(())
+}
+
+fn orbits(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
+    let mut drawn = Vec::new();
+    for (body, name) in [("inner", "inner race"), ("outer", "outer race"), ("cage", "cage")] {
+        let path = [format!("{body}_y"), format!("{body}_z")];
+        let (Some(y), Some(z)) = (table.windowed(&path[0]), table.windowed(&path[1])) else {
+            continue;
+        };
+        if y.is_empty() {
+            continue;
+        }
+        let every = y.len().div_ceil(4 * POINTS).max(1);
+        let points =
+            y.iter().zip(&z).map(|(y, z)| point(1e6 * y, 1e6 * z)).step_by(every).collect();
+        let svg = orbit(&OrbitPlot {
+            title: format!("{title}: orbit of the {name}"),
+            unit: "um".into(),
+            curves: vec![Curve::new(format!("{name}, marked where it ends"), points)],
+        })?;
+        drawn.push((format!("orbit_{}.svg", name.replace(' ', "_")), svg));
+    }
+    Ok(drawn)
+}
+
+fn spectra(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
+    let spectra = table.spectra();
+    let Some((_, first)) = spectra.first() else { return Ok(Vec::new()) };
+    let axis = format!("frequency ({WINDOW} window, bin {} Hz)", to_digits(first.bin_width, 4));
+    let mut drawn = Vec::new();
+    for (body, name) in [("inner", "inner race"), ("outer", "outer race"), ("cage", "cage")] {
+        let mut curves = Vec::new();
+        for (channel, spectrum) in &spectra {
+            let Some(axis) = channel.strip_prefix(body).and_then(|c| c.strip_prefix('_')) else {
+                continue;
+            };
+            let highest = spectrum.amplitude.iter().copied().fold(0.0, f64::max);
+            let points: Vec<[f64; 2]> = spectrum
+                .amplitude
+                .iter()
+                .enumerate()
+                .skip(1)
+                .filter(|(_, amplitude)| **amplitude > SPECTRUM_FLOOR * highest)
+                .map(|(bin, amplitude)| [bin as f64 * spectrum.bin_width, 1e6 * amplitude])
+                .collect();
+            if !points.is_empty() {
+                curves.push(Curve::new(axis, thin(points, 4 * POINTS)));
+            }
+        }
+        if curves.is_empty() {
+            continue;
+        }
+        let svg = xy(&XyPlot {
+            title: format!("{title}: spectrum of the {name}"),
+            x: Axis::log(axis.clone(), "Hz"),
+            y: Axis::log("amplitude", "um"),
+            style: Style::Lines,
+            curves,
+        })?;
+        drawn.push((format!("spectrum_{}.svg", name.replace(' ', "_")), svg));
+    }
+    Ok(drawn)
+}
+
+/// Azimuth in degrees from 0 to 360 of ball `ball` at every row of the window.
+fn azimuths(table: &RunTable, ball: usize) -> Option<Vec<f64>> {
+    let angles = table.windowed(&format!("ball_{ball}_angle"))?;
+    Some(angles.into_iter().map(|angle| angle.rem_euclid(360.0)).collect())
+}
+
+/// Ball 1 stands for all: each passes every azimuth. Its last turn is drawn, or what there is.
+fn slip_spin(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
+    let Some(angle) = table.windowed("ball_1_angle") else { return Ok(Vec::new()) };
+    let Some(last) = angle.last() else { return Ok(Vec::new()) };
+    let over_last_turn = |values: Vec<f64>| {
+        let turn = angle.iter().zip(values).filter(|(angle, _)| (**angle - last).abs() < 360.0);
+        let mut points: Vec<[f64; 2]> =
+            turn.map(|(angle, value)| point(angle.rem_euclid(360.0), value)).collect();
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        thin(points, POINTS)
+    };
+    let mut slip = Vec::new();
+    let mut spin = Vec::new();
+    for race in ["inner", "outer"] {
+        let channel = |part: &str| table.windowed(&format!("ball_1_{race}_{part}"));
+        let (Some(rolling), Some(transverse), Some(about_normal)) =
+            (channel("slip_rolling"), channel("slip_transverse"), channel("spin"))
+        else {
+            return Ok(Vec::new());
+        };
+        let size = rolling.iter().zip(&transverse).map(|(a, b)| libm::hypot(*a, *b)).collect();
+        let name = format!("ball 1 on {race} race");
+        slip.push(Curve::new(name.clone(), over_last_turn(size)));
+        spin.push(Curve::new(name, over_last_turn(about_normal)));
+    }
+    let mut drawn = Vec::new();
+    for (file, what, axis, curves) in [
+        ("slip.svg", "slip", Axis::linear("slip at the middle of the contact", "m/s"), slip),
+        ("spin.svg", "spin", Axis::linear("spin about the contact normal", "rad/s"), spin),
+    ] {
+        let svg = xy(&XyPlot {
+            title: format!("{title}: {what} over azimuth"),
+            x: Axis::linear("azimuth", "deg"),
+            y: axis,
+            style: Style::Lines,
+            curves,
+        })?;
+        drawn.push((file.into(), svg));
+    }
+    Ok(drawn)
+}
+
+/// Normal load of all balls, averaged over sectors of azimuth.
+fn loads_over_azimuth(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
+    let sectors = 360 / SECTOR;
+    let mut curves = Vec::new();
+    for race in ["outer", "inner"] {
+        let mut sums = vec![(0.0, 0usize); sectors];
+        for ball in 1.. {
+            let load = table.windowed(&format!("ball_{ball}_{race}_load"));
+            let (Some(load), Some(azimuth)) = (load, azimuths(table, ball)) else { break };
+            for (load, azimuth) in load.iter().zip(&azimuth) {
+                let (sum, count) = &mut sums[(azimuth / SECTOR as f64) as usize % sectors];
+                *sum += load;
+                *count += 1;
+            }
+        }
+        let middle = |sector: usize| ((sector as f64 + 0.5) * SECTOR as f64).to_radians();
+        let points: Vec<[f64; 2]> = sums
+            .iter()
+            .enumerate()
+            .filter(|(_, (_, count))| *count > 0)
+            .map(|(sector, (sum, count))| [middle(sector), sum / *count as f64])
+            .collect();
+        if !points.is_empty() {
+            curves.push(Curve::new(format!("ball on {race} race"), points));
+        }
+    }
+    if curves.is_empty() {
+        return Ok(Vec::new());
+    }
+    let svg = polar(&PolarPlot {
+        title: format!("{title}: normal load over ball azimuth"),
+        quantity: format!("mean normal load over {SECTOR} deg"),
+        unit: "N".into(),
+        curves,
+    })?;
+    Ok(vec![("polar.svg".into(), svg)])
+}
+
+/// At most about `wanted` points: of each stretch the lowest and the highest, in their order, so
+/// that no peak is lost.
+pub(super) fn thin(points: Vec<[f64; 2]>, wanted: usize) -> Vec<[f64; 2]> {
+    if points.len() <= wanted {
+        return points;
+    }
+    let stretch = (2 * points.len()).div_ceil(wanted);
+    let mut kept = Vec::with_capacity(wanted + 2);
+    for part in points.chunks(stretch) {
+        let by_value = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
+        let (Some(low), Some(high)) = (part.iter().min_by(by_value), part.iter().max_by(by_value))
+        else {
+            continue;
+        };
+        let (first, second) = if low[0] <= high[0] { (low, high) } else { (high, low) };
+        kept.extend([*first, *second]);
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_peaks_and_order() {
+        let mut points: Vec<[f64; 2]> = (0..100_000).map(|i| [i as f64, 0.0]).collect();
+        points[54_321][1] = 7.0;
+        points[77_777][1] = -3.0;
+        let kept = thin(points.clone(), 1500);
+        assert!(kept.len() <= 1502, "{}", kept.len());
+        assert!(kept.contains(&[54_321.0, 7.0]) && kept.contains(&[77_777.0, -3.0]));
+        assert!(kept.windows(2).all(|pair| pair[0][0] <= pair[1][0]));
+        assert_eq!(thin(points[..10].to_vec(), 1500), points[..10]);
+    }
+}

@@ -1,0 +1,4 @@
+//! Plots of a run.
+
+pub mod bearing;
+pub mod solid;

@@ -1,0 +1,397 @@
+//! Columns of a bearing in motion.
+
+use super::Recorder;
+use crate::ch2_housing::bearing::cage::Guidance;
+use crate::ch2_housing::bearing::contact::ContactDamping;
+use crate::ch2_housing::bearing::traction::{Motion, Sliding, TractionLaw, sliding};
+use crate::kinematics::vec3::{dot, sub};
+use crate::output::series::Column;
+use crate::solver::channels::ChannelGroup;
+use crate::solver::dynamics::assembly::{Assembly, BallMeeting, Bearing};
+use crate::solver::dynamics::ball_set::BallSet;
+use crate::solver::dynamics::race::{RaceNow, tilts_of};
+use crate::solver::dynamics::run::{Simulation, Snapshot};
+use crate::solver::dynamics::state::{Ledger, POSITION, SPIN, VELOCITY};
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+
+/// Parts of the energy and of the ledger that a problem can have any of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Term {
+    Kinetic,
+    Contact,
+    CageContact,
+    Gravity,
+    Foundation,
+    BallContact,
+    Work(Ledger),
+    Residual,
+}
+
+/// What is recorded of a bearing.
+pub(super) struct BearingColumns {
+    groups: Vec<ChannelGroup>,
+    terms: Vec<Term>,
+}
+
+impl BearingColumns {
+    /// The groups that are asked for and that the problem has something for; the energy ledger is always
+    /// among them.
+    pub fn new(
+        assembly: &Assembly,
+        asked: &[ChannelGroup],
+        columns: &mut Vec<Column>,
+    ) -> BearingColumns {
+        let needs_cage =
+            |group: &ChannelGroup| matches!(group, ChannelGroup::Cage | ChannelGroup::Pockets);
+        let groups: Vec<ChannelGroup> = ChannelGroup::ALL
+            .into_iter()
+            .filter(|group| asked.contains(group) || *group == ChannelGroup::Energy)
+            .filter(|group| has_cage(assembly) || !needs_cage(group))
+            .collect();
+        let terms = terms(assembly);
+        for &group in &groups {
+            add_columns(assembly, group, &terms, columns);
+        }
+        BearingColumns { groups, terms }
+    }
+}
+
+impl Recorder {
+    /// Adds a row; call with the simulation's own snapshot of the present time.
+    pub fn record(&mut self, simulation: &Simulation, snapshot: &Snapshot) {
+        let at = self.values.len();
+        let before = at.checked_sub(self.columns.len());
+        self.values.push(snapshot.time);
+        let Some(BearingColumns { groups, terms }) = self.bearing.take() else { return };
+        let system = &simulation.system;
+        for &group in &groups {
+            if group == ChannelGroup::Energy {
+                self.values.extend(terms.iter().map(|term| energy_term(*term, snapshot)));
+                continue;
+            }
+            for (set, bearing) in system.sets.iter().zip(&system.assembly.bearings) {
+                self.bearing(group, simulation, (set, bearing), before, at);
+            }
+            if group == ChannelGroup::Races {
+                for (body, now) in system.assembly.bodies.iter().zip(&system.bodies) {
+                    if body.label.is_some() {
+                        self.race(now);
+                    }
+                }
+            }
+        }
+        self.bearing = Some(BearingColumns { groups, terms });
+    }
+
+    /// What one bearing has for a group.
+    fn bearing(
+        &mut self,
+        group: ChannelGroup,
+        simulation: &Simulation,
+        (set, bearing): (&BallSet, &Bearing),
+        before: Option<usize>,
+        row: usize,
+    ) {
+        let BallSet { layout, table, .. } = set;
+        match group {
+            ChannelGroup::Races => {
+                self.race(&set.races[0]);
+                if simulation.system.assembly.bodies[bearing.mounts[1].body].moves() {
+                    self.race(&set.races[1]);
+                }
+            }
+            ChannelGroup::Cage => self.cage(set, bearing, before, row),
+            ChannelGroup::Orbits => self.orbits(simulation, set, bearing, before, row),
+            ChannelGroup::Loads => {
+                for ball in 0..layout.balls {
+                    self.values.extend([table.load[ball], table.load[layout.padded + ball]]);
+                }
+            }
+            ChannelGroup::Pockets if bearing.cage.is_some() => {
+                self.values.extend(set.pockets.iter().map(|contact| contact.normal_load));
+            }
+            ChannelGroup::Slip => self.slip(simulation, set),
+            ChannelGroup::Forces => {
+                for loads in &set.on_races {
+                    self.values.extend(loads.force);
+                }
+            }
+            ChannelGroup::Pockets | ChannelGroup::Energy => {}
+        }
+    }
+
+    fn race(&mut self, now: &RaceNow) {
+        self.values.extend(now.state.position);
+        self.values.extend(tilts_of(now.motion.axis).map(f64::to_degrees));
+        self.values.extend(now.state.velocity);
+        self.values.push(dot(now.state.spin, now.motion.axis));
+    }
+
+    fn cage(&mut self, set: &BallSet, bearing: &Bearing, before: Option<usize>, row: usize) {
+        let (Some(caged), Some(now)) = (&bearing.cage, &set.cage) else { return };
+        let [_, y, z]: [f64; 3] = (now.state.orientation * Vector3::y()).into();
+        let speed = dot(now.motion.spin, now.motion.axis);
+        self.values.extend(now.motion.position);
+        self.values.extend(tilts_of(now.motion.axis).map(f64::to_degrees));
+        self.turned(libm::atan2(z, y), speed, before, row);
+        self.values.push(speed);
+        if caged.contacts.guidance != Guidance::Balls {
+            self.values.push(set.guides[0].normal_load + set.guides[1].normal_load);
+        }
+    }
+
+    fn orbits(
+        &mut self,
+        simulation: &Simulation,
+        set: &BallSet,
+        bearing: &Bearing,
+        before: Option<usize>,
+        row: usize,
+    ) {
+        let layout = set.layout;
+        let outer = &set.races[1].state;
+        for ball in 0..layout.balls {
+            let vector = |component| layout.ball_vector(&simulation.state, component, ball);
+            let [_, y, z] = sub(vector(POSITION), outer.position);
+            let [_, v, w] = sub(vector(VELOCITY), outer.velocity);
+            let speed = (y * w - z * v) / (y * y + z * z);
+            self.turned(libm::atan2(z, y), speed, before, row);
+            self.values.push(speed);
+        }
+        for side in 0..2 {
+            self.values.push(contact_angle(set, bearing, side).to_degrees());
+        }
+    }
+
+    /// Pushes an angle in degrees with all its turns: of the angles that differ by whole turns the
+    /// one closest to where the speed (in the next column) leads from the row before.
+    fn turned(&mut self, wrapped: f64, speed: f64, before: Option<usize>, row: usize) {
+        let column = self.values.len() - row;
+        let angle = match before {
+            None => wrapped,
+            Some(before) => {
+                let previous = &self.values[before..];
+                let duration = self.values[row] - previous[0];
+                let mean_speed = 0.5 * (previous[column + 1] + speed);
+                let expected = previous[column].to_radians() + mean_speed * duration;
+                wrapped + TAU * ((expected - wrapped) / TAU).round()
+            }
+        };
+        self.values.push(angle.to_degrees());
+    }
+
+    fn slip(&mut self, simulation: &Simulation, set: &BallSet) {
+        let BallSet { layout, table, laws, races, .. } = set;
+        for ball in 0..layout.balls {
+            for (side, race) in races.iter().enumerate() {
+                let pair = side * layout.padded + ball;
+                let mut here = Sliding::default();
+                // Nothing slides where nothing touches.
+                if table.load[pair] > 0.0 {
+                    let vector = |component| layout.ball_vector(&simulation.state, component, ball);
+                    let contact = &table.contact[pair];
+                    here = sliding(
+                        &Motion {
+                            position: vector(POSITION),
+                            velocity: vector(VELOCITY),
+                            spin: vector(SPIN),
+                        },
+                        &Motion {
+                            position: race.motion.position,
+                            velocity: race.motion.velocity,
+                            spin: race.motion.spin,
+                        },
+                        race.motion.axis,
+                        contact.outward,
+                        contact.normal,
+                        laws.ball_radius - 0.5 * contact.overlap,
+                    );
+                }
+                self.values.extend(here.slip);
+                self.values.push(here.relative_spin[2]);
+            }
+        }
+    }
+}
+
+/// Mean contact angle on one race, rad, each ball by its load; the nominal one where nothing touches.
+/// Positive where the inner race is pushed towards +X.
+fn contact_angle(set: &BallSet, bearing: &Bearing, side: usize) -> f64 {
+    let table = &set.table;
+    let sign = if side == 0 { -1.0 } else { 1.0 };
+    let (mut sum, mut load) = (0.0, 0.0);
+    for &pair in table.active.iter().filter(|&&pair| pair / set.layout.padded == side) {
+        let sine = sign * dot(table.contact[pair].normal, set.races[side].motion.axis);
+        sum += table.load[pair] * libm::asin(sine.clamp(-1.0, 1.0));
+        load += table.load[pair];
+    }
+    if load > 0.0 { sum / load } else { bearing.geometry.contact_angle }
+}
+
+fn has_cage(assembly: &Assembly) -> bool {
+    assembly.bearings.iter().any(|bearing| bearing.cage.is_some())
+}
+
+const RACE_COLUMNS: [(&str, &str); 9] = [
+    ("x", "m"),
+    ("y", "m"),
+    ("z", "m"),
+    ("tilt_y", "deg"),
+    ("tilt_z", "deg"),
+    ("velocity_x", "m/s"),
+    ("velocity_y", "m/s"),
+    ("velocity_z", "m/s"),
+    ("speed", "rad/s"),
+];
+
+fn add_columns(
+    assembly: &Assembly,
+    group: ChannelGroup,
+    terms: &[Term],
+    columns: &mut Vec<Column>,
+) {
+    if group == ChannelGroup::Energy {
+        columns.extend(terms.iter().map(|term| Column::new(term_name(*term), "J")));
+        return;
+    }
+    for bearing in &assembly.bearings {
+        bearing_columns(assembly, bearing, group, columns);
+    }
+    if group == ChannelGroup::Races {
+        for label in assembly.bodies.iter().filter_map(|body| body.label.as_ref()) {
+            let own = RACE_COLUMNS.map(|(name, unit)| Column::new(format!("{label}_{name}"), unit));
+            columns.extend(own);
+        }
+    }
+}
+
+fn bearing_columns(
+    assembly: &Assembly,
+    bearing: &Bearing,
+    group: ChannelGroup,
+    columns: &mut Vec<Column>,
+) {
+    let prefix = bearing.prefix();
+    let mut add = |name: String, unit: &str| {
+        columns.push(Column::new(format!("{prefix}{name}"), unit));
+    };
+    let balls = 1..=bearing.geometry.ball_count;
+    match group {
+        ChannelGroup::Races => {
+            let moves = assembly.bodies[bearing.mounts[1].body].moves();
+            for race in ["inner"].into_iter().chain(moves.then_some("outer")) {
+                for (name, unit) in RACE_COLUMNS {
+                    add(format!("{race}_{name}"), unit);
+                }
+            }
+        }
+        ChannelGroup::Cage => {
+            let Some(cage) = &bearing.cage else { return };
+            for (name, unit) in [
+                ("x", "m"),
+                ("y", "m"),
+                ("z", "m"),
+                ("tilt_y", "deg"),
+                ("tilt_z", "deg"),
+                ("angle", "deg"),
+                ("speed", "rad/s"),
+            ] {
+                add(format!("cage_{name}"), unit);
+            }
+            if cage.contacts.guidance != Guidance::Balls {
+                add("cage_guide_load".into(), "N");
+            }
+        }
+        ChannelGroup::Orbits => {
+            for ball in balls {
+                add(format!("ball_{ball}_angle"), "deg");
+                add(format!("ball_{ball}_orbital_speed"), "rad/s");
+            }
+            for race in ["inner", "outer"] {
+                add(format!("mean_{race}_contact_angle"), "deg");
+            }
+        }
+        ChannelGroup::Loads => balls.for_each(|ball| {
+            add(format!("ball_{ball}_inner_load"), "N");
+            add(format!("ball_{ball}_outer_load"), "N");
+        }),
+        ChannelGroup::Pockets if bearing.cage.is_some() => {
+            balls.for_each(|ball| add(format!("ball_{ball}_pocket_load"), "N"));
+        }
+        ChannelGroup::Slip => balls.for_each(|ball| {
+            for race in ["inner", "outer"] {
+                add(format!("ball_{ball}_{race}_slip_rolling"), "m/s");
+                add(format!("ball_{ball}_{race}_slip_transverse"), "m/s");
+                add(format!("ball_{ball}_{race}_spin"), "rad/s");
+            }
+        }),
+        ChannelGroup::Forces => {
+            for race in ["inner", "outer"] {
+                for axis in ["x", "y", "z"] {
+                    add(format!("contact_force_on_{race}_{axis}"), "N");
+                }
+            }
+        }
+        ChannelGroup::Pockets | ChannelGroup::Energy => {}
+    }
+}
+
+/// What can differ from zero in this problem.
+fn terms(assembly: &Assembly) -> Vec<Term> {
+    let any = |of: &dyn Fn(&Bearing) -> bool| assembly.bearings.iter().any(of);
+    let cage = has_cage(assembly);
+    let meet = any(&|bearing| bearing.ball_meeting() == BallMeeting::Tested);
+    let traction = any(&|bearing| bearing.traction != TractionLaw::None);
+    let damping = any(&|bearing| bearing.damping != ContactDamping::None);
+    let mut driven = assembly.bodies.iter().filter_map(|body| body.driven());
+    let on_foundation = driven
+        .any(|body| body.foundation_stiffness != [0.0; 5] || body.foundation_damping != [0.0; 5]);
+    let terms = [
+        (Term::Kinetic, true),
+        (Term::Contact, true),
+        (Term::CageContact, cage),
+        (Term::Gravity, assembly.gravity != [0.0; 3]),
+        (Term::Foundation, on_foundation),
+        (Term::BallContact, meet),
+        (Term::Work(Ledger::Traction), traction),
+        (Term::Work(Ledger::ContactDamping), damping),
+        (Term::Work(Ledger::CageFriction), cage),
+        (Term::Work(Ledger::Foundation), on_foundation),
+        (Term::Work(Ledger::BallFriction), meet),
+        (Term::Work(Ledger::Drives), true),
+        (Term::Residual, true),
+    ];
+    terms.into_iter().filter(|(_, present)| *present).map(|(term, _)| term).collect()
+}
+
+fn term_name(term: Term) -> &'static str {
+    match term {
+        Term::Kinetic => "energy_kinetic",
+        Term::Contact => "energy_contact",
+        Term::CageContact => "energy_cage_contact",
+        Term::Gravity => "energy_gravity",
+        Term::Foundation => "energy_foundation",
+        Term::BallContact => "energy_ball_contact",
+        Term::Work(Ledger::Traction) => "work_traction",
+        Term::Work(Ledger::ContactDamping) => "work_contact_damping",
+        Term::Work(Ledger::CageFriction) => "work_cage_friction",
+        Term::Work(Ledger::Foundation) => "work_foundation_damping",
+        Term::Work(Ledger::BallFriction) => "work_ball_friction",
+        Term::Work(Ledger::Drives) => "work_drives",
+        Term::Residual => "energy_residual",
+    }
+}
+
+fn energy_term(term: Term, snapshot: &Snapshot) -> f64 {
+    match term {
+        Term::Kinetic => snapshot.energy.kinetic,
+        Term::Contact => snapshot.energy.contact,
+        Term::CageContact => snapshot.energy.cage_contact,
+        Term::Gravity => snapshot.energy.gravity,
+        Term::Foundation => snapshot.energy.foundation,
+        Term::BallContact => snapshot.energy.ball_contact,
+        Term::Work(entry) => snapshot.ledger[entry as usize],
+        Term::Residual => snapshot.residual,
+    }
+}

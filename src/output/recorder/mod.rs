@@ -1,0 +1,112 @@
+//! The time series of a run: the columns of what moves in it, side by side, and one row of them at a time.
+
+mod bearing;
+pub mod seat;
+mod solid;
+
+pub use solid::{length, mean, probe_columns, sum};
+
+use crate::output::series::{Column, Series, SeriesError};
+use crate::output::session::{Parts, SessionError};
+use crate::scene::solid_problem::{NamedNodes, Support};
+use crate::solver::channels::ChannelGroup;
+use crate::solver::dynamics::assembly::Assembly;
+use bearing::BearingColumns;
+use ndarray::Array2;
+
+/// Rows of the time series, in memory; room for all of them is made at the start.
+pub struct Recorder {
+    columns: Vec<Column>,
+    values: Vec<f64>,
+    bearing: Option<BearingColumns>,
+    pub probes: Vec<NamedNodes>,
+    pub supports: Vec<Support>,
+}
+
+impl Recorder {
+    /// The columns of a run, without room for rows.
+    pub fn new(parts: &Parts, asked: &[ChannelGroup]) -> Recorder {
+        let mut columns = vec![Column::new("time", "s")];
+        let mut of_bearing =
+            |assembly: &Assembly| BearingColumns::new(assembly, asked, &mut columns);
+        let mut bearing = None;
+        let (mut probes, mut supports) = (Vec::new(), Vec::new());
+        match parts {
+            Parts::Bearing(assembly) => bearing = Some(of_bearing(assembly)),
+            Parts::Solid(parts) => {
+                probes.clone_from(&parts.setup.probes);
+                supports.clone_from(&parts.setup.supports);
+                columns.extend(solid::columns(&probes, &supports));
+            }
+            Parts::Housed(parts) => {
+                bearing = Some(of_bearing(&parts.problem.assembly()));
+                columns.extend(seat::explicit_columns());
+            }
+            Parts::Course(parts) => {
+                let balls = parts.problem.geometry.ball_count;
+                let loads = asked.contains(&ChannelGroup::Loads);
+                columns.extend(seat::equilibrium_columns(if loads { balls } else { 0 }));
+            }
+        }
+        Recorder { columns, values: Vec::new(), bearing, probes, supports }
+    }
+
+    /// With room for so many rows.
+    ///
+    /// # Errors
+    /// [`SessionError::Memory`].
+    pub fn with_room(mut self, rows: usize) -> Result<Recorder, SessionError> {
+        let columns = self.columns.len();
+        let wanted = rows.checked_mul(columns);
+        match wanted.map(|wanted| self.values.try_reserve_exact(wanted)) {
+            Some(Ok(())) => Ok(self),
+            _ => Err(SessionError::Memory { rows, columns }),
+        }
+    }
+
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Rows recorded so far.
+    pub fn rows(&self) -> usize {
+        self.values.len() / self.columns.len()
+    }
+
+    /// Rows that have room.
+    pub fn capacity(&self) -> usize {
+        self.values.capacity() / self.columns.len()
+    }
+
+    /// A row of the table, in the order of the columns.
+    pub fn row(&self, row: usize) -> &[f64] {
+        let width = self.columns.len();
+        &self.values[row * width..(row + 1) * width]
+    }
+
+    /// The first `rows` rows as a table.
+    ///
+    /// # Errors
+    /// Never for columns made by [`Recorder::new`].
+    pub fn series(&self, rows: usize) -> Result<Series, SeriesError> {
+        let width = self.columns.len();
+        let values = self.values[..rows * width].to_vec();
+        let data = Array2::from_shape_vec((rows, width), values)
+            .expect("every row has one value a column");
+        Series::new(self.columns.clone(), data)
+    }
+
+    /// Takes over the first `rows` rows of a table that an earlier part of the run left.
+    ///
+    /// Returns whether the table has these columns and as many rows.
+    pub fn restore(&mut self, series: &Series, rows: usize) -> bool {
+        if series.columns() != self.columns || series.data().nrows() < rows {
+            return false;
+        }
+        self.values.clear();
+        for row in series.data().rows().into_iter().take(rows) {
+            self.values.extend(row);
+        }
+        true
+    }
+}

@@ -1,0 +1,328 @@
+//! What moves in a run: a bearing, a solid, both exchanging impulses, or one equilibrium after the other.
+
+use super::SessionError;
+use crate::output::course::{Course, CourseCheckpoint, CourseParts};
+use crate::scene::solid_problem::SolidSetup;
+use crate::solver::clock::{Clock, whole_number};
+use crate::solver::dynamics::assembly::Assembly;
+use crate::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
+use crate::solver::dynamics::clocked::{self, Arrival, RunRequest};
+use crate::solver::dynamics::model::DynamicProblem;
+use crate::solver::dynamics::run::Simulation;
+use crate::solver::housing::checkpoint::{HousedCheckpoint, Windows};
+use crate::solver::housing::exchange::{ExchangeError, ExchangeOptions, HousedBearing, Seat};
+use crate::solver::solid::checkpoint::SolidCheckpoint;
+use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
+use crate::solver::solid::model::{SolidError, SolidModel};
+use crate::solver::solid::step_limit::{SolidStepLimit, step_limit};
+use crate::solver::solid::team::Team;
+
+/// What a run is made of.
+pub enum Parts<'p> {
+    Bearing(Box<Assembly>),
+    Solid(SolidParts<'p>),
+    Housed(Box<HousedParts>),
+    Course(Box<CourseParts<'p>>),
+}
+
+impl From<Assembly> for Parts<'_> {
+    fn from(assembly: Assembly) -> Self {
+        Parts::Bearing(Box::new(assembly))
+    }
+}
+
+impl From<DynamicProblem> for Parts<'_> {
+    fn from(problem: DynamicProblem) -> Self {
+        problem.assembly().into()
+    }
+}
+
+/// A solid by itself.
+#[derive(Clone, Copy)]
+pub struct SolidParts<'p> {
+    pub setup: &'p SolidSetup,
+    pub method: ExplicitMethod,
+    pub stepping: SolidStepping,
+    /// Threads that step it, with the same bits.
+    pub threads: usize,
+}
+
+/// A bearing and its housing in explicit steps.
+#[derive(Clone, Debug)]
+pub struct HousedParts {
+    pub problem: DynamicProblem,
+    pub model: SolidModel,
+    pub seat: Seat,
+    pub options: ExchangeOptions,
+}
+
+/// What moves.
+pub enum Motion<'p> {
+    Bearing(Box<Simulation>),
+    Solid(Box<MovingSolid>),
+    Housed(Box<HousedBearing>),
+    Course(Box<Course<'p>>),
+}
+
+/// A solid that several threads may step.
+pub struct MovingSolid {
+    pub solid: ExplicitSolid,
+    pub threads: usize,
+    /// Made with the first step.
+    team: Option<Team>,
+}
+
+/// All that a motion goes on from with the same bits.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Checkpoint {
+    Bearing(Box<BearingCheckpoint>),
+    Solid(Box<SolidCheckpoint>, SolidStepLimit),
+    Housed(Box<HousedCheckpoint>, Windows),
+    Course(CourseCheckpoint),
+}
+
+impl<'p> Motion<'p> {
+    /// At the start, with the clock of the run.
+    pub(super) fn start(
+        parts: Parts<'p>,
+        request: &RunRequest,
+    ) -> Result<(Motion<'p>, Clock), SessionError> {
+        let interval = request.output_interval;
+        let (motion, mut clock) = match parts {
+            Parts::Bearing(assembly) => {
+                let (simulation, clock) = clocked::start(*assembly, request)?;
+                (Motion::Bearing(Box::new(simulation)), clock)
+            }
+            Parts::Solid(parts) => {
+                let model = parts.model()?;
+                let still = vec![[0.0; 4]; model.mass.len()];
+                let limit = step_limit(&model, &still, parts.method);
+                let (step, steps_per_row) = parts.stepping.divide(interval, limit.step);
+                let solid = parts.solid(model, limit, step)?;
+                (Motion::Solid(solid), Clock { step, steps_per_row, ..Clock::default() })
+            }
+            Parts::Housed(parts) => {
+                let (housed, steps_per_row) = parts.started(interval)?;
+                let step = housed.window;
+                let clock = Clock { step, steps_per_row, ..Clock::default() };
+                (Motion::Housed(Box::new(housed)), clock)
+            }
+            Parts::Course(parts) => {
+                let course = Course::new(*parts, interval);
+                let clock = Clock { step: interval, steps_per_row: 1, ..Clock::default() };
+                (Motion::Course(Box::new(course)), clock)
+            }
+        };
+        (clock.end, clock.interval) = (request.end, interval);
+        clock.fields_interval = request.fields_interval;
+        let row = clock.row_interval();
+        clock.rows_per_fields =
+            request.fields_interval.map(|fields| (fields / row).round().max(1.0) as u64);
+        clock.last = motion.last(&clock);
+        Ok((motion, clock))
+    }
+
+    /// Where a checkpoint was taken; `clock` is that of the kept run.
+    pub(super) fn resume(
+        parts: Parts<'p>,
+        request: &RunRequest,
+        checkpoint: &Checkpoint,
+        clock: &mut Clock,
+    ) -> Result<Motion<'p>, SessionError> {
+        let motion = match (parts, checkpoint) {
+            (Parts::Bearing(assembly), Checkpoint::Bearing(kept)) => {
+                let simulation = Simulation::from_checkpoint(*assembly, request.options, kept)?;
+                clock.corners = simulation.system.assembly.corners();
+                clock.shortened = simulation.step_watch.shortened.is_some();
+                Motion::Bearing(Box::new(simulation))
+            }
+            (Parts::Solid(parts), Checkpoint::Solid(kept, limit)) => {
+                let mut moving = parts.solid(parts.model()?, *limit, clock.step)?;
+                moving.solid.restore(kept);
+                Motion::Solid(moving)
+            }
+            (Parts::Housed(parts), Checkpoint::Housed(kept, windows)) => {
+                let HousedParts { problem, model, seat, options } = *parts;
+                let housed =
+                    HousedBearing::from_checkpoint(problem, model, seat, &options, windows, kept)?;
+                Motion::Housed(Box::new(housed))
+            }
+            (Parts::Course(parts), Checkpoint::Course(kept)) => {
+                let mut course = Course::new(*parts, clock.interval);
+                course.restore(kept)?;
+                Motion::Course(Box::new(course))
+            }
+            _ => return Err(SessionError::OtherKind),
+        };
+        clock.last = motion.last(clock);
+        Ok(motion)
+    }
+
+    /// Whole steps up to the end: of a solid to the one nearest to it, of others to the nearest row.
+    fn last(&self, clock: &Clock) -> Option<u64> {
+        match self {
+            Motion::Bearing(_) => None,
+            Motion::Solid(_) => Some(whole_number(clock.end, clock.step)),
+            Motion::Housed(_) => {
+                Some(whole_number(clock.end, clock.interval) * clock.steps_per_row)
+            }
+            Motion::Course(_) => Some(whole_number(clock.end, clock.interval) + 1),
+        }
+    }
+
+    /// The bearing, where one moves in steps.
+    pub fn bearing(&self) -> Option<&Simulation> {
+        match self {
+            Motion::Bearing(simulation) => Some(simulation),
+            Motion::Housed(housed) => Some(&housed.bearing),
+            Motion::Solid(_) | Motion::Course(_) => None,
+        }
+    }
+
+    pub fn bearing_mut(&mut self) -> Option<&mut Simulation> {
+        match self {
+            Motion::Bearing(simulation) => Some(simulation),
+            Motion::Housed(housed) => Some(&mut housed.bearing),
+            Motion::Solid(_) | Motion::Course(_) => None,
+        }
+    }
+
+    /// The solid, where one moves in steps.
+    pub fn solid(&self) -> Option<&ExplicitSolid> {
+        match self {
+            Motion::Solid(moving) => Some(&moving.solid),
+            Motion::Housed(housed) => Some(&housed.solid),
+            Motion::Bearing(_) | Motion::Course(_) => None,
+        }
+    }
+
+    /// s.
+    pub fn time(&self) -> f64 {
+        match self {
+            Motion::Bearing(simulation) => simulation.time,
+            Motion::Solid(moving) => moving.solid.time,
+            Motion::Housed(housed) => housed.time(),
+            Motion::Course(course) => course.time(),
+        }
+    }
+
+    /// Steps, windows or equilibria so far.
+    pub fn done(&self) -> u64 {
+        match self {
+            Motion::Bearing(simulation) => simulation.steps,
+            Motion::Solid(moving) => moving.solid.steps,
+            Motion::Housed(housed) => housed.exchanges,
+            Motion::Course(course) => course.found,
+        }
+    }
+
+    /// Up to what is due next, in at most `most` steps.
+    pub(super) fn advance(
+        &mut self,
+        clock: &mut Clock,
+        most: u64,
+    ) -> Result<Arrival, SessionError> {
+        let count = match self {
+            Motion::Bearing(simulation) => return Ok(clocked::step(simulation, clock)?),
+            _ => clock.ahead(self.done(), most),
+        };
+        match self {
+            Motion::Bearing(_) => {}
+            Motion::Solid(moving) => moving.advance(count)?,
+            Motion::Housed(housed) => {
+                (0..count).try_for_each(|_| housed.exchange())?;
+                if clock.is_on_grid(housed.exchanges) {
+                    let bearing = &mut housed.bearing;
+                    if let Some(step) = bearing.watch_step().map_err(ExchangeError::from)? {
+                        bearing.shorten_step(step);
+                    }
+                }
+            }
+            Motion::Course(course) => course.find_next()?,
+        }
+        let (row, completes) = clock.after(self.done());
+        Ok(Arrival { row, completes })
+    }
+
+    /// Where it is now.
+    pub(super) fn checkpoint(&mut self) -> Checkpoint {
+        let mut kept = self.room();
+        self.checkpoint_into(&mut kept);
+        kept
+    }
+
+    /// A checkpoint to be written to.
+    pub(super) fn room(&self) -> Checkpoint {
+        match self {
+            Motion::Bearing(_) => Checkpoint::Bearing(Box::default()),
+            Motion::Solid(moving) => Checkpoint::Solid(Box::default(), moving.solid.limit),
+            Motion::Housed(housed) => Checkpoint::Housed(Box::default(), housed.windows()),
+            Motion::Course(_) => Checkpoint::Course(CourseCheckpoint::default()),
+        }
+    }
+
+    /// The same as [`Motion::checkpoint`]; a bearing, which is kept before each step, allocates nothing.
+    pub(super) fn checkpoint_into(&mut self, kept: &mut Checkpoint) {
+        match (self, kept) {
+            (Motion::Bearing(simulation), Checkpoint::Bearing(kept)) => {
+                simulation.checkpoint_into(kept);
+            }
+            (Motion::Solid(moving), Checkpoint::Solid(kept, _)) => {
+                moving.solid.checkpoint_into(kept);
+            }
+            (Motion::Housed(housed), Checkpoint::Housed(kept, _)) => housed.checkpoint_into(kept),
+            (Motion::Course(course), Checkpoint::Course(kept)) => *kept = course.checkpoint(),
+            (motion, kept) => {
+                *kept = motion.room();
+                motion.checkpoint_into(kept);
+            }
+        }
+    }
+}
+
+impl SolidParts<'_> {
+    fn model(&self) -> Result<SolidModel, SolidError> {
+        SolidModel::labelled(self.setup.problem.clone(), self.setup.labels.clone())
+    }
+
+    fn solid(
+        &self,
+        model: SolidModel,
+        limit: SolidStepLimit,
+        step: f64,
+    ) -> Result<Box<MovingSolid>, SolidError> {
+        let still = vec![[0.0; 4]; model.mass.len()];
+        let velocity = padded(self.setup.velocity.clone());
+        let stepping = SolidStepping::Fixed(step);
+        let solid =
+            ExplicitSolid::with_limit(model, self.method, stepping, limit, still, velocity)?;
+        Ok(Box::new(MovingSolid { solid, threads: self.threads, team: None }))
+    }
+}
+
+impl HousedParts {
+    /// Both at the start, in windows that divide the rows, which are `interval` apart (s); and how many
+    /// a row has.
+    ///
+    /// # Errors
+    /// As [`HousedBearing::new`].
+    pub fn started(self, interval: f64) -> Result<(HousedBearing, u64), ExchangeError> {
+        let HousedParts { problem, model, seat, options } = self;
+        let still = vec![[0.0; 3]; model.mass.len()];
+        let mut housed = HousedBearing::new(problem, model, seat, still, &options)?;
+        let windows = housed.divide(interval)?;
+        Ok((housed, windows))
+    }
+}
+
+impl MovingSolid {
+    fn advance(&mut self, count: u64) -> Result<(), SolidError> {
+        if self.threads <= 1 {
+            return (0..count).try_for_each(|_| self.solid.step(|_, _, _| {}));
+        }
+        let team = self.team.get_or_insert_with(|| Team::new(&self.solid, self.threads));
+        team.advance(count)?;
+        team.gather(&mut self.solid);
+        Ok(())
+    }
+}

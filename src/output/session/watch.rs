@@ -1,0 +1,31 @@
+//! The energy ledger of a run with a solid in it, row by row.
+
+/// A ledger that does not close at this many rows on end fails a run. One alone may be a blow to a
+/// body at rest: what a step leaves of it is much of the little that has been turned over.
+const MOST_ROWS_OPEN: u32 = 5;
+
+/// What the ledger has come to at a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LedgerWatch {
+    /// Energy held less work done at the start, J: what the ledger of a solid by itself is held against.
+    pub first: f64,
+    /// Largest energy held or exchanged so far, J: what is unaccounted for is measured by it.
+    pub turned_over: f64,
+    /// Largest energy unaccounted for so far, J.
+    pub largest_residual: f64,
+    /// Rows on end whose ledger did not close.
+    pub rows_open: u32,
+}
+
+impl LedgerWatch {
+    /// Looks at a row where `residual` is unaccounted for and `turned_over` held or exchanged (J); false
+    /// where the run has to end, having missed more than `limit` of it for too long.
+    pub fn see(&mut self, residual: f64, turned_over: f64, limit: f64) -> bool {
+        self.turned_over = self.turned_over.max(turned_over);
+        self.largest_residual = self.largest_residual.max(residual.abs());
+        let closes = residual.abs() <= limit * self.turned_over;
+        self.rows_open = if closes { 0 } else { self.rows_open + 1 };
+        // A residual that is not a number is refused as well.
+        self.rows_open < MOST_ROWS_OPEN && residual.is_finite()
+    }
+}

@@ -1,0 +1,114 @@
+//! Arrays of a state that are too long for text: `state-N.npy`, a row a node.
+
+use super::{StateError, entries::Refused};
+use crate::output::atomic::write_atomic;
+use crate::output::series::Series;
+use crate::output::session::Checkpoint;
+use crate::solver::solid::checkpoint::SolidCheckpoint;
+use ndarray::Array2;
+use ndarray_npy::WriteNpyExt;
+use std::path::Path;
+
+/// Numbers kept for each node of a solid.
+const WIDTH: usize = 8;
+
+/// Name of the arrays of a state after so many steps.
+pub(super) fn arrays_name(steps: u64) -> String {
+    format!("state-{steps}.npy")
+}
+
+/// Writes the arrays of a checkpoint after so many steps: of a solid's nodes, or of those of a condensed
+/// bore. Returns the name of the file, if there is something to write.
+pub(super) fn write_arrays(
+    folder: &Path,
+    checkpoint: &Checkpoint,
+    steps: u64,
+) -> Result<Option<String>, StateError> {
+    let (width, values) = match checkpoint {
+        Checkpoint::Bearing(_) => return Ok(None),
+        Checkpoint::Solid(kept, _) => (WIDTH, of_nodes(kept)),
+        Checkpoint::Housed(kept, _) => (WIDTH, of_nodes(&kept.solid)),
+        Checkpoint::Course(kept) => {
+            let mut touches = vec![0.0; kept.nodes];
+            kept.memory.bore.touching.iter().for_each(|&node| touches[node] = 1.0);
+            (1, touches)
+        }
+    };
+    let name = arrays_name(steps);
+    let path = folder.join(&name);
+    if !values.iter().all(|value| value.is_finite()) {
+        return Err(StateError::Damaged { path, what: "a value that is not finite" });
+    }
+    let table = Array2::from_shape_vec((values.len() / width, width), values)
+        .expect("as many numbers for each node");
+    let mut bytes = Vec::new();
+    table
+        .write_npy(&mut bytes)
+        .map_err(|source| StateError::Encode { path: path.clone(), source })?;
+    write_atomic(&path, &bytes)?;
+    Ok(Some(name))
+}
+
+fn of_nodes(checkpoint: &SolidCheckpoint) -> Vec<f64> {
+    let mut values = Vec::with_capacity(WIDTH * checkpoint.rate.len());
+    for (n, (u, v)) in checkpoint.displacement.iter().zip(&checkpoint.rate).enumerate() {
+        values.extend([u[0], u[1], u[2], v[0], v[1], v[2]]);
+        values.extend([checkpoint.external_work[n], checkpoint.damping_work[n]]);
+    }
+    values
+}
+
+fn table(folder: &Path, file: &str, shape: (usize, usize)) -> Result<Series, Refused> {
+    if file.contains(['/', '\\']) {
+        return Err(Refused::Damaged("its arrays lie elsewhere"));
+    }
+    let arrays = Series::read_npy(&folder.join(file))?;
+    if arrays.data().dim() != shape {
+        return Err(Refused::Damaged("its arrays have another shape than the mesh asks for"));
+    }
+    arrays.check_finite()?;
+    Ok(arrays)
+}
+
+/// The arrays of a solid with so many nodes; `file` is named in `folder`. Time, steps and work stay zero.
+pub(super) fn read_arrays(
+    folder: &Path,
+    file: &str,
+    nodes: usize,
+) -> Result<SolidCheckpoint, Refused> {
+    let arrays = table(folder, file, (nodes, WIDTH))?;
+    let part = |from: usize| {
+        let row = |row: ndarray::ArrayView1<f64>| [row[from], row[from + 1], row[from + 2], 0.0];
+        arrays.data().rows().into_iter().map(row).collect()
+    };
+    let column = |at: usize| arrays.data().column(at).to_vec();
+    Ok(SolidCheckpoint {
+        displacement: part(0),
+        rate: part(3),
+        external_work: column(6),
+        damping_work: column(7),
+        ..SolidCheckpoint::default()
+    })
+}
+
+/// The nodes of a condensed bore that touched, of so many.
+pub(super) fn read_touching(
+    folder: &Path,
+    file: &str,
+    nodes: usize,
+) -> Result<Vec<usize>, Refused> {
+    let arrays = table(folder, file, (nodes, 1))?;
+    Ok((0..nodes).filter(|&node| arrays.data()[(node, 0)] != 0.0).collect())
+}
+
+/// Removes arrays of states that are not `kept`. What cannot be removed stays: it harms nothing.
+pub fn remove_arrays(folder: &Path, kept: &str) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with("state-") && name.ends_with(".npy") && name != kept {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}

@@ -1,0 +1,481 @@
+//! Sections of `state.json`: what moves, as plain numbers.
+
+use super::{
+    StateFile,
+    arrays::{arrays_name, read_arrays, read_touching},
+};
+use crate::output::course::{CourseCheckpoint, Effort};
+use crate::output::series::SeriesError;
+use crate::output::session::{Checkpoint, Parts};
+use crate::solver::dynamics::assembly::Assembly;
+use crate::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
+use crate::solver::dynamics::contacts::Work;
+use crate::solver::dynamics::control::Memory;
+use crate::solver::dynamics::energy::Energy;
+use crate::solver::dynamics::extremes::Extremes;
+use crate::solver::dynamics::run::ContactTurnover;
+use crate::solver::dynamics::stability::{Cause, StepLimit};
+use crate::solver::dynamics::step_watch::{Shortened, StepWatch, Stiffness};
+use crate::solver::housing::assembly::SearchMemory;
+use crate::solver::housing::bore_equilibrium::BoreMemory;
+use crate::solver::housing::checkpoint::{HousedCheckpoint, Windows};
+use crate::solver::housing::exchange::Growth;
+use crate::solver::solid::checkpoint::SolidCheckpoint;
+use crate::solver::solid::explicit::SolidWork;
+use crate::solver::solid::step_limit::SolidStepLimit;
+use nalgebra::Complex;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Why a state is not gone on from.
+pub(super) enum Refused {
+    Damaged(&'static str),
+    Series(SeriesError),
+}
+
+impl From<SeriesError> for Refused {
+    fn from(error: SeriesError) -> Self {
+        Refused::Series(error)
+    }
+}
+
+/// A bearing in motion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BearingEntry {
+    pub steps: u64,
+    pub step_size: f64,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub limit: Option<LimitEntry>,
+    pub step_watch: StepWatchEntry,
+    /// See [`Extremes::to_numbers`].
+    pub extremes: Vec<f64>,
+    pub state: Vec<f64>,
+    pub damping: Vec<f64>,
+    pub was_loaded: Vec<bool>,
+    /// Kinetic, contact, cage contact, gravity, foundation, ball contact, J.
+    pub first_energy: [f64; 6],
+    pub largest_contact_energy: f64,
+    /// See [`ContactTurnover`]: sum and last, J.
+    pub contact_turnover: [f64; 2],
+    /// Evaluations, distance tests, loaded contacts, slices, pocket tests, guide tests,
+    /// ball tests, factorisations, rejected steps.
+    pub work: [u64; 9],
+    /// With error control: largest overlap (m), error of the step before, smallest and largest
+    /// step (s).
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub control: Option<[f64; 4]>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LimitEntry {
+    pub step: f64,
+    /// Real and imaginary part, 1/s.
+    pub eigenvalue: [f64; 2],
+    /// As in [`Cause::name`].
+    pub cause: String,
+}
+
+/// See [`StepWatch`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StepWatchEntry {
+    pub judged: u64,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub smallest: Option<f64>,
+    /// Oscillation, 1/s²; decay, 1/s.
+    pub stiffest: [f64; 2],
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub exceeded: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub shortened: Option<ShortenedEntry>,
+}
+
+/// See [`Shortened`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ShortenedEntry {
+    pub times: u64,
+    pub from: f64,
+    pub last: f64,
+}
+
+/// A solid in explicit steps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SolidEntry {
+    /// File with one row a node: displacement (m), rate (m/s), work of loads and of damping (J).
+    pub arrays: String,
+    /// s.
+    pub time: f64,
+    pub steps: u64,
+    pub limit: SolidLimitEntry,
+    /// Force evaluations and elements in them.
+    pub work: [u64; 2],
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SolidLimitEntry {
+    pub step: f64,
+    pub frequency: f64,
+    pub is_bound: bool,
+    pub element: usize,
+    pub element_frequency: f64,
+    pub at: [f64; 3],
+    pub products: usize,
+}
+
+impl SolidLimitEntry {
+    fn of(limit: &SolidStepLimit) -> SolidLimitEntry {
+        SolidLimitEntry {
+            step: limit.step,
+            frequency: limit.frequency,
+            is_bound: limit.is_bound,
+            element: limit.element,
+            element_frequency: limit.element_frequency,
+            at: limit.at,
+            products: limit.products,
+        }
+    }
+
+    fn to_limit(self) -> SolidStepLimit {
+        SolidStepLimit {
+            step: self.step,
+            frequency: self.frequency,
+            is_bound: self.is_bound,
+            element: self.element,
+            element_frequency: self.element_frequency,
+            at: self.at,
+            products: self.products,
+        }
+    }
+}
+
+/// What a bearing and its housing exchange.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExchangeEntry {
+    pub steps_per_window: usize,
+    /// N·s.
+    pub impulse: [f64; 3],
+    /// Work (J), radius (m) and load (N) of an interference that grows in.
+    pub growth: [f64; 3],
+    pub tested: u64,
+    pub sorts: u64,
+    /// What the ledgers of the bearing and of both held at the start, J.
+    pub first: [f64; 2],
+}
+
+/// A course of equilibria.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CourseEntry {
+    /// File with one row a node of the bore: 1 where it touched.
+    pub arrays: String,
+    pub largest_residual: f64,
+    pub rounds: usize,
+    pub contact_changes: usize,
+    /// Where the search found the inner race (m, rad), the outer one from either side (m, rad).
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub inner: Option<[f64; 5]>,
+    pub outer: [f64; 4],
+    pub pose: [f64; 4],
+}
+
+impl BearingEntry {
+    pub(super) fn of(checkpoint: &BearingCheckpoint) -> BearingEntry {
+        let energy = &checkpoint.first_energy;
+        let work = &checkpoint.work;
+        let watch = &checkpoint.step_watch;
+        BearingEntry {
+            steps: checkpoint.steps,
+            step_size: checkpoint.step_size,
+            limit: checkpoint.limit.map(|limit| LimitEntry {
+                step: limit.step,
+                eigenvalue: [limit.eigenvalue.re, limit.eigenvalue.im],
+                cause: limit.cause.name().into(),
+            }),
+            step_watch: StepWatchEntry {
+                judged: watch.judged,
+                smallest: watch.smallest,
+                stiffest: [watch.stiffest.oscillation, watch.stiffest.decay],
+                exceeded: watch.exceeded,
+                shortened: watch.shortened.map(|Shortened { times, from, last }| ShortenedEntry {
+                    times,
+                    from,
+                    last,
+                }),
+            },
+            extremes: checkpoint.extremes.iter().flat_map(Extremes::to_numbers).collect(),
+            state: checkpoint.state.clone(),
+            damping: checkpoint.damping.clone(),
+            was_loaded: checkpoint.was_loaded.clone(),
+            first_energy: [
+                energy.kinetic,
+                energy.contact,
+                energy.cage_contact,
+                energy.gravity,
+                energy.foundation,
+                energy.ball_contact,
+            ],
+            largest_contact_energy: checkpoint.largest_contact_energy,
+            contact_turnover: [checkpoint.contact_turnover.sum, checkpoint.contact_turnover.last],
+            work: [
+                work.evaluations,
+                work.distance_tests,
+                work.loaded_contacts,
+                work.slices,
+                work.pocket_tests,
+                work.guide_tests,
+                work.ball_tests,
+                work.factorisations,
+                work.rejected_steps,
+            ],
+            control: checkpoint.control.map(|memory| {
+                [memory.displacement, memory.previous_error, memory.smallest, memory.largest]
+            }),
+        }
+    }
+
+    /// What has to be finite.
+    pub(super) fn numbers(&self) -> Vec<(&'static str, Vec<f64>)> {
+        let limit = self.limit.iter().flat_map(|l| [l.step, l.eigenvalue[0], l.eigenvalue[1]]);
+        let watch = &self.step_watch;
+        let watched = watch.stiffest.into_iter().chain(watch.smallest);
+        let shortened = watch.shortened.into_iter().flat_map(|s| [s.from, s.last]);
+        let limit =
+            limit.chain(watched).chain(watch.exceeded.into_iter().flatten()).chain(shortened);
+        let energy = [self.step_size, self.largest_contact_energy].into_iter();
+        let energy = energy.chain(self.first_energy).chain(self.contact_turnover);
+        vec![
+            ("an extreme", self.extremes.clone()),
+            ("a size of the error control", self.control.into_iter().flatten().collect()),
+            ("a step or an energy", energy.collect()),
+            ("a step limit", limit.collect()),
+            ("an entry of the state", self.state.clone()),
+            ("a damping factor", self.damping.clone()),
+        ]
+    }
+
+    /// # Errors
+    /// Lists of other lengths than the problem asks for, a step that is none.
+    fn checked(&self, time: f64, assembly: &Assembly) -> Result<BearingCheckpoint, Refused> {
+        let checkpoint = self.checkpoint(time);
+        let damaged = |what| Err(Refused::Damaged(what));
+        if self.limit.as_ref().is_some_and(|limit| cause(&limit.cause).is_none()) {
+            return damaged("its step limit has a cause that is not known");
+        }
+        if Extremes::all_from_numbers(&self.extremes).is_none_or(|all| all.is_empty()) {
+            return damaged("its extremes are not as many as a bearing has");
+        }
+        if !checkpoint.fits(assembly) {
+            return damaged("its lists have other lengths than the bearing asks for");
+        }
+        if self.step_size <= 0.0 {
+            return damaged("no step from one row to the next");
+        }
+        Ok(checkpoint)
+    }
+
+    fn checkpoint(&self, time: f64) -> BearingCheckpoint {
+        let [oscillation, decay] = self.step_watch.stiffest;
+        let [kinetic, contact, cage_contact, gravity, foundation, ball_contact] = self.first_energy;
+        let [
+            evaluations,
+            distance_tests,
+            loaded_contacts,
+            slices,
+            pocket_tests,
+            guide_tests,
+            ball_tests,
+            factorisations,
+            rejected_steps,
+        ] = self.work;
+        BearingCheckpoint {
+            time,
+            steps: self.steps,
+            step_size: self.step_size,
+            limit: self.limit.as_ref().and_then(|limit| {
+                Some(StepLimit {
+                    step: limit.step,
+                    eigenvalue: Complex::new(limit.eigenvalue[0], limit.eigenvalue[1]),
+                    cause: cause(&limit.cause)?,
+                })
+            }),
+            step_watch: StepWatch {
+                judged: self.step_watch.judged,
+                smallest: self.step_watch.smallest,
+                stiffest: Stiffness { oscillation, decay },
+                exceeded: self.step_watch.exceeded,
+                shortened: self
+                    .step_watch
+                    .shortened
+                    .map(|ShortenedEntry { times, from, last }| Shortened { times, from, last }),
+            },
+            extremes: Extremes::all_from_numbers(&self.extremes).unwrap_or_default(),
+            state: self.state.clone(),
+            damping: self.damping.clone(),
+            was_loaded: self.was_loaded.clone(),
+            first_energy: Energy {
+                kinetic,
+                contact,
+                cage_contact,
+                gravity,
+                foundation,
+                ball_contact,
+            },
+            largest_contact_energy: self.largest_contact_energy,
+            contact_turnover: ContactTurnover {
+                sum: self.contact_turnover[0],
+                last: self.contact_turnover[1],
+            },
+            work: Work {
+                evaluations,
+                distance_tests,
+                loaded_contacts,
+                slices,
+                pocket_tests,
+                guide_tests,
+                ball_tests,
+                factorisations,
+                rejected_steps,
+            },
+            control: self.control.map(|[displacement, previous_error, smallest, largest]| Memory {
+                displacement,
+                previous_error,
+                smallest,
+                largest,
+            }),
+        }
+    }
+}
+
+impl SolidEntry {
+    pub(super) fn of(kept: &SolidCheckpoint, limit: &SolidStepLimit, number: u64) -> SolidEntry {
+        SolidEntry {
+            arrays: arrays_name(number),
+            time: kept.time,
+            steps: kept.steps,
+            limit: SolidLimitEntry::of(limit),
+            work: [kept.work.evaluations, kept.work.elements],
+        }
+    }
+
+    fn checkpoint(&self, folder: &Path, nodes: usize) -> Result<SolidCheckpoint, Refused> {
+        Ok(SolidCheckpoint {
+            time: self.time,
+            steps: self.steps,
+            work: SolidWork { evaluations: self.work[0], elements: self.work[1] },
+            ..read_arrays(folder, &self.arrays, nodes)?
+        })
+    }
+}
+
+impl ExchangeEntry {
+    pub(super) fn of(kept: &HousedCheckpoint, windows: &Windows) -> ExchangeEntry {
+        ExchangeEntry {
+            steps_per_window: windows.solid_steps,
+            impulse: kept.impulse,
+            growth: [kept.growth.work, kept.growth.radius, kept.growth.load],
+            tested: kept.tested,
+            sorts: kept.sorts,
+            first: kept.first,
+        }
+    }
+
+    pub(super) fn numbers(&self) -> Vec<f64> {
+        self.impulse.into_iter().chain(self.growth).chain(self.first).collect()
+    }
+}
+
+impl CourseEntry {
+    pub(super) fn of(kept: &CourseCheckpoint) -> CourseEntry {
+        CourseEntry {
+            arrays: arrays_name(kept.found),
+            largest_residual: kept.effort.largest_residual,
+            rounds: kept.effort.rounds,
+            contact_changes: kept.effort.contact_changes,
+            inner: kept.memory.inner,
+            outer: kept.memory.outer,
+            pose: kept.memory.bore.pose,
+        }
+    }
+}
+
+fn cause(name: &str) -> Option<Cause> {
+    Cause::ALL.into_iter().find(|cause| cause.name() == name)
+}
+
+/// Time (s) and number of steps, windows or equilibria that a checkpoint is of.
+pub(super) fn place(checkpoint: &Checkpoint) -> (f64, u64) {
+    match checkpoint {
+        Checkpoint::Bearing(kept) => (kept.time, kept.steps),
+        Checkpoint::Solid(kept, _) => (kept.time, kept.steps),
+        Checkpoint::Housed(kept, _) => (kept.bearing.time, kept.exchanges),
+        Checkpoint::Course(kept) => (kept.time, kept.found),
+    }
+}
+
+/// What a state file read from `folder` says of these parts.
+pub(super) fn checkpoint(
+    folder: &Path,
+    file: &StateFile,
+    parts: &Parts,
+) -> Result<Checkpoint, Refused> {
+    const LACKS: Refused = Refused::Damaged("it lacks a part that the scene has");
+    let solid = || file.solid.as_ref().ok_or(LACKS);
+    let bearing = || file.bearing.as_deref().ok_or(LACKS);
+    Ok(match parts {
+        Parts::Bearing(assembly) => {
+            Checkpoint::Bearing(Box::new(bearing()?.checked(file.time, assembly)?))
+        }
+        Parts::Solid(parts) => {
+            let kept = solid()?.checkpoint(folder, parts.setup.problem.nodes.len())?;
+            Checkpoint::Solid(Box::new(kept), solid()?.limit.to_limit())
+        }
+        Parts::Housed(parts) => {
+            let exchange = file.exchange.as_ref().ok_or(LACKS)?;
+            if exchange.steps_per_window == 0 {
+                return Err(Refused::Damaged("no step from one row to the next"));
+            }
+            let [work, radius, load] = exchange.growth;
+            let kept = HousedCheckpoint {
+                bearing: bearing()?.checked(file.time, &parts.problem.assembly())?,
+                solid: solid()?.checkpoint(folder, parts.model.problem.nodes.len())?,
+                exchanges: file.steps,
+                impulse: exchange.impulse,
+                growth: Growth { work, radius, load },
+                tested: exchange.tested,
+                sorts: exchange.sorts,
+                first: exchange.first,
+            };
+            let windows = Windows {
+                window: file.step,
+                solid_steps: exchange.steps_per_window,
+                limit: solid()?.limit.to_limit(),
+            };
+            Checkpoint::Housed(Box::new(kept), windows)
+        }
+        Parts::Course(parts) => {
+            let course = file.course.as_ref().ok_or(LACKS)?;
+            let touching = read_touching(folder, &course.arrays, parts.bore.nodes.len())?;
+            Checkpoint::Course(CourseCheckpoint {
+                time: file.time,
+                found: file.steps,
+                effort: Effort {
+                    largest_residual: course.largest_residual,
+                    rounds: course.rounds,
+                    contact_changes: course.contact_changes,
+                },
+                memory: SearchMemory {
+                    inner: course.inner,
+                    outer: course.outer,
+                    bore: BoreMemory { pose: course.pose, touching },
+                },
+                nodes: parts.bore.nodes.len(),
+            })
+        }
+    })
+}

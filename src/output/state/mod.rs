@@ -1,0 +1,325 @@
+//! `state.json`: all a run needs to go on with the same bits, a section for each thing that moves. Arrays
+//! that are long lie in `state-N.npy` beside it (N the number of steps), the rows so far in `series.npy`.
+//!
+//! Numbers are written as the shortest decimal that reads back to the same bits. Series and arrays are
+//! written before the state names them and older arrays are removed after, so that whatever moment a run
+//! is killed at there is one whole state. There may be more rows than it speaks of; those are computed again.
+
+pub mod arrays;
+pub mod entries;
+
+pub use crate::output::journal::{SERIES, STATE, Stopped};
+
+use crate::output::atomic::{WriteError, remove_partials};
+use crate::output::fields::FOLDER;
+use crate::output::journal::{self, JournalError};
+use crate::output::series::{Series, SeriesError};
+use crate::output::session::{
+    Checkpoint, LedgerWatch, Parts, RunRequest, Session, SessionError, Sound,
+};
+use crate::solver::channels::ChannelGroup;
+use crate::solver::clock::{Clock, rounded};
+use crate::solver::dynamics::assembly::Assembly;
+use crate::solver::dynamics::run::Stepping;
+use crate::solver::solid::model::SolidProblem;
+use arrays::{remove_arrays, write_arrays};
+use entries::{BearingEntry, CourseEntry, ExchangeEntry, SolidEntry};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Of `state.json`; the first one had a form of its own for each kind of run, and no number.
+pub const FORM: u32 = 2;
+
+/// Content of `state.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StateFile {
+    pub program: String,
+    pub version: String,
+    /// See [`FORM`].
+    pub form: u32,
+    /// See [`fingerprint`].
+    pub fingerprint: String,
+    pub stopped: Stopped,
+    /// What ended a failed run.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub error: Option<String>,
+    /// s.
+    pub time: f64,
+    /// Steps of a bearing or a solid, windows of both, equilibria.
+    pub steps: u64,
+    pub rows: usize,
+    /// When the run was to end, and the times between rows and between fields that it was asked for, s.
+    pub end: f64,
+    pub output_interval: f64,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub fields_interval: Option<f64>,
+    /// s; zero with error control: rows then are `output_interval` apart.
+    pub step: f64,
+    pub steps_per_row: u64,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub rows_per_fields: Option<u64>,
+    /// Wall time so far, s.
+    pub seconds: f64,
+    /// At the start, turned over, largest residual, J, and rows on end whose ledger did not close; of
+    /// runs with a solid.
+    pub ledger: ([f64; 3], u32),
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub bearing: Option<Box<BearingEntry>>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub solid: Option<SolidEntry>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub exchange: Option<ExchangeEntry>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub course: Option<CourseEntry>,
+}
+
+#[derive(Debug, Error)]
+pub enum StateError {
+    #[error(
+        "{} belongs to another scene or mesh: only end, plots and window may change from one part of a \
+         run to the next (a housing.fit_ramp that is not written is a tenth of the end: write it); choose \
+         another --out, or start anew (--fresh)",
+        path.display()
+    )]
+    Scene { path: PathBuf },
+    #[error(
+        "the {what} beside {} are {kept} s apart, the scene now asks for {asked} s", path.display()
+    )]
+    Interval { path: PathBuf, what: &'static str, kept: f64, asked: f64 },
+    #[error("{} holds a damaged state: {what}", path.display())]
+    Damaged { path: PathBuf, what: &'static str },
+    #[error("{} has no rows that fit the state beside it", path.display())]
+    Rows { path: PathBuf },
+    #[error("the run has already come to {} s, past its new end of {end} s", rounded(*time))]
+    Past { time: f64, end: f64 },
+    #[error("{what} is {value}; only finite numbers are kept in a state")]
+    NotFinite { what: &'static str, value: f64 },
+    #[error("cannot encode {}: {source}", path.display())]
+    Encode { path: PathBuf, source: ndarray_npy::WriteNpyError },
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    #[error(transparent)]
+    Series(#[from] SeriesError),
+    #[error(transparent)]
+    Session(#[from] SessionError),
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// Sha256 of what decides every bit of a run but its length: what moves, how it is stepped, what
+/// is recorded, and the version. The end is not in it, so that a run can be extended, nor the
+/// output interval, which is compared by itself.
+pub fn fingerprint(parts: &Parts, request: &RunRequest) -> String {
+    // Debug text has every field, and the shortest decimals that tell two numbers apart.
+    let channels = &request.channels;
+    let groups: Vec<&str> =
+        ChannelGroup::ALL.into_iter().filter(|g| channels.contains(g)).map(|g| g.name()).collect();
+    let mut hash = Sha256::new_with_prefix(format!("{} {groups:?}", env!("CARGO_PKG_VERSION")));
+    match parts {
+        Parts::Bearing(assembly) => hash_bearing(&mut hash, assembly, request),
+        Parts::Solid(parts) => {
+            let setup = parts.setup;
+            hash_solid(&mut hash, &setup.problem);
+            for value in setup.velocity.iter().flatten() {
+                hash.update(value.to_bits().to_le_bytes());
+            }
+            hash.update(format!("{:?} {:?}", parts.method, parts.stepping));
+            hash.update(format!("{:?} {:?}", setup.probes, setup.supports));
+        }
+        Parts::Housed(parts) => {
+            hash_bearing(&mut hash, &parts.problem.assembly(), request);
+            hash_solid(&mut hash, &parts.model.problem);
+            hash.update(format!("{:?} {:?}", parts.seat, parts.options));
+        }
+        Parts::Course(parts) => {
+            hash_solid(&mut hash, &parts.setup.model.problem);
+            let dynamics = &parts.scene.bearing.dynamics;
+            let moving = (&dynamics.inner, &dynamics.outer, &dynamics.rotating_load);
+            hash.update(format!("{:?} {moving:?}", parts.problem));
+            let housing = (parts.setup.fit(parts.scene), parts.setup.radius(parts.scene));
+            hash.update(format!("{housing:?} {:?}", parts.scene.housing.penalty));
+            hash.update(format!("{:?} {:?}", parts.setup.reach(), parts.scene.bearing.gravity));
+        }
+    }
+    journal::hexadecimal(hash)
+}
+
+fn hash_bearing(hash: &mut Sha256, assembly: &Assembly, request: &RunRequest) {
+    hash.update(format!("{assembly:?} {:?}", request.options));
+}
+
+fn hash_solid(hash: &mut Sha256, solid: &SolidProblem) {
+    for value in solid.nodes.iter().flatten() {
+        hash.update(value.to_bits().to_le_bytes());
+    }
+    for node in solid.elements.all_nodes() {
+        hash.update(node.to_le_bytes());
+    }
+    let laws = (solid.material, solid.density, solid.damping, solid.damped_motion, solid.gravity);
+    hash.update(format!("{laws:?} {:?} {:?}", solid.prescribed, solid.loads));
+}
+
+/// Why a state is written, and what the session does not know.
+#[derive(Clone, Debug)]
+pub struct StateRecord {
+    pub fingerprint: String,
+    pub stopped: Stopped,
+    pub error: Option<String>,
+    pub seconds: f64,
+}
+
+/// Writes `series.npy`, arrays and `state.json` of a session into its results folder.
+///
+/// # Errors
+/// A number that is not finite (the state there stays), a file that cannot be written.
+pub fn save(folder: &Path, session: &mut Session, record: &StateRecord) -> Result<(), StateError> {
+    let sound = session.resumable();
+    let file = state_file(&sound, &session.clock, record);
+    check_finite(&file)?;
+    session.series()?.write_npy(&folder.join(SERIES))?;
+    let arrays = write_arrays(folder, &sound.checkpoint, file.steps)?;
+    journal::write(folder, &file)?;
+    remove_partials(&folder.join(FOLDER));
+    remove_arrays(folder, &arrays.unwrap_or_default());
+    Ok(())
+}
+
+/// Reads `state.json` of a results folder; `None` if there is none.
+///
+/// # Errors
+/// A file that cannot be read, is no state, or one of another form.
+pub fn read(folder: &Path) -> Result<Option<StateFile>, StateError> {
+    Ok(journal::read(folder, FORM)?)
+}
+
+/// The session that goes on where `file`, read from `folder`, was written.
+///
+/// # Errors
+/// A state of another version or scene, one that is damaged or lacks its rows, an end that has
+/// already passed.
+pub fn resume<'p>(
+    folder: &Path,
+    file: &StateFile,
+    parts: impl Into<Parts<'p>>,
+    request: &RunRequest,
+) -> Result<Session<'p>, StateError> {
+    let (path, parts) = (folder.join(STATE), parts.into());
+    journal::check_version(folder, &file.version)?;
+    if file.fingerprint != fingerprint(&parts, request) {
+        return Err(StateError::Scene { path });
+    }
+    let interval = |what, kept: Option<f64>, asked: Option<f64>, parts: f64| {
+        // Intervals that follow from the end stay what they were when the run is extended.
+        let follows = |interval: Option<f64>, end: f64| interval == Some(end / parts);
+        if kept == asked || (follows(kept, file.end) && follows(asked, request.end)) {
+            return Ok(());
+        }
+        let [kept, asked] = [kept, asked].map(|interval| interval.unwrap_or(f64::INFINITY));
+        Err(StateError::Interval { path: path.clone(), what, kept, asked })
+    };
+    interval("rows", Some(file.output_interval), Some(request.output_interval), ROWS)?;
+    interval("fields", file.fields_interval, request.fields_interval, FIELDS)?;
+    check_finite(file)?;
+    let damaged = |what| StateError::Damaged { path: path.clone(), what };
+    let checkpoint = entries::checkpoint(folder, file, &parts).map_err(|error| match error {
+        entries::Refused::Damaged(what) => damaged(what),
+        entries::Refused::Series(error) => error.into(),
+    })?;
+    let has_control = file.bearing.as_ref().is_some_and(|bearing| bearing.control.is_some());
+    let asks_control = matches!(request.options.stepping, Stepping::Accuracy(_));
+    if has_control != (asks_control && file.bearing.is_some()) {
+        return Err(damaged("error control without its sizes, or sizes without it"));
+    }
+    let by_time = has_control && file.exchange.is_none();
+    let steps_forward = (file.step > 0.0) != by_time && (file.steps_per_row > 0) != by_time;
+    if !steps_forward || file.rows_per_fields == Some(0) {
+        return Err(damaged("no step from one row to the next"));
+    }
+    let clock = Clock {
+        end: request.end,
+        interval: file.output_interval,
+        step: file.step,
+        steps_per_row: file.steps_per_row,
+        fields_interval: file.fields_interval,
+        rows_per_fields: file.rows_per_fields,
+        ..Clock::default()
+    };
+    // Written as it is so that an end that is not a number is refused as well.
+    let slack = if matches!(parts, Parts::Bearing(_)) { 0.0 } else { 0.5 * file.step };
+    let ahead = request.end > file.time - slack;
+    if !ahead {
+        return Err(StateError::Past { time: file.time, end: request.end });
+    }
+    let [first, turned_over, largest_residual] = file.ledger.0;
+    let watch = LedgerWatch { first, turned_over, largest_residual, rows_open: file.ledger.1 };
+    let sound = Sound { checkpoint, watch, rows: file.rows };
+    let series_path = folder.join(SERIES);
+    let series = Series::read_npy(&series_path)?;
+    Session::resume(parts, request, clock, sound, &series)?
+        .ok_or(StateError::Rows { path: series_path })
+}
+
+/// Rows and files of fields of a run whose scene does not say otherwise.
+const ROWS: f64 = 1000.0;
+const FIELDS: f64 = 20.0;
+
+fn state_file(sound: &Sound, clock: &Clock, record: &StateRecord) -> StateFile {
+    let watch = &sound.watch;
+    let (time, steps) = entries::place(&sound.checkpoint);
+    let mut file = StateFile {
+        program: "bearing-dynamics".into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        form: FORM,
+        fingerprint: record.fingerprint.clone(),
+        stopped: record.stopped,
+        error: record.error.clone(),
+        time,
+        steps,
+        rows: sound.rows,
+        end: clock.end,
+        output_interval: clock.interval,
+        fields_interval: clock.fields_interval,
+        step: clock.step,
+        steps_per_row: clock.steps_per_row,
+        rows_per_fields: clock.rows_per_fields,
+        seconds: record.seconds,
+        ledger: ([watch.first, watch.turned_over, watch.largest_residual], watch.rows_open),
+        bearing: None,
+        solid: None,
+        exchange: None,
+        course: None,
+    };
+    match &sound.checkpoint {
+        Checkpoint::Bearing(kept) => file.bearing = Some(Box::new(BearingEntry::of(kept))),
+        Checkpoint::Solid(kept, limit) => file.solid = Some(SolidEntry::of(kept, limit, steps)),
+        Checkpoint::Housed(kept, windows) => {
+            file.bearing = Some(Box::new(BearingEntry::of(&kept.bearing)));
+            file.solid = Some(SolidEntry::of(&kept.solid, &windows.limit, steps));
+            file.exchange = Some(ExchangeEntry::of(kept, windows));
+        }
+        Checkpoint::Course(kept) => file.course = Some(CourseEntry::of(kept)),
+    }
+    file
+}
+
+/// JSON has no way to write NaN and infinity.
+fn check_finite(file: &StateFile) -> Result<(), StateError> {
+    let single = [file.time, file.step, file.seconds, file.end, file.output_interval];
+    let single = single.into_iter().chain(file.ledger.0).chain(file.fields_interval);
+    let mut parts = vec![("time, step or energy", single.collect())];
+    if let Some(bearing) = &file.bearing {
+        parts.extend(bearing.numbers());
+    }
+    if let Some(exchange) = &file.exchange {
+        parts.push(("what bearing and housing exchange", exchange.numbers()));
+    }
+    for (what, values) in parts {
+        if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
+            return Err(StateError::NotFinite { what, value });
+        }
+    }
+    Ok(())
+}

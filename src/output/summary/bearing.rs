@@ -1,0 +1,218 @@
+//! What a bearing in motion says of its steps, its largest loads and its speeds.
+
+use super::{Part, RunReport};
+use crate::ch2_housing::bearing::geometry::BearingGeometry;
+use crate::ch2_housing::bearing::hertz::contact_ellipse;
+use crate::output::results::{ResultsError, quantity};
+use crate::output::table::RunTable;
+use crate::solver::clock::rounded;
+use crate::solver::dynamics::assembly::Bearing;
+use crate::solver::dynamics::extremes::{Extreme, Extremes};
+use crate::solver::dynamics::run::{Simulation, Stepping};
+use serde_json::{Map, Value, json};
+use std::f64::consts::TAU;
+
+pub(super) fn work(simulation: &Simulation) -> Value {
+    let work = &simulation.system.work;
+    json!({
+        "steps": simulation.steps,
+        "evaluations": work.evaluations,
+        "distance_tests": work.distance_tests,
+        "loaded_contacts": work.loaded_contacts,
+        "slices": work.slices,
+        "pocket_tests": work.pocket_tests,
+        "guide_tests": work.guide_tests,
+        "ball_tests": work.ball_tests,
+        "factorisations": work.factorisations,
+        "rejected_steps": work.rejected_steps,
+    })
+}
+
+pub(super) fn step(simulation: &Simulation, report: &RunReport) -> Part {
+    let size = simulation.step_size;
+    let mut step = Map::new();
+    if let Some(integrator) = report.integrator {
+        step.insert("method".into(), json!(integrator.name()));
+    }
+    if let (Some(control), Some(Stepping::Accuracy(accuracy))) =
+        (&simulation.control, report.stepping)
+    {
+        let memory = &control.memory;
+        step.insert("accuracy".into(), json!(accuracy));
+        step.insert("accepted".into(), json!(simulation.steps));
+        step.insert("rejected".into(), json!(simulation.system.work.rejected_steps));
+        step.insert("smallest".into(), quantity("smallest", memory.smallest, "s")?);
+        step.insert("largest".into(), quantity("largest", memory.largest, "s")?);
+        step.insert("scale".into(), quantity("largest overlap", memory.displacement, "m")?);
+        step.insert("reason".into(), json!("error control: as long as the accuracy allows"));
+        return Ok(Value::Object(step));
+    }
+    step.insert("size".into(), quantity("step", size, "s")?);
+    let reason = match (&simulation.limit, report.stepping) {
+        (Some(limit), Some(Stepping::FractionOfLimit(fraction))) => {
+            step.insert("stability_limit".into(), quantity("limit", limit.step, "s")?);
+            let watch = &simulation.step_watch;
+            let when = match watch.shortened {
+                None => "at the start".into(),
+                Some(shortened) => {
+                    step.insert("shortened".into(), json!(shortened.times));
+                    step.insert("largest".into(), quantity("step", shortened.from, "s")?);
+                    step.insert("smallest".into(), quantity("step", size, "s")?);
+                    format!("at t = {} s, where it was last shortened", rounded(shortened.last))
+                }
+            };
+            format!(
+                "{fraction} of the stability limit {when}, shortened to a whole number of steps an \
+                 output interval; {}",
+                limit.reason()
+            )
+        }
+        (Some(limit), _) => limit.reason(),
+        (None, _) => "given".into(),
+    };
+    step.insert("reason".into(), json!(reason));
+    let watch = &simulation.step_watch;
+    step.insert("limit_judged".into(), json!(watch.judged));
+    if let Some(smallest) = watch.smallest {
+        step.insert("smallest_stability_limit".into(), quantity("limit", smallest, "s")?);
+    }
+    if let Some([ratio, time]) = watch.exceeded {
+        let warning = format!(
+            "the step is {ratio:.3} times the largest stable one at t = {} s; take a shorter one",
+            rounded(time)
+        );
+        step.insert("warning".into(), json!(warning));
+    }
+    Ok(Value::Object(step))
+}
+
+/// Speed of the ball set over that of the inner race, the outer one at rest, where balls roll without
+/// slip at both contacts: with both angles one, (1 - r cos α/R)/2. With two the ball's own axis lies midway
+/// between them.
+fn rolling_ratio(geometry: &BearingGeometry, [inner, outer]: [f64; 2]) -> f64 {
+    let (pitch, radius) = (geometry.pitch_radius, geometry.ball_radius);
+    let (inner, outer) = (radius * libm::cos(inner), radius * libm::cos(outer));
+    (pitch - inner) / (2.0 * pitch - inner + outer)
+}
+
+/// Mean speeds over the window beside those of pure rolling at the contact angles that the balls had.
+pub(super) fn kinematics(
+    simulation: &Simulation,
+    table: &RunTable,
+) -> Result<Option<Value>, ResultsError> {
+    each_bearing(simulation, |_, bearing| kinematics_of(bearing, table))
+}
+
+/// A section for each bearing under its name, or that of the only one itself.
+fn each_bearing(
+    simulation: &Simulation,
+    of: impl Fn(usize, &Bearing) -> Result<Option<Value>, ResultsError>,
+) -> Result<Option<Value>, ResultsError> {
+    let mut named = Map::new();
+    for (index, bearing) in simulation.system.assembly.bearings.iter().enumerate() {
+        let section = of(index, bearing)?;
+        match (&bearing.name, section) {
+            (None, section) => return Ok(section),
+            (Some(name), Some(section)) => {
+                named.insert(name.clone(), section);
+            }
+            (Some(_), None) => {}
+        }
+    }
+    Ok((!named.is_empty()).then_some(Value::Object(named)))
+}
+
+fn kinematics_of(bearing: &Bearing, table: &RunTable) -> Result<Option<Value>, ResultsError> {
+    let (geometry, prefix) = (&bearing.geometry, bearing.prefix());
+    let mean = |channel: &str| {
+        let values = table.windowed(&format!("{prefix}{channel}"))?;
+        Some(values.iter().sum::<f64>() / values.len() as f64)
+    };
+    let Some(inner) = mean("inner_speed").filter(|speed| *speed != 0.0) else { return Ok(None) };
+    let outer = mean("outer_speed").unwrap_or(0.0);
+    let nominal = geometry.contact_angle;
+    let actual = ["mean_inner_contact_angle", "mean_outer_contact_angle"].map(mean);
+    let (angles, named) = match actual {
+        [Some(inner), Some(outer)] => (
+            [inner.to_radians(), outer.to_radians()],
+            "the mean contact angles over the window, balls by their load",
+        ),
+        _ => (
+            [nominal; 2],
+            "the nominal contact angle, since the channels `orbits` are not recorded",
+        ),
+    };
+    let speed_at = |angles: [f64; 2]| {
+        let ratio = rolling_ratio(geometry, angles);
+        ratio * inner + (1.0 - ratio) * outer
+    };
+    let rolling = speed_at(angles);
+    let mut section = Map::new();
+    let speed = |value: f64| quantity("speed", value, "rad/s");
+    let frequency = |value: f64| quantity("frequency", value / TAU, "Hz");
+    let angle = |value: f64| quantity("contact angle", value.to_degrees(), "deg");
+    section.insert("inner_race_speed".into(), speed(inner)?);
+    section.insert("inner_race_frequency".into(), frequency(inner)?);
+    section.insert("rolling_at".into(), json!(named));
+    section.insert("inner_contact_angle".into(), angle(angles[0])?);
+    section.insert("outer_contact_angle".into(), angle(angles[1])?);
+    section.insert("nominal_contact_angle".into(), angle(nominal)?);
+    section.insert("rolling_cage_speed".into(), speed(rolling)?);
+    section.insert("rolling_cage_frequency".into(), frequency(rolling)?);
+    section.insert("rolling_cage_speed_at_nominal_angle".into(), speed(speed_at([nominal; 2]))?);
+    let orbital: Option<Vec<f64>> =
+        (1..=geometry.ball_count).map(|ball| mean(&format!("ball_{ball}_orbital_speed"))).collect();
+    let balls = orbital.map(|speeds| speeds.iter().sum::<f64>() / speeds.len() as f64);
+    for (name, measured) in [("ball_set", balls), ("cage", mean("cage_speed"))] {
+        let Some(measured) = measured else { continue };
+        section.insert(format!("{name}_speed"), speed(measured)?);
+        section.insert(format!("{name}_frequency"), frequency(measured)?);
+        if rolling != 0.0 {
+            let slip = 1.0 - measured / rolling;
+            section.insert(format!("{name}_slip"), quantity("slip", slip, "1")?);
+        }
+    }
+    Ok(Some(Value::Object(section)))
+}
+
+/// Largest values over all steps, whatever rows were written.
+pub(super) fn extremes(simulation: &Simulation) -> Part {
+    let sections = each_bearing(simulation, |index, bearing| {
+        extremes_of(&simulation.extremes[index], bearing).map(Some)
+    })?;
+    Ok(sections.unwrap_or_default())
+}
+
+fn extremes_of(extremes: &Extremes, bearing: &Bearing) -> Part {
+    let mut section = Map::new();
+    for (name, extreme) in
+        [("inner_race_farthest", extremes.farthest), ("races_farthest_apart", extremes.apart)]
+    {
+        let entry = json!({
+            "distance": quantity(name, extreme.value, "m")?,
+            "time": quantity("time", extreme.time, "s")?,
+        });
+        section.insert(name.into(), entry);
+    }
+    let contacts = [("inner_race", &bearing.inner_contact), ("outer_race", &bearing.outer_contact)];
+    for ((name, contact), race) in contacts.into_iter().zip(&extremes.races) {
+        let load = race.load.value;
+        let at = |extreme: &Extreme| -> Result<[(&'static str, Value); 2], ResultsError> {
+            Ok([("ball", json!(extreme.ball + 1)), ("time", quantity("time", extreme.time, "s")?)])
+        };
+        let mut largest = Map::new();
+        largest.insert("load".into(), quantity("load", load, "N")?);
+        let pressure = contact_ellipse(contact, load).peak_pressure;
+        largest.insert("peak_pressure".into(), quantity("pressure", pressure, "Pa")?);
+        largest.extend(at(&race.load)?.map(|(key, value)| (key.to_string(), value)));
+        let mut edge = Map::new();
+        let angle = |value: f64| quantity("angle", value.to_degrees(), "deg");
+        edge.insert("ellipse_reaches".into(), angle(race.edge.value)?);
+        edge.insert("contact_angle".into(), angle(race.edge_angle)?);
+        edge.extend(at(&race.edge)?.map(|(key, value)| (key.to_string(), value)));
+        section
+            .insert(name.into(), json!({ "largest_load": largest, "farthest_from_bottom": edge }));
+    }
+    section.insert("of".into(), json!("every accepted step, whatever rows were written"));
+    Ok(Value::Object(section))
+}

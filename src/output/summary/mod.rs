@@ -1,0 +1,314 @@
+//! `summary.json` of a run, with sections for what moves in it, and the tables beside it.
+
+mod bearing;
+pub mod housing;
+pub mod solid;
+
+use crate::output::atomic::write_atomic;
+use crate::output::results::{ResultsError, RunRecord, insert_record, pretty, quantity};
+use crate::output::series::{Column, Series, columns_path};
+use crate::output::session::{Motion, Session, Status};
+use crate::output::spectrum::{LEAKAGE, LOWEST, Spectrum, WINDOW, peaks};
+use crate::output::state::SERIES;
+use crate::output::table::RunTable;
+use crate::solver::clock::rounded;
+use crate::solver::dynamics::control::SHARE;
+use crate::solver::dynamics::run::{Integrator, Stepping};
+use crate::solver::solid::explicit::SolidStepping;
+use ndarray::Array2;
+use serde_json::{Map, Value, json};
+use std::path::{Path, PathBuf};
+
+type Part = Result<Value, ResultsError>;
+
+/// Peaks listed of each spectrum.
+const PEAKS: usize = 8;
+
+/// What a summary needs beside the session and its table.
+#[derive(Clone, Debug, Default)]
+pub struct RunReport {
+    pub record: RunRecord,
+    /// What ended the run before its end, if anything did.
+    pub stopped_by: Option<String>,
+    /// How the steps were to be chosen, as the scene has it.
+    pub stepping: Option<Stepping>,
+    pub integrator: Option<Integrator>,
+    pub solid_stepping: Option<SolidStepping>,
+}
+
+/// Writes `series.csv`, `series.npy`, `spectrum.csv` where there are spectra, and `summary.json`;
+/// returns the files.
+///
+/// # Errors
+/// A value that is not finite, a file that cannot be written.
+pub fn write_run_results(
+    folder: &Path,
+    session: &Session,
+    table: &RunTable,
+    spectra: &[(String, Spectrum)],
+    report: &RunReport,
+) -> Result<Vec<PathBuf>, ResultsError> {
+    let summary = run_summary(session, table, spectra, report)?;
+    let [csv, npy, json] = ["series.csv", SERIES, "summary.json"].map(|name| folder.join(name));
+    match session.motion {
+        // Times of windows and equilibria are no sums of steps.
+        Motion::Housed(_) | Motion::Course(_) => table.series.write_csv(&csv)?,
+        Motion::Bearing(_) | Motion::Solid(_) => readable_times(table)?.write_csv(&csv)?,
+    }
+    table.series.write_npy(&npy)?;
+    let mut written = vec![csv, columns_path(&npy), npy];
+    if let Some(series) = spectrum_series(table, spectra)? {
+        let path = folder.join("spectrum.csv");
+        series.write_csv(&path)?;
+        written.push(path);
+    }
+    write_atomic(&json, pretty(&summary).as_bytes())?;
+    written.push(json);
+    Ok(written)
+}
+
+/// The table with the times of its rows as people write them.
+fn readable_times(table: &RunTable) -> Result<Series, ResultsError> {
+    let mut data = table.series.data().clone();
+    for (row, time) in data.column_mut(0).iter_mut().enumerate() {
+        *time = table.time(row);
+    }
+    Ok(Series::new(table.series.columns().to_vec(), data)?)
+}
+
+/// One row a bin: frequency, then the amplitude of each channel.
+fn spectrum_series(
+    table: &RunTable,
+    spectra: &[(String, Spectrum)],
+) -> Result<Option<Series>, ResultsError> {
+    let Some((_, first)) = spectra.first() else { return Ok(None) };
+    let mut columns = vec![Column::new("frequency", "Hz")];
+    columns.extend(spectra.iter().map(|(name, _)| Column::new(name.clone(), table.unit(name))));
+    let bins = first.amplitude.len();
+    let data = Array2::from_shape_fn((bins, columns.len()), |(bin, column)| match column {
+        0 => bin as f64 * first.bin_width,
+        _ => spectra[column - 1].1.amplitude[bin],
+    });
+    Ok(Some(Series::new(columns, data)?))
+}
+
+/// Content of `summary.json`.
+///
+/// # Errors
+/// A value that is not finite, a `null` in a further section, a section name used twice.
+pub fn run_summary(
+    session: &Session,
+    table: &RunTable,
+    spectra: &[(String, Spectrum)],
+    report: &RunReport,
+) -> Result<Value, ResultsError> {
+    let motion = &session.motion;
+    let complete = session.status == Status::Complete && report.stopped_by.is_none();
+    let mut summary = Map::new();
+    let kind = if matches!(motion, Motion::Solid(_)) { "run of a solid" } else { "run" };
+    summary.insert("kind".into(), json!(kind));
+    if let Some(method) = housing::method(motion) {
+        summary.insert("housing_method".into(), json!(method));
+    }
+    summary.insert("complete".into(), json!(complete));
+    if let Some(reason) = &report.stopped_by {
+        summary.insert("stopped_by".into(), json!(reason));
+    }
+    summary.insert("end".into(), quantity("end", session.clock.end, "s")?);
+    summary.insert("time".into(), quantity("time", time(session, table), "s")?);
+    summary.insert("output".into(), output(session, table)?);
+    let work = match motion {
+        Motion::Bearing(simulation) => bearing::work(simulation),
+        Motion::Solid(moving) => solid::work(&moving.solid),
+        Motion::Housed(housed) => housing::work(housed),
+        Motion::Course(course) => {
+            let effort = &course.effort;
+            let residual = quantity("residual", effort.largest_residual, "1")?;
+            summary.insert("largest_unbalanced_part_of_load".into(), residual);
+            json!({
+                "equilibria": session.recorder.rows(),
+                "rounds": effort.rounds,
+                "contact_changes": effort.contact_changes,
+            })
+        }
+    };
+    summary.insert("work".into(), work);
+    let step = match motion {
+        Motion::Bearing(simulation) => Some(bearing::step(simulation, report)?),
+        Motion::Solid(moving) => Some(solid::step(&moving.solid, report)?),
+        Motion::Housed(housed) => Some(housing::step(housed)?),
+        Motion::Course(_) => None,
+    };
+    if let Some(step) = step {
+        summary.insert("step".into(), step);
+    }
+    // That of equilibria has energies held, and no ledger.
+    if let Some(energy) = energy(session, table)?.filter(|_| !matches!(motion, Motion::Course(_))) {
+        summary.insert("energy".into(), energy);
+    }
+    if let Some(simulation) = motion.bearing() {
+        summary.insert("extremes".into(), bearing::extremes(simulation)?);
+    }
+    summary.insert("final".into(), final_values(table)?);
+    if table.window.is_empty() {
+        let note = "the run has not come to the window yet";
+        summary.insert("window".into(), json!({ "rows": 0, "note": note }));
+    } else {
+        summary.insert("window".into(), window(table)?);
+        if let Some(simulation) = motion.bearing()
+            && let Some(kinematics) = bearing::kinematics(simulation, table)?
+        {
+            summary.insert("kinematics".into(), kinematics);
+        }
+    }
+    if !spectra.is_empty() {
+        let section = match motion {
+            Motion::Solid(_) => solid::spectra_section(spectra)?,
+            _ => spectra_section(table, spectra, spectral_floor(session, spectra, report))?,
+        };
+        summary.insert("spectra".into(), section);
+    }
+    insert_record(&mut summary, &report.record)?;
+    Ok(Value::Object(summary))
+}
+
+/// Of the last row; of a solid by itself, that may have stopped between rows, its own.
+fn time(session: &Session, table: &RunTable) -> f64 {
+    if let Motion::Solid(moving) = &session.motion {
+        return rounded(moving.solid.time);
+    }
+    table.series.data().nrows().checked_sub(1).map_or(0.0, |last| table.time(last))
+}
+
+fn output(session: &Session, table: &RunTable) -> Result<Value, ResultsError> {
+    let mut section = json!({
+        "interval": quantity("interval", table.interval, "s")?,
+        "steps_per_row": session.clock.steps_per_row,
+        "rows": table.series.data().nrows(),
+        "rows_at_equal_intervals": session.rows_on_grid(),
+    });
+    if let Some(rows) = session.clock.rows_per_fields {
+        let interval = table.interval * rows as f64;
+        section["fields_interval"] = quantity("fields interval", interval, "s")?;
+    }
+    Ok(section)
+}
+
+/// The ledger at the last row: where the energy is, what went in and out, what is missing.
+fn energy(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsError> {
+    let Some(last) = table.series.data().nrows().checked_sub(1) else { return Ok(None) };
+    let mut terms = Map::new();
+    for (index, column) in table.series.columns().iter().enumerate() {
+        if column.name.starts_with("energy_") || column.name.starts_with("work_") {
+            let value = table.series.data()[(last, index)];
+            terms.insert(column.name.clone(), quantity(&column.name, value, &column.unit)?);
+        }
+    }
+    if terms.is_empty() {
+        return Ok(None);
+    }
+    if let Some(residuals) = table.all("energy_residual") {
+        let largest = residuals.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
+        terms.insert("largest_residual".into(), quantity("largest_residual", largest, "J")?);
+    }
+    if session.motion.solid().is_some() {
+        let watch = &session.watch;
+        let (residual, turned_over) = (watch.largest_residual, watch.turned_over);
+        let part = if turned_over > 0.0 { residual / turned_over } else { 0.0 };
+        if matches!(session.motion, Motion::Solid(_)) {
+            terms.insert("at_start".into(), quantity("energy", watch.first, "J")?);
+        }
+        terms.insert("turned_over".into(), quantity("energy", turned_over, "J")?);
+        terms.insert("largest_residual".into(), quantity("energy", residual, "J")?);
+        terms.insert("largest_residual_part".into(), quantity("part", part, "1")?);
+    }
+    Ok(Some(Value::Object(terms)))
+}
+
+fn final_values(table: &RunTable) -> Result<Value, ResultsError> {
+    let mut values = Map::new();
+    if let Some(last) = table.series.data().nrows().checked_sub(1) {
+        for (index, column) in table.series.columns().iter().enumerate() {
+            let value = table.series.data()[(last, index)];
+            let value = if index == 0 { table.time(last) } else { value };
+            values.insert(column.name.clone(), quantity(&column.name, value, &column.unit)?);
+        }
+    }
+    Ok(Value::Object(values))
+}
+
+/// Mean, extremes and peak-to-peak amplitude of every channel over the window.
+fn window(table: &RunTable) -> Result<Value, ResultsError> {
+    let rows = table.window.clone();
+    let mut channels = Map::new();
+    for column in &table.series.columns()[1..] {
+        let values = table.windowed(&column.name).unwrap_or_default();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let entry = |value: f64| quantity(&column.name, value, &column.unit);
+        channels.insert(
+            column.name.clone(),
+            json!({
+                "mean": entry(mean)?,
+                "smallest": entry(low)?,
+                "largest": entry(high)?,
+                "peak_to_peak": entry(high - low)?,
+            }),
+        );
+    }
+    Ok(json!({
+        "start": quantity("start", table.time(rows.start), "s")?,
+        "end": quantity("end", table.time(rows.end - 1), "s")?,
+        "rows": rows.len(),
+        "channels": channels,
+    }))
+}
+
+/// Peaks below this, m, say nothing: 1e-4 of the highest of all channels; what error control lets pass in
+/// a single step.
+fn spectral_floor(session: &Session, spectra: &[(String, Spectrum)], report: &RunReport) -> f64 {
+    let bins = spectra.iter().flat_map(|(_, spectrum)| spectrum.amplitude.iter().skip(1));
+    let highest = bins.fold(0.0f64, |highest, bin| highest.max(*bin));
+    let allowed = match (session.motion.bearing().and_then(|s| s.control.as_ref()), report.stepping)
+    {
+        (Some(control), Some(Stepping::Accuracy(accuracy))) => {
+            SHARE * accuracy * control.memory.displacement
+        }
+        _ => 0.0,
+    };
+    allowed.max(1e-4 * highest)
+}
+
+fn spectra_section(
+    table: &RunTable,
+    spectra: &[(String, Spectrum)],
+    floor: f64,
+) -> Result<Value, ResultsError> {
+    let mut channels = Map::new();
+    let bin_width = spectra.first().map_or(0.0, |(_, spectrum)| spectrum.bin_width);
+    for (name, spectrum) in spectra {
+        let unit = table.unit(name);
+        let found: Result<Vec<Value>, ResultsError> = peaks(spectrum, PEAKS, floor)
+            .into_iter()
+            .map(|peak| {
+                Ok(json!({
+                    "frequency": quantity("frequency", peak.frequency, "Hz")?,
+                    "amplitude": quantity("amplitude", peak.amplitude, unit)?,
+                    "bin_frequency": quantity("frequency", peak.bin_frequency, "Hz")?,
+                    "bin_amplitude": quantity("amplitude", peak.bin_amplitude, unit)?,
+                }))
+            })
+            .collect();
+        channels.insert(name.clone(), json!({ "peaks": found? }));
+    }
+    Ok(json!({
+        "window": WINDOW,
+        "leakage": LEAKAGE,
+        "rows": table.window.len(),
+        "bin_width": quantity("bin_width", bin_width, "Hz")?,
+        "lowest_peak": quantity("lowest peak", floor, "m")?,
+        "lowest_peak_of_highest": LOWEST,
+        "channels": channels,
+    }))
+}
