@@ -322,7 +322,7 @@ fn extremes_are_of_every_step_whatever_the_rows() {
         // Two rows: they show nothing of the pulse, the extremes all of it.
         let coarse = to_the_end(struck(), &wanted(1e-3));
         let [of_fine, of_coarse] =
-            [&fine, &coarse].map(|session| simulation(&session).extremes[0].races[0].load);
+            [&fine, &coarse].map(|session| simulation(session).extremes[0].races[0].load);
         assert!(of_coarse.value >= 1.5 * of_rows("inner", &coarse), "{of_coarse:?}");
         match integrator {
             // But for rounding of the times at which the pulse is read.
