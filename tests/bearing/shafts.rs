@@ -476,3 +476,56 @@ fn hold_azimuths(simulation: &mut Simulation) {
         }
     }
 }
+
+/// Whichever race turns, and whichever way round the bearing sits, balls and cage begin by rolling: surfaces at the
+/// contacts move alike.
+#[test]
+fn a_start_rolls_whichever_race_turns() {
+    let speed = 3000.0 * RPM;
+    for (inner, outer) in [(speed, 0.0), (0.0, speed), (speed, -0.4 * speed), (speed, speed)] {
+        for reversed in [false, true] {
+            let geometry = table_5_3();
+            let mut problem = bearing(geometry, [500.0, 0.0, 0.0, 0.0, 0.0], inner);
+            problem.traction = CONSTANT;
+            let mut ring = race([0.0; 5], Rotation::Speed(Profile::Constant(outer)));
+            ring.drives = [const { Drive::Motion(Profile::ZERO) }; 5];
+            problem.outer = Some(ring);
+            let mut assembly = problem.assembly();
+            for mount in &mut assembly.bearings[0].mounts {
+                mount.reversed = reversed;
+            }
+            if reversed {
+                let shaft = assembly.bodies[0].driven_mut().unwrap();
+                shaft.drives[0] = Drive::Load(Profile::Constant(-500.0));
+            }
+            let state = start::nominal(&assembly);
+            let (system, _) = rates(&assembly, &state);
+            let set = &system.sets[0];
+            let [axis_of, turning] = [&set.races[1], &set.races[0]].map(|race| race.motion.axis[0]);
+            assert_eq!(axis_of, turning);
+            let facing = if reversed { -1.0 } else { 1.0 };
+            for ball in 0..set.layout.balls {
+                let vector =
+                    |component| Vector3::from(set.layout.ball_vector(&state, component, ball));
+                let (place, velocity, spin) = (vector(POSITION), vector(VELOCITY), vector(SPIN));
+                // At the nominal contact angle, from the outer to the inner contact.
+                let outward = Vector3::new(0.0, place.y, place.z).normalize();
+                let angle = geometry.contact_angle;
+                let normal = outward * angle.cos() + Vector3::x() * (facing * angle.sin());
+                for (side, speed) in [(1.0, outer), (-1.0, inner)] {
+                    let arm = normal * (side * geometry.ball_radius);
+                    let of_ball = velocity + spin.cross(&arm);
+                    let of_race = (Vector3::x() * speed).cross(&(place + arm));
+                    let slip = (of_ball - of_race).norm();
+                    // Rounding of speeds of some metres a second.
+                    assert!(slip <= 1e-12 * 20.0, "{inner} {outer} {reversed}: {slip:e} m/s");
+                }
+                // Balls go with the mean of both surfaces.
+                let orbit = place.cross(&velocity).x / (place.y * place.y + place.z * place.z);
+                let lever = geometry.ball_radius * angle.cos() / geometry.pitch_radius;
+                let mean = 0.5 * ((1.0 - lever) * inner + (1.0 + lever) * outer);
+                assert!((orbit - mean).abs() <= 1e-12 * speed, "{orbit} {mean}");
+            }
+        }
+    }
+}
