@@ -3,7 +3,7 @@
 //! `assembly` says what is simulated (a bearing alone is written as a `model`), `state` where it lies, `contacts`
 //! and `race` turn states into loads, each bearing's `ball_set` into loads on its bodies, `system` into rates, `energy` into energies; `rk4`, `dormand_prince` and `rosenbrock`
 //! integrate (the last through `linearised` contacts, the `arrow` matrix and each ball's `orbit_frame`),
-//! `bounds` says where a state has lost its meaning, `control` chooses steps for an accuracy, `extremes` remembers the largest loads,
+//! `held` says whether anything holds a bearing against its loads, `bounds` where a state has lost its meaning, `control` chooses steps for an accuracy, `extremes` remembers the largest loads,
 //! `run` drives a simulation from start to end.
 pub mod arrow;
 pub mod assembly;
@@ -18,6 +18,7 @@ pub mod energy;
 pub mod equilibrium;
 pub mod extremes;
 pub mod failure;
+pub mod held;
 pub mod linearised;
 pub mod model;
 pub mod orbit_frame;

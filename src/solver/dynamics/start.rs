@@ -2,6 +2,7 @@
 
 use super::assembly::{Assembly, Bearing};
 use super::equilibrium::{at_start, given_speed, orbital_speed, race_speeds};
+use super::held::check_held;
 use super::model::Drive;
 use super::quasi_static::{self, Rates};
 use super::race::{self, RaceNow, mounted};
@@ -16,9 +17,10 @@ use std::f64::consts::TAU;
 /// equilibrium itself (see [`at_start`]).
 ///
 /// # Errors
-/// When the loads have no equilibrium.
+/// When the loads have no equilibrium, at t = 0 or, since nothing holds the bearing against them, later.
 pub fn at_equilibrium(assembly: &Assembly) -> Result<Vec<f64>, StaticsError> {
     let now = at_start(assembly)?;
+    check_held(assembly)?;
     let rates = quasi_static::rates(assembly, &now);
     let bodies: Vec<[f64; 5]> =
         (0..assembly.bodies.len()).map(|body| now.place(assembly, body)).collect();
