@@ -202,7 +202,7 @@ pub fn planned_request(
         request.options.integrator = integrator;
         let same = |file: &StateFile| file.fingerprint == state::fingerprint(problem, &request);
         if kept.is_some_and(same) {
-            return (request, Some(Choice { integrator, mean_steps: None }));
+            return (request, Some(Choice { integrator, mean_steps: None, kept: true }));
         }
     }
     let choice = choose(&problem.assembly(), &request);

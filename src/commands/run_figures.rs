@@ -36,6 +36,14 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
             let value = format!("{:.6} N, ball {ball}, {race} race, at t = {at} s", load.value);
             line(&format!("{of}largest ball load"), value);
         }
+        let between = &extremes.between_balls;
+        if between.value > 0.0 {
+            let balls = bearing.geometry.ball_count;
+            let (one, other) = (between.ball + 1, (between.ball + 1) % balls + 1);
+            let at = rounded(between.time);
+            let value = format!("{:.6} N, balls {one} and {other}, at t = {at} s", between.value);
+            line(&format!("{of}largest between balls"), value);
+        }
     }
     if let Some((_, most)) =
         table.all("energy_residual").and_then(|values| largest(values.into_iter().map(f64::abs)))

@@ -10,6 +10,7 @@
 
 use crate::output::dynamics::recorder::{Recorder, RecorderError};
 use crate::solver::channels::ChannelGroup;
+use crate::solver::clock::to_digits;
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::checkpoint::Checkpoint;
 use crate::solver::dynamics::model::next_corner;
@@ -41,12 +42,55 @@ impl RunRequest {
     }
 }
 
+/// Most values of a table: kept in memory, copied for the results and written twice.
+const MOST_VALUES: f64 = 5e7;
+
+/// How large the table of a run becomes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TableSize {
+    pub rows: f64,
+    pub columns: usize,
+    /// Shortest output interval that is not refused, s.
+    pub shortest: f64,
+}
+
+impl std::fmt::Display for TableSize {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let megabytes = to_digits(8e-6 * self.rows * self.columns as f64, 2);
+        write!(f, "{} rows of {} channels make {megabytes} MB", self.rows, self.columns)
+    }
+}
+
+/// Rows and channels that a run is going to write.
+///
+/// # Errors
+/// More than are taken.
+pub fn table_size(assembly: &Assembly, request: &RunRequest) -> Result<TableSize, SessionError> {
+    let columns = Recorder::new(assembly, &request.channels, 0)?.columns().len();
+    let rows = (request.end / request.output_interval).ceil() + 1.0;
+    let shortest = request.end * columns as f64 / MOST_VALUES;
+    let size = TableSize { rows, columns, shortest };
+    // NaN is too much.
+    if rows * columns as f64 <= MOST_VALUES {
+        Ok(size)
+    } else {
+        Err(SessionError::TooLarge { size })
+    }
+}
+
 #[derive(Debug, Error)]
 pub enum SessionError {
     #[error("the run ends at {0} s; it must be positive and finite")]
     End(f64),
     #[error("the output interval is {0} s; it must be positive and finite")]
     Interval(f64),
+    #[error(
+        "{size}, more than {most} GB: take a longer numerics.output_interval ({interval:.1e} s would do), a shorter \
+         numerics.end, or fewer output.channels",
+        most = 8e-9 * MOST_VALUES,
+        interval = size.shortest
+    )]
+    TooLarge { size: TableSize },
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     #[error(transparent)]
@@ -97,6 +141,8 @@ impl Session {
         if !(interval > 0.0 && interval.is_finite()) {
             return Err(SessionError::Interval(interval));
         }
+        let assembly = assembly.into();
+        table_size(&assembly, request)?;
         let mut simulation = Simulation::new(assembly, request.options)?;
         let steps_per_row = match request.options.stepping {
             Stepping::FractionOfLimit(_) => {

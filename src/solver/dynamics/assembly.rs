@@ -112,6 +112,13 @@ pub struct Caged {
     pub contacts: CageContacts,
 }
 
+impl Caged {
+    /// How far a ball may be off the middle of its pocket, m.
+    pub fn room(&self, bearing: &Bearing) -> f64 {
+        self.contacts.pocket_radius - bearing.geometry.ball_radius
+    }
+}
+
 impl Bearing {
     /// "left_", before the names of columns; nothing where there is one only.
     pub fn prefix(&self) -> String {

@@ -10,9 +10,9 @@ use super::run::Simulation;
 use super::state::{BODY, POSITION};
 use crate::ch2_housing::bearing::cage::{CageContacts, Guidance};
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
+use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot, norm, sub};
 use crate::solver::clock::to_digits;
 use crate::solver::statics::COORDINATE_NAMES;
-use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot, norm, sub};
 
 /// How deep parts may lie in each other, in ball radii. Pressure in a Hertz contact of balls follows
 /// from δ/r alone: steel on steel would carry 20 GPa at this depth, five times what leaves a dent (ISO 76),
@@ -47,6 +47,9 @@ pub fn cage_room(geometry: &BearingGeometry, cage: &CageContacts) -> f64 {
 /// How far a bearing may go from where its outer race stands at rest, m: soft springs give way by millimetres,
 /// nothing that holds gives way by a metre.
 pub const FARTHEST: f64 = 1.0;
+
+/// How deep a cage may lie in balls or its guide at a start in equilibrium where no contact of a race is deeper, in ball radii.
+const CAGE_AT_START: f64 = 1e-3;
 
 /// Axial and radial part of an arm.
 fn split(arm: Vec3, axis: Vec3) -> (f64, f64) {
@@ -169,7 +172,14 @@ impl Simulation {
             }
             let (body, coordinate) = (outer.name.clone(), COORDINATE_NAMES[i]);
             let (time, step) = (self.time, self.steps);
-            return Err(SimulationError::FlownOff { body, coordinate, distance, allowed, time, step });
+            return Err(SimulationError::FlownOff {
+                body,
+                coordinate,
+                distance,
+                allowed,
+                time,
+                step,
+            });
         }
         Ok(())
     }
@@ -189,6 +199,37 @@ impl Simulation {
         Err(SimulationError::CageLeft { body, distance, allowed, time, step })
     }
 
+    /// A start in equilibrium leaves the cage out: one whose contacts are deeper than those of the races has no place there.
+    ///
+    /// # Errors
+    /// The deepest contact of a cage.
+    pub(super) fn watch_cages_at_start(&self) -> Result<(), SimulationError> {
+        for (set, bearing) in self.system.sets.iter().zip(&self.system.assembly.bearings) {
+            let Some(cage) = &bearing.cage else { continue };
+            let races = set.table.active.iter().map(|pair| set.table.contact[*pair].overlap);
+            let allowed = races.fold(CAGE_AT_START * bearing.geometry.ball_radius, f64::max);
+            let pockets = set.pockets.iter().enumerate();
+            let pockets = pockets.map(|(ball, contact)| (Some(ball), contact.penetration));
+            let guided = cage.contacts.guidance != Guidance::Balls;
+            let guides =
+                set.guides.iter().filter(|_| guided).map(|contact| (None, contact.penetration));
+            let deepest = pockets.chain(guides).fold((None, 0.0f64), |most, one| {
+                // NaN stays.
+                if one.1 <= most.1 || most.1.is_nan() { most } else { one }
+            });
+            if deepest.1 <= allowed {
+                continue;
+            }
+            let other = match deepest.0 {
+                Some(ball) => format!("ball {}{}", ball + 1, bearing.suffix()),
+                None => "its guiding race".into(),
+            };
+            let cage = self.system.assembly.bodies[cage.body].name.clone();
+            return Err(SimulationError::CageInTheWay { cage, other, depth: deepest.1, allowed });
+        }
+        Ok(())
+    }
+
     /// What to do where one part is in another.
     fn advice(&self, bearing: &Bearing, between_balls: bool) -> String {
         if between_balls && bearing.ball_contact.is_none() {
@@ -205,7 +246,8 @@ impl Simulation {
                     let off = profile.value(self.time) - body.rest[i];
                     let unit = if i < 3 { "m" } else { "rad" };
                     let name = COORDINATE_NAMES[i];
-                    (off != 0.0).then(|| format!("{name} of {} by {} {unit}", body.name, to_digits(off, 3)))
+                    (off != 0.0)
+                        .then(|| format!("{name} of {} by {} {unit}", body.name, to_digits(off, 3)))
                 })
             })
             .collect();
@@ -215,7 +257,8 @@ impl Simulation {
         if self.steps == 0 {
             return "it begins so: check clearances, and which way the loads push the races".into();
         }
-        "check loads and stiffnesses, or take shorter steps (numerics.step, numerics.accuracy)".into()
+        "check loads and stiffnesses, or take shorter steps (numerics.step, numerics.accuracy)"
+            .into()
     }
 
     /// Contacts as they were evaluated last, within the step just taken; balls where they lie now.

@@ -80,6 +80,12 @@ pub enum SimulationError {
         advice: String,
     },
     #[error(
+        "{cage} has no place at the start: it would lie {depth:.3e} m inside {other}, deeper than the {allowed:.3e} m of \
+         the races' contacts; check which way the loads push, bearing.cage.pocket_radius and race_clearance, or start in \
+         nominal positions (numerics.start = \"nominal\")"
+    )]
+    CageInTheWay { cage: String, other: String, depth: f64, allowed: f64 },
+    #[error(
         "{body} has left its bearing at t = {at} s, step {step}: its centre is {distance:.3e} m off the \
          axis of the outer race, farther than the {allowed:.3e} m that its ring has there; round \
          pockets hold a cage along its axis and around it, not across: let a race guide it \

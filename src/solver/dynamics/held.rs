@@ -100,8 +100,6 @@ fn load_on(assembly: &Assembly, index: usize, i: usize, t: f64) -> f64 {
 fn weight_of_balls(assembly: &Assembly, group: &[usize], i: usize) -> f64 {
     let inside = assembly.bearings.iter().filter(|bearing| group.contains(&bearing.mounts[0].body));
     inside
-        .map(|bearing| {
-            bearing.geometry.ball_count as f64 * bearing.ball.mass * assembly.gravity[i]
-        })
+        .map(|bearing| bearing.geometry.ball_count as f64 * bearing.ball.mass * assembly.gravity[i])
         .sum()
 }

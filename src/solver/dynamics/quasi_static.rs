@@ -111,7 +111,8 @@ pub fn rates(assembly: &Assembly, now: &Equilibrium) -> Rates {
 /// clearance, m.
 fn room(assembly: &Assembly, all: [&Equilibrium; 3]) -> f64 {
     let balls = all.into_iter().flat_map(|of| of.bearings.iter().flat_map(|b| &b.balls));
-    let overlap = balls.fold(0.0f64, |most, ball| most.max(ball.inner.approach).max(ball.outer.approach));
+    let overlap =
+        balls.fold(0.0f64, |most, ball| most.max(ball.inner.approach).max(ball.outer.approach));
     let bearings = assembly.bearings.iter();
     overlap + bearings.fold(0.0f64, |most, bearing| most.max(bearing.geometry.radial_clearance))
 }
@@ -124,7 +125,7 @@ fn bends_little([f0, f1, f2]: [f64; 3], room: f64) -> bool {
 
 /// Whether all equilibria are determined by the loads and follow from each other without a jump.
 fn one_branch(assembly: &Assembly, all: [&Equilibrium; 3]) -> bool {
-    let [now, first, second] = all;
+    let [_, first, second] = all;
     // Looked for near a known one, the search has tipped over to another.
     if first.saddles_left + second.saddles_left > 0 {
         return false;
@@ -148,7 +149,8 @@ fn strays(assembly: &Assembly, [now, _, second]: [&Equilibrium; 3], allowed: f64
     let moved: Vec<f64> = unknowns
         .flat_map(|(body, _)| {
             let sits = |bearing: &&Bearing| bearing.mounts.iter().any(|mount| mount.body == body);
-            let pitch = assembly.bearings.iter().find(sits).map_or(1.0, |b| b.geometry.pitch_radius);
+            let pitch =
+                assembly.bearings.iter().find(sits).map_or(1.0, |b| b.geometry.pitch_radius);
             let [from, to] = [now, second].map(|of| of.place(assembly, body));
             let scale = [1.0, 1.0, 1.0, pitch, pitch];
             std::array::from_fn::<f64, 5, _>(|i| scale[i] * (to[i] - from[i]))
