@@ -4,6 +4,7 @@ use super::run::planned_request;
 use super::{CommandResult, Outcome, echo, echo_run, say};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::results::pretty;
+use bearing_dynamics::output::session::table_size;
 use bearing_dynamics::output::visible::visible_line;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::{
@@ -42,6 +43,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     };
     if let (Some(problem), Some(settings)) = (&in_motion, scene.dynamics.run.clone()) {
         let (request, _) = planned_request(&scene, &settings, problem, None);
+        table_size(problem.assembly(), &request)?;
         scene.dynamics.run = Some(RunSettings { options: request.options, ..settings });
     }
     if arguments.json {

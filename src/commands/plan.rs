@@ -4,7 +4,7 @@ use super::plan_step::step_lines;
 use super::run::planned_request;
 use super::solve::{lines, plan_lines};
 use super::{CommandResult, Outcome, say};
-use bearing_dynamics::output::session::RunRequest;
+use bearing_dynamics::output::session::{RunRequest, table_size};
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{
     CageInRun, Document, Scene, Subject, resolve_subject, statics::static_problem,
@@ -33,6 +33,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
             let (request, choice) = planned_request(&scene, &settings, &problem, None);
             let mut lines = dynamic_plan_lines(&scene, &problem, &request, choice.as_ref());
             lines.extend(step_lines(&problem, &request));
+            lines.push(size_line(&problem, &request));
             lines
         }
         Err(_) => plan_lines(&static_problem(&scene)?),
@@ -43,6 +44,15 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     }
     say(&planned.iter().map(|line| format!("{line}\n")).collect::<String>())?;
     Ok(Outcome::Done)
+}
+
+/// How much the run is going to write.
+fn size_line(problem: &DynamicProblem, request: &RunRequest) -> String {
+    let said = match table_size(problem.assembly(), request) {
+        Ok(size) => size.to_string(),
+        Err(error) => format!("WARNING: the run will be refused: {error}"),
+    };
+    format!("notes {:<28} {said}", "table")
 }
 
 /// The plan of a run as text, one line a stage.

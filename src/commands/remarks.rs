@@ -1,7 +1,9 @@
 //! What a reader of the numbers should know: one set of remarks for equilibrium and motion.
 
+use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use bearing_dynamics::scene::Scene;
+use bearing_dynamics::scene::statics::orbital_speed;
 use bearing_dynamics::solver::clock::rounded;
 use bearing_dynamics::solver::dynamics::extremes::{Extreme, Extremes};
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
@@ -20,6 +22,8 @@ const BEYOND_NOMINAL: f64 = 15.0 / 180.0 * std::f64::consts::PI;
 const FAR: f64 = 0.1;
 /// Traction that a gyroscopic moment asks for, as a part of the load, from which on it is worth a word.
 const GYROSCOPIC: f64 = 0.01;
+/// Centrifugal force on a ball, as a part of the largest ball load, from which on leaving it out is worth a word.
+const CENTRIFUGAL: f64 = 0.05;
 
 /// What remarks are made of; times are those of a run, s.
 #[derive(Clone, Debug, Default)]
@@ -32,6 +36,9 @@ struct Seen {
     reversed: Vec<usize>,
     /// Centre of the inner race from that of the outer one, m.
     apart: Extreme,
+    /// Load between two balls, N, and its pressure, Pa.
+    between: Extreme,
+    between_pressure: f64,
     moves: bool,
 }
 
@@ -83,6 +90,7 @@ pub fn of_statics(
     seen.apart.value = apart.iter().map(|x| x * x).sum::<f64>().sqrt();
     remarks.extend(shared(scene, [&problem.inner_contact, &problem.outer_contact], &seen));
     remarks.extend(gyroscopic(problem, solution));
+    remarks.extend(without_centrifugal(scene, problem, solution));
     remarks
 }
 
@@ -102,6 +110,10 @@ pub fn of_run(scene: &Scene, problem: &DynamicProblem, extremes: &Extremes) -> V
         edge_angles: extremes.races.map(|race| race.edge_angle),
         reversed,
         apart: extremes.apart,
+        between: extremes.between_balls,
+        between_pressure: problem.ball_contact.map_or(0.0, |law| {
+            peak_pressure(&law, problem.geometry.ball_radius, extremes.between_balls.value)
+        }),
         moves: true,
     };
     shared(scene, [&problem.inner_contact, &problem.outer_contact], &seen)
@@ -124,12 +136,17 @@ fn shared(scene: &Scene, contacts: [&HertzContact; 2], seen: &Seen) -> Vec<Strin
     let pressure =
         |side: usize| contact_ellipse(contacts[side], seen.loads[side].value).peak_pressure;
     let side = if pressure(1) > pressure(0) { 1 } else { 0 };
-    if pressure(side) > STATIC_RATING {
+    let between = seen.between_pressure > pressure(side);
+    let (highest, of, where_) = match between {
+        true => (seen.between_pressure, &seen.between, " between two balls"),
+        false => (pressure(side), &seen.loads[side], ""),
+    };
+    if highest > STATIC_RATING {
         remarks.push(format!(
-            "a contact pressure of {:.0} MPa{} is above the 4200 MPa at which ISO 76 counts on lasting \
+            "a contact pressure of {:.0} MPa{where_}{} is above the 4200 MPa at which ISO 76 counts on lasting \
              dents; the model is elastic: check loads, speeds, clearance and their units",
-            1e-6 * pressure(side),
-            seen.when(&seen.loads[side])
+            1e-6 * highest,
+            seen.when(of)
         ));
     }
     remarks.extend(far_apart(scene, seen));
@@ -215,6 +232,9 @@ fn far_apart(scene: &Scene, seen: &Seen) -> Option<String> {
 
 /// Balls that go round a bearing with a contact angle resist the turning of their own axes; equilibrium
 /// has no such moment, nor the traction that holds it.
+///
+/// A ball that rolls on the outer race without spin there turns at Ω R/r about the line across its contact;
+/// the part of that across the bearing's axis, Ω (R/r) sin α, is what Ω turns round: J Ω² (R/r) sin α.
 fn gyroscopic(problem: &StaticProblem, solution: &StaticSolution) -> Option<String> {
     let speed = problem.orbital_speed.abs();
     if speed == 0.0 || problem.ball_mass == 0.0 {
@@ -224,11 +244,11 @@ fn gyroscopic(problem: &StaticProblem, solution: &StaticSolution) -> Option<Stri
     let inertia = 0.4 * problem.ball_mass * g.ball_radius * g.ball_radius;
     let share = |ball: &BallState| {
         let outer = &ball.outer;
-        let (sin, cos) = libm::sincos(outer.contact_angle);
-        let own = speed * (g.pitch_radius + g.ball_radius * cos) / g.ball_radius;
-        let moment = inertia * own * speed * sin.abs();
-        let load = outer.normal_load;
-        if load > 0.0 { [moment / (2.0 * g.ball_radius * load), moment] } else { [0.0; 2] }
+        let across = speed * g.pitch_radius / g.ball_radius * libm::sin(outer.contact_angle);
+        let moment = inertia * speed * across.abs();
+        // Both contacts hold it, each as far as its load lets it.
+        let loads = ball.inner.normal_load + outer.normal_load;
+        if loads > 0.0 { [moment / (g.ball_radius * loads), moment] } else { [0.0; 2] }
     };
     let most = solution
         .balls
@@ -238,9 +258,36 @@ fn gyroscopic(problem: &StaticProblem, solution: &StaticSolution) -> Option<Stri
     (most[0] > GYROSCOPIC).then(|| {
         format!(
             "equilibrium has no gyroscopic moment of the balls: up to {:.4} N mm here, which takes traction \
-             of {:.1} % of the load of a ball and moves contact angles and the race; `run` has it",
+             of {:.1} % of the loads of both contacts of a ball and moves contact angles and the race; `run` has it",
             1e3 * most[1],
             100.0 * most[0]
+        )
+    })
+}
+
+/// A bearing that turns, solved without the centrifugal force of its balls.
+fn without_centrifugal(
+    scene: &Scene,
+    problem: &StaticProblem,
+    solution: &StaticSolution,
+) -> Option<String> {
+    let speed = orbital_speed(scene);
+    if scene.centrifugal || speed == 0.0 {
+        return None;
+    }
+    let force = problem.ball_mass * speed * speed * problem.geometry.pitch_radius;
+    let loads = solution.balls.iter().map(|b| b.inner.normal_load.max(b.outer.normal_load));
+    let largest = loads.fold(0.0, f64::max);
+    // NaN says nothing.
+    (force > CENTRIFUGAL * largest).then(|| {
+        let part = if largest > 0.0 {
+            format!("{:.1} % of the largest ball load", 100.0 * force / largest)
+        } else {
+            "while no ball is loaded".into()
+        };
+        format!(
+            "the centrifugal force of a ball at this speed, {force:.3} N, is left out: {part}; write \
+             ball_forces.centrifugal = true to have it"
         )
     })
 }

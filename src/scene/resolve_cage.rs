@@ -194,6 +194,7 @@ pub(crate) fn in_run(
             geometry.pitch_radius
         }),
         guidance,
+        ring: [inner, outer],
         guide_radius: if guidance == Guidance::InnerRace { inner } else { outer },
         race_clearance: cage.race_clearance.unwrap_or(0.0),
         length,

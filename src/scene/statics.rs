@@ -35,7 +35,7 @@ pub fn static_problem(scene: &Scene) -> Result<StaticProblem, HertzError> {
 }
 
 /// Speed of the ball set by pure rolling at the nominal contact angle, rad/s; 0 at standstill.
-fn orbital_speed(scene: &Scene) -> f64 {
+pub fn orbital_speed(scene: &Scene) -> f64 {
     kinematic_ratios(scene).cage * scene.inner_speed.unwrap_or(0.0)
 }
 

@@ -6,7 +6,7 @@ use super::dynamics::assembly::BallMeeting;
 use super::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
 use super::dynamics::run::{Integrator, RunOptions, Start, Stepping};
 use super::statics::{Condition, StaticProblem};
-use crate::ch2_housing::bearing::cage::Guidance;
+use crate::ch2_housing::bearing::cage::{Guidance, Pocket};
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::geometry::BearingKind;
 use crate::ch2_housing::bearing::traction::TractionLaw;
@@ -219,6 +219,11 @@ fn cage(problem: &DynamicProblem, left_out: Option<&str>) -> Vec<Stage> {
         match cage.contacts.guidance {
             Guidance::OuterRace => guide("on the outer race"),
             Guidance::InnerRace => guide("on the inner race"),
+            Guidance::Balls if cage.contacts.pocket == Pocket::Cylindrical => stage(
+                "cage guide",
+                false,
+                "the balls guide it: no test with a race; round pockets do not hold it across its axis",
+            ),
             Guidance::Balls => {
                 stage("cage guide", false, "the balls guide it: no test with a race")
             }

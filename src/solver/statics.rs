@@ -5,6 +5,7 @@
 //! cold start; the balls are in equilibrium at every evaluation, so that the bodies'
 //! coordinates are the only unknowns of the outer loop. A bearing alone is a [`StaticProblem`].
 
+use super::clock::to_digits;
 use super::mount::Mount;
 use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing, StaticBody};
 use super::static_search::{Evaluation, Model, Search};
@@ -149,6 +150,14 @@ pub enum StaticsError {
          or start a motion in nominal positions (numerics.start = \"nominal\")"
     )]
     NoEquilibrium { body: String, coordinate: &'static str, travel: f64, room: f64 },
+    #[error(
+        "nothing holds {body} along {coordinate}: no spring, no given coordinate of it or of the races it is \
+         joined to, while the loads there add up to {load:.3e} N at t = {at} s: hold the coordinate by a \
+         displacement or a spring, balance the loads, or start a motion in nominal positions \
+         (numerics.start = \"nominal\")",
+        at = to_digits(*time, 9)
+    )]
+    Unheld { body: String, coordinate: &'static str, load: f64, time: f64 },
     #[error(
         "{ball} has found no equilibrium between the races: {unbalance:.1e} of the force on it is \
          unbalanced; hold or load the inner race differently, or leave the forces on balls out"

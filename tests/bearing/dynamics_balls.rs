@@ -5,11 +5,11 @@ use crate::common;
 use crate::dynamics;
 mod random_scenes;
 
-use bearing_dynamics::ch2_housing::bearing::ball_contact::ball_contact;
+use bearing_dynamics::ch2_housing::bearing::ball_contact::{ball_contact, peak_pressure};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::traction::Motion;
-use bearing_dynamics::solver::dynamics::assembly::BallMeeting;
-use bearing_dynamics::solver::dynamics::bounds::{HERTZ_SCALE, race_limit};
+use bearing_dynamics::solver::dynamics::assembly::{BallMeeting, gap_in_pockets};
+use bearing_dynamics::solver::dynamics::bounds::{FARTHEST, HERTZ_SCALE, cage_room, race_limit};
 use bearing_dynamics::solver::dynamics::contacts::Driver;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
 use bearing_dynamics::solver::dynamics::run::{
@@ -21,6 +21,7 @@ use bearing_dynamics::solver::dynamics::state::{Layout, Ledger, POSITION};
 use bearing_dynamics::solver::dynamics::step_watch::stiffness;
 use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::statics::StaticsError;
 use common::{full_complement, table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::Vector3;
@@ -406,7 +407,7 @@ fn parts_inside_each_other_end_the_run() {
         let options = options(Integrator::RungeKutta, Stepping::Fixed(1e-12));
         let mut simulation = Simulation::from_state(problem.clone(), options, state, 0.0).unwrap();
         let error = simulation.step().unwrap_err();
-        let SimulationError::Inside { one, other, depth, allowed, time, step } = error else {
+        let SimulationError::Inside { one, other, depth, allowed, time, step, .. } = error else {
             panic!("{error}")
         };
         assert_eq!([one.as_str(), other.as_str()], names);
@@ -428,7 +429,175 @@ fn parts_inside_each_other_end_the_run() {
     let error = (0..20_000).find_map(|_| simulation.step().err()).unwrap();
     let text = error.to_string();
     assert!(text.starts_with("ball 8 is ") && text.contains(" m inside ball 1 at t = "), "{text}");
-    assert!(text.contains("numerics.step"), "{text}");
+    assert!(text.contains("(ball_contact.law) or a cage"), "{text}");
+    assert!(!text.contains("numerics.step"), "{text}");
+    // A given place that is too much, from the outset.
+    let mut problem = bearing(table_4_1(-5e-6), [0.0; 5], 0.0);
+    problem.inner.drives[2] = Drive::Motion(Profile::Constant(-1.5e-3));
+    let error = Simulation::new(problem, fixed_step(1e-9, Start::Nominal)).err().unwrap();
+    let text = error.to_string();
+    assert!(matches!(error, SimulationError::Inside { step: 0, .. }), "{text}");
+    assert!(text.contains("too much: z of the inner race by -0.0015 m"), "{text}");
+}
+
+/// A load that comes later, on races that nothing holds.
+#[test]
+fn a_bearing_that_nothing_holds_is_refused_or_ends_where_it_flies_to() {
+    let mut problem = bearing(table_4_1(10e-6), [0.0; 5], 0.0);
+    problem.outer = Some(free_race());
+    let ramp = |to: f64| Profile::Ramp { from: 0.0, to, start: 0.0, duration: 1e-3 };
+    problem.inner.drives[2] = Drive::Load(ramp(1000.0));
+    let options = options(Integrator::Rosenbrock, Stepping::Accuracy(1e-3));
+    let begun = |problem: &DynamicProblem, start: Start| {
+        Simulation::new(problem.clone(), RunOptions { start, ..options })
+    };
+    let error = begun(&problem, Start::Equilibrium).err().unwrap();
+    let SimulationError::Start(StaticsError::Unheld { body, coordinate, load, time }) = &error
+    else {
+        panic!("{error}")
+    };
+    // A sixteenth of the ramp.
+    assert_eq!((body.as_str(), *coordinate, *load, *time), ("the outer race", "z", 62.5, 62.5e-6));
+    assert!(error.to_string().contains("6.250e1 N at t = 0.0000625 s"), "{error}");
+    // In nominal positions it may begin; it is held by a spring, a given coordinate, or a load that balances.
+    begun(&problem, Start::Nominal).unwrap();
+    let held: [&dyn Fn(&mut DynamicProblem); 3] = [
+        &|p| p.outer.as_mut().unwrap().foundation_stiffness[2] = 1e8,
+        &|p| p.outer.as_mut().unwrap().drives[2] = Drive::Motion(Profile::ZERO),
+        &|p| p.outer.as_mut().unwrap().drives[2] = Drive::Load(ramp(-1000.0)),
+    ];
+    for hold in held {
+        let mut held = problem.clone();
+        hold(&mut held);
+        begun(&held, Start::Equilibrium).unwrap();
+    }
+    // Both races a metre off together.
+    let layout = Layout::new(8, false);
+    for (off, ends) in [(0.999 * FARTHEST, false), (1.001 * FARTHEST, true)] {
+        let mut state = start::nominal(&problem.assembly());
+        for ball in 0..8 {
+            let mut body = layout.ball_state(&state, ball);
+            body.position[1] += off;
+            layout.set_ball(&mut state, ball, &body);
+        }
+        state[layout.inner() + POSITION + 1] += off;
+        state[layout.outer() + POSITION + 1] += off;
+        let mut moved = Simulation::from_state(problem.clone(), options, state, 0.0).unwrap();
+        match moved.step() {
+            Ok(()) => assert!(!ends),
+            Err(SimulationError::FlownOff {
+                body, coordinate, distance, allowed, step, ..
+            }) => {
+                assert!(ends && (distance - off).abs() <= 1e-6, "{distance}");
+                let found = (body.as_str(), coordinate, allowed, step);
+                assert_eq!(found, ("the outer race", "y", FARTHEST, 1));
+            }
+            Err(error) => panic!("{error}"),
+        }
+    }
+}
+
+/// Round pockets do not hold a cage across its axis: its ring ends what it may go, and with it what the
+/// pockets keep between balls.
+#[test]
+fn a_cage_that_leaves_its_bearing_ends_the_run() {
+    let mut problem = bearing(table_4_1(5e-6), [0.0; 5], 0.0);
+    problem.ball_phase = 0.0;
+    let geometry = problem.geometry;
+    let mut body = cage(&geometry, Pocket::Cylindrical, Guidance::Balls);
+    body.contacts.ring = [24e-3, 28e-3];
+    let law = body.contacts;
+    problem.cage = Some(body);
+    // To the bottom of the outer groove, and a tenth of a ball radius.
+    let room = cage_room(&geometry, &law);
+    let expected = 31.953e-3 - 28e-3 + 0.1 * geometry.ball_radius;
+    assert!((room - expected).abs() <= 1e-12, "{room} {expected}");
+    let gap = gap_in_pockets(&geometry, &law).unwrap();
+    // The cage as far as it may go towards the plane between two pockets, their balls as far in and as close to
+    // that plane as they may be.
+    let half = std::f64::consts::PI / 8.0;
+    let (sin, cos) = half.sin_cos();
+    let aside = law.pocket_radius - 0.9 * geometry.ball_radius;
+    let inmost = geometry.pitch_radius - 0.5 * geometry.ball_radius;
+    let distance_at = |off: f64| {
+        // Along the pocket: |off (cos, sin) + ρ (1, 0) + aside (0, 1)| = inmost.
+        let across = off * sin + aside;
+        let along = (inmost * inmost - across * across).sqrt() - off * cos;
+        2.0 * (along * sin - aside * cos)
+    };
+    let apart = distance_at(room) - 2.0 * geometry.ball_radius;
+    let centred = distance_at(0.0) - 2.0 * geometry.ball_radius;
+    println!("gap {gap:e}, farthest off {apart:e}, centred {centred:e}");
+    assert!(gap > 0.0 && gap <= apart && gap < centred - 2e-3, "{gap} {apart} {centred}");
+    // Farther than that a run does not go.
+    let layout = Layout::new(8, true);
+    for (off, ends) in [(0.999 * room, false), (1.001 * room, true)] {
+        let mut state = start::nominal(&problem.assembly());
+        state[layout.cage() + POSITION + 1] += off;
+        // Balls where their pockets are.
+        for ball in 0..8 {
+            let mut body = layout.ball_state(&state, ball);
+            let angle = std::f64::consts::TAU * ball as f64 / 8.0;
+            let across = off * angle.sin();
+            let along = (geometry.pitch_radius.powi(2) - across * across).sqrt();
+            body.position = [
+                0.0,
+                along * angle.cos() + across * angle.sin(),
+                along * angle.sin() - across * angle.cos(),
+            ];
+            layout.set_ball(&mut state, ball, &body);
+        }
+        let options = options(Integrator::RungeKutta, Stepping::Fixed(1e-12));
+        let mut moved = Simulation::from_state(problem.clone(), options, state, 0.0).unwrap();
+        match moved.step() {
+            Ok(()) => assert!(!ends),
+            Err(SimulationError::CageLeft { body, distance, allowed, step, .. }) => {
+                assert!(ends && (distance - off).abs() <= 1e-9, "{distance}");
+                assert_eq!((body.as_str(), allowed, step), ("the cage", room, 1));
+            }
+            Err(error) => panic!("{off}: {error}"),
+        }
+    }
+}
+
+/// Statics knows no cage: pushed the wrong way, all balls of an angular-contact bearing go to one side, and
+/// the cage with them; balls that go to both sides leave it no place.
+#[test]
+fn a_cage_starts_among_the_balls_or_not_at_all() {
+    let geometry = table_5_3();
+    let mut problem = bearing(geometry, [-445.0, 0.0, 0.0, 0.0, 0.0], 600.0 * RPM);
+    for i in 1..5 {
+        problem.inner.drives[i] = Drive::Motion(Profile::ZERO);
+    }
+    problem.cage = Some(cage(&geometry, Pocket::Cylindrical, Guidance::OuterRace));
+    let options = options(Integrator::Rosenbrock, Stepping::Accuracy(1e-3));
+    let mut simulation = Simulation::new(problem.clone(), options).unwrap();
+    let layout = simulation.system.sets[0].layout;
+    let along = simulation.state[layout.cage()];
+    let ball = layout.ball_vector(&simulation.state, POSITION, 0)[0];
+    println!("the cage at {along:e} m, ball 1 at {ball:e} m");
+    // 0.2 mm of room in a pocket.
+    assert!(ball.abs() > 0.5e-3 && (along - ball).abs() <= 1e-9, "{along} {ball}");
+    assert_eq!(simulation.snapshot().unwrap().energy.cage_contact, 0.0);
+    // The other way it stays in the middle.
+    problem.inner.drives[0] = Drive::Load(Profile::Constant(445.0));
+    let simulation = Simulation::new(problem, options).unwrap();
+    assert_eq!(simulation.state[layout.cage()], 0.0);
+    // Tilted, with pockets that leave the balls two micrometres.
+    let mut tilted = bearing(table_4_1(20e-6), [0.0; 5], 600.0 * RPM);
+    for (i, at) in [0.0, 0.0, 0.0, 1f64.to_radians(), 0.0].into_iter().enumerate() {
+        tilted.inner.drives[i] = Drive::Motion(Profile::Constant(at));
+    }
+    let mut body = cage(&tilted.geometry, Pocket::Cylindrical, Guidance::OuterRace);
+    body.contacts.pocket_radius = tilted.geometry.ball_radius + 2e-6;
+    tilted.cage = Some(body);
+    let error = Simulation::new(tilted, options).err().unwrap();
+    let SimulationError::CageInTheWay { cage, other, depth, allowed } = &error else {
+        panic!("{error}")
+    };
+    println!("{error}");
+    assert!(cage == "the cage" && other.starts_with("ball "), "{error}");
+    assert!(depth > allowed && *depth < 1e-3 && *allowed > 0.0, "{error}");
 }
 
 #[test]
@@ -441,12 +610,23 @@ fn a_full_complement_runs_with_its_ledger_closed() {
         let options = options(Integrator::Rosenbrock, Stepping::Accuracy(1e-3));
         let mut simulation = Simulation::new(problem, options).unwrap();
         let (mut met, mut deepest) = (0, 0.0f64);
+        let law = ball_law(&geometry);
         while simulation.time < 10e-3 {
             simulation.step().unwrap();
             let meetings = &simulation.system.sets[0].meetings;
             met += meetings.iter().filter(|meeting| meeting.normal_load > 0.0).count();
             deepest = meetings.iter().map(|meeting| meeting.overlap).fold(deepest, f64::max);
         }
+        // The extremes know the largest load, and Hertz its pressure: (6 F E*²/(π³ R²))^(1/3).
+        let most = simulation.extremes[0].between_balls;
+        let expected = law.stiffness * deepest * deepest.sqrt();
+        assert!((most.value - expected).abs() <= 1e-12 * expected, "{} {expected}", most.value);
+        assert!(most.time > 0.0 && most.time <= simulation.time && most.ball < balls);
+        let (modulus, half) = (0.5 * 210e9 / (1.0 - 0.09), 0.5 * geometry.ball_radius);
+        let cube =
+            6.0 * most.value * modulus * modulus / (std::f64::consts::PI.powi(3) * half * half);
+        let pressure = peak_pressure(&law, geometry.ball_radius, most.value);
+        assert!((pressure - cube.cbrt()).abs() <= 1e-12 * pressure, "{pressure} {}", cube.cbrt());
         let snapshot = simulation.snapshot().unwrap();
         let turned: f64 = snapshot.ledger.iter().map(|entry| entry.abs()).sum();
         println!(

@@ -13,7 +13,9 @@ use bearing_dynamics::solver::dynamics::model::{
     Drive, DynamicProblem, RaceBody, RotatingLoad, Rotation,
 };
 use bearing_dynamics::solver::dynamics::race::tilts_of;
-use bearing_dynamics::solver::dynamics::run::{Simulation, SimulationError, Start};
+use bearing_dynamics::solver::dynamics::run::{
+    Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
+};
 use bearing_dynamics::solver::dynamics::state::{BodyState, Layout, POSITION, SPIN, VELOCITY};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::{StaticsError, solve};
@@ -451,4 +453,64 @@ fn unbalance_takes_part_in_the_equilibrium_at_the_start() {
             assert!(force <= 1e-7, "{tilt}, coordinate {i}: {force} N");
         }
     }
+}
+
+/// The velocity of a start is that of its equilibrium, as far as the loads determine one.
+#[test]
+fn a_start_has_no_velocity_that_its_loads_do_not_give() {
+    let ramp =
+        |to: f64, duration: f64| Drive::Load(Profile::Ramp { from: 0.0, to, start: 0.0, duration });
+    let loose = |clearance: f64| {
+        let mut problem = bearing(table_4_1(clearance), [0.0; 5], 1000.0 * RPM);
+        problem.ball_phase = 0.0;
+        problem
+    };
+    // Nothing loads it at t = 0.
+    let mut radial = loose(5e-6);
+    radial.inner.drives[2] = ramp(-1500.0, 10e-3);
+    let mut axial = loose(280e-6);
+    axial.inner.drives[0] = ramp(300.0, 1e-3);
+    let mut pressed = loose(5e-6);
+    pressed.inner.drives[0] = ramp(200e3, 20e-3);
+    // Its own weight, and a load under which it may lie to the left or to the right of a ball.
+    let mut heavy = loose(20e-6);
+    heavy.gravity = GRAVITY;
+    let mut lying = loose(20e-6);
+    lying.inner.drives[2] = Drive::Load(Profile::Constant(-100.0));
+    // Nearest loads, N: none of these makes more than a few times that.
+    for (name, problem, loads) in [
+        ("radial ramp", radial, None),
+        ("axial ramp", axial, None),
+        ("strong ramp", pressed, None),
+        ("weight", heavy, Some(1.0)),
+        ("lying", lying, Some(100.0)),
+    ] {
+        let options = RunOptions {
+            integrator: Integrator::Rosenbrock,
+            stepping: Stepping::Accuracy(1e-3),
+            energy_limit: f64::INFINITY,
+            ..RunOptions::default()
+        };
+        let mut simulation = Simulation::new(problem, options).unwrap();
+        let velocity = Vector3::from(inner_state(&simulation).velocity).norm();
+        let Some(load) = loads else {
+            assert_eq!(velocity, 0.0, "{name}");
+            continue;
+        };
+        // The ball set goes round at 42 rad/s, and with it a place in 20 µm.
+        assert!(velocity <= 2e-3, "{name}: {velocity} m/s");
+        while simulation.time < 5e-3 {
+            simulation.step().unwrap();
+        }
+        let races = simulation.extremes[0].races;
+        let most = races[0].load.value.max(races[1].load.value);
+        println!("{name}: {velocity:e} m/s, {most} N of {load} N");
+        assert!(most <= 5.0 * load, "{name}: {most} N of {load} N");
+    }
+    // One that is determined moves as the balls pass under the load.
+    let mut varying = bearing(table_3_5(), [0.0, 0.0, -1500.0, 0.0, 0.0], 1000.0 * RPM);
+    varying.ball_phase = 0.1;
+    let start = simulation(&varying, 1e-6, Start::Equilibrium);
+    let velocity = inner_state(&start).velocity;
+    assert!(velocity[1].abs() > 1e-6 && velocity[2].abs() > 1e-6, "{velocity:?}");
 }

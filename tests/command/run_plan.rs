@@ -3,7 +3,7 @@
 use crate::run_common;
 
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::output::session::{RunRequest, Session, Status};
+use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status, table_size};
 use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
 use bearing_dynamics::scene::{self, CageInRun, Format};
 use bearing_dynamics::solver::channels::ChannelGroup;
@@ -246,6 +246,25 @@ fn corners_after_the_end_foretell_no_steps() {
     let taken = taken(&problem, &wanted) as f64;
     let factor = foretold.steps / taken;
     assert!((1.0 / WITHIN..=WITHIN).contains(&factor), "{foretold:?} {taken}");
+}
+
+/// Rows of a nanosecond are refused before anything is computed, with an interval that would do.
+#[test]
+fn a_table_that_is_too_large_is_refused_with_its_size() {
+    let wanted = RunRequest { end: 20e-3, output_interval: 1e-9, ..request(1e-6, 20) };
+    let error = Session::start(frictionless(), &wanted).err().unwrap();
+    let SessionError::TooLarge { size } = &error else { panic!("{error}") };
+    assert!((size.rows - 20_000_001.0).abs() <= 1.0, "{size:?}");
+    let columns =
+        Session::start(frictionless(), &request(1e-6, 20)).unwrap().recorder.columns().len();
+    assert_eq!(size.columns, columns);
+    let told = error.to_string();
+    assert!(told.contains(" make ") && told.contains("more than 0.4 GB"), "{told}");
+    assert!(told.contains("numerics.output_interval ("), "{told}");
+    // What would do does.
+    let fits = RunRequest { output_interval: 1.01 * size.shortest, ..wanted };
+    let size = table_size(frictionless().assembly(), &fits).unwrap();
+    assert!(size.rows * columns as f64 * 8.0 <= 0.4e9, "{size:?}");
 }
 
 /// Implicit where friction is steep, explicit where nothing is.

@@ -397,6 +397,25 @@ fn slip_is_told_against_the_contact_angle_that_balls_have() {
     let summary = run_summary(&session, &table, &[], &RunReport::default()).unwrap();
     let of = |name: &str| summary["kinematics"][name]["value"].as_f64().unwrap();
     assert!(of("inner_contact_angle") > 10.0, "{}", summary["kinematics"]);
+    // Harris: the ball set with control of either race.
+    let geometry = simulation(&session).system.assembly.bearings[0].geometry;
+    let gamma = geometry.ball_radius / geometry.pitch_radius;
+    let [inner, outer] = ["inner_contact_angle", "outer_contact_angle"].map(|n| of(n).to_radians());
+    let both = 1.0 + (inner - outer).cos();
+    let control = [
+        ("outer", (1.0 - gamma * inner.cos()) / both),
+        ("inner", ((inner - outer).cos() - gamma * outer.cos()) / both),
+    ];
+    let [low, high] = [control[1].1, control[0].1].map(|ratio| ratio * of("inner_race_speed"));
+    for (race, ratio) in control {
+        let told = of(&format!("rolling_cage_speed_{race}_control"));
+        let expected = ratio * of("inner_race_speed");
+        assert!((told / expected - 1.0).abs() <= 1e-12, "{race}: {told} {expected}");
+    }
+    // No slip between them, and against the nearer one outside.
+    let measured = of("ball_set_speed");
+    let slip = 1.0 - measured / measured.clamp(low.min(high), low.max(high));
+    assert!((of("ball_set_slip") - slip).abs() <= 1e-12, "{slip}");
     let nominal = 1.0 - of("ball_set_speed") / of("rolling_cage_speed_at_nominal_angle");
     assert!(nominal.abs() > 2e-3, "{nominal}");
     // A tenth of it at most: what spin leaves, and the angle of each ball beside the mean.

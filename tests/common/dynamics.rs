@@ -88,6 +88,7 @@ pub fn cage(geometry: &BearingGeometry, pocket: Pocket, guidance: Guidance) -> C
             pocket_radius: geometry.ball_radius + 0.2e-3,
             pocket_pitch_radius: pitch,
             guidance,
+            ring: [pitch - 2.5e-3, pitch + 2.5e-3],
             guide_radius: match guidance {
                 Guidance::InnerRace => pitch - 2.5e-3,
                 _ => pitch + 2.5e-3,

@@ -70,6 +70,7 @@ pub fn cage() -> CageBody {
             pocket_radius: 6.1e-3,
             pocket_pitch_radius: 26e-3,
             guidance: Guidance::OuterRace,
+            ring: [inner, outer],
             guide_radius: outer,
             race_clearance: 0.1e-3,
             length,

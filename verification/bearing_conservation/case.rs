@@ -114,6 +114,7 @@ fn tops(context: &mut CaseContext) -> Result<(), CaseError> {
             pocket_radius: 1.0,
             pocket_pitch_radius: 26e-3,
             guidance: Guidance::OuterRace,
+            ring: [inner, outer],
             guide_radius: outer,
             race_clearance: 1.0,
             length,

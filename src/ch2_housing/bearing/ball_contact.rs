@@ -24,6 +24,16 @@ pub fn equal_spheres(modulus: f64, radius: f64) -> f64 {
     4.0 / 3.0 * (0.5 * modulus) * (0.5 * radius).sqrt()
 }
 
+/// Largest pressure between two balls of a `radius` (m) under a load (N), Pa: p = 3F/(2π a²) with a² = R δ,
+/// R = radius/2 and δ = (F/K)^{2/3}.
+pub fn peak_pressure(law: &BallContactLaw, radius: f64, load: f64) -> f64 {
+    if load <= 0.0 {
+        return 0.0;
+    }
+    let overlap = libm::pow(libm::cbrt(load / law.stiffness), 2.0);
+    1.5 * load / (std::f64::consts::PI * 0.5 * radius * overlap)
+}
+
 /// Two neighbouring balls, inertial axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BallContact {

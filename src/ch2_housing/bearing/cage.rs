@@ -71,6 +71,8 @@ pub struct CageContacts {
     /// Distance of the pockets' centres from the cage's axis.
     pub pocket_pitch_radius: f64,
     pub guidance: Guidance,
+    /// Inner and outer radius of the ring.
+    pub ring: [f64; 2],
     /// Guiding surface of the cage: its outer or inner radius.
     pub guide_radius: f64,
     /// Radial gap between cage and guiding race when concentric.

@@ -201,6 +201,10 @@ pub fn verdict(
     // What counts is the race's displacement, which is what is read; of one that hardly swings, inertia may
     // change much of the swing and next to nothing of that.
     let (error, of_swing) = match along {
+        Some(course) if course.swing <= ROUNDING * course.displacement => {
+            said += "; the outer race does not swing along the course: none";
+            return said;
+        }
         Some(course) => {
             said += &format!("; {}", course_text(course));
             let part = course.expected() / course.displacement.max(course.swing);
@@ -237,6 +241,9 @@ pub fn verdict(
     };
     said
 }
+
+/// A swing below this part of the displacement is what equilibria leave over, no motion.
+const ROUNDING: f64 = 1e-8;
 
 /// Parts of what inertia adds, over the swing of the outer race.
 fn course_text(course: &CourseInertia) -> String {

@@ -105,6 +105,14 @@ fn of_bearing(simulation: &Simulation, table: &RunTable, lines: &mut Lines) {
             let value = format!("{:.6} N, ball {ball}, {race} race, at t = {at} s", load.value);
             line(&format!("{of}largest ball load"), value);
         }
+        let between = &extremes.between_balls;
+        if between.value > 0.0 {
+            let balls = bearing.geometry.ball_count;
+            let (one, other) = (between.ball + 1, (between.ball + 1) % balls + 1);
+            let at = rounded(between.time);
+            let value = format!("{:.6} N, balls {one} and {other}, at t = {at} s", between.value);
+            line(&format!("{of}largest between balls"), value);
+        }
     }
     if table.all("energy_residual").is_some() {
         let most = largest(table, "energy_residual");

@@ -252,7 +252,7 @@ pub fn planned_request(
             file.fingerprint == state::fingerprint(&problem.clone().into(), &request)
         };
         if kept.is_some_and(same) {
-            return (request, Some(Choice { integrator, mean_steps: None }));
+            return (request, Some(Choice { integrator, mean_steps: None, kept: true }));
         }
     }
     let choice = choose(&problem.assembly(), &request);

@@ -2,10 +2,12 @@
 //! the last state that was sound.
 
 pub mod motion;
+pub mod size;
 pub mod watch;
 
 pub use crate::solver::dynamics::clocked::RunRequest;
 pub use motion::{Checkpoint, HousedParts, Motion, Parts, SolidParts};
+pub use size::{TableSize, table_size};
 pub use watch::LedgerWatch;
 
 use crate::kinematics::vec3::Vec3;
@@ -27,6 +29,13 @@ pub enum SessionError {
     End(f64),
     #[error("the output interval is {0} s; it must be positive and finite")]
     Interval(f64),
+    #[error(
+        "{size}, more than {most} GB: take a longer numerics.output_interval ({interval:.1e} s would do), a shorter \
+         numerics.end, or fewer output.channels",
+        most = 8e-9 * size::MOST_VALUES,
+        interval = size.shortest
+    )]
+    TooLarge { size: TableSize },
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     #[error(transparent)]
@@ -101,6 +110,7 @@ impl<'p> Session<'p> {
         check(request)?;
         let parts = parts.into();
         let columns = Recorder::new(&parts, &request.channels);
+        size::size_of(&columns, request)?;
         let (motion, clock) = Motion::start(parts, request)?;
         let recorder = columns.with_room(clock.rows_in_all())?;
         let sound = Sound { checkpoint: motion.room(), watch: LedgerWatch::default(), rows: 0 };

@@ -1,12 +1,13 @@
 //! What a bearing in motion says of its steps, its largest loads and its speeds.
 
 use super::{Part, RunReport};
+use crate::ch2_housing::bearing::ball_contact::peak_pressure;
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::contact_ellipse;
 use crate::output::results::{ResultsError, quantity};
 use crate::output::table::RunTable;
 use crate::solver::clock::rounded;
-use crate::solver::dynamics::assembly::Bearing;
+use crate::solver::dynamics::assembly::{BallMeeting, Bearing};
 use crate::solver::dynamics::extremes::{Extreme, Extremes};
 use crate::solver::dynamics::run::{Simulation, Stepping};
 use serde_json::{Map, Value, json};
@@ -86,13 +87,15 @@ pub(super) fn step(simulation: &Simulation, report: &RunReport) -> Part {
     Ok(Value::Object(step))
 }
 
-/// Speed of the ball set over that of the inner race, the outer one at rest, where balls roll without
-/// slip at both contacts: with both angles one, (1 - r cos α/R)/2. With two the ball's own axis lies midway
-/// between them.
-fn rolling_ratio(geometry: &BearingGeometry, [inner, outer]: [f64; 2]) -> f64 {
-    let (pitch, radius) = (geometry.pitch_radius, geometry.ball_radius);
-    let (inner, outer) = (radius * libm::cos(inner), radius * libm::cos(outer));
-    (pitch - inner) / (2.0 * pitch - inner + outer)
+/// Speeds of the ball set over that of the inner race, the outer one at rest, where balls roll without slip at
+/// the middle of both contacts. With one contact angle it is (1 - γ cos α)/2, γ = r/R. With two the ball's own axis
+/// decides: it spins on the inner race only, (1 - γ cos α_i)/(1 + cos(α_i - α_o)), on the outer one only,
+/// (cos(α_i - α_o) - γ cos α_o)/(1 + cos(α_i - α_o)), or on both in between. In this order: outer control, inner control.
+fn rolling_ratios(geometry: &BearingGeometry, [inner, outer]: [f64; 2]) -> [f64; 2] {
+    let gamma = geometry.ball_radius / geometry.pitch_radius;
+    let between = libm::cos(inner - outer);
+    [1.0 - gamma * libm::cos(inner), between - gamma * libm::cos(outer)]
+        .map(|ratio| ratio / (1.0 + between))
 }
 
 /// Mean speeds over the window beside those of pure rolling at the contact angles that the balls had.
@@ -142,11 +145,11 @@ fn kinematics_of(bearing: &Bearing, table: &RunTable) -> Result<Option<Value>, R
             "the nominal contact angle, since the channels `orbits` are not recorded",
         ),
     };
-    let speed_at = |angles: [f64; 2]| {
-        let ratio = rolling_ratio(geometry, angles);
-        ratio * inner + (1.0 - ratio) * outer
+    let speeds_at = |angles: [f64; 2]| {
+        rolling_ratios(geometry, angles).map(|ratio| ratio * inner + (1.0 - ratio) * outer)
     };
-    let rolling = speed_at(angles);
+    let [outer_control, inner_control] = speeds_at(angles);
+    let (low, high) = (outer_control.min(inner_control), outer_control.max(inner_control));
     let mut section = Map::new();
     let speed = |value: f64| quantity("speed", value, "rad/s");
     let frequency = |value: f64| quantity("frequency", value / TAU, "Hz");
@@ -157,9 +160,14 @@ fn kinematics_of(bearing: &Bearing, table: &RunTable) -> Result<Option<Value>, R
     section.insert("inner_contact_angle".into(), angle(angles[0])?);
     section.insert("outer_contact_angle".into(), angle(angles[1])?);
     section.insert("nominal_contact_angle".into(), angle(nominal)?);
-    section.insert("rolling_cage_speed".into(), speed(rolling)?);
-    section.insert("rolling_cage_frequency".into(), frequency(rolling)?);
-    section.insert("rolling_cage_speed_at_nominal_angle".into(), speed(speed_at([nominal; 2]))?);
+    section.insert("rolling_cage_speed_outer_control".into(), speed(outer_control)?);
+    section.insert("rolling_cage_frequency_outer_control".into(), frequency(outer_control)?);
+    section.insert("rolling_cage_speed_inner_control".into(), speed(inner_control)?);
+    section.insert("rolling_cage_frequency_inner_control".into(), frequency(inner_control)?);
+    let at_nominal = speeds_at([nominal; 2])[0];
+    section.insert("rolling_cage_speed_at_nominal_angle".into(), speed(at_nominal)?);
+    let of = "against the nearer of outer and inner control; zero between them";
+    section.insert("slip_is".into(), json!(of));
     let orbital: Option<Vec<f64>> =
         (1..=geometry.ball_count).map(|ball| mean(&format!("ball_{ball}_orbital_speed"))).collect();
     let balls = orbital.map(|speeds| speeds.iter().sum::<f64>() / speeds.len() as f64);
@@ -167,6 +175,7 @@ fn kinematics_of(bearing: &Bearing, table: &RunTable) -> Result<Option<Value>, R
         let Some(measured) = measured else { continue };
         section.insert(format!("{name}_speed"), speed(measured)?);
         section.insert(format!("{name}_frequency"), frequency(measured)?);
+        let rolling = measured.clamp(low, high);
         if rolling != 0.0 {
             let slip = 1.0 - measured / rolling;
             section.insert(format!("{name}_slip"), quantity("slip", slip, "1")?);
@@ -212,6 +221,19 @@ fn extremes_of(extremes: &Extremes, bearing: &Bearing) -> Part {
         edge.extend(at(&race.edge)?.map(|(key, value)| (key.to_string(), value)));
         section
             .insert(name.into(), json!({ "largest_load": largest, "farthest_from_bottom": edge }));
+    }
+    if let Some(law) =
+        bearing.ball_contact.filter(|_| bearing.ball_meeting() == BallMeeting::Tested)
+    {
+        let (between, balls) = (&extremes.between_balls, bearing.geometry.ball_count);
+        let pressure = peak_pressure(&law, bearing.geometry.ball_radius, between.value);
+        let largest = json!({
+            "load": quantity("load", between.value, "N")?,
+            "peak_pressure": quantity("pressure", pressure, "Pa")?,
+            "balls": [between.ball + 1, (between.ball + 1) % balls + 1],
+            "time": quantity("time", between.time, "s")?,
+        });
+        section.insert("between_balls".into(), json!({ "largest_load": largest }));
     }
     section.insert("of".into(), json!("every accepted step, whatever rows were written"));
     Ok(Value::Object(section))

@@ -3,7 +3,7 @@
 //! A bearing takes hold of its two bodies at a place along each (a [`Mount`]); several may take hold of
 //! one body, as two bearings of a shaft do. The order of the lists is the order of every sum.
 
-use super::bounds::HERTZ_SCALE;
+use super::bounds::{HERTZ_SCALE, cage_room};
 use super::connection::Connection;
 use super::model::{CageBody, Drive, DynamicProblem, RaceBody, RotatingLoad, Rotation};
 use crate::ch2_housing::bearing::ball_contact::BallContactLaw;
@@ -115,6 +115,13 @@ pub struct Caged {
     pub contacts: CageContacts,
 }
 
+impl Caged {
+    /// How far a ball may be off the middle of its pocket, m.
+    pub fn room(&self, bearing: &Bearing) -> f64 {
+        self.contacts.pocket_radius - bearing.geometry.ball_radius
+    }
+}
+
 impl Bearing {
     /// "left_", before the names of columns; nothing where there is one only.
     pub fn prefix(&self) -> String {
@@ -155,13 +162,13 @@ const INWARDS: f64 = 0.5;
 /// The gap (m) that the pockets of a cage keep between neighbouring balls; `None` where they may meet.
 ///
 /// Each ball stays on its side of the plane halfway between two pockets as long as it lies no deeper
-/// in its pocket's wall than any run goes on with.
+/// in its pocket's wall, and the cage no farther off the axis, than any run goes on with.
 pub fn gap_in_pockets(geometry: &BearingGeometry, cage: &CageContacts) -> Option<f64> {
     let radius = geometry.ball_radius;
     let aside = cage.pocket_radius - radius + HERTZ_SCALE * radius;
     let pitch = geometry.pitch_radius.min(cage.pocket_pitch_radius);
     let (sin, cos) = libm::sincos(PI / geometry.ball_count as f64);
-    let inmost = pitch - INWARDS * radius - aside;
+    let inmost = pitch - INWARDS * radius - aside - cage_room(geometry, cage);
     Some(2.0 * (inmost * sin - aside * cos - radius)).filter(|gap| *gap > 0.0)
 }
 

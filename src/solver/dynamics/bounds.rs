@@ -1,14 +1,18 @@
 //! Where a state has lost its meaning: values that are not finite, balls outside their races, a race
-//! that has left its bearing, parts inside each other. Looked at once a step.
+//! or a cage that has left its bearing, a bearing that has flown off, parts inside each other. Looked at at the start and once a step.
 
-use super::assembly::Bearing;
+use super::assembly::{Bearing, Caged};
 use super::ball_set::{BallSet, neighbours};
 use super::failure::SimulationError;
+use super::model::Drive;
 use super::race::{RaceNow, mounted};
 use super::run::Simulation;
 use super::state::{BODY, POSITION};
+use crate::ch2_housing::bearing::cage::{CageContacts, Guidance};
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot, norm, sub};
+use crate::solver::clock::to_digits;
+use crate::solver::statics::COORDINATE_NAMES;
 
 /// How deep parts may lie in each other, in ball radii. Pressure in a Hertz contact of balls follows
 /// from δ/r alone: steel on steel would carry 20 GPa at this depth, five times what leaves a dent (ISO 76),
@@ -25,6 +29,27 @@ pub fn race_limit(geometry: &BearingGeometry) -> f64 {
     let play = grooves - 2.0 * geometry.ball_radius + geometry.radial_clearance.max(0.0);
     geometry.ball_radius + play
 }
+
+/// How far the centre of a cage may be from the axis of its outer race (m): until its ring is in the
+/// bottom of the groove, or its guiding surface in the race that guides it, by the depth that contacts may
+/// have. Along the axis, around it and against tilts the pockets hold it.
+pub fn cage_room(geometry: &BearingGeometry, cage: &CageContacts) -> f64 {
+    let bottom = geometry.outer.centre_radius + geometry.outer.groove_radius;
+    let ring = (bottom - cage.ring[1]).max(0.0);
+    let room = match cage.guidance {
+        Guidance::OuterRace => cage.race_clearance.min(ring),
+        // The inner race may itself be off.
+        Guidance::InnerRace | Guidance::Balls => ring,
+    };
+    room + HERTZ_SCALE * geometry.ball_radius
+}
+
+/// How far a bearing may go from where its outer race stands at rest, m: soft springs give way by millimetres,
+/// nothing that holds gives way by a metre.
+pub const FARTHEST: f64 = 1.0;
+
+/// How deep a cage may lie in balls or its guide at a start in equilibrium where no contact of a race is deeper, in ball radii.
+const CAGE_AT_START: f64 = 1e-3;
 
 /// Axial and radial part of an arm.
 fn split(arm: Vec3, axis: Vec3) -> (f64, f64) {
@@ -51,7 +76,11 @@ impl Simulation {
             }
         }
         for (set, bearing) in system.sets.iter().zip(&system.assembly.bearings) {
+            self.watch_travel(bearing)?;
             self.watch_races(bearing)?;
+            if let Some(cage) = &bearing.cage {
+                self.watch_cage(bearing, cage)?;
+            }
             self.watch_depths(set, bearing)?;
         }
         Ok(())
@@ -121,19 +150,132 @@ impl Simulation {
         Ok(())
     }
 
+    /// The body under the outer race against its place at rest, along what is not given of it, beyond what
+    /// given coordinates of the other race take it along.
+    fn watch_travel(&self, bearing: &Bearing) -> Result<(), SimulationError> {
+        let bodies = &self.system.assembly.bodies;
+        let [inner, outer] = bearing.mounts.map(|mount| &bodies[mount.body]);
+        let Some(race) = outer.driven() else { return Ok(()) };
+        let at = self.system.body_state(&self.state, bearing.mounts[1].body).position;
+        for i in 0..3 {
+            if matches!(race.drives[i], Drive::Motion(_)) {
+                continue;
+            }
+            let taken_along = match inner.driven().map(|race| &race.drives[i]) {
+                Some(Drive::Motion(profile)) => (profile.value(self.time) - inner.rest[i]).abs(),
+                _ => 0.0,
+            };
+            let (distance, allowed) = ((at[i] - outer.rest[i]).abs(), FARTHEST + taken_along);
+            // NaN is too far.
+            if distance <= allowed {
+                continue;
+            }
+            let (body, coordinate) = (outer.name.clone(), COORDINATE_NAMES[i]);
+            let (time, step) = (self.time, self.steps);
+            return Err(SimulationError::FlownOff {
+                body,
+                coordinate,
+                distance,
+                allowed,
+                time,
+                step,
+            });
+        }
+        Ok(())
+    }
+
+    /// The cage's ring against both races.
+    fn watch_cage(&self, bearing: &Bearing, cage: &Caged) -> Result<(), SimulationError> {
+        let outer = self.race(bearing, 1).motion;
+        let centre = self.system.body_state(&self.state, cage.body).position;
+        let (_, distance) = split(sub(centre, outer.position), outer.axis);
+        let allowed = cage_room(&bearing.geometry, &cage.contacts);
+        // NaN is too far.
+        if distance <= allowed {
+            return Ok(());
+        }
+        let body = self.system.assembly.bodies[cage.body].name.clone();
+        let (time, step) = (self.time, self.steps);
+        Err(SimulationError::CageLeft { body, distance, allowed, time, step })
+    }
+
+    /// A start in equilibrium leaves the cage out: one whose contacts are deeper than those of the races has no place there.
+    ///
+    /// # Errors
+    /// The deepest contact of a cage.
+    pub(super) fn watch_cages_at_start(&self) -> Result<(), SimulationError> {
+        for (set, bearing) in self.system.sets.iter().zip(&self.system.assembly.bearings) {
+            let Some(cage) = &bearing.cage else { continue };
+            let races = set.table.active.iter().map(|pair| set.table.contact[*pair].overlap);
+            let allowed = races.fold(CAGE_AT_START * bearing.geometry.ball_radius, f64::max);
+            let pockets = set.pockets.iter().enumerate();
+            let pockets = pockets.map(|(ball, contact)| (Some(ball), contact.penetration));
+            let guided = cage.contacts.guidance != Guidance::Balls;
+            let guides =
+                set.guides.iter().filter(|_| guided).map(|contact| (None, contact.penetration));
+            let deepest = pockets.chain(guides).fold((None, 0.0f64), |most, one| {
+                // NaN stays.
+                if one.1 <= most.1 || most.1.is_nan() { most } else { one }
+            });
+            if deepest.1 <= allowed {
+                continue;
+            }
+            let other = match deepest.0 {
+                Some(ball) => format!("ball {}{}", ball + 1, bearing.suffix()),
+                None => "its guiding race".into(),
+            };
+            let cage = self.system.assembly.bodies[cage.body].name.clone();
+            return Err(SimulationError::CageInTheWay { cage, other, depth: deepest.1, allowed });
+        }
+        Ok(())
+    }
+
+    /// What to do where one part is in another.
+    fn advice(&self, bearing: &Bearing, between_balls: bool) -> String {
+        if between_balls && bearing.ball_contact.is_none() {
+            return "nothing keeps balls apart here: give them a contact law (ball_contact.law) or a cage".into();
+        }
+        let given: Vec<String> = bearing
+            .mounts
+            .iter()
+            .flat_map(|mount| {
+                let body = &self.system.assembly.bodies[mount.body];
+                let drives = body.driven().map(|race| &race.drives);
+                drives.into_iter().flatten().enumerate().filter_map(|(i, drive)| {
+                    let Drive::Motion(profile) = drive else { return None };
+                    let off = profile.value(self.time) - body.rest[i];
+                    let unit = if i < 3 { "m" } else { "rad" };
+                    let name = COORDINATE_NAMES[i];
+                    (off != 0.0)
+                        .then(|| format!("{name} of {} by {} {unit}", body.name, to_digits(off, 3)))
+                })
+            })
+            .collect();
+        if !between_balls && !given.is_empty() {
+            return format!("what is given may be too much: {}", given.join(", "));
+        }
+        if self.steps == 0 {
+            return "it begins so: check clearances, and which way the loads push the races".into();
+        }
+        "check loads and stiffnesses, or take shorter steps (numerics.step, numerics.accuracy)"
+            .into()
+    }
+
     /// Contacts as they were evaluated last, within the step just taken; balls where they lie now.
     fn watch_depths(&self, set: &BallSet, bearing: &Bearing) -> Result<(), SimulationError> {
         let BallSet { layout, table, .. } = set;
         let radius = bearing.geometry.ball_radius;
         let allowed = HERTZ_SCALE * radius;
-        let check = |depth: f64, names: &dyn Fn() -> [String; 2]| {
+        let deep = |depth: f64, balls: bool, names: &dyn Fn() -> [String; 2]| {
             // NaN is too deep.
             if depth <= allowed {
                 return Ok(());
             }
             let ([one, other], time, step) = (names(), self.time, self.steps);
-            Err(SimulationError::Inside { one, other, depth, allowed, time, step })
+            let advice = self.advice(bearing, balls);
+            Err(SimulationError::Inside { one, other, depth, allowed, time, step, advice })
         };
+        let check = |depth: f64, names: &dyn Fn() -> [String; 2]| deep(depth, false, names);
         let named = |ball: usize| format!("ball {}{}", ball + 1, bearing.suffix());
         let body = |index: usize| self.system.assembly.bodies[index].name.clone();
         for &pair in &table.active {
@@ -154,7 +296,7 @@ impl Simulation {
             let [here, there] =
                 [one, other].map(|ball| layout.ball_vector(&self.state, POSITION, ball));
             let between = sub(there, here);
-            check(2.0 * radius - norm(between), &|| [named(one), named(other)])?;
+            deep(2.0 * radius - norm(between), true, &|| [named(one), named(other)])?;
         }
         Ok(())
     }

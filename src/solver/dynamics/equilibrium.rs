@@ -5,6 +5,7 @@
 //! last place until they change no more.
 
 use super::assembly::{Assembly, Bearing, Body};
+use super::bounds::FARTHEST;
 use super::model::{Drive, RaceBody, Rotation};
 use crate::ch2_housing::bearing::frequencies::ratios;
 use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient};
@@ -29,10 +30,6 @@ impl Equilibrium {
         if of.moves() { self.coordinates[body].into() } else { of.rest }
     }
 }
-
-/// How far a body that springs or loads hold may go, m. Soft springs give way by millimetres; nothing that
-/// holds gives way by a metre.
-const FARTHEST: f64 = 1.0;
 
 /// Equilibrium under the loads at t = 0. Forces that turn stand still in the direction that they
 /// have then: the rotating load at its phase, an unbalance along its body's own Y. Balls that
@@ -222,7 +219,7 @@ fn all_given(race: &RaceBody, t: f64) -> Option<[f64; 5]> {
 }
 
 /// Whether nothing is looked for of a body.
-fn is_held(body: &Body) -> bool {
+pub(super) fn is_held(body: &Body) -> bool {
     body.driven().is_none_or(|race| all_given(race, 0.0).is_some())
 }
 

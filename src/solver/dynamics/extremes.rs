@@ -47,6 +47,8 @@ pub struct Extremes {
     pub farthest: Extreme,
     /// Centre of the inner race from that of the outer one, m.
     pub apart: Extreme,
+    /// Load between a ball and the next one, N.
+    pub between_balls: Extreme,
 }
 
 impl Extremes {
@@ -59,6 +61,9 @@ impl Extremes {
         });
         self.farthest.take(norm(inner.position), 0, time);
         self.apart.take(norm(sub(inner.position, outer.position)), 0, time);
+        for (ball, meeting) in set.meetings.iter().enumerate() {
+            self.between_balls.take(meeting.normal_load, ball, time);
+        }
         let axes = [inner.axis, outer.axis];
         let geometry = &bearing.geometry;
         let grooves = [geometry.inner.groove_radius, geometry.outer.groove_radius];
@@ -95,7 +100,8 @@ impl Extremes {
             let all = [of(&race.load), of(&race.edge), of(&race.reversed)];
             all.into_iter().flatten().chain([race.edge_angle])
         });
-        races.chain(of(&self.farthest)).chain(of(&self.apart)).collect()
+        let others = [&self.farthest, &self.apart, &self.between_balls];
+        races.chain(others.into_iter().flat_map(of)).collect()
     }
 
     /// Of several bearings, from [`Extremes::to_numbers`] of each; `None` if they are not as many.
@@ -119,6 +125,7 @@ impl Extremes {
         }
         extremes.farthest = one(&mut next)?;
         extremes.apart = one(&mut next)?;
+        extremes.between_balls = one(&mut next)?;
         left.next().is_none().then_some(extremes)
     }
 }

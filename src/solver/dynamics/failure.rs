@@ -67,11 +67,46 @@ pub enum SimulationError {
     },
     #[error(
         "{one} is {depth:.3e} m inside {other} at t = {at} s, step {step}, deeper than the {allowed:.3e} m \
-         of a tenth of a ball's radius, where no contact law holds any more; check loads and stiffnesses, \
-         or take shorter steps (numerics.step, numerics.accuracy)",
+         of a tenth of a ball's radius, where no contact law holds any more; {advice}",
         at = rounded(*time)
     )]
-    Inside { one: String, other: String, depth: f64, allowed: f64, time: f64, step: u64 },
+    Inside {
+        one: String,
+        other: String,
+        depth: f64,
+        allowed: f64,
+        time: f64,
+        step: u64,
+        advice: String,
+    },
+    #[error(
+        "{cage} has no place at the start: it would lie {depth:.3e} m inside {other}, deeper than the {allowed:.3e} m of \
+         the races' contacts; check which way the loads push, bearing.cage.pocket_radius and race_clearance, or start in \
+         nominal positions (numerics.start = \"nominal\")"
+    )]
+    CageInTheWay { cage: String, other: String, depth: f64, allowed: f64 },
+    #[error(
+        "{body} has left its bearing at t = {at} s, step {step}: its centre is {distance:.3e} m off the \
+         axis of the outer race, farther than the {allowed:.3e} m that its ring has there; round \
+         pockets hold a cage along its axis and around it, not across: let a race guide it \
+         (bearing.cage.guidance) or take spherical pockets (bearing.cage.pocket)",
+        at = rounded(*time)
+    )]
+    CageLeft { body: String, distance: f64, allowed: f64, time: f64, step: u64 },
+    #[error(
+        "{body} has flown off at t = {at} s, step {step}: it is {distance:.3e} m from where it stood along \
+         {coordinate}, farther than {allowed:.3e} m; nothing holds it against the loads: hold the coordinate by \
+         a displacement or a spring",
+        at = rounded(*time)
+    )]
+    FlownOff {
+        body: String,
+        coordinate: &'static str,
+        distance: f64,
+        allowed: f64,
+        time: f64,
+        step: u64,
+    },
     #[error(
         "energy is lost or made: {residual:.3e} J of {turned_over:.3e} J are unaccounted for at \
          t = {at} s, step {step} (limit {limit}); take a smaller step or accuracy (numerics.step, \

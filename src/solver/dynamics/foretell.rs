@@ -12,8 +12,11 @@ use super::run::{Integrator, RunOptions, Simulation, SimulationError, Start, Ste
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::solver::clock::Clock;
 
-/// A foretold number of steps is meant to be within this factor of the one taken, up or down.
+/// A foretold number of steps is likely to be within this factor of the one taken, up or down.
 pub const WITHIN: f64 = 2.0;
+/// So many times the foretold number the run took that was farthest off: a shaft that runs down and rings on, where
+/// each later look begins in equilibrium and does not.
+pub const FARTHEST_OFF: f64 = 4.0;
 
 /// Attempts of a trial that counts steps or that chooses a method where anything changes over time: some
 /// hundred at each look, since a start anew takes that long to settle. And where nothing changes.
@@ -48,13 +51,18 @@ pub struct Foretold {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
     pub integrator: Integrator,
-    /// Mean step of `rosenbrock` and of `dormand-prince`, s; none where no trial could start.
+    /// Mean step of `rosenbrock` and of `dormand-prince`, s; none where no trial could start, or none was made.
     pub mean_steps: Option<[f64; 2]>,
+    /// Whether the run that goes on had chosen already.
+    pub kept: bool,
 }
 
 impl Choice {
     /// Why, as a sentence.
     pub fn reason(&self) -> String {
+        if self.kept {
+            return "as the run that goes on had chosen".into();
+        }
         let Some([implicit, explicit]) = self.mean_steps else {
             return "goes with any bearing; no trial could start".into();
         };
@@ -207,8 +215,18 @@ fn look_through(
         let (mut trial, offset) = match under_way.take() {
             Some(same) => same,
             None => {
+                let mut trial = match (started(assembly, request, from, budget), stretches.last()) {
+                    (Ok(trial), _) => trial,
+                    (Err(error), None) => return Err(error),
+                    // Loads without an equilibrium do not end a run under way: steps go on as before.
+                    (Err(_), Some(last)) => {
+                        let duration = to - from;
+                        let unseen = Stretch { duration, counted: 0.0, covered: 0.0, ..*last };
+                        stretches.push(unseen);
+                        continue;
+                    }
+                };
                 begun += 1;
-                let mut trial = started(assembly, request, from, budget)?;
                 if let Some(control) = &mut trial.simulation.control {
                     control.memory.displacement = control.memory.displacement.max(scale);
                 }
@@ -290,7 +308,7 @@ pub fn foretell(assembly: &Assembly, request: &RunRequest) -> Result<Foretold, S
 pub fn choose(assembly: &Assembly, request: &RunRequest) -> Choice {
     let options = RunOptions { integrator: Integrator::Rosenbrock, ..request.options };
     let request = RunRequest { options, ..request.clone() };
-    let nothing = Choice { integrator: Integrator::Rosenbrock, mean_steps: None };
+    let nothing = Choice { integrator: Integrator::Rosenbrock, mean_steps: None, kept: false };
     let budget = if assembly.changes() { TO_COUNT } else { TO_CHOOSE };
     let Ok((stretches, ..)) =
         look_through(assembly, &request, budget, Some(Integrator::DormandPrince))
@@ -307,5 +325,6 @@ pub fn choose(assembly: &Assembly, request: &RunRequest) -> Choice {
     let work = [WORK_OF_ROSENBROCK * attempts[0], attempts[1]];
     let integrator =
         if work[1] < work[0] { Integrator::DormandPrince } else { Integrator::Rosenbrock };
-    Choice { integrator, mean_steps: Some(attempts.map(|count| request.end / count)) }
+    let mean_steps = Some(attempts.map(|count| request.end / count));
+    Choice { integrator, mean_steps, kept: false }
 }

@@ -3,8 +3,8 @@
 //! `assembly` says what is simulated (a bearing alone is written as a `model`), `state` where it lies, `contacts`
 //! and `race` turn states into loads, each bearing's `ball_set` into loads on its bodies, `system` into rates, `energy` into energies; `rk4`, `dormand_prince` and `rosenbrock`
 //! integrate (the last through `linearised` contacts, the `arrow` matrix and each ball's `orbit_frame`),
-//! `bounds` says where a state has lost its meaning, `control` chooses steps for an accuracy, `extremes` remembers the largest loads,
-//! `run` takes a simulation from step to step,
+//! `held` says whether anything holds a bearing against its loads, `bounds` where a state has lost its meaning,
+//! `control` chooses steps for an accuracy, `extremes` remembers the largest loads, `run` takes a simulation from step to step,
 //! `clocked` up to what is due next, `foretell` for a while.
 pub mod arrow;
 pub mod assembly;
@@ -22,6 +22,7 @@ pub mod equilibrium;
 pub mod extremes;
 pub mod failure;
 pub mod foretell;
+pub mod held;
 pub mod linearised;
 pub mod model;
 pub mod orbit_frame;

@@ -4,11 +4,15 @@
 //! As the balls pass under the load the equilibrium goes to and fro (varying compliance). A race
 //! placed in it at rest lacks that velocity and rings about the moving equilibrium for as long as
 //! nothing damps it.
+//!
+//! Three equilibria say how fast it moves as long as they are one branch. Where loads leave the place open, or
+//! the race tips over from one place to another, their differences are no motion: all starts at rest there.
 
-use super::assembly::Assembly;
-use super::equilibrium::{Equilibrium, at, orbital_speed};
+use super::assembly::{Assembly, Bearing};
+use super::equilibrium::{Equilibrium, at, is_held, orbital_speed};
 use super::model::next_corner;
 use super::race::{self, mounted};
+use crate::solver::statics::Determinacy;
 use std::f64::consts::TAU;
 
 /// Largest part of a ball pitch between two equilibria. The formula's error for the first harmonic
@@ -16,6 +20,14 @@ use std::f64::consts::TAU;
 const PITCH_PART: f64 = 1e-2;
 /// Longest time between two of them, s: loads change in the meantime.
 const LONGEST: f64 = 1e-4;
+/// Two steps of one branch differ by no more than this part of the larger one. Loads that begin at nothing
+/// move a contact by t^(2/3), 0.41; a jump is the whole of it.
+const BEND: f64 = 0.5;
+/// Or by no more than this part of overlap and clearance: where the equilibrium turns round, its steps are as
+/// small as what they differ by, 0.004 of the amplitude.
+const TURN: f64 = 1e-2;
+/// Along directions without stiffness the search may stray by this part of them.
+const STRAY: f64 = 1e-4;
 
 /// Rates of everything that equilibrium places.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,8 +51,9 @@ impl Rates {
 /// Rates of the equilibrium `now` of t = 0 while balls go round and loads
 /// change as they do; by equilibria at and after t = 0, since profiles may begin there.
 ///
-/// At rest where nothing goes round, and where the loads have no equilibrium a moment later. A ball
-/// without load has no place of its own and no rate.
+/// At rest where nothing goes round, where the loads have no equilibrium a moment later, where they do not
+/// determine the place and where the three are not one branch. A ball without load has no place of its own
+/// and no rate.
 pub fn rates(assembly: &Assembly, now: &Equilibrium) -> Rates {
     let rest = Rates::rest(assembly);
     let speeds: Vec<f64> =
@@ -59,6 +72,9 @@ pub fn rates(assembly: &Assembly, now: &Equilibrium) -> Rates {
     };
     let (Ok(first), Ok(second)) = (later(dt), later(2.0 * dt)) else { return rest };
     let all = [now, &first, &second];
+    if !one_branch(assembly, all) {
+        return rest;
+    }
     // Of second order at t = 0; nothing moves to the bit if all three agree.
     let rate = |[f0, f1, f2]: [f64; 3]| (4.0 * (f1 - f0) - (f2 - f0)) / (2.0 * dt);
     let body = |index: usize| {
@@ -77,6 +93,10 @@ pub fn rates(assembly: &Assembly, now: &Equilibrium) -> Rates {
             let local = outer.orientation.inverse() * from_centre;
             [local.x, libm::hypot(local.y, local.z)]
         });
+        let steady = |i: usize| bends_little(places.map(|place| place[i]), room(assembly, all));
+        if !(steady(0) && steady(1)) {
+            return [0.0; 2];
+        }
         std::array::from_fn(|i| rate(places.map(|place| place[i])))
     };
     Rates {
@@ -85,4 +105,59 @@ pub fn rates(assembly: &Assembly, now: &Equilibrium) -> Rates {
             .map(|of| (0..now.bearings[of].balls.len()).map(|index| ball(of, index)).collect())
             .collect(),
     }
+}
+
+/// What the bearings leave their parts to move in: the deepest overlap of any of the equilibria and the largest
+/// clearance, m.
+fn room(assembly: &Assembly, all: [&Equilibrium; 3]) -> f64 {
+    let balls = all.into_iter().flat_map(|of| of.bearings.iter().flat_map(|b| &b.balls));
+    let overlap =
+        balls.fold(0.0f64, |most, ball| most.max(ball.inner.approach).max(ball.outer.approach));
+    let bearings = assembly.bearings.iter();
+    overlap + bearings.fold(0.0f64, |most, bearing| most.max(bearing.geometry.radial_clearance))
+}
+
+/// Whether three places (m) at equal times lie on one smooth course.
+fn bends_little([f0, f1, f2]: [f64; 3], room: f64) -> bool {
+    let [before, after] = [f1 - f0, f2 - f1];
+    (after - before).abs() <= (BEND * before.abs().max(after.abs())).max(TURN * room)
+}
+
+/// Whether all equilibria are determined by the loads and follow from each other without a jump.
+fn one_branch(assembly: &Assembly, all: [&Equilibrium; 3]) -> bool {
+    let [_, first, second] = all;
+    // Looked for near a known one, the search has tipped over to another.
+    if first.saddles_left + second.saddles_left > 0 {
+        return false;
+    }
+    let room = room(assembly, all);
+    // Metres for tilts, of any bearing.
+    let arm = assembly.bearings.iter().fold(0.0f64, |most, b| most.max(b.geometry.pitch_radius));
+    let scale = [1.0, 1.0, 1.0, arm, arm];
+    let smooth = (0..assembly.bodies.len()).all(|body| {
+        let places = all.map(|of| of.place(assembly, body));
+        (0..5).all(|i| bends_little(places.map(|place| scale[i] * place[i]), room))
+    });
+    smooth && !strays(assembly, all, STRAY * room)
+}
+
+/// Whether the equilibrium moves by more than `allowed` (m) along directions that meet no stiffness.
+fn strays(assembly: &Assembly, [now, _, second]: [&Equilibrium; 3], allowed: f64) -> bool {
+    let Determinacy::Indeterminate { free_directions } = &now.determinacy else { return false };
+    // In the unknowns of the search: bodies that are not held, tilts times their bearing's pitch radius.
+    let unknowns = assembly.bodies.iter().enumerate().filter(|(_, body)| !is_held(body));
+    let moved: Vec<f64> = unknowns
+        .flat_map(|(body, _)| {
+            let sits = |bearing: &&Bearing| bearing.mounts.iter().any(|mount| mount.body == body);
+            let pitch =
+                assembly.bearings.iter().find(sits).map_or(1.0, |b| b.geometry.pitch_radius);
+            let [from, to] = [now, second].map(|of| of.place(assembly, body));
+            let scale = [1.0, 1.0, 1.0, pitch, pitch];
+            std::array::from_fn::<f64, 5, _>(|i| scale[i] * (to[i] - from[i]))
+        })
+        .collect();
+    free_directions.iter().any(|direction| {
+        let along: f64 = direction.iter().zip(&moved).map(|(part, moved)| part * moved).sum();
+        along.abs() > allowed
+    })
 }

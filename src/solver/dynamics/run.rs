@@ -214,7 +214,7 @@ fn see(extremes: &mut [Extremes], system: &System, time: f64, state: &[f64]) {
 
 impl Simulation {
     /// # Errors
-    /// No equilibrium to start from, or no step.
+    /// No equilibrium to start from, no step, or a start that has no meaning (see [`super::bounds`]).
     pub fn new(
         assembly: impl Into<Assembly>,
         options: RunOptions,
@@ -226,6 +226,11 @@ impl Simulation {
         };
         let mut simulation = Simulation::from_state(assembly, options, state, 0.0)?;
         simulation.system.tidy(0.0, &mut simulation.state);
+        if options.start == Start::Equilibrium {
+            simulation.take_first_rates();
+            simulation.watch_cages_at_start()?;
+        }
+        simulation.watch()?;
         Ok(simulation)
     }
 

@@ -2,6 +2,7 @@
 
 use super::assembly::{Assembly, Bearing};
 use super::equilibrium::{at_start, given_speed, orbital_speed, race_speeds};
+use super::held::check_held;
 use super::model::Drive;
 use super::quasi_static::{self, Rates};
 use super::race::{self, RaceNow, mounted};
@@ -16,9 +17,10 @@ use std::f64::consts::TAU;
 /// equilibrium itself (see [`at_start`]).
 ///
 /// # Errors
-/// When the loads have no equilibrium.
+/// When the loads have no equilibrium, at t = 0 or, since nothing holds the bearing against them, later.
 pub fn at_equilibrium(assembly: &Assembly) -> Result<Vec<f64>, StaticsError> {
     let now = at_start(assembly)?;
+    check_held(assembly)?;
     let rates = quasi_static::rates(assembly, &now);
     let bodies: Vec<[f64; 5]> =
         (0..assembly.bodies.len()).map(|body| now.place(assembly, body)).collect();
@@ -95,6 +97,11 @@ fn fill(
         };
         if layout.has_cage {
             let mut cage = outer.state;
+            if let Some(law) = &bearing.cage {
+                let along: Vec<f64> =
+                    positions.iter().map(|at| dot(sub(*at, cage.position), axis)).collect();
+                cage.position = add_scaled(cage.position, among(&along, law.room(bearing)), axis);
+            }
             cage.spin = add_scaled(tilting, orbital_speed, axis);
             write(&mut state, layout.cage(), &cage);
         }
@@ -115,6 +122,15 @@ fn fill(
         }
     }
     state
+}
+
+/// How far along its axis a cage stands from the middle of its bearing (m), where balls stand at these places
+/// along it: nowhere but in the middle as long as all have room there, as they are wide apart then; among the balls
+/// where they have all gone to one side, as in an angular-contact bearing pushed the wrong way.
+fn among(balls: &[f64], room: f64) -> f64 {
+    let least = balls.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = balls.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if most.max(-least) <= room { 0.0 } else { 0.5 * (least + most) }
 }
 
 /// A race at x, y, z, tilt_y, tilt_z, whose coordinates change at `rates`, turning at `speed`.

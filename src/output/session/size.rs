@@ -1,0 +1,51 @@
+//! How large the table of a run becomes, before anything is computed.
+
+use super::{Parts, RunRequest, SessionError};
+use crate::output::recorder::Recorder;
+use crate::solver::clock::to_digits;
+
+/// Most values of a table: kept in memory, copied for the results and written twice.
+pub(super) const MOST_VALUES: f64 = 5e7;
+
+/// How large the table of a run becomes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TableSize {
+    pub rows: f64,
+    pub columns: usize,
+    /// Shortest output interval that is not refused, s.
+    pub shortest: f64,
+}
+
+impl std::fmt::Display for TableSize {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let megabytes = to_digits(8e-6 * self.rows * self.columns as f64, 2);
+        write!(f, "{} rows of {} channels make {megabytes} MB", self.rows, self.columns)
+    }
+}
+
+/// Rows and channels that a run is going to write.
+///
+/// # Errors
+/// More than are taken.
+pub fn table_size<'p>(
+    parts: impl Into<Parts<'p>>,
+    request: &RunRequest,
+) -> Result<TableSize, SessionError> {
+    size_of(&Recorder::new(&parts.into(), &request.channels), request)
+}
+
+pub(super) fn size_of(
+    recorder: &Recorder,
+    request: &RunRequest,
+) -> Result<TableSize, SessionError> {
+    let columns = recorder.columns().len();
+    let rows = (request.end / request.output_interval).ceil() + 1.0;
+    let shortest = request.end * columns as f64 / MOST_VALUES;
+    let size = TableSize { rows, columns, shortest };
+    // NaN is too much.
+    if rows * columns as f64 <= MOST_VALUES {
+        Ok(size)
+    } else {
+        Err(SessionError::TooLarge { size })
+    }
+}
