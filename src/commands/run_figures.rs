@@ -2,7 +2,7 @@
 
 use bearing_dynamics::output::dynamics::session::Session;
 use bearing_dynamics::output::dynamics::table::RunTable;
-use bearing_dynamics::solver::clock::rounded;
+use bearing_dynamics::solver::clock::told;
 use std::fmt::Write;
 
 /// Where the inner race was, the largest load of a ball, what is missing of the energy, and the
@@ -25,14 +25,14 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
     {
         let of = bearing.name.as_ref().map_or(String::new(), |name| format!("{name} "));
         let farthest = &extremes.farthest;
-        let at = rounded(farthest.time);
+        let at = told(farthest.time);
         let place = format!("{:.6} um at t = {at} s", 1e6 * farthest.value);
         line(&format!("{of}inner race, farthest"), place);
         let [inner, outer] = extremes.races.map(|race| race.load);
         let (load, race) =
             if outer.value > inner.value { (outer, "outer") } else { (inner, "inner") };
         if load.value > 0.0 {
-            let (ball, at) = (load.ball + 1, rounded(load.time));
+            let (ball, at) = (load.ball + 1, told(load.time));
             let value = format!("{:.6} N, ball {ball}, {race} race, at t = {at} s", load.value);
             line(&format!("{of}largest ball load"), value);
         }
@@ -40,7 +40,7 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
         if between.value > 0.0 {
             let balls = bearing.geometry.ball_count;
             let (one, other) = (between.ball + 1, (between.ball + 1) % balls + 1);
-            let at = rounded(between.time);
+            let at = told(between.time);
             let value = format!("{:.6} N, balls {one} and {other}, at t = {at} s", between.value);
             line(&format!("{of}largest between balls"), value);
         }
@@ -59,7 +59,7 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
                 shortened.times,
                 shortened.from,
                 simulation.step_size,
-                rounded(shortened.last)
+                told(shortened.last)
             ),
         );
     }

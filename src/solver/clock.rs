@@ -15,3 +15,8 @@ pub fn to_digits(value: f64, digits: usize) -> f64 {
 pub fn rounded(time: f64) -> f64 {
     to_digits(time, 9)
 }
+
+/// A time as remarks and errors tell it: six digits.
+pub fn told(time: f64) -> f64 {
+    to_digits(time, 6)
+}
