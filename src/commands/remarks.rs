@@ -4,7 +4,7 @@ use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use bearing_dynamics::scene::Scene;
 use bearing_dynamics::scene::statics::orbital_speed;
-use bearing_dynamics::solver::clock::rounded;
+use bearing_dynamics::solver::clock::told;
 use bearing_dynamics::solver::dynamics::extremes::{Extreme, Extremes};
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::statics::{
@@ -44,7 +44,7 @@ struct Seen {
 
 impl Seen {
     fn when(&self, of: &Extreme) -> String {
-        if self.moves { format!(" at t = {} s", rounded(of.time)) } else { String::new() }
+        if self.moves { format!(" at t = {} s", told(of.time)) } else { String::new() }
     }
 }
 

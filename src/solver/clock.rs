@@ -265,3 +265,8 @@ fn towards(step: f64, left: f64) -> f64 {
         step
     }
 }
+
+/// A time as remarks and errors tell it: six digits.
+pub fn told(time: f64) -> f64 {
+    to_digits(time, 6)
+}

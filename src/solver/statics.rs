@@ -5,7 +5,7 @@
 //! cold start; the balls are in equilibrium at every evaluation, so that the bodies'
 //! coordinates are the only unknowns of the outer loop. A bearing alone is a [`StaticProblem`].
 
-use super::clock::to_digits;
+use super::clock::told;
 use super::mount::Mount;
 use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing, StaticBody};
 use super::static_search::{Evaluation, Model, Search};
@@ -155,7 +155,7 @@ pub enum StaticsError {
          joined to, while the loads there add up to {load:.3e} N at t = {at} s: hold the coordinate by a \
          displacement or a spring, balance the loads, or start a motion in nominal positions \
          (numerics.start = \"nominal\")",
-        at = to_digits(*time, 9)
+        at = told(*time)
     )]
     Unheld { body: String, coordinate: &'static str, load: f64, time: f64 },
     #[error(

@@ -418,7 +418,9 @@ fn what_cannot_be_run_is_said_before_anything_is_written() {
     let text = scene("end = \"1000 s\"\nstep = \"1 ns\"\noutput_interval = \"1 ns\"", "");
     let output = run(&place.scene("c.toml", &text), &out, &[]);
     assert_eq!(code(&output), 2);
-    assert!(stderr(&output).contains("do not fit in memory"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("more than 0.8 GB"), "{}", stderr(&output));
+    let checked = bearing(&["check", place.path("c.toml").to_str().unwrap()]);
+    assert_eq!((code(&checked), stderr(&checked)), (2, stderr(&output)));
     assert!(!out.join("state.json").exists() && !out.join("summary.json").exists());
 }
 
@@ -672,6 +674,58 @@ end = "0.5 ms"
     assert!(gyroscopic(&of_statics) && !gyroscopic(&of_run), "{of_run:?} {of_statics:?}");
     let slow = fast.replace("15000 rpm", "600 rpm");
     assert!(!gyroscopic(&remarks(&slow)[1]));
+}
+
+/// Balls that nothing keeps apart strike each other harder than the races.
+#[test]
+fn the_largest_pressure_may_be_one_between_balls() {
+    let place = Place::new();
+    let text = r#"
+[bearing]
+kind = "deep-groove"
+balls = 12
+ball_phase = "17 deg"
+clearance = { radial = "10 um", through = "inner-race" }
+inner_race = { groove_radius = "6.1 mm" }
+outer_race = { radius = "31.953 mm", groove_radius = "6.31 mm" }
+ball = { radius = "5.95 mm" }
+[inner_race]
+x = { displacement = "0 um" }
+y = { displacement = "0 um" }
+z = { displacement = "0 um" }
+tilt_y = { tilt = "0 deg" }
+tilt_z = { tilt = "0 deg" }
+[ball_forces]
+gravity = ["0 m/s^2", "0 m/s^2", "-1000 m/s^2"]
+[traction]
+law = "none"
+[numerics]
+end = "6 ms"
+start = "nominal"
+"#;
+    let (path, out) = (place.scene("scene.toml", text), place.path("out"));
+    let output = run(&path, &out, &[]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let summary = json(out.join("summary.json"));
+    let largest = &summary["extremes"]["between_balls"]["largest_load"];
+    let of = |value: &Value| value["value"].as_f64().unwrap_or_else(|| panic!("{value}"));
+    // Hertz, E* = E/(2 (1 - ν²)), R = r/2: p = (6 F E*²/(π³ R²))^(1/3).
+    let (modulus, half) = (105e9 / 0.91, 0.5 * 5.95e-3);
+    let cube = 6.0 * of(&largest["load"]) * modulus * modulus
+        / (std::f64::consts::PI.powi(3) * half * half);
+    let pressure = cube.cbrt();
+    assert!((of(&largest["peak_pressure"]) / pressure - 1.0).abs() <= 1e-9, "{largest} {pressure}");
+    let races = ["inner_race", "outer_race"]
+        .map(|race| of(&summary["extremes"][race]["largest_load"]["peak_pressure"]));
+    assert!(races.iter().all(|race| *race < pressure), "{races:?} {pressure}");
+    let said = said(&output);
+    let told = number_after(&said, "note: a contact pressure of ");
+    assert!(
+        (told - 1e-6 * pressure).abs() <= 0.501 && said.contains("MPa between two balls at"),
+        "{said}"
+    );
+    let told = number_after(&said, "largest between balls  ");
+    assert!((told - of(&largest["load"])).abs() <= 0.501e-6, "{said}");
 }
 
 /// A number behind some words of a text.

@@ -202,7 +202,7 @@ pub fn verdict(
     // change much of the swing and next to nothing of that.
     let (error, of_swing) = match along {
         Some(course) if course.swing <= ROUNDING * course.displacement => {
-            said += "; the outer race does not swing along the course: none";
+            said += "; the outer race does not swing along the course, so that inertia has nothing to change";
             return said;
         }
         Some(course) => {

@@ -5,7 +5,7 @@ use crate::output::recorder::Recorder;
 use crate::solver::clock::to_digits;
 
 /// Most values of a table: kept in memory, copied for the results and written twice.
-pub(super) const MOST_VALUES: f64 = 5e7;
+pub(super) const MOST_VALUES: f64 = 1e8;
 
 /// How large the table of a run becomes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,8 +18,11 @@ pub struct TableSize {
 
 impl std::fmt::Display for TableSize {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let megabytes = to_digits(8e-6 * self.rows * self.columns as f64, 2);
-        write!(f, "{} rows of {} channels make {megabytes} MB", self.rows, self.columns)
+        let megabytes = 8e-6 * self.rows * self.columns as f64;
+        let (size, unit) =
+            if megabytes < 1e3 { (megabytes, "MB") } else { (1e-3 * megabytes, "GB") };
+        let size = to_digits(size, 2);
+        write!(f, "{} rows of {} channels make {size} {unit}", self.rows, self.columns)
     }
 }
 

@@ -8,7 +8,7 @@ use super::model::Drive;
 use super::race::{RaceNow, mounted};
 use super::run::Simulation;
 use super::state::{BODY, POSITION};
-use crate::ch2_housing::bearing::cage::{CageContacts, Guidance};
+use crate::ch2_housing::bearing::cage::{CageContact, CageContacts, Guidance};
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot, norm, sub};
 use crate::solver::clock::to_digits;
@@ -78,10 +78,10 @@ impl Simulation {
         for (set, bearing) in system.sets.iter().zip(&system.assembly.bearings) {
             self.watch_travel(bearing)?;
             self.watch_races(bearing)?;
+            self.watch_depths(set, bearing)?;
             if let Some(cage) = &bearing.cage {
                 self.watch_cage(bearing, cage)?;
             }
-            self.watch_depths(set, bearing)?;
         }
         Ok(())
     }
@@ -208,11 +208,12 @@ impl Simulation {
             let Some(cage) = &bearing.cage else { continue };
             let races = set.table.active.iter().map(|pair| set.table.contact[*pair].overlap);
             let allowed = races.fold(CAGE_AT_START * bearing.geometry.ball_radius, f64::max);
-            let pockets = set.pockets.iter().enumerate();
+            // What pushes: a cage without stiffness is in nobody's way.
+            let pushes = |contact: &CageContact| contact.normal_load > 0.0;
+            let pockets = set.pockets.iter().enumerate().filter(|(_, contact)| pushes(contact));
             let pockets = pockets.map(|(ball, contact)| (Some(ball), contact.penetration));
-            let guided = cage.contacts.guidance != Guidance::Balls;
-            let guides =
-                set.guides.iter().filter(|_| guided).map(|contact| (None, contact.penetration));
+            let guides = set.guides.iter().filter(|contact| pushes(contact));
+            let guides = guides.map(|contact| (None, contact.penetration));
             let deepest = pockets.chain(guides).fold((None, 0.0f64), |most, one| {
                 // NaN stays.
                 if one.1 <= most.1 || most.1.is_nan() { most } else { one }

@@ -1,6 +1,6 @@
 //! What keeps a simulation from starting, or ends it.
 
-use crate::solver::clock::rounded;
+use crate::solver::clock::told;
 use crate::solver::statics::StaticsError;
 use thiserror::Error;
 
@@ -25,7 +25,7 @@ pub enum SimulationError {
     #[error(
         "no step is short enough at t = {at} s, step {step}: the error of one of {size:.3e} s is \
          still {error:.3e} of what the accuracy allows",
-        at = rounded(*time)
+        at = told(*time)
     )]
     StepVanished { time: f64, step: u64, size: f64, error: f64 },
     #[error(
@@ -37,25 +37,25 @@ pub enum SimulationError {
         "the step of {size:.3e} s is longer than the largest stable one, {limit:.3e} s at t = {at} s, \
          step {step} ({reason}): what swings would grow, or what slides swing to and fro; take a \
          shorter step (numerics.step), or leave it out for one that follows from the limit",
-        at = rounded(*time)
+        at = told(*time)
     )]
     StepTooLong { size: f64, limit: f64, reason: String, time: f64, step: u64 },
     #[error(
         "{body} has a value that is not finite at t = {at} s, step {step}",
-        at = rounded(*time)
+        at = told(*time)
     )]
     NotFinite { body: String, time: f64, step: u64 },
     #[error(
         "{ball} has left its races at t = {at} s, step {step}: it is {distance:.3e} m from \
          the pitch circle, farther than its radius of {ball_radius:.3e} m",
-        at = rounded(*time)
+        at = told(*time)
     )]
     BallOutside { ball: String, time: f64, step: u64, distance: f64, ball_radius: f64 },
     #[error(
         "the inner race has left {bearing} at t = {at} s, step {step}: it is {distance:.3e} m off {way}, \
          farther than the {allowed:.3e} m of a ball's radius and all play of the grooves; nothing holds \
          it against its loads or given motion (balls gathered on one side, an axial load that opens the bearing?)",
-        at = rounded(*time)
+        at = told(*time)
     )]
     RaceLeft {
         bearing: String,
@@ -68,7 +68,7 @@ pub enum SimulationError {
     #[error(
         "{one} is {depth:.3e} m inside {other} at t = {at} s, step {step}, deeper than the {allowed:.3e} m \
          of a tenth of a ball's radius, where no contact law holds any more; {advice}",
-        at = rounded(*time)
+        at = told(*time)
     )]
     Inside {
         one: String,
@@ -90,14 +90,14 @@ pub enum SimulationError {
          axis of the outer race, farther than the {allowed:.3e} m that its ring has there; round \
          pockets hold a cage along its axis and around it, not across: let a race guide it \
          (bearing.cage.guidance) or take spherical pockets (bearing.cage.pocket)",
-        at = rounded(*time)
+        at = told(*time)
     )]
     CageLeft { body: String, distance: f64, allowed: f64, time: f64, step: u64 },
     #[error(
         "{body} has flown off at t = {at} s, step {step}: it is {distance:.3e} m from where it stood along \
          {coordinate}, farther than {allowed:.3e} m; nothing holds it against the loads: hold the coordinate by \
          a displacement or a spring",
-        at = rounded(*time)
+        at = told(*time)
     )]
     FlownOff {
         body: String,
@@ -111,7 +111,7 @@ pub enum SimulationError {
         "energy is lost or made: {residual:.3e} J of {turned_over:.3e} J are unaccounted for at \
          t = {at} s, step {step} (limit {limit}); take a smaller step or accuracy (numerics.step, \
          numerics.accuracy), or allow more (numerics.energy_limit)",
-        at = rounded(*time)
+        at = told(*time)
     )]
     Energy { residual: f64, turned_over: f64, time: f64, step: u64, limit: f64 },
 }

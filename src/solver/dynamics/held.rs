@@ -33,7 +33,7 @@ pub fn check_held(assembly: &Assembly) -> Result<(), StaticsError> {
                 let largest = loads.iter().fold(0.0f64, |most, load| most.max(load.abs()));
                 if sum.abs() > BALANCED * largest {
                     // The outer race comes after the inner one.
-                    let last = group.iter().map(of).filter(|body| body.driven().is_some()).last();
+                    let last = group.iter().rev().map(of).find(|body| body.driven().is_some());
                     return Err(StaticsError::Unheld {
                         body: last.map_or(String::new(), |body| body.name.clone()),
                         coordinate: COORDINATE_NAMES[i],

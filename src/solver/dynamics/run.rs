@@ -227,7 +227,6 @@ impl Simulation {
         let mut simulation = Simulation::from_state(assembly, options, state, 0.0)?;
         simulation.system.tidy(0.0, &mut simulation.state);
         if options.start == Start::Equilibrium {
-            simulation.take_first_rates();
             simulation.watch_cages_at_start()?;
         }
         simulation.watch()?;
