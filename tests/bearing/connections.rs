@@ -8,6 +8,7 @@ use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, Mobility};
 use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot, Torsion};
 use bearing_dynamics::solver::dynamics::contacts::Driver;
+use bearing_dynamics::solver::dynamics::held::check_held;
 use bearing_dynamics::solver::dynamics::model::{RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::race::{RaceNow, mounted};
 use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
@@ -18,7 +19,7 @@ use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::static_assembly::{Loaded, Place, StaticAssembly, StaticBody};
-use bearing_dynamics::solver::statics::{Condition, StaticOptions, solve_assembly};
+use bearing_dynamics::solver::statics::{Condition, StaticOptions, StaticsError, solve_assembly};
 use dynamics::*;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -339,11 +340,16 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
         connections: vec![connection],
         ..Assembly::default()
     };
-    let places = Places::of(&assembly);
-    let mut state = vec![0.0; places.state_len()];
+    let state = start::at_equilibrium(&assembly).unwrap();
     let at = bearing_dynamics::solver::dynamics::race::fixed(&found.coordinates[0].into());
-    state[..13].copy_from_slice(&at.state.to_array());
-    state[13..26].copy_from_slice(&BodyState::at_rest([0.0; 3]).to_array());
+    assert_eq!(state[..13], at.state.to_array());
+    // Without its spring nothing holds it.
+    let mut loose = assembly.clone();
+    loose.connections.clear();
+    let error = start::at_equilibrium(&loose).unwrap_err();
+    assert!(matches!(error, StaticsError::NoEquilibrium { .. }), "{error}");
+    assert!(check_held(&assembly).is_ok());
+    assert!(matches!(check_held(&loose), Err(StaticsError::Unheld { .. })));
     let mut system = System::new(assembly.clone(), Driver::Lanes);
     let mut rates = vec![0.0; state.len()];
     system.evaluate(0.0, &state, &mut rates);

@@ -106,6 +106,14 @@ impl Connection {
         }
     }
 
+    /// Whether a spring of it resists a displacement along the first end's axis X, Y or Z.
+    pub fn holds_along(&self, axis: usize) -> bool {
+        match &self.law {
+            Law::SpringDashpot(law) => law.stiffness[axis] != 0.0,
+            Law::Torsion(_) => false,
+        }
+    }
+
     /// Whether nothing of it pushes or brakes, so that it may be left out.
     pub fn is_void(&self) -> bool {
         match &self.law {

@@ -20,8 +20,8 @@ const BALANCED: f64 = 1e-9;
 /// not balance, now or later.
 pub fn check_held(assembly: &Assembly) -> Result<(), StaticsError> {
     let times = times(assembly);
-    for group in groups(assembly) {
-        for i in 0..3 {
+    for i in 0..3 {
+        for group in groups(assembly, i) {
             let of = |index: &usize| &assembly.bodies[*index];
             if group.iter().map(of).any(|body| is_held_along(body, i)) {
                 continue;
@@ -57,16 +57,23 @@ fn is_held_along(body: &Body, i: usize) -> bool {
     }
 }
 
-/// Bodies that bearings join, each in one group.
-fn groups(assembly: &Assembly) -> Vec<Vec<usize>> {
+/// Bodies that bearings, or springs along an axis, join: each in one group.
+fn groups(assembly: &Assembly, axis: usize) -> Vec<Vec<usize>> {
     let mut of: Vec<usize> = (0..assembly.bodies.len()).collect();
+    let mut join = |one: usize, other: usize| {
+        let (from, to) = (of[other], of[one]);
+        of.iter_mut().filter(|group| **group == from).for_each(|group| *group = to);
+    };
     for bearing in &assembly.bearings {
-        let cage = bearing.cage.as_ref().map(|cage| cage.body);
-        let [one, other] = bearing.mounts.map(|mount| mount.body);
-        for body in [Some(other), cage].into_iter().flatten() {
-            let (from, to) = (of[body], of[one]);
-            of.iter_mut().filter(|group| **group == from).for_each(|group| *group = to);
+        let [inner, outer] = bearing.mounts.map(|mount| mount.body);
+        join(inner, outer);
+        if let Some(cage) = &bearing.cage {
+            join(inner, cage.body);
         }
+    }
+    for connection in assembly.connections.iter().filter(|of| of.holds_along(axis)) {
+        let [one, other] = connection.ends.map(|mount| mount.body);
+        join(one, other);
     }
     let members = |group| (0..of.len()).filter(|body| of[*body] == group).collect::<Vec<_>>();
     (0..of.len()).map(members).filter(|members| !members.is_empty()).collect()
