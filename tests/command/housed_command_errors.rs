@@ -199,6 +199,17 @@ fn cases() -> Vec<Case> {
             &["scene.toml:24:2: housing.bore", "26.0000 mm"],
         ),
         (
+            "a flat set as a bore",
+            changed("fit.radial = \"1 um\"", "bore = \"side\"\nfit.radial = \"1 um\"")
+                + "[[solid.set]]\nname = \"side\"\nplane = \"x\"\nat = \"10 mm\"\n",
+            // 24 cells around, each a trapezium of two triangles.
+            &[
+                "housing.bore: \"side\" is flat: its 48 faces",
+                "look along (1.000, 0.000, 0.000)",
+                "bore, fixed, side",
+            ],
+        ),
+        (
             "a mesh that is not there",
             changed(
                 "generate = \"housing-d\"\nbore_radius = \"35.527 mm\"\nouter_radius = \"50 mm\"\n\
