@@ -6,6 +6,7 @@
 use crate::ch2_housing::bore_contact::Frame;
 use crate::kinematics::{Pose, euler};
 use crate::mesh::cylinder_fit::{FittedCylinder, fit_cylinder};
+use crate::mesh::measure::face_normal;
 use crate::mesh::quadratic::{Elevated, elevate_faces};
 use crate::mesh::select::faces_on;
 use crate::mesh::topology::surface;
