@@ -216,7 +216,17 @@ fn cases() -> Vec<Case> {
                      depth = \"20 mm\"\ncells = { around = 24, radial = 1, axial = 2 }\n",
                 "file = \"missing.msh\"\nunit = \"mm\"\n",
             ),
-            &["solid.mesh.file: cannot read", "missing.msh", "scene.toml:29:8"],
+            &[
+                "solid.mesh.file: cannot read",
+                "missing.msh",
+                "scene.toml:29:8",
+                "starts at the scene's folder, and this one is /",
+            ],
+        ),
+        (
+            "a probe in a housing",
+            good() + "[[solid.probe]]\nset = \"fixed\"\n",
+            &["solid.probe", "displacement of every node of the housing stands in the fields"],
         ),
     ]
 }
