@@ -70,8 +70,8 @@ pub enum BoreError {
     )]
     NotHeld { coordinate: &'static str, travel: f64, force: f64 },
     #[error(
-        "the housing gives way: under {} N (of a moment: over the radius), which it does hold, the outer race has \
-         {} from its nominal place, more than a hundredth of its radius of {:.4} mm: beyond small \
+        "the housing gives way: it holds all {} N of the load on the outer race (of a moment: over the radius), but \
+         that has {} from its nominal place, more than a hundredth of its radius of {:.4} mm: beyond small \
          displacements a condensed housing says nothing. Hint: check solid.material.youngs_modulus, which is {} \
          GPa, and its unit, the loads, and which parts of the solid are held",
         to_digits(*load, 4), travel_text(coordinate, *travel), 1e3 * *radius,
