@@ -22,7 +22,7 @@ pub struct Arguments {
     class: Option<ToleranceClass>,
     /// For runs of different accuracy, in place of a class: allow this part of each channel's
     /// largest value (components of one vector share theirs); how they were stepped is left out
-    #[arg(long, value_name = "PART", conflicts_with = "class")]
+    #[arg(long, value_name = "PART", value_parser = part, allow_negative_numbers = true, conflicts_with = "class")]
     rtol: Option<f64>,
     /// Allow this much besides, in channels of the unit; may be given for several units
     #[arg(long, value_name = "UNIT=VALUE", value_parser = floor, conflicts_with = "class")]
@@ -35,6 +35,13 @@ pub struct Arguments {
 fn class(name: &str) -> Result<ToleranceClass, String> {
     ToleranceClass::from_name(name)
         .ok_or_else(|| format!("no such class; there are {}", names().join(", ")))
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(part) if part >= 0.0 && part.is_finite() => Ok(part),
+        _ => Err("a part of the largest value, zero or more, such as 1e-3".into()),
+    }
 }
 
 /// `m=1e-9`

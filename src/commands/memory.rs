@@ -73,7 +73,7 @@ pub fn refuse_beyond(cost: &Cost, other: &'static str) -> Result<(), TooLarge> {
     cost.refuse_beyond(held, limit, from, other)
 }
 
-/// What a solution takes, in words: memory exactly, time as fast as the machine is now.
+/// What a solution takes, in words: memory, and processor time as fast as the machine is now.
 pub fn text(cost: &Cost) -> String {
     let held = held();
     let (limit, _) = limit(held);
@@ -82,12 +82,19 @@ pub fn text(cost: &Cost) -> String {
         true => String::new(),
         false => format!("; REFUSED: only {} may be taken", size(limit)),
     };
+    let speed = Speed::measured();
+    let (seconds, further) = (cost.seconds(&speed), cost.seconds_of_factors(&speed));
+    // Loads that bend a body visibly change its stiffness.
+    let repeated = match cost.task.repeats && seconds >= 1.0 {
+        true => format!(" with one factorisation, {} more for each further one", duration(further)),
+        false => String::new(),
+    };
     format!(
-        "{} unknowns, {} values in the factors; {} of memory in all, about {} here{too_large}",
+        "{} unknowns, {} values in the factors; {} of memory in all, about {} of processor time here{repeated}{too_large}",
         cost.unknowns,
         cost.fill,
         size(bytes),
-        duration(cost.seconds(&Speed::measured()))
+        duration(seconds)
     )
 }
 

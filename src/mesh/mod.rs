@@ -16,6 +16,7 @@ pub mod check;
 pub mod cylinder_fit;
 pub mod error;
 pub mod generate;
+pub mod layers;
 pub mod measure;
 pub mod node_order;
 pub mod numbering;

@@ -6,10 +6,20 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 #[derive(Debug, Error)]
-#[error("cannot write {}: {source}", path.display())]
+#[error("cannot write {}: {source}{}", path.display(), room_text(source))]
 pub struct WriteError {
     pub path: PathBuf,
     pub source: io::Error,
+}
+
+fn room_text(source: &io::Error) -> &'static str {
+    match source.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "; what was written before is whole. Make room and run again: a run goes on with --resume from the last \
+             state that it could keep (--save-every)"
+        }
+        _ => "",
+    }
 }
 
 /// Writes a file under a temporary name in the same folder, then renames it: an interrupted run

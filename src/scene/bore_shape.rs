@@ -6,6 +6,7 @@
 use crate::ch2_housing::bore_contact::Frame;
 use crate::kinematics::{Pose, euler};
 use crate::mesh::cylinder_fit::{FittedCylinder, fit_cylinder};
+use crate::mesh::measure::face_normal;
 use crate::mesh::quadratic::{Elevated, elevate_faces};
 use crate::mesh::select::faces_on;
 use crate::mesh::topology::surface;
@@ -66,6 +67,29 @@ impl BorePlace {
         let near: Vec<Vector3<f64>> = places.iter().filter(under).copied().collect();
         fit_cylinder(if near.len() < FEW { &places } else { &near }, self.axis())
     }
+}
+
+/// Faces that all look the same way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flat {
+    /// m².
+    pub area: f64,
+    /// Outward, a unit vector.
+    pub normal: [f64; 3],
+}
+
+/// Whether a set of faces is no piece of a bore but flat.
+pub fn flat(mesh: &TetMesh, faces: &[Face]) -> Option<Flat> {
+    /// Part of its area by which the vector area of a flat set may be smaller: far more than what the
+    /// rounding of printed nodes leaves, and far less than the 3e-3 of an arc of 15 degrees.
+    const FLAT: f64 = 1e-4;
+    let normals = faces.iter().map(|face| 0.5 * face_normal(mesh, *face));
+    let area: f64 = normals.clone().map(|normal| normal.norm()).sum();
+    let together: Vector3<f64> = normals.sum();
+    let (length, is_flat) = (together.norm(), together.norm() >= (1.0 - FLAT) * area);
+    // Zeros without a sign.
+    let normal = (together / length).map(|part| part + 0.0).into();
+    (length > 0.0 && is_flat).then_some(Flat { area, normal })
 }
 
 /// Mid-side nodes of a bore's edges against the arcs between their corners.

@@ -4,7 +4,9 @@ use crate::ch2_housing::bore_contact::{ContactNode, Frame, Penalty, contact_node
 use crate::kinematics::Pose;
 use crate::mesh::cylinder_fit::fit_cylinder;
 use crate::scene::about::About;
-use crate::scene::bore_shape::{BorePlace, LARGEST_OUT_OF_ROUND, MiddleNodes, ROUND, middle_nodes};
+use crate::scene::bore_shape::{
+    BorePlace, Flat, LARGEST_OUT_OF_ROUND, MiddleNodes, ROUND, flat, middle_nodes,
+};
 use crate::scene::housing::{FitSize, HousedScene};
 use crate::scene::solid::{LoadKind, SetLoad};
 use crate::scene::solid_mesh::BuiltMesh;
@@ -47,6 +49,12 @@ pub enum HousingSetupError {
         1e3 * *.width, 1e3 * *.centre
     )]
     BesideTheRace { count: usize, width: f64, centre: f64 },
+    #[error(
+        "housing.bore: \"{bore}\" is flat: its {faces} faces, {:.4} mm^2, all look along ({:.3}, {:.3}, {:.3}). A bore \
+         is a cylinder about the race's axis. The solid's surfaces are: {}",
+        1e6 * *.area, normal[0], normal[1], normal[2], list(known)
+    )]
+    FlatBore { bore: String, faces: usize, area: f64, normal: [f64; 3], known: Vec<String> },
     #[error(
         "housing.bore: the bore has a radius of {:.4} mm, the outer race one of about {:.4} mm. Hint: was \
          the mesh's unit (solid.mesh.unit) mm or m? Is \"{bore}\" the right surface?",
@@ -108,6 +116,7 @@ impl HousingSetupError {
             HousingSetupError::Solid(error) => error.about(),
             HousingSetupError::Model(_) => return None,
             HousingSetupError::NoBore { .. }
+            | HousingSetupError::FlatBore { .. }
             | HousingSetupError::FarFromTheRace { .. }
             | HousingSetupError::NotRound { .. }
             | HousingSetupError::HeldBore { .. }
@@ -166,6 +175,10 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
         bore: bore.clone(),
         known: mesh.surface_sets.keys().cloned().collect(),
     })?;
+    if let Some(Flat { area, normal }) = flat(mesh, faces) {
+        let known = mesh.surface_sets.keys().cloned().collect();
+        return Err(HousingSetupError::FlatBore { bore, faces: faces.len(), area, normal, known });
+    }
     let nodes = contact_nodes(mesh, faces);
     let place = BorePlace::of(scene);
     let nominal = place.nominal;

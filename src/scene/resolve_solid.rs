@@ -104,7 +104,14 @@ pub(crate) fn housing_solid(document: &Document) -> Result<SolidScene, SceneErro
     ];
     if let Some(key) = OF_A_FREE_SOLID.iter().find_map(|part| document.first_below(part)) {
         let reason = "a housing does not use it";
-        let problem = Problem::NotApplicable { reason, advice: "leave it out".to_string() };
+        let advice = match key.starts_with("solid.probe") {
+            true => {
+                "leave it out: the displacement of every node of the housing stands in the fields (fields.pvd, \
+                 for ParaView), that of the outer race in series.csv"
+            }
+            false => "leave it out",
+        };
+        let problem = Problem::NotApplicable { reason, advice: advice.to_string() };
         return Err(document.error(key, problem));
     }
     let mut reader = Reader::new(document);

@@ -38,7 +38,7 @@ pub struct BuiltMesh {
 
 #[derive(Debug, Error)]
 pub enum SolidMeshError {
-    #[error("solid.mesh.file: cannot read {}: {source}", path.display())]
+    #[error("solid.mesh.file: cannot read {}: {source}{}", path.display(), where_it_is(path, source))]
     File { path: PathBuf, source: InputError },
     #[error("{}: {source}", path.display())]
     Read { path: PathBuf, source: ReadError },
@@ -86,6 +86,17 @@ impl SolidMeshError {
                 About::Item { table: "solid.set", index: *index, key: "name" }
             }
         })
+    }
+}
+
+/// Advice where there is no such file.
+fn where_it_is(path: &Path, source: &InputError) -> String {
+    match std::path::absolute(path) {
+        Ok(whole) if source.is_missing() => format!(
+            ". Hint: a relative name starts at the scene's folder, and this one is {}",
+            whole.display()
+        ),
+        _ => String::new(),
     }
 }
 

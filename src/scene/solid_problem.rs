@@ -23,10 +23,11 @@ pub enum SolidSetupError {
     #[error(transparent)]
     Material(#[from] ElasticError),
     #[error(
-        "solid.material: the deck has a material ({deck}), which is not taken from there, and the scene names \
-         none, so that steel would be in its place. Write what you mean in [solid]: {write}"
+        "solid.material: the deck has a material ({deck}), which is not taken from there, and the scene names no \
+         {}, so that steel's would be in {} place: {steel}. Write what you mean in [solid]: {write}",
+        missing.join(" and no "), if missing.len() == 1 { "its" } else { "their" }
     )]
-    DeckMaterial { deck: String, write: String },
+    DeckMaterial { deck: String, missing: Vec<&'static str>, steel: String, write: String },
     #[error("{part}.set: no set is called \"{set}\"; there are: {}", list(known))]
     NoSuchSet { part: &'static str, index: usize, set: String, known: Vec<String> },
     #[error("{part}.set: set \"{set}\" has no nodes")]
@@ -206,29 +207,53 @@ fn deck_materials(scene: &SolidScene, built: &BuiltMesh) -> Result<Vec<String>, 
         let [young, poisson] =
             material.elastic.unwrap_or([scene.youngs_modulus, scene.poisson_ratio]);
         let density = material.density.unwrap_or(scene.density);
-        let of = [
-            (young, scene.youngs_modulus, no_young),
-            (poisson, scene.poisson_ratio, no_poisson),
-            (density, scene.density, no_density),
+        // Of the deck and of the scene; whether the scene only has steel's; name and text.
+        let parts = [
+            (
+                young,
+                scene.youngs_modulus,
+                no_young,
+                "youngs_modulus",
+                gigapascals as fn(f64) -> String,
+            ),
+            (poisson, scene.poisson_ratio, no_poisson, "poisson_ratio", |value| value.to_string()),
+            (density, scene.density, no_density, "density", kilograms),
         ];
+        let differing = parts.iter().filter(|(deck, scene, ..)| differ(*deck, *scene));
+        let missing: Vec<_> = differing.clone().filter(|(_, _, no, ..)| *no).collect();
         let deck = format!(
-            "\"{}\": Young's modulus {} GPa, Poisson's ratio {poisson}, density {} kg/m^3, if its units fit \
-             solid.mesh.unit",
+            "\"{}\": Young's modulus {}, Poisson's ratio {poisson}, density {}, if its units fit solid.mesh.unit",
             material.name,
-            to_digits(1e-9 * young, 6),
-            to_digits(density, 6)
+            gigapascals(young),
+            kilograms(density)
         );
-        if of.iter().any(|(deck, scene, no)| *no && differ(*deck, *scene)) {
+        if !missing.is_empty() {
             let write = format!(
-                "material = {{ youngs_modulus = \"{} GPa\", poisson_ratio = {poisson}, density = \"{} kg/m^3\" }}",
-                to_digits(1e-9 * young, 6),
-                to_digits(density, 6)
+                "material = {{ youngs_modulus = \"{}\", poisson_ratio = {poisson}, density = \"{}\" }}",
+                gigapascals(young),
+                kilograms(density)
             );
-            return Err(SolidSetupError::DeckMaterial { deck, write });
+            let steel: Vec<_> = missing
+                .iter()
+                .map(|(_, of, _, name, text)| format!("{name} {}", text(*of)))
+                .collect();
+            let missing = missing.iter().map(|(_, _, _, name, _)| *name).collect();
+            return Err(SolidSetupError::DeckMaterial {
+                deck,
+                missing,
+                steel: steel.join(", "),
+                write,
+            });
         }
-        if of.iter().any(|(deck, scene, _)| differ(*deck, *scene)) {
+        let differing: Vec<_> = differing
+            .map(|(of_deck, of, _, name, text)| {
+                format!("{name} {} counts, not {}", text(*of), text(*of_deck))
+            })
+            .collect();
+        if !differing.is_empty() {
             notes.push(format!(
-                "the deck's material is not used, the scene's is; the deck has {deck}"
+                "the scene's material is used, not the deck's: {}; the deck has {deck}",
+                differing.join("; ")
             ));
         }
     }
@@ -239,6 +264,14 @@ fn deck_materials(scene: &SolidScene, built: &BuiltMesh) -> Result<Vec<String>, 
         ));
     }
     Ok(notes)
+}
+
+fn gigapascals(value: f64) -> String {
+    format!("{} GPa", to_digits(1e-9 * value, 6))
+}
+
+fn kilograms(value: f64) -> String {
+    format!("{} kg/m^3", to_digits(value, 6))
 }
 
 /// Every set of the mesh, once.

@@ -134,7 +134,9 @@ fn what_cannot_be_compared_is_named() {
     for (reference, candidate, part) in [
         (&nowhere, &results_text, "nowhere"),
         (&results_text, &nowhere, "nowhere"),
-        (&empty, &results_text, "nothing to compare"),
+        (&empty, &results_text, "empty is no results folder"),
+        (&results_text, &empty, "empty is no results folder"),
+        (&pack_text, &empty, "empty is no results folder"),
         (&csv, &summary, "different kinds"),
         (&csv, &results_text, "different kinds"),
         (&csv, &broken, "is not a number"),
@@ -144,8 +146,17 @@ fn what_cannot_be_compared_is_named() {
         let message = refused(&["compare", reference, candidate]);
         assert!(message.contains(part), "{message}");
     }
-    // An empty candidate is a difference, not an error: everything is missing.
-    assert!(different(&pack, Path::new(&empty)).contains("no such file"));
+    let misused = |arguments: &[&str], part: &str| {
+        let run = bearing(arguments);
+        assert!(run.code == Some(2) && run.stderr.contains(part), "{run:#?}");
+        let value = arguments.last().unwrap();
+        assert!(run.stderr.contains(&format!("invalid value '{value}'")), "{run:#?}");
+    };
+    let negative = ["compare", &results_text, &results_text, "--rtol", "-1"];
+    misused(&negative, "zero or more, such as 1e-3");
+    for seconds in ["-3", "0", "1.5"] {
+        misused(&["run", &path, "--save-every", seconds], "whole seconds, 1 or more, such as 30");
+    }
     // A pack is not written into a folder with something else in it.
     let message = refused(&["pack", &path, "--out", &results_text]);
     assert!(message.contains("results of another kind (static solution)"), "{message}");

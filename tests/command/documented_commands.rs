@@ -3,6 +3,10 @@
 //! A documented command is a line of a ```console or ```sh block that starts with `bearing`, or
 //! `$ bearing`. A comment `# exit code N` at its end states another exit code than 0. Commands of
 //! one document run in order, in one folder, so that a later one may use what an earlier one wrote.
+//!
+//! What follows a command up to the next one, or to the end of its block, is what it prints: line by line, where `…`
+//! stands for any number of lines. Numbers hold to the last digit but one, counts exactly; seconds of wall time and
+//! megabytes are the machine's.
 
 use std::fs;
 use std::path::Path;
@@ -12,6 +16,8 @@ struct Documented {
     line: usize,
     arguments: Vec<String>,
     exit_code: i32,
+    /// Lines shown below it.
+    prints: Vec<String>,
 }
 
 #[test]
@@ -32,6 +38,7 @@ fn lines_are_read_as_a_shell_would() {
     assert_eq!(found[0].line, 3);
     assert_eq!(found[0].arguments, ["sweep", "a.toml", "--vary", "k=1 um, 2 um"]);
     assert_eq!(found[0].exit_code, 2);
+    assert_eq!(found[0].prints, ["output"]);
 }
 
 /// Runs the commands of a page; `needed` are subcommands of which it must show at least one use.
@@ -59,6 +66,84 @@ fn run_all(page: &str, needed: &[&str]) {
             command.arguments.join(" "),
             String::from_utf8_lossy(&output.stderr)
         );
+        let said = String::from_utf8_lossy(&output.stdout);
+        if let Some(missing) = first_not_printed(&command.prints, &said) {
+            panic!(
+                "{page}:{}: bearing {} does not print, in this place,\n{missing}\nbut\n{said}",
+                command.line,
+                command.arguments.join(" ")
+            );
+        }
+    }
+}
+
+/// The first of the shown lines that is not where it should be.
+fn first_not_printed<'a>(shown: &'a [String], said: &str) -> Option<&'a str> {
+    let said: Vec<&str> = said.lines().collect();
+    let (mut next, mut gap) = (0, false);
+    for line in shown {
+        if line.trim() == "…" {
+            gap = true;
+            continue;
+        }
+        let last = if gap { said.len() } else { said.len().min(next + 1) };
+        match (next..last).find(|at| is_the_same(line, said[*at])) {
+            Some(at) => (next, gap) = (at + 1, false),
+            None => return Some(line),
+        }
+    }
+    None
+}
+
+/// Word by word.
+fn is_the_same(shown: &str, printed: &str) -> bool {
+    let words = |line: &str| -> Vec<String> { line.split_whitespace().map(String::from).collect() };
+    let (shown, printed) = (words(shown), words(printed));
+    let of_the_machine = |at: usize| {
+        let unit = shown.get(at + 1).map_or("", String::as_str);
+        unit == "MB" || (unit == "s" && shown.get(at + 2).is_some_and(|word| word == "on"))
+    };
+    shown.len() == printed.len()
+        && shown.iter().zip(&printed).enumerate().all(|(at, (a, b))| {
+            let bare = |word: &str| word.trim_end_matches([',', ';', ':']).to_string();
+            let is_decimal = |word: &str| word.contains('.') && bare(word).parse::<f64>().is_ok();
+            a == b
+                || (of_the_machine(at) && b.parse::<f64>().is_ok())
+                || (is_decimal(a) && is_decimal(b) && is_near(&bare(a), &bare(b)))
+        })
+}
+
+/// Two decimals of one form that differ by one in the last digit at most.
+fn is_near(a: &str, b: &str) -> bool {
+    let (mantissa, exponent) = a.split_once('e').unwrap_or((a, "0"));
+    let decimals = mantissa.split_once('.').map_or(0, |parts| parts.1.len());
+    let last = 10f64.powi(exponent.parse::<i32>().unwrap_or(0) - decimals as i32);
+    let numbers = [a, b].map(|text| text.parse::<f64>().unwrap_or(f64::NAN));
+    a.len() == b.len() && (numbers[0] - numbers[1]).abs() <= 1.5 * last
+}
+
+#[test]
+fn shown_lines_are_held_to_their_numbers() {
+    let shown = |lines: &[&str]| lines.iter().map(|line| line.to_string()).collect::<Vec<_>>();
+    let said = "200000 steps to t = 0.2 s\nmoment  6.418743 N m\nplan 14 MB of\n9 points in 0.14 s on 2\nend\n";
+    let good = [
+        &["200000 steps to t = 0.2 s", "moment 6.418743 N m"][..],
+        &["…", "  moment 6.418744 N m", "plan 15 MB of", "9 points in 0.20 s on 2"],
+        &["…", "end"],
+    ];
+    for lines in good {
+        assert_eq!(first_not_printed(&shown(lines), said), None);
+    }
+    let bad = [
+        &["200001 steps to t = 0.2 s"][..],
+        &["moment 6.418743 N m"],
+        &["…", "moment 6.418745 N m"],
+        &["…", "8 points in 0.14 s on 2"],
+        &["200000 steps to t = 0.2 s", "…", "end", "end"],
+        &["…", "plan 14 GB of"],
+    ];
+    for lines in bad {
+        assert!(first_not_printed(&shown(lines), said).is_some(), "{lines:?}");
     }
 }
 
@@ -79,24 +164,34 @@ fn documented(page: &str) -> Vec<Documented> {
     let mut found = Vec::new();
     let mut shell = false;
     let mut inside = false;
+    let mut below = false;
     for (index, line) in page.lines().enumerate() {
         if let Some(language) = line.strip_prefix("```") {
             inside = !inside;
             shell = inside && ["console", "sh"].contains(&language.trim());
             continue;
         }
-        let Some(rest) = line.strip_prefix("$ ").unwrap_or(line).strip_prefix("bearing ") else {
-            continue;
-        };
         if !shell {
+            below = false;
             continue;
         }
+        let Some(rest) = line.strip_prefix("$ ").unwrap_or(line).strip_prefix("bearing ") else {
+            // Another shell's command shows what that prints.
+            below &= !line.starts_with("$ ");
+            if let (true, Some(command)) = (below, found.last_mut()) {
+                let command: &mut Documented = command;
+                command.prints.push(line.to_string());
+            }
+            continue;
+        };
+        below = true;
         let (command, comment) = rest.split_once(" # ").unwrap_or((rest, ""));
         let exit_code = comment
             .trim()
             .strip_prefix("exit code ")
             .map_or(0, |code| code.parse().expect("an exit code"));
-        found.push(Documented { line: index + 1, arguments: words(command), exit_code });
+        let arguments = words(command);
+        found.push(Documented { line: index + 1, arguments, exit_code, prints: Vec::new() });
     }
     found
 }

@@ -199,13 +199,34 @@ fn cases() -> Vec<Case> {
             &["scene.toml:24:2: housing.bore", "26.0000 mm"],
         ),
         (
+            "a flat set as a bore",
+            changed("fit.radial = \"1 um\"", "bore = \"side\"\nfit.radial = \"1 um\"")
+                + "[[solid.set]]\nname = \"side\"\nplane = \"x\"\nat = \"10 mm\"\n",
+            // 24 cells around, each a trapezium of two triangles.
+            &[
+                "housing.bore: \"side\" is flat: its 48 faces",
+                "look along (1.000, 0.000, 0.000)",
+                "bore, fixed, side",
+            ],
+        ),
+        (
             "a mesh that is not there",
             changed(
                 "generate = \"housing-d\"\nbore_radius = \"35.527 mm\"\nouter_radius = \"50 mm\"\n\
                      depth = \"20 mm\"\ncells = { around = 24, radial = 1, axial = 2 }\n",
                 "file = \"missing.msh\"\nunit = \"mm\"\n",
             ),
-            &["solid.mesh.file: cannot read", "missing.msh", "scene.toml:29:8"],
+            &[
+                "solid.mesh.file: cannot read",
+                "missing.msh",
+                "scene.toml:29:8",
+                "starts at the scene's folder, and this one is /",
+            ],
+        ),
+        (
+            "a probe in a housing",
+            good() + "[[solid.probe]]\nset = \"fixed\"\n",
+            &["solid.probe", "displacement of every node of the housing stands in the fields"],
         ),
     ]
 }

@@ -231,6 +231,25 @@ fn what_a_smooth_bore_cannot_hold_is_an_error() {
     assert!(said.contains("0.00214 N"), "{said}");
 }
 
+/// A modulus in the wrong unit is no load without resistance.
+#[test]
+fn a_housing_that_is_too_soft_is_called_so() {
+    let soft = condensed(&RING, &COARSE, Order::Linear, 1e-6 * YOUNG);
+    let error = BoreSearch::new(&soft, Penalty::default())
+        .under_load(&fit(1e-6), &load(0.0, -2000.0, 0.0, 0.0))
+        .unwrap_err();
+    let said = error.to_string();
+    let BoreError::GivesWay { coordinate, travel, load, radius, youngs_modulus } = error else {
+        panic!("{said}");
+    };
+    assert_eq!((coordinate, load, youngs_modulus), ("z", 2000.0, 1e-6 * YOUNG));
+    assert!(travel < -0.01 * BORE && radius == BORE + 1e-6, "{travel}");
+    assert!(said.contains("it holds all 2000 N of the load"), "{said}");
+    assert!(said.contains(&format!("moved it by {:.4} mm along z", 1e3 * travel)), "{said}");
+    assert!(said.contains("youngs_modulus, which is 0.00021 GPa"), "{said}");
+    assert!(!said.contains("no resistance"), "{said}");
+}
+
 #[test]
 fn what_a_condensed_housing_cannot_be_is_an_error() {
     let mesh = mesh_of(&RING, &COARSE, Order::Linear);
@@ -249,7 +268,7 @@ fn what_a_condensed_housing_cannot_be_is_an_error() {
     loose.prescribed.clear();
     let loose = SolidModel::new(loose).unwrap();
     let error = condense(&loose, &bore_of(&mesh), &reach()).err();
-    assert!(matches!(error, Some(CondenseError::Factor(_))));
+    assert!(matches!(error, Some(CondenseError::Free { .. })), "{error:?}");
 }
 
 /// The housing's own weight moves its bore before anything touches.

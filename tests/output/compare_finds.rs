@@ -405,11 +405,99 @@ fn a_missing_file_is_a_difference_and_a_damaged_one_an_error() {
     assert!(matches!(compare(&reference, &file, &options), Err(CompareError::KindMismatch { .. })));
     let summary = reference.join("summary.json");
     assert!(matches!(compare(&file, &summary, &options), Err(CompareError::KindMismatch { .. })));
-    let empty = tempfile::tempdir().unwrap();
-    assert!(matches!(
-        compare(empty.path(), &candidate, &options),
-        Err(CompareError::NothingToCompare { .. })
-    ));
+}
+
+/// What holds no results on either side is no difference of results.
+#[test]
+fn what_holds_no_results_is_an_error_and_not_a_difference() {
+    let (root, reference, candidate) = pair();
+    let options = Options::default();
+    let refused = |a: &Path, b: &Path| compare(a, b, &options).unwrap_err().to_string();
+    let other = root.path().join("other");
+    fs::create_dir(&other).unwrap();
+    fs::write(other.join("notes.txt"), "mine").unwrap();
+    for (a, b) in [(&other, &candidate), (&reference, &other), (&other, &other)] {
+        let message = refused(a, b);
+        let expected = format!("{} is no results folder: it has no summary.json", other.display());
+        assert!(message.starts_with(&expected), "{message}");
+    }
+    // A folder of another kind of results.
+    fs::write(other.join("sweep.csv"), "x [m]\n1\n").unwrap();
+    let message = refused(&reference, &other);
+    let expected = "the first has series.csv, series.npy, summary.json, the second sweep.csv";
+    assert!(message.contains(expected), "{message}");
+    // JSON without a named value.
+    for text in ["{}", "[]", "[1.0]", "null", "3", "\"text\""] {
+        for folder in [&reference, &candidate] {
+            let path = folder.join("summary.json");
+            let before = fs::read(&path).unwrap();
+            fs::write(&path, text).unwrap();
+            let message = refused(&reference, &candidate);
+            let expected = format!("{} holds no named values", path.display());
+            assert!(message.starts_with(&expected), "{text}: {message}");
+            fs::write(&path, before).unwrap();
+        }
+    }
+    // Nothing but what is never compared.
+    let [a, b] = ["a.json", "b.json"].map(|name| root.path().join(name));
+    for path in [&a, &b] {
+        fs::write(path, r#"{"program": {"name": "bearing", "version": "1"}, "threads": 2}"#)
+            .unwrap();
+    }
+    assert!(refused(&a, &b).contains("a.json holds nothing to compare: only what says who"));
+}
+
+/// A part of an angle's scale: after 20 turns 1e-3 of it would pass a ball that is 4 degrees off.
+#[test]
+fn an_angle_that_counts_turns_has_the_scale_of_one() {
+    let root = tempfile::tempdir().unwrap();
+    let [a, b] = ["a.csv", "b.csv"].map(|name| root.path().join(name));
+    let given = GivenTolerance { scale_relative: 1e-3, floors: Vec::new() };
+    let options = Options { given: Some(given), ..Options::default() };
+    let turns = 6994.0;
+    for (unit, degree) in [("deg", 1.0), ("rad", 1f64.to_radians())] {
+        let compare_shifted = |last: f64, by: f64| {
+            let header = format!("time [s],ball_1_angle [{unit}]");
+            let row =
+                |of: f64| format!("{header}\n0,{}\n1,{}\n", of * degree, (last + of) * degree);
+            fs::write(&a, row(0.0)).unwrap();
+            fs::write(&b, row(by)).unwrap();
+            compare(&a, &b, &options).unwrap()
+        };
+        let off = compare_shifted(turns, 4.0);
+        assert_eq!(off.differing, 2, "{unit}: {}", report(&off));
+        let expected = 1e-3 * 360.0 * degree;
+        let allowed = allowed_at(&off);
+        assert!((allowed / expected - 1.0).abs() <= 1e-4, "{unit}: {allowed}");
+        assert!(compare_shifted(turns, 0.3).equal);
+        // A tilt keeps its own scale: 4 thousandths of 0.15 degrees are found.
+        assert!(!compare_shifted(0.15, 0.0006).equal);
+        assert!(compare_shifted(0.15, 0.0001).equal);
+    }
+    // And so does what is no angle.
+    fs::write(&a, "x [m]\n6994\n").unwrap();
+    fs::write(&b, "x [m]\n6998\n").unwrap();
+    assert!(compare(&a, &b, &options).unwrap().equal);
+}
+
+/// Hundreds of names are no line.
+#[test]
+fn long_lists_of_names_are_wrapped_and_cut() {
+    let root = tempfile::tempdir().unwrap();
+    let [a, b] = ["a.json", "b.json"].map(|name| root.path().join(name));
+    fs::write(&a, r#"{"x": 1.0, "threads": 2}"#).unwrap();
+    let further: String = (0..300).map(|i| format!(r#", "channel_number_{i}": 1.0"#)).collect();
+    fs::write(&b, format!(r#"{{"x": 1.0, "threads": 3{further}}}"#)).unwrap();
+    let result = compared(&a, &b, ToleranceClass::Mixed);
+    assert_eq!(result.only_in_candidate.len(), 300);
+    let text = report(&result);
+    assert!(text.contains("not compared:\n  a.json: threads\n"), "{text}");
+    assert!(
+        text.contains("\nonly in the candidate:\n  a.json: channel_number_0, channel_number_1, ")
+    );
+    assert!(text.ends_with("\n  and 280 more, in the form of --json\n"), "{text}");
+    let longest = text.lines().map(str::len).max().unwrap();
+    assert!(longest <= 110 && text.lines().count() <= 12, "{longest}: {text}");
 }
 
 #[test]

@@ -9,3 +9,4 @@ mod solid_factors;
 mod solid_statics;
 mod solid_step_limit;
 mod solid_stress;
+mod solid_trust;

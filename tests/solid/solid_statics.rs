@@ -5,7 +5,7 @@ use crate::solid_common;
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::strain::{Sym3, full};
 use bearing_dynamics::kinematics::vec3::Vec3;
-use bearing_dynamics::mesh::tet_mesh::Order;
+use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::equilibrium::{
     EquilibriumError, EquilibriumOptions, equilibrium,
@@ -15,7 +15,6 @@ use bearing_dynamics::solver::solid::model::{Load, Prescribed, SolidModel, Solid
 use bearing_dynamics::solver::solid::modes::{ModeOptions, modes};
 use bearing_dynamics::solver::solid::stress::nodal_stresses;
 use bearing_dynamics::solver::solid::tangent::MassMatrix;
-use bearing_dynamics::solver::sparse::FactorError;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use solid_common::{DENSITY, YOUNG, cut_cubes, solid};
 
@@ -157,11 +156,61 @@ fn a_free_body_has_no_equilibrium() {
     assert!(
         matches!(
             found,
-            Err(EquilibriumError::Factor(FactorError::NotPositiveDefinite { .. }))
-                | Err(EquilibriumError::NotConverged { .. })
+            Err(EquilibriumError::Free { .. }) | Err(EquilibriumError::NotConverged { .. })
         ),
         "{found:?}"
     );
+}
+
+/// A load beyond what the body bears is no lack of supports: what the first factors gave says how far off it is.
+#[test]
+fn a_load_that_is_far_too_large_is_called_so() {
+    let bent = |force: f64| {
+        let mut problem = bar([0.1, 0.01, 0.01], [10, 1, 1], Order::Linear, false);
+        problem.material = LinearElastic::new(2e6, 0.49).unwrap();
+        hold(&mut problem, |x| if x[0] < 1e-9 { [Some(0.0); 3] } else { [None; 3] });
+        let end = (0..problem.nodes.len()).filter(|n| problem.nodes[*n][0] > 0.1 - 1e-9);
+        let forces = end.map(|n| (n as u32, [0.0, 0.0, 0.25 * force])).collect();
+        problem.loads.push(Load { forces, profile: Profile::Constant(1.0) });
+        let model = SolidModel::new(problem).unwrap();
+        equilibrium(&model, 0.0, &EquilibriumOptions::default())
+    };
+    let small = bent(-1e-6).unwrap().displacement;
+    let small = small.iter().map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max);
+    let error = bent(-100.0).unwrap_err();
+    let said = error.to_string();
+    let EquilibriumError::TooLarge { reached, moved, pivot, linear, size, .. } = error else {
+        panic!("{said}");
+    };
+    assert!((linear.value / (1e8 * small) - 1.0).abs() <= 1e-3, "{linear:?} {small:e}");
+    assert!((size - 0.1f64.hypot(0.01).hypot(0.01)).abs() <= 1e-12);
+    assert!((0.0..1.0).contains(&reached) && moved.value < linear.value, "{reached} {moved:?}");
+    assert!(pivot.node.is_some() && pivot.at[0] > 0.0, "{pivot}");
+    assert!(said.contains("no part is free to move: the load is too large"), "{said}");
+    assert!(said.contains(&format!("({pivot})")) && !said.contains("(pivot "), "{said}");
+    let millimetres = bearing_dynamics::solver::clock::to_digits(1e3 * linear.value, 4);
+    assert!(said.contains(&format!("would move it by {millimetres} mm")), "{said}");
+}
+
+/// A second part that nothing holds is named by a node of its own.
+#[test]
+fn a_part_that_is_free_is_named_by_its_place() {
+    let mut problem = bar([0.1, 0.02, 0.01], [3, 1, 1], Order::Linear, false);
+    hold(&mut problem, |x| if x[0] < 1e-9 { [Some(0.0); 3] } else { [None; 3] });
+    let count = problem.nodes.len() as u32;
+    let Elements::Linear(elements) = &mut problem.elements else { unreachable!() };
+    elements.push([0, 1, 2, 3].map(|n| count + n));
+    let apart = [[0.0, 0.0, 0.0], [0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.01]];
+    problem.nodes.extend(apart.map(|[x, y, z]| [x + 1.0, y, z]));
+    problem
+        .loads
+        .push(Load { forces: vec![(count, [1.0, 0.0, 0.0])], profile: Profile::Constant(1.0) });
+    let model = SolidModel::new(problem).unwrap();
+    let error = equilibrium(&model, 0.0, &EquilibriumOptions::default()).unwrap_err();
+    let EquilibriumError::Free { pivot } = &error else { panic!("{error}") };
+    assert!(pivot.at[0] >= 1.0 && pivot.node > Some(u64::from(count)), "{pivot}");
+    let said = error.to_string();
+    assert!(said.contains(&format!("({pivot}): a part is free to move")), "{said}");
 }
 
 #[test]

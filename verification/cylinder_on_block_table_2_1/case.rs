@@ -49,6 +49,10 @@ struct InPlane {
     stress: Vec<oracle::Pressed>,
 }
 
+/// How the numbers of the reading that is taken come to be met.
+const CHOSEN: &str = "the reading was chosen among four because it meets this table, and this number took part in \
+                      the choice; no number was adjusted";
+
 /// One reading at the six indentations.
 struct Answers {
     mesh: String,
@@ -536,7 +540,7 @@ fn readings(context: &mut CaseContext, slab: &Answers, plane: &Answers) {
                         let evidence = [&evidence[0], &evidence[1], "matrix"];
                         check.explained(Explanation::new(because, gap, stray, &evidence))
                     }
-                    None => check.under("slab"),
+                    None => check.under("slab").fit(CHOSEN),
                 });
             }
         }

@@ -24,6 +24,8 @@ pub enum Reference {
 pub enum ReferenceKind {
     /// Printed in the source.
     Published,
+    /// Printed in the source, where a limit on one side is no agreement with it but shows why it is missed.
+    Evidence,
     /// A formula evaluated apart from the law it judges.
     ClosedForm,
     /// The limit of a refinement, or a solution fine enough to count as one.

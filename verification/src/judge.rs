@@ -195,6 +195,10 @@ fn verdict_of(
     };
     report.tolerance = finite(limit);
     report.tolerance_on = Some(on);
+    let one_sided = matches!(on, ToleranceOn::AtLeast | ToleranceOn::AtMost);
+    if report.published_id.is_some() && one_sided && !states_limit {
+        report.reference_kind = Some(ReferenceKind::Evidence);
+    }
     let error = check.ours - reference;
     let relative = error / reference.abs();
     report.error_absolute = finite(error);

@@ -52,7 +52,15 @@ fn a_run_writes_its_report_in_three_forms_on_one_thread() {
     }
     let kinds = report["totals"]["by_kind"].as_array().unwrap();
     let named: Vec<&str> = kinds.iter().map(|kind| kind["kind"].as_str().unwrap()).collect();
-    let all = ["published", "closed-form", "converged", "independent", "consistency", "stated"];
+    let all = [
+        "published",
+        "evidence",
+        "closed-form",
+        "converged",
+        "independent",
+        "consistency",
+        "stated",
+    ];
     assert_eq!(named, all);
     let sum = |list: &serde_json::Value, field: &str| -> u64 {
         list.as_array().unwrap().iter().map(|entry| entry[field].as_u64().unwrap()).sum()

@@ -285,7 +285,7 @@ fn amplitudes(context: &mut CaseContext, pitches: &[Pitch]) {
             "1",
             pitches[3].fewest_loaded as f64,
         )
-        .published("loaded_balls_minus_10")
+        .stated(8.0, "4.3.1", "at −10 µm of clearance the race is in contact with all the balls, which are eight in Table 4.1")
         .under("isolated_bearing")
         .absolute(0.0, "a count"),
     );

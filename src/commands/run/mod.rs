@@ -43,9 +43,16 @@ pub struct Arguments {
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
     /// Wall time between two states kept on the way, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 30,
-          value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = whole_seconds,
+          allow_negative_numbers = true)]
     save_every: u64,
+}
+
+fn whole_seconds(text: &str) -> Result<u64, String> {
+    match text.parse() {
+        Ok(seconds) if seconds > 0 => Ok(seconds),
+        _ => Err("whole seconds, 1 or more, such as 30".into()),
+    }
 }
 
 /// How the stepping ended.

@@ -48,7 +48,13 @@ pub fn run(
     say_mesh_notes(built)?;
     let mut text = "mode        frequency, Hz\n".to_string();
     for (index, mode) in found.modes.iter().enumerate() {
-        let _ = writeln!(text, "{:>4} {:>20.6}", index + 1, mode.frequency);
+        // What moves a body as a whole meets no stiffness: its frequency is zero but for rounding.
+        let rigid = if index < prepared.free.count {
+            "  rigid-body motion, zero but for rounding"
+        } else {
+            ""
+        };
+        let _ = writeln!(text, "{:>4} {:>20.6}{rigid}", index + 1, mode.frequency);
     }
     say(&text)?;
     say_remarks(&remarks)?;

@@ -60,6 +60,9 @@ pub fn read(path: &Path) -> Result<Content, CompareError> {
         Some("json") => {
             let tree = json::read(path)
                 .map_err(|source| CompareError::Json { path: path.to_path_buf(), source })?;
+            if tree.as_object().is_none_or(|map| map.is_empty()) {
+                return Err(CompareError::NoValues { path: path.to_path_buf() });
+            }
             let leaves =
                 leaves(&tree).ok_or_else(|| CompareError::Names { path: path.to_path_buf() })?;
             Ok(Content::Tree(leaves))

@@ -2,7 +2,7 @@
 
 use crate::output::compare::channels::{Content, Leaf, LeafValue};
 use crate::output::compare::tolerance::{
-    GivenTolerance, Tolerance, ToleranceClass, ToleranceError, Tolerances,
+    GivenTolerance, Tolerance, ToleranceClass, ToleranceError, Tolerances, turn,
 };
 use crate::output::compare::unloaded;
 use crate::output::compare::{
@@ -31,11 +31,7 @@ fn vector_stem(channel: &str) -> &str {
 /// The difference of two directions: one whole turn apart is the same direction, as 315° and −45°.
 /// More turns are counted turns, of which none may go missing.
 fn folded(difference: f64, unit: &str) -> f64 {
-    let turn = match unit {
-        "deg" => 360.0,
-        "rad" => std::f64::consts::TAU,
-        _ => return difference,
-    };
+    let Some(turn) = turn(unit) else { return difference };
     if difference < 1.5 * turn { difference.min((difference - turn).abs()) } else { difference }
 }
 

@@ -3,7 +3,9 @@
 //! Compared are two `.csv`, two `.npy` (or one of each), two `.json` files, or two folders: then
 //! every `.csv` and `.npy` file and `summary.json` of the reference. A file, channel or row that
 //! is missing in the candidate, another unit, NaN or infinity on either side: all are
-//! differences. What only the candidate has is listed and does no harm, except further rows.
+//! differences. What only the candidate has is listed and does no harm, except further rows. A folder
+//! without any of these files, two folders that share none, and a `.json` file without named values are
+//! no results: an error.
 //!
 //! Strings, booleans and bare integers must be equal; numbers may differ by their
 //! [`tolerance`]. Never compared, because they say how and not what: names in
@@ -68,8 +70,28 @@ pub enum CompareError {
     UnknownKind { path: PathBuf },
     #[error("{} and {} hold different kinds of results", reference.display(), candidate.display())]
     KindMismatch { reference: PathBuf, candidate: PathBuf },
-    #[error("{} holds nothing to compare", reference.display())]
+    #[error(
+        "{} holds nothing to compare: only what says who computed it and how long it took",
+        reference.display()
+    )]
     NothingToCompare { reference: PathBuf },
+    #[error(
+        "{} is no results folder: it has no summary.json, .csv or .npy file", path.display()
+    )]
+    NoResults { path: PathBuf },
+    #[error(
+        "{} and {} hold no file of the same name, so that nothing can be compared: the first has {}, the \
+         second {}",
+        reference.display(), candidate.display(), of_reference.join(", "), of_candidate.join(", ")
+    )]
+    NoCommonFile {
+        reference: PathBuf,
+        candidate: PathBuf,
+        of_reference: Vec<String>,
+        of_candidate: Vec<String>,
+    },
+    #[error("{} holds no named values: results are a JSON object with content", path.display())]
+    NoValues { path: PathBuf },
 }
 
 /// Outcome of a comparison.
@@ -175,7 +197,7 @@ pub fn compare(
             tolerances = Tolerances::read(&beside)?;
         }
         let named = |name: String| (reference.join(&name), candidate.join(&name), name);
-        known_files(reference)?.into_iter().map(named).collect()
+        common_folders(reference, candidate)?.into_iter().map(named).collect()
     } else if reference.is_dir() != candidate.is_dir() {
         // A path that does not exist is named as such rather than as a file among folders.
         for path in [reference, candidate] {
@@ -218,6 +240,21 @@ pub fn compare(
         judge.finish_file();
     }
     judge.finish(reference)
+}
+
+/// Files of the reference folder, of which the candidate has one at least.
+fn common_folders(reference: &Path, candidate: &Path) -> Result<Vec<String>, CompareError> {
+    let [of_reference, of_candidate] = [known_files(reference)?, known_files(candidate)?];
+    for (path, files) in [(reference, &of_reference), (candidate, &of_candidate)] {
+        if files.is_empty() {
+            return Err(CompareError::NoResults { path: path.to_path_buf() });
+        }
+    }
+    if of_reference.iter().any(|name| of_candidate.contains(name)) {
+        return Ok(of_reference);
+    }
+    let (reference, candidate) = (reference.to_path_buf(), candidate.to_path_buf());
+    Err(CompareError::NoCommonFile { reference, candidate, of_reference, of_candidate })
 }
 
 /// A `.npy` file beside which lies the `.csv` file of the same table.

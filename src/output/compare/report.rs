@@ -7,6 +7,8 @@ use std::fmt::Write;
 
 /// Channels listed in the text; the JSON form has all.
 const LISTED: usize = 20;
+/// Characters of a line that lists names, unless one name is longer.
+const WIDTH: usize = 100;
 
 /// What `bearing compare` prints.
 pub fn report(comparison: &Comparison) -> String {
@@ -187,9 +189,30 @@ fn name(channel: &str, unit: &str) -> String {
     }
 }
 
+/// `file: channel` items, a file at a time in lines of a screen's width; the first of them where they are many.
 fn list(text: &mut String, title: &str, items: &[String]) {
-    if !items.is_empty() {
-        line(text, format!("{title}: {}", items.join("; ")));
+    if items.is_empty() {
+        return;
+    }
+    line(text, format!("{title}:"));
+    let mut file_before = None;
+    let mut row = String::new();
+    for item in items.iter().take(LISTED) {
+        let (file, name) = item.split_once(": ").unwrap_or(("", item));
+        let goes_on = file_before == Some(file) && row.len() + name.len() + 2 <= WIDTH;
+        if goes_on {
+            let _ = write!(row, ", {name}");
+            continue;
+        }
+        if !row.is_empty() {
+            line(text, row);
+        }
+        row = format!("  {file}: {name}");
+        file_before = Some(file);
+    }
+    line(text, row);
+    if items.len() > LISTED {
+        line(text, format!("  and {} more, in the form of --json", items.len() - LISTED));
     }
 }
 

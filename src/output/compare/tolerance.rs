@@ -1,7 +1,8 @@
 //! How far a candidate may be from the reference.
 //!
 //! allowed = absolute floor + relative · |reference| + scale relative · (largest |reference| of
-//! the channel; the components of one vector share theirs).
+//! the channel; the components of one vector share theirs). Where a part of the scale is given by hand,
+//! the scale of an angle is one turn at most: an angle that counts turns has no size of its own.
 
 use crate::scene::input_file::{self, InputError};
 use serde::{Deserialize, Serialize};
@@ -67,6 +68,8 @@ impl ToleranceClass {
             absolute_floor: share * ordinary_magnitude(unit),
             relative,
             scale_relative: share,
+            // Rounding grows with an angle that counts its turns.
+            largest_scale: f64::INFINITY,
         })
     }
 }
@@ -99,17 +102,28 @@ fn ordinary_magnitude(unit: &str) -> f64 {
     }
 }
 
-/// The three numbers; the floor is in the channel's own unit.
+/// One turn in units of an angle; `None` for other units.
+pub fn turn(unit: &str) -> Option<f64> {
+    match unit {
+        "deg" => Some(360.0),
+        "rad" => Some(std::f64::consts::TAU),
+        _ => None,
+    }
+}
+
+/// The three numbers, and the largest scale that counts; the floor and that are in the channel's own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     pub absolute_floor: f64,
     pub relative: f64,
     pub scale_relative: f64,
+    pub largest_scale: f64,
 }
 
 impl Tolerance {
     /// Largest difference that passes, given the largest |reference| of the channel.
     pub fn allowed(&self, reference: f64, scale: f64) -> f64 {
+        let scale = scale.min(self.largest_scale);
         self.absolute_floor + self.relative * reference.abs() + self.scale_relative * scale
     }
 
@@ -122,7 +136,8 @@ impl Tolerance {
 /// Numbers in place of a class.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GivenTolerance {
-    /// Of the channel's scale: its largest |reference|, shared by the components of one vector.
+    /// Of the channel's scale: its largest |reference|, shared by the components of one vector; of an
+    /// angle one turn at most.
     pub scale_relative: f64,
     /// Floors, each for the channels of a unit; others have one for rounding.
     pub floors: Vec<(String, f64)>,
@@ -151,7 +166,12 @@ impl GivenTolerance {
         let least = 1e-3 * self.scale_relative * ordinary_magnitude(unit);
         let floor =
             self.floors.iter().find(|(of, _)| of == unit).map_or(least, |(_, floor)| *floor);
-        Tolerance { absolute_floor: floor, relative: 0.0, scale_relative: self.scale_relative }
+        Tolerance {
+            absolute_floor: floor,
+            relative: 0.0,
+            scale_relative: self.scale_relative,
+            largest_scale: turn(unit).unwrap_or(f64::INFINITY),
+        }
     }
 }
 
@@ -282,6 +302,7 @@ impl Tolerances {
             absolute_floor: entry.absolute_floor.unwrap_or(numbers.absolute_floor),
             relative: entry.relative.unwrap_or(numbers.relative),
             scale_relative: entry.scale_relative.unwrap_or(numbers.scale_relative),
+            ..numbers
         });
         (class, tolerance)
     }

@@ -70,6 +70,15 @@ pub enum BoreError {
     )]
     NotHeld { coordinate: &'static str, travel: f64, force: f64 },
     #[error(
+        "the housing gives way: it holds all {} N of the load on the outer race (of a moment: over the radius), but \
+         that has {} from its nominal place, more than a hundredth of its radius of {:.4} mm: beyond small \
+         displacements a condensed housing says nothing. Hint: check solid.material.youngs_modulus, which is {} \
+         GPa, and its unit, the loads, and which parts of the solid are held",
+        to_digits(*load, 4), travel_text(coordinate, *travel), 1e3 * *radius,
+        to_digits(1e-9 * *youngs_modulus, 6)
+    )]
+    GivesWay { coordinate: &'static str, travel: f64, load: f64, radius: f64, youngs_modulus: f64 },
+    #[error(
         "race and bore move {motion:.3e} m towards each other, beyond the {travel:.3e} m within \
          which nodes were kept; condense with a larger travel"
     )]
@@ -173,6 +182,8 @@ pub struct BoreSearch<'a> {
 const MOST_CHANGES: usize = 2000;
 /// Unbalanced part of the load at which the race is in equilibrium.
 const BALANCED: f64 = 1e-12;
+/// The same, where the race has gone too far: rounding over travels of millimetres leaves more.
+const MET: f64 = 1e-6;
 /// Artificial stiffness against the last pose, as a part of [`BoreSearch::scale`]: it decides where
 /// nothing else does, and its force is iterated away.
 const HINT: f64 = 1e-8;
@@ -325,8 +336,21 @@ impl<'a> BoreSearch<'a> {
             // Nothing that a bore holds moves by a hundredth of its radius.
             let lost = travel.amax().is_nan() || travel.amax() > 1e-2 * metres[2];
             if lost {
-                let (travel, force) = (self.pose[worst], left.amax());
-                return Err(BoreError::NotHeld { coordinate: POSE_NAMES[worst], travel, force });
+                let (coordinate, travel) = (POSE_NAMES[worst], self.pose[worst]);
+                let (load, force) = (pull.component_div(&metres).amax(), left.amax());
+                // All of the load meets resistance, only late.
+                if load > 0.0 && force <= MET * load {
+                    let youngs_modulus = self.bore.youngs_modulus;
+                    let radius = fit.radius;
+                    return Err(BoreError::GivesWay {
+                        coordinate,
+                        travel,
+                        load,
+                        radius,
+                        youngs_modulus,
+                    });
+                }
+                return Err(BoreError::NotHeld { coordinate, travel, force });
             }
             // Rounding is what is left: of the loads, or of gaps (some ulps of the radius).
             let gaps = 8.0 * f64::EPSILON * fit.radius * self.scale;

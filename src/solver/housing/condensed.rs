@@ -9,6 +9,7 @@ use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
 use crate::kinematics::vec3::{Vec3, add, dot, scale};
 use crate::solver::dense::DenseSymmetric;
+use crate::solver::solid::equilibrium_error::{Pivot, free_text};
 use crate::solver::solid::foretold;
 use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::tangent::{PRESCRIBED, Unknowns, pattern, stiffness};
@@ -44,7 +45,9 @@ const BLOCK: usize = 32;
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum CondenseError {
     #[error(transparent)]
-    Factor(#[from] FactorError),
+    Factor(FactorError),
+    #[error("{}", free_text(pivot))]
+    Free { pivot: Pivot },
     #[error("the bore has no node under the race ({bore} in all); check its width and position")]
     NoNodes { bore: usize },
     #[error(
@@ -97,6 +100,8 @@ pub struct CondensedBore {
     pub sizes: Sizes,
     /// Lumped masses of the solid's nodes, kg.
     pub mass: Vec<f64>,
+    /// Of the solid, Pa.
+    pub youngs_modulus: f64,
     frame: Frame,
     factor: Factor,
     unknowns: Unknowns,
@@ -190,7 +195,12 @@ pub fn condense_over(
     let Picked { frame, nodes, sizes } = pick(model, &unknowns, bore, reach)?;
     let mut matrix = pattern(&model.problem, &unknowns);
     stiffness(model, &unknowns, &vec![[0.0; 3]; model.mass.len()], &mut matrix);
-    let factor = unknowns.factor(&matrix)?;
+    let factor = unknowns.factor(&matrix).map_err(|error| match error {
+        FactorError::NotPositiveDefinite { pivot } => {
+            CondenseError::Free { pivot: Pivot::of(model, &unknowns, pivot) }
+        }
+        other => CondenseError::Factor(other),
+    })?;
     drop(matrix);
 
     let count = nodes.len();
@@ -237,6 +247,7 @@ pub fn condense_over(
         asymmetry,
         sizes,
         mass: model.mass.clone(),
+        youngs_modulus: model.problem.material.youngs_modulus(),
         frame,
         factor,
         unknowns,

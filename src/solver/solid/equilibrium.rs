@@ -1,14 +1,16 @@
 //! Static equilibrium of a solid by Newton's method.
 
 use super::contact::CylinderContact;
-use super::model::{Prescribed, SolidModel, centre, place};
+pub use super::equilibrium_error::EquilibriumError;
+use super::equilibrium_error::Pivot;
+use super::model::{Prescribed, SolidModel, centre};
 use super::stress::first_inverted;
 use super::tangent::{MassMatrix, PRESCRIBED, Unknowns, add_at_node, pattern, stiffness};
+use super::trust::{Placed, farthest, size};
 use crate::ch2_housing::bore_contact::{ContactNode, ContactSum, contact};
 use crate::kinematics::strain::Mat3;
 use crate::kinematics::vec3::{Vec3, norm};
 use crate::solver::sparse::{Factor, FactorError, SymmetricMatrix};
-use thiserror::Error;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquilibriumOptions {
@@ -38,40 +40,6 @@ impl Default for EquilibriumOptions {
             gravity: MassMatrix::Consistent,
         }
     }
-}
-
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum EquilibriumError {
-    #[error(transparent)]
-    Factor(#[from] FactorError),
-    #[error(
-        "no equilibrium found: at {fraction} of the load the unbalanced force is {residual:.3e} N \
-         of {scale:.3e} N after {iterations} iterations; {}",
-        remedy(*poisson_ratio)
-    )]
-    NotConverged { fraction: f64, residual: f64, scale: f64, iterations: usize, poisson_ratio: f64 },
-    #[error(
-        "no equilibrium found: at {fraction} of the load element {element} at {} is turned inside out \
-         (volume ratio {ratio:.3}); {}",
-        place(at),
-        remedy(*poisson_ratio)
-    )]
-    Inverted { fraction: f64, element: u64, at: Vec3, ratio: f64, poisson_ratio: f64 },
-}
-
-/// 1 − 2ν below which rounding of stresses, 1e-16 over it, leaves more unbalanced than
-/// [`EquilibriumOptions::rounding`] allows.
-const INCOMPRESSIBLE: f64 = 2e-6;
-
-fn remedy(poisson_ratio: f64) -> String {
-    if 1.0 - 2.0 * poisson_ratio < INCOMPRESSIBLE {
-        return format!(
-            "Poisson's ratio {poisson_ratio} is so near to 1/2, where no volume changes, that rounding of the \
-             stresses is larger than what has to balance: write 0.49999 or less, with order = 2 in \
-             [solid.mesh]"
-        );
-    }
-    "apply less load, or check its unit and Young's modulus".to_string()
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -149,16 +117,23 @@ fn solve(mut newton: Newton) -> Result<Newton, EquilibriumError> {
     while reached < 1.0 {
         let wanted = f64::min(reached + step, 1.0);
         let before = newton.displacement.clone();
-        match newton.converge(wanted).and_then(|()| newton.refuse_inverted(wanted)) {
-            Ok(()) => reached = wanted,
-            Err(error) if 0.5 * step < options.smallest_load_step => return Err(error),
-            Err(EquilibriumError::Factor(error)) if newton.untouched => return Err(error.into()),
-            Err(_) => {
-                newton.displacement = before;
-                newton.stale = true;
-                step *= 0.5;
-            }
+        let outcome = newton.converge(wanted).and_then(|()| newton.refuse_inverted(wanted));
+        let Err(error) = outcome else {
+            reached = wanted;
+            continue;
+        };
+        newton.displacement = before;
+        // Without memory or with a part that is free to move smaller steps are of no use.
+        match &error {
+            EquilibriumError::Factor(FactorError::NoMemory { .. }) => return Err(error),
+            EquilibriumError::Factor(_) => newton.refuse_free()?,
+            _ => {}
         }
+        if 0.5 * step < options.smallest_load_step {
+            return Err(newton.with_cause(error, reached));
+        }
+        newton.stale = true;
+        step *= 0.5;
     }
     Ok(newton)
 }
@@ -179,8 +154,10 @@ struct Newton<'a> {
     factor: Option<Factor>,
     /// Whether the factors are of another state than the last one solved for.
     stale: bool,
-    /// Whether nothing has been factorised yet.
-    untouched: bool,
+    /// Whether the stiffness at rest has been factorised, so that no part is free to move.
+    held: bool,
+    /// Largest displacement of the whole load by the first stiffness, m.
+    linear: Option<Placed>,
     displacement: Vec<Vec3>,
     external: Vec<[f64; 4]>,
     contact: Option<&'a CylinderContact>,
@@ -209,7 +186,8 @@ impl<'a> Newton<'a> {
             unknowns,
             factor: None,
             stale: true,
-            untouched: true,
+            held: false,
+            linear: None,
             displacement: vec![[0.0; 3]; model.mass.len()],
             external,
             contact: None,
@@ -337,6 +315,10 @@ impl<'a> Newton<'a> {
                 }
             }
             self.iterations += 1;
+            if self.linear.is_none() {
+                let Placed { value, at } = farthest(self.model, &self.displacement);
+                self.linear = Some(Placed { value: value / fraction, at });
+            }
         }
         unreachable!("the loop returns at its last iteration")
     }
@@ -348,13 +330,52 @@ impl<'a> Newton<'a> {
             add_at_node(&self.unknowns, node.node, stiffness, &mut self.matrix);
         }
         match &mut self.factor {
-            Some(factor) => factor.refactor(&self.matrix)?,
-            None => self.factor = Some(self.unknowns.factor(&self.matrix)?),
+            Some(factor) => factor.refactor(&self.matrix).map_err(EquilibriumError::Factor)?,
+            None => {
+                let factor =
+                    self.unknowns.factor(&self.matrix).map_err(EquilibriumError::Factor)?;
+                self.factor = Some(factor);
+            }
         }
-        self.untouched = false;
+        self.held |= self.displacement.iter().all(|u| *u == [0.0; 3]);
         self.stale = false;
         self.factorisations += 1;
         Ok(())
+    }
+
+    /// Factorises the stiffness at rest, unless that has been done.
+    fn refuse_free(&mut self) -> Result<(), EquilibriumError> {
+        if self.held {
+            return Ok(());
+        }
+        let rest = vec![[0.0; 3]; self.displacement.len()];
+        let before = std::mem::replace(&mut self.displacement, rest);
+        let outcome = self.refactor();
+        self.displacement = before;
+        match outcome {
+            Err(EquilibriumError::Factor(FactorError::NotPositiveDefinite { pivot })) => {
+                let pivot = Pivot::of(self.model, &self.unknowns, pivot);
+                Err(EquilibriumError::Free { pivot })
+            }
+            other => other,
+        }
+    }
+
+    /// Why the last step failed, from the displacements before it; at rest the body is sound.
+    fn with_cause(&self, error: EquilibriumError, reached: f64) -> EquilibriumError {
+        match error {
+            EquilibriumError::Factor(FactorError::NotPositiveDefinite { pivot }) => {
+                EquilibriumError::TooLarge {
+                    reached,
+                    moved: farthest(self.model, &self.displacement).into(),
+                    pivot: Pivot::of(self.model, &self.unknowns, pivot).into(),
+                    linear: self.linear.unwrap_or_default().into(),
+                    size: size(self.model),
+                    poisson_ratio: self.model.problem.material.poisson_ratio(),
+                }
+            }
+            other => other,
+        }
     }
 
     fn finish(self) -> Equilibrium {

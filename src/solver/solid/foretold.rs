@@ -28,6 +28,7 @@ pub fn statics(model: &SolidModel, unknowns: &Unknowns) -> Cost {
     let task = Task {
         name: "statics",
         factorisations: 1,
+        repeats: true,
         passes: NEWTON_STEPS,
         columns: 1,
         matrix: unknowns.stored,
@@ -45,6 +46,7 @@ pub fn modes(model: &SolidModel, unknowns: &Unknowns, count: usize) -> Cost {
     let task = Task {
         name: "modes",
         factorisations: 1,
+        repeats: false,
         passes: solves.div_ceil(modes::BLOCK),
         columns: modes::BLOCK,
         matrix: unknowns.stored + unknowns.mass_stored,
@@ -65,6 +67,7 @@ pub fn condensed(model: &SolidModel, unknowns: &Unknowns, kept: usize, columns: 
     let task = Task {
         name: "condensing the housing",
         factorisations: 1,
+        repeats: false,
         passes: kept.div_ceil(columns) + 1,
         columns: columns.min(kept),
         matrix: unknowns.stored,

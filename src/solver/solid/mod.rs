@@ -4,6 +4,7 @@ pub mod checkpoint;
 pub mod contact;
 pub mod energy;
 pub mod equilibrium;
+pub mod equilibrium_error;
 pub mod explicit;
 pub mod foretold;
 pub mod labels;

@@ -1,4 +1,4 @@
-//! What factors of a given structure cost: memory exactly, time by the measured speed of the machine.
+//! What factors of a given structure cost: memory by counting, time by the measured speed of the machine.
 
 use super::elimination::{Elimination, Panel};
 use faer::linalg::matmul::matmul;
@@ -29,6 +29,8 @@ pub struct Task {
     /// Such as "statics".
     pub name: &'static str,
     pub factorisations: usize,
+    /// Whether loads may ask for further ones.
+    pub repeats: bool,
     /// How often the factors are read, each time for so many right-hand sides.
     pub passes: usize,
     pub columns: usize,
@@ -107,14 +109,19 @@ impl Cost {
     pub fn seconds(&self, speed: &Speed) -> f64 {
         let Task { factorisations, passes, columns, operations, traffic, .. } = self.task;
         let fill = self.fill as f64;
-        let factorise = SMALLER_BLOCKS * self.operations / speed.operations
-            + SCATTERED * VALUE * fill / speed.bytes;
+        let factorise = self.seconds_of_factors(speed);
         let pass = GATHERED * 2.0 * VALUE * fill / speed.bytes
             + THIN_BLOCKS * 4.0 * fill * columns as f64 / speed.operations;
         factorisations as f64 * factorise
             + passes as f64 * pass
             + operations / speed.operations
             + traffic / speed.bytes
+    }
+
+    /// One factorisation, s.
+    pub fn seconds_of_factors(&self, speed: &Speed) -> f64 {
+        SMALLER_BLOCKS * self.operations / speed.operations
+            + SCATTERED * VALUE * self.fill as f64 / speed.bytes
     }
 
     /// Refuses what does not fit, where the process holds `held` bytes already and may take `limit`

@@ -21,10 +21,7 @@ use thiserror::Error;
 
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum FactorError {
-    #[error(
-        "the stiffness is not positive definite (pivot {pivot}): a part is free to move, or the \
-         body has buckled"
-    )]
+    #[error("a stiffness is not positive definite (unknown {pivot})")]
     NotPositiveDefinite { pivot: usize },
     #[error("no memory for the factors of the stiffness, {:.2} GB", 1e-9 * bytes)]
     NoMemory { bytes: f64 },

@@ -1,10 +1,10 @@
 //! Numbers and words for people; the JSON keeps full precision.
 
 use crate::check::ReferenceKind;
-use crate::index::Entry;
-use crate::judge::{CheckReport, ToleranceOn};
+use crate::index::{Entry, Numbers};
+use crate::judge::{CheckReport, Status, ToleranceOn};
 use crate::report::totals::{self, Totals};
-use crate::report::{CaseStatus, Report};
+use crate::report::{CaseReport, CaseStatus, Report};
 
 /// `digits` significant digits, in plain notation where that is short.
 pub fn significant(value: f64, digits: usize) -> String {
@@ -62,11 +62,11 @@ fn limit_fraction(value: f64) -> String {
 
 /// The reference: a published number with the digits it is written with, any other with six.
 pub fn reference(check: &CheckReport) -> String {
-    match (check.reference, check.reference_kind) {
-        (Some(value), Some(ReferenceKind::Published)) if (1e-4..1e6).contains(&value.abs()) => {
+    match check.reference {
+        Some(value) if check.published_id.is_some() && (1e-4..1e6).contains(&value.abs()) => {
             value.to_string().replace('-', "−")
         }
-        (value, _) => six_digits(value, &check.unit),
+        value => six_digits(value, &check.unit),
     }
 }
 
@@ -97,6 +97,7 @@ pub fn unit(unit: &str) -> String {
 pub fn kind(kind: Option<ReferenceKind>) -> &'static str {
     match kind {
         Some(ReferenceKind::Published) => "published",
+        Some(ReferenceKind::Evidence) => "evidence",
         Some(ReferenceKind::ClosedForm) => "closed form",
         Some(ReferenceKind::Converged) => "converged",
         Some(ReferenceKind::Independent) => "independent",
@@ -110,12 +111,45 @@ pub fn kind(kind: Option<ReferenceKind>) -> &'static str {
 pub fn meaning(kind: ReferenceKind) -> &'static str {
     match kind {
         ReferenceKind::Published => "a number that the source prints",
+        ReferenceKind::Evidence => "why a printed number is missed",
         ReferenceKind::ClosedForm => "a formula evaluated apart",
         ReferenceKind::Converged => "the limit of a refinement",
         ReferenceKind::Independent => "another method or code",
         ReferenceKind::Consistency => "another of our own ways",
         ReferenceKind::Stated => "a sentence of the source, without a number",
     }
+}
+
+/// The verdict, and how much of the source it speaks of.
+pub fn badge(report: &Report, numbers: &Numbers) -> String {
+    let verdict = match (report.passed(), report.complete()) {
+        (true, _) => "passed: what is built",
+        (false, true) => "failed",
+        (false, false) => "incomplete",
+    };
+    format!(
+        "{verdict}; {} of {} published numbers reproduced",
+        numbers.reproduced + numbers.under_assumption,
+        numbers.printed()
+    )
+}
+
+/// Checks that settle a published number, least favourable statuses first.
+pub fn published(report: &Report) -> impl Iterator<Item = (&CaseReport, &CheckReport)> {
+    let of = |status: Status| {
+        report.cases.iter().flat_map(move |case| {
+            let checks = case.checks.iter();
+            checks.filter(move |check| check.status == status).map(move |check| (case, check))
+        })
+    };
+    let settled =
+        [Status::Explained, Status::Fit, Status::ReproducedUnderAssumption, Status::Reproduced];
+    settled.into_iter().flat_map(of)
+}
+
+/// Checks that name an assumption; one that none names shapes the whole case.
+pub fn leaning(checks: usize) -> String {
+    if checks == 0 { "all, unnamed".to_string() } else { checks.to_string() }
 }
 
 /// What holds and what does not, in sentences.

@@ -4,9 +4,8 @@
 use std::fmt::{Result, Write};
 
 use crate::index::{ChapterEntries, Entry, Role};
-use crate::judge::Status;
 use crate::report::html::{check_anchor, chip, escape, explanation, nowrap, number, prose};
-use crate::report::totals::{self, STATUSES};
+use crate::report::totals;
 use crate::report::{CaseStatus, Report, format};
 
 /// The verdict in sentences, and the counts.
@@ -162,45 +161,43 @@ fn write_line(out: &mut String, line: &Entry) -> Result {
     )
 }
 
-/// Published numbers that are explained or fitted.
-pub fn write_not_reproduced(out: &mut String, report: &Report) -> Result {
-    writeln!(
-        out,
-        "<section><h2>Published numbers that are explained or fitted, not reproduced</h2>"
-    )?;
-    let not_reproduced = |status: Status| matches!(status, Status::Explained | Status::Fit);
-    if !report.cases.iter().flat_map(|case| &case.checks).any(|c| not_reproduced(c.status)) {
+/// Published numbers one by one, those that are not reproduced first.
+pub fn write_published(out: &mut String, report: &Report) -> Result {
+    writeln!(out, "<section><h2>Published numbers, one by one</h2>")?;
+    let mut listed = format::published(report).peekable();
+    if listed.peek().is_none() {
         return writeln!(out, "<p>None in this run.</p></section>");
     }
     writeln!(
         out,
-        "<table class=\"explained\"><thead><tr><th>Quantity</th><th>Status</th>\
+        "<p>Explained and fitted ones are not reproduced. What is allowed says how much a reproduction is worth: \
+         where the source's own measurements scatter by some per cent, it is agreement within that scatter.</p>\
+         <table class=\"explained\"><thead><tr><th>Quantity</th><th>Status</th>\
          <th class=\"number\">Published</th><th class=\"number\">Ours</th>\
-         <th class=\"number\">Difference</th><th>Why</th></tr></thead><tbody>"
+         <th class=\"number\">Difference</th><th class=\"number\">Allowed</th><th>Why</th></tr></thead><tbody>"
     )?;
-    for status in STATUSES.into_iter().filter(|status| not_reproduced(*status)) {
-        for case in &report.cases {
-            for check in case.checks.iter().filter(|check| check.status == status) {
-                let why = match &check.fit {
-                    Some(what) => format!("Met because fitted: {}", prose(what)),
-                    None => explanation(case, check),
-                };
-                writeln!(
-                    out,
-                    "<tr><td><a href=\"#{}\">{}</a><small>{}; {}</small></td><td>{}</td>\
-                     <td class=\"number\">{}</td><td class=\"number\">{}</td>\
-                     <td class=\"number\">{}</td><td>{why}</td></tr>",
-                    check_anchor(case, check),
-                    escape(&check.quantity),
-                    escape(&check.reference_source),
-                    escape(&case.id),
-                    chip(status),
-                    number(&format::reference(check), &check.unit),
-                    number(&format::ours(check), &check.unit),
-                    nowrap(&format::error(check)),
-                )?;
-            }
-        }
+    for (case, check) in listed {
+        let why = match (&check.fit, &check.explanation) {
+            (Some(what), _) => format!("Met because fitted: {}", prose(what)),
+            (None, Some(_)) => explanation(case, check),
+            (None, None) => prose(&check.tolerance_reason),
+        };
+        writeln!(
+            out,
+            "<tr><td><a href=\"#{}\">{}</a><small>{}; {}</small></td><td>{}</td>\
+             <td class=\"number\" data-name=\"published\">{}</td><td class=\"number\" data-name=\"ours\">{}</td>\
+             <td class=\"number\" data-name=\"difference\">{}</td>\
+             <td class=\"number\" data-name=\"allowed\">{}</td><td>{why}</td></tr>",
+            check_anchor(case, check),
+            escape(&check.quantity),
+            escape(&check.reference_source),
+            escape(&case.id),
+            chip(check.status),
+            number(&format::reference(check), &check.unit),
+            number(&format::ours(check), &check.unit),
+            nowrap(&format::error(check)),
+            nowrap(&format::tolerance(check)),
+        )?;
     }
     writeln!(out, "</tbody></table></section>")
 }
@@ -244,7 +241,7 @@ pub fn write_assumptions(out: &mut String, report: &Report) -> Result {
     writeln!(
         out,
         "<section id=\"assumptions\"><h2>Assumptions</h2><p>What the source leaves out, and the value taken. \
-         Checks that lean on one say so.</p><table class=\"assumed\"><thead><tr><th>Assumption</th><th>Value</th>\
+         Checks that lean on one say so; one that no check names shapes all numbers of its cases.</p><table class=\"assumed\"><thead><tr><th>Assumption</th><th>Value</th>\
          <th>What it fills</th><th class=\"number\">Checks that lean on it</th><th>Cases</th></tr></thead><tbody>"
     )?;
     for entry in shared {
@@ -253,11 +250,11 @@ pub fn write_assumptions(out: &mut String, report: &Report) -> Result {
             .collect();
         writeln!(
             out,
-            "<tr><td><code>{}</code></td><td>{}</td><td>{}</td><td class=\"number\">{}</td><td>{}</td></tr>",
+            "<tr><td><code>{}</code></td><td>{}</td><td>{}</td><td class=\"number\" data-name=\"checks that lean on it:\">{}</td><td>{}</td></tr>",
             escape(&entry.assumption.name),
             escape(&entry.assumption.default),
             prose(&entry.assumption.text),
-            entry.leaning,
+            format::leaning(entry.leaning),
             cases.join(", "),
         )?;
     }

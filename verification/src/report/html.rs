@@ -29,12 +29,13 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
     let source = report.index.judged(&report.cases);
     writeln!(
         out,
-        "<header><h1>Verification report <span class=\"chip {class}\">{verdict}</span></h1>"
+        "<header><h1>Verification report <span class=\"chip {class}\">{}</span></h1>",
+        escape(&format::badge(report, &totals::totals(report, &source).published_numbers))
     )?;
     front::write_totals(out, report, &source)?;
     writeln!(out, "</header>")?;
     front::write_failures(out, report)?;
-    front::write_not_reproduced(out, report)?;
+    front::write_published(out, report)?;
     front::write_source(out, &source)?;
     front::write_left_out(out, report)?;
     front::write_assumptions(out, report)?;
@@ -82,10 +83,13 @@ fn write_summary(out: &mut String, report: &Report) -> std::fmt::Result {
                 .map(|status| case.count(status));
         writeln!(
             out,
-            "<tr><td><a href=\"#{}\">{}</a></td><td>{}</td><td class=\"number\">{}</td>\
-             <td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>\
-             <td class=\"number\">{}</td><td class=\"number\">{}</td>\
-             <td class=\"number\">{}{}</td><td class=\"number\">{}</td><td>{}</td></tr>",
+            "<tr><td><a href=\"#{}\">{}</a></td><td>{}</td><td class=\"number\" data-name=\"reproduced\">{}</td>\
+             <td class=\"number\" data-name=\"under assumption\">{}</td>\
+             <td class=\"number\" data-name=\"fit\">{}</td><td class=\"number\" data-name=\"explained\">{}</td>\
+             <td class=\"number\" data-name=\"other checks\">{}</td>\
+             <td class=\"number\" data-name=\"one-sided\">{}</td>\
+             <td class=\"number\" data-name=\"seconds\">{}{}</td>\
+             <td class=\"number\" data-name=\"worst error / tolerance\">{}</td><td>{}</td></tr>",
             escape(&case.id),
             escape(&case.title),
             escape(&case.section),
@@ -246,8 +250,9 @@ fn write_checks(out: &mut String, report: &Report, case: &CaseReport) -> std::fm
         }
         writeln!(
             out,
-            "<tr{} id=\"{}\"><td>{}<small><code>{}</code></small></td><td class=\"number\">{}</td>\
-             <td class=\"number\">{}</td><td>{}<small>{}</small></td><td class=\"number\">{}</td>\
+            "<tr{} id=\"{}\"><td>{}<small><code>{}</code></small></td><td class=\"number\" data-name=\"ours\">{}</td>\
+             <td class=\"number\" data-name=\"reference\">{}</td><td>{}<small>{}</small></td>\
+             <td class=\"number\" data-name=\"error\">{}</td>\
              <td>{}<small>{}</small></td><td>{}{note}</td></tr>",
             if check.explanation.is_some() { " class=\"continued\"" } else { "" },
             check_anchor(case, check),

@@ -15,12 +15,10 @@ pub fn render(report: &Report) -> String {
 }
 
 fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
-    let verdict = match (report.passed(), report.complete()) {
-        (true, _) => "passed",
-        (false, true) => "failed",
-        (false, false) => "incomplete",
-    };
-    writeln!(out, "# Verification report: {verdict}\n")?;
+    let source = report.index.judged(&report.cases);
+    let totals = totals::totals(report, &source);
+    let badge = format::badge(report, &totals.published_numbers);
+    writeln!(out, "# Verification report: {badge}\n")?;
     let machine = &report.machine;
     writeln!(
         out,
@@ -34,8 +32,6 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
         machine.threads.map_or("?".into(), |count| count.to_string()),
         format::seconds_in_all(report),
     )?;
-    let source = report.index.judged(&report.cases);
-    let totals = totals::totals(report, &source);
     for sentence in format::lead(report, &totals) {
         writeln!(out, "{sentence}\n")?;
     }
@@ -52,7 +48,7 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
         )?;
     }
     writeln!(out, "\n{HOW_TO_READ}")?;
-    write_not_reproduced(out, report)?;
+    write_published(out, report)?;
     write_source(out, &source)?;
     write_left_out(out, report)?;
     write_assumptions(out, report)?;
@@ -140,44 +136,43 @@ fn write_assumptions(out: &mut String, report: &Report) -> std::fmt::Result {
             cell(&entry.assumption.name),
             cell(&entry.assumption.default),
             cell(&entry.assumption.text),
-            entry.leaning,
+            format::leaning(entry.leaning),
             cases.join(", ")
         )?;
     }
     Ok(())
 }
 
-fn write_not_reproduced(out: &mut String, report: &Report) -> std::fmt::Result {
-    writeln!(out, "\n## Published numbers that are explained or fitted, not reproduced\n")?;
-    let not_reproduced = |status: Status| matches!(status, Status::Explained | Status::Fit);
-    if !report.cases.iter().flat_map(|case| &case.checks).any(|c| not_reproduced(c.status)) {
+fn write_published(out: &mut String, report: &Report) -> std::fmt::Result {
+    writeln!(out, "\n## Published numbers, one by one\n")?;
+    let mut listed = format::published(report).peekable();
+    if listed.peek().is_none() {
         return writeln!(out, "None in this run.");
     }
     writeln!(
         out,
-        "| case | quantity | status | source | published | ours | difference | why | evidence |\n\
-         |---|---|---|---|--:|--:|--:|---|---|"
+        "| case | quantity | status | source | published | ours | difference | allowed | why | evidence |\n\
+         |---|---|---|---|--:|--:|--:|--:|---|---|"
     )?;
-    for case in &report.cases {
-        for check in case.checks.iter().filter(|check| not_reproduced(check.status)) {
-            let (why, evidence) = match (&check.fit, &check.explanation) {
-                (Some(what), _) => (what.as_str(), String::new()),
-                (None, Some(text)) => (text.text.as_str(), text.evidence.join(", ")),
-                (None, None) => ("", String::new()),
-            };
-            writeln!(
-                out,
-                "| {} | {} | {} | {} | {} | {} | {} | {} | {evidence} |",
-                case.id,
-                cell(&check.quantity),
-                check.status.word(),
-                cell(&check.reference_source),
-                format::reference(check),
-                format::ours(check),
-                format::error(check),
-                cell(why),
-            )?;
-        }
+    for (case, check) in listed {
+        let (why, evidence) = match (&check.fit, &check.explanation) {
+            (Some(what), _) => (what.as_str(), String::new()),
+            (None, Some(text)) => (text.text.as_str(), text.evidence.join(", ")),
+            (None, None) => (check.tolerance_reason.as_str(), String::new()),
+        };
+        writeln!(
+            out,
+            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {evidence} |",
+            case.id,
+            cell(&check.quantity),
+            check.status.word(),
+            cell(&check.reference_source),
+            format::reference(check),
+            format::ours(check),
+            format::error(check),
+            format::tolerance(check),
+            cell(why),
+        )?;
     }
     Ok(())
 }

@@ -47,8 +47,9 @@ pub const STATUSES: [Status; 6] = [
     Status::Pass,
 ];
 
-const KINDS: [ReferenceKind; 6] = [
+const KINDS: [ReferenceKind; 7] = [
     ReferenceKind::Published,
+    ReferenceKind::Evidence,
     ReferenceKind::ClosedForm,
     ReferenceKind::Converged,
     ReferenceKind::Independent,
