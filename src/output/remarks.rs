@@ -10,10 +10,10 @@ use crate::solver::clock::{rounded, to_digits};
 use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::modes::Modes;
 use crate::solver::solid::stress::nodal_stresses;
-use crate::solver::solid::trust::{EnergyError, Strained, band, energy_error};
+use crate::solver::solid::trust::{EnergyError, Strained, at_most, energy_error};
 
-/// Part of the displacements that a mesh may miss without a word, by the upper end of what the estimate is
-/// worth ([`band`]).
+/// Part of displacements or frequencies that a mesh may miss without a word, by the upper end of what the estimate is
+/// worth ([`at_most`]).
 const SILENT: f64 = 0.02;
 /// Part of the surface with the thinnest walls beneath it, which say how many elements a mesh has through them.
 const THIN: f64 = 0.1;
@@ -81,7 +81,7 @@ fn of_mesh(model: &SolidModel, error: &EnergyError) -> Option<String> {
         return Some(remark);
     }
     let judged = Judged::of(model, error);
-    let [low, high] = judged.band.map(|times| error.expected(times));
+    let [low, high] = [1.0, judged.at_most].map(|times| error.expected(times));
     let small = high <= SILENT;
     (!small).then(|| {
         format!(
@@ -97,7 +97,8 @@ fn of_mesh(model: &SolidModel, error: &EnergyError) -> Option<String> {
 /// What an estimate is worth on its mesh.
 struct Judged {
     wall: Option<Wall>,
-    band: [f64; 2],
+    /// The truth over the estimate.
+    at_most: f64,
 }
 
 impl Judged {
@@ -107,16 +108,16 @@ impl Judged {
         let sound = error.part() <= 0.1 * SILENT;
         let wall = if sound { None } else { thinnest_wall(&model.problem.nodes, elements, THIN) };
         let through = wall.map_or(f64::INFINITY, |wall| wall.elements);
-        Judged { wall, band: band(elements.order(), through) }
+        Judged { wall, at_most: at_most(elements.order(), through) }
     }
 
     /// Where the numbers are from, and what to do.
     fn text(&self, model: &SolidModel, error: &EnergyError) -> String {
-        let [low, high] = self.band;
         let mut text = format!(
-            "jumps of stress between elements say {} %, after Zienkiewicz and Zhu, of which the truth was {low} to \
-             {high} times on meshes like this",
-            to_digits(100.0 * error.part(), 2)
+            "jumps of stress between elements say {} %, after Zienkiewicz and Zhu, of which the truth was \
+             1 to {} times on meshes like this",
+            to_digits(100.0 * error.part(), 2),
+            self.at_most
         );
         if let Some(wall) = self.wall.filter(|wall| wall.elements < FEW) {
             let elements = to_digits(wall.elements, 2);
@@ -157,8 +158,9 @@ pub fn of_modes(model: &SolidModel, found: &Modes) -> Vec<String> {
     let error = energy_error(model, &shape, &nodal_stresses(model, &shape));
     let judged = Judged::of(model, &error);
     // A frequency goes with the root of the energy.
-    let [low, high] = judged.band.map(|times| (1.0 - error.expected(times)).sqrt().recip() - 1.0);
-    let small = high <= 0.5 * SILENT;
+    let part = |times: f64| (1.0 - error.expected(times)).sqrt().recip() - 1.0;
+    let [low, high] = [1.0, judged.at_most].map(part);
+    let small = high <= SILENT;
     if small {
         return Vec::new();
     }
