@@ -321,6 +321,10 @@ fn inertia_is_judged_by_the_displacement() {
     assert!(ripple.contains("of its displacement; to see how it swings"), "{ripple}");
     let swing = planned("250 N");
     assert!(swing.contains("WARNING"), "{swing}");
+    // What equilibria of one load differ by is no swing.
+    let still = planned("0 N");
+    assert!(still.contains("the outer race does not swing along the course"), "{still}");
+    assert!(!still.contains("WARNING") && !still.contains("whole"), "{still}");
 }
 
 /// A bore is described only where the results beside it have one.
