@@ -19,7 +19,9 @@ use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::static_assembly::{Loaded, Place, StaticAssembly, StaticBody};
-use bearing_dynamics::solver::statics::{Condition, StaticOptions, StaticsError, solve_assembly};
+use bearing_dynamics::solver::statics::{
+    Condition, Determinacy, StaticOptions, StaticsError, solve_assembly,
+};
 use dynamics::*;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -405,4 +407,35 @@ fn on_two_bodies(mut connection: Connection, spring: bool) -> Assembly {
     });
     assembly.connections = vec![connection];
     assembly
+}
+
+/// Six springs hold a body as well as springs to the ground do; a torsion spring holds it against twist alone, which is
+/// no coordinate of statics.
+#[test]
+fn what_a_connection_holds_is_determinate() {
+    let loaded = Loaded {
+        conditions: [200.0, -100.0, 300.0, 1.5, -2.0].map(Condition::Load),
+        springs: [0.0; 5],
+        rest: [0.0; 5],
+        start: Some([0.0; 5]),
+        room: 1.0,
+    };
+    let named = |name: &str, place| StaticBody { name: name.into(), place };
+    let mut statics = StaticAssembly {
+        bodies: vec![
+            named("body", Place::Loaded(loaded)),
+            named("ground", Place::Held(Pose::identity())),
+        ],
+        bearings: Vec::new(),
+        connections: vec![spring()],
+    };
+    statics.connections[0].ends = [Mount::at_centre(1), Mount::at_centre(0)];
+    let found = solve_assembly(&statics, None, &StaticOptions::default()).unwrap();
+    assert_eq!(found.determinacy, Determinacy::Determinate);
+    // Stretched by 1e-4 m and 1e-3 rad, so that each spring by itself is right to a hundredth.
+    let rest = SPRING.rest;
+    for (i, load) in [200.0, -100.0, 300.0].into_iter().enumerate() {
+        let stretch = found.coordinates[0][i] - rest[i];
+        assert!((stretch * SPRING.stiffness[i] / load - 1.0).abs() <= 1e-2, "{i}: {stretch}");
+    }
 }

@@ -10,7 +10,7 @@ use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Bearing, Body, Mobility};
 use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::equilibrium::at_start;
+use bearing_dynamics::solver::dynamics::equilibrium::{at_start, static_assembly};
 use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, Start, Stepping,
@@ -527,5 +527,68 @@ fn a_start_rolls_whichever_race_turns() {
                 assert!((orbit - mean).abs() <= 1e-12 * speed, "{orbit} {mean}");
             }
         }
+    }
+}
+
+/// Balls that roll without slip go round at the mean of both races' speeds, each by its radius at the contact,
+/// about the world's axis: whichever way round their bearing is put in, and with turning outer races too.
+#[test]
+fn balls_roll_between_two_turning_races_whichever_way_their_bearing_faces() {
+    let geometry = table_5_3();
+    let gamma = geometry.ball_radius * geometry.contact_angle.cos() / geometry.pitch_radius;
+    for outer in [0.0, -130.0] {
+        let inner = 300.0;
+        let mut assembly = on_two([0.0; 5], inner);
+        let ring = hollow_cylinder(36e-3, 40e-3, 16e-3, 7850.0);
+        for body in &mut assembly.bodies[1..] {
+            let drives = body.rest.map(|at| Drive::Motion(Profile::Constant(at)));
+            let turns = race([0.0; 5], Rotation::Speed(Profile::Constant(outer)));
+            let turns = RaceBody { inertia: ring, drives, ..turns };
+            body.mobility = Mobility::Driven(turns.into());
+        }
+        let expected = 0.5 * (1.0 - gamma) * inner + 0.5 * (1.0 + gamma) * outer;
+        let state = start::nominal(&assembly);
+        let system = System::new(assembly.clone(), Driver::Lanes);
+        for set in &system.sets {
+            for ball in 0..set.layout.balls {
+                let [_, y, z] = set.layout.ball_vector(&state, POSITION, ball);
+                let [_, v, w] = set.layout.ball_vector(&state, VELOCITY, ball);
+                let speed = (y * w - z * v) / (y * y + z * z);
+                // Rounding.
+                assert!((speed / expected - 1.0).abs() <= 1e-12, "{speed} {expected}");
+            }
+        }
+        // What presses them outwards in statics.
+        for bearing in &static_assembly(&assembly, 0.0, &[]).bearings {
+            let pressed = assembly.bearings[0].ball.mass * expected * expected;
+            assert!(
+                (bearing.centrifugal / pressed - 1.0).abs() <= 1e-12,
+                "{}",
+                bearing.centrifugal
+            );
+        }
+    }
+}
+
+/// Balls ride on the outer race: what stands under it carries the load, both races and all balls, and however far it
+/// gives way the inner race goes along.
+#[test]
+fn a_soft_foundation_carries_everything_above_it() {
+    let mut problem = bearing(table_4_1(-5e-6), [0.0, 0.0, -300.0, 0.0, 0.0], 0.0);
+    problem.gravity = GRAVITY;
+    for stiffness in [1e6, 1e4] {
+        let mut outer = race([0.0; 5], Rotation::Speed(Profile::ZERO));
+        outer.foundation_stiffness = [stiffness, stiffness, stiffness, 1e4, 1e4];
+        problem.outer = Some(outer);
+        let assembly = problem.assembly();
+        let statics = static_assembly(&assembly, 0.0, &[]);
+        let found = solve_assembly(&statics, None, &StaticOptions::default()).unwrap();
+        let races: f64 = (0..2).map(|body| assembly.bodies[body].inertia().unwrap().mass).sum();
+        let balls = problem.geometry.ball_count as f64 * problem.ball.mass;
+        let (carried, sunk) = (300.0 + 9.81 * (races + balls), -found.coordinates[1][2]);
+        // Statics leaves 1e-11 of its loads; the balls weigh a 500th of them.
+        assert!((stiffness * sunk / carried - 1.0).abs() <= 1e-8, "{} {carried}", stiffness * sunk);
+        // The softer one sinks by five ball radii; overlaps are some micrometres.
+        assert!((found.coordinates[0][2] + sunk).abs() <= 20e-6, "{}", found.coordinates[0][2]);
     }
 }

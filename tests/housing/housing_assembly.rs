@@ -425,3 +425,41 @@ fn inertia_along_a_circle_is_that_of_one_mass_on_a_spring() {
     let damped = circle(0.1, 1e4, vec![0.05]);
     assert!(damped.bound < cornered.bound, "{damped:?}");
 }
+
+/// Balls are where the shaft has rolled them, not where its present speed would have: a shaft that runs up has turned
+/// by half of that.
+#[test]
+fn balls_roll_with_a_shaft_that_runs_up() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    let problem = bearing(loads([0.0; 5]));
+    let mut course = one_turn(3);
+    course.shaft_speed = Profile::Ramp { from: 0.0, to: 12.0, start: 0.0, duration: 1.2 };
+    let moments = history(&mut search(&bore), &problem, &fit(0.0), &course).unwrap();
+    let gamma = problem.geometry.ball_radius / problem.geometry.pitch_radius;
+    for moment in &moments {
+        let should = problem.ball_phase + 0.5 * (1.0 - gamma) * 5.0 * moment.time * moment.time;
+        // Rounding.
+        assert!((moment.ball_phase - should).abs() <= 1e-12, "{} {should}", moment.ball_phase);
+    }
+}
+
+/// The estimate's coordinates are places and tilts: what a race has about its own axis takes no part. A race hard to tilt
+/// swings slowly about either axis across.
+#[test]
+fn inertia_about_the_axis_is_no_inertia_of_tilts() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    let problem = bearing(loads([0.0, 0.0, -2.5, 0.0, 0.0]));
+    let mut search = search(&bore);
+    let state = search.solve(&problem, &fit(5e-6), [0.0; 3]).unwrap();
+    let steel = hollow_cylinder(32e-3, 35.5e-3, 20e-3, 7850.0);
+    let of = |axial: f64, transverse: f64| {
+        let mut masses = Masses { inner: steel, outer: steel };
+        masses.outer.axial *= axial;
+        masses.outer.transverse *= transverse;
+        estimate(&problem, &search, &state, &masses)
+    };
+    assert_eq!(of(1e6, 1.0), of(1.0, 1.0));
+    // So heavy that it tilts by itself: a quarter of the frequency for sixteen times the inertia.
+    let ratio = of(1.0, 1e6).lowest / of(1.0, 16e6).lowest;
+    assert!((ratio - 4.0).abs() <= 1e-3, "{ratio}");
+}

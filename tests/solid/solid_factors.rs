@@ -14,7 +14,7 @@ use bearing_dynamics::solver::solid::tangent::{
 use bearing_dynamics::solver::sparse::dissection::nested_dissection;
 use bearing_dynamics::solver::sparse::graph::Graph;
 use bearing_dynamics::solver::sparse::separator::{Side, smallest_cuts};
-use bearing_dynamics::solver::sparse::{Cost, Ordering, SymmetricMatrix, Task};
+use bearing_dynamics::solver::sparse::{Cost, Entry, FactorError, Ordering, SymmetricMatrix, Task};
 use solid_common::{cut_cubes, solid};
 use std::collections::BTreeSet;
 
@@ -278,4 +278,19 @@ fn sparse_matrices_are_foretold_with_their_rows() {
     let left = Cost::new(&unknowns.elimination, without).other_bytes;
     assert_eq!(cost.task.matrix, stiffness_of(&model, &unknowns).stored());
     assert_eq!(cost.other_bytes - left, 12.0 * cost.task.matrix as f64);
+}
+
+/// A matrix that is not positive is refused at the unknown where it shows, wherever that is eliminated.
+#[test]
+fn a_pivot_that_is_not_positive_is_named() {
+    let model = block([3, 2, 2], Order::Linear);
+    let unknowns = Unknowns::new(&model);
+    for bad in [0, unknowns.count / 2, unknowns.count - 1] {
+        let mut matrix = stiffness_of(&model, &unknowns);
+        let diagonal = matrix.column(bad).find(|(row, _)| *row == bad).unwrap().1;
+        matrix.add(Entry { row: bad, column: bad }, -2.0 * diagonal);
+        // Unknowns are numbered as they are eliminated, and what comes before is as positive as it was.
+        let refused = unknowns.factor(&matrix).err();
+        assert_eq!(refused, Some(FactorError::NotPositiveDefinite { pivot: bad }));
+    }
 }

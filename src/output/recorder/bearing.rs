@@ -347,6 +347,8 @@ fn terms(assembly: &Assembly) -> Vec<Term> {
     let mut driven = assembly.bodies.iter().filter_map(|body| body.driven());
     let on_foundation = driven
         .any(|body| body.foundation_stiffness != [0.0; 5] || body.foundation_damping != [0.0; 5]);
+    // Springs and dashpots between bodies are booked with those to the ground.
+    let on_foundation = on_foundation || !assembly.connections.is_empty();
     let terms = [
         (Term::Kinetic, true),
         (Term::Contact, true),
