@@ -81,7 +81,7 @@ impl InnerRacePosition {
     }
 
     /// The race that sits at a mount of the body with these coordinates. Derivatives are by the body's
-    /// tilts, and leave out how these move the race's centre: see [`InnerRacePosition::along`].
+    /// tilts, and leave out how these move the race's centre.
     /// Its centre counts from `origin` (m), so that far from the axes' own origin no digits are lost.
     pub fn mounted(coordinates: &SVector<f64, 5>, mount: &Mount, origin: &Vector3<f64>) -> Self {
         let mut race = InnerRacePosition::new(coordinates);
