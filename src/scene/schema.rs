@@ -80,6 +80,7 @@ fn table_schema(path: &str) -> Map<String, Value> {
                 _ if keys::find_table(&full).is_some_and(|table| table.list) => {
                     json!({ "type": "array", "items": table_schema(&full) })
                 }
+                _ if keys::NAMED.contains(&full.as_str()) => named_schema(&full),
                 _ => Value::Object(table_schema(&full)),
             },
         };
@@ -113,6 +114,36 @@ fn table_schema(path: &str) -> Map<String, Value> {
         schema.insert("allOf".into(), Value::Array(exclusive));
     }
     schema
+}
+
+/// A table that may stand several times, each with a name; what stands beside the names is what all
+/// inherit, so that nothing is required there.
+fn named_schema(path: &str) -> Value {
+    let plain = table_schema(path);
+    let mut own = plain.clone();
+    let known: Vec<&str> = keys::children(path);
+    let inherited = |mut table: Map<String, Value>| {
+        // Relations between keys of one bearing may hold between what it says and what it inherits.
+        for part in ["required", "allOf"] {
+            table.remove(part);
+        }
+        for property in table.get_mut("properties").and_then(Value::as_object_mut).into_iter().flatten() {
+            if let Value::Object(inner) = property.1 {
+                inner.remove("required");
+                inner.remove("allOf");
+            }
+        }
+        table
+    };
+    let has_names = json!({ "not": { "propertyNames": { "enum": known } } });
+    let named = if path == "body" || path == "spring" { plain.clone() } else { inherited(plain.clone()) };
+    own = inherited(own);
+    own.insert("additionalProperties".into(), Value::Object(named));
+    own.insert("allOf".into(), json!([has_names]));
+    match path {
+        "body" | "spring" => Value::Object(own),
+        _ => json!({ "anyOf": [plain, own] }),
+    }
 }
 
 fn row(path: &str) -> Option<usize> {

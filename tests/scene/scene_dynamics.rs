@@ -466,6 +466,10 @@ fn understood(text: &str, name: &str) -> Result<Subject, String> {
     };
     match &mut subject {
         Subject::Bearing(scene) => forget(scene),
+        Subject::Assembly(scene) => {
+            scene.defaults_used.clear();
+            scene.bearings.iter_mut().for_each(|placed| forget(&mut placed.scene));
+        }
         Subject::Solid(scene) => scene.defaults_used.clear(),
         Subject::Housed(scene) => {
             forget(&mut scene.bearing);

@@ -43,6 +43,9 @@ pub struct Body {
     pub unbalance: f64,
 }
 
+/// Name of a body that stands for what does not move.
+pub const GROUND: &str = "the ground";
+
 /// How a body may move.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mobility {
