@@ -70,6 +70,9 @@ fn summary(name: &str, scene: &AssemblyScene) -> String {
     let mut line = |label: &str, value: String| {
         let _ = writeln!(text, "  {label:<22} {}", visible_line(&value));
     };
+    if let Some(title) = &scene.common().title {
+        line("title", title.clone());
+    }
     for placed in &scene.bearings {
         if let Some(name) = &placed.name {
             line("bearing", format!("\"{name}\""));
@@ -104,9 +107,6 @@ fn summary(name: &str, scene: &AssemblyScene) -> String {
 /// Title and geometry, a line each.
 pub fn bearing_lines(scene: &Scene, line: &mut impl FnMut(&str, String)) {
     let (geometry, sizes) = (&scene.geometry, &scene.dimensions);
-    if let Some(title) = &scene.title {
-        line("title", title.clone());
-    }
     let kind = match geometry.kind {
         BearingKind::DeepGroove => "deep-groove",
         BearingKind::AngularContact => "angular-contact",

@@ -33,6 +33,13 @@ pub struct PlacedBearing {
     pub scene: Scene,
 }
 
+impl PlacedBearing {
+    /// Whether it has no name and stands where a bearing alone does.
+    fn is_alone(&self) -> bool {
+        self.name.is_none() && !self.reversed && self.carriers == [Carrier::Own { at: 0.0 }; 2]
+    }
+}
+
 /// What carries a race, and where along X from there the race sits, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Carrier {
@@ -86,7 +93,7 @@ impl AssemblyScene {
     /// The scene of a bearing alone; `None` where there is more.
     pub fn only(&self) -> Option<&Scene> {
         match &self.bearings[..] {
-            [one] if one.name.is_none() && self.bodies.is_empty() && self.springs.is_empty() => {
+            [one] if one.is_alone() && self.bodies.is_empty() && self.springs.is_empty() => {
                 Some(&one.scene)
             }
             _ => None,

@@ -4,7 +4,8 @@ use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::scene::assembly::{AssemblyScene, Carrier, NO_INERTIA, PlacedBearing, SceneBody, Spring};
 use crate::scene::document::Document;
 use crate::scene::error::{Problem, SceneError};
-use crate::scene::key_table_assembly::{GROUND, OWN_RACES};
+use crate::scene::key_table_assembly::{self, GROUND, OWN_RACES};
+use crate::scene::keys::Key;
 use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_dynamics::{check_inertia, foundation, rotating_load, rotation};
 use crate::scene::resolved::{DefaultUsed, Scene};
@@ -14,7 +15,9 @@ use crate::solver::dynamics::model::RaceBody;
 /// Whether a scene is more than a bearing alone, a solid alone, or one bearing in its housing.
 pub(crate) fn is_assembly(document: &Document) -> bool {
     const OF_SEVERAL: [&str; 2] = ["body", "spring"];
+    let is_place = |key: &&Key| key_table_assembly::KEYS.iter().any(|own| own.path == key.path);
     document.names("bearing").next().is_some()
+        || document.given_keys().any(|key| is_place(&key))
         || OF_SEVERAL.iter().any(|table| document.first_below(table).is_some())
         || OF_SEVERAL.iter().any(|table| document.names(table).next().is_some())
 }
@@ -31,9 +34,11 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
         some => some,
     };
     let mut defaults_used = Vec::new();
+    // Defaults that all bearings share.
+    let mut told = Vec::new();
     let mut bearings = Vec::with_capacity(names.len());
     for name in names {
-        bearings.push(bearing(document, name, &bodies, &mut defaults_used)?);
+        bearings.push(bearing(document, name, &bodies, &mut told)?);
     }
     refuse_shared_places(document, &bearings)?;
     let ball = bearings.iter().map(|b| b.scene.geometry.ball_radius).fold(0.0, f64::max);
@@ -107,7 +112,7 @@ fn bearing(
     document: &Document,
     name: Option<&str>,
     bodies: &[&str],
-    defaults: &mut Vec<DefaultUsed>,
+    told: &mut Vec<DefaultUsed>,
 ) -> Result<PlacedBearing, SceneError> {
     let mut scoped = match name {
         Some(name) => document.scoped(name),
@@ -134,7 +139,8 @@ fn bearing(
     }
     for (race, body) in OWN_RACES.iter().zip(on) {
         let Some(body) = body else { continue };
-        if let Some(key) = scoped.first_below(race).filter(|key| *key != *race) {
+        let of_race = |path: &str| path.strip_prefix(race).is_some_and(|rest| rest.starts_with('.'));
+        if let Some(key) = scoped.given_keys().map(|key| key.path).find(|path| of_race(path)) {
             let reason = format!("this race sits on body.{}", bodies[body]);
             let advice = format!("write loads and motions in [body.{}]", bodies[body]);
             return Err(scoped.error(key, Problem::Refused { reason, advice }));
@@ -151,7 +157,7 @@ fn bearing(
     for (race, _) in OWN_RACES.iter().zip(on).filter(|(_, body)| body.is_some()) {
         forget_race(&mut scene, race);
     }
-    name_defaults(&mut scene, &scoped, name, defaults);
+    name_defaults(&mut scene, &scoped, name, told);
     Ok(PlacedBearing { name: name.map(str::to_string), carriers, reversed, scene })
 }
 

@@ -116,34 +116,30 @@ fn table_schema(path: &str) -> Map<String, Value> {
     schema
 }
 
-/// A table that may stand several times, each with a name; what stands beside the names is what all
-/// inherit, so that nothing is required there.
+/// A table that may stand several times, each with a name. What stands beside names is what all inherit, so
+/// that what one thing needs is needed there only where there is no name.
 fn named_schema(path: &str) -> Value {
     let plain = table_schema(path);
-    let mut own = plain.clone();
-    let known: Vec<&str> = keys::children(path);
-    let inherited = |mut table: Map<String, Value>| {
-        // Relations between keys of one bearing may hold between what it says and what it inherits.
-        for part in ["required", "allOf"] {
-            table.remove(part);
-        }
-        for property in table.get_mut("properties").and_then(Value::as_object_mut).into_iter().flatten() {
-            if let Value::Object(inner) = property.1 {
-                inner.remove("required");
-                inner.remove("allOf");
-            }
-        }
-        table
-    };
-    let has_names = json!({ "not": { "propertyNames": { "enum": known } } });
-    let named = if path == "body" || path == "spring" { plain.clone() } else { inherited(plain.clone()) };
-    own = inherited(own);
-    own.insert("additionalProperties".into(), Value::Object(named));
-    own.insert("allOf".into(), json!([has_names]));
-    match path {
-        "body" | "spring" => Value::Object(own),
-        _ => json!({ "anyOf": [plain, own] }),
+    let known = keys::children(path);
+    let mut inherited = plain.clone();
+    let relations = ["required", "allOf"];
+    for part in relations {
+        inherited.remove(part);
     }
+    let properties = inherited.get_mut("properties").and_then(Value::as_object_mut);
+    for (_, property) in properties.into_iter().flatten() {
+        for part in relations {
+            property.as_object_mut().and_then(|property| property.remove(part));
+        }
+    }
+    let only_named = ["body", "spring"].contains(&path);
+    let named = if only_named { plain.clone() } else { inherited.clone() };
+    inherited.insert("additionalProperties".into(), Value::Object(named));
+    if !only_named {
+        let alone = json!({ "if": { "propertyNames": { "enum": known } }, "then": plain });
+        inherited.insert("allOf".into(), json!([alone]));
+    }
+    Value::Object(inherited)
 }
 
 fn row(path: &str) -> Option<usize> {

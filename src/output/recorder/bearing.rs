@@ -96,14 +96,14 @@ impl Recorder {
         let BallSet { layout, table, .. } = set;
         match group {
             ChannelGroup::Races => {
-                let place = nominal_place(&simulation.system.assembly, bearing);
+                let place = simulation.system.assembly.place_of(bearing);
                 self.race(&set.races[0], place);
                 if simulation.system.assembly.bodies[bearing.mounts[1].body].moves() {
                     self.race(&set.races[1], place);
                 }
             }
             ChannelGroup::Cage => {
-                let place = nominal_place(&simulation.system.assembly, bearing);
+                let place = simulation.system.assembly.place_of(bearing);
                 self.cage(set, bearing, place, before, row);
             }
             ChannelGroup::Orbits => self.orbits(simulation, set, bearing, before, row),
@@ -241,15 +241,6 @@ fn contact_angle(set: &BallSet, bearing: &Bearing, side: usize) -> f64 {
         load += table.load[pair];
     }
     if load > 0.0 { sum / load } else { bearing.geometry.contact_angle }
-}
-
-/// Where a bearing with a name sits along X, m; one without counts from the origin.
-fn nominal_place(assembly: &Assembly, bearing: &Bearing) -> f64 {
-    let [inner, _] = &bearing.mounts;
-    match bearing.name {
-        Some(_) => assembly.bodies[inner.body].rest[0] + inner.along,
-        None => 0.0,
-    }
 }
 
 fn has_cage(assembly: &Assembly) -> bool {
