@@ -55,7 +55,9 @@ pub fn run(arguments: &Arguments) -> CommandResult {
             understood["numerics"] = echo_run::numerics(run)?;
         }
         understood["output"] = echo_run::output(scene.common())?;
-        for (name, notes) in echo_run::notes(&scene.common().assumptions, &assembly::defaults(scene)) {
+        for (name, notes) in
+            echo_run::notes(&scene.common().assumptions, &assembly::defaults(scene))
+        {
             understood[name] = notes;
         }
         say(&pretty(&understood))?;

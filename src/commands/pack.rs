@@ -1,12 +1,12 @@
 //! `bearing pack CASE`.
 
-use super::earlier::{Writes, claimed};
 use super::assembly::statics::{Found, find_equilibrium};
+use super::earlier::{Writes, claimed};
 use super::solve::solve_scene;
 use super::{CommandResult, Outcome, say};
+use bearing_dynamics::output::assembly_results::{self, Solved};
 use bearing_dynamics::output::compare::tolerance::ToleranceClass;
 use bearing_dynamics::output::pack::{PackInput, refuse_foreign_files, write_pack};
-use bearing_dynamics::output::assembly_results::{self, Solved};
 use bearing_dynamics::output::results::write_static_results;
 use bearing_dynamics::scene::{Document, Subject, resolve, resolve_subject};
 use std::path::{Path, PathBuf};

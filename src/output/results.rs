@@ -297,8 +297,7 @@ pub(super) fn load_zone(balls: &[BallState]) -> Result<Value, ResultsError> {
     let largest = |load: fn(&BallState) -> f64| {
         balls.iter().map(load).fold(0.0, |a: f64, b| if b > a { b } else { a })
     };
-    let loaded =
-        |load: fn(&BallState) -> f64| balls.iter().filter(|ball| load(ball) > 0.0).count();
+    let loaded = |load: fn(&BallState) -> f64| balls.iter().filter(|ball| load(ball) > 0.0).count();
     let (_, extent) = load_zone_of(balls);
     Ok(json!({
         "extent": quantity("load zone", extent.to_degrees(), "deg")?,

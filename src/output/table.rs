@@ -99,9 +99,10 @@ impl RunTable {
             let values = self.windowed(&channel)?;
             Some((channel, spectrum(&values, self.interval)?))
         };
-        let channels = self.bodies.iter().flat_map(|body| {
-            ["x", "y", "z"].map(|axis| format!("{}_{axis}", body.column))
-        });
+        let channels = self
+            .bodies
+            .iter()
+            .flat_map(|body| ["x", "y", "z"].map(|axis| format!("{}_{axis}", body.column)));
         channels.filter_map(of).collect()
     }
 }

@@ -407,7 +407,10 @@ impl Document {
 
     /// Keys that are given, one of the table's rows each; those of lists of tables are not in it.
     pub(crate) fn given_keys(&self) -> impl Iterator<Item = &'static Key> {
-        KEYS.iter().enumerate().filter(|(row, _)| self.layer.given[*row].is_some()).map(|(_, key)| key)
+        KEYS.iter()
+            .enumerate()
+            .filter(|(row, _)| self.layer.given[*row].is_some())
+            .map(|(_, key)| key)
     }
 
     /// An error about a key or table: at its value, else at the innermost table that would hold it.

@@ -36,7 +36,8 @@ pub(super) const FOUNDATION: Kind = Kind::Quantity(Stiffness, closed(0.0, 1e13, 
 pub(super) const TILT_FOUNDATION: Kind =
     Kind::Quantity(Dimension::TiltStiffness, closed(0.0, 1e13, "N m/rad"));
 pub(super) const DASHPOT: Kind = Kind::Quantity(Dimension::Damping, closed(0.0, 1e10, "N s/m"));
-pub(super) const TILT_DASHPOT: Kind = Kind::Quantity(Dimension::TiltDamping, closed(0.0, 1e10, "N m s/rad"));
+pub(super) const TILT_DASHPOT: Kind =
+    Kind::Quantity(Dimension::TiltDamping, closed(0.0, 1e10, "N m s/rad"));
 const FRICTION: Kind = Kind::Number(closed(0.0, 2.0, ""));
 /// Below 1e-9 m/s rounding alone makes more slip than that.
 const SLIP: Kind = Kind::Quantity(Speed, closed(1e-9, 1e3, "m/s"));
@@ -67,7 +68,8 @@ const BOUNDARY: Need = Depends(
 pub(super) const MASS_HINT: &str = "a positive mass; check the unit";
 pub(super) const INERTIA_HINT: &str = "a positive moment of inertia; check the unit";
 const FRICTION_HINT: &str = "friction coefficients of steel are 0.05 to 0.2";
-pub(super) const FOUNDATION_HINT: &str = "a spring or dashpot holds back: it is not negative; check the unit";
+pub(super) const FOUNDATION_HINT: &str =
+    "a spring or dashpot holds back: it is not negative; check the unit";
 const STEP_HINT: &str = "stable steps of steel bearings are 0.1 to 10 us; leave it out, and steps follow from an accuracy";
 const SLIP_HINT: &str = "friction needs some sliding speed to build up; 1 to 100 mm/s is usual";
 

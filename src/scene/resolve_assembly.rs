@@ -1,11 +1,12 @@
 //! From tables with names to bearings on bodies: what sits where, and what joins what.
 
 use crate::ch2_housing::bearing::inertia::Inertia;
-use crate::scene::assembly::{AssemblyScene, Carrier, NO_INERTIA, PlacedBearing, SceneBody, Spring};
+use crate::scene::assembly::{
+    AssemblyScene, Carrier, NO_INERTIA, PlacedBearing, SceneBody, Spring,
+};
 use crate::scene::document::Document;
 use crate::scene::error::{Problem, SceneError};
-use crate::scene::key_table_assembly::{self, GROUND, OWN_RACES};
-use crate::scene::keys::Key;
+use crate::scene::key_table_assembly::{GROUND, OWN_RACES};
 use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_dynamics::{check_inertia, foundation, rotating_load, rotation};
 use crate::scene::resolved::{DefaultUsed, Scene};
@@ -15,9 +16,10 @@ use crate::solver::dynamics::model::RaceBody;
 /// Whether a scene is more than a bearing alone, a solid alone, or one bearing in its housing.
 pub(crate) fn is_assembly(document: &Document) -> bool {
     const OF_SEVERAL: [&str; 2] = ["body", "spring"];
-    let is_place = |key: &&Key| key_table_assembly::KEYS.iter().any(|own| own.path == key.path);
+    const PLACES: [&str; 5] = ["inner_on", "inner_at", "outer_on", "outer_at", "reversed"];
+    let is_given = |key: &&str| document.value(&format!("bearing.{key}")).is_some();
     document.names("bearing").next().is_some()
-        || document.given_keys().any(|key| is_place(&key))
+        || PLACES.iter().any(|key| is_given(key))
         || OF_SEVERAL.iter().any(|table| document.first_below(table).is_some())
         || OF_SEVERAL.iter().any(|table| document.names(table).next().is_some())
 }
@@ -42,7 +44,8 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
     }
     refuse_shared_places(document, &bearings)?;
     let ball = bearings.iter().map(|b| b.scene.geometry.ball_radius).fold(0.0, f64::max);
-    let needs_mass = bearings[0].scene.dynamics.run.is_some() || bearings[0].scene.gravity != [0.0; 3];
+    let needs_mass =
+        bearings[0].scene.dynamics.run.is_some() || bearings[0].scene.gravity != [0.0; 3];
     let resolved = bodies
         .iter()
         .map(|name| body(document, name, ball, needs_mass, &mut defaults_used))
@@ -66,7 +69,8 @@ fn refuse_strange_names(document: &Document) -> Result<(), SceneError> {
         }
     }
     for table in ["inner_race", "outer_race", "housing", "solid"] {
-        let strange = document.names(table).find(|name| !document.names("bearing").any(|b| b == *name));
+        let strange =
+            document.names(table).find(|name| !document.names("bearing").any(|b| b == *name));
         if let Some(name) = strange {
             return Err(unknown(document, table, name, "bearing", document.names("bearing")));
         }
@@ -74,10 +78,16 @@ fn refuse_strange_names(document: &Document) -> Result<(), SceneError> {
     let kinds = ["bearing", "body", "spring"];
     for (index, table) in kinds.iter().enumerate() {
         for other in &kinds[..index] {
-            if let Some(twice) = document.names(table).find(|n| document.names(other).any(|o| o == *n)) {
+            if let Some(twice) =
+                document.names(table).find(|n| document.names(other).any(|o| o == *n))
+            {
                 let reason = format!("a {other} has this name as well");
                 let advice = "names stand before columns: give each thing its own".into();
-                return Err(document.error_of_name(table, twice, Problem::Refused { reason, advice }));
+                return Err(document.error_of_name(
+                    table,
+                    twice,
+                    Problem::Refused { reason, advice },
+                ));
             }
         }
     }
@@ -139,7 +149,8 @@ fn bearing(
     }
     for (race, body) in OWN_RACES.iter().zip(on) {
         let Some(body) = body else { continue };
-        let of_race = |path: &str| path.strip_prefix(race).is_some_and(|rest| rest.starts_with('.'));
+        let of_race =
+            |path: &str| path.strip_prefix(race).is_some_and(|rest| rest.starts_with('.'));
         if let Some(key) = scoped.given_keys().map(|key| key.path).find(|path| of_race(path)) {
             let reason = format!("this race sits on body.{}", bodies[body]);
             let advice = format!("write loads and motions in [body.{}]", bodies[body]);
@@ -171,7 +182,9 @@ fn carrier(
     let document = reader.document;
     let Some(name) = text(document, key) else {
         return match (side, bodies.len()) {
-            (0, 1) if text(document, "bearing.outer_on").as_deref() != Some(bodies[0]) => Ok(Some(0)),
+            (0, 1) if text(document, "bearing.outer_on").as_deref() != Some(bodies[0]) => {
+                Ok(Some(0))
+            }
             (0, 0 | 1) | (1, _) => Ok(None),
             _ => {
                 let reason = format!("there are several bodies: {}", bodies.join(", "));
@@ -221,10 +234,7 @@ fn name_defaults(
 }
 
 /// Two bearings whose balls would be in one place of a body.
-fn refuse_shared_places(
-    document: &Document,
-    bearings: &[PlacedBearing],
-) -> Result<(), SceneError> {
+fn refuse_shared_places(document: &Document, bearings: &[PlacedBearing]) -> Result<(), SceneError> {
     for (index, one) in bearings.iter().enumerate() {
         for other in &bearings[..index] {
             for side in [0, 1] {
@@ -233,8 +243,7 @@ fn refuse_shared_places(
                 else {
                     continue;
                 };
-                let room =
-                    one.scene.geometry.ball_radius + other.scene.geometry.ball_radius;
+                let room = one.scene.geometry.ball_radius + other.scene.geometry.ball_radius;
                 let (Some(name), Some(second)) = (&one.name, &other.name) else { continue };
                 if a == b && (at - there).abs() < room {
                     let reason = format!(
@@ -244,7 +253,11 @@ fn refuse_shared_places(
                     );
                     let key = ["inner_at", "outer_at"][side];
                     let advice = format!("give each its place, such as {key} = \"60 mm\"");
-                    return Err(document.error_of_name("bearing", name, Problem::Refused { reason, advice }));
+                    return Err(document.error_of_name(
+                        "bearing",
+                        name,
+                        Problem::Refused { reason, advice },
+                    ));
                 }
             }
         }
@@ -255,9 +268,11 @@ fn refuse_shared_places(
 /// Bodies that nothing is joined to.
 fn refuse_free_bodies(document: &Document, scene: &AssemblyScene) -> Result<(), SceneError> {
     for (index, body) in scene.bodies.iter().enumerate() {
-        let carries = scene.bearings.iter().flat_map(|bearing| bearing.carriers).any(
-            |carrier| matches!(carrier, Carrier::Body { index: on, .. } if on == index),
-        );
+        let carries = scene
+            .bearings
+            .iter()
+            .flat_map(|bearing| bearing.carriers)
+            .any(|carrier| matches!(carrier, Carrier::Body { index: on, .. } if on == index));
         let joined =
             scene.springs.iter().any(|spring| spring.ends.iter().any(|end| end.0 == Some(index)));
         if !carries && !joined {
@@ -266,7 +281,11 @@ fn refuse_free_bodies(document: &Document, scene: &AssemblyScene) -> Result<(), 
                 "name it in a bearing (inner_on = {0:?}) or a spring (from = {0:?}), or leave it out",
                 body.name
             );
-            return Err(document.error_of_name("body", &body.name, Problem::Refused { reason, advice }));
+            return Err(document.error_of_name(
+                "body",
+                &body.name,
+                Problem::Refused { reason, advice },
+            ));
         }
     }
     Ok(())
@@ -284,7 +303,8 @@ fn body(
     let keys = ["mass", "axial", "transverse"].map(|key| format!("body.inertia.{key}"));
     let inertia = if needs_mass || keys.iter().any(|key| reader.is_given(key)) {
         let because = format!(" of body.{name}, for a run and with gravity");
-        let [mass, axial, transverse] = keys.each_ref().map(|k| reader.required_number(k, &because));
+        let [mass, axial, transverse] =
+            keys.each_ref().map(|k| reader.required_number(k, &because));
         let inertia = Inertia { mass: mass?, axial: axial?, transverse: transverse? };
         check_inertia(&reader, &keys[1], inertia.axial, inertia.transverse)?;
         inertia
@@ -318,7 +338,9 @@ fn spring(
             None | Some(GROUND) => Ok(None),
             Some(body) => match bodies.iter().position(|other| *other == body) {
                 Some(index) => Ok(Some(index)),
-                None => Err(reader.document.error(key, no_such(body, "body", bodies.iter().copied()))),
+                None => {
+                    Err(reader.document.error(key, no_such(body, "body", bodies.iter().copied())))
+                }
             },
         }
     };

@@ -147,7 +147,8 @@ fn outer_rotation(reader: &Reader, motion: &str) -> Result<Rotation, SceneError>
     };
     if reader.is_given(other) {
         let reason = "6-dof is turned by a torque, 5-dof at a speed";
-        let advice = format!("write {} instead, or the other motion", own.replace("outer_race.", ""));
+        let advice =
+            format!("write {} instead, or the other motion", own.replace("outer_race.", ""));
         return Err(reader.document.error(other, Problem::NotApplicable { reason, advice }));
     }
     let profile = reader.profile(own).unwrap_or(Profile::ZERO);

@@ -67,7 +67,8 @@ fn place(summary: &Value, body: &str) -> [f64; 5] {
 #[test]
 fn forces_of_both_bearings_and_the_loads_are_in_balance() {
     let summary = statics(&[BEARING, ENDS, SHAFT].concat());
-    let (left, right) = (force(&summary, "left", "inner_race"), force(&summary, "right", "inner_race"));
+    let (left, right) =
+        (force(&summary, "left", "inner_race"), force(&summary, "right", "inner_race"));
     for (axis, load) in [100.0, 30.0, -500.0].into_iter().enumerate() {
         let sum: f64 = left[axis] + right[axis] + load;
         // Statics stops at 1e-11 of the largest ball load, some 600 N.
@@ -126,10 +127,9 @@ stiffness = {{ x = "2e7 N/m", y = "3e7 N/m", z = "3e7 N/m", turn_y = "1e5 N m/ra
 "#
     );
     // The keys of [bearing] come before its subtables.
-    let scene = scene.replace("\ninner_on = \"shaft\"\nouter_on = \"hub\"", "").replace(
-        "balls = 11\n",
-        "balls = 11\ninner_on = \"shaft\"\nouter_on = \"hub\"\n",
-    );
+    let scene = scene
+        .replace("\ninner_on = \"shaft\"\nouter_on = \"hub\"", "")
+        .replace("balls = 11\n", "balls = 11\ninner_on = \"shaft\"\nouter_on = \"hub\"\n");
     let summary = statics(&scene);
     let hub = place(&summary, "hub");
     assert!((hub[0] - 300.0 / 2e7).abs() <= 1e-9 * 300.0 / 2e7, "{:e}", hub[0]);
@@ -249,7 +249,9 @@ fn a_sweep_varies_a_key_of_a_named_table() {
 fn check_and_plan_tell_what_sits_where() {
     let path = scene("shaft_back_to_back.toml");
     let said = done(&["check", &path]);
-    for words in ["bearing left", "body shaft", "reversed", "inner race on body.shaft at -40.0000 mm"] {
+    for words in
+        ["bearing left", "body shaft", "reversed", "inner race on body.shaft at -40.0000 mm"]
+    {
         assert!(said.contains(words), "{words:?} in\n{said}");
     }
     let understood: Value = serde_json::from_str(&done(&["check", &path, "--json"])).expect("JSON");
@@ -298,7 +300,10 @@ fn bad_assemblies_are_refused() {
         ),
         (
             "a free body",
-            format!("{}\n[body.loose]\n", whole.replace("inner_at", "inner_on = \"shaft\"\ninner_at")),
+            format!(
+                "{}\n[body.loose]\n",
+                whole.replace("inner_at", "inner_on = \"shaft\"\ninner_at")
+            ),
             vec!["body.loose", "nothing is joined to this body"],
         ),
         (
@@ -326,7 +331,11 @@ fn bad_assemblies_are_refused() {
             whole.replace("left", "\"a-b\""),
             vec!["bearing.a-b", "letters, digits and underscores"],
         ),
-        ("a mistyped table", format!("{whole}\n[bearing.cagee]\nmass = \"1 kg\"\n"), vec!["bearing.cage"]),
+        (
+            "a mistyped table",
+            format!("{whole}\n[bearing.cagee]\nmass = \"1 kg\"\n"),
+            vec!["bearing.cage"],
+        ),
         ("ten thousand bodies", format!("{whole}\n{many}"), vec!["more than 500"]),
         (
             "a shaft without mass that is to move",

@@ -40,7 +40,9 @@ fn no_object_of_the_schema_lets_unknown_keys_through() {
         if let Some(properties) = value.get("properties").filter(|_| value.get("type").is_some()) {
             // Of tables with names anything else is a name of such a table.
             match &value["additionalProperties"] {
-                Value::Object(named) => assert_eq!(named["additionalProperties"], Value::Bool(false)),
+                Value::Object(named) => {
+                    assert_eq!(named["additionalProperties"], Value::Bool(false))
+                }
                 other => assert_eq!(*other, Value::Bool(false), "{value}"),
             }
             *closed += 1;

@@ -503,11 +503,14 @@ fn a_default_of_the_table_is_the_one_in_use() {
     trees.push(base(
         "[inner_race.rotating_load]\nforce = \"1 N\"\nspeed = \"50 rpm\"\n[outer_race]\nmotion = \"6-dof\"\n",
     ));
-    trees.push(base(
-        "[body.hub]\nspeed = \"0 rpm\"\nrotating_load = { force = \"1 N\", speed = \"50 rpm\" }\n\
-         inertia = { mass = \"1 kg\", axial = \"1 kg m^2\", transverse = \"1 kg m^2\" }\n\
-         [spring.mount]\nfrom = \"hub\"\nstiffness = { x = \"1 N/m\" }\ndamping = { x = \"1 N s/m\" }\n",
-    ));
+    for along in ["x", "y"] {
+        trees.push(base(&format!(
+            "[body.hub]\nspeed = \"0 rpm\"\nrotating_load = {{ force = \"1 N\", speed = \"50 rpm\" }}\n\
+             inertia = {{ mass = \"1 kg\", axial = \"1 kg m^2\", transverse = \"1 kg m^2\" }}\n\
+             [spring.mount]\nfrom = \"hub\"\nstiffness = {{ {along} = \"1 N/m\" }}\n\
+             damping = {{ {along} = \"1 N s/m\" }}\n"
+        )));
+    }
     // What all shipped scenes state.
     for (scene, table, key) in
         [("bar_impact.toml", "solid", "material"), ("interference_fit.toml", "housing", "method")]

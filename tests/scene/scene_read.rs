@@ -46,7 +46,8 @@ fn every_shipped_scene_resolves_and_cites_its_source() {
                 assert!(source.contains("Table"), "{}: {source}", path.display());
             }
             Subject::Assembly(scene) => {
-                let source = scene.common().source.as_ref().expect("every shipped scene names its source");
+                let source =
+                    scene.common().source.as_ref().expect("every shipped scene names its source");
                 assert!(source.contains("Table"), "{}: {source}", path.display());
             }
             Subject::Solid(scene) => assert!(scene.source.is_some(), "{}", path.display()),

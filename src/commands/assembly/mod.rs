@@ -137,7 +137,9 @@ pub fn lines(scene: &AssemblyScene) -> Vec<(String, String)> {
     }
     for spring in &scene.springs {
         let end = |(body, _): (Option<usize>, f64)| {
-            body.map_or("the ground".to_string(), |index| format!("body.{}", scene.bodies[index].name))
+            body.map_or("the ground".to_string(), |index| {
+                format!("body.{}", scene.bodies[index].name)
+            })
         };
         let [from, to] = spring.ends.map(end);
         said.push((format!("spring {}", spring.name), format!("from {from} to {to}")));
@@ -152,7 +154,8 @@ pub fn plan_lines(scene: &AssemblyScene) -> Fallible<Vec<String>> {
         let own = solve::plan_lines(&static_problem(&placed.scene)?);
         // What these say of a bearing alone.
         let shared = ["race equilibrium", "outer race motion", "flexible bodies"];
-        let own = own.into_iter().filter(|line| !shared.iter().any(|name| line[6..].starts_with(name)));
+        let own =
+            own.into_iter().filter(|line| !shared.iter().any(|name| line[6..].starts_with(name)));
         lines.extend(own.map(|line| match &placed.name {
             Some(name) => format!("{}{name}: {}", &line[..6], &line[6..]),
             None => line,
@@ -171,7 +174,10 @@ pub fn plan_lines(scene: &AssemblyScene) -> Fallible<Vec<String>> {
         0 => format!("skips {:<28} none is given", "springs between bodies"),
         some => format!("does  {:<28} {some} of them", "springs between bodies"),
     });
-    lines.push(format!("skips {:<28} the scene has none: no mesh, no element stage", "flexible bodies"));
+    lines.push(format!(
+        "skips {:<28} the scene has none: no mesh, no element stage",
+        "flexible bodies"
+    ));
     Ok(lines)
 }
 

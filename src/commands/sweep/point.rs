@@ -3,11 +3,11 @@
 use super::grid::Grid;
 use super::housed::{self, Kept};
 use bearing_dynamics::output::Column;
+use bearing_dynamics::output::assembly_results::key;
 use bearing_dynamics::output::results::load_zone_of;
+use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{Document, Subject};
-use bearing_dynamics::output::assembly_results::key;
-use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
 use bearing_dynamics::solver::statics::{
     AssemblySolution, BallState, COORDINATE_NAMES, Determinacy, StaticOptions, StaticSolution,

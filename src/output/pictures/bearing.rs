@@ -204,7 +204,9 @@ fn slip_spin(
     table: &RunTable,
     prefix: &str,
 ) -> Result<Vec<(String, String)>, PlotError> {
-    let Some(angle) = table.windowed(&format!("{prefix}ball_1_angle")) else { return Ok(Vec::new()) };
+    let Some(angle) = table.windowed(&format!("{prefix}ball_1_angle")) else {
+        return Ok(Vec::new());
+    };
     let Some(last) = angle.last() else { return Ok(Vec::new()) };
     let over_last_turn = |values: Vec<f64>| {
         let turn = angle.iter().zip(values).filter(|(angle, _)| (**angle - last).abs() < 360.0);

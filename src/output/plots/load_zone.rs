@@ -31,11 +31,7 @@ pub struct LoadZoneBall {
 }
 
 impl LoadZone {
-    pub fn new(
-        title: impl Into<String>,
-        geometry: &BearingGeometry,
-        balls: &[BallState],
-    ) -> Self {
+    pub fn new(title: impl Into<String>, geometry: &BearingGeometry, balls: &[BallState]) -> Self {
         let ball = |ball: &BallState| LoadZoneBall {
             azimuth: ball.azimuth,
             loaded: ball.inner.normal_load > 0.0,
