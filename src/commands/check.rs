@@ -1,12 +1,12 @@
 //! `bearing check SCENE`.
 
 use super::run::planned_request;
-use super::{CommandResult, Outcome, echo, echo_run, say};
+use super::{CommandResult, Outcome, assembly, echo, echo_run, say};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::session::table_size;
 use bearing_dynamics::output::visible::visible_line;
-use bearing_dynamics::scene::dynamics::dynamic_problem;
+use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::{
     CageInRun, Document, RunSettings, Scene, Subject, resolve_subject, statics::static_problem,
 };
@@ -33,53 +33,74 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         Subject::Housed(housed) => {
             return super::housed::check::run(&arguments.scene, &document, &housed, arguments.json);
         }
-        Subject::Bearing(scene) => *scene,
+        Subject::Bearing(scene) => AssemblyScene::alone(*scene),
+        Subject::Assembly(scene) => *scene,
     };
-    static_problem(&scene)?;
-    // A bearing that is to move has to make bodies, too.
-    let in_motion = match scene.dynamics.run {
-        Some(_) => Some(dynamic_problem(&scene)?),
-        None => None,
-    };
-    if let (Some(problem), Some(settings)) = (&in_motion, scene.dynamics.run.clone()) {
-        let (request, _) = planned_request(&scene, &settings, problem, None);
-        table_size(problem.assembly(), &request)?;
-        scene.dynamics.run = Some(RunSettings { options: request.options, ..settings });
+    for placed in &scene.bearings {
+        static_problem(&placed.scene)?;
     }
+    if let Some(settings) = scene.run().cloned() {
+        // Bearings that are to move have to make bodies, too.
+        let assembly = scene.assembly()?;
+        let (request, _) = planned_request(&scene, &settings, &assembly, None);
+        table_size(assembly, &request)?;
+        let run = RunSettings { options: request.options, ..settings };
+        scene.bearings[0].scene.dynamics.run = Some(run);
+    }
+    let scene = &scene;
     if arguments.json {
-        let mut understood = echo::scene(&scene)?;
-        if let Some(problem) = &in_motion {
-            understood["motion"] = echo_run::motion(problem)?;
-        }
-        if let Some(run) = &scene.dynamics.run {
+        let mut understood = assembly::echo(scene)?;
+        if let Some(run) = scene.run() {
+            understood["motion"] = assembly::motion(scene)?;
             understood["numerics"] = echo_run::numerics(run)?;
         }
-        understood["output"] = echo_run::output(&scene)?;
-        for (name, notes) in echo_run::notes(&scene.assumptions, &echo_run::defaults(&scene)) {
+        understood["output"] = echo_run::output(scene.common())?;
+        for (name, notes) in
+            echo_run::notes(&scene.common().assumptions, &assembly::defaults(scene))
+        {
             understood[name] = notes;
         }
         say(&pretty(&understood))?;
     } else {
-        say(&summary(&arguments.scene.display().to_string(), &scene))?;
+        say(&summary(&arguments.scene.display().to_string(), scene))?;
     }
     Ok(Outcome::Done)
 }
 
-fn summary(name: &str, scene: &Scene) -> String {
+fn summary(name: &str, scene: &AssemblyScene) -> String {
     let mut text = format!("{}: a valid scene\n", visible_line(name));
     let mut line = |label: &str, value: String| {
         let _ = writeln!(text, "  {label:<22} {}", visible_line(&value));
     };
-    bearing_lines(scene, &mut line);
-    if scene.dynamics.run.is_some() {
-        for (label, value) in motion(scene) {
-            line(label, value);
+    if let Some(title) = &scene.common().title {
+        line("title", title.clone());
+    }
+    for placed in &scene.bearings {
+        if let Some(name) = &placed.name {
+            line("bearing", format!("\"{name}\""));
+        }
+        bearing_lines(&placed.scene, &mut line);
+    }
+    match scene.only() {
+        Some(alone) if alone.dynamics.run.is_some() => {
+            for (label, value) in motion(alone) {
+                line(label, value);
+            }
+        }
+        Some(_) => {}
+        None => {
+            for (label, value) in assembly::lines(scene) {
+                line(&label, value);
+            }
+            if let Some(run) = scene.run() {
+                line("run", format!("to t = {} s by {}", run.end, stepping(run)));
+            }
         }
     }
-    for used in echo_run::defaults(scene) {
+    for used in assembly::defaults(scene) {
         line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
     }
-    for assumption in &scene.assumptions {
+    for assumption in &scene.common().assumptions {
         line("assumption", format!("{}: {}", assumption.name, assumption.text));
     }
     text
@@ -88,9 +109,6 @@ fn summary(name: &str, scene: &Scene) -> String {
 /// Title and geometry, a line each.
 pub fn bearing_lines(scene: &Scene, line: &mut impl FnMut(&str, String)) {
     let (geometry, sizes) = (&scene.geometry, &scene.dimensions);
-    if let Some(title) = &scene.title {
-        line("title", title.clone());
-    }
     let kind = match geometry.kind {
         BearingKind::DeepGroove => "deep-groove",
         BearingKind::AngularContact => "angular-contact",

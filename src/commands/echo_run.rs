@@ -5,10 +5,11 @@ use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::output::results::{ResultsError, quantity};
+use bearing_dynamics::scene::assembly::SceneBody;
 use bearing_dynamics::scene::{Assumption, DefaultUsed, Plot, RunPlot, RunSettings, Scene};
 use bearing_dynamics::solver::dynamics::assembly::BallMeeting;
 use bearing_dynamics::solver::dynamics::model::{
-    CageBody, Drive, DynamicProblem, RaceBody, Rotation,
+    CageBody, Drive, DynamicProblem, RaceBody, RotatingLoad, Rotation,
 };
 use bearing_dynamics::solver::dynamics::run::{Start, Stepping};
 use bearing_dynamics::solver::profile::Profile;
@@ -108,7 +109,25 @@ pub fn motion(problem: &DynamicProblem) -> Echo {
     if !matches!(problem.assembly().bearings[0].ball_meeting(), BallMeeting::KeptApart { .. }) {
         echo.insert("ball_contact".into(), ball_contact(problem)?);
     }
-    if let Some(load) = &problem.rotating_load {
+    turning(&mut echo, problem.rotating_load.as_ref(), problem.unbalance)?;
+    Ok(Value::Object(echo))
+}
+
+/// A rigid body besides races and cages.
+pub fn body(body: &SceneBody) -> Echo {
+    let mut echo = race(&body.race)?;
+    if let Value::Object(map) = &mut echo {
+        turning(map, body.rotating_load.as_ref(), body.unbalance)?;
+    }
+    Ok(echo)
+}
+
+fn turning(
+    echo: &mut Map<String, Value>,
+    load: Option<&RotatingLoad>,
+    unbalance: f64,
+) -> Result<(), ResultsError> {
+    if let Some(load) = load {
         let load = json!({
             "force": profile(&load.force, "N")?,
             "speed": profile(&load.speed, "rad/s")?,
@@ -116,10 +135,10 @@ pub fn motion(problem: &DynamicProblem) -> Echo {
         });
         echo.insert("rotating_load".into(), load);
     }
-    if problem.unbalance != 0.0 {
-        echo.insert("unbalance".into(), quantity("unbalance", problem.unbalance, "kg m")?);
+    if unbalance != 0.0 {
+        echo.insert("unbalance".into(), quantity("unbalance", unbalance, "kg m")?);
     }
-    Ok(Value::Object(echo))
+    Ok(())
 }
 
 fn inertia(inertia: &Inertia) -> Echo {

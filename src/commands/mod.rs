@@ -1,5 +1,6 @@
 //! One file a subcommand; here what they share.
 
+pub mod assembly;
 pub mod check;
 pub mod compare;
 pub mod earlier;

@@ -28,7 +28,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
             scene.display()
         )
         .into()),
-        Subject::Bearing(_) => Err(format!(
+        Subject::Bearing(_) | Subject::Assembly(_) => Err(format!(
             "{}: modes takes a solid by itself, and the scene holds a bearing; `bearing statics` \
              gives a bearing's stiffness",
             scene.display()

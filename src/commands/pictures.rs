@@ -32,9 +32,10 @@ pub fn write(
     let mut written = Vec::new();
     for plot in &scene.plots {
         let (name, svg) = match plot {
-            Plot::LoadZone => {
-                (NAMES[0], load_zone(&LoadZone::new(title.clone(), &problem.geometry, solution))?)
-            }
+            Plot::LoadZone => (
+                NAMES[0],
+                load_zone(&LoadZone::new(title.clone(), &problem.geometry, &solution.balls))?,
+            ),
             Plot::Polar => (NAMES[1], force_over_azimuth(&title, problem, solution)?),
             Plot::MomentTilt => (NAMES[2], moment_over_tilt(&title, problem)?),
         };

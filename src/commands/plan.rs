@@ -5,12 +5,12 @@ use super::run::planned_request;
 use super::solve::{lines, plan_lines};
 use super::{CommandResult, Outcome, say};
 use bearing_dynamics::output::session::{RunRequest, table_size};
-use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
+use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
 use bearing_dynamics::scene::{
-    CageInRun, Document, Scene, Subject, resolve_subject, statics::static_problem,
+    CageInRun, Document, Subject, resolve_subject, statics::static_problem,
 };
+use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::foretell::Choice;
-use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::plan;
 use std::path::PathBuf;
 
@@ -25,20 +25,22 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let scene = match resolve_subject(&document)? {
         Subject::Solid(solid) => return super::solid::plan::run(&document, &solid),
         Subject::Housed(housed) => return super::housed::plan::run(&document, &housed),
-        Subject::Bearing(scene) => *scene,
+        Subject::Bearing(scene) => AssemblyScene::alone(*scene),
+        Subject::Assembly(scene) => *scene,
     };
-    let mut planned = match run_options(&scene) {
-        Ok(settings) => {
-            let problem = dynamic_problem(&scene)?;
-            let (request, choice) = planned_request(&scene, &settings, &problem, None);
-            let mut lines = dynamic_plan_lines(&scene, &problem, &request, choice.as_ref());
-            lines.extend(step_lines(&problem, &request));
-            lines.push(size_line(&problem, &request));
+    let mut planned = match (scene.run(), scene.only()) {
+        (Some(settings), _) => {
+            let assembly = scene.assembly()?;
+            let (request, choice) = planned_request(&scene, settings, &assembly, None);
+            let mut lines = dynamic_plan_lines(&scene, &assembly, &request, choice.as_ref());
+            lines.extend(step_lines(&assembly, &request));
+            lines.push(size_line(&assembly, &request));
             lines
         }
-        Err(_) => plan_lines(&static_problem(&scene)?),
+        (None, Some(alone)) => plan_lines(&static_problem(alone)?),
+        (None, None) => super::assembly::plan_lines(&scene)?,
     };
-    if scene.rigid_housing {
+    if scene.common().rigid_housing {
         let reason = "housing.method = rigid: the outer race is fixed, no mesh is read";
         planned.push(format!("skips {:<28} {reason}", "housing"));
     }
@@ -47,8 +49,8 @@ pub fn run(arguments: &Arguments) -> CommandResult {
 }
 
 /// How much the run is going to write.
-fn size_line(problem: &DynamicProblem, request: &RunRequest) -> String {
-    let said = match table_size(problem.assembly(), request) {
+fn size_line(assembly: &Assembly, request: &RunRequest) -> String {
+    let said = match table_size(assembly.clone(), request) {
         Ok(size) => size.to_string(),
         Err(error) => format!("WARNING: the run will be refused: {error}"),
     };
@@ -57,17 +59,18 @@ fn size_line(problem: &DynamicProblem, request: &RunRequest) -> String {
 
 /// The plan of a run as text, one line a stage.
 pub fn dynamic_plan_lines(
-    scene: &Scene,
-    problem: &DynamicProblem,
+    scene: &AssemblyScene,
+    assembly: &Assembly,
     request: &RunRequest,
     choice: Option<&Choice>,
 ) -> Vec<String> {
-    let cage_left_out = match &scene.dynamics.cage {
+    let left_out = |placed: &PlacedBearing| match &placed.scene.dynamics.cage {
         CageInRun::Body(_) => None,
-        CageInRun::LeftOut(reason) => Some(reason.as_str()),
+        CageInRun::LeftOut(reason) => Some(reason.clone()),
     };
-    let mut all =
-        lines(plan::dynamics(problem, &request.options, &request.channels, cage_left_out));
+    let left_out: Vec<Option<String>> = scene.bearings.iter().map(left_out).collect();
+    let left_out: Vec<Option<&str>> = left_out.iter().map(Option::as_deref).collect();
+    let mut all = lines(plan::dynamics(assembly, &request.options, &request.channels, &left_out));
     if let Some(choice) = choice {
         let said = format!("{}: {}", choice.integrator.name(), choice.reason());
         all.push(format!("does  {:<28} {said}", "choice of the integrator"));

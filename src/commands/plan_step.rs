@@ -3,9 +3,9 @@
 
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::solver::clock::{given_steps, to_digits, whole_steps};
+use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::clocked::RunRequest;
 use bearing_dynamics::solver::dynamics::foretell::{FARTHEST_OFF, WITHIN, foretell};
-use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, SimulationError, Stepping,
 };
@@ -20,17 +20,17 @@ const WORTH_A_WORD: f64 = 3.0;
 const MOST_GENTLER: f64 = 10.0;
 
 /// The step of a run at its start, and advice where the onset of friction makes it short.
-pub fn step_lines(problem: &DynamicProblem, request: &RunRequest) -> Vec<String> {
+pub fn step_lines(assembly: &Assembly, request: &RunRequest) -> Vec<String> {
     let options = &request.options;
     match options.stepping {
-        Stepping::Accuracy(accuracy) => adaptive(problem, request, accuracy),
+        Stepping::Accuracy(accuracy) => adaptive(assembly, request, accuracy),
         Stepping::Fixed(step) if options.integrator != Integrator::RungeKutta => {
-            vec![note("given step", &format!("{step:.3e} s: {}", steps(problem, request, step)))]
+            vec![note("given step", &format!("{step:.3e} s: {}", steps(assembly, request, step)))]
         }
         // The start is the same; the limit does not depend on the fraction.
         Stepping::Fixed(step) => {
             let limited = RunOptions { stepping: Stepping::FractionOfLimit(1.0), ..*options };
-            let (said, advice) = match Simulation::new(problem.clone(), limited) {
+            let (said, advice) = match Simulation::new(assembly.clone(), limited) {
                 Ok(mut simulation) => match simulation.limit {
                     Some(limit) => (against(step, &limit), advice(&mut simulation, &limit)),
                     None => (NOT_STIFF.into(), None),
@@ -38,10 +38,10 @@ pub fn step_lines(problem: &DynamicProblem, request: &RunRequest) -> Vec<String>
                 Err(SimulationError::NoStep) => (NOT_STIFF.into(), None),
                 Err(error) => (refused(&error), None),
             };
-            let said = format!("{said}; {}", steps(problem, request, step));
+            let said = format!("{said}; {}", steps(assembly, request, step));
             std::iter::once(note("given step", &said)).chain(advice).collect()
         }
-        Stepping::FractionOfLimit(fraction) => automatic(problem, request, fraction),
+        Stepping::FractionOfLimit(fraction) => automatic(assembly, request, fraction),
     }
 }
 
@@ -55,15 +55,15 @@ fn refused(error: &SimulationError) -> String {
     format!("WARNING: the run will be refused: {error}")
 }
 
-fn steps(problem: &DynamicProblem, request: &RunRequest, step: f64) -> String {
+fn steps(assembly: &Assembly, request: &RunRequest, step: f64) -> String {
     let RunRequest { end, output_interval, .. } = request;
-    let count = given_steps(&problem.assembly().corners(), *output_interval, *end, step);
+    let count = given_steps(&assembly.corners(), *output_interval, *end, step);
     format!("{count} steps to t = {end} s")
 }
 
 /// How many steps, and where the number comes from.
-fn foretold(problem: &DynamicProblem, request: &RunRequest) -> String {
-    match foretell(&problem.assembly(), request) {
+fn foretold(assembly: &Assembly, request: &RunRequest) -> String {
+    match foretell(assembly, request) {
         Err(error) => format!("WARNING: the run will be refused: {error}"),
         Ok(found) if found.whole => {
             format!(
@@ -102,8 +102,8 @@ fn against(step: f64, limit: &StepLimit) -> String {
     )
 }
 
-fn automatic(problem: &DynamicProblem, request: &RunRequest, fraction: f64) -> Vec<String> {
-    let mut simulation = match Simulation::new(problem.clone(), request.options) {
+fn automatic(assembly: &Assembly, request: &RunRequest, fraction: f64) -> Vec<String> {
+    let mut simulation = match Simulation::new(assembly.clone(), request.options) {
         Ok(simulation) => simulation,
         Err(error) => return vec![note("step", &refused(&error))],
     };
@@ -115,13 +115,13 @@ fn automatic(problem: &DynamicProblem, request: &RunRequest, fraction: f64) -> V
          shortened on the way where contacts get stiffer",
         limit.step,
         limit.reason(),
-        foretold(problem, request)
+        foretold(assembly, request)
     );
     std::iter::once(note("step", &said)).chain(advice(&mut simulation, &limit)).collect()
 }
 
-fn adaptive(problem: &DynamicProblem, request: &RunRequest, accuracy: f64) -> Vec<String> {
-    let simulation = match Simulation::new(problem.clone(), request.options) {
+fn adaptive(assembly: &Assembly, request: &RunRequest, accuracy: f64) -> Vec<String> {
+    let simulation = match Simulation::new(assembly.clone(), request.options) {
         Ok(simulation) => simulation,
         Err(error) => return vec![note("step", &refused(&error))],
     };
@@ -133,7 +133,7 @@ fn adaptive(problem: &DynamicProblem, request: &RunRequest, accuracy: f64) -> Ve
         to_digits(accuracy * 1e6 * overlap, 3),
         to_digits(1e6 * overlap, 5),
         simulation.step_size,
-        foretold(problem, request)
+        foretold(assembly, request)
     );
     vec![note("step", &said)]
 }

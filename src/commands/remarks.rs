@@ -3,12 +3,15 @@
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use bearing_dynamics::scene::Scene;
-use bearing_dynamics::scene::statics::orbital_speed;
+use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
+use bearing_dynamics::scene::statics::{ball_mass, orbital_speed};
 use bearing_dynamics::solver::clock::told;
+use bearing_dynamics::solver::dynamics::assembly::Bearing;
 use bearing_dynamics::solver::dynamics::extremes::{Extreme, Extremes};
-use bearing_dynamics::solver::dynamics::model::DynamicProblem;
+use bearing_dynamics::solver::dynamics::run::Simulation;
+use bearing_dynamics::solver::static_assembly::StaticAssembly;
 use bearing_dynamics::solver::statics::{
-    BallState, ContactState, Determinacy, StaticProblem, StaticSolution,
+    AssemblySolution, BallState, ContactState, Determinacy, StaticProblem, StaticSolution,
 };
 
 /// Pressure above which ISO 76 counts on lasting dents in ball bearings, Pa.
@@ -68,11 +71,68 @@ pub fn of_statics(
                 .into(),
         );
     }
-    let grooves = [problem.geometry.inner.groove_radius, problem.geometry.outer.groove_radius];
+    let apart = [0, 1, 2].map(|i| solution.coordinates[i] - problem.outer_pose.position[i]);
+    let still = Still {
+        contacts: [&problem.inner_contact, &problem.outer_contact],
+        balls: &solution.balls,
+        apart: norm(apart),
+    };
+    remarks.extend(of_balls(scene, &still));
+    remarks
+}
+
+/// Of an equilibrium of several bodies.
+pub fn of_assembly(
+    scene: &AssemblyScene,
+    assembly: &StaticAssembly,
+    solution: &AssemblySolution,
+) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if let Determinacy::Indeterminate { free_directions } = &solution.determinacy {
+        remarks.push(format!(
+            "indeterminate: {} directions of the bodies meet no stiffness, the position shown is one of many; \
+             load the bearings, preload them, or hold these coordinates",
+            free_directions.len()
+        ));
+    }
+    if solution.saddles_left > 0 {
+        remarks.push(
+            "an unstable position was left for one beside it; its mirror image is an equilibrium too".into(),
+        );
+    }
+    for ((placed, bearing), state) in
+        scene.bearings.iter().zip(&assembly.bearings).zip(&solution.bearings)
+    {
+        let [inner, outer] = state.centres;
+        let still = Still {
+            contacts: [&bearing.inner_contact, &bearing.outer_contact],
+            balls: &state.balls,
+            apart: norm((inner - outer).into()),
+        };
+        remarks.extend(named(placed, of_balls(&placed.scene, &still)));
+    }
+    remarks
+}
+
+fn norm(of: [f64; 3]) -> f64 {
+    of.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// A bearing in equilibrium.
+struct Still<'s> {
+    contacts: [&'s HertzContact; 2],
+    balls: &'s [BallState],
+    /// Centres of the races, m.
+    apart: f64,
+}
+
+fn of_balls(scene: &Scene, still: &Still) -> Vec<String> {
+    let geometry = &scene.geometry;
+    let grooves = [geometry.inner.groove_radius, geometry.outer.groove_radius];
     let mut seen = Seen::default();
     let reversed =
         |contact: &ContactState| contact.normal_load > 0.0 && contact.contact_angle < -BOTTOM;
-    for (ball, state) in solution.balls.iter().enumerate() {
+    for (ball, state) in still.balls.iter().enumerate() {
         for (side, contact) in [&state.inner, &state.outer].into_iter().enumerate() {
             take(&mut seen.loads[side], contact.normal_load, ball);
             let angle = contact.contact_angle.abs();
@@ -86,16 +146,31 @@ pub fn of_statics(
             seen.reversed.push(ball + 1);
         }
     }
-    let apart = [0, 1, 2].map(|i| solution.coordinates[i] - problem.outer_pose.position[i]);
-    seen.apart.value = apart.iter().map(|x| x * x).sum::<f64>().sqrt();
-    remarks.extend(shared(scene, [&problem.inner_contact, &problem.outer_contact], &seen));
-    remarks.extend(gyroscopic(problem, solution));
-    remarks.extend(without_centrifugal(scene, problem, solution));
+    seen.apart.value = still.apart;
+    let mut remarks = shared(scene, still.contacts, &seen);
+    remarks.extend(gyroscopic(scene, still.balls));
+    remarks.extend(without_centrifugal(scene, still.balls));
     remarks
 }
 
 /// Of a run: of every step so far.
-pub fn of_run(scene: &Scene, problem: &DynamicProblem, extremes: &Extremes) -> Vec<String> {
+pub fn of_run(scene: &AssemblyScene, simulation: &Simulation) -> Vec<String> {
+    let bearings = simulation.system.assembly.bearings.iter().zip(&simulation.extremes);
+    let each = scene.bearings.iter().zip(bearings).map(|(placed, (bearing, extremes))| {
+        named(placed, of_moving(&placed.scene, bearing, extremes))
+    });
+    each.flatten().collect()
+}
+
+/// With the name of the bearing that they are about.
+fn named(placed: &PlacedBearing, remarks: Vec<String>) -> Vec<String> {
+    match &placed.name {
+        None => remarks,
+        Some(name) => remarks.iter().map(|said| format!("bearing {name}: {said}")).collect(),
+    }
+}
+
+fn of_moving(scene: &Scene, problem: &Bearing, extremes: &Extremes) -> Vec<String> {
     let mut reversed: Vec<usize> = extremes
         .races
         .iter()
@@ -235,13 +310,14 @@ fn far_apart(scene: &Scene, seen: &Seen) -> Option<String> {
 ///
 /// A ball that rolls on the outer race without spin there turns at Ω R/r about the line across its contact;
 /// the part of that across the bearing's axis, Ω (R/r) sin α, is what Ω turns round: J Ω² (R/r) sin α.
-fn gyroscopic(problem: &StaticProblem, solution: &StaticSolution) -> Option<String> {
-    let speed = problem.orbital_speed.abs();
-    if speed == 0.0 || problem.ball_mass == 0.0 {
+fn gyroscopic(scene: &Scene, balls: &[BallState]) -> Option<String> {
+    let speed = if scene.centrifugal { orbital_speed(scene).abs() } else { 0.0 };
+    let mass = ball_mass(scene);
+    if speed == 0.0 || mass == 0.0 {
         return None;
     }
-    let g = &problem.geometry;
-    let inertia = 0.4 * problem.ball_mass * g.ball_radius * g.ball_radius;
+    let g = &scene.geometry;
+    let inertia = 0.4 * mass * g.ball_radius * g.ball_radius;
     let share = |ball: &BallState| {
         let outer = &ball.outer;
         let across = speed * g.pitch_radius / g.ball_radius * libm::sin(outer.contact_angle);
@@ -250,8 +326,7 @@ fn gyroscopic(problem: &StaticProblem, solution: &StaticSolution) -> Option<Stri
         let loads = ball.inner.normal_load + outer.normal_load;
         if loads > 0.0 { [moment / (g.ball_radius * loads), moment] } else { [0.0; 2] }
     };
-    let most = solution
-        .balls
+    let most = balls
         .iter()
         .map(share)
         .fold([0.0; 2], |most, one| if one[0] > most[0] { one } else { most });
@@ -266,17 +341,13 @@ fn gyroscopic(problem: &StaticProblem, solution: &StaticSolution) -> Option<Stri
 }
 
 /// A bearing that turns, solved without the centrifugal force of its balls.
-fn without_centrifugal(
-    scene: &Scene,
-    problem: &StaticProblem,
-    solution: &StaticSolution,
-) -> Option<String> {
+fn without_centrifugal(scene: &Scene, balls: &[BallState]) -> Option<String> {
     let speed = orbital_speed(scene);
     if scene.centrifugal || speed == 0.0 {
         return None;
     }
-    let force = problem.ball_mass * speed * speed * problem.geometry.pitch_radius;
-    let loads = solution.balls.iter().map(|b| b.inner.normal_load.max(b.outer.normal_load));
+    let force = ball_mass(scene) * speed * speed * scene.geometry.pitch_radius;
+    let loads = balls.iter().map(|b| b.inner.normal_load.max(b.outer.normal_load));
     let largest = loads.fold(0.0, f64::max);
     // NaN says nothing.
     (force > CENTRIFUGAL * largest).then(|| {

@@ -32,6 +32,10 @@ pub fn run(arguments: &Arguments) -> CommandResult {
             let Arguments { scene, out, dry } = arguments;
             return super::housed::statics::run(scene, &document, &housed, out, *dry);
         }
+        Subject::Assembly(assembly) => {
+            let Arguments { scene, out, dry } = arguments;
+            return super::assembly::statics::run(scene, &assembly, out, *dry);
+        }
         Subject::Bearing(scene) => *scene,
     };
     let folder = match arguments.dry {

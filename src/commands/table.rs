@@ -1,7 +1,10 @@
 //! A static solution as a person reads it on a terminal.
 
 use bearing_dynamics::output::results::load_zone_of;
-use bearing_dynamics::solver::statics::{COORDINATE_NAMES, ContactState, StaticSolution};
+use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
+use bearing_dynamics::solver::statics::{
+    AssemblySolution, BallState, COORDINATE_NAMES, ContactState, StaticSolution,
+};
 use std::fmt::Write;
 
 /// Position, reactions, stiffness, balls and what to beware of.
@@ -9,8 +12,8 @@ pub fn render(solution: &StaticSolution, remarks: &[String]) -> String {
     let mut text = String::new();
     race(&mut text, solution);
     stiffness(&mut text, solution);
-    balls(&mut text, solution);
-    let (loaded, extent) = load_zone_of(solution);
+    ball_lines(&mut text, &solution.balls);
+    let (loaded, extent) = load_zone_of(&solution.balls);
     let _ = writeln!(
         text,
         "\n{loaded} of {} balls loaded, load zone {} deg",
@@ -28,13 +31,66 @@ pub fn render(solution: &StaticSolution, remarks: &[String]) -> String {
     text
 }
 
+/// The same of several bodies and bearings; `names` are those of the bearings.
+pub fn render_assembly(
+    assembly: &StaticAssembly,
+    names: &[&str],
+    solution: &AssemblySolution,
+    remarks: &[String],
+) -> String {
+    let mut text = String::new();
+    let all = solution.bearings.iter().flat_map(|bearing| &bearing.balls);
+    let largest = all.map(|ball| ball.inner.normal_load).fold(0.0, f64::max);
+    for (index, body) in assembly.bodies.iter().enumerate() {
+        if matches!(body.place, Place::Held(_)) {
+            continue;
+        }
+        let (q, loads) = (&solution.coordinates[index], &solution.loads[index]);
+        coordinates(&mut text, &body.name, q.as_slice(), loads.as_slice(), largest);
+        text.push('\n');
+    }
+    for (name, bearing) in names.iter().zip(&solution.bearings) {
+        let [force, _] = &bearing.forces;
+        let _ = write!(
+            text,
+            "bearing {name}: force of the balls on the inner race {}, {}, {} N",
+            fixed(force.x, 6),
+            fixed(force.y, 6),
+            fixed(force.z, 6)
+        );
+        ball_lines(&mut text, &bearing.balls);
+        let (loaded, extent) = load_zone_of(&bearing.balls);
+        let _ = writeln!(
+            text,
+            "{loaded} of {} balls loaded, load zone {} deg\n",
+            bearing.balls.len(),
+            fixed(extent.to_degrees(), 3)
+        );
+    }
+    let _ = writeln!(
+        text,
+        "{} iterations, {} ball-race evaluations, unbalanced load {:.1e} N",
+        solution.iterations, solution.contact_evaluations, solution.residual
+    );
+    for remark in remarks {
+        let _ = writeln!(text, "note: {remark}");
+    }
+    text
+}
+
 fn race(text: &mut String, solution: &StaticSolution) {
-    let q = &solution.coordinates;
-    let _ = writeln!(text, "inner race      displacement, tilt      load, moment");
+    let largest = solution.balls.iter().map(|b| b.inner.normal_load).fold(0.0, f64::max);
+    let (q, loads) = (&solution.coordinates, &solution.loads);
+    coordinates(text, "inner race", q.as_slice(), loads.as_slice(), largest);
+}
+
+/// Five coordinates of a body and what holds it there; `largest` ball load, N.
+fn coordinates(text: &mut String, body: &str, q: &[f64], loads: &[f64], largest: f64) {
+    let _ = writeln!(text, "{body:<15} displacement, tilt      load, moment");
     for (i, name) in COORDINATE_NAMES.iter().enumerate() {
         let (value, unit, load_unit) =
             if i < 3 { (1e6 * q[i], "um ", "N") } else { (q[i].to_degrees(), "deg", "N m") };
-        let load = without_noise(solution.loads[i], solution, i);
+        let load = without_noise(loads[i], largest, i);
         let (value, load) = (fixed(value, 6), fixed(load, 6));
         let _ = writeln!(text, "  {name:<10} {value:>16} {unit} {load:>18} {load_unit}");
     }
@@ -61,7 +117,7 @@ fn stiffness(text: &mut String, solution: &StaticSolution) {
     }
 }
 
-fn balls(text: &mut String, solution: &StaticSolution) {
+fn ball_lines(text: &mut String, balls: &[BallState]) {
     let _ = writeln!(
         text,
         "\nball  azimuth      inner load      outer load  inner angle  outer angle  inner pressure  \
@@ -75,7 +131,7 @@ fn balls(text: &mut String, solution: &StaticSolution) {
             "open".into()
         }
     };
-    for (index, ball) in solution.balls.iter().enumerate() {
+    for (index, ball) in balls.iter().enumerate() {
         let degrees = ball.azimuth.to_degrees().rem_euclid(360.0);
         let _ = writeln!(
             text,
@@ -101,8 +157,7 @@ fn fixed(value: f64, digits: usize) -> String {
 }
 
 /// A load that only rounding keeps from zero is shown as zero.
-fn without_noise(load: f64, solution: &StaticSolution, index: usize) -> f64 {
-    let largest = solution.balls.iter().map(|b| b.inner.normal_load).fold(0.0, f64::max);
+fn without_noise(load: f64, largest: f64, index: usize) -> f64 {
     let lever = if index < 3 { 1.0 } else { 1.0e-1 };
     if load.abs() <= 1e-9 * largest * lever { 0.0 } else { load }
 }

@@ -1,7 +1,7 @@
 //! What a run leaves behind: results folders, plots, case packs, and the comparison of two results.
 //!
 //! - [`series`]: tables of numbers with named columns and units, as `.csv` and `.npy`
-//! - [`results`]: the results folder of one static solution
+//! - [`results`], [`assembly_results`]: the results folder of one static solution
 //! - [`session`]: a run of whatever moves; [`recorder`] keeps its rows, [`mod@state`] is what it resumes from,
 //!   [`table`] and [`summary`] say what came of it
 //! - [`course`]: a bearing in a condensed housing, one equilibrium a row
@@ -28,6 +28,7 @@
 //! | `state.json`, `state-N.npy` | what the run goes on from |
 //!
 //! Lengths in m, loads in N, angles in degrees, speeds in rad/s.
+pub mod assembly_results;
 pub mod atomic;
 pub mod compare;
 pub mod course;

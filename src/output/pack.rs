@@ -13,9 +13,8 @@ use crate::output::atomic::{WriteError, write_atomic};
 use crate::output::compare::tolerance::{
     ChannelTolerance, ToleranceClass, ToleranceError, Tolerances,
 };
-use crate::output::results::{ResultsError, RunRecord, pretty, write_static_results};
+use crate::output::results::{ResultsError, RunRecord, pretty};
 use crate::scene::input_file::{self, InputError, LARGEST_DATA, LARGEST_JSON};
-use crate::solver::statics::StaticSolution;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -83,8 +82,8 @@ pub enum PackError {
 pub fn write_pack(
     folder: &Path,
     input: &PackInput,
-    solution: &StaticSolution,
     run: &RunRecord,
+    results: impl FnOnce(&Path) -> Result<Vec<PathBuf>, ResultsError>,
 ) -> Result<Manifest, PackError> {
     if !is_plain_name(input.scene_name) || EXPECTED.contains(&input.scene_name) {
         return Err(PackError::SceneName { name: input.scene_name.to_string() });
@@ -100,7 +99,7 @@ pub fn write_pack(
     }
     tolerances.check()?;
     // The manifest goes last: a pack without one is incomplete.
-    write_static_results(folder, solution, run)?;
+    results(folder)?;
     let tolerances = serde_json::to_value(&tolerances).expect("tolerances are plain JSON");
     let texts = [
         (input.scene_name, input.scene_text.to_string()),

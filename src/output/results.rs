@@ -119,6 +119,14 @@ const CONTACT_COLUMNS: [(&str, &str); 9] = [
 /// pressure and force of the inner and of the outer contact (columns `inner_load`, …,
 /// `outer_force_on_race_z`).
 pub fn ball_series(solution: &StaticSolution) -> Result<Series, SeriesError> {
+    let columns = ball_columns();
+    let values: Vec<f64> = ball_rows(&solution.balls).flatten().collect();
+    let data = Array2::from_shape_vec((solution.balls.len(), columns.len()), values)
+        .expect("every ball gives one value per column");
+    Series::new(columns, data)
+}
+
+pub(super) fn ball_columns() -> Vec<Column> {
     let mut columns: Vec<Column> =
         BALL_COLUMNS.iter().map(|(name, unit)| Column::new(*name, *unit)).collect();
     for race in ["inner", "outer"] {
@@ -126,22 +134,24 @@ pub fn ball_series(solution: &StaticSolution) -> Result<Series, SeriesError> {
             columns.push(Column::new(format!("{race}_{name}"), unit));
         }
     }
-    let mut values = Vec::with_capacity(columns.len() * solution.balls.len());
-    for (index, ball) in solution.balls.iter().enumerate() {
-        values.extend([(index + 1) as f64, ball.azimuth.to_degrees()]);
+    columns
+}
+
+/// A row for each ball, one value a column.
+pub(super) fn ball_rows(balls: &[BallState]) -> impl Iterator<Item = Vec<f64>> {
+    balls.iter().enumerate().map(|(index, ball)| {
+        let mut values = vec![(index + 1) as f64, ball.azimuth.to_degrees()];
         values.extend(ball.position.iter());
         values.push(ball.cage_force);
         for contact in [&ball.inner, &ball.outer] {
             values.extend(contact_values(contact));
         }
-    }
-    let data = Array2::from_shape_vec((solution.balls.len(), columns.len()), values)
-        .expect("every ball gives one value per column");
-    Series::new(columns, data)
+        values
+    })
 }
 
 /// In the order of `CONTACT_COLUMNS`.
-fn contact_values(contact: &ContactState) -> [f64; 9] {
+pub(super) fn contact_values(contact: &ContactState) -> [f64; 9] {
     [
         contact.normal_load,
         contact.approach,
@@ -185,7 +195,7 @@ pub fn static_summary(solution: &StaticSolution, run: &RunRecord) -> Result<Valu
         }),
     );
     put("stiffness", stiffness(solution)?);
-    put("load_zone", load_zone(solution)?);
+    put("load_zone", load_zone(&solution.balls)?);
     let balls: Result<Vec<Value>, _> =
         solution.balls.iter().enumerate().map(|(index, b)| ball(index + 1, b)).collect();
     put("balls", json!(balls?));
@@ -193,7 +203,7 @@ pub fn static_summary(solution: &StaticSolution, run: &RunRecord) -> Result<Valu
     Ok(Value::Object(summary))
 }
 
-fn seconds(stages: &[(String, f64)]) -> Result<Value, ResultsError> {
+pub(super) fn seconds(stages: &[(String, f64)]) -> Result<Value, ResultsError> {
     let mut map = Map::new();
     for (stage, seconds) in stages {
         map.insert(stage.clone(), quantity(stage, *seconds, "s")?);
@@ -266,16 +276,15 @@ fn stiffness(solution: &StaticSolution) -> Result<Value, ResultsError> {
 
 /// Number of balls that carry the inner race, and the arc from the first to the last of them in
 /// rad: the full circle less the widest gap between neighbouring loaded balls.
-pub fn load_zone_of(solution: &StaticSolution) -> (usize, f64) {
+pub fn load_zone_of(balls: &[BallState]) -> (usize, f64) {
     let tau = std::f64::consts::TAU;
-    let mut azimuths: Vec<f64> = solution
-        .balls
+    let mut azimuths: Vec<f64> = balls
         .iter()
         .filter(|ball| ball.inner.normal_load > 0.0)
         .map(|ball| ball.azimuth.rem_euclid(tau))
         .collect();
     azimuths.sort_by(f64::total_cmp);
-    if azimuths.len() == solution.balls.len() {
+    if azimuths.len() == balls.len() {
         return (azimuths.len(), tau);
     }
     let Some((&first, &last)) = azimuths.first().zip(azimuths.last()) else { return (0, 0.0) };
@@ -284,13 +293,12 @@ pub fn load_zone_of(solution: &StaticSolution) -> (usize, f64) {
     (azimuths.len(), tau - widest)
 }
 
-fn load_zone(solution: &StaticSolution) -> Result<Value, ResultsError> {
+pub(super) fn load_zone(balls: &[BallState]) -> Result<Value, ResultsError> {
     let largest = |load: fn(&BallState) -> f64| {
-        solution.balls.iter().map(load).fold(0.0, |a: f64, b| if b > a { b } else { a })
+        balls.iter().map(load).fold(0.0, |a: f64, b| if b > a { b } else { a })
     };
-    let loaded =
-        |load: fn(&BallState) -> f64| solution.balls.iter().filter(|ball| load(ball) > 0.0).count();
-    let (_, extent) = load_zone_of(solution);
+    let loaded = |load: fn(&BallState) -> f64| balls.iter().filter(|ball| load(ball) > 0.0).count();
+    let (_, extent) = load_zone_of(balls);
     Ok(json!({
         "extent": quantity("load zone", extent.to_degrees(), "deg")?,
         "balls_loaded_inner": loaded(|ball| ball.inner.normal_load),
@@ -305,7 +313,7 @@ fn load_zone(solution: &StaticSolution) -> Result<Value, ResultsError> {
     }))
 }
 
-fn ball(number: usize, ball: &BallState) -> Result<Value, ResultsError> {
+pub(super) fn ball(number: usize, ball: &BallState) -> Result<Value, ResultsError> {
     let named = |name: &str| format!("ball {number} {name}");
     Ok(json!({
         "ball": number,
@@ -328,7 +336,7 @@ fn contact(name: &str, contact: &ContactState) -> Result<Value, ResultsError> {
     Ok(Value::Object(map))
 }
 
-fn vector(name: &str, vector: &Vector3<f64>, unit: &str) -> Result<Value, ResultsError> {
+pub(super) fn vector(name: &str, vector: &Vector3<f64>, unit: &str) -> Result<Value, ResultsError> {
     Ok(json!({
         "x": quantity(&format!("{name} x"), vector.x, unit)?,
         "y": quantity(&format!("{name} y"), vector.y, unit)?,

@@ -14,12 +14,33 @@ pub struct RunTable {
     pub interval: f64,
     /// Rows of the window, at equal intervals; empty while the run has not come there.
     pub window: Range<usize>,
+    /// Before the names of columns of each bearing: nothing where there is one only.
+    pub bearings: Vec<String>,
+    /// Races, cages and other bodies that may have columns.
+    pub bodies: Vec<Moving>,
 }
 
-/// Channels whose spectra are drawn and searched for peaks, as far as they are recorded.
-pub const SPECTRAL_CHANNELS: [&str; 9] = [
-    "inner_x", "inner_y", "inner_z", "outer_x", "outer_y", "outer_z", "cage_x", "cage_y", "cage_z",
-];
+/// A body as its columns and pictures name it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moving {
+    /// Columns begin with it, `left_inner`.
+    pub column: String,
+    /// "left inner race".
+    pub title: String,
+}
+
+/// Bodies of the bearings with these prefixes, then those with labels.
+fn moving(bearings: &[String], labels: impl Iterator<Item = String>) -> Vec<Moving> {
+    let mut bodies = Vec::new();
+    for prefix in bearings {
+        for (part, title) in [("inner", "inner race"), ("outer", "outer race"), ("cage", "cage")] {
+            let title = format!("{}{title}", prefix.replace('_', " "));
+            bodies.push(Moving { column: format!("{prefix}{part}"), title });
+        }
+    }
+    bodies.extend(labels.map(|label| Moving { column: label.clone(), title: label }));
+    bodies
+}
 
 /// Time of row number `row` as people write it, s; rows on the grid are `interval` (s) apart.
 pub fn readable(row: usize, time: f64, interval: f64) -> f64 {
@@ -40,7 +61,14 @@ impl RunTable {
         let from = window_start - 1e-6 * interval;
         let times = series.data().column(0);
         let start = times.iter().position(|time| *time >= from).map_or(end, |row| row.min(end));
-        Ok(RunTable { series, interval, window: start..end })
+        let assembly = session.motion.bearing().map(|simulation| &simulation.system.assembly);
+        let bearings: Vec<String> = match assembly {
+            Some(assembly) => assembly.bearings.iter().map(|bearing| bearing.prefix()).collect(),
+            None => vec![String::new()],
+        };
+        let labels = assembly.into_iter().flat_map(|assembly| &assembly.bodies);
+        let bodies = moving(&bearings, labels.filter_map(|body| body.label.clone()));
+        Ok(RunTable { series, interval, window: start..end, bearings, bodies })
     }
 
     /// Time of a row as people write it, s: of rows on the grid by their number, so that the rounding
@@ -65,11 +93,16 @@ impl RunTable {
         found.map_or("", |column| column.unit.as_str())
     }
 
-    /// Spectra of the [`SPECTRAL_CHANNELS`] over the window.
+    /// Spectra of the displacements of all bodies over the window, as far as they are recorded.
     pub fn spectra(&self) -> Vec<(String, Spectrum)> {
-        let of = |channel: &'static str| {
-            Some((channel.to_string(), spectrum(&self.windowed(channel)?, self.interval)?))
+        let of = |channel: String| {
+            let values = self.windowed(&channel)?;
+            Some((channel, spectrum(&values, self.interval)?))
         };
-        SPECTRAL_CHANNELS.into_iter().filter_map(of).collect()
+        let channels = self
+            .bodies
+            .iter()
+            .flat_map(|body| ["x", "y", "z"].map(|axis| format!("{}_{axis}", body.column)));
+        channels.filter_map(of).collect()
     }
 }

@@ -20,27 +20,56 @@ pub struct Assumption {
 #[derive(Clone, Debug)]
 pub struct Document {
     source: Arc<Source>,
-    /// One slot for each row of [`KEYS`].
-    given: Vec<Option<Given>>,
-    /// Tables that occur in the file and where.
-    tables: Vec<(&'static str, usize)>,
-    /// Entries of lists of tables, in the order of the file.
-    items: Vec<Item>,
+    /// What tables without a name hold; of a [`Document::scoped`] one with what its name adds.
+    pub(super) layer: Layer,
+    /// Tables with a name, such as `[bearing.left]`, in the order of the file.
+    pub(super) named: Vec<Named>,
+    /// The name whose tables are read or laid over the others.
+    pub(super) scope: Option<String>,
     assumptions: Vec<Assumption>,
     sweep: Vec<SweepAxis>,
 }
 
+/// Given keys, tables and lists.
 #[derive(Clone, Debug)]
-struct Given {
-    value: Checked,
+pub(super) struct Layer {
+    /// One slot for each row of [`KEYS`].
+    pub given: Vec<Option<Given>>,
+    /// Tables that occur in the file and where.
+    pub tables: Vec<(&'static str, usize)>,
+    /// Entries of lists of tables, in the order of the file.
+    pub items: Vec<Item>,
+}
+
+impl Default for Layer {
+    fn default() -> Layer {
+        Layer { given: vec![None; KEYS.len()], tables: Vec::new(), items: Vec::new() }
+    }
+}
+
+/// One table with a name.
+#[derive(Clone, Debug)]
+pub(super) struct Named {
+    /// Path without the name, `bearing`.
+    pub table: &'static str,
+    pub name: String,
+    pub offset: usize,
+    pub layer: Layer,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Given {
+    pub value: Checked,
     /// `None` for a value that was set after reading.
-    offset: Option<usize>,
+    pub offset: Option<usize>,
+    /// Whether it stands in a table with a name.
+    pub named: bool,
 }
 
 /// One table of a list of tables.
 #[derive(Clone, Debug)]
-struct Item {
-    table: &'static str,
+pub(super) struct Item {
+    pub table: &'static str,
     offset: usize,
     given: Vec<(usize, Given)>,
 }
@@ -75,6 +104,18 @@ impl<'d> ItemRef<'d> {
     }
 }
 
+impl Layer {
+    /// Takes a value; those that exclude it are taken away.
+    pub fn put(&mut self, row: usize, key: &'static Key, given: Given) {
+        for rival in key.rivals() {
+            if let Some((row, _)) = keys::find(rival.path) {
+                self.given[row] = None;
+            }
+        }
+        self.given[row] = Some(given);
+    }
+}
+
 impl Document {
     /// Reads a scene file; its name tells the format.
     pub fn read_file(path: &std::path::Path) -> Result<Document, SceneError> {
@@ -98,9 +139,9 @@ impl Document {
         let entries = tree::parse(&source, format)?;
         let mut document = Document {
             source: Arc::new(source),
-            given: vec![None; KEYS.len()],
-            tables: Vec::new(),
-            items: Vec::new(),
+            layer: Layer::default(),
+            named: Vec::new(),
+            scope: None,
             assumptions: Vec::new(),
             sweep: Vec::new(),
         };
@@ -110,7 +151,7 @@ impl Document {
     }
 
     /// Takes the entries of the table `path`.
-    fn fill(&mut self, path: &str, entries: Vec<Entry>) -> Result<(), SceneError> {
+    pub(super) fn fill(&mut self, path: &str, entries: Vec<Entry>) -> Result<(), SceneError> {
         for entry in entries {
             let full =
                 if path.is_empty() { entry.name.clone() } else { format!("{path}.{}", entry.name) };
@@ -121,12 +162,16 @@ impl Document {
                 !matches!(entry.node.value, Value::Table(_)) || keys::find_table(&full).is_none()
             });
             if let Some((row, key)) = known {
-                self.given[row] = Some(self.checked(key, &entry.node)?);
+                self.layer.given[row] = Some(self.checked(key, &entry.node)?);
                 continue;
             }
             let table = if entry.name.contains('.') { None } else { keys::find_table(&full) };
             let Some(table) = table else {
-                return Err(self.unknown_key(path, &entry));
+                match self.as_name(path, &entry) {
+                    Some(table) => self.fill_named(table, entry)?,
+                    None => return Err(self.unknown_key(path, &entry)),
+                }
+                continue;
             };
             if table.list {
                 self.fill_list(table, &full, &entry)?;
@@ -135,7 +180,7 @@ impl Document {
             let Value::Table(inner) = entry.node.value else {
                 return Err(self.not_a_table(table, &full, &entry.node));
             };
-            self.tables.push((table.path, entry.offset));
+            self.layer.tables.push((table.path, entry.offset));
             match table.path {
                 "assumptions" => self.fill_assumptions(inner)?,
                 "sweep" => self.fill_sweep("", inner)?,
@@ -148,16 +193,19 @@ impl Document {
     fn checked(&self, key: &'static Key, node: &Node) -> Result<Given, SceneError> {
         let value = value::check(key, node).map_err(|error| {
             let dot = if error.within.is_empty() { "" } else { "." };
-            let place = format!("{}{dot}{}", key.path, error.within);
+            let place = format!("{}{dot}{}", self.shown(key.path, true), error.within);
             self.source.error(error.offset, &place, error.problem)
         })?;
-        Ok(Given { value, offset: Some(node.offset) })
+        Ok(Given { value, offset: Some(node.offset), named: self.scope.is_some() })
     }
 
     fn unknown_key(&self, table: &str, entry: &Entry) -> SceneError {
         let nearest = keys::nearest_key(table, &entry.name);
         let allowed = keys::children(table).join(", ");
-        let full = if table.is_empty() { String::new() } else { format!("{table}.") };
+        let full = match table {
+            "" => String::new(),
+            _ => format!("{}.", self.shown(table, true)),
+        };
         let problem = Problem::UnknownKey { nearest, allowed };
         self.source.error(entry.offset, &format!("{full}{}", entry.name), problem)
     }
@@ -185,7 +233,7 @@ impl Document {
                 };
                 given.push((row, self.checked(key, &entry.node)?));
             }
-            self.items.push(Item { table: table.path, offset: node.offset, given });
+            self.layer.items.push(Item { table: table.path, offset: node.offset, given });
         }
         Ok(())
     }
@@ -245,7 +293,7 @@ impl Document {
     }
 
     /// Keys that exclude each other must not both be given; the later one is reported.
-    fn refuse_rivals(&self) -> Result<(), SceneError> {
+    pub(super) fn refuse_rivals(&self) -> Result<(), SceneError> {
         let mut first: Option<(usize, &Key, &Key)> = None;
         for (row, key) in KEYS.iter().enumerate() {
             let Some(offset) = self.offset(row) else { continue };
@@ -262,14 +310,15 @@ impl Document {
             None => Ok(()),
             Some((offset, key, rival)) => {
                 let advice = format!("keep `{}` or `{}`", rival.name(), key.name());
-                let problem = Problem::Exclusive { rival: rival.path.to_string(), advice };
-                Err(self.source.error(offset, key.path, problem))
+                let rival = self.shown(rival.path, true);
+                let problem = Problem::Exclusive { rival, advice };
+                Err(self.source.error(offset, &self.shown(key.path, true), problem))
             }
         }
     }
 
     fn offset(&self, row: usize) -> Option<usize> {
-        self.given[row].as_ref().and_then(|given| given.offset)
+        self.layer.given[row].as_ref().and_then(|given| given.offset)
     }
 
     /// Replaces or adds one key, as `--vary` and `[sweep]` do: `set("bearing.clearance.radial", "5 um")`.
@@ -280,31 +329,36 @@ impl Document {
     /// # Errors
     /// An unknown key, or a value its key does not accept.
     pub fn set(&mut self, path: &str, text: &str) -> Result<(), SceneError> {
-        let (row, key) = self.row(path)?;
+        let (row, key, named) = self.row(path)?;
         let checked =
             if key.in_list() { Err(Problem::NotSweepable) } else { value::check_bare(key, text) };
         let value = checked
             .map_err(|problem| SceneError::new(Place::file(&self.source.name), path, problem))?;
-        for rival in key.rivals() {
-            if let Some((row, _)) = keys::find(rival.path) {
-                self.given[row] = None;
-            }
-        }
-        self.given[row] = Some(Given { value, offset: None });
+        let layer = match named {
+            Some(index) => &mut self.named[index].layer,
+            None => &mut self.layer,
+        };
+        layer.put(row, key, Given { value, offset: None, named: named.is_some() });
         Ok(())
     }
 
     /// Reads what to vary: a list `"5 um, 0 um"` or a range `"0 deg .. 45 deg / 91"` for a key.
     pub fn axis(&self, path: &str, values: &str) -> Result<SweepAxis, SceneError> {
-        let (_, key) = self.row(path)?;
-        sweep::axis_of_text(key, values)
+        let (_, key, _) = self.row(path)?;
+        sweep::axis_of_text(path, key, values)
             .map_err(|problem| SceneError::new(Place::file(&self.source.name), path, problem))
     }
 
-    fn row(&self, path: &str) -> Result<(usize, &'static Key), SceneError> {
-        keys::find(path).ok_or_else(|| {
-            SceneError::new(Place::file(&self.source.name), path, sweep::unknown_key(path))
-        })
+    /// Row of a key, and the named table that the path leads into.
+    fn row(&self, path: &str) -> Result<(usize, &'static Key, Option<usize>), SceneError> {
+        let unknown =
+            || SceneError::new(Place::file(&self.source.name), path, sweep::unknown_key(path));
+        let (row, key, name) = keys::find_named(path).ok_or_else(unknown)?;
+        let Some(name) = name else { return Ok((row, key, None)) };
+        let found = self.named.iter().position(|named| {
+            named.name == name && key.path.split('.').next() == Some(named.table)
+        });
+        Ok((row, key, Some(found.ok_or_else(unknown)?)))
     }
 
     /// File name as given.
@@ -330,12 +384,12 @@ impl Document {
     pub(crate) fn value(&self, path: &str) -> Option<&Checked> {
         let row = keys::find(path).map(|(row, _)| row);
         debug_assert!(row.is_some(), "{path} is not in the key table");
-        row.and_then(|row| self.given[row].as_ref()).map(|given| &given.value)
+        row.and_then(|row| self.layer.given[row].as_ref()).map(|given| &given.value)
     }
 
     /// The tables of a list of tables, in the order of the file.
     pub(crate) fn items<'d>(&'d self, table: &'d str) -> impl Iterator<Item = ItemRef<'d>> {
-        let of = self.items.iter().filter(move |item| item.table == table);
+        let of = self.layer.items.iter().filter(move |item| item.table == table);
         of.map(|item| ItemRef { document: self, item })
     }
 
@@ -344,21 +398,30 @@ impl Document {
         let below = |known: &str| {
             known.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
         };
-        let tables = self.tables.iter().map(|(table, _)| *table);
-        let items = self.items.iter().map(|item| item.table);
-        let keys = KEYS.iter().enumerate().filter(|(row, _)| self.given[*row].is_some());
+        let tables = self.layer.tables.iter().map(|(table, _)| *table);
+        let items = self.layer.items.iter().map(|item| item.table);
+        let keys = KEYS.iter().enumerate().filter(|(row, _)| self.layer.given[*row].is_some());
         let all = tables.chain(items).chain(keys.map(|(_, key)| key.path));
         all.into_iter().find(|known| below(known))
     }
 
     /// Keys that are given, one of the table's rows each; those of lists of tables are not in it.
     pub(crate) fn given_keys(&self) -> impl Iterator<Item = &'static Key> {
-        KEYS.iter().enumerate().filter(|(row, _)| self.given[*row].is_some()).map(|(_, key)| key)
+        KEYS.iter()
+            .enumerate()
+            .filter(|(row, _)| self.layer.given[*row].is_some())
+            .map(|(_, key)| key)
     }
 
     /// An error about a key or table: at its value, else at the innermost table that would hold it.
     pub(crate) fn error(&self, path: &str, problem: Problem) -> SceneError {
-        SceneError::new(self.place_of_key(path), path, problem)
+        let own = keys::find(path).and_then(|(row, _)| self.layer.given[row].as_ref());
+        let shown = self.shown(path, own.is_some_and(|given| given.named));
+        SceneError::new(self.place_of_key(path), &shown, problem)
+    }
+
+    pub(super) fn error_at(&self, offset: usize, path: &str, problem: Problem) -> SceneError {
+        self.source.error(offset, path, problem)
     }
 
     /// Where the part of the scene stands that a later error is about.
@@ -373,7 +436,7 @@ impl Document {
     }
 
     fn place_of_key(&self, path: &str) -> Place {
-        let own = keys::find(path).and_then(|(row, _)| self.given[row].as_ref());
+        let own = keys::find(path).and_then(|(row, _)| self.layer.given[row].as_ref());
         let place = match own {
             Some(given) => given.offset.map(|offset| self.source.place(offset)),
             None => {
@@ -381,7 +444,7 @@ impl Document {
                     path.strip_prefix(table)
                         .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
                 };
-                let tables = self.tables.iter().filter(|(table, _)| holds(table));
+                let tables = self.layer.tables.iter().filter(|(table, _)| holds(table));
                 tables.max_by_key(|(table, _)| table.len()).map(|&(_, at)| self.source.place(at))
             }
         };

@@ -166,6 +166,8 @@ pub enum Problem {
     Exclusive { rival: String, advice: String },
     #[error("refused: {reason}. Hint: {advice}")]
     NotApplicable { reason: &'static str, advice: String },
+    #[error("refused: {reason}. Hint: {advice}")]
+    Refused { reason: String, advice: String },
 
     #[error(
         "the outer race's groove bottom ({outer}) is not outside the inner race's ({inner}). \

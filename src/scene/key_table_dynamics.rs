@@ -30,13 +30,14 @@ pub const CHANNELS: &[&str] = &{
     names
 };
 
-const MASS: Kind = Kind::Quantity(Mass, open(0.0, 10_000.0, "kg"));
-const INERTIA: Kind = Kind::Quantity(Dimension::Inertia, open(0.0, 1e6, "kg m^2"));
-const FOUNDATION: Kind = Kind::Quantity(Stiffness, closed(0.0, 1e13, "N/m"));
-const TILT_FOUNDATION: Kind =
+pub(super) const MASS: Kind = Kind::Quantity(Mass, open(0.0, 10_000.0, "kg"));
+pub(super) const INERTIA: Kind = Kind::Quantity(Dimension::Inertia, open(0.0, 1e6, "kg m^2"));
+pub(super) const FOUNDATION: Kind = Kind::Quantity(Stiffness, closed(0.0, 1e13, "N/m"));
+pub(super) const TILT_FOUNDATION: Kind =
     Kind::Quantity(Dimension::TiltStiffness, closed(0.0, 1e13, "N m/rad"));
-const DASHPOT: Kind = Kind::Quantity(Dimension::Damping, closed(0.0, 1e10, "N s/m"));
-const TILT_DASHPOT: Kind = Kind::Quantity(Dimension::TiltDamping, closed(0.0, 1e10, "N m s/rad"));
+pub(super) const DASHPOT: Kind = Kind::Quantity(Dimension::Damping, closed(0.0, 1e10, "N s/m"));
+pub(super) const TILT_DASHPOT: Kind =
+    Kind::Quantity(Dimension::TiltDamping, closed(0.0, 1e10, "N m s/rad"));
 const FRICTION: Kind = Kind::Number(closed(0.0, 2.0, ""));
 /// Below 1e-9 m/s rounding alone makes more slip than that.
 const SLIP: Kind = Kind::Quantity(Speed, closed(1e-9, 1e3, "m/s"));
@@ -64,10 +65,11 @@ const BOUNDARY: Need = Depends(
     "`slide-to-roll`: common boundary-lubrication set 22.28, 181.46, 0.1; `slip-speed`: required",
 );
 
-const MASS_HINT: &str = "a positive mass; check the unit";
-const INERTIA_HINT: &str = "a positive moment of inertia; check the unit";
+pub(super) const MASS_HINT: &str = "a positive mass; check the unit";
+pub(super) const INERTIA_HINT: &str = "a positive moment of inertia; check the unit";
 const FRICTION_HINT: &str = "friction coefficients of steel are 0.05 to 0.2";
-const FOUNDATION_HINT: &str = "a spring or dashpot holds back: it is not negative; check the unit";
+pub(super) const FOUNDATION_HINT: &str =
+    "a spring or dashpot holds back: it is not negative; check the unit";
 const STEP_HINT: &str = "stable steps of steel bearings are 0.1 to 10 us; leave it out, and steps follow from an accuracy";
 const SLIP_HINT: &str = "friction needs some sliding speed to build up; 1 to 100 mm/s is usual";
 
@@ -137,6 +139,10 @@ pub(super) const KEYS: &[Key] = &[
     quantity("outer_race.tilt_y.tilt", TILT, FREE, "Given tilt; a plain quantity if the race is fixed.").group("tilt_y").hint(TILT_HINT),
     quantity("outer_race.tilt_z.moment", MOMENT, FREE, "Moment about Z on a moving outer race.").group("tilt_z").hint(LOAD_HINT),
     quantity("outer_race.tilt_z.tilt", TILT, FREE, "Given tilt; a plain quantity if the race is fixed.").group("tilt_z").hint(TILT_HINT),
+    quantity("outer_race.speed", SPIN, Depends("`5-dof`: 0; refused with `6-dof`"),
+        "Speed at which an outer race with `motion = \"5-dof\"` turns about its axis.").group("rotation"),
+    quantity("outer_race.torque", MOMENT, Depends("`6-dof`: 0; refused with `5-dof`"),
+        "Moment about the axis of an outer race with `motion = \"6-dof\"`.").group("rotation").hint(LOAD_HINT),
     quantity("outer_race.inertia.mass", MASS, ALL_THREE, "Mass of the outer race.").hint(MASS_HINT),
     quantity("outer_race.inertia.axial", INERTIA, ALL_THREE, "Moment of inertia about its axis.").hint(INERTIA_HINT),
     quantity("outer_race.inertia.transverse", INERTIA, ALL_THREE, "Moment of inertia across its axis.").hint(INERTIA_HINT),

@@ -3,7 +3,9 @@
 //! Reading, the refusal of unknown keys, `docs/scene.md` and the JSON Schema all follow this table.
 
 use crate::scene::units::Dimension::{self, *};
-use crate::scene::{key_table, key_table_dynamics, key_table_housing, key_table_solid};
+use crate::scene::{
+    key_table, key_table_assembly, key_table_dynamics, key_table_housing, key_table_solid,
+};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -252,11 +254,17 @@ pub static KEYS: &[Key] = &ALL_KEYS;
 /// Every table, in the order of the reference. `assumptions` and `sweep` have keys of the user's.
 pub static TABLES: &[Table] = &ALL_TABLES;
 
-const PARTS: [&[Key]; 4] =
-    [key_table::KEYS, key_table_dynamics::KEYS, key_table_solid::KEYS, key_table_housing::KEYS];
-const TABLE_PARTS: [&[Table]; 4] = [
+const PARTS: [&[Key]; 5] = [
+    key_table::KEYS,
+    key_table_dynamics::KEYS,
+    key_table_assembly::KEYS,
+    key_table_solid::KEYS,
+    key_table_housing::KEYS,
+];
+const TABLE_PARTS: [&[Table]; 5] = [
     key_table::TABLES,
     key_table_dynamics::TABLES,
+    key_table_assembly::TABLES,
     key_table_solid::TABLES,
     key_table_housing::TABLES,
 ];
@@ -296,6 +304,23 @@ static INDEX: LazyLock<HashMap<&'static str, usize>> =
 /// Row of the key with this dotted path.
 pub fn find(path: &str) -> Option<(usize, &'static Key)> {
     INDEX.get(path).map(|&i| (i, &KEYS[i]))
+}
+
+/// Tables that may stand several times, each with a name: `[bearing.left]`. What stands in the table
+/// without a name is what all of them inherit.
+pub const NAMED: [&str; 7] =
+    ["bearing", "inner_race", "outer_race", "body", "spring", "housing", "solid"];
+
+/// Row of the key that a path with or without a name leads to, and the name:
+/// `bearing.left.clearance.radial`.
+pub fn find_named(path: &str) -> Option<(usize, &'static Key, Option<&str>)> {
+    if let Some((row, key)) = find(path) {
+        return Some((row, key, None));
+    }
+    let (table, rest) = path.split_once('.')?;
+    let (name, rest) = rest.split_once('.')?;
+    let (row, key) = find(&format!("{table}.{rest}")).filter(|_| NAMED.contains(&table))?;
+    Some((row, key, Some(name)))
 }
 
 pub fn find_table(path: &str) -> Option<&'static Table> {

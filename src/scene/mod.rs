@@ -18,6 +18,7 @@
 //! # Ok::<(), scene::SceneError>(())
 //! ```
 pub mod about;
+pub mod assembly;
 pub mod bore_shape;
 pub mod document;
 pub mod dynamics;
@@ -26,6 +27,7 @@ pub mod housing;
 pub mod housing_problem;
 pub mod input_file;
 mod key_table;
+mod key_table_assembly;
 mod key_table_dynamics;
 mod key_table_housing;
 mod key_table_solid;
@@ -33,6 +35,7 @@ pub mod keys;
 mod profile;
 pub mod reference;
 mod resolve;
+mod resolve_assembly;
 mod resolve_cage;
 mod resolve_contact;
 mod resolve_dynamics;
@@ -42,6 +45,7 @@ mod resolve_solid;
 mod resolve_solid_mesh;
 pub mod resolved;
 pub mod schema;
+mod scopes;
 pub mod solid;
 pub mod solid_mesh;
 pub mod solid_problem;

@@ -17,6 +17,8 @@ pub fn reference_markdown() -> String {
         "bearing",
         "inner_race",
         "outer_race",
+        "body",
+        "spring",
         "ball_forces",
         "traction",
         "contact_damping",
@@ -176,6 +178,15 @@ the first thing that is wrong, with file, line and column, the allowed range and
 a JSON Schema for editors.
 
 Axes: X axial, Y lateral, Z up. Ball azimuths run from +Y towards +Z.
+
+## Several bearings, bodies, springs
+`[bearing.left]`, `[body.shaft]`, `[spring.coupling]` are tables with names of the user's, any number of each; `outer_race` and
+`inner_race` take the names of bearings. A table with a name has the keys of the one without, and what stands in the one without
+holds for all names that do not say otherwise: `[bearing]` is what all bearings have in common. Keys of `--vary` and
+`[sweep]` take names too, `bearing.left.clearance.radial`. Races sit on bodies (`inner_on`, `outer_on`) at places along their axes
+(`inner_at`, `outer_at`); a race that sits on none is a body of its own, as `[inner_race]` or `[outer_race]` say. Columns,
+tables and plots of a bearing begin with its name, `left_inner_z`, and count X from where it sits; those of a body with its
+own, `shaft_z`.
 
 ";
 

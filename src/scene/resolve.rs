@@ -47,6 +47,7 @@ pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> 
     });
     let outer_race = reader.outer_race(geometry.ball_radius)?;
     let inner_speed = reader.profile("inner_race.speed").map(|speed| speed.value(0.0));
+    let outer_speed = reader.profile("outer_race.speed").map(|speed| speed.value(0.0));
     let gravity = match document.value("ball_forces.gravity") {
         Some(Checked::Vector(gravity)) => *gravity,
         _ => {
@@ -91,6 +92,7 @@ pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> 
         conditions,
         outer_race,
         inner_speed,
+        outer_speed,
         gravity,
         centrifugal,
         dynamics,

@@ -32,7 +32,7 @@ pub(crate) fn dynamics(
     let inner = RaceBody {
         inertia: race_inertia(reader, parts, &INNER)?,
         drives: inner_drives,
-        rotation: inner_rotation(reader),
+        rotation: rotation(reader, "inner_race"),
         foundation_stiffness: [0.0; 5],
         foundation_damping: [0.0; 5],
     };
@@ -53,7 +53,7 @@ pub(crate) fn dynamics(
         shoulders,
         outer,
         cage,
-        rotating_load: rotating_load(reader)?,
+        rotating_load: rotating_load(reader, "inner_race")?,
         unbalance: reader.given_number("inner_race.unbalance").unwrap_or(0.0),
         traction: resolve_contact::traction(reader)?,
         // Checked by the key table: 1 to 201.
@@ -67,14 +67,24 @@ pub(crate) fn dynamics(
     })
 }
 
-fn inner_rotation(reader: &mut Reader) -> Rotation {
-    if let Some(torque) = reader.profile("inner_race.torque") {
+/// Speed or torque of the body of a table.
+pub(crate) fn rotation(reader: &mut Reader, table: &str) -> Rotation {
+    if let Some(torque) = reader.profile(&format!("{table}.torque")) {
         return Rotation::Torque(torque);
     }
-    Rotation::Speed(reader.profile("inner_race.speed").unwrap_or_else(|| {
-        reader.note("inner_race.speed", "0 rpm", "neither a speed nor a torque is given");
+    let speed = format!("{table}.speed");
+    Rotation::Speed(reader.profile(&speed).unwrap_or_else(|| {
+        reader.note(&speed, "0 rpm", "neither a speed nor a torque is given");
         Profile::ZERO
     }))
+}
+
+/// Springs (`stiffness`) or dashpots (`damping`) between the body of a table and the ground.
+pub(crate) fn foundation(reader: &Reader, table: &str, what: &str) -> [f64; 5] {
+    COORDINATE_NAMES.map(|name| {
+        let path = format!("{table}.foundation.{what}.{name}");
+        reader.given_number(&path).unwrap_or(0.0)
+    })
 }
 
 fn heathcote(reader: &mut Reader) -> bool {
@@ -87,10 +97,12 @@ fn heathcote(reader: &mut Reader) -> bool {
     }
 }
 
-fn rotating_load(reader: &mut Reader) -> Result<Option<RotatingLoad>, SceneError> {
-    let force = "inner_race.rotating_load.force";
-    let speed = "inner_race.rotating_load.speed";
-    let phase = "inner_race.rotating_load.phase";
+pub(crate) fn rotating_load(
+    reader: &mut Reader,
+    table: &str,
+) -> Result<Option<RotatingLoad>, SceneError> {
+    let [force, speed, phase] =
+        &["force", "speed", "phase"].map(|key| format!("{table}.rotating_load.{key}"));
     if ![force, speed, phase].iter().any(|key| reader.is_given(key)) {
         return Ok(None);
     }
@@ -109,32 +121,38 @@ fn rotating_load(reader: &mut Reader) -> Result<Option<RotatingLoad>, SceneError
 
 fn outer_race(reader: &mut Reader, parts: &Parts) -> Result<Option<RaceBody>, SceneError> {
     let motion = reader.choice("outer_race.motion").unwrap_or("fixed");
-    let foundation = |reader: &mut Reader, what: &str| {
-        COORDINATE_NAMES.map(|name| {
-            let path = format!("outer_race.foundation.{what}.{name}");
-            reader.given_number(&path).unwrap_or(0.0)
-        })
-    };
     if motion == "fixed" {
         refuse_motion(reader)?;
         return Ok(None);
     }
-    let foundation_stiffness = foundation(reader, "stiffness");
-    let foundation_damping = foundation(reader, "damping");
+    let foundation_stiffness = foundation(reader, "outer_race", "stiffness");
+    let foundation_damping = foundation(reader, "outer_race", "damping");
     if foundation_stiffness == [0.0; 5] {
         reader.note("outer_race.foundation", "none", "no spring holds the moving outer race");
     }
     Ok(Some(RaceBody {
         inertia: race_inertia(reader, parts, &OUTER)?,
         drives: reader.drives("outer_race", parts.geometry.ball_radius)?,
-        rotation: if motion == "5-dof" {
-            Rotation::Speed(Profile::ZERO)
-        } else {
-            Rotation::Torque(Profile::ZERO)
-        },
+        rotation: outer_rotation(reader, motion)?,
         foundation_stiffness,
         foundation_damping,
     }))
+}
+
+/// A race with five coordinates turns as it is told, one with six as moments turn it.
+fn outer_rotation(reader: &Reader, motion: &str) -> Result<Rotation, SceneError> {
+    let (own, other) = match motion {
+        "5-dof" => ("outer_race.speed", "outer_race.torque"),
+        _ => ("outer_race.torque", "outer_race.speed"),
+    };
+    if reader.is_given(other) {
+        let reason = "6-dof is turned by a torque, 5-dof at a speed";
+        let advice =
+            format!("write {} instead, or the other motion", own.replace("outer_race.", ""));
+        return Err(reader.document.error(other, Problem::NotApplicable { reason, advice }));
+    }
+    let profile = reader.profile(own).unwrap_or(Profile::ZERO);
+    Ok(if motion == "5-dof" { Rotation::Speed(profile) } else { Rotation::Torque(profile) })
 }
 
 /// Keys that do nothing to a fixed race are refused, so that nobody waits for their effect.
@@ -151,8 +169,8 @@ fn refuse_motion(reader: &Reader) -> Result<(), SceneError> {
         keys.push(format!("outer_race.foundation.stiffness.{name}"));
         keys.push(format!("outer_race.foundation.damping.{name}"));
     }
-    for name in ["mass", "axial", "transverse"] {
-        keys.push(format!("outer_race.inertia.{name}"));
+    for name in ["speed", "torque", "inertia.mass", "inertia.axial", "inertia.transverse"] {
+        keys.push(format!("outer_race.{name}"));
     }
     match keys.iter().find(|key| reader.is_given(key)) {
         None => Ok(()),

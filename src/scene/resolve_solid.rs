@@ -4,6 +4,7 @@ use crate::mesh::{Order, Surface};
 use crate::scene::document::{Document, ItemRef};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::{Reader, resolve, text};
+use crate::scene::resolve_assembly::{assembly, is_assembly};
 use crate::scene::resolve_housing;
 use crate::scene::resolve_solid_mesh::source;
 use crate::scene::solid::{
@@ -27,6 +28,14 @@ const STEP_FRACTION: f64 = 0.8;
 /// The first key, in a fixed order, that is missing or contradicts others; a bearing and a solid
 /// without `[housing]`.
 pub fn resolve_subject(document: &Document) -> Result<Subject, SceneError> {
+    if is_assembly(document) {
+        let scene = assembly(document)?;
+        return Ok(match scene.only() {
+            Some(alone) => Subject::Bearing(Box::new(alone.clone())),
+            None => Subject::Assembly(Box::new(scene)),
+        });
+    }
+    document.refuse_names()?;
     if document.first_below("housing").is_some() {
         return resolve_housing::housed(document);
     }

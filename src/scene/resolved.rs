@@ -170,6 +170,8 @@ pub struct Scene {
     pub outer_race: [f64; 5],
     /// Rotation of the inner race about X at t = 0, rad/s.
     pub inner_speed: Option<f64>,
+    /// Of the outer race, where it turns.
+    pub outer_speed: Option<f64>,
     /// World axes, m/s²; zero leaves the weight out.
     pub gravity: [f64; 3],
     pub centrifugal: bool,

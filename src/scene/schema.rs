@@ -80,6 +80,7 @@ fn table_schema(path: &str) -> Map<String, Value> {
                 _ if keys::find_table(&full).is_some_and(|table| table.list) => {
                     json!({ "type": "array", "items": table_schema(&full) })
                 }
+                _ if keys::NAMED.contains(&full.as_str()) => named_schema(&full),
                 _ => Value::Object(table_schema(&full)),
             },
         };
@@ -113,6 +114,32 @@ fn table_schema(path: &str) -> Map<String, Value> {
         schema.insert("allOf".into(), Value::Array(exclusive));
     }
     schema
+}
+
+/// A table that may stand several times, each with a name. What stands beside names is what all inherit, so
+/// that what one thing needs is needed there only where there is no name.
+fn named_schema(path: &str) -> Value {
+    let plain = table_schema(path);
+    let known = keys::children(path);
+    let mut inherited = plain.clone();
+    let relations = ["required", "allOf"];
+    for part in relations {
+        inherited.remove(part);
+    }
+    let properties = inherited.get_mut("properties").and_then(Value::as_object_mut);
+    for (_, property) in properties.into_iter().flatten() {
+        for part in relations {
+            property.as_object_mut().and_then(|property| property.remove(part));
+        }
+    }
+    let only_named = ["body", "spring"].contains(&path);
+    let named = if only_named { plain.clone() } else { inherited.clone() };
+    inherited.insert("additionalProperties".into(), Value::Object(named));
+    if !only_named {
+        let alone = json!({ "if": { "propertyNames": { "enum": known } }, "then": plain });
+        inherited.insert("allOf".into(), json!([alone]));
+    }
+    Value::Object(inherited)
 }
 
 fn row(path: &str) -> Option<usize> {

@@ -3,6 +3,7 @@
 use crate::mesh::generate::{Cage, CageMesh, ContactBlock, Housing, HousingMesh, Ring, RingMesh};
 use crate::mesh::read::LengthUnit;
 use crate::mesh::{Order, Surface};
+use crate::scene::assembly::AssemblyScene;
 use crate::scene::housing::HousedScene;
 use crate::scene::resolved::{Assumption, DefaultUsed, Scene};
 use crate::solver::profile::Profile;
@@ -15,6 +16,8 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
     Bearing(Box<Scene>),
+    /// Several bearings, or one on bodies of the scene.
+    Assembly(Box<AssemblyScene>),
     Solid(Box<SolidScene>),
     Housed(Box<HousedScene>),
 }

@@ -16,13 +16,12 @@ pub fn static_problem(scene: &Scene) -> Result<StaticProblem, HertzError> {
     let geometry = scene.geometry;
     let side = |side, race| contact(scene.hertz, side, &geometry, &scene.ball_material, race);
     let [x, y, z, tilt_y, tilt_z] = scene.outer_race;
-    let volume = 4.0 / 3.0 * PI * geometry.ball_radius.powi(3);
     Ok(StaticProblem {
         geometry,
         inner_contact: side(RaceSide::Inner, &scene.inner_material)?,
         outer_contact: side(RaceSide::Outer, &scene.outer_material)?,
         ball_phase: scene.ball_phase,
-        ball_mass: scene.ball_material.density * volume,
+        ball_mass: ball_mass(scene),
         gravity: Vector3::from(scene.gravity),
         orbital_speed: if scene.centrifugal { orbital_speed(scene) } else { 0.0 },
         frame: Pose::identity(),
@@ -34,9 +33,16 @@ pub fn static_problem(scene: &Scene) -> Result<StaticProblem, HertzError> {
     })
 }
 
+/// Of one ball, kg.
+pub fn ball_mass(scene: &Scene) -> f64 {
+    let volume = 4.0 / 3.0 * PI * scene.geometry.ball_radius.powi(3);
+    scene.ball_material.density * volume
+}
+
 /// Speed of the ball set by pure rolling at the nominal contact angle, rad/s; 0 at standstill.
 pub fn orbital_speed(scene: &Scene) -> f64 {
-    kinematic_ratios(scene).cage * scene.inner_speed.unwrap_or(0.0)
+    let outer = scene.outer_speed.unwrap_or(0.0);
+    outer + kinematic_ratios(scene).cage * (scene.inner_speed.unwrap_or(0.0) - outer)
 }
 
 /// Kinematic frequencies of the scene's bearing as ratios to the shaft frequency.

@@ -9,7 +9,8 @@ use crate::scene::value::{ValueError, check_bare};
 /// One varied key and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepAxis {
-    pub key: &'static str,
+    /// Path as a person writes it, with the name of a named table: `bearing.left.clearance.radial`.
+    pub key: String,
     pub values: SweepValues,
 }
 
@@ -68,10 +69,10 @@ pub(crate) fn axis_of_node(
     key_offset: usize,
     node: &Node,
 ) -> Result<SweepAxis, ValueError> {
-    let (_, key) = keys::find(path).ok_or_else(|| (key_offset, unknown_key(path)))?;
+    let (_, key, _) = keys::find_named(path).ok_or_else(|| (key_offset, unknown_key(path)))?;
     let items = match &node.value {
         Value::Text(text) => {
-            return axis_of_text(key, text).map_err(|problem| (node.offset, problem).into());
+            return axis_of_text(path, key, text).map_err(|problem| (node.offset, problem).into());
         }
         Value::List(items) => items,
         other => {
@@ -100,11 +101,15 @@ pub(crate) fn axis_of_node(
         check_bare(key, &text).map_err(|problem| (item.offset, problem))?;
         values.push(text);
     }
-    Ok(SweepAxis { key: key.path, values: SweepValues::List(values) })
+    Ok(SweepAxis { key: path.to_string(), values: SweepValues::List(values) })
 }
 
 /// Axis from one text: a list with commas, or a range `low .. high / count`.
-pub(crate) fn axis_of_text(key: &'static Key, text: &str) -> Result<SweepAxis, Problem> {
+pub(crate) fn axis_of_text(
+    path: &str,
+    key: &'static Key,
+    text: &str,
+) -> Result<SweepAxis, Problem> {
     refuse_unsweepable(key)?;
     let values = match text.split_once("..") {
         Some((low, rest)) => range(key, text, low, rest)?,
@@ -119,7 +124,7 @@ pub(crate) fn axis_of_text(key: &'static Key, text: &str) -> Result<SweepAxis, P
             SweepValues::List(items)
         }
     };
-    Ok(SweepAxis { key: key.path, values })
+    Ok(SweepAxis { key: path.to_string(), values })
 }
 
 fn range(key: &'static Key, text: &str, low: &str, rest: &str) -> Result<SweepValues, Problem> {

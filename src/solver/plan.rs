@@ -2,8 +2,8 @@
 //! has, and can be asked why.
 
 use super::channels::ChannelGroup;
-use super::dynamics::assembly::BallMeeting;
-use super::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
+use super::dynamics::assembly::{Assembly, BallMeeting, Bearing, Body, GROUND, Mobility};
+use super::dynamics::model::{Drive, RaceBody, Rotation};
 use super::dynamics::run::{Integrator, RunOptions, Start, Stepping};
 use super::statics::{Condition, StaticProblem};
 use crate::ch2_housing::bearing::cage::{Guidance, Pocket};
@@ -14,13 +14,13 @@ use crate::ch2_housing::bearing::traction::TractionLaw;
 /// One thing the solver could do, whether it does it, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stage {
-    pub name: &'static str,
+    pub name: String,
     pub included: bool,
     pub reason: String,
 }
 
-fn stage(name: &'static str, included: bool, reason: impl Into<String>) -> Stage {
-    Stage { name, included, reason: reason.into() }
+fn stage(name: impl Into<String>, included: bool, reason: impl Into<String>) -> Stage {
+    Stage { name: name.into(), included, reason: reason.into() }
 }
 
 /// Stages of a static solution.
@@ -71,51 +71,68 @@ pub fn statics(problem: &StaticProblem) -> Vec<Stage> {
 
 /// Stages of one evaluation of a run, four a step, and of what is recorded.
 ///
-/// `cage_left_out` is why the problem has no cage, where the scene has one.
+/// `cage_left_out` is why a bearing has no cage, where the scene has one; one for each bearing.
 pub fn dynamics(
-    problem: &DynamicProblem,
+    assembly: &Assembly,
     options: &RunOptions,
     channels: &[ChannelGroup],
-    cage_left_out: Option<&str>,
+    cage_left_out: &[Option<&str>],
 ) -> Vec<Stage> {
-    let balls = problem.geometry.ball_count;
-    let mut stages = vec![
-        start(options.start),
-        step_size(options),
-        stage(
-            "distance test",
-            true,
-            format!("{balls} balls, two races each; a pair with room costs nothing more"),
-        ),
-        traction(problem),
-        heathcote(problem),
-        contact_damping(&problem.damping),
-    ];
-    stages.extend(cage(problem, cage_left_out));
-    stages.push(ball_contact(problem));
-    stages.push(if problem.gravity != [0.0; 3] {
+    let mut stages = vec![start(options.start), step_size(options)];
+    for (index, bearing) in assembly.bearings.iter().enumerate() {
+        let balls = bearing.geometry.ball_count;
+        let mut own = vec![
+            stage(
+                "distance test",
+                true,
+                format!("{balls} balls, two races each; a pair with room costs nothing more"),
+            ),
+            traction(bearing),
+            heathcote(bearing),
+            contact_damping(&bearing.damping),
+        ];
+        own.extend(cage(bearing, cage_left_out.get(index).copied().flatten()));
+        own.push(ball_contact(bearing));
+        if let Some(name) = &bearing.name {
+            own.iter_mut().for_each(|stage| stage.name = format!("{name}: {}", stage.name));
+        }
+        stages.extend(own);
+    }
+    stages.push(if assembly.gravity != [0.0; 3] {
         stage("gravity", true, "given; it acts on every body that moves")
     } else {
         stage("gravity", false, "none is given")
     });
-    stages.push(inner_race(&problem.inner));
-    stages.push(match &problem.outer {
-        Some(body) => stage("outer race motion", true, race_freedom(body)),
-        None => stage("outer race motion", false, "fixed in space: no equations for it"),
-    });
-    stages.push(foundation(problem));
-    stages.push(match &problem.rotating_load {
-        Some(_) => stage("rotating load", true, "given"),
-        None => stage("rotating load", false, "none is given"),
-    });
-    stages.push(if problem.unbalance != 0.0 {
-        stage("unbalance", true, "given")
-    } else {
-        stage("unbalance", false, "none is given")
-    });
+    stages.extend(assembly.bodies.iter().filter_map(motion));
+    stages.push(foundation(assembly));
+    if assembly.bodies.iter().any(|body| body.label.is_some()) {
+        stages.push(match assembly.connections.len() {
+            0 => stage("springs between bodies", false, "none is given"),
+            some => stage("springs between bodies", true, format!("{some} of them")),
+        });
+    }
+    let loads = assembly.bodies.iter().any(|body| body.rotating_load.is_some());
+    let unbalanced = assembly.bodies.iter().any(|body| body.unbalance != 0.0);
+    for (name, given) in [("rotating load", loads), ("unbalance", unbalanced)] {
+        stages.push(stage(name, given, if given { "given" } else { "none is given" }));
+    }
     stages.push(stage("flexible bodies", false, "the scene has none: no mesh, no element stage"));
-    stages.extend(ChannelGroup::ALL.map(|group| channel_group(problem, channels, group)));
+    stages.extend(ChannelGroup::ALL.map(|group| channel_group(assembly, channels, group)));
     stages
+}
+
+/// Of a race or another body; a cage has a stage of its own, and the ground none.
+fn motion(body: &Body) -> Option<Stage> {
+    let name = format!("{} motion", body.name.strip_prefix("the ").unwrap_or(&body.name));
+    match &body.mobility {
+        Mobility::Free(_) => None,
+        Mobility::Fixed if body.name == GROUND => None,
+        Mobility::Fixed => Some(stage(name, false, "fixed in space: no equations for it")),
+        Mobility::Driven(race) if free_coordinates(race) == 0 => {
+            Some(stage(name, false, "all six coordinates are given and imposed"))
+        }
+        Mobility::Driven(race) => Some(stage(name, true, race_freedom(race))),
+    }
 }
 
 fn start(start: Start) -> Stage {
@@ -165,7 +182,7 @@ fn step_size(options: &RunOptions) -> Stage {
     }
 }
 
-fn traction(problem: &DynamicProblem) -> Stage {
+fn traction(problem: &Bearing) -> Stage {
     let law = match problem.traction {
         TractionLaw::None => {
             return stage("traction", false, "law none: no slices, no spin moment");
@@ -179,7 +196,7 @@ fn traction(problem: &DynamicProblem) -> Stage {
     stage("traction", true, format!("{law}; {slices} slices on each loaded contact"))
 }
 
-fn heathcote(problem: &DynamicProblem) -> Stage {
+fn heathcote(problem: &Bearing) -> Stage {
     match (problem.heathcote, &problem.traction) {
         (_, TractionLaw::None) => stage("curved contact surface", false, "no slices"),
         (true, _) => stage("curved contact surface", true, "asked for (Heathcote slip)"),
@@ -207,7 +224,7 @@ fn contact_damping(damping: &ContactDamping) -> Stage {
     }
 }
 
-fn cage(problem: &DynamicProblem, left_out: Option<&str>) -> Vec<Stage> {
+fn cage(problem: &Bearing, left_out: Option<&str>) -> Vec<Stage> {
     let Some(cage) = &problem.cage else {
         let reason = left_out.unwrap_or("the scene has none");
         return vec![stage("cage", false, format!("{reason}: no equations, no pocket tests"))];
@@ -231,10 +248,10 @@ fn cage(problem: &DynamicProblem, left_out: Option<&str>) -> Vec<Stage> {
     ]
 }
 
-fn ball_contact(problem: &DynamicProblem) -> Stage {
+fn ball_contact(problem: &Bearing) -> Stage {
     let balls = problem.geometry.ball_count;
     let name = "contact between balls";
-    match problem.assembly().bearings[0].ball_meeting() {
+    match problem.ball_meeting() {
         BallMeeting::Tested => {
             let reason = format!("{balls} pairs of neighbours; a pair apart costs a distance test");
             stage(name, true, reason)
@@ -264,26 +281,19 @@ pub fn race_freedom(body: &RaceBody) -> String {
     }
 }
 
-fn inner_race(body: &RaceBody) -> Stage {
-    match free_coordinates(body) {
-        0 => stage("inner race motion", false, "all six coordinates are given and imposed"),
-        _ => stage("inner race motion", true, race_freedom(body)),
-    }
-}
-
-fn foundation(problem: &DynamicProblem) -> Stage {
+fn foundation(assembly: &Assembly) -> Stage {
     let stands = |body: &RaceBody| {
         body.foundation_stiffness.iter().chain(&body.foundation_damping).any(|value| *value != 0.0)
     };
-    match (stands(&problem.inner), problem.outer.as_ref().is_some_and(stands)) {
-        (false, false) => stage("foundation", false, "no spring or dashpot to the ground"),
-        (true, false) => stage("foundation", true, "under the inner race"),
-        (false, true) => stage("foundation", true, "under the outer race"),
-        (true, true) => stage("foundation", true, "under both races"),
+    let on = assembly.bodies.iter().filter(|body| body.driven().is_some_and(stands));
+    let under: Vec<&str> = on.map(|body| body.name.as_str()).collect();
+    match under[..] {
+        [] => stage("foundation", false, "no spring or dashpot to the ground"),
+        _ => stage("foundation", true, format!("under {}", under.join(", "))),
     }
 }
 
-fn channel_group(problem: &DynamicProblem, asked: &[ChannelGroup], group: ChannelGroup) -> Stage {
+fn channel_group(assembly: &Assembly, asked: &[ChannelGroup], group: ChannelGroup) -> Stage {
     let name = match group {
         ChannelGroup::Races => "channels: races",
         ChannelGroup::Cage => "channels: cage",
@@ -299,7 +309,7 @@ fn channel_group(problem: &DynamicProblem, asked: &[ChannelGroup], group: Channe
         stage(name, true, "the ledger is always kept")
     } else if !asked.contains(&group) {
         stage(name, false, "not asked for: not computed")
-    } else if needs_cage && problem.cage.is_none() {
+    } else if needs_cage && assembly.bearings.iter().all(|bearing| bearing.cage.is_none()) {
         stage(name, false, "no cage takes part")
     } else {
         stage(name, true, "recorded at every output")

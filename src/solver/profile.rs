@@ -43,6 +43,22 @@ pub enum Profile {
 impl Profile {
     pub const ZERO: Profile = Profile::Constant(0.0);
 
+    /// The same, larger by `by` at all times.
+    pub fn shifted(&self, by: f64) -> Profile {
+        let mut shifted = self.clone();
+        match &mut shifted {
+            Profile::Constant(value) => *value += by,
+            Profile::Ramp { from, to, .. } | Profile::SmoothRamp { from, to, .. } => {
+                *from += by;
+                *to += by;
+            }
+            Profile::Table { points } => points.iter_mut().for_each(|point| point[1] += by),
+            Profile::Harmonic { mean, .. } => *mean += by,
+            Profile::HalfSine { base, .. } => *base += by,
+        }
+        shifted
+    }
+
     /// Whether it is zero at all times, so that it may be left out.
     pub fn is_zero(&self) -> bool {
         match self {

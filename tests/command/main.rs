@@ -17,6 +17,7 @@ mod run_common;
 #[path = "../solid_command_common/mod.rs"]
 mod solid_command_common;
 
+mod assembly_command;
 mod command_line;
 mod command_line_check;
 mod command_line_compare;

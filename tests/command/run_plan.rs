@@ -48,7 +48,7 @@ fn planned(text: &str, channels: &[ChannelGroup]) -> String {
         CageInRun::Body(_) => None,
         CageInRun::LeftOut(reason) => Some(reason.as_str()),
     };
-    let stages = plan::dynamics(&problem, &settings.options, channels, left_out);
+    let stages = plan::dynamics(&problem.assembly(), &settings.options, channels, &[left_out]);
     stages
         .iter()
         .map(|stage| {

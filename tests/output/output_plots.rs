@@ -216,7 +216,7 @@ fn a_load_zone_takes_its_sizes_from_the_geometry() {
         contact_angle: 0.0,
         radial_clearance: 0.0,
     };
-    let drawn = LoadZone::new(zone().title, &geometry, &solution());
+    let drawn = LoadZone::new(zone().title, &geometry, &solution().balls);
     assert!((drawn.inner_raceway_radius - inner).abs() <= 1e-15);
     assert!((drawn.outer_raceway_radius - outer).abs() <= 1e-15);
     assert_eq!(drawn.balls, zone().balls);

@@ -466,6 +466,10 @@ fn understood(text: &str, name: &str) -> Result<Subject, String> {
     };
     match &mut subject {
         Subject::Bearing(scene) => forget(scene),
+        Subject::Assembly(scene) => {
+            scene.defaults_used.clear();
+            scene.bearings.iter_mut().for_each(|placed| forget(&mut placed.scene));
+        }
         Subject::Solid(scene) => scene.defaults_used.clear(),
         Subject::Housed(scene) => {
             forget(&mut scene.bearing);
@@ -499,6 +503,14 @@ fn a_default_of_the_table_is_the_one_in_use() {
     trees.push(base(
         "[inner_race.rotating_load]\nforce = \"1 N\"\nspeed = \"50 rpm\"\n[outer_race]\nmotion = \"6-dof\"\n",
     ));
+    for along in ["x", "y"] {
+        trees.push(base(&format!(
+            "[body.hub]\nspeed = \"0 rpm\"\nrotating_load = {{ force = \"1 N\", speed = \"50 rpm\" }}\n\
+             inertia = {{ mass = \"1 kg\", axial = \"1 kg m^2\", transverse = \"1 kg m^2\" }}\n\
+             [spring.mount]\nfrom = \"hub\"\nstiffness = {{ {along} = \"1 N/m\" }}\n\
+             damping = {{ {along} = \"1 N s/m\" }}\n"
+        )));
+    }
     // What all shipped scenes state.
     for (scene, table, key) in
         [("bar_impact.toml", "solid", "material"), ("interference_fit.toml", "housing", "method")]
@@ -518,7 +530,15 @@ fn a_default_of_the_table_is_the_one_in_use() {
                 continue;
             }
             let mut with = tree.clone();
-            let (mut at, names) = (&mut with, key.path.split('.').collect::<Vec<_>>());
+            let (mut at, mut names) = (&mut with, key.path.split('.').collect::<Vec<_>>());
+            if ["body", "spring"].contains(&names[0]) {
+                let Some(named) = tree[names[0]].as_object() else { continue };
+                let name = named.keys().next().expect("a name");
+                if named[name].pointer(&format!("/{}", names[1..].join("/"))).is_some() {
+                    continue;
+                }
+                names.insert(1, name);
+            }
             let (last, tables) = names.split_last().unwrap();
             let mut fits = true;
             for table in tables {

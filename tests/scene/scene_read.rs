@@ -45,6 +45,11 @@ fn every_shipped_scene_resolves_and_cites_its_source() {
                 let source = scene.source.expect("every shipped scene names its source");
                 assert!(source.contains("Table"), "{}: {source}", path.display());
             }
+            Subject::Assembly(scene) => {
+                let source =
+                    scene.common().source.as_ref().expect("every shipped scene names its source");
+                assert!(source.contains("Table"), "{}: {source}", path.display());
+            }
             Subject::Solid(scene) => assert!(scene.source.is_some(), "{}", path.display()),
             Subject::Housed(scene) => {
                 let source = scene.bearing.source.expect("every shipped scene names its source");
@@ -289,7 +294,7 @@ fn set_names_the_key_and_what_is_wrong() {
 fn sweep_values_include_both_ends_and_keep_their_decimals() {
     let document = Document::read_file(&shipped("varying_compliance.toml")).unwrap();
     let axis = &document.sweep()[1];
-    assert_eq!((axis.key, axis.len()), ("bearing.ball_phase", 91));
+    assert_eq!((axis.key.as_str(), axis.len()), ("bearing.ball_phase", 91));
     assert_eq!(axis.value(0).unwrap(), "0 deg");
     assert_eq!(axis.value(1).unwrap(), "0.5 deg");
     assert_eq!(axis.value(90).unwrap(), "45 deg");

@@ -45,6 +45,9 @@ pub fn run(path: &Path, document: &Document, scene: &HousedScene, json: bool) ->
     let mut line = |label: &str, value: String| {
         let _ = writeln!(text, "  {label:<22} {}", visible_line(&value));
     };
+    if let Some(title) = &scene.bearing.title {
+        line("title", title.clone());
+    }
     bearing_lines(&scene.bearing, &mut line);
     line("housing", format!("{}; {}", mesh_text(&prepared.built), echo::method(scene)));
     for note in mesh_notes(&prepared.built) {

@@ -12,6 +12,7 @@ use crate::commands::{CommandResult, Outcome, memory, say};
 use bearing_dynamics::output::summary::housing::largest_error;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::RunSettings;
+use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
 use bearing_dynamics::scene::housing_problem::{
@@ -57,7 +58,8 @@ pub fn lines(scene: &HousedScene, prepared: &Prepared) -> Result<Vec<String>, Bo
         (HousingMethod::Explicit, Some(run)) => {
             let problem = dynamic_problem(&scene.bearing)?;
             let request = bearing_request(&scene.bearing, run);
-            dynamic_plan_lines(&scene.bearing, &problem, &request, None)
+            let alone = AssemblyScene::alone(scene.bearing.clone());
+            dynamic_plan_lines(&alone, &problem.assembly(), &request, None)
         }
         _ => plan_lines(&bearing_at(scene, 0.0)?),
     };

@@ -1,20 +1,21 @@
 //! From a scene to what moves in its run: the one place that asks what the scene is of.
 
 use crate::commands::plan::dynamic_plan_lines;
-use crate::commands::{self, echo, echo_run, housed, solid};
+use crate::commands::{self, housed, solid};
 use bearing_dynamics::output::course::CourseParts;
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::session::{Parts, RunRequest, SolidParts};
 use bearing_dynamics::output::state::{self, StateFile};
-use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
+use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::scene::dynamics::{DynamicsError, run_options};
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
 use bearing_dynamics::scene::solid::SolidRun;
 use bearing_dynamics::scene::solid_mesh::BuiltMesh;
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{Document, RunPlot, RunSettings, Scene, SolidScene, Subject};
 use bearing_dynamics::solver::channels::ChannelGroup;
+use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::foretell::{Choice, choose};
-use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions};
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use std::error::Error;
@@ -25,10 +26,10 @@ type Fallible<T> = Result<T, Box<dyn Error>>;
 
 /// A scene ready to run.
 pub(super) enum Prepared<'s> {
-    Bearing {
-        scene: &'s Scene,
+    Bearings {
+        scene: Box<AssemblyScene>,
         settings: RunSettings,
-        problem: Box<DynamicProblem>,
+        assembly: Box<Assembly>,
     },
     Solid {
         scene: &'s SolidScene,
@@ -48,6 +49,9 @@ pub(super) enum Prepared<'s> {
 pub(super) fn check_end(path: &Path, subject: &Subject) -> Fallible<()> {
     let ends = match subject {
         Subject::Bearing(scene) => run_options(scene).map(|_| ()).map_err(|e| e.to_string()),
+        Subject::Assembly(scene) => {
+            scene.run().map(|_| ()).ok_or_else(|| DynamicsError::NoEnd.to_string())
+        }
         Subject::Solid(scene) => {
             scene.run.map(|_| ()).ok_or("a run needs `end` in [numerics]".into())
         }
@@ -64,11 +68,8 @@ impl<'s> Prepared<'s> {
     pub fn new(document: &Document, subject: &'s Subject) -> Fallible<Prepared<'s>> {
         const NO_END: &str = "a run needs `end` in [numerics]";
         Ok(match subject {
-            Subject::Bearing(scene) => Prepared::Bearing {
-                settings: run_options(scene)?,
-                problem: Box::new(dynamic_problem(scene)?),
-                scene,
-            },
+            Subject::Bearing(scene) => Prepared::bearings(AssemblyScene::alone((**scene).clone()))?,
+            Subject::Assembly(scene) => Prepared::bearings((**scene).clone())?,
             Subject::Solid(scene) => Prepared::Solid {
                 settings: scene.run.ok_or(NO_END)?,
                 mesh: Box::new(solid::prepare(document, scene)?),
@@ -89,10 +90,18 @@ impl<'s> Prepared<'s> {
         })
     }
 
+    fn bearings(scene: AssemblyScene) -> Fallible<Prepared<'s>> {
+        Ok(Prepared::Bearings {
+            settings: scene.run().cloned().ok_or(DynamicsError::NoEnd)?,
+            assembly: Box::new(scene.assembly()?),
+            scene: Box::new(scene),
+        })
+    }
+
     /// What moves.
     pub fn parts(&self, threads: usize) -> Fallible<Parts<'_>> {
         Ok(match self {
-            Prepared::Bearing { problem, .. } => Parts::from(problem.assembly()),
+            Prepared::Bearings { assembly, .. } => Parts::from((**assembly).clone()),
             Prepared::Solid { settings, mesh, .. } => Parts::Solid(SolidParts {
                 setup: &mesh.setup,
                 method: settings.method,
@@ -112,8 +121,8 @@ impl<'s> Prepared<'s> {
     /// What the scene asks of the run, with the integrator that the plan chooses for a bearing.
     pub fn request(&self, kept: Option<&StateFile>) -> Fallible<(RunRequest, Option<Choice>)> {
         Ok(match self {
-            Prepared::Bearing { scene, settings, problem } => {
-                planned_request(scene, settings, problem, kept)
+            Prepared::Bearings { scene, settings, assembly } => {
+                planned_request(scene, settings, assembly, kept)
             }
             Prepared::Solid { settings, .. } => {
                 let request = RunRequest {
@@ -135,7 +144,7 @@ impl<'s> Prepared<'s> {
     /// What a person should know of mesh and bore before results.
     pub fn notes(&self) -> Vec<String> {
         match self {
-            Prepared::Bearing { .. } => Vec::new(),
+            Prepared::Bearings { .. } => Vec::new(),
             Prepared::Solid { mesh, .. } => solid::mesh_notes(&mesh.built),
             Prepared::Housed { mesh, .. } => housed::notes(mesh),
         }
@@ -143,8 +152,8 @@ impl<'s> Prepared<'s> {
 
     pub fn title(&self) -> String {
         match self {
-            Prepared::Bearing { scene, .. } => {
-                scene.title.clone().unwrap_or_else(|| "Bearing".into())
+            Prepared::Bearings { scene, .. } => {
+                scene.common().title.clone().unwrap_or_else(|| "Bearing".into())
             }
             Prepared::Solid { scene, .. } => solid::title(scene),
             Prepared::Housed { scene, .. } => {
@@ -153,10 +162,10 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// The bearing of the scene, if it has one.
+    /// What all bearings of the scene share, if it has any.
     pub fn bearing(&self) -> Option<&Scene> {
         match self {
-            Prepared::Bearing { scene, .. } => Some(scene),
+            Prepared::Bearings { scene, .. } => Some(scene.common()),
             Prepared::Housed { scene, .. } => Some(&scene.bearing),
             Prepared::Solid { .. } => None,
         }
@@ -165,7 +174,7 @@ impl<'s> Prepared<'s> {
     /// The mesh of the scene, if it has one.
     pub fn built(&self) -> Option<&BuiltMesh> {
         match self {
-            Prepared::Bearing { .. } => None,
+            Prepared::Bearings { .. } => None,
             Prepared::Solid { mesh, .. } => Some(&mesh.built),
             Prepared::Housed { mesh, .. } => Some(&mesh.built),
         }
@@ -174,7 +183,7 @@ impl<'s> Prepared<'s> {
     /// From when on means are taken, s.
     pub fn window_start(&self) -> f64 {
         match self {
-            Prepared::Bearing { settings, .. } | Prepared::Housed { settings, .. } => {
+            Prepared::Bearings { settings, .. } | Prepared::Housed { settings, .. } => {
                 settings.window_start
             }
             Prepared::Solid { .. } => 0.0,
@@ -197,13 +206,13 @@ impl<'s> Prepared<'s> {
         seconds: Vec<(String, f64)>,
     ) -> Fallible<RunRecord> {
         match self {
-            Prepared::Bearing { scene, problem, .. } => {
-                let defaults = echo_run::defaults(scene);
-                let plan = dynamic_plan_lines(scene, problem, request, choice);
-                let assumptions = &scene.assumptions;
-                let mut record =
-                    commands::record(echo::scene(scene)?, plan, assumptions, &defaults, seconds);
-                record.sections.push(("motion".into(), echo_run::motion(problem)?));
+            Prepared::Bearings { scene, assembly, .. } => {
+                let defaults = commands::assembly::defaults(scene);
+                let plan = dynamic_plan_lines(scene, assembly, request, choice);
+                let assumptions = &scene.common().assumptions;
+                let echo = commands::assembly::echo(scene)?;
+                let mut record = commands::record(echo, plan, assumptions, &defaults, seconds);
+                record.sections.push(("motion".into(), commands::assembly::motion(scene)?));
                 Ok(record)
             }
             Prepared::Solid { scene, mesh, .. } => {
@@ -237,25 +246,25 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
 /// The same with the integrator that the plan chooses, where the scene leaves it to the plan. A run that
 /// goes on does so as it began: a later end may let another one look better.
 pub fn planned_request(
-    scene: &Scene,
+    scene: &AssemblyScene,
     settings: &RunSettings,
-    problem: &DynamicProblem,
+    assembly: &Assembly,
     kept: Option<&StateFile>,
 ) -> (RunRequest, Option<Choice>) {
-    let mut request = request(scene, settings);
+    let mut request = request(scene.common(), settings);
     if !settings.by_plan {
         return (request, None);
     }
     for integrator in [Integrator::Rosenbrock, Integrator::DormandPrince] {
         request.options.integrator = integrator;
         let same = |file: &StateFile| {
-            file.fingerprint == state::fingerprint(&problem.clone().into(), &request)
+            file.fingerprint == state::fingerprint(&assembly.clone().into(), &request)
         };
         if kept.is_some_and(same) {
             return (request, Some(Choice { integrator, mean_steps: None, kept: true }));
         }
     }
-    let choice = choose(&problem.assembly(), &request);
+    let choice = choose(assembly, &request);
     request.options.integrator = choice.integrator;
     (request, Some(choice))
 }

@@ -59,9 +59,9 @@ pub(super) fn write_results(
     let start = Instant::now();
     let mut said = Said::default();
     match prepared {
-        Prepared::Bearing { scene, problem, .. } => {
+        Prepared::Bearings { scene, .. } => {
             if let Some(simulation) = session.motion.bearing() {
-                said.remarks = remarks::of_run(scene, problem, &simulation.extremes[0]);
+                said.remarks = remarks::of_run(scene, simulation);
                 said.sections.push(("remarks".into(), json!(said.remarks)));
             }
         }
@@ -93,7 +93,7 @@ pub(super) fn write_results(
         integrator: Some(integrator),
         solid_stepping: match prepared {
             Prepared::Solid { settings, .. } => Some(settings.stepping),
-            Prepared::Bearing { .. } | Prepared::Housed { .. } => None,
+            Prepared::Bearings { .. } | Prepared::Housed { .. } => None,
         },
     };
     let written = write_run_results(folder, session, &table, &spectra, &report)?;
@@ -193,7 +193,7 @@ pub(super) fn write_fields_file(
     let path = folder.join(file_name("fields", index as usize));
     let housing = match prepared {
         Prepared::Housed { mesh, .. } => Some(&mesh.setup.model),
-        Prepared::Bearing { .. } | Prepared::Solid { .. } => None,
+        Prepared::Bearings { .. } | Prepared::Solid { .. } => None,
     };
     let bore = housing.map(|model: &SolidModel| bore_nodes(&session.motion, model));
     let (velocity, stress) = match &mut session.motion {

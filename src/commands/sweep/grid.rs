@@ -39,12 +39,15 @@ impl Grid {
             .into());
         }
         for (i, axis) in axes.iter().enumerate() {
-            let Some((_, key)) = keys::find(axis.key) else { continue };
+            let Some((_, key, name)) = keys::find_named(&axis.key) else { continue };
             for other in &axes[..i] {
                 if other.key == axis.key {
                     return Err(format!("{} is varied twice", axis.key).into());
                 }
-                if key.rivals().any(|rival| rival.path == other.key) {
+                let excludes = keys::find_named(&other.key).is_some_and(|(_, second, of)| {
+                    of == name && key.rivals().any(|rival| rival.path == second.path)
+                });
+                if excludes {
                     return Err(format!(
                         "{} and {} exclude each other; vary one of them",
                         other.key, axis.key
@@ -86,12 +89,12 @@ impl Grid {
         indices
     }
 
-    /// The scene of a point: a bearing alone, or in its housing.
+    /// The scene of a point: bearings alone, or one in its housing.
     pub fn scene(&self, document: &Document, point: usize) -> Result<Subject, SceneError> {
         let mut document = document.clone();
         for (axis, index) in self.axes.iter().zip(self.indices(point)) {
             if let Some(value) = axis.value(index) {
-                document.set(axis.key, &value)?;
+                document.set(&axis.key, &value)?;
             }
         }
         match resolve_subject(&document)? {
@@ -107,10 +110,11 @@ impl Grid {
         const LOOKS: usize = 1000;
         let problem = |point| -> Result<(), Box<dyn Error>> {
             match self.scene(document, point)? {
-                Subject::Housed(scene) => static_problem(&scene.bearing)?,
-                Subject::Bearing(scene) => static_problem(&scene)?,
-                Subject::Solid(_) => return Ok(()),
-            };
+                Subject::Housed(scene) => static_problem(&scene.bearing).map(|_| ())?,
+                Subject::Bearing(scene) => static_problem(&scene).map(|_| ())?,
+                Subject::Assembly(scene) => scene.statics().map(|_| ())?,
+                Subject::Solid(_) => {}
+            }
             Ok(())
         };
         if self.axes.iter().any(|axis| axis.key == "housing.method") {

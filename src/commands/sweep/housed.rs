@@ -8,13 +8,13 @@ use crate::commands::housed::{Prepared, condensed, equilibrium_at, search};
 use bearing_dynamics::output::course::outer_place;
 use bearing_dynamics::output::fields::stresses;
 use bearing_dynamics::output::recorder::seat::SeatRow;
+use bearing_dynamics::scene::Subject;
 use bearing_dynamics::scene::bore_shape::BorePlace;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::scene::housing_problem::setup;
 use bearing_dynamics::scene::input_file::{self, LARGEST_DATA};
 use bearing_dynamics::scene::solid::MeshSource;
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
-use bearing_dynamics::scene::{Document, Subject};
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, Reach};
 use std::error::Error;
 
@@ -91,9 +91,4 @@ pub fn mesh_file(subject: &Subject) -> Result<Vec<u8>, Box<dyn Error>> {
     let MeshSource::File { path, .. } = &scene.solid.mesh.source else { return Ok(Vec::new()) };
     Ok(input_file::read(path, LARGEST_DATA)
         .map_err(|error| format!("cannot read {}: {error}", path.display()))?)
-}
-
-/// Whether a scene has a flexible housing; all points of a sweep agree on it.
-pub fn is_housed(document: &Document) -> bool {
-    matches!(bearing_dynamics::scene::resolve_subject(document), Ok(Subject::Housed(_)))
 }

@@ -13,7 +13,7 @@ mod report;
 
 use super::earlier::{Writes, claimed};
 use super::{CommandResult, Outcome, results_folder, say};
-use bearing_dynamics::scene::{Document, Subject};
+use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use grid::Grid;
 use indicatif::{ProgressBar, ProgressStyle};
 use journal::{Chunk, Journal};
@@ -60,7 +60,9 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let folder = claimed(&sweep_folder(arguments), Writes::Sweep)?;
     let first = grid.scene(&document, 0);
     let mesh = first.as_ref().map_or(Ok(Vec::new()), housed::mesh_file)?;
-    let housed = matches!(first, Ok(Subject::Housed(_))) || housed::is_housed(&document);
+    // All points agree on what the scene is of.
+    let subject = first.as_ref().ok().cloned().or_else(|| resolve_subject(&document).ok());
+    let housed = matches!(subject, Some(Subject::Housed(_)));
     let size = if housed { HOUSED_CHUNK } else { CHUNK };
     let fingerprint = grid.fingerprint(&document, &mesh, arguments.cold);
     let points = |index| grid.chunk_range(index, size).len();
@@ -95,7 +97,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         threads: pool.current_num_threads(),
         seconds: start.elapsed().as_secs_f64(),
         complete: done == grid.len(),
-        housed,
+        subject,
     };
     report::write(&folder, &document, &grid, &chunks, &record)?;
     if !record.complete {
@@ -119,6 +121,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     ))?;
     let runs = first.is_ok_and(|first| match first {
         Subject::Bearing(scene) => scene.dynamics.run.is_some(),
+        Subject::Assembly(scene) => scene.run().is_some(),
         Subject::Housed(scene) => scene.bearing.dynamics.run.is_some(),
         Subject::Solid(_) => false,
     });
@@ -165,7 +168,7 @@ fn solve_chunk(document: &Document, grid: &Grid, index: usize, size: usize, cold
     let mut chunk = Chunk { index, rows: Vec::new(), failures: Vec::new() };
     let (mut neighbour, mut housing) = (None, None);
     for point in grid.chunk_range(index, size) {
-        match point::solve(document, grid, point, neighbour.as_ref(), &mut housing) {
+        match point::solve(document, grid, point, neighbour.as_deref(), &mut housing) {
             Ok(solved) => {
                 chunk.rows.push(solved.row);
                 neighbour = if cold { None } else { solved.start_for_neighbour };

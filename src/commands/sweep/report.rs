@@ -7,7 +7,7 @@ use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::{Series, write_atomic};
 use bearing_dynamics::scene::keys::{self, Kind};
 use bearing_dynamics::scene::units::{parse_number, parse_quantity};
-use bearing_dynamics::scene::{Document, SweepAxis};
+use bearing_dynamics::scene::{Document, Subject, SweepAxis};
 use ndarray::Array2;
 use serde_json::json;
 use std::error::Error;
@@ -17,8 +17,8 @@ pub struct Record {
     pub threads: usize,
     pub seconds: f64,
     pub complete: bool,
-    /// With the columns of a housing.
-    pub housed: bool,
+    /// What the scene is of, for the columns.
+    pub subject: Option<Subject>,
 }
 
 /// The unit in which an axis is written: that of its first value, or `choice` for words.
@@ -52,7 +52,7 @@ pub fn number_of(axis: &SweepAxis, index: usize) -> f64 {
 }
 
 fn kind_of(axis: &SweepAxis) -> Option<Kind> {
-    keys::find(axis.key).map(|(_, key)| key.kind)
+    keys::find_named(&axis.key).map(|(_, key, _)| key.kind)
 }
 
 /// Removes the table of an earlier sweep, which would pass for this one's until that is written.
@@ -74,7 +74,7 @@ pub fn write(
     chunks: &[Chunk],
     record: &Record,
 ) -> Result<(), Box<dyn Error>> {
-    let columns = columns(grid, record.housed);
+    let columns = columns(grid, record.subject.as_ref());
     let width = columns.len();
     let flat: Vec<f64> = chunks.iter().flat_map(|chunk| &chunk.rows).flatten().copied().collect();
     let table = Array2::from_shape_vec((flat.len() / width, width), flat)?;

@@ -4,7 +4,7 @@ use crate::output::plots::{
     Axis, Curve, OrbitPlot, PlotError, PolarPlot, Style, XyPlot, orbit, polar, xy,
 };
 use crate::output::spectrum::WINDOW;
-use crate::output::table::RunTable;
+use crate::output::table::{Moving, RunTable};
 use crate::solver::clock::to_digits;
 
 /// A plot a run can be asked for.
@@ -43,8 +43,8 @@ pub fn draw(
         Picture::Series => series(title, table),
         Picture::Orbit => orbits(title, table),
         Picture::Spectrum => spectra(title, table),
-        Picture::SlipSpin => slip_spin(title, table),
-        Picture::Polar => loads_over_azimuth(title, table),
+        Picture::SlipSpin => each_bearing(title, table, slip_spin),
+        Picture::Polar => each_bearing(title, table, loads_over_azimuth),
     }
 }
 
@@ -69,22 +69,27 @@ pub(super) fn over_time(table: &RunTable, channels: &[(&str, &str)], scale: f64)
 fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
     let displacement = ["x", "y", "z"];
     let mut drawn = Vec::new();
-    for (body, name) in [("inner", "inner race"), ("outer", "outer race"), ("cage", "cage")] {
+    for Moving { column: body, title: name } in &table.bodies {
         let channels = displacement.map(|axis| (format!("{body}_{axis}"), axis));
         let channels = channels.each_ref().map(|(channel, axis)| (channel.as_str(), *axis));
         let curves = over_time(table, &channels, 1e6);
         let file = format!("series_{}.svg", name.replace(' ', "_"));
         add_series(&mut drawn, file, format!("{title}: {name}"), "displacement", "um", curves)?;
     }
-    let loads = [
-        ("ball_1_inner_load", "ball 1 on inner race"),
-        ("ball_1_outer_load", "ball 1 on outer race"),
-        ("ball_1_pocket_load", "ball 1 in its pocket"),
-        ("cage_guide_load", "cage on its guide"),
-    ];
-    let curves = over_time(table, &loads, 1.0);
-    let heading = format!("{title}: loads");
-    add_series(&mut drawn, "series_loads.svg".into(), heading, "normal load", "N", curves)?;
+    for prefix in &table.bearings {
+        let loads = [
+            ("ball_1_inner_load", "ball 1 on inner race"),
+            ("ball_1_outer_load", "ball 1 on outer race"),
+            ("ball_1_pocket_load", "ball 1 in its pocket"),
+            ("cage_guide_load", "cage on its guide"),
+        ];
+        let loads = loads.map(|(channel, said)| (format!("{prefix}{channel}"), said));
+        let loads = loads.each_ref().map(|(channel, said)| (channel.as_str(), *said));
+        let curves = over_time(table, &loads, 1.0);
+        let heading = format!("{title}: {}loads", prefix.replace('_', " "));
+        let file = format!("series_{prefix}loads.svg");
+        add_series(&mut drawn, file, heading, "normal load", "N", curves)?;
+    }
     let curves = over_time(table, &[("energy_residual", "unaccounted for")], 1.0);
     let heading = format!("{title}: energy ledger");
     add_series(&mut drawn, "series_energy.svg".into(), heading, "energy", "J", curves)?;
@@ -109,7 +114,7 @@ pub(super) fn add_series(
 
 fn orbits(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
     let mut drawn = Vec::new();
-    for (body, name) in [("inner", "inner race"), ("outer", "outer race"), ("cage", "cage")] {
+    for Moving { column: body, title: name } in &table.bodies {
         let path = [format!("{body}_y"), format!("{body}_z")];
         let (Some(y), Some(z)) = (table.windowed(&path[0]), table.windowed(&path[1])) else {
             continue;
@@ -135,12 +140,11 @@ fn spectra(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotE
     let Some((_, first)) = spectra.first() else { return Ok(Vec::new()) };
     let axis = format!("frequency ({WINDOW} window, bin {} Hz)", to_digits(first.bin_width, 4));
     let mut drawn = Vec::new();
-    for (body, name) in [("inner", "inner race"), ("outer", "outer race"), ("cage", "cage")] {
+    for Moving { column: body, title: name } in &table.bodies {
         let mut curves = Vec::new();
         for (channel, spectrum) in &spectra {
-            let Some(axis) = channel.strip_prefix(body).and_then(|c| c.strip_prefix('_')) else {
-                continue;
-            };
+            let own = channel.strip_prefix(body.as_str()).and_then(|c| c.strip_prefix('_'));
+            let Some(axis) = own.filter(|axis| axis.len() == 1) else { continue };
             let highest = spectrum.amplitude.iter().copied().fold(0.0, f64::max);
             let points: Vec<[f64; 2]> = spectrum
                 .amplitude
@@ -170,14 +174,39 @@ fn spectra(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotE
 }
 
 /// Azimuth in degrees from 0 to 360 of ball `ball` at every row of the window.
-fn azimuths(table: &RunTable, ball: usize) -> Option<Vec<f64>> {
-    let angles = table.windowed(&format!("ball_{ball}_angle"))?;
+fn azimuths(table: &RunTable, prefix: &str, ball: usize) -> Option<Vec<f64>> {
+    let angles = table.windowed(&format!("{prefix}ball_{ball}_angle"))?;
     Some(angles.into_iter().map(|angle| angle.rem_euclid(360.0)).collect())
 }
 
+/// Pictures of each bearing, their files and titles with its name where there are several.
+fn each_bearing(
+    title: &str,
+    table: &RunTable,
+    of: impl Fn(&str, &RunTable, &str) -> Result<Vec<(String, String)>, PlotError>,
+) -> Result<Vec<(String, String)>, PlotError> {
+    let mut drawn = Vec::new();
+    for prefix in &table.bearings {
+        let Some(name) = prefix.strip_suffix('_') else {
+            drawn.extend(of(title, table, prefix)?);
+            continue;
+        };
+        for (file, svg) in of(&format!("{title}, {name}"), table, prefix)? {
+            drawn.push((file.replace(".svg", &format!("_{name}.svg")), svg));
+        }
+    }
+    Ok(drawn)
+}
+
 /// Ball 1 stands for all: each passes every azimuth. Its last turn is drawn, or what there is.
-fn slip_spin(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
-    let Some(angle) = table.windowed("ball_1_angle") else { return Ok(Vec::new()) };
+fn slip_spin(
+    title: &str,
+    table: &RunTable,
+    prefix: &str,
+) -> Result<Vec<(String, String)>, PlotError> {
+    let Some(angle) = table.windowed(&format!("{prefix}ball_1_angle")) else {
+        return Ok(Vec::new());
+    };
     let Some(last) = angle.last() else { return Ok(Vec::new()) };
     let over_last_turn = |values: Vec<f64>| {
         let turn = angle.iter().zip(values).filter(|(angle, _)| (**angle - last).abs() < 360.0);
@@ -189,7 +218,7 @@ fn slip_spin(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, Plo
     let mut slip = Vec::new();
     let mut spin = Vec::new();
     for race in ["inner", "outer"] {
-        let channel = |part: &str| table.windowed(&format!("ball_1_{race}_{part}"));
+        let channel = |part: &str| table.windowed(&format!("{prefix}ball_1_{race}_{part}"));
         let (Some(rolling), Some(transverse), Some(about_normal)) =
             (channel("slip_rolling"), channel("slip_transverse"), channel("spin"))
         else {
@@ -218,14 +247,18 @@ fn slip_spin(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, Plo
 }
 
 /// Normal load of all balls, averaged over sectors of azimuth.
-fn loads_over_azimuth(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
+fn loads_over_azimuth(
+    title: &str,
+    table: &RunTable,
+    prefix: &str,
+) -> Result<Vec<(String, String)>, PlotError> {
     let sectors = 360 / SECTOR;
     let mut curves = Vec::new();
     for race in ["outer", "inner"] {
         let mut sums = vec![(0.0, 0usize); sectors];
         for ball in 1.. {
-            let load = table.windowed(&format!("ball_{ball}_{race}_load"));
-            let (Some(load), Some(azimuth)) = (load, azimuths(table, ball)) else { break };
+            let load = table.windowed(&format!("{prefix}ball_{ball}_{race}_load"));
+            let (Some(load), Some(azimuth)) = (load, azimuths(table, prefix, ball)) else { break };
             for (load, azimuth) in load.iter().zip(&azimuth) {
                 let (sum, count) = &mut sums[(azimuth / SECTOR as f64) as usize % sectors];
                 *sum += load;

@@ -4,7 +4,7 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::output::plots::PlotError;
 use crate::output::plots::canvas::{self, Align, Area, BLACK_TEXT, Point};
 use crate::output::plots::ticks::nice_step;
-use crate::solver::statics::{BallState, StaticSolution};
+use crate::solver::statics::BallState;
 use plotters::style::RGBColor;
 
 /// Cross-section of the bearing in its Y–Z plane. Balls are drawn at their azimuth on the pitch
@@ -31,11 +31,7 @@ pub struct LoadZoneBall {
 }
 
 impl LoadZone {
-    pub fn new(
-        title: impl Into<String>,
-        geometry: &BearingGeometry,
-        solution: &StaticSolution,
-    ) -> Self {
+    pub fn new(title: impl Into<String>, geometry: &BearingGeometry, balls: &[BallState]) -> Self {
         let ball = |ball: &BallState| LoadZoneBall {
             azimuth: ball.azimuth,
             loaded: ball.inner.normal_load > 0.0,
@@ -47,7 +43,7 @@ impl LoadZone {
             outer_raceway_radius: geometry.outer.centre_radius + geometry.outer.groove_radius,
             pitch_radius: geometry.pitch_radius,
             ball_radius: geometry.ball_radius,
-            balls: solution.balls.iter().map(ball).collect(),
+            balls: balls.iter().map(ball).collect(),
         }
     }
 }

@@ -76,7 +76,7 @@ impl Recorder {
             if group == ChannelGroup::Races {
                 for (body, now) in system.assembly.bodies.iter().zip(&system.bodies) {
                     if body.label.is_some() {
-                        self.race(now);
+                        self.race(now, 0.0);
                     }
                 }
             }
@@ -96,12 +96,16 @@ impl Recorder {
         let BallSet { layout, table, .. } = set;
         match group {
             ChannelGroup::Races => {
-                self.race(&set.races[0]);
+                let place = simulation.system.assembly.place_of(bearing);
+                self.race(&set.races[0], place);
                 if simulation.system.assembly.bodies[bearing.mounts[1].body].moves() {
-                    self.race(&set.races[1]);
+                    self.race(&set.races[1], place);
                 }
             }
-            ChannelGroup::Cage => self.cage(set, bearing, before, row),
+            ChannelGroup::Cage => {
+                let place = simulation.system.assembly.place_of(bearing);
+                self.cage(set, bearing, place, before, row);
+            }
             ChannelGroup::Orbits => self.orbits(simulation, set, bearing, before, row),
             ChannelGroup::Loads => {
                 for ball in 0..layout.balls {
@@ -121,20 +125,30 @@ impl Recorder {
         }
     }
 
-    fn race(&mut self, now: &RaceNow) {
-        self.values.extend(now.state.position);
+    /// A race, X from `place` on (m), where its bearing sits.
+    fn race(&mut self, now: &RaceNow, place: f64) {
+        let [x, y, z] = now.state.position;
+        self.values.extend([x - place, y, z]);
         self.values.extend(tilts_of(now.motion.axis).map(f64::to_degrees));
         self.values.extend(now.state.velocity);
         self.values.push(dot(now.state.spin, now.motion.axis));
     }
 
-    fn cage(&mut self, set: &BallSet, bearing: &Bearing, before: Option<usize>, row: usize) {
+    fn cage(
+        &mut self,
+        set: &BallSet,
+        bearing: &Bearing,
+        place: f64,
+        before: Option<usize>,
+        row: usize,
+    ) {
         let (Some(caged), Some(now)) = (&bearing.cage, &set.cage) else { return };
-        let [_, y, z]: [f64; 3] = (now.state.orientation * Vector3::y()).into();
+        let own_y = now.state.orientation * Vector3::y();
         let speed = dot(now.motion.spin, now.motion.axis);
-        self.values.extend(now.motion.position);
+        let [x, y, z] = now.motion.position;
+        self.values.extend([x - place, y, z]);
         self.values.extend(tilts_of(now.motion.axis).map(f64::to_degrees));
-        self.turned(libm::atan2(z, y), speed, before, row);
+        self.turned(libm::atan2(own_y.z, own_y.y), speed, before, row);
         self.values.push(speed);
         if caged.contacts.guidance != Guidance::Balls {
             self.values.push(set.guides[0].normal_load + set.guides[1].normal_load);

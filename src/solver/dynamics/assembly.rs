@@ -43,6 +43,9 @@ pub struct Body {
     pub unbalance: f64,
 }
 
+/// Name of a body that stands for what does not move.
+pub const GROUND: &str = "the ground";
+
 /// How a body may move.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mobility {
@@ -209,6 +212,15 @@ impl RaceBody {
 }
 
 impl Assembly {
+    /// Where a bearing with a name sits along X, m; one without counts from the origin.
+    pub fn place_of(&self, bearing: &Bearing) -> f64 {
+        let [inner, _] = &bearing.mounts;
+        match bearing.name {
+            Some(_) => self.bodies[inner.body].rest[0] + inner.along,
+            None => 0.0,
+        }
+    }
+
     fn driven(&self) -> impl Iterator<Item = &RaceBody> {
         self.bodies.iter().filter_map(Body::driven)
     }

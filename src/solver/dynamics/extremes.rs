@@ -43,7 +43,7 @@ pub struct RaceExtremes {
 pub struct Extremes {
     /// Inner, outer.
     pub races: [RaceExtremes; 2],
-    /// Centre of the inner race from the origin, m.
+    /// Centre of the inner race from where the bearing sits, m.
     pub farthest: Extreme,
     /// Centre of the inner race from that of the outer one, m.
     pub apart: Extreme,
@@ -59,7 +59,8 @@ impl Extremes {
         let [inner, outer] = bearing.mounts.map(|mount| {
             mounted(&RaceNow::new(system.body_state(state, mount.body)), &mount).motion
         });
-        self.farthest.take(norm(inner.position), 0, time);
+        let [x, y, z] = inner.position;
+        self.farthest.take(norm([x - system.assembly.place_of(bearing), y, z]), 0, time);
         self.apart.take(norm(sub(inner.position, outer.position)), 0, time);
         for (ball, meeting) in set.meetings.iter().enumerate() {
             self.between_balls.take(meeting.normal_load, ball, time);

@@ -1,0 +1,173 @@
+//! The results folder of an equilibrium of several bodies: `summary.json` with a part for each body and each
+//! bearing, and `series.csv` with a row for each ball of each bearing.
+
+use crate::output::atomic::write_atomic;
+use crate::output::results::{
+    ResultsError, RunRecord, ball, ball_columns, ball_rows, insert_record, load_zone, pretty,
+    quantity, vector,
+};
+use crate::output::series::{Column, Series, columns_path};
+use crate::solver::static_assembly::{Place, StaticAssembly};
+use crate::solver::static_tables::BearingState;
+use crate::solver::statics::{AssemblySolution, COORDINATE_NAMES, Determinacy};
+use nalgebra::DVector;
+use ndarray::Array2;
+use serde_json::{Map, Value, json};
+use std::path::{Path, PathBuf};
+
+/// An equilibrium and the names of its bearings.
+#[derive(Clone, Copy)]
+pub struct Solved<'s> {
+    pub assembly: &'s StaticAssembly,
+    pub names: &'s [&'s str],
+    pub solution: &'s AssemblySolution,
+}
+
+/// Writes the results folder and returns the files in it.
+///
+/// # Errors
+/// A value that is not finite (nothing is written then), a name used twice, a file that cannot be written.
+pub fn write(
+    folder: &Path,
+    solved: &Solved,
+    record: &RunRecord,
+) -> Result<Vec<PathBuf>, ResultsError> {
+    let summary = summary(solved, record)?;
+    let series = series(solved)?;
+    series.check_finite()?;
+    let [csv, npy, json] = ["series.csv", "series.npy", "summary.json"].map(|n| folder.join(n));
+    series.write_csv(&csv)?;
+    series.write_npy(&npy)?;
+    write_atomic(&json, pretty(&summary).as_bytes())?;
+    Ok(vec![csv, columns_path(&npy), npy, json])
+}
+
+/// One row a ball, bearing after bearing: number of the bearing, then what a bearing alone has.
+fn series(solved: &Solved) -> Result<Series, ResultsError> {
+    let mut columns = vec![Column::new("bearing", "1")];
+    columns.extend(ball_columns());
+    let mut values = Vec::new();
+    for (index, bearing) in solved.solution.bearings.iter().enumerate() {
+        for row in ball_rows(&bearing.balls) {
+            values.push((index + 1) as f64);
+            values.extend(row);
+        }
+    }
+    let rows = values.len() / columns.len();
+    let data = Array2::from_shape_fn((rows, columns.len()), |(i, j)| values[i * columns.len() + j]);
+    Ok(Series::new(columns, data)?)
+}
+
+/// Content of `summary.json`.
+///
+/// # Errors
+/// A value that is not finite, a `null` in a further section, a section name used twice.
+pub fn summary(solved: &Solved, record: &RunRecord) -> Result<Value, ResultsError> {
+    let solution = solved.solution;
+    let mut summary = Map::new();
+    summary.insert("kind".into(), json!("static solution"));
+    summary.insert("determinacy".into(), determinacy(solved)?);
+    summary.insert(
+        "solver".into(),
+        json!({
+            "iterations": solution.iterations,
+            "contact_evaluations": solution.contact_evaluations,
+            "saddles_left": solution.saddles_left,
+            "residual": quantity("residual", solution.residual, "N")?,
+        }),
+    );
+    let mut bodies = Map::new();
+    for (index, body) in solved.assembly.bodies.iter().enumerate() {
+        if matches!(body.place, Place::Loaded(_)) {
+            bodies.insert(key(&body.name), body_part(solution, index)?);
+        }
+    }
+    summary.insert("bodies".into(), Value::Object(bodies));
+    summary.insert("stiffness".into(), stiffness(solved)?);
+    let mut bearings = Map::new();
+    for (name, state) in solved.names.iter().zip(&solution.bearings) {
+        bearings.insert((*name).into(), bearing(state)?);
+    }
+    summary.insert("bearings".into(), Value::Object(bearings));
+    insert_record(&mut summary, record)?;
+    Ok(Value::Object(summary))
+}
+
+/// "the outer race of bearing left" as a key.
+pub fn key(name: &str) -> String {
+    let name = name.strip_prefix("the ").unwrap_or(name);
+    name.strip_prefix("body ").unwrap_or(name).replace(' ', "_")
+}
+
+fn body_part(solution: &AssemblySolution, index: usize) -> Result<Value, ResultsError> {
+    let (mut position, mut loads) = (Map::new(), Map::new());
+    for (i, name) in COORDINATE_NAMES.iter().enumerate() {
+        let coordinate = solution.coordinates[index][i];
+        let (given, unit, load_unit) = match i < 3 {
+            true => (coordinate, "m", "N"),
+            false => (coordinate.to_degrees(), "deg", "N m"),
+        };
+        position.insert(name.to_string(), quantity(name, given, unit)?);
+        loads.insert(name.to_string(), quantity(name, solution.loads[index][i], load_unit)?);
+    }
+    Ok(json!({ "position": position, "loads": loads }))
+}
+
+fn bearing(state: &BearingState) -> Result<Value, ResultsError> {
+    let mut part = Map::new();
+    for (side, race) in ["inner_race", "outer_race"].into_iter().enumerate() {
+        let section = json!({
+            "centre": vector("centre", &state.centres[side], "m")?,
+            "contact_force": vector("contact_force", &state.forces[side], "N")?,
+            "contact_moment": vector("contact_moment", &state.moments[side], "N m")?,
+        });
+        part.insert(race.into(), section);
+    }
+    part.insert("load_zone".into(), load_zone(&state.balls)?);
+    let balls: Result<Vec<Value>, _> =
+        state.balls.iter().enumerate().map(|(index, b)| ball(index + 1, b)).collect();
+    part.insert("balls".into(), json!(balls?));
+    Ok(Value::Object(part))
+}
+
+/// Names of the coordinates of all loaded bodies, in the order of the stiffness.
+fn coordinate_names(assembly: &StaticAssembly) -> Vec<String> {
+    let loaded = assembly.bodies.iter().filter(|body| matches!(body.place, Place::Loaded(_)));
+    loaded
+        .flat_map(|body| COORDINATE_NAMES.map(|name| format!("{}.{name}", key(&body.name))))
+        .collect()
+}
+
+/// Row: the load, column: the coordinate it is differentiated by; SI units of the two, N and N m over m and rad.
+fn stiffness(solved: &Solved) -> Result<Value, ResultsError> {
+    let names = coordinate_names(solved.assembly);
+    let matrix = &solved.solution.stiffness;
+    let mut rows = Vec::with_capacity(names.len());
+    for i in 0..names.len() {
+        let row: Vec<f64> = (0..names.len()).map(|j| matrix[(i, j)]).collect();
+        for (value, name) in row.iter().zip(&names) {
+            quantity(&format!("stiffness {} {name}", names[i]), *value, "SI")?;
+        }
+        rows.push(row);
+    }
+    Ok(json!({ "coordinates": names, "matrix": rows, "unit": "N, N m over m, rad" }))
+}
+
+fn determinacy(solved: &Solved) -> Result<Value, ResultsError> {
+    let Determinacy::Indeterminate { free_directions } = &solved.solution.determinacy else {
+        return Ok(json!({ "kind": "determinate" }));
+    };
+    let names = coordinate_names(solved.assembly);
+    let direction = |direction: &DVector<f64>| -> Result<Value, ResultsError> {
+        let entry = |(name, value): (&String, &f64)| {
+            Ok((name.clone(), quantity("free direction", *value, "1")?))
+        };
+        let map = names.iter().zip(direction.iter()).map(entry);
+        Ok(Value::Object(map.collect::<Result<_, ResultsError>>()?))
+    };
+    Ok(json!({
+        "kind": "indeterminate",
+        "free_directions": free_directions.iter().map(direction).collect::<Result<Vec<_>, _>>()?,
+        "note": "unit vectors; tilts are multiplied by a pitch radius",
+    }))
+}

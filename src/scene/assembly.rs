@@ -1,0 +1,213 @@
+//! A scene of bearings, rigid bodies and springs, resolved, and the lists that the solver takes.
+
+use crate::ch2_housing::bearing::inertia::Inertia;
+use crate::scene::dynamics::{DynamicsError, dynamic_problem};
+use crate::scene::resolved::{DefaultUsed, RunSettings, Scene};
+use crate::scene::statics::{ball_mass, orbital_speed};
+use crate::solver::dynamics::assembly::{Assembly, Body, CAGE, GROUND, INNER, Mobility, OUTER};
+use crate::solver::dynamics::connection::{Connection, Law, SpringDashpot};
+use crate::solver::dynamics::equilibrium::static_assembly;
+use crate::solver::dynamics::model::{Drive, RaceBody, RotatingLoad};
+use crate::solver::mount::Mount;
+use crate::solver::static_assembly::StaticAssembly;
+
+/// Bearings and what they sit on, SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssemblyScene {
+    /// One at least; the first one's scene has what all share: title, run, outputs, gravity.
+    pub bearings: Vec<PlacedBearing>,
+    pub bodies: Vec<SceneBody>,
+    pub springs: Vec<Spring>,
+    /// Of bodies, springs and places.
+    pub defaults_used: Vec<DefaultUsed>,
+}
+
+/// A bearing and the bodies that carry its races.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedBearing {
+    /// `None` for the only one.
+    pub name: Option<String>,
+    /// Of the inner and of the outer race.
+    pub carriers: [Carrier; 2],
+    pub reversed: bool,
+    pub scene: Scene,
+}
+
+impl PlacedBearing {
+    /// Whether it has no name and stands where a bearing alone does.
+    fn is_alone(&self) -> bool {
+        self.name.is_none() && !self.reversed && self.carriers == [Carrier::Own { at: 0.0 }; 2]
+    }
+}
+
+/// What carries a race, and where along X from there the race sits, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Carrier {
+    /// It is a body of its own.
+    Own { at: f64 },
+    /// Index in [`AssemblyScene::bodies`].
+    Body { index: usize, at: f64 },
+}
+
+impl Carrier {
+    pub fn at(&self) -> f64 {
+        match self {
+            Carrier::Own { at } | Carrier::Body { at, .. } => *at,
+        }
+    }
+}
+
+/// A rigid body besides races and cages.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneBody {
+    pub name: String,
+    pub race: RaceBody,
+    pub rotating_load: Option<RotatingLoad>,
+    /// kg·m.
+    pub unbalance: f64,
+}
+
+/// Springs and dashpots between two bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    pub name: String,
+    /// Index in [`AssemblyScene::bodies`], `None` for the ground; place along its axis, m.
+    pub ends: [(Option<usize>, f64); 2],
+    pub stiffness: [f64; 6],
+    pub damping: [f64; 6],
+}
+
+impl AssemblyScene {
+    /// A bearing alone.
+    pub fn alone(scene: Scene) -> AssemblyScene {
+        let carriers = [Carrier::Own { at: 0.0 }; 2];
+        let bearing = PlacedBearing { name: None, carriers, reversed: false, scene };
+        AssemblyScene {
+            bearings: vec![bearing],
+            bodies: Vec::new(),
+            springs: Vec::new(),
+            defaults_used: Vec::new(),
+        }
+    }
+
+    /// The scene of a bearing alone; `None` where there is more.
+    pub fn only(&self) -> Option<&Scene> {
+        match &self.bearings[..] {
+            [one] if one.is_alone() && self.bodies.is_empty() && self.springs.is_empty() => {
+                Some(&one.scene)
+            }
+            _ => None,
+        }
+    }
+
+    /// What all bearings share.
+    pub fn common(&self) -> &Scene {
+        &self.bearings[0].scene
+    }
+
+    pub fn run(&self) -> Option<&RunSettings> {
+        self.common().dynamics.run.as_ref()
+    }
+
+    /// Bodies, bearings and connections in the order of the scene: its bodies, then of each bearing the races
+    /// that are bodies of their own and its cage, then the ground where a spring ends at it.
+    ///
+    /// # Errors
+    /// Radii from which no contact, mass or cage can be built.
+    pub fn assembly(&self) -> Result<Assembly, DynamicsError> {
+        if let Some(scene) = self.only() {
+            return Ok(dynamic_problem(scene)?.assembly());
+        }
+        let mut all = Assembly { gravity: self.common().gravity, ..Assembly::default() };
+        all.bodies.extend(self.bodies.iter().map(|body| Body {
+            name: format!("the body {}", body.name),
+            label: Some(body.name.clone()),
+            mobility: Mobility::Driven(Box::new(body.race.clone())),
+            rest: [0.0; 5],
+            rotating_load: body.rotating_load.clone(),
+            unbalance: body.unbalance,
+        }));
+        for placed in &self.bearings {
+            add_bearing(&mut all, placed)?;
+        }
+        let ground = all.bodies.len();
+        if self.springs.iter().any(|spring| spring.ends.iter().any(|(body, _)| body.is_none())) {
+            all.bodies.push(Body {
+                name: GROUND.into(),
+                label: None,
+                mobility: Mobility::Fixed,
+                rest: [0.0; 5],
+                rotating_load: None,
+                unbalance: 0.0,
+            });
+        }
+        all.connections.extend(self.springs.iter().map(|spring| {
+            let ends = spring.ends.map(|(body, along)| Mount {
+                body: body.unwrap_or(ground),
+                along,
+                reversed: false,
+            });
+            let rest = [spring.ends[1].1 - spring.ends[0].1, 0.0, 0.0];
+            let (stiffness, damping) = (spring.stiffness, spring.damping);
+            let law = Law::SpringDashpot(SpringDashpot { stiffness, damping, rest });
+            Connection { name: format!("the spring {}", spring.name), ends, law }
+        }));
+        Ok(all)
+    }
+
+    /// What is in equilibrium at t = 0: as a motion would start, without the centrifugal force of the balls
+    /// unless it is asked for.
+    ///
+    /// # Errors
+    /// As [`AssemblyScene::assembly`].
+    pub fn statics(&self) -> Result<StaticAssembly, DynamicsError> {
+        let mut still = static_assembly(&self.assembly()?, 0.0, &[]);
+        for (bearing, placed) in still.bearings.iter_mut().zip(&self.bearings) {
+            let scene = &placed.scene;
+            let speed = if scene.centrifugal { orbital_speed(scene) } else { 0.0 };
+            bearing.centrifugal = ball_mass(scene) * speed * speed;
+        }
+        Ok(still)
+    }
+}
+
+fn add_bearing(all: &mut Assembly, placed: &PlacedBearing) -> Result<(), DynamicsError> {
+    let mut alone = dynamic_problem(&placed.scene)?.assembly();
+    let mut bearing = alone.bearings.remove(0);
+    bearing.name.clone_from(&placed.name);
+    let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
+    for (side, carrier) in [INNER, OUTER].into_iter().zip(placed.carriers) {
+        let reversed = placed.reversed;
+        bearing.mounts[side] = match carrier {
+            Carrier::Body { index, at } => Mount { body: index, along: at, reversed },
+            Carrier::Own { at } => {
+                let mut body = alone.bodies[side].clone();
+                body.name += &of;
+                move_along(&mut body, at);
+                all.bodies.push(body);
+                Mount { body: all.bodies.len() - 1, along: 0.0, reversed }
+            }
+        };
+    }
+    if let Some(cage) = &mut bearing.cage {
+        let mut body = alone.bodies[CAGE].clone();
+        body.name += &of;
+        cage.body = all.bodies.len();
+        all.bodies.push(body);
+    }
+    all.bearings.push(bearing);
+    Ok(())
+}
+
+/// A body as it was at X = 0, at `at`.
+fn move_along(body: &mut Body, at: f64) {
+    body.rest[0] += at;
+    if let Some(race) = body.driven_mut()
+        && let Drive::Motion(profile) = &mut race.drives[0]
+    {
+        *profile = profile.shifted(at);
+    }
+}
+
+/// Mass of a body whose inertia nobody needs.
+pub const NO_INERTIA: Inertia = Inertia { mass: 0.0, axial: 0.0, transverse: 0.0 };

@@ -1,0 +1,101 @@
+//! Rows of the key table: which bodies bearings sit on, rigid bodies besides the races, springs between them.
+
+use crate::scene::key_table::{DISPLACEMENT, FORCE, LOAD_HINT, MOMENT, SPIN, TILT, TILT_HINT};
+use crate::scene::key_table_dynamics::{
+    DASHPOT, FOUNDATION, FOUNDATION_HINT, INERTIA, INERTIA_HINT, MASS, MASS_HINT, TILT_DASHPOT,
+    TILT_FOUNDATION,
+};
+use crate::scene::keys::{Key, Kind, Need, Table, closed, table};
+use crate::scene::units::Dimension::{Angle, Length, Unbalance};
+use Need::{Default, Depends, Optional, Required};
+
+/// The word for a race that is a body of its own, and for what does not move.
+pub const OWN_RACES: [&str; 2] = ["inner_race", "outer_race"];
+pub const GROUND: &str = "ground";
+
+const PLACE: Kind = Kind::Quantity(Length, closed(-1e5, 1e5, "mm"));
+const PLACE_HINT: &str = "a distance along the body's axis from its centre; check the unit";
+const FREE: Need = Depends("neither key: the coordinate is free and unloaded");
+const ALL_THREE: Need = Depends("all three, required for a run and with gravity");
+const NONE: Need = Default { value: "0 N/m", reason: "none is given" };
+const NO_TURN: Need = Default { value: "0 N m/rad", reason: "none is given" };
+const NO_DASHPOT: Need = Default { value: "0 N s/m", reason: "none is given" };
+const NO_TURN_DASHPOT: Need = Default { value: "0 N m s/rad", reason: "none is given" };
+
+/// In the order of the reference.
+#[rustfmt::skip]
+pub(super) const KEYS: &[Key] = &[
+    Key::new("bearing.inner_on", Kind::Text, Depends("the only `[body.NAME]`; without any, an inner race of its own"), "The body that carries the inner race, `shaft` for `[body.shaft]`; `inner_race`: a body of its own, as `[inner_race]` says."),
+    Key::new("bearing.inner_at", PLACE, Default { value: "0 mm", reason: "at the centre of the body" }, "Where the inner race sits: distance of its centre from the body's centre along the body's axis; of a race of its own the place where it stands.").hint(PLACE_HINT).example_of("-60 mm"),
+    Key::new("bearing.outer_on", Kind::Text, Default { value: "outer_race", reason: "a body of its own, as `[outer_race]` says" }, "The body that carries the outer race; `outer_race`: a body of its own."),
+    Key::new("bearing.outer_at", PLACE, Depends("as `inner_at`"), "Where the outer race sits on its body, as `inner_at`; positions in `[outer_race]` count from there.").hint(PLACE_HINT).example_of("-60 mm"),
+    Key::new("bearing.reversed", Kind::Boolean, Default { value: "false", reason: "the bearing's +X is that of its bodies" }, "Whether the bearing is put in the other way round: a contact angle then carries loads along -X on the inner race."),
+    Key::new("body.x.load", FORCE, FREE, "Axial force on the body.").group("condition").hint(LOAD_HINT),
+    Key::new("body.x.displacement", DISPLACEMENT, FREE, "Given displacement.").group("condition"),
+    Key::new("body.y.load", FORCE, FREE, "Lateral force on the body.").group("condition").hint(LOAD_HINT),
+    Key::new("body.y.displacement", DISPLACEMENT, FREE, "Given displacement.").group("condition"),
+    Key::new("body.z.load", FORCE, FREE, "Vertical force on the body, up positive.").group("condition").hint(LOAD_HINT),
+    Key::new("body.z.displacement", DISPLACEMENT, FREE, "Given displacement.").group("condition"),
+    Key::new("body.tilt_y.moment", MOMENT, FREE, "Moment about Y on the body, about its centre.").group("condition").hint(LOAD_HINT),
+    Key::new("body.tilt_y.tilt", TILT, FREE, "Given tilt about Y.").group("condition").hint(TILT_HINT),
+    Key::new("body.tilt_z.moment", MOMENT, FREE, "Moment about Z on the body, about its centre.").group("condition").hint(LOAD_HINT),
+    Key::new("body.tilt_z.tilt", TILT, FREE, "Given tilt about Z.").group("condition").hint(TILT_HINT),
+    Key::new("body.speed", SPIN, Depends("a run without speed and torque: 0"), "Speed of the body about its axis. Statics uses it for frequencies and centrifugal force, a run imposes it.").group("rotation"),
+    Key::new("body.torque", MOMENT, Optional, "Moment about the body's axis, instead of a speed.").group("rotation").hint(LOAD_HINT),
+    Key::new("body.inertia.mass", MASS, ALL_THREE, "Mass of the body with all races that sit on it.").hint(MASS_HINT),
+    Key::new("body.inertia.axial", INERTIA, ALL_THREE, "Moment of inertia about its axis.").hint(INERTIA_HINT),
+    Key::new("body.inertia.transverse", INERTIA, ALL_THREE, "Moment of inertia across its axis, about its centre.").hint(INERTIA_HINT),
+    Key::new("body.rotating_load.force", FORCE, Depends("required with the table"), "Size of the force, over time.").hint(LOAD_HINT),
+    Key::new("body.rotating_load.speed", SPIN, Depends("required with the table"), "Speed at which the force turns about X, from +Y towards +Z.").example_of("50 rpm"),
+    Key::new("body.rotating_load.phase", Kind::Quantity(Angle, closed(-360.0, 360.0, "deg")), Default { value: "0 deg", reason: "the force starts along +Y" }, "Direction of the force at the start, from +Y towards +Z."),
+    Key::new("body.unbalance", Kind::Quantity(Unbalance, closed(0.0, 1e6, "kg m")), Optional, "Mass times its distance from the axis, turning with the body, at its centre.").hint("mass times eccentricity; 100 N at 1000 rpm is 9.12e-3 kg m"),
+    Key::new("body.foundation.stiffness.x", FOUNDATION, NONE, "Spring along X.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.stiffness.y", FOUNDATION, NONE, "Spring along Y.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.stiffness.z", FOUNDATION, NONE, "Spring along Z.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.stiffness.tilt_y", TILT_FOUNDATION, NO_TURN, "Spring against tilting about Y.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.stiffness.tilt_z", TILT_FOUNDATION, NO_TURN, "Spring against tilting about Z.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.damping.x", DASHPOT, NO_DASHPOT, "Dashpot along X.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.damping.y", DASHPOT, NO_DASHPOT, "Dashpot along Y.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.damping.z", DASHPOT, NO_DASHPOT, "Dashpot along Z.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.damping.tilt_y", TILT_DASHPOT, NO_TURN_DASHPOT, "Dashpot against tilting about Y.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.damping.tilt_z", TILT_DASHPOT, NO_TURN_DASHPOT, "Dashpot against tilting about Z.").hint(FOUNDATION_HINT),
+    Key::new("spring.from", Kind::Text, Required, "The body it begins at, `shaft` for `[body.shaft]`, or `ground`. Its axes are those of the spring."),
+    Key::new("spring.to", Kind::Text, Default { value: "ground", reason: "what does not move" }, "The body it ends at, or `ground`."),
+    Key::new("spring.from_at", PLACE, Default { value: "0 mm", reason: "at the centre of the body" }, "Where it begins: distance from the body's centre along its axis; of the ground along X.").hint(PLACE_HINT).example_of("100 mm"),
+    Key::new("spring.to_at", PLACE, Depends("as `from_at`"), "Where it ends, as `from_at`.").hint(PLACE_HINT).example_of("100 mm"),
+    Key::new("spring.stiffness.x", FOUNDATION, NONE, "Spring along X of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.stiffness.y", FOUNDATION, NONE, "Spring along Y of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.stiffness.z", FOUNDATION, NONE, "Spring along Z of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.stiffness.turn_x", TILT_FOUNDATION, NO_TURN, "Spring against turns about X of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.stiffness.turn_y", TILT_FOUNDATION, NO_TURN, "Spring against turns about Y of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.stiffness.turn_z", TILT_FOUNDATION, NO_TURN, "Spring against turns about Z of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.damping.x", DASHPOT, NO_DASHPOT, "Dashpot along X of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.damping.y", DASHPOT, NO_DASHPOT, "Dashpot along Y of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.damping.z", DASHPOT, NO_DASHPOT, "Dashpot along Z of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.damping.turn_x", TILT_DASHPOT, NO_TURN_DASHPOT, "Dashpot against turns about X of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.damping.turn_y", TILT_DASHPOT, NO_TURN_DASHPOT, "Dashpot against turns about Y of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.damping.turn_z", TILT_DASHPOT, NO_TURN_DASHPOT, "Dashpot against turns about Z of the first body.").hint(FOUNDATION_HINT),
+];
+
+const CONDITION: &str = "x = { load = \"250 N\" } or { displacement = \"3 um\" }";
+const TILT_CONDITION: &str = "tilt_y = { moment = \"2.5 N m\" } or { tilt = \"0.15 deg\" }";
+
+#[rustfmt::skip]
+pub(super) const TABLES: &[Table] = &[
+    table("body", "A rigid body with an axis of symmetry along X, such as a shaft or a hub: `[body.shaft]`. Any number, each with a name. It stands at the origin.",
+        "[body.shaft]\nspeed = \"1000 rpm\"\nz = { load = \"-500 N\" }"),
+    table("body.x", "Axial coordinate: a load, or a displacement.", CONDITION),
+    table("body.y", "Lateral coordinate.", CONDITION),
+    table("body.z", "Vertical coordinate.", CONDITION),
+    table("body.tilt_y", "Tilt about Y: a moment, or a tilt.", TILT_CONDITION),
+    table("body.tilt_z", "Tilt about Z.", TILT_CONDITION),
+    table("body.inertia", "Mass and moments of inertia.", "inertia = { mass = \"2 kg\", axial = \"1e-3 kg m^2\", transverse = \"8e-3 kg m^2\" }"),
+    table("body.rotating_load", "A radial force at its centre that turns at its own speed.", "rotating_load = { force = \"250 N\", speed = \"50 rpm\" }"),
+    table("body.foundation", "Springs and dashpots between the body's centre and the ground.", "foundation = { stiffness = { x = \"1e8 N/m\" }, damping = { x = \"1000 N s/m\" } }"),
+    table("body.foundation.stiffness", "Springs.", "stiffness = { x = \"1e8 N/m\", tilt_y = \"1e4 N m/rad\" }"),
+    table("body.foundation.damping", "Dashpots.", "damping = { x = \"1000 N s/m\", tilt_y = \"1 N m s/rad\" }"),
+    table("spring", "Springs and dashpots between two bodies, or a body and the ground: `[spring.NAME]`, any number. At rest where the bodies stand at first.",
+        "[spring.coupling]\nfrom = \"shaft\"\nto = \"ground\"\nstiffness = { turn_x = \"100 N m/rad\" }"),
+    table("spring.stiffness", "Springs along and about the axes of the first body.", "stiffness = { x = \"1e8 N/m\", turn_y = \"1e4 N m/rad\" }"),
+    table("spring.damping", "Dashpots along and about the same axes.", "damping = { x = \"1000 N s/m\", turn_y = \"1 N m s/rad\" }"),
+];

@@ -1,0 +1,377 @@
+//! From tables with names to bearings on bodies: what sits where, and what joins what.
+
+use crate::ch2_housing::bearing::inertia::Inertia;
+use crate::scene::assembly::{
+    AssemblyScene, Carrier, NO_INERTIA, PlacedBearing, SceneBody, Spring,
+};
+use crate::scene::document::Document;
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::key_table_assembly::{GROUND, OWN_RACES};
+use crate::scene::resolve::{Reader, resolve, text};
+use crate::scene::resolve_dynamics::{check_inertia, foundation, rotating_load, rotation};
+use crate::scene::resolved::{DefaultUsed, Scene};
+use crate::scene::value::Checked;
+use crate::solver::dynamics::model::RaceBody;
+
+/// Whether a scene is more than a bearing alone, a solid alone, or one bearing in its housing.
+pub(crate) fn is_assembly(document: &Document) -> bool {
+    const OF_SEVERAL: [&str; 2] = ["body", "spring"];
+    const PLACES: [&str; 5] = ["inner_on", "inner_at", "outer_on", "outer_at", "reversed"];
+    let is_given = |key: &&str| document.value(&format!("bearing.{key}")).is_some();
+    document.names("bearing").next().is_some()
+        || PLACES.iter().any(|key| is_given(key))
+        || OF_SEVERAL.iter().any(|table| document.first_below(table).is_some())
+        || OF_SEVERAL.iter().any(|table| document.names(table).next().is_some())
+}
+
+/// Resolves a scene of several bearings, or of one on bodies of the scene.
+///
+/// # Errors
+/// The first thing missing or contradictory, in the order of the scene.
+pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError> {
+    refuse_strange_names(document)?;
+    let bodies: Vec<&str> = document.names("body").collect();
+    let names: Vec<Option<&str>> = match document.names("bearing").map(Some).collect::<Vec<_>>() {
+        none if none.is_empty() => vec![None],
+        some => some,
+    };
+    let mut defaults_used = Vec::new();
+    // Defaults that all bearings share.
+    let mut told = Vec::new();
+    let mut bearings = Vec::with_capacity(names.len());
+    for name in names {
+        bearings.push(bearing(document, name, &bodies, &mut told)?);
+    }
+    refuse_shared_places(document, &bearings)?;
+    let ball = bearings.iter().map(|b| b.scene.geometry.ball_radius).fold(0.0, f64::max);
+    let needs_mass =
+        bearings[0].scene.dynamics.run.is_some() || bearings[0].scene.gravity != [0.0; 3];
+    let resolved = bodies
+        .iter()
+        .map(|name| body(document, name, ball, needs_mass, &mut defaults_used))
+        .collect::<Result<Vec<_>, _>>()?;
+    let springs = document
+        .names("spring")
+        .map(|name| spring(document, name, &bodies, &mut defaults_used))
+        .collect::<Result<Vec<_>, _>>()?;
+    let scene = AssemblyScene { bearings, bodies: resolved, springs, defaults_used };
+    refuse_free_bodies(document, &scene)?;
+    Ok(scene)
+}
+
+/// Names that nothing goes by, that two things go by, and tables that need one.
+fn refuse_strange_names(document: &Document) -> Result<(), SceneError> {
+    for table in ["body", "spring"] {
+        if document.names(table).next().is_none() && document.first_below(table).is_some() {
+            let reason = format!("a {table} has a name");
+            let advice = format!("write [{table}.NAME]");
+            return Err(document.error(table, Problem::Refused { reason, advice }));
+        }
+    }
+    for table in ["inner_race", "outer_race", "housing", "solid"] {
+        let strange =
+            document.names(table).find(|name| !document.names("bearing").any(|b| b == *name));
+        if let Some(name) = strange {
+            return Err(unknown(document, table, name, "bearing", document.names("bearing")));
+        }
+    }
+    let kinds = ["bearing", "body", "spring"];
+    for (index, table) in kinds.iter().enumerate() {
+        for other in &kinds[..index] {
+            if let Some(twice) =
+                document.names(table).find(|n| document.names(other).any(|o| o == *n))
+            {
+                let reason = format!("a {other} has this name as well");
+                let advice = "names stand before columns: give each thing its own".into();
+                return Err(document.error_of_name(
+                    table,
+                    twice,
+                    Problem::Refused { reason, advice },
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn unknown<'n>(
+    document: &Document,
+    table: &str,
+    name: &str,
+    kind: &str,
+    known: impl Iterator<Item = &'n str>,
+) -> SceneError {
+    document.error_of_name(table, name, no_such(name, kind, known))
+}
+
+fn no_such<'n>(name: &str, kind: &str, known: impl Iterator<Item = &'n str>) -> Problem {
+    let known: Vec<&str> = known.collect();
+    let nearest = crate::scene::keys::nearest(name, known.iter().copied(), 0.5);
+    let reason = match known.is_empty() {
+        true => format!("there is no {kind} {name:?}, nor any other with a name"),
+        false => format!("there is no {kind} {name:?}; there are: {}", known.join(", ")),
+    };
+    let advice = match nearest {
+        Some(nearest) => format!("did you mean {nearest}?"),
+        None => format!("add [{kind}.{name}]"),
+    };
+    Problem::Refused { reason, advice }
+}
+
+fn bearing(
+    document: &Document,
+    name: Option<&str>,
+    bodies: &[&str],
+    told: &mut Vec<DefaultUsed>,
+) -> Result<PlacedBearing, SceneError> {
+    let mut scoped = match name {
+        Some(name) => document.scoped(name),
+        None => document.common(),
+    };
+    let (carriers, reversed) = {
+        let mut reader = Reader::new(&scoped);
+        let inner = carrier(&reader, 0, "bearing.inner_on", bodies)?;
+        let outer = carrier(&reader, 1, "bearing.outer_on", bodies)?;
+        let at = reader.number("bearing.inner_at").unwrap_or(0.0);
+        let outer_at = reader.given_number("bearing.outer_at").unwrap_or(at);
+        let reversed = matches!(scoped.value("bearing.reversed"), Some(Checked::Boolean(true)));
+        let placed = |body: Option<usize>, at| match body {
+            Some(index) => Carrier::Body { index, at },
+            None => Carrier::Own { at },
+        };
+        (([placed(inner, at), placed(outer, outer_at)], [inner, outer]), reversed)
+    };
+    let (carriers, on) = carriers;
+    if on[0].is_some() && on[0] == on[1] {
+        let reason = "both races would sit on this body".into();
+        let advice = "write outer_on = \"outer_race\", or another body".into();
+        return Err(scoped.error("bearing.outer_on", Problem::Refused { reason, advice }));
+    }
+    for (race, body) in OWN_RACES.iter().zip(on) {
+        let Some(body) = body else { continue };
+        let of_race =
+            |path: &str| path.strip_prefix(race).is_some_and(|rest| rest.starts_with('.'));
+        if let Some(key) = scoped.given_keys().map(|key| key.path).find(|path| of_race(path)) {
+            let reason = format!("this race sits on body.{}", bodies[body]);
+            let advice = format!("write loads and motions in [body.{}]", bodies[body]);
+            return Err(scoped.error(key, Problem::Refused { reason, advice }));
+        }
+        if *race == OWN_RACES[0] {
+            scoped.take_over(&document.scoped(bodies[body]), "body.speed", "inner_race.speed");
+        }
+    }
+    let mut scene = resolve(&scoped)?;
+    if let Some(body) = on[1] {
+        let speed = Reader::new(&document.scoped(bodies[body])).profile("body.speed");
+        scene.outer_speed = speed.map(|speed| speed.value(0.0));
+    }
+    for (race, _) in OWN_RACES.iter().zip(on).filter(|(_, body)| body.is_some()) {
+        forget_race(&mut scene, race);
+    }
+    name_defaults(&mut scene, &scoped, name, told);
+    Ok(PlacedBearing { name: name.map(str::to_string), carriers, reversed, scene })
+}
+
+/// The body that carries a race; `None` for a race that is one itself.
+fn carrier(
+    reader: &Reader,
+    side: usize,
+    key: &str,
+    bodies: &[&str],
+) -> Result<Option<usize>, SceneError> {
+    let document = reader.document;
+    let Some(name) = text(document, key) else {
+        return match (side, bodies.len()) {
+            (0, 1) if text(document, "bearing.outer_on").as_deref() != Some(bodies[0]) => {
+                Ok(Some(0))
+            }
+            (0, 0 | 1) | (1, _) => Ok(None),
+            _ => {
+                let reason = format!("there are several bodies: {}", bodies.join(", "));
+                let advice = "say which one carries the inner race, or \"inner_race\"".into();
+                Err(document.error(key, Problem::Refused { reason, advice }))
+            }
+        };
+    };
+    if name == OWN_RACES[side] {
+        return Ok(None);
+    }
+    match bodies.iter().position(|body| *body == name) {
+        Some(index) => Ok(Some(index)),
+        None => Err(document.error(key, no_such(&name, "body", bodies.iter().copied()))),
+    }
+}
+
+/// Defaults of a race that is part of another body say nothing.
+fn forget_race(scene: &mut Scene, race: &str) {
+    let of_race = |used: &DefaultUsed| {
+        used.key == race || used.key.strip_prefix(race).is_some_and(|rest| rest.starts_with('.'))
+    };
+    scene.defaults_used.retain(|used| !of_race(used));
+    scene.dynamics.defaults_used.retain(|used| !of_race(used));
+}
+
+/// Defaults that more than one bearing has are told once; others say whose they are.
+fn name_defaults(
+    scene: &mut Scene,
+    scoped: &Document,
+    name: Option<&str>,
+    told: &mut Vec<DefaultUsed>,
+) {
+    if name.is_none() {
+        return;
+    }
+    let of_bearing = |key: &str| {
+        ["bearing", "inner_race", "outer_race"].contains(&key.split('.').next().unwrap_or_default())
+    };
+    for list in [&mut scene.defaults_used, &mut scene.dynamics.defaults_used] {
+        for used in list.iter_mut().filter(|used| of_bearing(&used.key)) {
+            used.key = scoped.shown(&used.key, true);
+        }
+        list.retain(|used| !told.contains(used));
+        told.extend(list.iter().filter(|used| !of_bearing(&used.key)).cloned());
+    }
+}
+
+/// Two bearings whose balls would be in one place of a body.
+fn refuse_shared_places(document: &Document, bearings: &[PlacedBearing]) -> Result<(), SceneError> {
+    for (index, one) in bearings.iter().enumerate() {
+        for other in &bearings[..index] {
+            for side in [0, 1] {
+                let (Carrier::Body { index: a, at }, Carrier::Body { index: b, at: there }) =
+                    (one.carriers[side], other.carriers[side])
+                else {
+                    continue;
+                };
+                let room = one.scene.geometry.ball_radius + other.scene.geometry.ball_radius;
+                let (Some(name), Some(second)) = (&one.name, &other.name) else { continue };
+                if a == b && (at - there).abs() < room {
+                    let reason = format!(
+                        "its balls would run in those of bearing {second}: they are {:.4} mm apart on the \
+                         same body, less than a ball diameter",
+                        1e3 * (at - there).abs()
+                    );
+                    let key = ["inner_at", "outer_at"][side];
+                    let advice = format!("give each its place, such as {key} = \"60 mm\"");
+                    return Err(document.error_of_name(
+                        "bearing",
+                        name,
+                        Problem::Refused { reason, advice },
+                    ));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Bodies that nothing is joined to.
+fn refuse_free_bodies(document: &Document, scene: &AssemblyScene) -> Result<(), SceneError> {
+    for (index, body) in scene.bodies.iter().enumerate() {
+        let carries = scene
+            .bearings
+            .iter()
+            .flat_map(|bearing| bearing.carriers)
+            .any(|carrier| matches!(carrier, Carrier::Body { index: on, .. } if on == index));
+        let joined =
+            scene.springs.iter().any(|spring| spring.ends.iter().any(|end| end.0 == Some(index)));
+        if !carries && !joined {
+            let reason = "nothing is joined to this body".into();
+            let advice = format!(
+                "name it in a bearing (inner_on = {0:?}) or a spring (from = {0:?}), or leave it out",
+                body.name
+            );
+            return Err(document.error_of_name(
+                "body",
+                &body.name,
+                Problem::Refused { reason, advice },
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn body(
+    document: &Document,
+    name: &str,
+    ball: f64,
+    needs_mass: bool,
+    defaults: &mut Vec<DefaultUsed>,
+) -> Result<SceneBody, SceneError> {
+    let scoped = document.scoped(name);
+    let mut reader = Reader::new(&scoped);
+    let keys = ["mass", "axial", "transverse"].map(|key| format!("body.inertia.{key}"));
+    let inertia = if needs_mass || keys.iter().any(|key| reader.is_given(key)) {
+        let because = format!(" of body.{name}, for a run and with gravity");
+        let [mass, axial, transverse] =
+            keys.each_ref().map(|k| reader.required_number(k, &because));
+        let inertia = Inertia { mass: mass?, axial: axial?, transverse: transverse? };
+        check_inertia(&reader, &keys[1], inertia.axial, inertia.transverse)?;
+        inertia
+    } else {
+        NO_INERTIA
+    };
+    let race = RaceBody {
+        inertia,
+        drives: reader.drives("body", ball)?,
+        rotation: rotation(&mut reader, "body"),
+        foundation_stiffness: foundation(&reader, "body", "stiffness"),
+        foundation_damping: foundation(&reader, "body", "damping"),
+    };
+    let rotating_load = rotating_load(&mut reader, "body")?;
+    let unbalance = reader.given_number("body.unbalance").unwrap_or(0.0);
+    note_named(reader, &scoped, defaults);
+    Ok(SceneBody { name: name.into(), race, rotating_load, unbalance })
+}
+
+fn spring(
+    document: &Document,
+    name: &str,
+    bodies: &[&str],
+    defaults: &mut Vec<DefaultUsed>,
+) -> Result<Spring, SceneError> {
+    let scoped = document.scoped(name);
+    let mut reader = Reader::new(&scoped);
+    let end = |reader: &Reader, key: &str| -> Result<Option<usize>, SceneError> {
+        match text(reader.document, key).as_deref() {
+            None if key == "spring.from" => Err(reader.missing(key, "")),
+            None | Some(GROUND) => Ok(None),
+            Some(body) => match bodies.iter().position(|other| *other == body) {
+                Some(index) => Ok(Some(index)),
+                None => {
+                    Err(reader.document.error(key, no_such(body, "body", bodies.iter().copied())))
+                }
+            },
+        }
+    };
+    let from = end(&reader, "spring.from")?;
+    let to = end(&reader, "spring.to")?;
+    if text(&scoped, "spring.to").is_none() {
+        reader.note_default("spring.to");
+    }
+    if from == to {
+        let reason = "both ends are at the same body".into();
+        let advice = "a spring joins two bodies, or a body and the ground".into();
+        return Err(scoped.error("spring.to", Problem::Refused { reason, advice }));
+    }
+    let at = reader.number("spring.from_at").unwrap_or(0.0);
+    let to_at = reader.given_number("spring.to_at").unwrap_or(at);
+    let six = |what: &str| {
+        ["x", "y", "z", "turn_x", "turn_y", "turn_z"]
+            .map(|name| reader.given_number(&format!("spring.{what}.{name}")).unwrap_or(0.0))
+    };
+    let (stiffness, damping) = (six("stiffness"), six("damping"));
+    if stiffness == [0.0; 6] && damping == [0.0; 6] {
+        return Err(reader.missing("spring.stiffness.x", " or another spring or dashpot"));
+    }
+    note_named(reader, &scoped, defaults);
+    Ok(Spring { name: name.into(), ends: [(from, at), (to, to_at)], stiffness, damping })
+}
+
+/// Defaults of a named thing, under its name.
+fn note_named(reader: Reader, scoped: &Document, defaults: &mut Vec<DefaultUsed>) {
+    defaults.extend(reader.into_defaults_used().into_iter().map(|mut used| {
+        used.key = scoped.shown(&used.key, true);
+        used
+    }));
+}

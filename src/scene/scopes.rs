@@ -1,0 +1,145 @@
+//! Tables with names: `[bearing.left]` is what `[bearing]` says with its own keys laid over it.
+
+use crate::scene::document::{Document, Item, Layer, Named};
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::keys;
+use crate::scene::tree::{Entry, Value};
+
+/// A name this much like a key or table beside it is taken for a mistyped one.
+const ALIKE: f64 = 0.75;
+/// Tables with names in one scene.
+const MOST: usize = 500;
+/// Names stand before the names of columns.
+const LONGEST_NAME: usize = 32;
+
+impl Document {
+    /// The table of which this entry is a named one, if it can be.
+    pub(super) fn as_name(&self, path: &str, entry: &Entry) -> Option<&'static str> {
+        let table = keys::NAMED.iter().find(|table| **table == path)?;
+        let is_table = matches!(entry.node.value, Value::Table(_)) && self.scope.is_none();
+        let mistyped = keys::nearest(&entry.name, keys::children(path).into_iter(), ALIKE);
+        (is_table && mistyped.is_none()).then_some(*table)
+    }
+
+    /// Takes a named table.
+    pub(super) fn fill_named(
+        &mut self,
+        table: &'static str,
+        entry: Entry,
+    ) -> Result<(), SceneError> {
+        let Entry { name, offset, node } = entry;
+        if let Some(problem) = unfit(&name) {
+            return Err(self.error_at(offset, &format!("{table}.{name}"), problem));
+        }
+        if self.named.len() == MOST {
+            let reason = format!("more than {MOST} tables with names");
+            let advice = "all bodies are solved in one dense matrix; split the scene".into();
+            let problem = Problem::Refused { reason, advice };
+            return Err(self.error_at(offset, &format!("{table}.{name}"), problem));
+        }
+        let Value::Table(entries) = node.value else { return Ok(()) };
+        let others = std::mem::take(&mut self.layer);
+        self.scope = Some(name.clone());
+        self.layer.tables.push((table, offset));
+        self.fill(table, entries)?;
+        self.refuse_rivals()?;
+        self.scope = None;
+        let layer = std::mem::replace(&mut self.layer, others);
+        self.named.push(Named { table, name, offset, layer });
+        Ok(())
+    }
+
+    /// A path as it stands in the file: with the name where it is one of a named table.
+    pub(super) fn shown(&self, path: &str, named: bool) -> String {
+        match &self.scope {
+            Some(name) if named => match path.split_once('.') {
+                Some((table, rest)) => format!("{table}.{name}.{rest}"),
+                None => format!("{path}.{name}"),
+            },
+            _ => path.to_string(),
+        }
+    }
+
+    /// Names of one kind of table, in the order of the file.
+    pub(crate) fn names<'d>(&'d self, table: &'d str) -> impl Iterator<Item = &'d str> {
+        self.named.iter().filter(move |named| named.table == table).map(|n| n.name.as_str())
+    }
+
+    /// The document as the things of one name see it: what has no name, with the tables of this name laid
+    /// over it.
+    pub(crate) fn scoped(&self, name: &str) -> Document {
+        let mut scoped = self.clone();
+        scoped.scope = Some(name.to_string());
+        scoped.named.clear();
+        for named in self.named.iter().filter(|named| named.name == name) {
+            scoped.layer.lay_over(&named.layer);
+        }
+        scoped
+    }
+
+    /// Refuses tables with names where nothing goes by them.
+    pub(crate) fn refuse_names(&self) -> Result<(), SceneError> {
+        let Some(named) = self.named.first() else { return Ok(()) };
+        let reason = format!("no bearing has the name {:?}", named.name);
+        let advice = format!("write [{}], or [bearing.{}] as well", named.table, named.name);
+        Err(self.error_of_name(named.table, &named.name, Problem::Refused { reason, advice }))
+    }
+
+    /// The same without names: what only tables without one say.
+    pub(crate) fn common(&self) -> Document {
+        let mut common = self.clone();
+        common.named.clear();
+        common
+    }
+
+    /// Takes the value of another document's key for a key of this one.
+    pub(crate) fn take_over(&mut self, from: &Document, source: &str, path: &str) {
+        let given = keys::find(source).and_then(|(row, _)| from.layer.given[row].clone());
+        if let (Some((row, key)), Some(given)) = (keys::find(path), given) {
+            self.layer.put(row, key, given);
+        }
+    }
+
+    /// An error about a table with a name.
+    pub(crate) fn error_of_name(&self, table: &str, name: &str, problem: Problem) -> SceneError {
+        let own = self.named.iter().find(|named| named.table == table && named.name == name);
+        let path = format!("{table}.{name}");
+        match own {
+            Some(named) => self.error_at(named.offset, &path, problem),
+            None => self.error(table, problem),
+        }
+    }
+}
+
+impl Layer {
+    /// Its keys hold where both have one; lists are taken whole.
+    fn lay_over(&mut self, other: &Layer) {
+        for (row, given) in other.given.iter().enumerate() {
+            if let Some(given) = given {
+                self.put(row, &keys::KEYS[row], given.clone());
+            }
+        }
+        self.tables.extend(&other.tables);
+        let replaced = |item: &Item| other.items.iter().any(|own| own.table == item.table);
+        self.items.retain(|item| !replaced(item));
+        self.items.extend(other.items.iter().cloned());
+    }
+}
+
+/// What is wrong with a name.
+fn unfit(name: &str) -> Option<Problem> {
+    const RESERVED: [&str; 5] = ["inner_race", "outer_race", "ground", "inner", "outer"];
+    let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let begins = name.starts_with(|c: char| c.is_ascii_alphabetic());
+    let reason = if !begins || !name.chars().all(letters) {
+        "a name has letters, digits and underscores and begins with a letter"
+    } else if name.len() > LONGEST_NAME {
+        "names stand before the names of columns and have up to 32 letters"
+    } else if RESERVED.contains(&name) {
+        "this word has a meaning of its own"
+    } else {
+        return None;
+    };
+    let advice = "choose another name, such as left".to_string();
+    Some(Problem::NotApplicable { reason, advice })
+}
