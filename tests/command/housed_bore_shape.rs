@@ -214,8 +214,8 @@ fn a_bore_anywhere_along_any_axis_is_put_in_its_place() {
     let printed = |text: &str| {
         let scene = place.scene("scene.toml", text);
         let said = succeed(command("statics", &scene, &["--dry"]));
-        // Numbers to six decimals; the last lines tell of rounding.
-        said.lines().filter(|line| !line.contains("unbalanced")).collect::<Vec<_>>().join("\n")
+        // The tables: what is said below names one of several nodes that are equal by symmetry.
+        said.lines().filter(|line| line.starts_with(' ')).collect::<Vec<_>>().join("\n")
     };
     let straight = printed(&with_mesh(&place, &mesh, 1, ""));
     let origin = [0.0, 30e-3, 65e-3];
@@ -238,15 +238,11 @@ fn a_bore_anywhere_along_any_axis_is_put_in_its_place() {
     let mut numbers = 0;
     assert_eq!(straight.lines().count(), moved.lines().count());
     for (one, other) in straight.split_whitespace().zip(moved.split_whitespace()) {
-        match (one.parse::<f64>(), other.parse::<f64>()) {
-            // Nodes are rounded to 1e-17 m where they lie 0.1 m off, overlaps are 1e-7 m: 1e-10, and the
-            // last digit that is printed.
-            (Ok(a), Ok(b)) => {
-                assert!((a - b).abs() <= 2e-6 * a.abs().max(1.0), "{one} and {other}");
-                numbers += 1;
-            }
-            _ => assert_eq!(one, other),
-        }
+        let (Ok(a), Ok(b)) = (one.parse::<f64>(), other.parse::<f64>()) else { continue };
+        // Nodes are rounded to 1e-17 m where they lie 0.1 m off, overlaps are 1e-7 m: 1e-10, and the last
+        // digit that is printed.
+        assert!((a - b).abs() <= 2e-6 * a.abs().max(1.0), "{one} and {other}");
+        numbers += 1;
     }
-    assert!(numbers > 100, "{numbers}");
+    assert!(numbers > 60, "{numbers}");
 }
