@@ -4,11 +4,9 @@ use crate::kinematics::vec3::Vec3;
 use crate::scene::housing::HousedScene;
 use crate::scene::housing_problem::HousingSetup;
 use crate::solver::dynamics::model::{Drive, Rotation};
-use crate::solver::housing::housed::{
-    HousedMemory, HousedSearch, HousedState,
-};
 use crate::solver::housing::bore_equilibrium::{BoreError, BoreSearch, Fit};
 use crate::solver::housing::condensed::CondensedBore;
+use crate::solver::housing::housed::{HousedMemory, HousedSearch, HousedState};
 use crate::solver::housing::inertia::Masses;
 use crate::solver::housing::quasi_static::{Course as CourseLoads, CourseError, Moment, history};
 use crate::solver::profile::Profile;

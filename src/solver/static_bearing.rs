@@ -3,7 +3,8 @@
 //!
 //! The energy of the contacts is that of the inner race as the outer one sees it. So what the inner race's load and
 //! stiffness are says what those of the outer one are: moving both together changes nothing. Only the weight of the
-//! balls does not turn with the outer race; its part in the stiffness is left out, which costs an iteration.
+//! balls does not turn with the outer race; its part in the stiffness is left out, which costs an iteration. What keeps
+//! balls in their orbits about the outer race's axis sums to a force on it that has no energy.
 
 use super::ball::{BallPlane, InnerRacePosition, add_to_race, settle};
 use super::mount::Mount;
@@ -70,6 +71,7 @@ pub(super) fn add_bearing(
     }
     let mut stiffness = Block::zeros();
     let (mut on_outer, mut about_outer) = (Vector3::zeros(), Vector3::zeros());
+    let mut outwards = Vector3::zeros();
     let mut balls = std::mem::take(&mut here.balls[index]);
     balls.clear();
     let moved = std::mem::take(&mut here.planes[index]);
@@ -83,17 +85,20 @@ pub(super) fn add_bearing(
             on_race = add_to_race(plane, &race, &of.contacts, ball, &mut gradient, &mut stiffness);
         }
         if moves.is_some() {
-            // Balls ride on the outer race: it takes what the inner one puts on them, and their weight.
-            let place =
-                ball.as_ref().map_or([0.0, bearing.geometry.pitch_radius], |b| b.position);
-            let pushed = on_race - bearing.weight;
+            // Balls ride on the outer race: it takes what the inner one puts on them, their weight, and what
+            // keeps them in their orbit.
+            let place = ball.as_ref().map_or([0.0, bearing.geometry.pitch_radius], |b| b.position);
+            let flung = plane.radial * (plane.centrifugal * place[1]);
+            let pushed = on_race - bearing.weight - flung;
             here.energy -= bearing.weight.dot(&plane.origin);
+            outwards += flung;
             on_outer += pushed;
             about_outer += (plane.axial * place[0] + plane.radial * place[1]).cross(&pushed);
         }
         balls.push(ball);
     }
     (here.balls[index], here.planes[index]) = (balls, moved);
+    here.without_energy += outwards.norm();
     if let Some(first) = direct {
         here.gradient.fixed_rows_mut::<5>(first).copy_from(&gradient);
         let mut block = here.stiffness.fixed_view_mut::<5, 5>(first, first);

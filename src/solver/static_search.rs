@@ -226,6 +226,8 @@ pub(super) struct Evaluation {
     pub(super) largest_ball_load: f64,
     /// Largest stiffness against one coordinate that is none of a seat's, N/m.
     stiffest: f64,
+    /// Forces that have no energy, N.
+    pub(super) without_energy: f64,
     /// What rounding leaves of the loads of all seats, N.
     pub(super) seat_noise: f64,
     /// Of each bearing.
@@ -349,6 +351,7 @@ impl<'a, 'b> Search<'a, 'b> {
         here.stiffness.fill(0.0);
         here.largest_ball_load = 0.0;
         here.seat_noise = 0.0;
+        here.without_energy = 0.0;
         for &(i, spring, rest) in &self.springs {
             let stretch = at[i] - rest;
             here.energy += 0.5 * spring * stretch * stretch;
@@ -477,7 +480,7 @@ impl<'a, 'b> Search<'a, 'b> {
             let residual = self.residual(here);
             let allowed = self.allowed(here);
             if residual <= allowed {
-                return Ok(());
+                return self.polish(here, residual);
             }
             if self.iterations >= self.options.max_iterations {
                 return self.give_up(here, residual, allowed);
@@ -494,6 +497,7 @@ impl<'a, 'b> Search<'a, 'b> {
                 // Springs may hold far more energy than contacts.
                 noise += 16.0 * f64::EPSILON * here.energy.abs().max(there.energy.abs());
             }
+            noise += here.without_energy * step.norm();
             let quieter = self.residual(&there) < residual;
             let accepted = change < (1e-4 * predicted).min(-noise) || (change <= noise && quieter);
             if accepted {
@@ -511,6 +515,21 @@ impl<'a, 'b> Search<'a, 'b> {
                 radius = 0.25 * radius.min(step.norm());
             }
         }
+    }
+
+    /// One more step of Newton's where a race in its bore is soft against tilts: a balance that rounding may already have
+    /// spoilt leaves these far less certain than the rest, and the error falls as its square.
+    fn polish(&mut self, here: &mut Evaluation, residual: f64) -> Result<(), StaticsError> {
+        let strict = self.options.tolerance * self.applied().max(here.largest_ball_load);
+        if self.model.assembly.seats.is_empty() || residual <= 1e-2 * strict {
+            return Ok(());
+        }
+        let step = self.newton_step(here, self.step_scale());
+        let there = self.evaluate(&(&here.at + step.component_div(&self.model.scale)))?;
+        if self.residual(&there) < residual {
+            *here = there;
+        }
+        Ok(())
     }
 
     /// Every ball settled, and none past the edge of what a torus can hold.
@@ -598,7 +617,13 @@ impl<'a, 'b> Search<'a, 'b> {
             let worst = (0..4).max_by(|a, b| travel[*a].total_cmp(&travel[*b])).unwrap_or(0);
             let within = travel[worst] <= part * radius;
             if !within {
-                let source = self.bores[index].lost(&seat.fit, worst, &pose, self.residual(here), self.applied());
+                let source = self.bores[index].lost(
+                    &seat.fit,
+                    worst,
+                    &pose,
+                    self.residual(here),
+                    self.applied(),
+                );
                 return Err(StaticsError::Seat { of: seat.suffix(), source });
             }
         }
@@ -609,11 +634,17 @@ impl<'a, 'b> Search<'a, 'b> {
     ///
     /// # Errors
     /// Contact that does not settle, a race beyond what its bore was condensed for.
-    pub(super) fn seat_states(&mut self, here: &Evaluation) -> Result<Vec<BoreState>, StaticsError> {
+    pub(super) fn seat_states(
+        &mut self,
+        here: &Evaluation,
+    ) -> Result<Vec<BoreState>, StaticsError> {
         let mut states = Vec::with_capacity(self.bores.len());
         for (index, seat) in self.model.assembly.seats.iter().enumerate() {
             let pose = self.model.seat_place(index, &here.at).pose;
-            let state = self.bores[index].at_pose(&seat.fit, pose);
+            let bore = &mut self.bores[index];
+            // As the last evaluation has it, unless that was a step too far.
+            let state =
+                if bore.pose() == pose { bore.state() } else { bore.at_pose(&seat.fit, pose) };
             states.push(state.map_err(|source| StaticsError::Seat { of: seat.suffix(), source })?);
         }
         Ok(states)

@@ -330,8 +330,8 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
     let named = |name: &str, place| StaticBody { name: name.into(), place };
     let statics = StaticAssembly {
         bodies: vec![named("body", Place::Loaded(loaded)), named("ground", held)],
-        bearings: Vec::new(),
         connections: vec![connection.clone()],
+        ..StaticAssembly::default()
     };
     let found = solve_assembly(&statics, None, &StaticOptions::default()).unwrap();
     let mut moved = free("body");
@@ -428,8 +428,8 @@ fn what_a_connection_holds_is_determinate() {
             named("body", Place::Loaded(loaded)),
             named("ground", Place::Held(Pose::identity())),
         ],
-        bearings: Vec::new(),
         connections: vec![spring()],
+        ..StaticAssembly::default()
     };
     statics.connections[0].ends = [Mount::at_centre(1), Mount::at_centre(0)];
     let found = solve_assembly(&statics, None, &StaticOptions::default()).unwrap();

@@ -10,9 +10,6 @@ use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::course::outer_place;
 use bearing_dynamics::output::recorder::seat::SeatRow;
 use bearing_dynamics::solver::dynamics::model::RotatingLoad;
-use bearing_dynamics::solver::housing::housed::{
-    HousedSearch, HousedState,
-};
 use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreError, BoreSearch, Fit};
 use bearing_dynamics::solver::housing::condensed::{
     CondensedBore, Reach, condense, geometry_error,
@@ -20,6 +17,7 @@ use bearing_dynamics::solver::housing::condensed::{
 use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, course_inertia,
 };
+use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState};
 use bearing_dynamics::solver::housing::inertia::{Masses, estimate};
 use bearing_dynamics::solver::housing::quasi_static::{Course, history};
 use bearing_dynamics::solver::profile::Profile;
@@ -245,7 +243,10 @@ fn an_axial_load_needs_something_that_holds_the_race() {
     let problem = bearing(loads([50.0, 0.0, -250.0, 0.0, 0.0]));
     let free = Fit { axial: Axial::Free, ..fit(0.0) };
     let error = search(&bore).solve(&problem, &free, [0.0; 3]).unwrap_err();
-    assert!(matches!(error, StaticsError::Seat { source: BoreError::AxialForce { .. }, .. }), "{error}");
+    assert!(
+        matches!(error, StaticsError::Seat { source: BoreError::AxialForce { .. }, .. }),
+        "{error}"
+    );
     assert!((solve(&bore, &fit(0.0), &problem).on_outer.force[0] - 50.0).abs() <= 1e-7);
 }
 

@@ -11,10 +11,10 @@ use bearing_dynamics::mesh::generate::{Housing, HousingMesh, PillowBlock};
 use bearing_dynamics::solver::housing::bore_equilibrium::{
     Axial, BoreError, BoreSearch, BoreState, Fit, RaceLoad, radius_of_fit,
 };
-use bearing_dynamics::solver::housing::housed::race_under_load;
 use bearing_dynamics::solver::housing::condensed::{
     CondenseError, CondensedBore, Reach, condense, geometry_error,
 };
+use bearing_dynamics::solver::housing::housed::race_under_load;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
 use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel};
@@ -192,7 +192,8 @@ fn a_loose_race_stays_without_load_and_finds_contact_with_one() {
     assert_eq!((idle.pose, idle.touching), ([0.0; 4], 0));
     for force in [1e-3, 1.0, 1e3] {
         // Towards no node in particular.
-        let state = race_under_load(&mut search, &fit, &load(0.3 * force, -force, 0.0, 0.0)).unwrap();
+        let state =
+            race_under_load(&mut search, &fit, &load(0.3 * force, -force, 0.0, 0.0)).unwrap();
         assert!(state.touching > 0 && state.touching < bore.nodes.len() / 2);
         // Gaps round by some 1e-17 m, which is 1e-10 N in steel.
         let should = [0.3 * force, -force];
@@ -208,13 +209,19 @@ fn what_a_smooth_bore_cannot_hold_is_an_error() {
     let free = Fit { axial: Axial::Free, ..fit(0.0) };
     let mut search = BoreSearch::new(&bore, Penalty::default());
     let along = RaceLoad { force: [5.0, 0.0, -250.0], moment: [0.0; 3] };
-    assert_eq!(race_under_load(&mut search, &free, &along).unwrap_err(), BoreError::AxialForce { force: 5.0 });
+    assert_eq!(
+        race_under_load(&mut search, &free, &along).unwrap_err(),
+        BoreError::AxialForce { force: 5.0 }
+    );
     assert!(race_under_load(&mut search, &fit(0.0), &along).is_ok());
     let turning = RaceLoad { force: [0.0, 0.0, -250.0], moment: [0.1, 0.0, 0.0] };
     let error = race_under_load(&mut search, &free, &turning).unwrap_err();
     assert_eq!(error, BoreError::AxialMoment { moment: 0.1 });
     let nan = load(f64::NAN, 0.0, 0.0, 0.0);
-    assert!(matches!(race_under_load(&mut search, &fit(0.0), &nan), Err(BoreError::NotFinite { .. })));
+    assert!(matches!(
+        race_under_load(&mut search, &fit(0.0), &nan),
+        Err(BoreError::NotFinite { .. })
+    ));
     // Under a race so narrow that one row of nodes touches, nothing holds a tilt.
     let mesh = mesh_of(&RING, &COARSE, Order::Linear);
     let narrow = Reach { width: 2e-3, ..reach() };

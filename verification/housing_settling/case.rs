@@ -7,11 +7,11 @@ use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
 use bearing_dynamics::solver::dynamics::state::{BODY, BodyState};
-use bearing_dynamics::solver::housing::housed::HousedState;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::exchange::{
     ExchangeOptions, HousedBearing, Seat, outer_state,
 };
+use bearing_dynamics::solver::housing::housed::HousedState;
 use bearing_dynamics::solver::profile::Profile;
 
 use crate::case::{Case, CaseError, Tier};

@@ -21,7 +21,6 @@ use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{DefaultUsed, Document, RunSettings};
 use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::run::RunOptions;
-use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState};
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
 use bearing_dynamics::solver::housing::condensed::{
     CondensedBore, Sizes, condense_over, cost, sizes,
@@ -30,6 +29,7 @@ use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, course_inertia,
 };
 use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, Seat};
+use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState};
 use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::support::free_motions;

@@ -3,8 +3,8 @@
 use crate::kinematics::vec3::{Vec3, dot};
 use crate::output::series::{Column, Series, SeriesError};
 use crate::output::session::Motion;
-use crate::solver::housing::housed::HousedState;
 use crate::solver::housing::condensed::CondensedBore;
+use crate::solver::housing::housed::HousedState;
 use crate::solver::solid::model::SolidModel;
 use ndarray::Array2;
 

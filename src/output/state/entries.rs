@@ -16,9 +16,9 @@ use crate::solver::dynamics::extremes::Extremes;
 use crate::solver::dynamics::run::ContactTurnover;
 use crate::solver::dynamics::stability::{Cause, StepLimit};
 use crate::solver::dynamics::step_watch::{Shortened, StepWatch, Stiffness};
-use crate::solver::housing::housed::HousedMemory;
 use crate::solver::housing::checkpoint::{HousedCheckpoint, Windows};
 use crate::solver::housing::exchange::Growth;
+use crate::solver::housing::housed::HousedMemory;
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::SolidWork;
 use crate::solver::solid::step_limit::SolidStepLimit;
@@ -466,11 +466,7 @@ pub(super) fn checkpoint(
                     iterations: course.iterations,
                     contact_changes: course.contact_changes,
                 },
-                memory: HousedMemory {
-                    inner: course.inner,
-                    outer: course.outer,
-                    touching,
-                },
+                memory: HousedMemory { inner: course.inner, outer: course.outer, touching },
                 nodes: parts.bore.nodes.len(),
             })
         }

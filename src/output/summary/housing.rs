@@ -7,11 +7,11 @@ use crate::output::recorder::seat::SeatRow;
 use crate::output::results::{ResultsError, quantity};
 use crate::output::session::Motion;
 use crate::scene::housing_problem::{Excitation, HousingSetup};
-use crate::solver::housing::housed::HousedState;
 use crate::solver::housing::bore_equilibrium::POSE_NAMES;
 use crate::solver::housing::condensed::{CondensedBore, geometry_error};
 use crate::solver::housing::course_inertia::CourseInertia;
 use crate::solver::housing::exchange::HousedBearing;
+use crate::solver::housing::housed::HousedState;
 use crate::solver::housing::inertia::InertiaEstimate;
 use serde_json::{Map, Value, json};
 

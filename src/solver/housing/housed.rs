@@ -94,9 +94,9 @@ impl<'b> HousedSearch<'b> {
         let assembly = lists(bearing, self.bore.bore(), &self.bore, fit, weight);
         let before = (self.bore.changes, self.bore.factorisations);
         let [y, z, tilt_y, tilt_z] = self.outer;
-        let near = self.inner.map(|inner| {
-            [SVector::from(inner), SVector::from([0.0, y, z, tilt_y, tilt_z])]
-        });
+        let near = self
+            .inner
+            .map(|inner| [SVector::from(inner), SVector::from([0.0, y, z, tilt_y, tilt_z])]);
         let bores = std::slice::from_mut(&mut self.bore);
         let solution = match &near {
             Some(near) => match solve_assembly_in(&assembly, bores, Some(near), &self.options) {
@@ -212,8 +212,7 @@ pub fn race_under_load(
     let [y, z, tilt_y, tilt_z] = search.pose();
     let near = [SVector::from([0.0, y, z, tilt_y, tilt_z])];
     let bores = std::slice::from_mut(search);
-    let mut solution =
-        solve_assembly_in(&assembly, bores, Some(&near), &StaticOptions::default())?;
+    let mut solution = solve_assembly_in(&assembly, bores, Some(&near), &StaticOptions::default())?;
     Ok(solution.seats.remove(0))
 }
 

@@ -5,8 +5,8 @@
 //! (ω/ω_n)² is the part that leaving out inertia misses, as long as it is small and the drive is
 //! smooth. [`super::course_inertia`] follows a whole course, whose velocity jumps.
 
-use super::housed::{HousedSearch, HousedState};
 use super::condensed::CondensedBore;
+use super::housed::{HousedSearch, HousedState};
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::kinematics::vec3::dot;
 use crate::solver::statics::{Condition, StaticProblem};

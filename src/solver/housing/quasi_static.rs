@@ -3,8 +3,8 @@
 //! Balls go round at the speed of the cage in pure rolling; nothing is inert but, on wish, the balls
 //! in their orbit. What that leaves out [`super::inertia`] estimates.
 
-use super::housed::{HousedSearch, HousedState};
 use super::bore_equilibrium::Fit;
+use super::housed::{HousedSearch, HousedState};
 use crate::ch2_housing::bearing::frequencies::ratios;
 use crate::kinematics::vec3::Vec3;
 use crate::solver::dynamics::model::RotatingLoad;
