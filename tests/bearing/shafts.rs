@@ -82,10 +82,11 @@ fn pair(
     preload: [f64; 2],
     reversed: [bool; 2],
     conditions: [Condition; 5],
-) -> StaticAssembly {
+) -> StaticAssembly<'static> {
     let geometry = table_5_3();
     let still = problem(geometry, FREE);
     let loaded = Loaded {
+        axes: Pose::identity(),
         conditions,
         springs: [0.0; 5],
         rest: [0.0; 5],
@@ -116,7 +117,7 @@ fn pair(
             named("the right outer race", held(at[1] + preload[1])),
         ],
         bearings: bearings.into(),
-        connections: Vec::new(),
+        ..StaticAssembly::default()
     }
 }
 

@@ -7,11 +7,11 @@ use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
 use bearing_dynamics::solver::dynamics::state::{BODY, BodyState};
-use bearing_dynamics::solver::housing::assembly::AssemblyState;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::exchange::{
     ExchangeOptions, HousedBearing, Seat, outer_state,
 };
+use bearing_dynamics::solver::housing::housed::HousedState;
 use bearing_dynamics::solver::profile::Profile;
 
 use crate::case::{Case, CaseError, Tier};
@@ -62,13 +62,13 @@ fn loads(part: f64) -> [f64; 5] {
     [0.0, part * LOAD[0], part * LOAD[1], 0.0, 0.0]
 }
 
-fn equilibrium(bore: &CondensedBore, problem: &DynamicProblem) -> Result<AssemblyState, CaseError> {
+fn equilibrium(bore: &CondensedBore, problem: &DynamicProblem) -> Result<HousedState, CaseError> {
     let held = DynamicProblem { outer: None, ..problem.clone() };
     let still = held.statics(0.0);
     Ok(housings::search(bore).solve(&still, &housings::fit(0.0), [0.0; 3])?)
 }
 
-fn places(state: &AssemblyState) -> Places {
+fn places(state: &HousedState) -> Places {
     let (inner, outer) = (&state.bearing.coordinates, &state.bore.pose);
     [[inner[1], inner[2]], [outer[0], outer[1]]]
 }

@@ -111,6 +111,7 @@ impl Shaft {
         let [left, right] = &self.ends;
         let radius = left.lengths.ball_radius.min(right.lengths.ball_radius);
         let loaded = Loaded {
+            axes: Pose::identity(),
             conditions: self.loads.map(Condition::Load),
             springs: [0.0; 5],
             rest: [0.0; 5],
@@ -143,7 +144,7 @@ impl Shaft {
                 centrifugal: 0.0,
             });
         }
-        Ok(StaticAssembly { bodies, bearings, connections: Vec::new() })
+        Ok(StaticAssembly { bodies, bearings, ..StaticAssembly::default() })
     }
 
     /// What the independent solver makes of it.

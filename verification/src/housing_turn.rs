@@ -6,10 +6,10 @@ use std::f64::consts::TAU;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::TetMesh;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
-use bearing_dynamics::solver::housing::assembly::{AssemblySearch, AssemblyState};
 use bearing_dynamics::solver::housing::exchange::{
     ExchangeOptions, HousedBearing, Seat, outer_state,
 };
+use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState};
 use bearing_dynamics::solver::housing::quasi_static::{Course, Moment, history};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::SolidModel;
@@ -70,10 +70,10 @@ impl Turning {
 
 /// One equilibrium after the other, `visit` called after each.
 pub fn equilibria(
-    search: &mut AssemblySearch,
+    search: &mut HousedSearch,
     turning: &Turning,
     times: &[f64],
-    mut visit: impl FnMut(&AssemblySearch, &Moment),
+    mut visit: impl FnMut(&HousedSearch, &Moment),
 ) -> Result<Vec<Moment>, CaseError> {
     let bearing = housings::bearing()?;
     let mut moments = Vec::new();
@@ -96,7 +96,7 @@ pub fn equilibria(
 }
 
 /// y and z of the outer race, m.
-pub fn outer_place(state: &AssemblyState) -> [f64; 2] {
+pub fn outer_place(state: &HousedState) -> [f64; 2] {
     [state.bore.pose[0], state.bore.pose[1]]
 }
 
@@ -140,7 +140,7 @@ pub fn options() -> ExchangeOptions {
 pub fn explicit(
     mesh: &TetMesh,
     model: SolidModel,
-    start: &AssemblyState,
+    start: &HousedState,
     displacement: Vec<[f64; 3]>,
     turning: &Turning,
 ) -> Result<ExplicitTurn, CaseError> {

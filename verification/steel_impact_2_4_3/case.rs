@@ -9,6 +9,7 @@ use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, VELOCITY};
 use bearing_dynamics::solver::housing::bore_equilibrium::{BoreSearch, RaceLoad};
 use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, HousedBearing, Seat};
+use bearing_dynamics::solver::housing::housed::race_under_load;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::SolidModel;
 
@@ -73,8 +74,11 @@ fn run_with([young, damping]: [f64; 2]) -> Result<History, CaseError> {
     let model = SolidModel::new(problem)?;
     let bore = condensed(&mesh, &model)?;
     let fit = housings::fit(INTERFERENCE);
-    let fitted = BoreSearch::new(&bore, Penalty::default())
-        .under_load(&fit, &RaceLoad { force: [0.0; 3], moment: [0.0; 3] })?;
+    let fitted = race_under_load(
+        &mut BoreSearch::new(&bore, Penalty::default()),
+        &fit,
+        &RaceLoad::default(),
+    )?;
     let mut problem = mounted([0.0; 5])?;
     problem.inner.drives[2] = Drive::Load(impact());
     let outer = problem.outer.as_ref().map_or(f64::NAN, |outer| outer.inertia.mass);

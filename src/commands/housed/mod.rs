@@ -21,7 +21,6 @@ use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{DefaultUsed, Document, RunSettings};
 use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::run::RunOptions;
-use bearing_dynamics::solver::housing::assembly::{AssemblyOptions, AssemblySearch, AssemblyState};
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
 use bearing_dynamics::solver::housing::condensed::{
     CondensedBore, Sizes, condense_over, cost, sizes,
@@ -30,6 +29,7 @@ use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, course_inertia,
 };
 use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, Seat};
+use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState};
 use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::support::free_motions;
@@ -96,9 +96,9 @@ pub fn condensed(prepared: &Prepared) -> Fallible<CondensedBore> {
 /// What needs no factors.
 const INSTEAD: &str = ", explicit steps (method = \"explicit\" in [housing])";
 
-pub fn search<'b>(scene: &HousedScene, bore: &'b CondensedBore) -> AssemblySearch<'b> {
+pub fn search<'b>(scene: &HousedScene, bore: &'b CondensedBore) -> HousedSearch<'b> {
     let bore = BoreSearch::new(bore, scene.housing.penalty);
-    AssemblySearch::new(bore, AssemblyOptions::default())
+    HousedSearch::new(bore)
 }
 
 /// The bearing in equilibrium at time `t`, under all loads that it has then.
@@ -111,9 +111,9 @@ pub fn bearing_at(scene: &HousedScene, t: f64) -> Fallible<StaticProblem> {
 pub fn equilibrium_at(
     scene: &HousedScene,
     setup: &HousingSetup,
-    search: &mut AssemblySearch,
+    search: &mut HousedSearch,
     t: f64,
-) -> Fallible<(StaticProblem, AssemblyState)> {
+) -> Fallible<(StaticProblem, HousedState)> {
     let problem = bearing_at(scene, t)?;
     let state = search.solve(&problem, &setup.fit(scene), on_outer(scene, t))?;
     Ok((problem, state))
@@ -152,8 +152,8 @@ pub fn inertia_estimate(
 pub fn estimate_at(
     scene: &HousedScene,
     problem: &StaticProblem,
-    search: &AssemblySearch,
-    state: &AssemblyState,
+    search: &HousedSearch,
+    state: &HousedState,
 ) -> Option<InertiaEstimate> {
     let mut problem = problem.clone();
     let along = &scene.bearing.dynamics.inner.drives[0];

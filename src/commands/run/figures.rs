@@ -64,9 +64,9 @@ fn largest(table: &RunTable, name: &str) -> f64 {
 fn effort(course: &Course, seconds: f64) -> String {
     let effort = &course.effort;
     format!(
-        "{} in {seconds:.2} s, {} rounds, {} changes of contact, unbalanced part of the load up to \
+        "{} in {seconds:.2} s, {} iterations, {} changes of contact, unbalanced part of the load up to \
          {:.1e}",
-        course.found, effort.rounds, effort.contact_changes, effort.largest_residual
+        course.found, effort.iterations, effort.contact_changes, effort.largest_residual
     )
 }
 

@@ -3,8 +3,8 @@
 use crate::kinematics::vec3::{Vec3, dot};
 use crate::output::series::{Column, Series, SeriesError};
 use crate::output::session::Motion;
-use crate::solver::housing::assembly::AssemblyState;
 use crate::solver::housing::condensed::CondensedBore;
+use crate::solver::housing::housed::HousedState;
 use crate::solver::solid::model::SolidModel;
 use ndarray::Array2;
 
@@ -28,7 +28,7 @@ pub fn bore_nodes(motion: &Motion, model: &SolidModel) -> Vec<BoreNodeState> {
     match motion {
         Motion::Bearing(_) | Motion::Solid(_) => Vec::new(),
         Motion::Course(course) => {
-            let of = |state: &AssemblyState| condensed_nodes(model, course.bore(), state);
+            let of = |state: &HousedState| condensed_nodes(model, course.bore(), state);
             course.latest.as_ref().map_or_else(Vec::new, |moment| of(&moment.state))
         }
         Motion::Housed(housed) => {
@@ -53,7 +53,7 @@ pub fn bore_nodes(motion: &Motion, model: &SolidModel) -> Vec<BoreNodeState> {
 pub fn condensed_nodes(
     model: &SolidModel,
     bore: &CondensedBore,
-    state: &AssemblyState,
+    state: &HousedState,
 ) -> Vec<BoreNodeState> {
     bore.nodes
         .iter()

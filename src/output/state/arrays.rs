@@ -30,7 +30,7 @@ pub(super) fn write_arrays(
         Checkpoint::Housed(kept, _) => (WIDTH, of_nodes(&kept.solid)),
         Checkpoint::Course(kept) => {
             let mut touches = vec![0.0; kept.nodes];
-            kept.memory.bore.touching.iter().for_each(|&node| touches[node] = 1.0);
+            kept.memory.touching.iter().for_each(|&node| touches[node] = 1.0);
             (1, touches)
         }
     };

@@ -16,10 +16,9 @@ use crate::solver::dynamics::extremes::Extremes;
 use crate::solver::dynamics::run::ContactTurnover;
 use crate::solver::dynamics::stability::{Cause, StepLimit};
 use crate::solver::dynamics::step_watch::{Shortened, StepWatch, Stiffness};
-use crate::solver::housing::assembly::SearchMemory;
-use crate::solver::housing::bore_equilibrium::BoreMemory;
 use crate::solver::housing::checkpoint::{HousedCheckpoint, Windows};
 use crate::solver::housing::exchange::Growth;
+use crate::solver::housing::housed::HousedMemory;
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::SolidWork;
 use crate::solver::solid::step_limit::SolidStepLimit;
@@ -175,13 +174,12 @@ pub struct CourseEntry {
     /// File with one row a node of the bore: 1 where it touched.
     pub arrays: String,
     pub largest_residual: f64,
-    pub rounds: usize,
+    pub iterations: usize,
     pub contact_changes: usize,
-    /// Where the search found the inner race (m, rad), the outer one from either side (m, rad).
+    /// Where the search found the inner race and the outer one (m, rad).
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub inner: Option<[f64; 5]>,
     pub outer: [f64; 4],
-    pub pose: [f64; 4],
 }
 
 impl BearingEntry {
@@ -395,11 +393,10 @@ impl CourseEntry {
         CourseEntry {
             arrays: arrays_name(kept.found),
             largest_residual: kept.effort.largest_residual,
-            rounds: kept.effort.rounds,
+            iterations: kept.effort.iterations,
             contact_changes: kept.effort.contact_changes,
             inner: kept.memory.inner,
             outer: kept.memory.outer,
-            pose: kept.memory.bore.pose,
         }
     }
 }
@@ -466,14 +463,10 @@ pub(super) fn checkpoint(
                 found: file.steps,
                 effort: Effort {
                     largest_residual: course.largest_residual,
-                    rounds: course.rounds,
+                    iterations: course.iterations,
                     contact_changes: course.contact_changes,
                 },
-                memory: SearchMemory {
-                    inner: course.inner,
-                    outer: course.outer,
-                    bore: BoreMemory { pose: course.pose, touching },
-                },
+                memory: HousedMemory { inner: course.inner, outer: course.outer, touching },
                 nodes: parts.bore.nodes.len(),
             })
         }

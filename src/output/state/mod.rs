@@ -29,8 +29,9 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Of `state.json`; the first one had a form of its own for each kind of run, and no number.
-pub const FORM: u32 = 2;
+/// Of `state.json`; the first one had a form of its own for each kind of run, and no number, the second
+/// two places of the outer race in a course.
+pub const FORM: u32 = 3;
 
 /// Content of `state.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -7,11 +7,11 @@ use crate::output::recorder::seat::SeatRow;
 use crate::output::results::{ResultsError, quantity};
 use crate::output::session::Motion;
 use crate::scene::housing_problem::{Excitation, HousingSetup};
-use crate::solver::housing::assembly::AssemblyState;
 use crate::solver::housing::bore_equilibrium::POSE_NAMES;
 use crate::solver::housing::condensed::{CondensedBore, geometry_error};
 use crate::solver::housing::course_inertia::CourseInertia;
 use crate::solver::housing::exchange::HousedBearing;
+use crate::solver::housing::housed::HousedState;
 use crate::solver::housing::inertia::InertiaEstimate;
 use serde_json::{Map, Value, json};
 
@@ -104,7 +104,7 @@ pub fn largest_error<'e>(
 pub fn equilibrium_section(
     setup: &HousingSetup,
     bore: &CondensedBore,
-    state: &AssemblyState,
+    state: &HousedState,
     displacement: &[Vec3],
 ) -> Part {
     let sizes = bore.sizes;
@@ -158,7 +158,7 @@ pub fn equilibrium_section(
             "error_of_fixed_normals": quantity("geometry error", geometry, "m")?,
         },
         "solver": {
-            "rounds": state.rounds,
+            "iterations": state.iterations,
             "contact_changes": state.contact_changes,
             "residual": quantity("residual", state.residual, "1")?,
         },

@@ -127,7 +127,7 @@ pub fn run_summary(
             summary.insert("largest_unbalanced_part_of_load".into(), residual);
             json!({
                 "equilibria": session.recorder.rows(),
-                "rounds": effort.rounds,
+                "iterations": effort.iterations,
                 "contact_changes": effort.contact_changes,
             })
         }

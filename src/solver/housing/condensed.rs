@@ -15,6 +15,7 @@ use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::tangent::{PRESCRIBED, Unknowns, pattern, stiffness};
 use crate::solver::sparse::{Cost, Factor, FactorError};
 use nalgebra::Vector3;
+use std::fmt;
 use thiserror::Error;
 
 /// Which nodes of the bore can be touched at all.
@@ -106,6 +107,13 @@ pub struct CondensedBore {
     factor: Factor,
     unknowns: Unknowns,
     own_displacement: Vec<Vec3>,
+}
+
+impl fmt::Debug for CondensedBore {
+    fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
+        let CondensedBore { reach, sizes, .. } = self;
+        to.debug_struct("CondensedBore").field("reach", reach).field("sizes", sizes).finish()
+    }
 }
 
 /// The nodes of the bore under the race that are solved for, and what was left out.

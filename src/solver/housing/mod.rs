@@ -8,11 +8,11 @@
 //! granted, against the nonlinear solid with contact: strains so small that the solid is linear,
 //! and motions so small beside the bore's radius that a node keeps its normal
 //! ([`condensed::geometry_error`] measures that). No inertia: [`inertia`] estimates its part.
-pub mod assembly;
 pub mod bore_equilibrium;
 pub mod checkpoint;
 pub mod condensed;
 pub mod course_inertia;
 pub mod exchange;
+pub mod housed;
 pub mod inertia;
 pub mod quasi_static;
