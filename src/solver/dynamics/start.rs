@@ -22,7 +22,7 @@ use std::f64::consts::TAU;
 /// # Errors
 /// When the loads have no equilibrium, at t = 0 or, since nothing holds the bearing against them, later.
 pub fn at_equilibrium(assembly: &Assembly) -> Result<Vec<f64>, StaticsError> {
-    if !assembly.seats.is_empty() {
+    if !assembly.solids.is_empty() {
         let held = at_equilibrium(&assembly.with_seats_held())?;
         return Ok(with_solids(assembly, &held));
     }

@@ -29,27 +29,16 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::TAU;
 use thiserror::Error;
 
-/// Up to which frequency natural shapes are kept.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ModesTo {
-    /// Hz.
-    Frequency(f64),
-    /// So many times the lowest natural frequency.
-    TimesLowest(f64),
-}
-
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReduceOptions {
-    pub modes_to: ModesTo,
+    /// Natural shapes up to this frequency are kept, Hz.
+    pub modes_to: f64,
     /// Part of the compliance under given loads that may be left out.
     pub left_out: f64,
 }
 
-impl Default for ReduceOptions {
-    fn default() -> Self {
-        ReduceOptions { modes_to: ModesTo::TimesLowest(5.0), left_out: 1e-3 }
-    }
-}
+/// Part of the compliance that is left out where nothing else is asked for.
+pub const LEFT_OUT: f64 = 1e-3;
 
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ReduceError {
@@ -191,38 +180,35 @@ fn own_forces(solid: &ReducedSolid, t: f64) -> Vec<f64> {
 }
 
 /// Natural shapes that are looked for at first, and the most that are kept.
-const AT_FIRST: usize = 24;
+const AT_FIRST: usize = 8;
 const MOST: usize = 400;
+/// Residual of natural shapes: their frequencies are known to its square, and shapes stay as orthogonal.
+const RESIDUAL: f64 = 1e-7;
 
-/// Natural shapes (lumped masses) up to a frequency, that frequency and that of the first one beyond, Hz.
+/// Natural shapes (lumped masses) up to a frequency, and the frequency of the first one beyond, Hz.
 ///
 /// # Errors
 /// More than some hundred shapes; what [`modes_over`] finds wrong.
 pub fn natural_shapes(
     model: &SolidModel,
     bore: &CondensedBore,
-    modes_to: ModesTo,
-) -> Result<(Vec<Mode>, f64, f64), ReduceError> {
+    frequency: f64,
+) -> Result<(Vec<Mode>, f64), ReduceError> {
+    if !(frequency > 0.0 && frequency.is_finite()) {
+        return Err(ReduceError::Frequency { frequency });
+    }
     let unknowns = bore.unknowns();
     let mut count = AT_FIRST.min(unknowns.count);
     loop {
-        let options = ModeOptions { mass: MassMatrix::Lumped, ..ModeOptions::new(count) };
+        let options = ModeOptions { count, mass: MassMatrix::Lumped, tolerance: RESIDUAL };
         let mut modes = modes_over(model, unknowns, &options)?.modes;
-        let lowest = modes.first().map_or(0.0, |mode| mode.frequency);
-        let frequency = match modes_to {
-            ModesTo::Frequency(frequency) => frequency,
-            ModesTo::TimesLowest(times) => times * lowest,
-        };
-        if !(frequency > 0.0 && frequency.is_finite()) {
-            return Err(ReduceError::Frequency { frequency });
-        }
         let kept = modes.iter().filter(|mode| mode.frequency <= frequency).count();
         if let Some(next) = modes.get(kept).map(|mode| mode.frequency) {
             modes.truncate(kept);
-            return Ok((modes, frequency, next));
+            return Ok((modes, next));
         }
         if count == unknowns.count {
-            return Ok((modes, frequency, f64::INFINITY));
+            return Ok((modes, f64::INFINITY));
         }
         if count >= MOST {
             return Err(ReduceError::TooMany { most: MOST, frequency });
@@ -234,8 +220,9 @@ pub fn natural_shapes(
 /// Directions in which [`pressed`] presses.
 const DIRECTIONS: usize = 8;
 
-/// Loads on the bore's nodes (N) of a race pressed into it by `force` (N) in directions all round: what compliance is
-/// measured under.
+/// Loads on the bore's nodes (N) of a race pressed into it by `force` (N) in directions all round, and what they differ
+/// by from those of the fit alone: what compliance is measured under. Of a tight fit the differences are what moves
+/// the race.
 ///
 /// # Errors
 /// A bore that does not hold the race.
@@ -246,12 +233,16 @@ pub fn pressed(
     force: f64,
 ) -> Result<Vec<Vec<f64>>, BoreError> {
     let mut search = BoreSearch::new(bore, penalty);
-    let towards = |i: usize| {
+    let alone = search.under_load(fit, &RaceLoad::default())?.loads;
+    let mut all = Vec::with_capacity(2 * DIRECTIONS);
+    for i in 0..DIRECTIONS {
         let (sin, cos) = libm::sincos(TAU * i as f64 / DIRECTIONS as f64);
         let load = RaceLoad { force: [0.0, force * cos, force * sin], moment: [0.0; 3] };
-        Ok(search.under_load(fit, &load)?.loads)
-    };
-    (0..DIRECTIONS).map(towards).collect()
+        let loads = search.under_load(fit, &load)?.loads;
+        all.push(loads.iter().zip(&alone).map(|(p, alone)| p - alone).collect());
+        all.push(loads);
+    }
+    Ok(all)
 }
 
 /// A force on the solid and what its natural shapes leave of the static answer.
@@ -272,7 +263,7 @@ pub fn reduce(
     loads: &[Vec<f64>],
     options: &ReduceOptions,
 ) -> Result<Reduction, ReduceError> {
-    let (modes, modes_to, first_left_out) = natural_shapes(model, bore, options.modes_to)?;
+    let (modes, first_left_out) = natural_shapes(model, bore, options.modes_to)?;
     let lowest = modes.first().map_or(first_left_out, |mode| mode.frequency);
     let natural: Vec<(f64, Vec<Vec3>)> =
         modes.into_iter().map(|mode| (TAU * mode.frequency, mode.shape)).collect();
@@ -327,7 +318,7 @@ pub fn reduce(
         natural: count,
         patterns: shapes.len() - count - first_pattern.min(shapes.len() - count),
         own: first_pattern,
-        modes_to,
+        modes_to: options.modes_to,
         lowest,
         first_left_out,
         highest: frequencies.iter().fold(0.0, |most: f64, w| most.max(w / TAU)),

@@ -4,6 +4,7 @@ use super::assembly::{AssemblyError, AssemblyOptions, AssemblySearch, AssemblySt
 use super::bore_equilibrium::{BoreSearch, Fit};
 use super::condensed::{CondensedBore, placed};
 use super::reduce::Reduction;
+use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::kinematics::euler::angles;
 use crate::kinematics::vec3::{Vec3, add_scaled};
@@ -11,6 +12,7 @@ use crate::solver::dynamics::assembly::{Assembly, OUTER};
 use crate::solver::dynamics::model::{Drive, DynamicProblem};
 use crate::solver::mount::Mount;
 use crate::solver::profile::Profile;
+use std::f64::consts::TAU;
 
 /// The bearing with its outer race in the bore of the reduced housing, which starts still and undeformed with the
 /// race where `problem.outer_start` has it.
@@ -57,6 +59,21 @@ pub fn put_in_equilibrium(
     assembly.bodies[OUTER].rest = [x, y, z, tilt_y, tilt_z];
     assembly.solids[0].start = reduction.rest(&state.bore.loads);
     Ok(state)
+}
+
+/// Natural frequency of a ball between its races, Hz, where `force` (N) is on the bearing: nothing in a bearing
+/// pushes its races faster.
+pub fn ball_frequency(problem: &DynamicProblem, force: f64) -> f64 {
+    let [inner, outer] = [problem.inner_contact.stiffness, problem.outer_contact.stiffness];
+    // The ball under the load carries five times the mean of all (Stribeck), besides the preload of a bearing
+    // without clearance.
+    let preload = (-problem.geometry.radial_clearance).max(0.0);
+    let share = libm::cbrt((outer / inner) * (outer / inner));
+    let overlap = preload * share / (1.0 + share);
+    let load = 5.0 * force / problem.geometry.ball_count as f64 + normal_load(inner, overlap);
+    let stiffness =
+        |of: f64| normal_stiffness(of, libm::cbrt((load / of) * (load / of)));
+    ((stiffness(inner) + stiffness(outer)) / problem.ball.mass).sqrt() / TAU
 }
 
 /// Weight of the outer race and forces on it at t = 0, N.
