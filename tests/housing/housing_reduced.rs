@@ -335,8 +335,9 @@ fn energy_closes(integrator: Integrator, stepping: Stepping, most: f64) {
     let mut assembly = settled(&mut housing, &problem, 0.0);
     assembly.seats[0].radius =
         Profile::SmoothRamp { from: BORE, to: BORE + 1e-6, start: 0.0, duration: 3e-4 };
+    let count = assembly.solids[0].count();
     assembly.solids[0].loads.push(ModalLoad {
-        forces: vec![0.01; assembly.solids[0].count()],
+        forces: vec![0.01; count],
         profile: Profile::SmoothRamp { from: 0.0, to: 1.0, start: 0.0, duration: 2e-4 },
     });
     let mut simulation = Simulation::new(assembly, options(integrator, stepping)).unwrap();
@@ -358,9 +359,10 @@ fn energy_closes(integrator: Integrator, stepping: Stepping, most: f64) {
 /// against what housing and seat hold.
 #[test]
 fn the_energy_of_a_blow_balances() {
-    energy_closes(Integrator::RungeKutta, Stepping::FractionOfLimit(0.1), 1e-4);
-    energy_closes(Integrator::DormandPrince, Stepping::Accuracy(1e-4), 1e-3);
-    energy_closes(Integrator::Rosenbrock, Stepping::Accuracy(1e-4), 1e-2);
+    // Measured: 2e-11, 8e-9 and 7e-5; long implicit steps balance the work of what grows roughly.
+    energy_closes(Integrator::RungeKutta, Stepping::FractionOfLimit(0.1), 1e-9);
+    energy_closes(Integrator::DormandPrince, Stepping::Accuracy(1e-4), 1e-6);
+    energy_closes(Integrator::Rosenbrock, Stepping::Accuracy(1e-4), 5e-4);
 }
 
 /// The matrix of an implicit step against differences of the equations of motion.
@@ -410,8 +412,8 @@ fn the_matrix_is_the_slope_of_the_equations() {
                 worst = if error <= worst { worst } else { error };
             }
             println!("h {h:e}, {displaced}: {:.1e} of {largest:.1e}", worst / largest);
-            // Left out: normals that turn, overlap over radius, and how balls' normals do.
-            assert!(worst <= 2e-3 * largest, "{worst:e} of {largest:e}");
+            // Left out: normals that turn, overlap over radius, and how balls' normals do. Measured: 1.3e-5.
+            assert!(worst <= 1e-4 * largest, "{worst:e} of {largest:e}");
         }
     }
 }
