@@ -11,4 +11,5 @@ mod housing_assembly;
 mod housing_bore;
 mod housing_exchange;
 mod housing_nonlinear;
+mod housing_reduced;
 mod housing_seats;

@@ -3,6 +3,7 @@
 pub mod check;
 pub mod echo;
 pub mod plan;
+pub mod reduced;
 pub mod statics;
 
 use super::memory::watched;
@@ -15,12 +16,14 @@ use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::session::{HousedParts, RunRequest};
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
-use bearing_dynamics::scene::housing_problem::{HousingSetup, check_constant, excitations, setup};
+use bearing_dynamics::scene::housing_problem::{
+    HousingSetup, check_constant, check_supports, excitations, setup,
+};
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{DefaultUsed, Document, RunSettings};
 use bearing_dynamics::solver::dynamics::model::Drive;
-use bearing_dynamics::solver::dynamics::run::RunOptions;
+use bearing_dynamics::solver::dynamics::run::{RunOptions, Start};
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
 use bearing_dynamics::solver::housing::condensed::{
     CondensedBore, Sizes, condense_over, cost, sizes,
@@ -60,6 +63,11 @@ pub fn prepare(document: &Document, scene: &HousedScene) -> Fallible<Prepared> {
     let setup = setup(scene, &built).map_err(|error| placed(document, error.about(), error))?;
     built.notes.extend(setup.solid.notes.iter().chain(&setup.notes).cloned());
     Ok(Prepared { built, setup, mesh_seconds: start.elapsed().as_secs_f64() })
+}
+
+/// What a reduced housing cannot have.
+pub fn refuse_moved_supports(document: &Document, scene: &HousedScene) -> Fallible<()> {
+    check_supports(scene).map_err(|error| placed(document, error.about(), error))
 }
 
 /// What a condensed housing cannot have.
@@ -232,7 +240,11 @@ pub fn parts(
 
 pub fn request(scene: &HousedScene, run: &RunSettings) -> RunRequest {
     // With the channels that a plot needs.
-    let request = super::run::request(&scene.bearing, run);
+    let mut request = super::run::request(&scene.bearing, run);
+    if scene.housing.method == HousingMethod::Reduced {
+        // Where the outer race and the housing start is in the assembly.
+        request.options.start = Start::Equilibrium;
+    }
     RunRequest { fields_interval: scene.housing.fields_interval, ..request }
 }
 

@@ -3,7 +3,7 @@
 
 use super::{
     Prepared, along_course, bearing_at, condensed, condensing, inertia_estimate, mesh_text, notes,
-    parts, prepare,
+    parts, prepare, reduced, refuse_moved_supports,
 };
 use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::run::request as bearing_request;
@@ -36,6 +36,10 @@ pub fn run(document: &Document, scene: &HousedScene) -> CommandResult {
     let prepared = prepare(document, scene)?;
     let mut lines = lines(scene, &prepared)?;
     lines.extend(notes(&prepared).iter().map(|note| line("notes", "housing mesh", note)));
+    if scene.housing.method == HousingMethod::Reduced {
+        refuse_moved_supports(document, scene)?;
+        lines.extend(reduced::plan_lines(scene, &prepared)?);
+    }
     lines.extend(equilibrium_lines(scene, &prepared)?);
     if let Some(run) = &scene.bearing.dynamics.run {
         if scene.housing.method == HousingMethod::QuasiStatic {
@@ -47,7 +51,7 @@ pub fn run(document: &Document, scene: &HousedScene) -> CommandResult {
     Ok(Outcome::Done)
 }
 
-fn line(mark: &str, name: &str, said: &str) -> String {
+pub(super) fn line(mark: &str, name: &str, said: &str) -> String {
     format!("{mark} {name:<28} {said}")
 }
 
@@ -55,7 +59,7 @@ fn line(mark: &str, name: &str, said: &str) -> String {
 pub fn lines(scene: &HousedScene, prepared: &Prepared) -> Result<Vec<String>, Box<dyn Error>> {
     let setup = &prepared.setup;
     let of_bearing = match (scene.housing.method, &scene.bearing.dynamics.run) {
-        (HousingMethod::Explicit, Some(run)) => {
+        (HousingMethod::Explicit | HousingMethod::Reduced, Some(run)) => {
             let problem = dynamic_problem(&scene.bearing)?;
             let request = bearing_request(&scene.bearing, run);
             let alone = AssemblyScene::alone(scene.bearing.clone());
@@ -78,7 +82,7 @@ pub fn lines(scene: &HousedScene, prepared: &Prepared) -> Result<Vec<String>, Bo
         "housing damping",
         match (setup.solid.problem.damping == 0.0, scene.housing.method) {
             (true, _) => "none is given",
-            (false, HousingMethod::Explicit) => "mass-proportional",
+            (false, HousingMethod::Explicit | HousingMethod::Reduced) => "mass-proportional",
             (false, HousingMethod::QuasiStatic) => {
                 "in explicit steps; nothing moves in an equilibrium"
             }
@@ -101,6 +105,11 @@ pub fn lines(scene: &HousedScene, prepared: &Prepared) -> Result<Vec<String>, Bo
             "does ",
             "explicit housing",
             "bearing and housing in steps of their own, which exchange impulses",
+        ),
+        HousingMethod::Reduced => line(
+            "does ",
+            "reduced housing",
+            "some shapes of the housing, which move with the bearing in its steps",
         ),
     });
     Ok(lines)

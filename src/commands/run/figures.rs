@@ -24,7 +24,7 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
         }
         Motion::Course(_) => races_apart(table, &mut lines),
     }
-    if matches!(session.motion, Motion::Housed(_) | Motion::Course(_)) {
+    if table.all("bore_deepest_penetration").is_some() {
         let deepest = 1e6 * largest(table, "bore_deepest_penetration");
         let touching = largest(table, "bore_nodes_touching");
         let pressure = 1e-6 * largest(table, "bore_peak_pressure");

@@ -19,7 +19,15 @@ pub(super) fn announcement(
 ) -> String {
     let clock = &session.clock;
     let mut text = match (&session.motion, prepared) {
-        (Motion::Bearing(simulation), _) => of_bearing(simulation, clock, request, choice),
+        (Motion::Bearing(simulation), prepared) => {
+            let steps = of_bearing(simulation, clock, request, choice);
+            match prepared {
+                Prepared::Housed { reduced: Some(reduced), .. } => {
+                    format!("{}\n{steps}", reduced.text())
+                }
+                _ => steps,
+            }
+        }
         (Motion::Solid(moving), _) => of_solid(&moving.solid, clock),
         (Motion::Housed(housed), _) => of_housed(housed, clock),
         (Motion::Course(_), Prepared::Housed { bore: Some((bore, seconds)), .. }) => {

@@ -1,8 +1,10 @@
 //! The bore of a housing under its bearing: force and pressure as fields, and a table of its nodes.
 
-use crate::kinematics::vec3::{Vec3, dot};
+use crate::kinematics::vec3::{Vec3, dot, scale};
 use crate::output::series::{Column, Series, SeriesError};
 use crate::output::session::Motion;
+use crate::solver::dynamics::seat::TouchingNode;
+use crate::solver::dynamics::system::System;
 use crate::solver::housing::condensed::CondensedBore;
 use crate::solver::housing::housed::HousedState;
 use crate::solver::solid::model::SolidModel;
@@ -26,7 +28,8 @@ pub struct BoreNodeState {
 /// where there is no bore, or no equilibrium yet.
 pub fn bore_nodes(motion: &Motion, model: &SolidModel) -> Vec<BoreNodeState> {
     match motion {
-        Motion::Bearing(_) | Motion::Solid(_) => Vec::new(),
+        Motion::Solid(_) => Vec::new(),
+        Motion::Bearing(simulation) => seat_nodes(&simulation.system),
         Motion::Course(course) => {
             let of = |state: &HousedState| condensed_nodes(model, course.bore(), state);
             course.latest.as_ref().map_or_else(Vec::new, |moment| of(&moment.state))
@@ -47,6 +50,26 @@ pub fn bore_nodes(motion: &Motion, model: &SolidModel) -> Vec<BoreNodeState> {
             touching.map(state).collect()
         }
     }
+}
+
+/// Nodes that touch in the first seat of a bearing in a reduced housing; none without one.
+fn seat_nodes(system: &System) -> Vec<BoreNodeState> {
+    let Some((seat, now)) = system.assembly.seats.first().zip(system.seats.first()) else {
+        return Vec::new();
+    };
+    let surface = &system.assembly.solids[seat.solid].surfaces[seat.surface];
+    let state = |touching: &TouchingNode| {
+        let node = &surface.nodes[touching.node];
+        let load = touching.load / touching.along;
+        BoreNodeState {
+            node: node.node,
+            place: node.place,
+            area: node.area,
+            penetration: load / touching.stiffness,
+            force: scale(touching.normal, load),
+        }
+    };
+    now.touching.iter().map(state).collect()
 }
 
 /// Nodes of a condensed bore in an equilibrium.

@@ -204,7 +204,8 @@ impl<'p> Session<'p> {
             moved?;
             if let Some(index) = self.clock.fields_due()
                 && self.clock.rows > rows
-                && self.clock.is_on_grid(self.motion.done())
+                && (matches!(self.motion, Motion::Bearing(_))
+                    || self.clock.is_on_grid(self.motion.done()))
             {
                 return Ok(Status::Fields(index));
             }

@@ -54,6 +54,9 @@ pub struct BearingEntry {
     pub was_loaded: Vec<bool>,
     /// Kinetic, contact, cage contact, gravity, foundation, ball contact, J.
     pub first_energy: [f64; 6],
+    /// Of reduced solids: kinetic, strain, seats, J.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub first_energy_of_solids: Option<[f64; 3]>,
     pub largest_contact_energy: f64,
     /// See [`ContactTurnover`]: sum and last, J.
     pub contact_turnover: [f64; 2],
@@ -218,6 +221,8 @@ impl BearingEntry {
                 energy.foundation,
                 energy.ball_contact,
             ],
+            first_energy_of_solids: Some([energy.solid_kinetic, energy.solid_strain, energy.seat])
+                .filter(|of| *of != [0.0; 3]),
             largest_contact_energy: checkpoint.largest_contact_energy,
             contact_turnover: [checkpoint.contact_turnover.sum, checkpoint.contact_turnover.last],
             work: [
@@ -247,6 +252,7 @@ impl BearingEntry {
             limit.chain(watched).chain(watch.exceeded.into_iter().flatten()).chain(shortened);
         let energy = [self.step_size, self.largest_contact_energy].into_iter();
         let energy = energy.chain(self.first_energy).chain(self.contact_turnover);
+        let energy = energy.chain(self.first_energy_of_solids.into_iter().flatten());
         vec![
             ("an extreme", self.extremes.clone()),
             ("a size of the error control", self.control.into_iter().flatten().collect()),
@@ -280,6 +286,7 @@ impl BearingEntry {
     fn checkpoint(&self, time: f64) -> BearingCheckpoint {
         let [oscillation, decay] = self.step_watch.stiffest;
         let [kinetic, contact, cage_contact, gravity, foundation, ball_contact] = self.first_energy;
+        let [solid_kinetic, solid_strain, seat] = self.first_energy_of_solids.unwrap_or_default();
         let [
             evaluations,
             distance_tests,
@@ -323,6 +330,9 @@ impl BearingEntry {
                 gravity,
                 foundation,
                 ball_contact,
+                solid_kinetic,
+                solid_strain,
+                seat,
             },
             largest_contact_energy: self.largest_contact_energy,
             contact_turnover: ContactTurnover {

@@ -13,6 +13,7 @@ use crate::solver::housing::course_inertia::CourseInertia;
 use crate::solver::housing::exchange::HousedBearing;
 use crate::solver::housing::housed::HousedState;
 use crate::solver::housing::inertia::InertiaEstimate;
+use crate::solver::housing::reduce::CutOff;
 use serde_json::{Map, Value, json};
 
 /// What a largest pressure of bore nodes is worth: measured on housings of 2.4.2, where it moved by 24 %
@@ -86,6 +87,41 @@ pub fn inertia_section(
         section.insert("along_the_course".into(), along.into());
     }
     Ok(section.into())
+}
+
+/// What a reduced housing moves in, and what is cut off.
+///
+/// # Errors
+/// A value that is not finite.
+pub fn reduced_section(cut_off: &CutOff, excitations: &[Excitation]) -> Part {
+    let mut section = json!({
+        "natural_shapes": cut_off.natural,
+        "patterns_of_the_bore": cut_off.patterns,
+        "weight_and_loads": cut_off.own,
+        "bore_nodes": cut_off.nodes,
+        "masses": "lumped",
+        "modes_to": quantity("frequency", cut_off.modes_to, "Hz")?,
+        "lowest_frequency": quantity("frequency", cut_off.lowest, "Hz")?,
+        "highest_frequency": quantity("frequency", cut_off.highest, "Hz")?,
+        "compliance_left_out": quantity("part", cut_off.static_left_out, "1")?,
+        "compliance_without_natural_shape": quantity("part", cut_off.by_patterns, "1")?,
+    });
+    if cut_off.first_left_out.is_finite() {
+        section["first_frequency_left_out"] = quantity("frequency", cut_off.first_left_out, "Hz")?;
+        let mut driven = Map::new();
+        for excitation in excitations {
+            let error = cut_off.dynamic_error(excitation.frequency);
+            driven.insert(
+                excitation.what.clone(),
+                json!({
+                    "frequency": quantity("frequency", excitation.frequency, "Hz")?,
+                    "error_at_most": quantity("error", error, "1")?,
+                }),
+            );
+        }
+        section["error_of_what_drives"] = driven.into();
+    }
+    Ok(section)
 }
 
 /// The largest of these errors, and what causes it.
@@ -168,7 +204,10 @@ pub fn equilibrium_section(
 /// How a housing takes part in a run.
 pub(super) fn method(motion: &Motion) -> Option<&'static str> {
     match motion {
-        Motion::Bearing(_) | Motion::Solid(_) => None,
+        Motion::Bearing(simulation) => {
+            (!simulation.system.assembly.seats.is_empty()).then_some("reduced")
+        }
+        Motion::Solid(_) => None,
         Motion::Housed(_) => Some("explicit"),
         Motion::Course(_) => Some("quasi-static"),
     }

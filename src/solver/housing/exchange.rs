@@ -7,7 +7,7 @@
 //! the race gets too, with the other sign. Drift, kick, drift: of second order, and an elastic
 //! contact between the two neither makes nor loses energy in the long run.
 
-use super::condensed::is_under;
+use super::condensed::{is_under, rim};
 use crate::ch2_housing::bore_contact::{
     ContactNode, ContactSum, Cylinder, Frame, Penalty, contact, split_by_reach,
 };
@@ -158,15 +158,12 @@ impl Seat {
     }
 
     /// Leaves out the nodes beside a race that starts at `start` (X, Y, Z, m; tilts, rad), as a condensed
-    /// housing does. How far the others may slide over the rim and still be touched, m: half of what a node
-    /// stands for, since the part of the bore that it carries is still under the race by then, and no more
-    /// than a quarter of the seat.
+    /// housing does. How far the others may slide over the rim and still be touched, m.
     pub(super) fn keep_under(&mut self, start: &[f64; 5]) -> f64 {
         let frame = Frame::new(&pose_after(&race::fixed(start).state, 0.0));
         let width = self.width;
         self.nodes.retain(|node| is_under(frame.seen(node.place)[0], width));
-        let area: f64 = self.nodes.iter().map(|node| node.area).sum();
-        (0.5 * (area / self.nodes.len().max(1) as f64).sqrt()).min(0.25 * self.width)
+        rim(self.nodes.iter().map(|node| node.area), width)
     }
 }
 
