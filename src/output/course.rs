@@ -39,7 +39,7 @@ pub struct Course<'p> {
 pub struct Effort {
     /// Largest share of the load on the outer race that was left unbalanced.
     pub largest_residual: f64,
-    /// Newton iterations, sets of touching nodes tried.
+    /// Newton iterations, changes of the nodes that touch.
     pub iterations: usize,
     pub contact_changes: usize,
 }

@@ -51,7 +51,8 @@ pub struct Loaded {
     pub rest: [f64; 5],
     /// Where the search begins; [`None`] leaves it to an estimate for a bearing alone.
     pub start: Option<[f64; 5]>,
-    /// How far a coordinate that is free may go from there, m (tilts over the pitch radius).
+    /// How far a coordinate that is free may go from there, m (tilts over the pitch radius); a body in a bore
+    /// is lost when it is beyond that.
     pub room: f64,
 }
 

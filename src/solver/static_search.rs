@@ -34,7 +34,7 @@ const WITHOUT_BEARING: f64 = 1e-4;
 const HINT: f64 = 1e-8;
 /// Part of its radius by which a race may leave its place while it is looked for, and in the end: nothing that a bore
 /// holds moves by a hundredth of its radius.
-const LOST: f64 = 1.0;
+const LOST: f64 = 1e3;
 pub(super) const FAR: f64 = 1e-2;
 
 pub(super) type Five = SVector<f64, 5>;
@@ -47,7 +47,7 @@ pub(super) struct Model<'a> {
     seat_axes: Vec<Pose>,
     /// First unknown of each body; `None` where it is held.
     unknowns: Vec<Option<usize>>,
-    /// Metres per unit of each unknown: 1 for lengths, a pitch radius for tilts.
+    /// Metres per unit of each unknown: 1 for lengths, a pitch radius (that of a seat, without a bearing) for tilts.
     scale: DVector<f64>,
 }
 
@@ -88,7 +88,12 @@ impl<'a> Model<'a> {
                         bearing.mounts.iter().any(|mount| mount.body == index)
                     };
                     let own = assembly.bearings.iter().find(sits);
-                    let pitch = own.map_or(1.0, |bearing| bearing.geometry.pitch_radius);
+                    let seat = assembly.seats.iter().find(|seat| seat.mount.body == index);
+                    let pitch = match (own, seat) {
+                        (Some(bearing), _) => bearing.geometry.pitch_radius,
+                        (None, Some(seat)) => seat.fit.radius,
+                        (None, None) => 1.0,
+                    };
                     scale.extend([1.0, 1.0, 1.0, pitch, pitch]);
                     Some(scale.len() - 5)
                 }
@@ -192,6 +197,10 @@ impl<'a> Model<'a> {
     pub(super) fn seat_place(&self, seat: usize, at: &DVector<f64>) -> SeatPlace {
         let (mount, axes) = (&self.assembly.seats[seat].mount, &self.seat_axes[seat]);
         let coordinates = self.coordinates(mount.body, at);
+        let own = axes.position == Vector3::zeros() && axes.orientation.imag() == Vector3::zeros();
+        if own && mount.is_direct() {
+            return SeatPlace::direct(&coordinates);
+        }
         let race = InnerRacePosition::mounted(&coordinates, mount, &Vector3::zeros());
         let turn = axes.orientation.to_rotation_matrix().into_inner();
         SeatPlace::new(race.seen_from_parent_of(axes), mount, &turn)
@@ -476,11 +485,13 @@ impl<'a, 'b> Search<'a, 'b> {
     /// Newton's method with a trust radius on the energy.
     pub(super) fn descend(&mut self, here: &mut Evaluation) -> Result<(), StaticsError> {
         let mut radius = self.step_scale();
+        let begun = self.iterations;
         loop {
             let residual = self.residual(here);
             let allowed = self.allowed(here);
             if residual <= allowed {
-                return self.polish(here, residual);
+                // What is found again stays to the bit.
+                return if self.iterations > begun { self.polish(here, residual) } else { Ok(()) };
             }
             if self.iterations >= self.options.max_iterations {
                 return self.give_up(here, residual, allowed);
@@ -584,6 +595,9 @@ impl<'a, 'b> Search<'a, 'b> {
     fn check_travel(&self, here: &Evaluation) -> Result<(), StaticsError> {
         self.check_seats(here, LOST)?;
         for (index, first, body) in self.model.loaded() {
+            if self.model.seat_of(index).is_some() {
+                continue;
+            }
             let from = Five::from(body.start.unwrap_or([0.0; 5])) + self.carried(index, here);
             for i in (0..5).filter(|&i| self.free[first + i]) {
                 let travel = (here.at[first + i] - from[i]) * self.model.scale[first + i];
@@ -611,11 +625,14 @@ impl<'a, 'b> Search<'a, 'b> {
     /// A race that nothing holds, a housing that gives way.
     pub(super) fn check_seats(&self, here: &Evaluation, part: f64) -> Result<(), StaticsError> {
         for (index, seat) in self.model.assembly.seats.iter().enumerate() {
-            let pose = self.model.seat_place(index, &here.at).pose;
-            let radius = seat.fit.radius;
-            let travel = [pose[0], pose[1], radius * pose[2], radius * pose[3]].map(f64::abs);
-            let worst = (0..4).max_by(|a, b| travel[*a].total_cmp(&travel[*b])).unwrap_or(0);
-            let within = travel[worst] <= part * radius;
+            let place = self.model.seat_place(index, &here.at);
+            let (pose, radius) = (place.pose, seat.fit.radius);
+            // Angles of an axis come round.
+            let turn = if place.is_direct() { part } else { part.min(1.0) };
+            let allowed = [part * radius, part * radius, turn, turn];
+            let parts: [f64; 4] = std::array::from_fn(|i| pose[i].abs() / allowed[i]);
+            let worst = (0..4).max_by(|a, b| parts[*a].total_cmp(&parts[*b])).unwrap_or(0);
+            let within = parts[worst] <= 1.0;
             if !within {
                 let source = self.bores[index].lost(
                     &seat.fit,

@@ -15,10 +15,22 @@ pub(super) struct SeatPlace {
     pub(super) pose: [f64; 4],
     /// By how much a unit of each coordinate of the body changes them.
     by: SMatrix<f64, 4, 5>,
-    race: InnerRacePosition,
+    /// Where the body's coordinates are not those of the seat.
+    race: Option<InnerRacePosition>,
 }
 
 impl SeatPlace {
+    /// Of a race that is its body, whose coordinates count from the nominal pose.
+    pub(super) fn direct(coordinates: &Five) -> SeatPlace {
+        let by = SMatrix::<f64, 4, 5>::from_fn(|i, j| if j == i + 1 { 1.0 } else { 0.0 });
+        let pose = [coordinates[1], coordinates[2], coordinates[3], coordinates[4]];
+        SeatPlace { pose, by, race: None }
+    }
+
+    pub(super) fn is_direct(&self) -> bool {
+        self.race.is_none()
+    }
+
     /// Of a race given in the nominal axes; those of its body's coordinates are turned by `axes` against them.
     pub(super) fn new(race: InnerRacePosition, mount: &Mount, axes: &Matrix3<f64>) -> SeatPlace {
         let (centre, a) = (&race.centre, &race.axis);
@@ -32,7 +44,7 @@ impl SeatPlace {
             by[(2, 3 + column)] = (a.z * d.x - a.x * d.z) / across;
             by[(3, 3 + column)] = d.y / across.sqrt();
         }
-        SeatPlace { pose: [centre.y, centre.z, tilts[0], tilts[1]], by, race }
+        SeatPlace { pose: [centre.y, centre.z, tilts[0], tilts[1]], by, race: Some(race) }
     }
 
     /// A load along the four coordinates of the seat, along those of the body.
@@ -49,10 +61,11 @@ impl SeatPlace {
         mount: &Mount,
     ) -> SMatrix<f64, 5, 5> {
         let mut whole = self.by.transpose() * stiffness * self.by;
-        let a = &self.race.axis;
+        let Some(race) = &self.race else { return whole };
+        let a = &race.axis;
         let across = a.x * a.x + a.z * a.z;
-        let (turns, [xi_xi, xi_lambda, lambda_lambda]) = self.race.turning();
-        let (_, centres) = self.race.along(mount);
+        let (turns, [xi_xi, xi_lambda, lambda_lambda]) = race.turning();
+        let (_, centres) = race.along(mount);
         let force = Vector3::new(0.0, load[0], load[1]);
         for (u, v, second, centre) in [
             (0, 0, xi_xi, centres[0]),

@@ -18,6 +18,7 @@ use bearing_dynamics::solver::housing::housed::race_under_load;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
 use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel};
+use bearing_dynamics::solver::statics::StaticsError;
 use housing_common::*;
 use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;
@@ -32,6 +33,14 @@ fn load(y: f64, z: f64, about_y: f64, about_z: f64) -> RaceLoad {
 
 fn solve(bore: &CondensedBore, fit: &Fit, load: &RaceLoad) -> BoreState {
     race_under_load(&mut BoreSearch::new(bore, Penalty::default()), fit, load).unwrap()
+}
+
+/// What the bore says against it.
+fn in_bore(found: Result<BoreState, StaticsError>) -> BoreError {
+    match found.unwrap_err() {
+        StaticsError::Seat { source, .. } => source,
+        other => panic!("{other}"),
+    }
 }
 
 fn far(a: &[f64], b: &[f64]) -> f64 {
@@ -209,27 +218,23 @@ fn what_a_smooth_bore_cannot_hold_is_an_error() {
     let free = Fit { axial: Axial::Free, ..fit(0.0) };
     let mut search = BoreSearch::new(&bore, Penalty::default());
     let along = RaceLoad { force: [5.0, 0.0, -250.0], moment: [0.0; 3] };
-    assert_eq!(
-        race_under_load(&mut search, &free, &along).unwrap_err(),
-        BoreError::AxialForce { force: 5.0 }
-    );
+    let error = in_bore(race_under_load(&mut search, &free, &along));
+    assert_eq!(error, BoreError::AxialForce { force: 5.0 });
     assert!(race_under_load(&mut search, &fit(0.0), &along).is_ok());
     let turning = RaceLoad { force: [0.0, 0.0, -250.0], moment: [0.1, 0.0, 0.0] };
-    let error = race_under_load(&mut search, &free, &turning).unwrap_err();
+    let error = in_bore(race_under_load(&mut search, &free, &turning));
     assert_eq!(error, BoreError::AxialMoment { moment: 0.1 });
     let nan = load(f64::NAN, 0.0, 0.0, 0.0);
-    assert!(matches!(
-        race_under_load(&mut search, &fit(0.0), &nan),
-        Err(BoreError::NotFinite { .. })
-    ));
+    let error = in_bore(race_under_load(&mut search, &fit(0.0), &nan));
+    assert!(matches!(error, BoreError::NotFinite { .. }));
     // Under a race so narrow that one row of nodes touches, nothing holds a tilt.
     let mesh = mesh_of(&RING, &COARSE, Order::Linear);
     let narrow = Reach { width: 2e-3, ..reach() };
     let row = condense(&model_of(&mesh, YOUNG), &bore_of(&mesh), &narrow).unwrap();
     assert_eq!((row.sizes.kept, row.sizes.beside), (24, 48));
-    let error = BoreSearch::new(&row, Penalty::default())
-        .under_load(&fit(0.0), &load(0.0, -250.0, 1.0, 0.0))
-        .unwrap_err();
+    let mut search = BoreSearch::new(&row, Penalty::default());
+    let error = race_under_load(&mut search, &fit(0.0), &load(0.0, -250.0, 1.0, 0.0));
+    let error = in_bore(error);
     assert!(matches!(error, BoreError::NotHeld { coordinate: "tilt_y", .. }), "{error}");
     let said = error.to_string();
     assert!(said.contains("tilted it by") && said.contains("deg about y"), "{said}");
@@ -243,9 +248,9 @@ fn what_a_smooth_bore_cannot_hold_is_an_error() {
 #[test]
 fn a_housing_that_is_too_soft_is_called_so() {
     let soft = condensed(&RING, &COARSE, Order::Linear, 1e-6 * YOUNG);
-    let error = BoreSearch::new(&soft, Penalty::default())
-        .under_load(&fit(1e-6), &load(0.0, -2000.0, 0.0, 0.0))
-        .unwrap_err();
+    let mut search = BoreSearch::new(&soft, Penalty::default());
+    let error = race_under_load(&mut search, &fit(1e-6), &load(0.0, -2000.0, 0.0, 0.0));
+    let error = in_bore(error);
     let said = error.to_string();
     let BoreError::GivesWay { coordinate, travel, load, radius, youngs_modulus } = error else {
         panic!("{said}");

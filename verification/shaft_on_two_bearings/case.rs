@@ -107,7 +107,7 @@ impl Shaft {
     }
 
     /// What the program makes of it.
-    fn assembly(&self) -> Result<StaticAssembly, CaseError> {
+    fn assembly(&self) -> Result<StaticAssembly<'static>, CaseError> {
         let [left, right] = &self.ends;
         let radius = left.lengths.ball_radius.min(right.lengths.ball_radius);
         let loaded = Loaded {

@@ -211,7 +211,7 @@ pub fn along_course(
             .ok_or("no equilibrium")
             .map_err(Box::<dyn Error>::from)
     })?;
-    Ok(Some(found).filter(|found| found.swing > 0.0))
+    Ok(Some(found).filter(|found| found.swing > 0.0 || found.displacement > 0.0))
 }
 
 /// Bearing, housing and seat for explicit steps.

@@ -178,9 +178,8 @@ pub struct BoreSearch<'a> {
     /// Outward load on each node, and what it moves each by: N, m.
     loads: Vec<f64>,
     moves: Vec<f64>,
-    /// So far: of the nodes that touch, the first set of each answer included, and factors of their compliance.
+    /// Sets of touching nodes whose compliance has been factorised so far.
     pub changes: usize,
-    pub factorisations: usize,
 }
 
 /// Changes of the touching nodes after which a search gives up; a cold start takes about ten.
@@ -206,7 +205,6 @@ impl<'a> BoreSearch<'a> {
             loads: vec![0.0; count],
             moves: vec![0.0; count],
             changes: 0,
-            factorisations: 0,
         }
     }
 
@@ -315,7 +313,6 @@ impl<'a> BoreSearch<'a> {
         let (mut fewest, mut patience, mut changes) = (usize::MAX, PATIENCE, 0);
         loop {
             changes += 1;
-            self.changes += 1;
             if changes > MOST_CHANGES {
                 return Err(BoreError::NotSettled { changes: MOST_CHANGES });
             }
@@ -368,7 +365,7 @@ impl<'a> BoreSearch<'a> {
         }
         let softness: Vec<f64> = nodes.iter().map(|&i| self.softness[i]).collect();
         let factor = self.bore.compliance.factor(&nodes, &softness)?;
-        self.factorisations += 1;
+        self.changes += 1;
         self.contact = Some(Contact { nodes, factor, answer: None });
         Ok(())
     }

@@ -26,10 +26,9 @@ pub struct HousedState {
     pub on_outer: RaceLoad,
     /// Unbalanced load of the outer race over the load on it.
     pub residual: f64,
-    /// Newton iterations, sets of touching nodes tried and factors made for them.
+    /// Newton iterations, and changes of the nodes that touch in all of them.
     pub iterations: usize,
     pub contact_changes: usize,
-    pub factorisations: usize,
     pub contact_evaluations: usize,
 }
 
@@ -92,7 +91,7 @@ impl<'b> HousedSearch<'b> {
     ) -> Result<HousedState, StaticsError> {
         check_finite(bearing)?;
         let assembly = lists(bearing, self.bore.bore(), &self.bore, fit, weight);
-        let before = (self.bore.changes, self.bore.factorisations);
+        let before = self.bore.changes;
         let [y, z, tilt_y, tilt_z] = self.outer;
         let near = self
             .inner
@@ -114,8 +113,7 @@ impl<'b> HousedSearch<'b> {
         let left = (pull - Vector4::from(state.bore.load)).component_div(&size).amax();
         Ok(HousedState {
             residual: if load > 0.0 { left / load } else { left },
-            contact_changes: self.bore.changes - before.0,
-            factorisations: self.bore.factorisations - before.1,
+            contact_changes: self.bore.changes - before,
             ..state
         })
     }
@@ -136,7 +134,6 @@ impl<'b> HousedSearch<'b> {
             residual: 0.0,
             iterations: bearing.iterations,
             contact_changes: 0,
-            factorisations: 0,
             contact_evaluations: bearing.contact_evaluations,
             bearing,
             bore,
