@@ -19,6 +19,7 @@ use bearing_dynamics::scene::housing_problem::{HousingSetup, check_constant, exc
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{DefaultUsed, Document, RunSettings};
+use bearing_dynamics::solver::dynamics::assembly::OUTER;
 use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::run::RunOptions;
 use bearing_dynamics::solver::housing::assembly::{AssemblyOptions, AssemblySearch, AssemblyState};
@@ -29,8 +30,10 @@ use bearing_dynamics::solver::housing::condensed::{
 use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, course_inertia,
 };
-use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, Seat};
+use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, SolidPart};
 use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate};
+use bearing_dynamics::solver::housing::seat::Seat;
+use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::support::free_motions;
 use bearing_dynamics::solver::solid::tangent::Unknowns;
@@ -214,6 +217,9 @@ pub fn parts(
 ) -> Fallible<HousedParts> {
     let housing = &scene.housing;
     let seat = Seat {
+        name: None,
+        mount: Mount::at_centre(OUTER),
+        solid: 0,
         radius: setup.radius(scene),
         width: setup.width,
         penalty: housing.penalty,
@@ -226,8 +232,9 @@ pub fn parts(
         // Both together are balanced, not the bearing alone.
         bearing: RunOptions { energy_limit: f64::INFINITY, ..run.options },
     };
-    let problem = dynamic_problem(&scene.bearing)?;
-    Ok(HousedParts { problem, model: setup.model.clone(), seat, options })
+    let assembly = dynamic_problem(&scene.bearing)?.assembly();
+    let solids = vec![SolidPart::undeformed(None, setup.model.clone())];
+    Ok(HousedParts { assembly, solids, seats: vec![seat], options })
 }
 
 pub fn request(scene: &HousedScene, run: &RunSettings) -> RunRequest {

@@ -114,7 +114,7 @@ fn solid_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fal
     let (Some(built), Motion::Solid(moving)) = (prepared.built(), &session.motion) else {
         return Ok(());
     };
-    let (model, displacement) = (&moving.solid.model, session.displacement());
+    let (model, displacement) = (&moving.solid.model, session.displacement(0));
     let stress = stresses(model, &displacement);
     said.sections.push(("mass".into(), mass_section(model, built)?));
     said.sections.extend(field_sections(built, &displacement, &stress)?);
@@ -140,7 +140,7 @@ fn housing_results(
             let index = session.clock.rows_per_fields.map_or(0, |every| row / every + 1);
             write_fields_file(folder, prepared, session, index)?;
         }
-        let displacement = session.displacement();
+        let displacement = session.displacement(0);
         if !displacement.is_empty() {
             let stress = stresses(&setup.model, &displacement);
             said.remarks = match &session.motion {
@@ -156,7 +156,7 @@ fn housing_results(
             }
             said.sections.extend(field_sections(&mesh.built, &displacement, &stress)?);
             said.sections.push(("housing_remarks".into(), json!(said.remarks)));
-            write_bore(folder, &bore_nodes(&session.motion, &setup.model))?;
+            write_bore(folder, &bore_nodes(&session.motion, 0, &setup.model))?;
             said.files += 1;
         }
     }
@@ -186,7 +186,7 @@ pub(super) fn write_fields_file(
     index: u64,
 ) -> Fallible<()> {
     let Some(built) = prepared.built() else { return Ok(()) };
-    let displacement = session.displacement();
+    let displacement = session.displacement(0);
     if displacement.is_empty() {
         return Ok(());
     }
@@ -195,14 +195,14 @@ pub(super) fn write_fields_file(
         Prepared::Housed { mesh, .. } => Some(&mesh.setup.model),
         Prepared::Bearing { .. } | Prepared::Solid { .. } => None,
     };
-    let bore = housing.map(|model: &SolidModel| bore_nodes(&session.motion, model));
+    let bore = housing.map(|model: &SolidModel| bore_nodes(&session.motion, 0, model));
     let (velocity, stress) = match &mut session.motion {
         Motion::Solid(moving) => {
             (Some(moving.solid.velocity()), stresses(&moving.solid.model, &displacement))
         }
         motion => {
             // Between kicks the rates of a housing are those of the bearing's time.
-            let rates = motion.solid().map(|solid| solid.rates());
+            let rates = motion.solids().first().map(|solid| solid.rates());
             let rates = rates.map(|rates| rates.iter().map(|v| [v[0], v[1], v[2]]).collect());
             let Some(model) = housing else { return Ok(()) };
             (rates, stresses(model, &displacement))

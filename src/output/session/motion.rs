@@ -1,4 +1,5 @@
-//! What moves in a run: a bearing, a solid, both exchanging impulses, or one equilibrium after the other.
+//! What moves in a run: bearings, a solid, bearings and solids exchanging impulses, or one equilibrium after
+//! the other.
 
 use super::SessionError;
 use crate::output::course::{Course, CourseCheckpoint, CourseParts};
@@ -9,8 +10,9 @@ use crate::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
 use crate::solver::dynamics::clocked::{self, Arrival, RunRequest};
 use crate::solver::dynamics::model::DynamicProblem;
 use crate::solver::dynamics::run::Simulation;
-use crate::solver::housing::checkpoint::{HousedCheckpoint, Windows};
-use crate::solver::housing::exchange::{ExchangeError, ExchangeOptions, HousedBearing, Seat};
+use crate::solver::housing::checkpoint::{ExchangeCheckpoint, Windows};
+use crate::solver::housing::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
+use crate::solver::housing::seat::Seat;
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
 use crate::solver::solid::model::{SolidError, SolidModel};
@@ -47,12 +49,12 @@ pub struct SolidParts<'p> {
     pub threads: usize,
 }
 
-/// A bearing and its housing in explicit steps.
+/// Bodies with their bearings, solids in explicit steps, and the seats of one in the other.
 #[derive(Clone, Debug)]
 pub struct HousedParts {
-    pub problem: DynamicProblem,
-    pub model: SolidModel,
-    pub seat: Seat,
+    pub assembly: Assembly,
+    pub solids: Vec<SolidPart>,
+    pub seats: Vec<Seat>,
     pub options: ExchangeOptions,
 }
 
@@ -60,7 +62,7 @@ pub struct HousedParts {
 pub enum Motion<'p> {
     Bearing(Box<Simulation>),
     Solid(Box<MovingSolid>),
-    Housed(Box<HousedBearing>),
+    Housed(Box<Exchange>),
     Course(Box<Course<'p>>),
 }
 
@@ -77,7 +79,7 @@ pub struct MovingSolid {
 pub enum Checkpoint {
     Bearing(Box<BearingCheckpoint>),
     Solid(Box<SolidCheckpoint>, SolidStepLimit),
-    Housed(Box<HousedCheckpoint>, Windows),
+    Housed(Box<ExchangeCheckpoint>, Windows),
     Course(CourseCheckpoint),
 }
 
@@ -142,9 +144,9 @@ impl<'p> Motion<'p> {
                 Motion::Solid(moving)
             }
             (Parts::Housed(parts), Checkpoint::Housed(kept, windows)) => {
-                let HousedParts { problem, model, seat, options } = *parts;
+                let HousedParts { assembly, solids, seats, options } = *parts;
                 let housed =
-                    HousedBearing::from_checkpoint(problem, model, seat, &options, windows, kept)?;
+                    Exchange::from_checkpoint(assembly, solids, seats, &options, windows, kept)?;
                 Motion::Housed(Box::new(housed))
             }
             (Parts::Course(parts), Checkpoint::Course(kept)) => {
@@ -170,11 +172,11 @@ impl<'p> Motion<'p> {
         }
     }
 
-    /// The bearing, where one moves in steps.
+    /// Bodies and bearings, where they move in steps.
     pub fn bearing(&self) -> Option<&Simulation> {
         match self {
             Motion::Bearing(simulation) => Some(simulation),
-            Motion::Housed(housed) => Some(&housed.bearing),
+            Motion::Housed(housed) => Some(&housed.simulation),
             Motion::Solid(_) | Motion::Course(_) => None,
         }
     }
@@ -182,17 +184,17 @@ impl<'p> Motion<'p> {
     pub fn bearing_mut(&mut self) -> Option<&mut Simulation> {
         match self {
             Motion::Bearing(simulation) => Some(simulation),
-            Motion::Housed(housed) => Some(&mut housed.bearing),
+            Motion::Housed(housed) => Some(&mut housed.simulation),
             Motion::Solid(_) | Motion::Course(_) => None,
         }
     }
 
-    /// The solid, where one moves in steps.
-    pub fn solid(&self) -> Option<&ExplicitSolid> {
+    /// The solids that move in steps.
+    pub fn solids(&self) -> Vec<&ExplicitSolid> {
         match self {
-            Motion::Solid(moving) => Some(&moving.solid),
-            Motion::Housed(housed) => Some(&housed.solid),
-            Motion::Bearing(_) | Motion::Course(_) => None,
+            Motion::Solid(moving) => vec![&moving.solid],
+            Motion::Housed(housed) => housed.solids.iter().map(|part| &part.solid).collect(),
+            Motion::Bearing(_) | Motion::Course(_) => Vec::new(),
         }
     }
 
@@ -230,9 +232,9 @@ impl<'p> Motion<'p> {
             Motion::Bearing(_) => {}
             Motion::Solid(moving) => moving.advance(count)?,
             Motion::Housed(housed) => {
-                (0..count).try_for_each(|_| housed.exchange())?;
+                (0..count).try_for_each(|_| housed.advance())?;
                 if clock.is_on_grid(housed.exchanges) {
-                    let bearing = &mut housed.bearing;
+                    let bearing = &mut housed.simulation;
                     if let Some(step) = bearing.watch_step().map_err(ExchangeError::from)? {
                         bearing.shorten_step(step);
                     }
@@ -301,15 +303,14 @@ impl SolidParts<'_> {
 }
 
 impl HousedParts {
-    /// Both at the start, in windows that divide the rows, which are `interval` apart (s); and how many
+    /// All at the start, in windows that divide the rows, which are `interval` apart (s); and how many
     /// a row has.
     ///
     /// # Errors
-    /// As [`HousedBearing::new`].
-    pub fn started(self, interval: f64) -> Result<(HousedBearing, u64), ExchangeError> {
-        let HousedParts { problem, model, seat, options } = self;
-        let still = vec![[0.0; 3]; model.mass.len()];
-        let mut housed = HousedBearing::new(problem, model, seat, still, &options)?;
+    /// As [`Exchange::new`].
+    pub fn started(self, interval: f64) -> Result<(Exchange, u64), ExchangeError> {
+        let HousedParts { assembly, solids, seats, options } = self;
+        let mut housed = Exchange::new(assembly, solids, seats, &options)?;
         let windows = housed.divide(interval)?;
         Ok((housed, windows))
     }
