@@ -214,6 +214,7 @@ pub fn parts(
     scene: &HousedScene,
     setup: &HousingSetup,
     run: &RunSettings,
+    threads: usize,
 ) -> Fallible<HousedParts> {
     let housing = &scene.housing;
     let seat = Seat {
@@ -234,7 +235,7 @@ pub fn parts(
     };
     let assembly = dynamic_problem(&scene.bearing)?.assembly();
     let solids = vec![SolidPart::undeformed(None, setup.model.clone())];
-    Ok(HousedParts { assembly, solids, seats: vec![seat], options })
+    Ok(HousedParts { assembly, solids, seats: vec![seat], options, threads })
 }
 
 pub fn request(scene: &HousedScene, run: &RunSettings) -> RunRequest {

@@ -285,7 +285,7 @@ fn timed(
     prepared: &Prepared,
     run: &RunSettings,
 ) -> Result<String, Box<dyn Error>> {
-    let parts = parts(scene, &prepared.setup, run)?;
+    let parts = parts(scene, &prepared.setup, run, 1)?;
     let (mut housed, windows) = parts.started(run.output_interval)?;
     let all = whole_number(run.end, run.output_interval) * windows;
     let mut nodes = String::new();

@@ -104,7 +104,7 @@ impl<'s> Prepared<'s> {
                 Parts::Course(Box::new(CourseParts { scene, setup: &mesh.setup, bore, problem }))
             }
             Prepared::Housed { scene, settings, mesh, bore: None } => {
-                Parts::Housed(Box::new(housed::parts(scene, &mesh.setup, settings)?))
+                Parts::Housed(Box::new(housed::parts(scene, &mesh.setup, settings, threads)?))
             }
         })
     }

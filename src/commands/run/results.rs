@@ -82,8 +82,10 @@ pub(super) fn write_results(
     }
     let mut record = prepared.record(request, choice.as_ref(), stages)?;
     record.sections.append(&mut said.sections);
-    if let Motion::Solid(moving) = &session.motion {
-        record.threads = moving.threads;
+    match &session.motion {
+        Motion::Solid(moving) => record.threads = moving.threads,
+        Motion::Housed(housed) => record.threads = housed.threads(),
+        Motion::Bearing(_) | Motion::Course(_) => {}
     }
     let (stepping, integrator) = (request.options.stepping, request.options.integrator);
     let report = RunReport {

@@ -17,7 +17,7 @@ use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
 use crate::solver::solid::model::{SolidError, SolidModel};
 use crate::solver::solid::step_limit::{SolidStepLimit, step_limit};
-use crate::solver::solid::team::Team;
+use crate::solver::solid::team::Crew;
 
 /// What a run is made of.
 pub enum Parts<'p> {
@@ -56,6 +56,8 @@ pub struct HousedParts {
     pub solids: Vec<SolidPart>,
     pub seats: Vec<Seat>,
     pub options: ExchangeOptions,
+    /// Threads that step the solids, with the same bits.
+    pub threads: usize,
 }
 
 /// What moves.
@@ -70,8 +72,6 @@ pub enum Motion<'p> {
 pub struct MovingSolid {
     pub solid: ExplicitSolid,
     pub threads: usize,
-    /// Made with the first step.
-    team: Option<Team>,
 }
 
 /// All that a motion goes on from with the same bits.
@@ -144,9 +144,10 @@ impl<'p> Motion<'p> {
                 Motion::Solid(moving)
             }
             (Parts::Housed(parts), Checkpoint::Housed(kept, windows)) => {
-                let HousedParts { assembly, solids, seats, options } = *parts;
-                let housed =
+                let HousedParts { assembly, solids, seats, options, threads } = *parts;
+                let mut housed =
                     Exchange::from_checkpoint(assembly, solids, seats, &options, windows, kept)?;
+                housed.share(threads);
                 Motion::Housed(Box::new(housed))
             }
             (Parts::Course(parts), Checkpoint::Course(kept)) => {
@@ -230,7 +231,9 @@ impl<'p> Motion<'p> {
         };
         match self {
             Motion::Bearing(_) => {}
-            Motion::Solid(moving) => moving.advance(count)?,
+            Motion::Solid(moving) => {
+                (0..count).try_for_each(|_| moving.solid.step(|_, _, _| {}))?;
+            }
             Motion::Housed(housed) => {
                 (0..count).try_for_each(|_| housed.advance())?;
                 if clock.is_on_grid(housed.exchanges) {
@@ -296,9 +299,10 @@ impl SolidParts<'_> {
         let still = vec![[0.0; 4]; model.mass.len()];
         let velocity = padded(self.setup.velocity.clone());
         let stepping = SolidStepping::Fixed(step);
-        let solid =
+        let mut solid =
             ExplicitSolid::with_limit(model, self.method, stepping, limit, still, velocity)?;
-        Ok(Box::new(MovingSolid { solid, threads: self.threads, team: None }))
+        solid.share(&Crew::new(self.threads), self.threads);
+        Ok(Box::new(MovingSolid { solid, threads: self.threads }))
     }
 }
 
@@ -309,21 +313,10 @@ impl HousedParts {
     /// # Errors
     /// As [`Exchange::new`].
     pub fn started(self, interval: f64) -> Result<(Exchange, u64), ExchangeError> {
-        let HousedParts { assembly, solids, seats, options } = self;
+        let HousedParts { assembly, solids, seats, options, threads } = self;
         let mut housed = Exchange::new(assembly, solids, seats, &options)?;
+        housed.share(threads);
         let windows = housed.divide(interval)?;
         Ok((housed, windows))
-    }
-}
-
-impl MovingSolid {
-    fn advance(&mut self, count: u64) -> Result<(), SolidError> {
-        if self.threads <= 1 {
-            return (0..count).try_for_each(|_| self.solid.step(|_, _, _| {}));
-        }
-        let team = self.team.get_or_insert_with(|| Team::new(&self.solid, self.threads));
-        team.advance(count)?;
-        team.gather(&mut self.solid);
-        Ok(())
     }
 }

@@ -21,6 +21,7 @@ use crate::solver::solid::energy::SolidLedger;
 use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, padded};
 use crate::solver::solid::model::{SolidError, SolidModel};
 use crate::solver::solid::step_limit::step_limit;
+use crate::solver::solid::team::Crew;
 use crate::solver::statics::StaticsError;
 use thiserror::Error;
 
@@ -110,6 +111,7 @@ pub struct Exchange {
     is_alone: bool,
     /// Of the present window, for each body in a seat.
     loads: Vec<(usize, RaceLoads)>,
+    crew: Crew,
 }
 
 /// Everything at the present time.
@@ -308,7 +310,24 @@ impl Exchange {
             window,
             exchanges: 0,
             first: 0.0,
+            crew: Crew::default(),
         }
+    }
+
+    /// From now on steps its solids on so many threads, with the same bits: each solid in as many parts as
+    /// its share of all elements that are evaluated comes to.
+    pub fn share(&mut self, threads: usize) {
+        self.crew = Crew::new(threads);
+        let cost = |part: &SteppedSolid| part.solid.model.problem.elements.len() * part.steps;
+        let all: usize = self.solids.iter().map(cost).sum();
+        for part in &mut self.solids {
+            let parts = (2 * self.crew.threads() * cost(part) + all) / (2 * all).max(1);
+            part.solid.share(&self.crew, parts.max(1));
+        }
+    }
+
+    pub fn threads(&self) -> usize {
+        self.crew.threads()
     }
 
     /// Steps of the windows as they are now; contact and balance count from the present state.
@@ -363,10 +382,10 @@ impl Exchange {
                 seat.begin_window(self.simulation.body(seat.seat.mount.body));
             }
         }
-        for part in &mut self.solids {
+        self.crew.each(&mut self.solids, |part| {
             let moved = part.advance();
-            moved.map_err(|source| ExchangeError::Solid { name: part.name.clone(), source })?;
-        }
+            moved.map_err(|source| ExchangeError::Solid { name: part.name.clone(), source })
+        })?;
         self.hand_over();
         self.exchanges += 1;
         let target = self.window * self.exchanges as f64;
