@@ -11,3 +11,4 @@ mod housing_assembly;
 mod housing_bore;
 mod housing_exchange;
 mod housing_nonlinear;
+mod several_housings;

@@ -7,7 +7,6 @@ use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::solver::dynamics::assembly::{INNER, OUTER};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::dynamics::state::{BODY, BodyState};
 use bearing_dynamics::solver::housing::assembly::AssemblyState;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
