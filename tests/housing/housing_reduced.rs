@@ -27,6 +27,7 @@ use bearing_dynamics::solver::dynamics::state::{
 use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreSearch, Fit, RaceLoad};
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
+use bearing_dynamics::solver::housing::housed::race_under_load;
 use bearing_dynamics::solver::housing::reduce::{
     ReduceError, ReduceOptions, Reduction, pressed, reduce,
 };
@@ -191,7 +192,7 @@ fn what_is_left_out_of_the_compliance_is_what_is_said() {
     let loads_of = |housing: &Housing| {
         let mut search = BoreSearch::new(&housing.bore, PENALTY());
         let load = RaceLoad { force: [0.0, 100.0, 230.0], moment: [0.0; 3] };
-        search.under_load(&fit(0.0), &load).unwrap()
+        race_under_load(&mut search, &fit(0.0), &load).unwrap()
     };
     let mut last = f64::INFINITY;
     for left_out in [1e-1, 1e-2, 1e-3] {

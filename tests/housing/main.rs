@@ -13,3 +13,4 @@ mod housing_exchange;
 mod housing_nonlinear;
 mod housing_reduced;
 mod housing_seats;
+mod several_housings;

@@ -22,6 +22,7 @@ use bearing_dynamics::scene::housing_problem::{
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{DefaultUsed, Document, RunSettings};
+use bearing_dynamics::solver::dynamics::assembly::OUTER;
 use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::run::{RunOptions, Start};
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
@@ -31,9 +32,11 @@ use bearing_dynamics::solver::housing::condensed::{
 use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, course_inertia,
 };
-use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, Seat};
+use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, SolidPart};
 use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState};
 use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate};
+use bearing_dynamics::solver::housing::seat::Seat;
+use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::support::free_motions;
 use bearing_dynamics::solver::solid::tangent::Unknowns;
@@ -219,9 +222,13 @@ pub fn parts(
     scene: &HousedScene,
     setup: &HousingSetup,
     run: &RunSettings,
+    threads: usize,
 ) -> Fallible<HousedParts> {
     let housing = &scene.housing;
     let seat = Seat {
+        name: None,
+        mount: Mount::at_centre(OUTER),
+        solid: 0,
         radius: setup.radius(scene),
         width: setup.width,
         penalty: housing.penalty,
@@ -234,8 +241,9 @@ pub fn parts(
         // Both together are balanced, not the bearing alone.
         bearing: RunOptions { energy_limit: f64::INFINITY, ..run.options },
     };
-    let problem = dynamic_problem(&scene.bearing)?;
-    Ok(HousedParts { problem, model: setup.model.clone(), seat, options })
+    let assembly = dynamic_problem(&scene.bearing)?.assembly();
+    let solids = vec![SolidPart::undeformed(None, setup.model.clone())];
+    Ok(HousedParts { assembly, solids, seats: vec![seat], options, threads })
 }
 
 pub fn request(scene: &HousedScene, run: &RunSettings) -> RunRequest {

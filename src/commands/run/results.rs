@@ -86,8 +86,10 @@ pub(super) fn write_results(
     }
     let mut record = prepared.record(request, choice.as_ref(), stages)?;
     record.sections.append(&mut said.sections);
-    if let Motion::Solid(moving) = &session.motion {
-        record.threads = moving.threads;
+    match &session.motion {
+        Motion::Solid(moving) => record.threads = moving.threads,
+        Motion::Housed(housed) => record.threads = housed.threads(),
+        Motion::Bearing(_) | Motion::Course(_) => {}
     }
     let (stepping, integrator) = (request.options.stepping, request.options.integrator);
     let report = RunReport {
@@ -118,7 +120,7 @@ fn solid_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fal
     let (Some(built), Motion::Solid(moving)) = (prepared.built(), &session.motion) else {
         return Ok(());
     };
-    let (model, displacement) = (&moving.solid.model, session.displacement());
+    let (model, displacement) = (&moving.solid.model, session.displacement(0));
     let stress = stresses(model, &displacement);
     said.sections.push(("mass".into(), mass_section(model, built)?));
     said.sections.extend(field_sections(built, &displacement, &stress)?);
@@ -160,7 +162,7 @@ fn housing_results(
             }
             said.sections.extend(field_sections(&mesh.built, &displacement, &stress)?);
             said.sections.push(("housing_remarks".into(), json!(said.remarks)));
-            write_bore(folder, &bore_nodes(&session.motion, &setup.model))?;
+            write_bore(folder, &bore_nodes(&session.motion, 0, &setup.model))?;
             said.files += 1;
         }
     }
@@ -203,14 +205,14 @@ pub(super) fn write_fields_file(
         Prepared::Housed { mesh, .. } => Some(&mesh.setup.model),
         Prepared::Bearings { .. } | Prepared::Solid { .. } => None,
     };
-    let bore = housing.map(|model: &SolidModel| bore_nodes(&session.motion, model));
+    let bore = housing.map(|model: &SolidModel| bore_nodes(&session.motion, 0, model));
     let (velocity, stress) = match &mut session.motion {
         Motion::Solid(moving) => {
             (Some(moving.solid.velocity()), stresses(&moving.solid.model, &displacement))
         }
         motion => {
             // Between kicks the rates of a housing are those of the bearing's time.
-            let rates = motion.solid().map(|solid| solid.rates());
+            let rates = motion.solids().first().map(|solid| solid.rates());
             let rates = rates.map(|rates| rates.iter().map(|v| [v[0], v[1], v[2]]).collect());
             let rates = match prepared {
                 Prepared::Housed { reduced: Some(reduced), .. } => {

@@ -1,5 +1,6 @@
 //! The bore of a housing under its bearing: force and pressure as fields, and a table of its nodes.
 
+use crate::ch2_housing::bore_contact::{ContactNode, Penalty};
 use crate::kinematics::vec3::{Vec3, dot, scale};
 use crate::output::series::{Column, Series, SeriesError};
 use crate::output::session::Motion;
@@ -24,9 +25,9 @@ pub struct BoreNodeState {
     pub force: Vec3,
 }
 
-/// Nodes of the bore now, with `model` that of the housing: of explicit steps those that touch; empty
+/// Nodes of the bores of a solid now, with `model` its own: of explicit steps those that touch; empty
 /// where there is no bore, or no equilibrium yet.
-pub fn bore_nodes(motion: &Motion, model: &SolidModel) -> Vec<BoreNodeState> {
+pub fn bore_nodes(motion: &Motion, solid: usize, model: &SolidModel) -> Vec<BoreNodeState> {
     match motion {
         Motion::Solid(_) => Vec::new(),
         Motion::Bearing(simulation) => seat_nodes(&simulation.system),
@@ -35,9 +36,7 @@ pub fn bore_nodes(motion: &Motion, model: &SolidModel) -> Vec<BoreNodeState> {
             course.latest.as_ref().map_or_else(Vec::new, |moment| of(&moment.state))
         }
         Motion::Housed(housed) => {
-            let penalty = housed.seat.penalty;
-            let touching = housed.nodal_forces().into_iter();
-            let state = |(node, force): (crate::ch2_housing::bore_contact::ContactNode, Vec3)| {
+            let state = |(node, penalty, force): (ContactNode, Penalty, Vec3)| {
                 let load = dot(force, force).sqrt();
                 BoreNodeState {
                     node: node.node,
@@ -47,7 +46,7 @@ pub fn bore_nodes(motion: &Motion, model: &SolidModel) -> Vec<BoreNodeState> {
                     force,
                 }
             };
-            touching.map(state).collect()
+            housed.nodal_forces(solid).into_iter().map(state).collect()
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Columns of a bearing in motion.
 
 use super::Recorder;
-use super::seat::{SeatRow, seat_columns};
+use super::seat::{SeatRow, prefix, seat_columns};
 use crate::ch2_housing::bearing::cage::Guidance;
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::{Motion, Sliding, TractionLaw, sliding};
@@ -57,12 +57,8 @@ impl BearingColumns {
         for &group in &groups {
             add_columns(assembly, group, &terms, columns);
         }
-        for index in 0..assembly.seats.len() {
-            let mut own = seat_columns();
-            if assembly.seats.len() > 1 {
-                own.iter_mut().for_each(|of| of.name = format!("seat_{}_{}", index + 1, of.name));
-            }
-            columns.extend(own);
+        for seat in &assembly.seats {
+            columns.extend(seat_columns(&prefix(&seat.label)));
         }
         BearingColumns { groups, terms }
     }

@@ -19,6 +19,8 @@ use crate::solver::profile::Profile;
 pub struct Seat {
     /// As messages name it: "the bore".
     pub name: String,
+    /// Before the names of its columns; `None` for the only one.
+    pub label: Option<String>,
     /// Middle of the seat on a body, whose axis is the race's.
     pub race: Mount,
     /// Index in [`super::assembly::Assembly::solids`], and of the surface in that.

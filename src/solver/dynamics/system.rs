@@ -65,7 +65,7 @@ impl System {
         }
     }
 
-    pub(super) fn body_state(&self, state: &[f64], body: usize) -> BodyState {
+    pub fn body_state(&self, state: &[f64], body: usize) -> BodyState {
         let at = self.places.body(body);
         BodyState::from_slice(&state[at..at + BODY])
     }

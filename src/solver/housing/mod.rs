@@ -1,7 +1,7 @@
 //! A bearing in a flexible housing (2.2.4), in three ways.
 //!
-//! Plain: [`exchange`] takes bearing and solid through explicit steps of their own; they exchange
-//! impulses.
+//! Plain: [`exchange`] takes bodies with their bearings and any number of solids through explicit steps of
+//! their own; they exchange impulses through [`seat`]s.
 //!
 //! Cheap, for linear housings and slow loads: the housing is condensed onto the radial motion of its
 //! bore, contact is solved there, and bearing and bore share one equilibrium. What that takes for
@@ -21,3 +21,4 @@ pub mod inertia;
 pub mod quasi_static;
 pub mod reduce;
 pub mod reduced_start;
+pub mod seat;

@@ -157,6 +157,7 @@ impl Reduction {
         let width = bore.reach.width;
         Seat {
             name: "its bore".into(),
+            label: None,
             race,
             solid,
             surface: 0,
