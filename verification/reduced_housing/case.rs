@@ -9,17 +9,17 @@ use bearing_dynamics::solver::dynamics::assembly::{Assembly, OUTER};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
 use bearing_dynamics::solver::dynamics::reduced_solid::ReducedSolid;
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
-use bearing_dynamics::solver::housing::assembly::AssemblyState;
+use bearing_dynamics::solver::housing::bore_equilibrium::BoreState;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::exchange::{
-    ExchangeOptions, HousedBearing, Seat, outer_state,
-};
+use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
 use bearing_dynamics::solver::housing::reduce::{
     LEFT_OUT, ReduceOptions, Reduction, pressed, reduce,
 };
 use bearing_dynamics::solver::housing::reduced_start::{
-    ball_frequency, housed, put_in_equilibrium,
+    Housing, add_housing, ball_frequency, put_in_equilibrium,
 };
+use bearing_dynamics::solver::housing::seat::Seat;
+use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::SolidModel;
 
@@ -85,7 +85,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     one_shape(context)?;
 
     let still = housings::mounted([0.0; 5])?;
-    let modes_to = 2.0 * ball_frequency(&still, BLOW);
+    let modes_to = 2.0 * ball_frequency(&still.assembly().bearings[0], BLOW);
     let mut reductions = Vec::new();
     for part in PARTS {
         reductions.push(reduced(&whole, part * modes_to)?);
@@ -132,13 +132,14 @@ fn seated(
     whole: &mut Whole,
     problem: &DynamicProblem,
     reduction: &Reduction,
-) -> Result<(Assembly, AssemblyState), CaseError> {
+) -> Result<(Assembly, BoreState), CaseError> {
     let (fit, penalty) = (housings::fit(TIGHT), Penalty::default());
     let radius = Profile::Constant(fit.radius);
-    let mut assembly = housed(problem, reduction, &whole.bore, radius, penalty);
-    let bore = &mut whole.bore;
-    let state = put_in_equilibrium(&mut assembly, problem, reduction, bore, &fit, penalty)?;
-    Ok((assembly, state))
+    let mut assembly = problem.assembly();
+    add_housing(&mut assembly, OUTER, reduction, &whole.bore, radius, penalty);
+    let housing = Housing { reduction, bore: &mut whole.bore, fit, penalty };
+    let mut found = put_in_equilibrium(&mut assembly, &mut [housing])?;
+    Ok((assembly, found.seats.remove(0)))
 }
 
 /// (f/ω²)(1 − e^(−αt/2)(cos νt + α/(2ν) sin νt)), ν² = ω² − α²/4.
@@ -191,10 +192,10 @@ fn statics(
     };
     let exact = {
         let mut search = housings::search(&whole.bore);
-        search.solve(&problem.statics(0.0), &housings::fit(TIGHT), [0.0; 3])?
+        search.solve(&problem.statics(0.0), &housings::fit(TIGHT), [0.0; 3])?.bore
     };
     let (assembly, state) = seated(whole, &problem, reduction)?;
-    let size = |state: &AssemblyState| state.bore.pose[0].hypot(state.bore.pose[1]);
+    let size = |state: &BoreState| state.pose[0].hypot(state.pose[1]);
     context.check(
         Check::new(
             "static_place",
@@ -263,12 +264,15 @@ fn in_shapes(assembly: Assembly, end: f64) -> Result<Motion, CaseError> {
 fn explicit(
     whole: &Whole,
     problem: &DynamicProblem,
-    start: &AssemblyState,
+    start: &BoreState,
     end: f64,
 ) -> Result<Motion, CaseError> {
-    let [y, z, tilt_y, tilt_z] = start.bore.pose;
+    let [y, z, tilt_y, tilt_z] = start.pose;
     let problem = DynamicProblem { outer_start: [0.0, y, z, tilt_y, tilt_z], ..problem.clone() };
     let seat = Seat {
+        name: None,
+        mount: Mount::at_centre(OUTER),
+        solid: 0,
         radius: Profile::Constant(BORE_RADIUS + TIGHT),
         width: WIDTH,
         penalty: Penalty::default(),
@@ -280,23 +284,23 @@ fn explicit(
         seat_phase: 0.25,
         bearing: RunOptions { integrator: Integrator::RungeKutta, ..motion::fixed_step(1e-6) },
     };
-    let displacement = whole.bore.displacement(&start.bore.loads);
+    let displacement = whole.bore.displacement(&start.loads);
     let watch = Stopwatch::start();
-    let mut housed =
-        HousedBearing::new(problem, whole.model.clone(), seat, displacement, &options)?;
+    let solid = SolidPart { name: None, model: whole.model.clone(), displacement };
+    let mut housed = Exchange::new(problem, vec![solid], vec![seat], &options)?;
     let windows = housed.divide(INTERVAL)?;
-    let place = |housed: &HousedBearing| {
-        let [_, y, z] = outer_state(&housed.bearing).position;
+    let place = |housed: &Exchange| {
+        let [_, y, z] = housed.simulation.body(OUTER).position;
         [y, z]
     };
     let mut places = vec![place(&housed)];
     for _ in 0..(end / INTERVAL).round() as usize {
         for _ in 0..windows {
-            housed.exchange()?;
+            housed.advance()?;
         }
         places.push(place(&housed));
     }
-    Ok(Motion { places, seconds: watch.seconds(), steps: housed.solid.steps })
+    Ok(Motion { places, seconds: watch.seconds(), steps: housed.solids[0].solid.steps })
 }
 
 /// The same motion both ways.
@@ -330,7 +334,7 @@ fn compare(
 ) -> Result<Compared, CaseError> {
     let start = {
         let mut search = housings::search(&whole.bore);
-        search.solve(&problem.statics(0.0), &housings::fit(TIGHT), [0.0; 3])?
+        search.solve(&problem.statics(0.0), &housings::fit(TIGHT), [0.0; 3])?.bore
     };
     let explicit = explicit(whole, problem, &start, end)?;
     let mut shapes = Vec::new();

@@ -195,7 +195,7 @@ impl<'s> Prepared<'s> {
             Prepared::Housed { reduced: Some(reduced), .. } => {
                 reduced.fields(&session.motion).map_or_else(Vec::new, |[of, _]| of)
             }
-            _ => session.displacement(),
+            _ => session.displacement(0),
         }
     }
 
