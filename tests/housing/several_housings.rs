@@ -502,7 +502,7 @@ fn they_settle_as_levers_and_solids_have_it() {
     let housings = [damped(left(true)), damped(Housing { wall: 8e-3, ..right(true) })];
     let assembly = on_two(pressed, ContactDamping::HuntCrossley { alpha: 2.0 });
     let mut housed = housed(assembly, housings, &options(0.8, 0.5));
-    while housed.time() < 10e-3 {
+    while housed.time() < 25e-3 {
         housed.advance().unwrap();
     }
     let snapshot = housed.snapshot().unwrap();
