@@ -349,8 +349,11 @@ fn explicit_housings_take_threads_and_keep_their_bits() {
     let text = |end: &str| {
         // 5760 elements: enough for two threads.
         let fine = "around = 80, radial = 3, axial = 4";
-        scene_text("method = \"explicit\"\nfit.radial = \"1 um\"", &numerics.replace("END", end))
-            .replace("around = 24, radial = 1, axial = 2", fine)
+        scene_text(
+            "method = \"explicit\"\nfit.radial = \"1 um\"\nfit_ramp = \"2 us\"",
+            &numerics.replace("END", end),
+        )
+        .replace("around = 24, radial = 1, axial = 2", fine)
     };
     let scene = place.scene("scene.toml", &text("20 us"));
     let [one, two] = ["one", "two"].map(|name| place.path(name));

@@ -497,11 +497,12 @@ fn they_settle_as_levers_and_solids_have_it() {
     let rise = |to| Drive::Load(Profile::SmoothRamp { from: 0.0, to, start: 0.0, duration: 2e-3 });
     let mut pressed = RaceBody { rotation: Rotation::Speed(Profile::ZERO), ..shaft() };
     (pressed.drives[2], pressed.drives[3]) = (rise(-LOAD), rise(LOAD * OFF));
+    pressed.foundation_damping = [1e3, 3e3, 3e3, 5.0, 5.0];
     let damped = |housing: Housing| Housing { damping: 4000.0, ..housing };
     let housings = [damped(left(true)), damped(Housing { wall: 8e-3, ..right(true) })];
     let assembly = on_two(pressed, ContactDamping::HuntCrossley { alpha: 2.0 });
     let mut housed = housed(assembly, housings, &options(0.8, 0.5));
-    while housed.time() < 10e-3 {
+    while housed.time() < 15e-3 {
         housed.advance().unwrap();
     }
     let snapshot = housed.snapshot().unwrap();
@@ -534,6 +535,7 @@ fn they_settle_as_levers_and_solids_have_it() {
         off[index] = contacts[index].force[2] / still.sum.force[2] - 1.0;
     }
     println!("load off by {force:.1e}, lever by {moment:.1e}, solids by {off:?}");
+    // What still moves: measured 2e-4.
     for error in [force, moment, off[0], off[1]] {
         assert!(error.abs() <= 1e-3, "{error:e}");
     }
