@@ -11,7 +11,7 @@ use bearing_dynamics::mesh::numbering::reverse_cuthill_mckee;
 use bearing_dynamics::mesh::quadratic::elevate;
 use bearing_dynamics::mesh::tet_mesh::Elements;
 use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
-use bearing_dynamics::solver::solid::team::Team;
+use bearing_dynamics::solver::solid::team::Crew;
 use common::{cube, least, solid};
 use nalgebra::{Matrix3, Matrix3x4, Vector3};
 use std::hint::black_box;
@@ -125,7 +125,8 @@ fn main() {
         let count = solid.model.problem.elements.len();
         let steps = (4_000_000 / count).max(2);
         let mut plain = Plain::new(&solid);
-        let mut team = Team::new(&solid, 2);
+        let mut team = self::solid(&cube(cells));
+        team.share(&Crew::new(2), 2);
         // In turn, so that all see the same machine.
         let (mut of_plain, mut of_lanes, mut of_two) = (f64::MAX, f64::MAX, f64::MAX);
         for _ in 0..4 {
@@ -133,7 +134,9 @@ fn main() {
             of_lanes = of_lanes.min(least(2, steps, |n| {
                 (0..n).for_each(|_| solid.step(|_, _, _| {}).expect("stable"));
             }));
-            of_two = of_two.min(least(2, steps, |n| team.advance(n as u64).expect("stable")));
+            of_two = of_two.min(least(2, steps, |n| {
+                (0..n).for_each(|_| team.step(|_, _, _| {}).expect("stable"));
+            }));
         }
         let speed = count as f64 / of_lanes;
         let of_roof = speed * FLOPS / roof;

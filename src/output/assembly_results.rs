@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 /// An equilibrium and the names of its bearings.
 #[derive(Clone, Copy)]
 pub struct Solved<'s> {
-    pub assembly: &'s StaticAssembly,
+    pub assembly: &'s StaticAssembly<'s>,
     pub names: &'s [&'s str],
     pub solution: &'s AssemblySolution,
 }

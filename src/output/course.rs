@@ -4,11 +4,9 @@ use crate::kinematics::vec3::Vec3;
 use crate::scene::housing::HousedScene;
 use crate::scene::housing_problem::HousingSetup;
 use crate::solver::dynamics::model::{Drive, Rotation};
-use crate::solver::housing::assembly::{
-    AssemblyOptions, AssemblySearch, AssemblyState, SearchMemory,
-};
 use crate::solver::housing::bore_equilibrium::{BoreError, BoreSearch, Fit};
 use crate::solver::housing::condensed::CondensedBore;
+use crate::solver::housing::housed::{HousedMemory, HousedSearch, HousedState};
 use crate::solver::housing::inertia::Masses;
 use crate::solver::housing::quasi_static::{Course as CourseLoads, CourseError, Moment, history};
 use crate::solver::profile::Profile;
@@ -26,7 +24,7 @@ pub struct CourseParts<'p> {
 /// A condensed housing over time.
 pub struct Course<'p> {
     parts: CourseParts<'p>,
-    search: AssemblySearch<'p>,
+    search: HousedSearch<'p>,
     /// Between rows, s.
     interval: f64,
     /// Equilibria so far; the first is at the start.
@@ -41,7 +39,8 @@ pub struct Course<'p> {
 pub struct Effort {
     /// Largest share of the load on the outer race that was left unbalanced.
     pub largest_residual: f64,
-    pub rounds: usize,
+    /// Newton iterations, changes of the nodes that touch.
+    pub iterations: usize,
     pub contact_changes: usize,
 }
 
@@ -52,7 +51,7 @@ pub struct CourseCheckpoint {
     pub time: f64,
     pub found: u64,
     pub effort: Effort,
-    pub memory: SearchMemory,
+    pub memory: HousedMemory,
     /// Nodes of the bore.
     pub nodes: usize,
 }
@@ -61,7 +60,7 @@ impl<'p> Course<'p> {
     /// Before the first equilibrium; rows are `interval` (s) apart.
     pub fn new(parts: CourseParts<'p>, interval: f64) -> Course<'p> {
         let bore = BoreSearch::new(parts.bore, parts.scene.housing.penalty);
-        let search = AssemblySearch::new(bore, AssemblyOptions::default());
+        let search = HousedSearch::new(bore);
         let effort = Effort::default();
         Course { parts, search, interval, found: 0, latest: None, effort }
     }
@@ -95,7 +94,7 @@ impl<'p> Course<'p> {
         for moment in moments(scene, setup, problem, &mut self.search, time)? {
             let (state, effort) = (&moment.state, &mut self.effort);
             effort.largest_residual = effort.largest_residual.max(state.residual);
-            effort.rounds += state.rounds;
+            effort.iterations += state.iterations;
             effort.contact_changes += state.contact_changes;
             self.latest = Some(moment);
         }
@@ -174,7 +173,7 @@ pub fn moments(
     scene: &HousedScene,
     setup: &HousingSetup,
     problem: &StaticProblem,
-    search: &mut AssemblySearch,
+    search: &mut HousedSearch,
     time: f64,
 ) -> Result<Vec<Moment>, CourseError> {
     let radius = setup.radius(scene);
@@ -202,7 +201,7 @@ pub fn moments(
 }
 
 /// Position (m) and tilts (rad) of the outer race in the world.
-pub fn outer_place(bore: &CondensedBore, state: &AssemblyState) -> [f64; 5] {
+pub fn outer_place(bore: &CondensedBore, state: &HousedState) -> [f64; 5] {
     let pose = crate::solver::housing::condensed::placed(&bore.reach.nominal, &state.bore.pose);
     let (_, tilt_y, tilt_z) = crate::kinematics::euler::angles(&pose.orientation);
     [pose.position.x, pose.position.y, pose.position.z, tilt_y, tilt_z]

@@ -60,7 +60,7 @@ pub fn of_run(session: &Session, model: &SolidModel, stresses: &Stresses) -> Vec
             .map(|row| (recorder.row(row)[column], recorder.row(row)[0]))
             .fold((0.0, 0.0), |most, now| if now.0 > most.0 { now } else { most })
     };
-    let mut state = Strained::of(model, &session.displacement(), &stresses.cell);
+    let mut state = Strained::of(model, &session.displacement(0), &stresses.cell);
     let (of_rows, time) = largest(stress);
     let mut when = String::new();
     if of_rows > state.stress.value {

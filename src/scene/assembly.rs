@@ -160,7 +160,7 @@ impl AssemblyScene {
     ///
     /// # Errors
     /// As [`AssemblyScene::assembly`].
-    pub fn statics(&self) -> Result<StaticAssembly, DynamicsError> {
+    pub fn statics(&self) -> Result<StaticAssembly<'static>, DynamicsError> {
         let mut still = static_assembly(&self.assembly()?, 0.0, &[]);
         for (bearing, placed) in still.bearings.iter_mut().zip(&self.bearings) {
             let scene = &placed.scene;

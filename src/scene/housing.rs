@@ -12,6 +12,8 @@ pub enum HousingMethod {
     QuasiStatic,
     /// Both in explicit steps that exchange impulses.
     Explicit,
+    /// The housing reduced to some shapes, which move with the bearing.
+    Reduced,
 }
 
 /// Size of the outer race in its bore.
@@ -39,6 +41,8 @@ pub struct HousingSettings {
     /// Steps of the housing over their limit, and phase of the seat in a window.
     pub step_fraction: f64,
     pub window_phase: f64,
+    /// Natural shapes of a reduced housing up to this frequency, Hz; `None`: by what the bearing pushes with.
+    pub modes_to: Option<f64>,
     /// Time between files of fields in a run, s; `None`: at its end only.
     pub fields_interval: Option<f64>,
     pub defaults_used: Vec<DefaultUsed>,

@@ -103,7 +103,7 @@ pub enum HousingSetupError {
     )]
     VaryingLoad { index: usize },
     #[error(
-        "solid.held.{axis}: the condensed housing of `quasi-static` is held at zero; write \
+        "solid.held.{axis}: the housing of `quasi-static` and of `reduced` is held at zero; write \
          {axis} = true, or method = \"explicit\" in [housing]"
     )]
     MovedSupport { index: usize, axis: &'static str },
@@ -407,6 +407,14 @@ pub fn check_constant(scene: &HousedScene) -> Result<(), HousingSetupError> {
     if let Some(index) = scene.solid.loads.iter().position(varies) {
         return Err(HousingSetupError::VaryingLoad { index });
     }
+    check_supports(scene)
+}
+
+/// What a linear housing that is taken as its bore sees it cannot have.
+///
+/// # Errors
+/// [`HousingSetupError::MovedSupport`].
+pub fn check_supports(scene: &HousedScene) -> Result<(), HousingSetupError> {
     for (index, held) in scene.solid.held.iter().enumerate() {
         for (axis, motion) in ["x", "y", "z"].into_iter().zip(&held.motion) {
             if motion.as_ref().is_some_and(|motion| !motion.is_zero()) {

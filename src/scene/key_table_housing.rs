@@ -2,10 +2,10 @@
 
 use crate::scene::key_table::{RADIUS, RADIUS_HINT};
 use crate::scene::keys::{Key, Kind, Need, Table, above, closed, table};
-use crate::scene::units::Dimension::{Length, Stiffness, StiffnessPerArea, Time};
+use crate::scene::units::Dimension::{Frequency, Length, Stiffness, StiffnessPerArea, Time};
 use Need::{Default, Depends, Optional};
 
-pub const METHODS: &[&str] = &["quasi-static", "explicit", "rigid"];
+pub const METHODS: &[&str] = &["quasi-static", "explicit", "reduced", "rigid"];
 pub const AXIAL: &[&str] = &["held", "free"];
 
 const FIT: Kind = Kind::Quantity(Length, closed(-10_000.0, 10_000.0, "um"));
@@ -21,7 +21,7 @@ const CONTACT_STIFFNESS: Kind = Kind::Either(&[
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
     Key::new("housing.method", Kind::Choice(METHODS), Default { value: "quasi-static", reason: "inertia is negligible at usual loads; the plan estimates its part" },
-        "How bearing and housing are solved together: one equilibrium after the other with the housing condensed onto its bore, both in explicit steps that exchange impulses, or not at all: `rigid` fixes the outer race and touches no mesh."),
+        "How bearing and housing are solved together: one equilibrium after the other with the housing condensed onto its bore, both in explicit steps that exchange impulses, both in the bearing's steps with the housing reduced to some shapes, or not at all: `rigid` fixes the outer race and touches no mesh."),
     Key::new("housing.bore", Kind::Text, Default { value: "bore", reason: "its name in the housings that are made" },
         "Surface set of the solid that holds the outer race (`inner` of a ring)."),
     Key::new("housing.outer_radius", RADIUS, Optional, "Outer radius of the outer race; its difference to the bore is the fit.").hint(RADIUS_HINT).example_of("35.527 mm"),
@@ -34,6 +34,8 @@ pub(super) const KEYS: &[Key] = &[
         "What takes an axial force on the outer race: something beside the bore, or nothing."),
     Key::new("housing.contact.stiffness", CONTACT_STIFFNESS, Default { value: "2.5e14 N/m^3", reason: "the source's 2.5e8 N/m at nodes of 1 mm^2" },
         "Penalty stiffness (2.19): by area (N/m^3), so that pressure does not depend on the mesh, or for each node (N/m), as printed.").hint("the source has 2.5e8 N/m a node for steel").example_of("\"2.5e14 N/m^3\""),
+    Key::new("housing.modes_to", Kind::Quantity(Frequency, above(0.0, 1e9, "Hz")), Depends("twice the natural frequency of a ball between its races under the largest load"),
+        "`reduced`: natural shapes of the housing up to this frequency move; what is stiffer follows statically, and by a few shapes of its own.").example_of("40 kHz"),
     Key::new("housing.step_fraction", Kind::Number(above(0.0, 1.0, "")), Default { value: "0.8", reason: "a part of the largest stable step of the housing in contact" },
         "`explicit`: steps of the housing as a part of their stability limit.").example_of("0.8"),
     Key::new("housing.window_phase", Kind::Number(above(0.0, 1.9, "")), Default { value: "0.125", reason: "energy is kept to 1e-4 of what a blow through clearance turns over" },

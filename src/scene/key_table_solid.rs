@@ -9,6 +9,7 @@ use Need::{Default, Depends, Optional, Required};
 
 pub const GENERATORS: &[&str] =
     &["bar", "block", "ring", "shaft", "cage", "housing-a", "housing-b", "housing-c", "housing-d"];
+const AXES: &[&str] = &["x", "y", "z"];
 const LENGTH_UNITS: &[&str] = &["m", "mm"];
 const REPAIRS: &[&str] = &["orient", "merge-duplicates", "drop-unreferenced"];
 const DAMPED_MOTIONS: &[&str] = &["absolute", "relative-to-rigid"];
@@ -60,6 +61,10 @@ pub(super) const KEYS: &[Key] = &[
         "A mesh made from dimensions; the table under [Meshes that are made](#meshes-that-are-made) says which.").group("mesh"),
     Key::new("solid.mesh.unit", Kind::Choice(LENGTH_UNITS), Depends("required with `file`"),
         "Unit of the numbers in the file, which neither format states."),
+    Key::new("solid.mesh.origin", Kind::Vector(Length, PLACE), Depends("none: the mesh lies where its file or its generator has it"),
+        "Point of the mesh's own coordinates that becomes the origin of the scene, in a housing the centre of its bearing: of a bore at (0, 30, 65) mm this point.").example_of("65 mm"),
+    Key::new("solid.mesh.axis", Kind::Choice(AXES), Depends("`x` unless given"),
+        "Axis of the mesh that becomes X of the scene; `y`: Y, Z, X become X, Y, Z; `z`: Z, X, Y do."),
     Key::new("solid.mesh.order", Kind::Integer { low: 1, high: 2 }, Depends("the file's own; required with `generate`"),
         "Elements of 4 nodes (1, the source's) or of 10 (2). 2 puts nodes on the edges of a file's four-node elements.")
         .hint("1 for four-node, 2 for ten-node tetrahedra").example_of("2"),

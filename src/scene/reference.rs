@@ -274,7 +274,10 @@ along its axis unless `axial = \"free\"`. The solid is held, and has no velocity
 **Methods.** `quasi-static` condenses the linear housing onto its bore and solves one equilibrium of bearing and bore a row, balls
 going round as in pure rolling; traction, cage, damping and inertia are left out, and `plan` and `run` say what inertia would
 change. It takes constant loads on outer race and solid, and no torque or unbalance. `explicit` moves both in steps of their own that exchange
-impulses. `rigid` fixes the outer race: the solid's mesh is not even read. `plan` says what the other way would cost.
+impulses. `reduced` lets a linear housing move in some shapes, with inertia, in the bearing's own steps: natural shapes up to `housing.modes_to`, with lumped masses
+as of explicit steps, and static answers to pressure on the bore, to weight and to loads; `plan` and summaries say what is cut off. It starts in the common
+equilibrium of bearing and housing, or with the start `nominal` of `numerics.start` as `explicit` does: the housing undeformed, the outer race in its first place, inner race and
+balls in equilibrium with it. `rigid` fixes the outer race: the solid's mesh is not even read. `plan` says what the other way would cost.
 
 **Fit.** `fit` is the interference; with `outer_radius` it is the difference to the cylinder nearest to the bore's nodes under the race. In a run it grows in over
 `fit_ramp`; a clearance is there from the start. `statics` has the whole fit, and the loads of t = 0. Weights of both races count with

@@ -19,7 +19,7 @@ pub(crate) fn is_assembly(document: &Document) -> bool {
     const PLACES: [&str; 5] = ["inner_on", "inner_at", "outer_on", "outer_at", "reversed"];
     let is_given = |key: &&str| document.value(&format!("bearing.{key}")).is_some();
     document.names("bearing").next().is_some()
-        || PLACES.iter().any(|key| is_given(key))
+        || PLACES.iter().any(is_given)
         || OF_SEVERAL.iter().any(|table| document.first_below(table).is_some())
         || OF_SEVERAL.iter().any(|table| document.names(table).next().is_some())
 }

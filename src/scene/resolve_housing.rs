@@ -45,6 +45,7 @@ pub(crate) fn housed(document: &Document) -> Result<Subject, SceneError> {
     }
     let method = match method {
         "explicit" => HousingMethod::Explicit,
+        "reduced" => HousingMethod::Reduced,
         _ => HousingMethod::QuasiStatic,
     };
     if document.first_below("solid").is_none() {
@@ -56,8 +57,10 @@ pub(crate) fn housed(document: &Document) -> Result<Subject, SceneError> {
     let solid = housing_solid(document)?;
     let end = bearing.dynamics.run.as_ref().map(|run| run.end);
     let housing = settings(&mut reader, &bearing, method, end)?;
-    if method == HousingMethod::QuasiStatic {
-        refuse_inertia(document, &bearing)?;
+    match method {
+        HousingMethod::QuasiStatic => refuse_inertia(document, &bearing)?,
+        HousingMethod::Reduced => refuse_start(document, &bearing)?,
+        HousingMethod::Explicit => {}
     }
     rest(document, &mut bearing, &housing)?;
     output(document, &reader, &mut bearing, method)?;
@@ -189,6 +192,16 @@ fn settings(
             );
         }
     }
+    let modes_to = reader.given_number("housing.modes_to");
+    if modes_to.is_some() && method != HousingMethod::Reduced {
+        let reason = "only `reduced` takes natural shapes";
+        return not_applicable(
+            document,
+            "housing.modes_to",
+            reason,
+            "leave it out, or write method = \"reduced\"",
+        );
+    }
     let fields_interval = reader.given_number("numerics.fields_interval");
     if let (Some(interval), Some(end)) = (fields_interval, end)
         && interval > end
@@ -213,6 +226,7 @@ fn settings(
         penalty,
         step_fraction,
         window_phase,
+        modes_to,
         fields_interval,
         defaults_used: Vec::new(),
     })
@@ -292,6 +306,33 @@ fn refuse_inertia(document: &Document, bearing: &Scene) -> Result<(), SceneError
     Ok(())
 }
 
+/// What has no place in the equilibrium that a reduced housing starts from.
+fn refuse_start(document: &Document, bearing: &Scene) -> Result<(), SceneError> {
+    const ADVICE: &str = "leave it out, or write start = \"nominal\" in [numerics]";
+    let (Some(outer), Some(run)) = (&bearing.dynamics.outer, &bearing.dynamics.run) else {
+        return Ok(());
+    };
+    if run.options.start == Start::Nominal {
+        return Ok(());
+    }
+    for (i, (name, drive)) in COORDINATE_NAMES.iter().zip(&outer.drives).enumerate() {
+        match drive {
+            Drive::Motion(_) if i > 0 => {
+                let reason =
+                    "in the equilibrium of the start the housing says where the outer race is";
+                return not_applicable(document, &drive_key(name, false), reason, ADVICE);
+            }
+            Drive::Load(load) if i > 2 && load.value(0.0) != 0.0 => {
+                let reason =
+                    "in the equilibrium of the start the outer race takes forces, not moments";
+                return not_applicable(document, &drive_key(name, true), reason, ADVICE);
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
 /// Holds the race along its axis where something beside the bore does, and leaves out what was said
 /// of a race that nothing holds.
 fn rest(
@@ -311,7 +352,7 @@ fn rest(
     if housing.axial == Axial::Held
         && let Drive::Load(load) = &drives[0]
     {
-        if !load.is_zero() && housing.method == HousingMethod::Explicit {
+        if !load.is_zero() && housing.method != HousingMethod::QuasiStatic {
             let reason = "something beside the bore holds the race along its axis";
             let advice = "leave it out, or write axial = \"free\" in [housing]";
             return not_applicable(document, "outer_race.x.load", reason, advice);
@@ -331,7 +372,7 @@ fn output(
     bearing: &mut Scene,
     method: HousingMethod,
 ) -> Result<(), SceneError> {
-    let steps = bearing.dynamics.run.is_some() && method == HousingMethod::Explicit;
+    let steps = bearing.dynamics.run.is_some() && method != HousingMethod::QuasiStatic;
     let drawn = |plot: &Plot| match plot {
         Plot::LoadZone => true,
         // A run in steps has its own.
@@ -350,7 +391,7 @@ fn output(
     bearing.plots.retain(drawn);
     bearing.dynamics.plots.retain(in_run);
     let Some(run) = &mut bearing.dynamics.run else { return Ok(()) };
-    if method == HousingMethod::Explicit {
+    if method != HousingMethod::QuasiStatic {
         return Ok(());
     }
     use ChannelGroup::{Energy, Forces, Loads, Races};

@@ -8,8 +8,8 @@ use crate::scene::resolve_assembly::{assembly, is_assembly};
 use crate::scene::resolve_housing;
 use crate::scene::resolve_solid_mesh::source;
 use crate::scene::solid::{
-    Held, LoadKind, MeshRequest, MeshSource, Probe, ProbeOf, SetLoad, SetPlace, SetRequest,
-    SolidRun, SolidScene, Subject,
+    Held, LoadKind, MeshPlace, MeshRequest, MeshSource, Probe, ProbeOf, SetLoad, SetPlace,
+    SetRequest, SolidRun, SolidScene, Subject,
 };
 use crate::scene::units::plain;
 use crate::scene::value::Checked;
@@ -241,8 +241,19 @@ fn mesh_request(reader: &mut Reader) -> Result<MeshRequest, SceneError> {
         Some(Checked::Choices(names)) => names.clone(),
         _ => Vec::new(),
     };
+    let axis = match reader.choice_if_given("solid.mesh.axis") {
+        Some("y") => 1,
+        Some("z") => 2,
+        _ => 0,
+    };
+    let origin = match document.value("solid.mesh.origin") {
+        Some(Checked::Vector(origin)) => *origin,
+        _ => [0.0; 3],
+    };
+    let place = MeshPlace { origin, axis, at: 0.0 };
     Ok(MeshRequest {
         source,
+        place,
         order,
         renumber,
         orient: repairs.contains(&"orient"),

@@ -66,8 +66,18 @@ const PILLOW_BLOCK: &[&str] = &[
     GROWTH,
 ];
 /// Keys of `[solid.mesh]` that are no dimension.
-const GENERAL: &[&str] =
-    &["file", "generate", "unit", "order", "renumber", "repair", "cavities", "largest_aspect"];
+const GENERAL: &[&str] = &[
+    "file",
+    "generate",
+    "unit",
+    "origin",
+    "axis",
+    "order",
+    "renumber",
+    "repair",
+    "cavities",
+    "largest_aspect",
+];
 
 /// What generators call their dimensions in errors, and the key below `solid.mesh` for it.
 const KEY_OF_DIMENSION: &[(&str, &str)] = &[

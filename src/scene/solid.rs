@@ -49,10 +49,36 @@ pub enum MeshSource {
     Housing(Housing, HousingMesh),
 }
 
+/// Where a mesh is put.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MeshPlace {
+    /// Point of the mesh's own coordinates that comes to lie on the axis X, m.
+    pub origin: [f64; 3],
+    /// Axis of the mesh that becomes X: 0, 1 or 2; the others follow in their order.
+    pub axis: usize,
+    /// Where on X the point comes to lie, m.
+    pub at: f64,
+}
+
+impl MeshPlace {
+    /// Puts nodes in their place; those of a mesh that stays where it is keep their bits.
+    pub fn put(&self, nodes: &mut [[f64; 3]]) {
+        if *self == MeshPlace::default() {
+            return;
+        }
+        for node in nodes {
+            let from: [f64; 3] = std::array::from_fn(|i| node[i] - self.origin[i]);
+            *node = std::array::from_fn(|i| from[(i + self.axis) % 3]);
+            node[0] += self.at;
+        }
+    }
+}
+
 /// The mesh as the scene asks for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshRequest {
     pub source: MeshSource,
+    pub place: MeshPlace,
     /// `None` leaves a file's own.
     pub order: Option<Order>,
     pub renumber: bool,

@@ -140,8 +140,9 @@ fn build_around(
                 "inp" => read_abaqus(&bytes, *unit),
                 _ => read_gmsh(&bytes, *unit),
             };
-            let loaded =
+            let mut loaded =
                 loaded.map_err(|source| SolidMeshError::Read { path: path.clone(), source })?;
+            request.place.put(&mut loaded.mesh.nodes);
             notes.extend(loaded.notes.iter().map(ToString::to_string));
             materials = loaded.materials;
             let tolerance = limits.duplicate * loaded.mesh.size();
@@ -180,7 +181,8 @@ fn build_around(
                 SolidMeshError::Made { key, source }
             };
             let solid = generate(made).map_err(failed)?;
-            let (mesh, pulled_back) = of_order(solid, request.order).map_err(failed)?;
+            let (mut mesh, pulled_back) = of_order(solid, request.order).map_err(failed)?;
+            request.place.put(&mut mesh.nodes);
             check(&mesh, &limits).map_err(|faults| {
                 let faults = named(faults, &labels);
                 SolidMeshError::MadeFaults { faults }

@@ -10,6 +10,7 @@ use crate::ch2_housing::bearing::contact::{
     MeridianContact, meridian_contact, normal_load, normal_stiffness, strain_energy,
 };
 use crate::ch2_housing::bearing::geometry::Raceway;
+use crate::kinematics::Pose;
 use nalgebra::{SMatrix, SVector, Vector3};
 
 /// The outer race's meridian plane that holds a ball, in the frame of the inner race's coordinates.
@@ -104,6 +105,26 @@ impl InnerRacePosition {
             turned.into_iter().for_each(|vector| *vector = -*vector);
         }
         race
+    }
+
+    /// The same race, seen from the frame in which its present one stands at `axes`.
+    pub(super) fn seen_from_parent_of(mut self, axes: &Pose) -> Self {
+        self.centre = axes.point_to_parent(&self.centre);
+        let turned = [
+            &mut self.axis,
+            &mut self.axis_xi,
+            &mut self.axis_lambda,
+            &mut self.axis_xi_xi,
+            &mut self.axis_xi_lambda,
+        ];
+        turned.into_iter().for_each(|vector| *vector = axes.orientation * *vector);
+        self
+    }
+
+    /// First (by ξ, λ) and second derivatives (ξξ, ξλ, λλ) of the race's axis by its body's tilts.
+    pub(super) fn turning(&self) -> ([Vector3<f64>; 2], [Vector3<f64>; 3]) {
+        let second = [self.axis_xi_xi, self.axis_xi_lambda, -self.axis];
+        ([self.axis_xi, self.axis_lambda], second)
     }
 
     /// First (by ξ, λ) and second derivatives (ξξ, ξλ, λλ) of the centre of a race at a mount by its body's

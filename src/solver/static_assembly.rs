@@ -2,21 +2,25 @@
 
 use super::ball::BallContacts;
 use super::dynamics::connection::Connection;
+use super::housing::bore_equilibrium::Fit;
+use super::housing::condensed::CondensedBore;
 use super::mount::Mount;
 use super::static_start::ball_contacts;
 use super::statics::Condition;
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
+use crate::ch2_housing::bore_contact::Penalty;
 use crate::kinematics::Pose;
 use nalgebra::Vector3;
 
 /// Bodies and bearings in one frame.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct StaticAssembly {
+#[derive(Clone, Debug, Default)]
+pub struct StaticAssembly<'b> {
     pub bodies: Vec<StaticBody>,
     pub bearings: Vec<StaticBearing>,
     /// Their dashpots are at rest.
     pub connections: Vec<Connection>,
+    pub seats: Vec<StaticSeat<'b>>,
 }
 
 /// A rigid body.
@@ -38,13 +42,17 @@ pub enum Place {
 /// A body with five coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
+    /// What the coordinates count from, in the assembly's frame: a body at zero stands there, and its
+    /// displacements, tilts and loads are along and about these axes.
+    pub axes: Pose,
     pub conditions: [Condition; 5],
     /// Springs to the ground, N/m and N·m/rad, and where they are at rest.
     pub springs: [f64; 5],
     pub rest: [f64; 5],
     /// Where the search begins; [`None`] leaves it to an estimate for a bearing alone.
     pub start: Option<[f64; 5]>,
-    /// How far a coordinate that is free may go from there, m (tilts over the pitch radius).
+    /// How far a coordinate that is free may go from there, m (tilts over the pitch radius); a body in a bore
+    /// is lost when it is beyond that.
     pub room: f64,
 }
 
@@ -64,6 +72,32 @@ pub struct StaticBearing {
     pub weight: Vector3<f64>,
     /// Centrifugal force on a ball per distance from the axis, N/m.
     pub centrifugal: f64,
+}
+
+/// A race in the bore of a flexible solid that is held.
+///
+/// The solid is this seat's own: the same bore given to two seats means two equal solids. A solid with two
+/// bores that two races load has no place in these lists, since each bore is condensed as if it were the only one.
+#[derive(Clone, Debug)]
+pub struct StaticSeat<'b> {
+    /// As messages name it; `None` where there is one only.
+    pub name: Option<String>,
+    /// Where on a body the race sits.
+    pub mount: Mount,
+    /// Where the race's motion is measured from, in the assembly's frame: there it stands in the bore as
+    /// [`super::housing::condensed::Reach::nominal`] says.
+    pub nominal: Pose,
+    pub bore: &'b CondensedBore,
+    pub penalty: Penalty,
+    /// The race's radius. Nothing of the bore holds the race along its axis: that is for its body's conditions to do.
+    pub fit: Fit,
+}
+
+impl StaticSeat<'_> {
+    /// " of seat left", for messages; nothing where there is one only.
+    pub fn suffix(&self) -> String {
+        self.name.as_ref().map_or(String::new(), |name| format!(" of {name}"))
+    }
 }
 
 impl StaticBearing {

@@ -1,25 +1,25 @@
 //! The search for an equilibrium: Newton's method with a trust radius on the energy, over the coordinates
 //! of all bodies that are loaded. Balls are in equilibrium at every evaluation.
 //!
-//! Force and stiffness are exact in the coordinates of bodies that carry inner races. Where a body with
-//! an outer race moves, its stiffness follows from that of the inner one, since moving both together
-//! changes nothing; what the forces turn by with it is left out, some 1e-4 of it, which costs an iteration.
+//! Each bearing, connection and seat adds energy, force and stiffness over the coordinates of its bodies, what is its
+//! own eliminated: balls in equilibrium, nodes of a bore in contact or not.
 
 use super::ball::{
-    BallContacts, BallPlane, InnerRacePosition, SettledBall, add_to_race, energy_noise,
-    overlap_of_races, settle,
+    BallContacts, BallPlane, InnerRacePosition, SettledBall, energy_noise, overlap_of_races,
 };
 use super::dynamics::connection::Connection;
 use super::dynamics::race;
-use super::mount::Mount;
+use super::housing::bore_equilibrium::{BoreSearch, BoreState};
 use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing};
+use super::static_bearing::{add_bearing, planes};
+use super::static_seat::{SeatPlace, add_seat};
 use super::static_start;
 use super::statics::{COORDINATE_NAMES, Determinacy, StaticOptions, StaticsError};
 use crate::ch2_housing::bearing::contact::normal_load;
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
 use crate::kinematics::vec3::{Vec3, add, cross, sub};
-use nalgebra::{DMatrix, DVector, SMatrix, SVector, SymmetricEigen, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, SVector, SymmetricEigen, Vector3};
 use std::f64::consts::TAU;
 
 /// Stiffness below this fraction of the largest one counts as none. Rounding of the overlaps leaves
@@ -29,15 +29,25 @@ const NO_STIFFNESS: f64 = 1e-9;
 /// First trust radius where nothing but springs holds, m: it grows by itself.
 const WITHOUT_BEARING: f64 = 1e-4;
 
-type Five = SVector<f64, 5>;
+/// Artificial stiffness of a body in a bore, as a part of its largest: a race that touches nothing, or one row of
+/// nodes, stays where it is in directions in which nothing holds it. Its force is nothing in equilibrium.
+const HINT: f64 = 1e-8;
+/// Part of its radius by which a race may leave its place while it is looked for, and in the end: nothing that a bore
+/// holds moves by a hundredth of its radius.
+const LOST: f64 = 1e3;
+pub(super) const FAR: f64 = 1e-2;
+
+pub(super) type Five = SVector<f64, 5>;
 
 /// What does not change while bodies move.
 pub(super) struct Model<'a> {
-    pub(super) assembly: &'a StaticAssembly,
+    pub(super) assembly: &'a StaticAssembly<'a>,
     pub(super) bearings: Vec<BearingModel>,
+    /// Axes of each body's coordinates as each seat sees them from where its race's motion is measured.
+    seat_axes: Vec<Pose>,
     /// First unknown of each body; `None` where it is held.
     unknowns: Vec<Option<usize>>,
-    /// Metres per unit of each unknown: 1 for lengths, a pitch radius for tilts.
+    /// Metres per unit of each unknown: 1 for lengths, a pitch radius (that of a seat, without a bearing) for tilts.
     scale: DVector<f64>,
 }
 
@@ -47,38 +57,7 @@ pub(super) struct BearingModel {
     /// Places of races and balls count from here.
     pub(super) origin: Vector3<f64>,
     /// Where the outer race is held.
-    planes: Vec<BallPlane>,
-}
-
-/// Planes of all balls of a bearing whose outer race is on a body at `outer`, from `origin`.
-fn planes(
-    bearing: &StaticBearing,
-    azimuths: &[f64],
-    outer: &Pose,
-    origin: &Vector3<f64>,
-    to: &mut Vec<BallPlane>,
-) {
-    to.clear();
-    let mount = &bearing.mounts[1];
-    let mut outer = *outer;
-    if mount.along != 0.0 {
-        outer.position += outer.orientation * Vector3::x() * mount.along;
-    }
-    outer.position -= origin;
-    if mount.reversed {
-        outer.orientation *=
-            UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(0.0, 0.0, 0.0, 1.0));
-    }
-    let weight_of = &bearing.weight;
-    let axial = outer.orientation * Vector3::x();
-    to.extend(azimuths.iter().map(|azimuth| {
-        let (sin, cos) = libm::sincos(*azimuth);
-        let radial = outer.orientation * Vector3::new(0.0, cos, sin);
-        let weight = [weight_of.dot(&axial), weight_of.dot(&radial)];
-        let weight_around = weight_of.dot(&axial.cross(&radial));
-        let (origin, centrifugal) = (outer.position, bearing.centrifugal);
-        BallPlane { origin, axial, radial, weight, weight_around, centrifugal }
-    }));
+    pub(super) planes: Vec<BallPlane>,
 }
 
 /// Where a bearing's outer race stands as far as it is known beforehand; for one whose races are bodies
@@ -92,7 +71,7 @@ fn origin(assembly: &StaticAssembly, bearing: &StaticBearing) -> Vector3<f64> {
         Place::Held(pose) => pose.position + pose.orientation * Vector3::x() * outer.along,
         Place::Loaded(loaded) => {
             let [x, y, z, ..] = loaded.start.unwrap_or(loaded.rest);
-            Vector3::new(x + outer.along, y, z)
+            loaded.axes.point_to_parent(&Vector3::new(x + outer.along, y, z))
         }
     }
 }
@@ -109,7 +88,12 @@ impl<'a> Model<'a> {
                         bearing.mounts.iter().any(|mount| mount.body == index)
                     };
                     let own = assembly.bearings.iter().find(sits);
-                    let pitch = own.map_or(1.0, |bearing| bearing.geometry.pitch_radius);
+                    let seat = assembly.seats.iter().find(|seat| seat.mount.body == index);
+                    let pitch = match (own, seat) {
+                        (Some(bearing), _) => bearing.geometry.pitch_radius,
+                        (None, Some(seat)) => seat.fit.radius,
+                        (None, None) => 1.0,
+                    };
                     scale.extend([1.0, 1.0, 1.0, pitch, pitch]);
                     Some(scale.len() - 5)
                 }
@@ -127,7 +111,15 @@ impl<'a> Model<'a> {
             BearingModel { contacts: bearing.contacts(), azimuths, origin, planes: held }
         });
         let bearings = bearings.collect();
-        Model { assembly, bearings, unknowns, scale: DVector::from_vec(scale) }
+        let seat_axes = assembly.seats.iter().map(|seat| {
+            let axes = match &assembly.bodies[seat.mount.body].place {
+                Place::Loaded(loaded) => loaded.axes,
+                Place::Held(_) => Pose::identity(),
+            };
+            axes.relative_to(&seat.nominal)
+        });
+        let seat_axes = seat_axes.collect();
+        Model { assembly, bearings, seat_axes, unknowns, scale: DVector::from_vec(scale) }
     }
 
     fn loaded(&self) -> impl Iterator<Item = (usize, usize, &Loaded)> {
@@ -147,11 +139,76 @@ impl<'a> Model<'a> {
         }
     }
 
+    /// Axes of a body's coordinates where they are not the assembly's.
+    fn axes(&self, body: usize) -> Option<&Pose> {
+        match &self.assembly.bodies[body].place {
+            Place::Loaded(loaded) => Some(&loaded.axes).filter(|axes| **axes != Pose::identity()),
+            Place::Held(_) => None,
+        }
+    }
+
+    /// Whether a body's coordinates are along the assembly's own axes.
+    pub(super) fn is_plain(&self, body: usize) -> bool {
+        self.axes(body).is_none()
+    }
+
+    /// The axes of a body's coordinates in the assembly's frame.
+    pub(super) fn turn(&self, body: usize) -> Matrix3<f64> {
+        let turn = |axes: &Pose| axes.orientation.to_rotation_matrix().into_inner();
+        self.axes(body).map_or(Matrix3::identity(), turn)
+    }
+
+    /// About which a body's two tilts turn it, in the assembly's frame.
+    pub(super) fn tilt_axes(&self, body: usize, at: &DVector<f64>) -> [Vector3<f64>; 2] {
+        let q = self.coordinates(body, at);
+        let own = [Vector3::y(), quaternion(0.0, q[3], q[4]) * Vector3::z()];
+        match self.axes(body) {
+            Some(axes) => own.map(|axis| axes.orientation * axis),
+            None => own,
+        }
+    }
+
+    /// A body in the assembly's frame.
+    pub(super) fn pose(&self, body: usize, at: &DVector<f64>) -> Pose {
+        let q = self.coordinates(body, at);
+        let own = Pose {
+            position: Vector3::new(q[0], q[1], q[2]),
+            orientation: quaternion(0.0, q[3], q[4]),
+        };
+        self.axes(body).map_or(own, |axes| own.seen_from_parent_of(axes))
+    }
+
     /// A race of a bearing, its centre from the bearing's origin.
     pub(super) fn race(&self, bearing: usize, side: usize, at: &DVector<f64>) -> InnerRacePosition {
         let mount = &self.assembly.bearings[bearing].mounts[side];
         let coordinates = self.coordinates(mount.body, at);
-        InnerRacePosition::mounted(&coordinates, mount, &self.bearings[bearing].origin)
+        let origin = &self.bearings[bearing].origin;
+        match self.axes(mount.body) {
+            None => InnerRacePosition::mounted(&coordinates, mount, origin),
+            Some(axes) => {
+                let from_origin = Pose { position: axes.position - origin, ..*axes };
+                InnerRacePosition::mounted(&coordinates, mount, &Vector3::zeros())
+                    .seen_from_parent_of(&from_origin)
+            }
+        }
+    }
+
+    /// A seat's race in its bore.
+    pub(super) fn seat_place(&self, seat: usize, at: &DVector<f64>) -> SeatPlace {
+        let (mount, axes) = (&self.assembly.seats[seat].mount, &self.seat_axes[seat]);
+        let coordinates = self.coordinates(mount.body, at);
+        let own = axes.position == Vector3::zeros() && axes.orientation.imag() == Vector3::zeros();
+        if own && mount.is_direct() {
+            return SeatPlace::direct(&coordinates);
+        }
+        let race = InnerRacePosition::mounted(&coordinates, mount, &Vector3::zeros());
+        let turn = axes.orientation.to_rotation_matrix().into_inner();
+        SeatPlace::new(race.seen_from_parent_of(axes), mount, &turn)
+    }
+
+    /// The first seat of a body.
+    fn seat_of(&self, body: usize) -> Option<usize> {
+        self.assembly.seats.iter().position(|seat| seat.mount.body == body)
     }
 
     pub(super) fn first_unknown(&self, body: usize) -> Option<usize> {
@@ -167,10 +224,6 @@ fn five(pose: &Pose) -> Five {
     Five::from([p.x, p.y, p.z, tilts[0], tilts[1]])
 }
 
-fn pose(q: &Five) -> Pose {
-    Pose { position: Vector3::new(q[0], q[1], q[2]), orientation: quaternion(0.0, q[3], q[4]) }
-}
-
 /// Bodies at one place.
 #[derive(Clone, Default)]
 pub(super) struct Evaluation {
@@ -180,10 +233,16 @@ pub(super) struct Evaluation {
     pub(super) gradient: DVector<f64>,
     pub(super) stiffness: DMatrix<f64>,
     pub(super) largest_ball_load: f64,
+    /// Largest stiffness against one coordinate that is none of a seat's, N/m.
+    stiffest: f64,
+    /// Forces that have no energy, N.
+    pub(super) without_energy: f64,
+    /// What rounding leaves of the loads of all seats, N.
+    pub(super) seat_noise: f64,
     /// Of each bearing.
     pub(super) balls: Vec<Vec<Option<SettledBall>>>,
     /// Where the outer race is not held.
-    planes: Vec<Vec<BallPlane>>,
+    pub(super) planes: Vec<Vec<BallPlane>>,
 }
 
 impl Evaluation {
@@ -193,9 +252,11 @@ impl Evaluation {
     }
 }
 
-pub(super) struct Search<'a> {
+pub(super) struct Search<'a, 'b> {
     pub(super) model: &'a Model<'a>,
     options: &'a StaticOptions,
+    /// Contact in the bore of each seat.
+    pub(super) bores: &'a mut [BoreSearch<'b>],
     pub(super) loads: DVector<f64>,
     free: Vec<bool>,
     /// Unknown, stiffness and rest of each spring to the ground.
@@ -206,8 +267,12 @@ pub(super) struct Search<'a> {
     spare: Option<Evaluation>,
 }
 
-impl<'a> Search<'a> {
-    pub(super) fn new(model: &'a Model<'a>, options: &'a StaticOptions) -> Self {
+impl<'a, 'b> Search<'a, 'b> {
+    pub(super) fn new(
+        model: &'a Model<'a>,
+        options: &'a StaticOptions,
+        bores: &'a mut [BoreSearch<'b>],
+    ) -> Self {
         let count = model.scale.len();
         let mut loads = DVector::zeros(count);
         let mut free = vec![false; count];
@@ -226,6 +291,7 @@ impl<'a> Search<'a> {
         Search {
             model,
             options,
+            bores,
             loads,
             free,
             springs,
@@ -268,14 +334,16 @@ impl<'a> Search<'a> {
         let Some(bearing) = bearing else { return Five::zeros() };
         let outer = &self.model.assembly.bodies[bearing.mounts[1].body].place;
         let origin = match outer {
-            Place::Held(pose) => pose.position,
-            Place::Loaded(_) => Vector3::zeros(),
+            Place::Held(pose) => loaded.axes.point_to_body(&pose.position),
+            Place::Loaded(under) => loaded.axes.point_to_body(&under.axes.position),
         };
         let loads = [0, 1, 2, 3, 4].map(|i| loaded.load(i));
         static_start::guess(&bearing.geometry, &bearing.contacts(), &loads, &origin)
     }
 
-    pub(super) fn evaluate(&mut self, at: &DVector<f64>) -> Evaluation {
+    /// # Errors
+    /// Contact in a bore that does not settle.
+    pub(super) fn evaluate(&mut self, at: &DVector<f64>) -> Result<Evaluation, StaticsError> {
         let count = at.len();
         let bearings = self.model.bearings.len();
         let mut here = self.spare.take().unwrap_or_else(|| Evaluation {
@@ -291,6 +359,8 @@ impl<'a> Search<'a> {
         here.gradient.neg_mut();
         here.stiffness.fill(0.0);
         here.largest_ball_load = 0.0;
+        here.seat_noise = 0.0;
+        here.without_energy = 0.0;
         for &(i, spring, rest) in &self.springs {
             let stretch = at[i] - rest;
             here.energy += 0.5 * spring * stretch * stretch;
@@ -298,20 +368,29 @@ impl<'a> Search<'a> {
             here.stiffness[(i, i)] += spring;
         }
         for index in 0..bearings {
-            self.add_bearing(index, &mut here);
+            add_bearing(self.model, index, &mut here, &mut self.contact_evaluations);
         }
         for connection in &self.model.assembly.connections {
             self.add_connection(connection, &mut here);
         }
-        here
+        here.stiffest = (0..count)
+            .map(|i| here.stiffness[(i, i)] / self.model.scale[i].powi(2))
+            .fold(0.0, f64::max);
+        for (index, bore) in self.bores.iter_mut().enumerate() {
+            add_seat(self.model, index, bore, &mut here)?;
+        }
+        Ok(here)
     }
 
     /// Energy, force and stiffness of springs between two bodies.
     fn add_connection(&self, connection: &Connection, here: &mut Evaluation) {
         let model = self.model;
         let bodies = connection.ends.map(|mount| {
-            let q = model.coordinates(mount.body, &here.at);
-            (race::fixed(&q.into()), quaternion(0.0, q[3], q[4]) * Vector3::z())
+            let race = match model.axes(mount.body) {
+                None => race::fixed(&model.coordinates(mount.body, &here.at).into()),
+                Some(_) => race::standing(&model.pose(mount.body, &here.at)),
+            };
+            (race, model.tilt_axes(mount.body, &here.at), model.axes(mount.body))
         });
         let ends = [0, 1].map(|end| race::mounted(&bodies[end].0, &connection.ends[end]));
         let ends = [&ends[0], &ends[1]];
@@ -319,10 +398,12 @@ impl<'a> Search<'a> {
         here.energy += pull.energy;
         // Of a force at a section along its body's coordinates.
         let conjugate = |end: usize, force: Vec3, moment: Vec3| {
-            let (body, e3) = &bodies[end];
+            let (body, [e2, e3], axes) = &bodies[end];
             let arm = sub(ends[end].motion.position, body.motion.position);
             let moment = Vector3::from(add(moment, cross(arm, force)));
-            Five::from([force[0], force[1], force[2], moment.y, moment.dot(e3)])
+            let force = Vector3::from(force);
+            let force = axes.map_or(force, |a| a.orientation.inverse_transform_vector(&force));
+            Five::from([force[0], force[1], force[2], moment.dot(e2), moment.dot(e3)])
         };
         let firsts = connection.ends.map(|mount| model.unknowns[mount.body]);
         for end in 0..2 {
@@ -343,93 +424,6 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Energy, force and stiffness of one bearing.
-    fn add_bearing(&mut self, index: usize, here: &mut Evaluation) {
-        let model = self.model;
-        let bearing = &model.assembly.bearings[index];
-        let of = &model.bearings[index];
-        let [inner, outer] = bearing.mounts;
-        let race = model.race(index, 0, &here.at);
-        let moves = model.unknowns[outer.body];
-        if moves.is_some() {
-            let outer = pose(&model.coordinates(outer.body, &here.at));
-            planes(bearing, &of.azimuths, &outer, &of.origin, &mut here.planes[index]);
-        }
-        // A race that is its body writes into the body's rows itself.
-        let direct = model.unknowns[inner.body].filter(|_| inner.is_direct() && moves.is_none());
-        let mut gradient = Five::zeros();
-        if let Some(first) = direct {
-            gradient.copy_from(&here.gradient.fixed_rows::<5>(first));
-        }
-        let mut stiffness = SMatrix::<f64, 5, 5>::zeros();
-        let (mut on_outer, mut about_outer) = (Vector3::zeros(), Vector3::zeros());
-        let mut balls = std::mem::take(&mut here.balls[index]);
-        balls.clear();
-        let moved = std::mem::take(&mut here.planes[index]);
-        for plane in if moved.is_empty() { &of.planes } else { &moved } {
-            let ball = settle(plane, &race, &of.contacts, &mut self.contact_evaluations);
-            let mut on_race = Vector3::zeros();
-            if let Some(ball) = &ball {
-                here.energy += ball.energy;
-                here.largest_ball_load =
-                    here.largest_ball_load.max(ball.inner_load).max(ball.outer_load);
-                on_race =
-                    add_to_race(plane, &race, &of.contacts, ball, &mut gradient, &mut stiffness);
-            }
-            if moves.is_some() {
-                // Balls ride on the outer race: it takes what the inner one puts on them, and their weight.
-                let place =
-                    ball.as_ref().map_or([0.0, bearing.geometry.pitch_radius], |b| b.position);
-                let pushed = on_race - bearing.weight;
-                on_outer += pushed;
-                about_outer += (plane.axial * place[0] + plane.radial * place[1]).cross(&pushed);
-            }
-            balls.push(ball);
-        }
-        (here.balls[index], here.planes[index]) = (balls, moved);
-        if let Some(first) = direct {
-            here.gradient.fixed_rows_mut::<5>(first).copy_from(&gradient);
-            let mut block = here.stiffness.fixed_view_mut::<5, 5>(first, first);
-            block += stiffness;
-            return;
-        }
-        // By how much a unit of each unknown moves the inner race against the outer one.
-        let inner_by = motion_of_race(&race, &inner);
-        if let Some(first) = model.unknowns[inner.body] {
-            let mut rows = here.gradient.fixed_rows_mut::<5>(first);
-            rows += inner_by.transpose() * gradient;
-            let mut block = here.stiffness.fixed_view_mut::<5, 5>(first, first);
-            block += inner_by.transpose() * stiffness * inner_by;
-            block += bending(&race, &inner, &gradient);
-        }
-        let Some(first) = moves else { return };
-        let q = model.coordinates(outer.body, &here.at);
-        let outer_race = model.race(index, 1, &here.at);
-        let e3 = quaternion(0.0, q[3], q[4]) * Vector3::z();
-        let mut carried = motion_of_race(&outer_race, &outer);
-        let force = carried.transpose()
-            * Five::from([on_outer.x, on_outer.y, on_outer.z, about_outer.y, about_outer.dot(&e3)]);
-        let mut rows = here.gradient.fixed_rows_mut::<5>(first);
-        rows += force;
-        // The inner race carried along by the outer one.
-        let arm = race.centre - outer_race.centre;
-        for (column, turn) in [(3, Vector3::y()), (4, e3)] {
-            let shift = turn.cross(&arm);
-            for i in 0..3 {
-                carried[(i, column)] += shift[i];
-            }
-        }
-        let mut block = here.stiffness.fixed_view_mut::<5, 5>(first, first);
-        block += carried.transpose() * stiffness * carried;
-        if let Some(of_inner) = model.unknowns[inner.body] {
-            let cross = carried.transpose() * stiffness * inner_by;
-            let mut block = here.stiffness.fixed_view_mut::<5, 5>(first, of_inner);
-            block -= cross;
-            let mut block = here.stiffness.fixed_view_mut::<5, 5>(of_inner, first);
-            block -= cross.transpose();
-        }
-    }
-
     /// Largest unbalanced load over the free coordinates, N.
     pub(super) fn residual(&self, here: &Evaluation) -> f64 {
         (0..self.free.len())
@@ -444,18 +438,16 @@ impl<'a> Search<'a> {
         bearings.fold(0.0, |most: f64, bearing| most.max(bearing.geometry.pitch_radius))
     }
 
-    /// Largest stiffness against one coordinate, N/m.
-    fn stiffest(&self, here: &Evaluation) -> f64 {
-        (0..self.free.len())
-            .map(|i| here.stiffness[(i, i)] / self.model.scale[i].powi(2))
-            .fold(0.0, f64::max)
+    /// Largest load, N.
+    fn applied(&self) -> f64 {
+        self.loads.component_div(&self.model.scale).amax()
     }
 
     /// Residual at which to stop, N.
     fn allowed(&self, here: &Evaluation) -> f64 {
-        let applied = self.loads.component_div(&self.model.scale).amax();
+        let applied = self.applied();
         // Rounding of positions (some ulps of the pitch radius) times the stiffness cannot go away.
-        let noise = 8.0 * f64::EPSILON * self.reach() * self.stiffest(here);
+        let noise = 8.0 * f64::EPSILON * self.reach() * here.stiffest + here.seat_noise;
         self.options.tolerance * applied.max(here.largest_ball_load) + noise
     }
 
@@ -493,26 +485,30 @@ impl<'a> Search<'a> {
     /// Newton's method with a trust radius on the energy.
     pub(super) fn descend(&mut self, here: &mut Evaluation) -> Result<(), StaticsError> {
         let mut radius = self.step_scale();
+        let begun = self.iterations;
         loop {
             let residual = self.residual(here);
             let allowed = self.allowed(here);
             if residual <= allowed {
-                return Ok(());
+                // What is found again stays to the bit.
+                return if self.iterations > begun { self.polish(here, residual) } else { Ok(()) };
             }
             if self.iterations >= self.options.max_iterations {
                 return self.give_up(here, residual, allowed);
             }
             self.iterations += 1;
             let step = self.newton_step(here, radius);
-            let there = self.evaluate(&(&here.at + step.component_div(&self.model.scale)));
+            let there = self.evaluate(&(&here.at + step.component_div(&self.model.scale)))?;
             let predicted = self.predicted_change(here, &step);
             let change = there.energy - here.energy;
             // Near the end the change drowns in rounding, and the unbalanced load decides alone.
             let mut noise = self.noise(here.largest_ball_load.max(there.largest_ball_load));
-            if !self.model.assembly.connections.is_empty() {
+            let assembly = self.model.assembly;
+            if !(assembly.connections.is_empty() && assembly.seats.is_empty()) {
                 // Springs may hold far more energy than contacts.
                 noise += 16.0 * f64::EPSILON * here.energy.abs().max(there.energy.abs());
             }
+            noise += here.without_energy * step.norm();
             let quieter = self.residual(&there) < residual;
             let accepted = change < (1e-4 * predicted).min(-noise) || (change <= noise && quieter);
             if accepted {
@@ -530,6 +526,21 @@ impl<'a> Search<'a> {
                 radius = 0.25 * radius.min(step.norm());
             }
         }
+    }
+
+    /// One more step of Newton's where a race in its bore is soft against tilts: a balance that rounding may already have
+    /// spoilt leaves these far less certain than the rest, and the error falls as its square.
+    fn polish(&mut self, here: &mut Evaluation, residual: f64) -> Result<(), StaticsError> {
+        let strict = self.options.tolerance * self.applied().max(here.largest_ball_load);
+        if self.model.assembly.seats.is_empty() || residual <= 1e-2 * strict {
+            return Ok(());
+        }
+        let step = self.newton_step(here, self.step_scale());
+        let there = self.evaluate(&(&here.at + step.component_div(&self.model.scale)))?;
+        if self.residual(&there) < residual {
+            *here = there;
+        }
+        Ok(())
     }
 
     /// Every ball settled, and none past the edge of what a torus can hold.
@@ -582,7 +593,11 @@ impl<'a> Search<'a> {
     }
 
     fn check_travel(&self, here: &Evaluation) -> Result<(), StaticsError> {
+        self.check_seats(here, LOST)?;
         for (index, first, body) in self.model.loaded() {
+            if self.model.seat_of(index).is_some() {
+                continue;
+            }
             let from = Five::from(body.start.unwrap_or([0.0; 5])) + self.carried(index, here);
             for i in (0..5).filter(|&i| self.free[first + i]) {
                 let travel = (here.at[first + i] - from[i]) * self.model.scale[first + i];
@@ -604,6 +619,54 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
+    /// Every race within a part of its radius of its place in its bore.
+    ///
+    /// # Errors
+    /// A race that nothing holds, a housing that gives way.
+    pub(super) fn check_seats(&self, here: &Evaluation, part: f64) -> Result<(), StaticsError> {
+        for (index, seat) in self.model.assembly.seats.iter().enumerate() {
+            let place = self.model.seat_place(index, &here.at);
+            let (pose, radius) = (place.pose, seat.fit.radius);
+            // Angles of an axis come round.
+            let turn = if place.is_direct() { part } else { part.min(1.0) };
+            let allowed = [part * radius, part * radius, turn, turn];
+            let parts: [f64; 4] = std::array::from_fn(|i| pose[i].abs() / allowed[i]);
+            let worst = (0..4).max_by(|a, b| parts[*a].total_cmp(&parts[*b])).unwrap_or(0);
+            let within = parts[worst] <= 1.0;
+            if !within {
+                let source = self.bores[index].lost(
+                    &seat.fit,
+                    worst,
+                    &pose,
+                    self.residual(here),
+                    self.applied(),
+                );
+                return Err(StaticsError::Seat { of: seat.suffix(), source });
+            }
+        }
+        Ok(())
+    }
+
+    /// Each race in its bore.
+    ///
+    /// # Errors
+    /// Contact that does not settle, a race beyond what its bore was condensed for.
+    pub(super) fn seat_states(
+        &mut self,
+        here: &Evaluation,
+    ) -> Result<Vec<BoreState>, StaticsError> {
+        let mut states = Vec::with_capacity(self.bores.len());
+        for (index, seat) in self.model.assembly.seats.iter().enumerate() {
+            let pose = self.model.seat_place(index, &here.at).pose;
+            let bore = &mut self.bores[index];
+            // As the last evaluation has it, unless that was a step too far.
+            let state =
+                if bore.pose() == pose { bore.state() } else { bore.at_pose(&seat.fit, pose) };
+            states.push(state.map_err(|source| StaticsError::Seat { of: seat.suffix(), source })?);
+        }
+        Ok(states)
+    }
+
     /// How far the body under a body's first outer race has gone: it takes the inner one along.
     fn carried(&self, body: usize, here: &Evaluation) -> Five {
         let on_it = |bearing: &&StaticBearing| bearing.mounts[0].body == body;
@@ -615,7 +678,13 @@ impl<'a> Search<'a> {
         let Place::Loaded(loaded) = &self.model.assembly.bodies[under].place else {
             return Five::zeros();
         };
-        here.at.fixed_rows::<5>(first) - Five::from(loaded.start.unwrap_or([0.0; 5]))
+        let mut gone =
+            here.at.fixed_rows::<5>(first) - Five::from(loaded.start.unwrap_or([0.0; 5]));
+        if let Some(axes) = self.model.axes(under) {
+            let shift = axes.orientation * Vector3::new(gone[0], gone[1], gone[2]);
+            gone.fixed_rows_mut::<3>(0).copy_from(&shift);
+        }
+        gone
     }
 
     /// Gradient and stiffness over metres (tilts times pitch radius), prescribed coordinates
@@ -644,9 +713,10 @@ impl<'a> Search<'a> {
         let (gradient, stiffness) = self.scaled(here);
         let largest = stiffness.diagonal().amax();
         let floor = if largest > 0.0 { largest } else { gradient.amax() / radius };
+        let hints = self.hints(&stiffness);
         let mut shift = 0.0;
         loop {
-            let mut shifted = stiffness.clone();
+            let mut shifted = &stiffness + &hints;
             for i in 0..self.free.len() {
                 shifted[(i, i)] += if self.free[i] { shift } else { floor };
             }
@@ -661,28 +731,57 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Artificial stiffness of bodies in bores.
+    fn hints(&self, stiffness: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut hints = DMatrix::zeros(stiffness.nrows(), stiffness.ncols());
+        for (index, first, _) in self.model.loaded() {
+            if self.model.seat_of(index).is_some() {
+                let own = first..first + 5;
+                let largest = own.clone().map(|i| stiffness[(i, i)]).fold(0.0, f64::max);
+                own.for_each(|i| hints[(i, i)] = HINT * largest);
+            }
+        }
+        hints
+    }
+
     fn predicted_change(&self, here: &Evaluation, step: &DVector<f64>) -> f64 {
         let (gradient, stiffness) = self.scaled(here);
         gradient.dot(step) + 0.5 * step.dot(&(stiffness * step))
     }
 
-    /// Eigenvalues and eigenvectors of the scaled stiffness over the free coordinates.
-    fn free_modes(&self, here: &Evaluation) -> Vec<(f64, DVector<f64>)> {
-        if self.free.is_empty() {
+    /// Coordinates that are looked for, but for those of bodies in bores: a race may be loose in its bore, and
+    /// whether loads determine where another body is then means against it.
+    fn free_but_for_seats(&self) -> Vec<bool> {
+        let mut free = self.free.clone();
+        for (index, first, _) in self.model.loaded() {
+            if self.model.seat_of(index).is_some() {
+                free[first..first + 5].fill(false);
+            }
+        }
+        free
+    }
+
+    /// Eigenvalues and eigenvectors of the scaled stiffness over these free coordinates.
+    fn free_modes(&self, here: &Evaluation, free: &[bool]) -> Vec<(f64, DVector<f64>)> {
+        if free.is_empty() {
             return Vec::new();
         }
-        let (_, stiffness) = self.scaled(here);
+        let (_, mut stiffness) = self.scaled(here);
+        let count = free.len();
+        for i in (0..count).filter(|&i| !free[i]) {
+            stiffness.row_mut(i).fill(0.0);
+            stiffness.column_mut(i).fill(0.0);
+        }
         let eigen = SymmetricEigen::new(stiffness);
-        let count = self.free.len();
         (0..count)
             .map(|k| (eigen.eigenvalues[k], eigen.eigenvectors.column(k).into_owned()))
-            .filter(|(_, v)| (0..count).any(|i| self.free[i] && v[i].abs() > 1e-6))
+            .filter(|(_, v)| (0..count).any(|i| free[i] && v[i].abs() > 1e-6))
             .collect()
     }
 
     /// A small displacement along the most negative stiffness, if there is one.
     pub(super) fn falling_direction(&self, here: &Evaluation) -> Option<DVector<f64>> {
-        let modes = self.free_modes(here);
+        let modes = self.free_modes(here, &self.free);
         let largest = modes.iter().map(|mode| mode.0.abs()).fold(0.0, f64::max);
         let (value, vector) = modes.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
         if value >= -NO_STIFFNESS * largest {
@@ -693,9 +792,9 @@ impl<'a> Search<'a> {
     }
 
     pub(super) fn determinacy(&self, here: &Evaluation) -> Determinacy {
-        let modes = self.free_modes(here);
+        let modes = self.free_modes(here, &self.free_but_for_seats());
         // The scale is that of the whole bearing, so that one lone free coordinate is judged too.
-        let scaled_diagonal = self.stiffest(here);
+        let scaled_diagonal = here.stiffest;
         // An overlap of some ulps of the radius is no contact, and its stiffness none.
         let noise = self.model.bearings.iter().fold(0.0, |most: f64, of| {
             let contacts = &of.contacts;
@@ -715,32 +814,4 @@ impl<'a> Search<'a> {
             Determinacy::Indeterminate { free_directions }
         }
     }
-}
-
-/// By how much a unit of each coordinate of its body moves a race: centre and tilts.
-fn motion_of_race(race: &InnerRacePosition, mount: &Mount) -> SMatrix<f64, 5, 5> {
-    let mut motion = SMatrix::<f64, 5, 5>::identity();
-    if mount.along != 0.0 {
-        let (first, _) = race.along(mount);
-        for (column, centre) in first.into_iter().enumerate() {
-            for i in 0..3 {
-                motion[(i, 3 + column)] = centre[i];
-            }
-        }
-    }
-    motion
-}
-
-/// Stiffness that a force on a race has by the curvature of the path of the race's centre.
-fn bending(race: &InnerRacePosition, mount: &Mount, gradient: &Five) -> SMatrix<f64, 5, 5> {
-    let mut stiffness = SMatrix::<f64, 5, 5>::zeros();
-    if mount.along != 0.0 {
-        let force = Vector3::new(gradient[0], gradient[1], gradient[2]);
-        let (_, [xi_xi, xi_lambda, lambda_lambda]) = race.along(mount);
-        stiffness[(3, 3)] = xi_xi.dot(&force);
-        stiffness[(3, 4)] = xi_lambda.dot(&force);
-        stiffness[(4, 3)] = stiffness[(3, 4)];
-        stiffness[(4, 4)] = lambda_lambda.dot(&force);
-    }
-    stiffness
 }

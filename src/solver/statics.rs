@@ -6,9 +6,10 @@
 //! coordinates are the only unknowns of the outer loop. A bearing alone is a [`StaticProblem`].
 
 use super::clock::told;
+use super::housing::bore_equilibrium::{BoreError, BoreSearch, BoreState};
 use super::mount::Mount;
 use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing, StaticBody};
-use super::static_search::{Evaluation, Model, Search};
+use super::static_search::{Evaluation, FAR, Model, Search};
 use super::static_tables::{BearingState, bearing_state};
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
@@ -180,6 +181,8 @@ pub enum StaticsError {
         position: [f64; 3],
         tilts: [f64; 2],
     },
+    #[error("the outer race{of} in its bore: {source}")]
+    Seat { of: String, source: BoreError },
 }
 
 /// Equilibrium of an assembly.
@@ -193,6 +196,9 @@ pub struct AssemblySolution {
     /// ∂loads/∂coordinates over the coordinates of all loaded bodies in their order, SI units.
     pub stiffness: DMatrix<f64>,
     pub bearings: Vec<BearingState>,
+    /// Each race in its bore.
+    pub seats: Vec<BoreState>,
+    /// Of all bodies but those in bores, which count as held where they are.
     pub determinacy: Determinacy,
     pub saddles_left: usize,
     pub iterations: usize,
@@ -224,8 +230,9 @@ const RACES: [usize; 2] = [0, 1];
 
 impl StaticProblem {
     /// The same as lists: the inner race under its conditions, the outer race held.
-    pub fn assembly(&self) -> StaticAssembly {
+    pub fn assembly(&self) -> StaticAssembly<'static> {
         let inner = Loaded {
+            axes: Pose::identity(),
             conditions: self.conditions,
             springs: [0.0; 5],
             rest: [0.0; 5],
@@ -251,7 +258,7 @@ impl StaticProblem {
                 body("the outer race", Place::Held(self.outer_pose.relative_to(&self.frame))),
             ],
             bearings: vec![bearing],
-            connections: Vec::new(),
+            ..StaticAssembly::default()
         }
     }
 }
@@ -288,17 +295,39 @@ pub fn solve_assembly(
     near: Option<&[SVector<f64, 5>]>,
     options: &StaticOptions,
 ) -> Result<AssemblySolution, StaticsError> {
-    match solve_directly(assembly, near, options) {
+    let seats = assembly.seats.iter();
+    let mut bores: Vec<_> = seats.map(|seat| BoreSearch::new(seat.bore, seat.penalty)).collect();
+    solve_assembly_in(assembly, &mut bores, near, options)
+}
+
+/// The same with the contact in the bores of its seats as earlier searches left it.
+///
+/// # Errors
+/// As [`solve_assembly`].
+///
+/// # Panics
+/// If there is not one for each seat.
+pub fn solve_assembly_in<'b>(
+    assembly: &StaticAssembly<'b>,
+    bores: &mut [BoreSearch<'b>],
+    near: Option<&[SVector<f64, 5>]>,
+    options: &StaticOptions,
+) -> Result<AssemblySolution, StaticsError> {
+    assert_eq!(assembly.seats.len(), bores.len(), "contact in each seat's bore");
+    match solve_directly(assembly, bores, near, options) {
         // A loose bearing under a small load lies in a long curved valley of the energy, along
         // which Newton's method creeps. A larger load straightens it; follow that down.
-        Err(StaticsError::NotConverged { .. }) if near.is_none() => unload(assembly, options),
+        Err(StaticsError::NotConverged { .. }) if near.is_none() => {
+            unload(assembly, bores, options)
+        }
         result => result,
     }
 }
 
 /// Equilibrium under ever smaller multiples of the loads, down to the loads themselves.
-fn unload(
-    assembly: &StaticAssembly,
+fn unload<'b>(
+    assembly: &StaticAssembly<'b>,
+    bores: &mut [BoreSearch<'b>],
     options: &StaticOptions,
 ) -> Result<AssemblySolution, StaticsError> {
     let mut start: Option<Vec<SVector<f64, 5>>> = None;
@@ -316,25 +345,26 @@ fn unload(
             }
         }
         // Loads too large for the bearing fail; a smaller multiple starts from where it was.
-        if let Ok(solution) = solve_directly(&loaded, start.as_deref(), options) {
+        if let Ok(solution) = solve_directly(&loaded, bores, start.as_deref(), options) {
             work.0 += solution.iterations;
             work.1 += solution.contact_evaluations;
             start = Some(solution.coordinates);
         }
     }
-    let mut solution = solve_directly(assembly, start.as_deref(), &patient)?;
+    let mut solution = solve_directly(assembly, bores, start.as_deref(), &patient)?;
     solution.iterations += work.0;
     solution.contact_evaluations += work.1;
     Ok(solution)
 }
 
-fn solve_directly(
-    assembly: &StaticAssembly,
+fn solve_directly<'b>(
+    assembly: &StaticAssembly<'b>,
+    bores: &mut [BoreSearch<'b>],
     near: Option<&[SVector<f64, 5>]>,
     options: &StaticOptions,
 ) -> Result<AssemblySolution, StaticsError> {
     let model = Model::new(assembly);
-    let mut search = Search::new(&model, options);
+    let mut search = Search::new(&model, options, bores);
     let mut at = search.start();
     for (body, near) in near.into_iter().flatten().enumerate() {
         if let Some(first) = model.first_unknown(body) {
@@ -342,22 +372,25 @@ fn solve_directly(
         }
     }
     search.impose(&mut at);
-    let mut here = search.evaluate(&at);
+    let mut here = search.evaluate(&at)?;
     search.descend(&mut here)?;
     // A cold start on a plane of symmetry can end on a saddle, from which a real race would fall;
     // so leave it along the direction of negative stiffness and descend again.
     for _ in 0..5 {
         let Some(direction) = search.falling_direction(&here) else { break };
-        let trials = [1.0, -1.0].map(|sign| search.evaluate(&(&here.at + &direction * sign)));
+        let [one, other] = [1.0, -1.0].map(|sign| &here.at + &direction * sign);
+        let (one, other) = (search.evaluate(&one)?, search.evaluate(&other)?);
         search.saddles_left += 1;
-        here = trials.into_iter().min_by(|a, b| a.energy.total_cmp(&b.energy)).unwrap_or(here);
+        // The first of two that are alike.
+        here = if other.energy.total_cmp(&one.energy).is_lt() { other } else { one };
         search.descend(&mut here)?;
     }
+    search.check_seats(&here, FAR)?;
     search.check_balls(&here)?;
-    Ok(solution(&search, here))
+    solution(&mut search, here)
 }
 
-fn solution(search: &Search, here: Evaluation) -> AssemblySolution {
+fn solution(search: &mut Search, here: Evaluation) -> Result<AssemblySolution, StaticsError> {
     let model = search.model;
     let bodies = 0..model.assembly.bodies.len();
     let held = &here.gradient + &search.loads;
@@ -365,20 +398,21 @@ fn solution(search: &Search, here: Evaluation) -> AssemblySolution {
         Some(first) => held.fixed_rows::<5>(first).into_owned(),
         None => SVector::zeros(),
     });
-    AssemblySolution {
+    Ok(AssemblySolution {
         coordinates: bodies.map(|body| model.coordinates(body, &here.at)).collect(),
         loads: loads.collect(),
         bearings: (0..model.bearings.len()).map(|i| bearing_state(model, &here, i)).collect(),
+        seats: search.seat_states(&here)?,
         determinacy: search.determinacy(&here),
         saddles_left: search.saddles_left,
         iterations: search.iterations,
         contact_evaluations: search.contact_evaluations,
         residual: search.residual(&here),
         stiffness: here.stiffness,
-    }
+    })
 }
 
-fn check_finite(problem: &StaticProblem) -> Result<(), StaticsError> {
+pub(super) fn check_finite(problem: &StaticProblem) -> Result<(), StaticsError> {
     let loads = problem.conditions.iter().map(|condition| match condition {
         Condition::Load(value) => ("a load", *value),
         Condition::Displacement(value) => ("a displacement", *value),

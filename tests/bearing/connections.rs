@@ -320,6 +320,7 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
     let loads = [200.0, -100.0, 300.0, 1.5, -2.0];
     let held = Place::Held(Pose::identity());
     let loaded = Loaded {
+        axes: Pose::identity(),
         conditions: loads.map(Condition::Load),
         springs: [0.0; 5],
         rest: [0.0; 5],
@@ -329,8 +330,8 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
     let named = |name: &str, place| StaticBody { name: name.into(), place };
     let statics = StaticAssembly {
         bodies: vec![named("body", Place::Loaded(loaded)), named("ground", held)],
-        bearings: Vec::new(),
         connections: vec![connection.clone()],
+        ..StaticAssembly::default()
     };
     let found = solve_assembly(&statics, None, &StaticOptions::default()).unwrap();
     let mut moved = free("body");
@@ -414,6 +415,7 @@ fn on_two_bodies(mut connection: Connection, spring: bool) -> Assembly {
 #[test]
 fn what_a_connection_holds_is_determinate() {
     let loaded = Loaded {
+        axes: Pose::identity(),
         conditions: [200.0, -100.0, 300.0, 1.5, -2.0].map(Condition::Load),
         springs: [0.0; 5],
         rest: [0.0; 5],
@@ -426,8 +428,8 @@ fn what_a_connection_holds_is_determinate() {
             named("body", Place::Loaded(loaded)),
             named("ground", Place::Held(Pose::identity())),
         ],
-        bearings: Vec::new(),
         connections: vec![spring()],
+        ..StaticAssembly::default()
     };
     statics.connections[0].ends = [Mount::at_centre(1), Mount::at_centre(0)];
     let found = solve_assembly(&statics, None, &StaticOptions::default()).unwrap();

@@ -70,8 +70,8 @@ fn on_two(loads: [f64; 5], speed: f64) -> Assembly {
             seated(geometry, "left", -40e-3, false, 1),
             seated(geometry, "right", 40e-3, true, 2),
         ],
-        connections: Vec::new(),
         gravity: GRAVITY,
+        ..Assembly::default()
     }
 }
 
@@ -82,10 +82,11 @@ fn pair(
     preload: [f64; 2],
     reversed: [bool; 2],
     conditions: [Condition; 5],
-) -> StaticAssembly {
+) -> StaticAssembly<'static> {
     let geometry = table_5_3();
     let still = problem(geometry, FREE);
     let loaded = Loaded {
+        axes: Pose::identity(),
         conditions,
         springs: [0.0; 5],
         rest: [0.0; 5],
@@ -116,7 +117,7 @@ fn pair(
             named("the right outer race", held(at[1] + preload[1])),
         ],
         bearings: bearings.into(),
-        connections: Vec::new(),
+        ..StaticAssembly::default()
     }
 }
 

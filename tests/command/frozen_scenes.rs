@@ -50,6 +50,9 @@ fn digest(values: impl IntoIterator<Item = f64>) -> String {
 
 /// Every array of numbers called `state`, and the arrays that a state names as a file, in their order.
 fn states(of: &Value, folder: &Path, to: &mut Vec<f64>) {
+    if let Value::Array(list) = of {
+        list.iter().for_each(|value| states(value, folder, to));
+    }
     let Value::Object(entries) = of else { return };
     for (key, value) in entries {
         match (key.as_str(), value) {

@@ -205,3 +205,44 @@ fn a_tilted_half_of_a_cylinder_is_found() {
     assert!((flat.axis - Vector3::x()).norm() <= 1e-12, "{flat:?}");
     assert!(fit_cylinder(&ring[..2], Vector3::x()).is_none());
 }
+
+/// A pillow block as drawn, its bore somewhere and along Y, is put in its place by the scene.
+#[test]
+fn a_bore_anywhere_along_any_axis_is_put_in_its_place() {
+    let place = Place::new();
+    let mesh = annulus(24, Order::Linear);
+    let printed = |text: &str| {
+        let scene = place.scene("scene.toml", text);
+        let said = succeed(command("statics", &scene, &["--dry"]));
+        // The tables: what is said below names one of several nodes that are equal by symmetry.
+        said.lines().filter(|line| line.starts_with(' ')).collect::<Vec<_>>().join("\n")
+    };
+    let straight = printed(&with_mesh(&place, &mesh, 1, ""));
+    let origin = [0.0, 30e-3, 65e-3];
+    let drawn = TetMesh {
+        nodes: mesh
+            .nodes
+            .iter()
+            .map(|[x, y, z]| [origin[0] + z, origin[1] + x, origin[2] + y])
+            .collect(),
+        ..mesh
+    };
+    let text = with_mesh(&place, &drawn, 1, "");
+    let message = refused(&place, &text);
+    assert!(message.contains("housing.bore"), "{message}");
+    let put = text.replace(
+        "unit = \"m\"",
+        "unit = \"m\"\norigin = [\"0 mm\", \"30 mm\", \"65 mm\"]\naxis = \"y\"",
+    );
+    let moved = printed(&put);
+    let mut numbers = 0;
+    assert_eq!(straight.lines().count(), moved.lines().count());
+    for (one, other) in straight.split_whitespace().zip(moved.split_whitespace()) {
+        let (Ok(a), Ok(b)) = (one.parse::<f64>(), other.parse::<f64>()) else { continue };
+        // Nodes are rounded to 1e-17 m where they lie 0.1 m off, overlaps are 1e-7 m: 1e-10, and the last
+        // digit that is printed.
+        assert!((a - b).abs() <= 2e-6 * a.abs().max(1.0), "{one} and {other}");
+        numbers += 1;
+    }
+    assert!(numbers > 60, "{numbers}");
+}

@@ -340,3 +340,33 @@ fn results_without_a_bore_leave_none_of_earlier_ones() {
     assert_eq!(tables("quasi-static"), [true; 3]);
     assert_eq!(tables("rigid"), [false, false, true]);
 }
+
+/// Elements of the ring are shared, contacts with the race are not; the state of one goes on on the other.
+#[test]
+fn explicit_housings_take_threads_and_keep_their_bits() {
+    let place = Place::new();
+    let numerics = "[numerics]\nend = \"END\"\noutput_interval = \"2 us\"";
+    let text = |end: &str| {
+        // 5760 elements: enough for two threads.
+        let fine = "around = 80, radial = 3, axial = 4";
+        scene_text(
+            "method = \"explicit\"\nfit.radial = \"1 um\"\nfit_ramp = \"2 us\"",
+            &numerics.replace("END", end),
+        )
+        .replace("around = 24, radial = 1, axial = 2", fine)
+    };
+    let scene = place.scene("scene.toml", &text("20 us"));
+    let [one, two] = ["one", "two"].map(|name| place.path(name));
+    succeed(into_folder("run", &scene, &one, &[]));
+    let first = place.scene("first.toml", &text("10 us"));
+    succeed(into_folder("run", &first, &two, &[]));
+    succeed(into_folder("run", &scene, &two, &["--threads", "2", "--resume"]));
+    let summary = |folder: &Path| json(folder.join("summary.json"));
+    assert_eq!(summary(&two)["threads"], 2);
+    let elements = |folder: &Path| summary(folder)["work"]["elements_evaluated"].as_u64().unwrap();
+    assert!(elements(&two) > elements(&one), "elements between two threads are computed by both");
+    assert!(column(&one.join("series.csv"), "bore_nodes_touching").iter().any(|n| *n > 0.0));
+    for name in ["series.csv", "bore.csv"] {
+        assert!(fs::read(one.join(name)).unwrap() == fs::read(two.join(name)).unwrap(), "{name}");
+    }
+}

@@ -65,10 +65,10 @@ fn interrupted_and_extended_courses_end_with_the_same_bytes() {
             "[numerics]\nend = \"{end}\"\noutput_interval = \"10 us\"\nfields_interval = \"2 ms\"\n"
         );
         let pulse =
-            "z = { load = { half_sine = \"-500 N\", start = \"0.2 ms\", duration = \"30 ms\" } }";
+            "z = { load = { half_sine = \"-500 N\", start = \"0.2 ms\", duration = \"130 ms\" } }";
         scene_text("fit.radial = \"-2 um\"", &run).replace("z = { load = \"-250 N\" }", pulse)
     };
-    let scene = place.scene("scene.toml", &numerics("15 ms"));
+    let scene = place.scene("scene.toml", &numerics("60 ms"));
     let (whole, parts) = (place.path("whole"), place.path("parts"));
     let child = start(into_folder("run", &scene, &parts, &["--save-every", "1"]));
     std::thread::sleep(Duration::from_millis(60));
@@ -85,12 +85,12 @@ fn interrupted_and_extended_courses_end_with_the_same_bytes() {
     assert_same_results(&whole, &parts);
     // To a later end.
     let longer = place.path("longer");
-    let scene = place.scene("scene.toml", &numerics("17 ms"));
+    let scene = place.scene("scene.toml", &numerics("62 ms"));
     succeed(into_folder("run", &scene, &longer, &[]));
     succeed(into_folder("run", &scene, &whole, &["--resume"]));
     assert_same_results(&longer, &whole);
     // Of another scene it is refused.
-    let other = numerics("18 ms").replace("-500 N", "-400 N");
+    let other = numerics("63 ms").replace("-500 N", "-400 N");
     let other = place.scene("other.toml", &other);
     let output = into_folder("run", &other, &longer, &["--resume"]).output().unwrap();
     assert!(stderr(&output).contains("another scene"), "{}", stderr(&output));

@@ -10,12 +10,15 @@ use bearing_dynamics::ch2_housing::bore_contact::{ContactNode, Penalty, contact_
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
+use bearing_dynamics::solver::dynamics::assembly::OUTER;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
 use bearing_dynamics::solver::dynamics::state::{SPIN, VELOCITY};
 use bearing_dynamics::solver::housing::exchange::{
-    ExchangeError, ExchangeOptions, HousedBearing, Seat, outer_state,
+    Exchange, ExchangeError, ExchangeOptions, SolidPart,
 };
+use bearing_dynamics::solver::housing::seat::{Seat, SeatState};
+use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::contact::{CylinderContact, CylinderPath};
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_in_contact};
@@ -72,6 +75,9 @@ fn mounted(loads: [f64; 5]) -> DynamicProblem {
 
 fn seat(nodes: Vec<ContactNode>, reach: f64) -> Seat {
     Seat {
+        name: None,
+        mount: Mount::at_centre(OUTER),
+        solid: 0,
         radius: Profile::Constant(RADIUS),
         width: WIDTH,
         penalty: Penalty::default(),
@@ -94,11 +100,20 @@ fn options() -> ExchangeOptions {
     rated(0.8, 0.25, 2e-6)
 }
 
-fn still(model: &SolidModel) -> Vec<[f64; 3]> {
-    vec![[0.0; 3]; model.mass.len()]
+fn joined(
+    problem: DynamicProblem,
+    model: SolidModel,
+    seat: Seat,
+    options: &ExchangeOptions,
+) -> Result<Exchange, ExchangeError> {
+    Exchange::new(problem, vec![SolidPart::undeformed(None, model)], vec![seat], options)
 }
 
-fn start(problem: DynamicProblem, held: bool, damping: f64, reach: f64) -> HousedBearing {
+fn only(housed: &Exchange) -> &SeatState {
+    &housed.solids[0].seats[0]
+}
+
+fn start(problem: DynamicProblem, held: bool, damping: f64, reach: f64) -> Exchange {
     start_with(problem, held, damping, reach, &options())
 }
 
@@ -108,17 +123,18 @@ fn start_with(
     damping: f64,
     reach: f64,
     options: &ExchangeOptions,
-) -> HousedBearing {
+) -> Exchange {
     let (model, nodes) = housing(held, damping);
-    let at = still(&model);
-    HousedBearing::new(problem, model, seat(nodes, reach), at, options).unwrap()
+    joined(problem, model, seat(nodes, reach), options).unwrap()
 }
 
-fn total_momentum(housed: &mut HousedBearing) -> Vector3<f64> {
-    let bearing = momenta(housed.bearing.system.assembly.clone(), &housed.bearing.state).0;
+fn total_momentum(housed: &mut Exchange) -> Vector3<f64> {
+    let bearing = momenta(housed.simulation.system.assembly.clone(), &housed.simulation.state).0;
     // Between kicks the rates of central differences are those of the bearing's time.
     let mut sum = bearing;
-    for (rate, mass) in housed.solid.rates().iter().zip(&housed.solid.model.mass) {
+    for (rate, mass) in
+        housed.solids[0].solid.rates().iter().zip(&housed.solids[0].solid.model.mass)
+    {
         sum += Vector3::new(rate[0], rate[1], rate[2]) * *mass;
     }
     sum
@@ -128,33 +144,35 @@ fn total_momentum(housed: &mut HousedBearing) -> Vector3<f64> {
 fn what_the_housing_gets_the_race_gets() {
     // Nothing is held: a bearing that flies against a free ring.
     let mut housed = start(mounted([0.0; 5]), false, 0.0, f64::INFINITY);
-    let layout = housed.bearing.system.sets[0].layout;
+    let layout = housed.simulation.system.sets[0].layout;
     for i in 0..layout.balls {
-        housed.bearing.state[layout.ball(VELOCITY + 2) + i] += 0.05;
+        housed.simulation.state[layout.ball(VELOCITY + 2) + i] += 0.05;
     }
     for at in [layout.inner(), layout.outer()] {
-        housed.bearing.state[at + VELOCITY + 2] += 0.05;
-        housed.bearing.state[at + VELOCITY + 1] += 0.02;
+        housed.simulation.state[at + VELOCITY + 2] += 0.05;
+        housed.simulation.state[at + VELOCITY + 1] += 0.02;
     }
     let before = total_momentum(&mut housed);
     let mut largest = 0.0f64;
     for _ in 0..4000 {
-        housed.exchange().unwrap();
+        housed.advance().unwrap();
         let error = (total_momentum(&mut housed) - before).norm() / before.norm();
         largest = if error <= largest { largest } else { error };
     }
-    assert!(Vector3::from(housed.impulse).norm() > 0.1 * before.norm(), "they have met");
+    assert!(Vector3::from(only(&housed).impulse).norm() > 0.1 * before.norm(), "they have met");
     println!("momentum {largest:.1e}");
     assert!(largest <= 1e-9, "{largest:e}");
 }
 
 /// Of races, balls and housing about the origin, a point that stands still.
-fn total_angular_momentum(housed: &HousedBearing) -> Vector3<f64> {
-    let mut sum = momenta(housed.bearing.system.assembly.clone(), &housed.bearing.state).1;
+fn total_angular_momentum(housed: &Exchange) -> Vector3<f64> {
+    let mut sum = momenta(housed.simulation.system.assembly.clone(), &housed.simulation.state).1;
     // Places half a step ahead of the rates: along them, which is no lever.
-    let model = &housed.solid.model;
-    let places = model.problem.nodes.iter().zip(&housed.solid.displacement);
-    for ((rate, mass), (place, u)) in housed.solid.rates().iter().zip(&model.mass).zip(places) {
+    let model = &housed.solids[0].solid.model;
+    let places = model.problem.nodes.iter().zip(&housed.solids[0].solid.displacement);
+    for ((rate, mass), (place, u)) in
+        housed.solids[0].solid.rates().iter().zip(&model.mass).zip(places)
+    {
         let place = Vector3::new(place[0] + u[0], place[1] + u[1], place[2] + u[2]);
         sum += place.cross(&Vector3::new(rate[0], rate[1], rate[2])) * *mass;
     }
@@ -165,19 +183,19 @@ fn total_angular_momentum(housed: &HousedBearing) -> Vector3<f64> {
 fn a_tilting_race_turns_the_housing_as_much_as_it_is_held_back() {
     // Nothing is held: the outer race tilts and flies against a free ring.
     let mut housed = start(mounted([0.0; 5]), false, 0.0, f64::INFINITY);
-    let at = housed.bearing.system.sets[0].layout.outer();
+    let at = housed.simulation.system.sets[0].layout.outer();
     for (entry, value) in
         [(VELOCITY + 2, 0.05), (VELOCITY + 1, -0.03), (SPIN + 1, 2.0), (SPIN + 2, 1.0)]
     {
-        housed.bearing.state[at + entry] = value;
+        housed.simulation.state[at + entry] = value;
     }
-    let of_races = |housed: &HousedBearing| {
-        momenta(housed.bearing.system.assembly.clone(), &housed.bearing.state).1
+    let of_races = |housed: &Exchange| {
+        momenta(housed.simulation.system.assembly.clone(), &housed.simulation.state).1
     };
     let (before, races_before) = (total_angular_momentum(&housed), of_races(&housed));
     let (mut largest, mut handed) = (0.0f64, 0.0f64);
     for _ in 0..1000 {
-        housed.exchange().unwrap();
+        housed.advance().unwrap();
         let change = total_angular_momentum(&housed) - before;
         // About its own axis the race is kept from turning by what holds it there.
         let error = change.y.hypot(change.z) / before.norm();
@@ -205,18 +223,18 @@ fn the_energy_of_a_blow_balances() {
         let options = rated(solid_fraction, seat_phase, step);
         let mut housed =
             start_with(blow(mounted([0.0; 5])), true, damping, f64::INFINITY, &options);
-        assert_eq!(housed.solid_steps, if solid_fraction == 0.1 { 5 } else { 1 });
+        assert_eq!(housed.solids[0].steps, if solid_fraction == 0.1 { 5 } else { 1 });
         let mut worst = 0.0f64;
         while housed.time() < 3e-3 {
             for _ in 0..50 {
-                housed.exchange().unwrap();
+                housed.advance().unwrap();
             }
             let snapshot = housed.snapshot().unwrap();
             let part = snapshot.residual.abs() / snapshot.turned_over;
             worst = if part <= worst { worst } else { part };
         }
         let parts = (housed.window / step * (1.0 - 1e-9)).ceil().max(1.0) as u64;
-        assert_eq!(housed.bearing.steps, parts * housed.exchanges);
+        assert_eq!(housed.simulation.steps, parts * housed.exchanges);
         println!("damping {damping}: {worst:.1e}");
         // Measured: 7e-6, 1.6e-5, 1.2e-5, and growing with the square of the window.
         assert!(worst <= 5e-5, "{worst:e}");
@@ -228,7 +246,7 @@ fn the_energy_of_a_blow_balances() {
 fn what_is_turned_over_at_the_start_is_the_preload() {
     let mut housed = start(mounted([0.0; 5]), true, 0.0, f64::INFINITY);
     let snapshot = housed.snapshot().unwrap();
-    let problem = &housed.bearing.system.assembly.bearings[0];
+    let problem = &housed.simulation.system.assembly.bearings[0];
     let [inner, outer] = [problem.inner_contact.stiffness, problem.outer_contact.stiffness];
     // One load: overlaps as stiffness to the power −2/3, 5 µm in sum on either side of a ball.
     let shares = [inner, outer].map(|k: f64| k.powf(-2.0 / 3.0));
@@ -251,10 +269,10 @@ fn the_balance_is_of_second_order() {
         let options = rated(0.8, seat_phase, 2e-6);
         let task = blow(mounted([0.0; 5]));
         let mut housed = start_with(task, true, 0.0, f64::INFINITY, &options);
-        assert_eq!(housed.solid_steps, 1);
+        assert_eq!(housed.solids[0].steps, 1);
         let mut worst = 0.0f64;
         while housed.time() < 4e-4 {
-            housed.exchange().unwrap();
+            housed.advance().unwrap();
             let residual = housed.snapshot().unwrap().residual.abs();
             worst = if residual <= worst { worst } else { residual };
         }
@@ -276,12 +294,12 @@ fn it_settles_where_the_forces_balance() {
         Drive::Load(Profile::SmoothRamp { from: 0.0, to: -load, start: 0.0, duration: 2e-3 });
     let mut housed = start(task, true, 4000.0, f64::INFINITY);
     while housed.time() < 8e-3 {
-        housed.exchange().unwrap();
+        housed.advance().unwrap();
     }
-    let snapshot = housed.snapshot().unwrap();
-    assert!((snapshot.contact.force[2] / load - 1.0).abs() <= 1e-3, "{:?}", snapshot.contact);
+    let contact = housed.snapshot().unwrap().solids[0].seats[0].contact;
+    assert!((contact.force[2] / load - 1.0).abs() <= 1e-3, "{:?}", contact);
     // The housing by Newton's method, pressed by the race where it has settled.
-    let race = outer_state(&housed.bearing);
+    let race = housed.simulation.body(OUTER);
     let (model, nodes) = housing(true, 0.0);
     let pressed = CylinderContact {
         path: CylinderPath {
@@ -295,12 +313,12 @@ fn it_settles_where_the_forces_balance() {
     };
     let options = EquilibriumOptions::default();
     let still = equilibrium_in_contact(&model, 0.0, &pressed, None, &options).unwrap();
-    assert_eq!(still.sum.touching, snapshot.contact.touching);
+    assert_eq!(still.sum.touching, contact.touching);
     let force = still.sum.force[2];
-    assert!((snapshot.contact.force[2] / force - 1.0).abs() <= 1e-3, "{force}");
+    assert!((contact.force[2] / force - 1.0).abs() <= 1e-3, "{force}");
     let lowest = |list: &[[f64; 3]]| list.iter().map(|u| u[2]).fold(0.0, f64::min);
     let moving: Vec<[f64; 3]> =
-        housed.solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect();
+        housed.solids[0].solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect();
     let part = lowest(&moving) / lowest(&still.solid.displacement);
     assert!((part - 1.0).abs() <= 2e-3, "{part}");
 }
@@ -312,12 +330,12 @@ fn nodes_out_of_reach_are_not_tested_and_not_missed() {
         let (model, nodes) = housing(true, 77.0);
         let radius = Profile::Constant(RADIUS - 30e-6);
         let seat = Seat { radius, ..seat(nodes, reach) };
-        let (task, at) = (blow(mounted([0.0; 5])), still(&model));
-        let mut housed = HousedBearing::new(task, model, seat, at, &options()).unwrap();
+        let task = blow(mounted([0.0; 5]));
+        let mut housed = joined(task, model, seat, &options()).unwrap();
         let (mut caught, mut touched) = (0, false);
         for _ in 0..15_000 {
-            housed.exchange().unwrap();
-            let touches = housed.contact.touching > 0;
+            housed.advance().unwrap();
+            let touches = only(&housed).contact.touching > 0;
             caught += usize::from(touches && !touched);
             touched = touches;
         }
@@ -325,13 +343,18 @@ fn nodes_out_of_reach_are_not_tested_and_not_missed() {
         housed
     };
     let (all, some) = (run(f64::INFINITY), run(10e-6));
-    assert_eq!(bits(&all.bearing.state), bits(&some.bearing.state));
-    assert_eq!(all.solid.displacement, some.solid.displacement);
-    assert_eq!(all.tested, 15_000 * all.seat.nodes.len() as u64);
-    assert!(some.tested < all.tested * 3 / 4, "{} of {}", some.tested, all.tested);
-    assert!(some.sorts > 1);
-    let (near, far) = some.counts();
-    assert_eq!(near + far, some.seat.nodes.len());
+    assert_eq!(bits(&all.simulation.state), bits(&some.simulation.state));
+    assert_eq!(all.solids[0].solid.displacement, some.solids[0].solid.displacement);
+    assert_eq!(only(&all).tested, 15_000 * only(&all).seat.nodes.len() as u64);
+    assert!(
+        only(&some).tested < only(&all).tested * 3 / 4,
+        "{} of {}",
+        only(&some).tested,
+        only(&all).tested
+    );
+    assert!(only(&some).sorts > 1);
+    let (near, far) = only(&some).counts();
+    assert_eq!(near + far, only(&some).seat.nodes.len());
 }
 
 /// An interference that grows in does its work at the time of the contact, half a step of the housing ahead.
@@ -341,11 +364,10 @@ fn the_work_of_a_growing_fit_is_that_of_the_present_contact() {
     let (to, duration) = (RADIUS + 5e-6, 2e-4);
     let radius = Profile::SmoothRamp { from: RADIUS, to, start: 0.0, duration };
     let seat = Seat { radius, ..seat(nodes, f64::INFINITY) };
-    let at = still(&model);
-    let mut housed = HousedBearing::new(mounted([0.0; 5]), model, seat, at, &options()).unwrap();
+    let mut housed = joined(mounted([0.0; 5]), model, seat, &options()).unwrap();
     let mut worst = 0.0f64;
     while housed.time() < 1.5 * duration {
-        housed.exchange().unwrap();
+        housed.advance().unwrap();
         let snapshot = housed.snapshot().unwrap();
         let part = snapshot.residual.abs() / snapshot.turned_over;
         worst = if part <= worst { worst } else { part };
@@ -363,20 +385,23 @@ fn nodes_that_a_growing_race_reaches_are_not_missed() {
         let (from, to) = (RADIUS - 40e-6, RADIUS + 5e-6);
         let radius = Profile::SmoothRamp { from, to, start: 0.0, duration: 2e-4 };
         let seat = Seat { radius, ..seat(nodes, reach) };
-        let at = still(&model);
-        let mut housed =
-            HousedBearing::new(mounted([0.0; 5]), model, seat, at, &options()).unwrap();
+        let mut housed = joined(mounted([0.0; 5]), model, seat, &options()).unwrap();
         while housed.time() < 3e-4 {
-            housed.exchange().unwrap();
+            housed.advance().unwrap();
         }
         housed
     };
     let (all, some) = (run(f64::INFINITY), run(10e-6));
-    assert!(some.tested < all.tested, "{} of {}", some.tested, all.tested);
-    assert!(all.contact.touching > 0);
-    assert_eq!(some.contact.touching, all.contact.touching);
-    assert_eq!(bits(&all.bearing.state), bits(&some.bearing.state));
-    assert_eq!(all.solid.displacement, some.solid.displacement);
+    assert!(
+        only(&some).tested < only(&all).tested,
+        "{} of {}",
+        only(&some).tested,
+        only(&all).tested
+    );
+    assert!(only(&all).contact.touching > 0);
+    assert_eq!(only(&some).contact.touching, only(&all).contact.touching);
+    assert_eq!(bits(&all.simulation.state), bits(&some.simulation.state));
+    assert_eq!(all.solids[0].solid.displacement, some.solids[0].solid.displacement);
 }
 
 #[test]
@@ -388,12 +413,11 @@ fn a_contact_a_thousand_times_as_stiff_takes_shorter_windows_and_balances() {
             Seat { penalty: Penalty::PerArea(factor * stiffness), ..seat(nodes, f64::INFINITY) };
         let mut struck = blow(mounted([0.0; 5]));
         struck.inner.drives[2] = Drive::Load(Profile::Constant(-2500.0));
-        let at = still(&model);
-        let mut housed = HousedBearing::new(struck, model, seat, at, &options()).unwrap();
+        let mut housed = joined(struck, model, seat, &options()).unwrap();
         let mut worst = 0.0f64;
         while housed.time() < end {
             for _ in 0..500 {
-                housed.exchange().unwrap();
+                housed.advance().unwrap();
             }
             let snapshot = housed.snapshot().unwrap();
             let part = snapshot.residual.abs() / snapshot.turned_over;
@@ -406,7 +430,10 @@ fn a_contact_a_thousand_times_as_stiff_takes_shorter_windows_and_balances() {
     let (hard, worst) = run(1000.0, 5e-5);
     let shorter = soft.window / hard.window;
     assert!((shorter / 1000f64.sqrt() - 1.0).abs() <= 0.01, "{shorter}");
-    assert!(hard.contact.touching > 0 && hard.contact.deepest < 0.1 * soft.contact.deepest);
+    assert!(
+        only(&hard).contact.touching > 0
+            && only(&hard).contact.deepest < 0.1 * only(&soft).contact.deepest
+    );
     println!("residual {worst:.1e}");
     assert!(worst <= 1e-4, "{worst:e}");
 }
@@ -417,17 +444,15 @@ fn a_contact_a_thousand_times_as_stiff_takes_shorter_windows_and_balances() {
 fn a_tilted_race_keeps_its_rims() {
     const ROOM: f64 = 20e-6;
     let (model, nodes) = housing(true, 77.0);
-    let at = still(&model);
     let loose = Seat { radius: Profile::Constant(RADIUS - ROOM), ..seat(nodes, f64::INFINITY) };
     let problem = mounted([0.0, 0.0, -100.0, 2.0, 0.0]);
-    let mut housed =
-        HousedBearing::new(problem, model, loose, at, &rated(0.8, 0.125, 2e-6)).unwrap();
+    let mut housed = joined(problem, model, loose, &rated(0.8, 0.125, 2e-6)).unwrap();
     let (mut farthest, mut worst): (f64, f64) = (0.0, 0.0);
     while housed.time() < 5e-3 {
         for _ in 0..200 {
-            housed.exchange().unwrap();
+            housed.advance().unwrap();
         }
-        let axis = outer_state(&housed.bearing).orientation * Vector3::x();
+        let axis = housed.simulation.body(OUTER).orientation * Vector3::x();
         farthest = farthest.max((axis.y * axis.y + axis.z * axis.z).sqrt());
         let now = housed.snapshot().unwrap();
         worst = worst.max(now.residual.abs() / now.turned_over);
@@ -443,18 +468,18 @@ fn a_tilted_race_keeps_its_rims() {
 #[test]
 fn a_race_that_leaves_its_bore_ends_the_run() {
     let mut housed = start(mounted([0.0; 5]), true, 77.0, f64::INFINITY);
-    let layout = housed.bearing.system.sets[0].layout;
+    let layout = housed.simulation.system.sets[0].layout;
     for at in [layout.inner(), layout.outer()] {
-        housed.bearing.state[at + VELOCITY] = 20.0;
+        housed.simulation.state[at + VELOCITY] = 20.0;
     }
     for i in 0..layout.balls {
-        housed.bearing.state[layout.ball(VELOCITY) + i] = 20.0;
+        housed.simulation.state[layout.ball(VELOCITY) + i] = 20.0;
     }
-    let error = (0..20_000).find_map(|_| housed.exchange().err()).expect("an error");
+    let error = (0..20_000).find_map(|_| housed.advance().err()).expect("an error");
     let ExchangeError::LeftBore { way, distance, allowed, .. } = &error else {
         panic!("{error}");
     };
-    assert_eq!((*way, *allowed), ("along the axis", housed.rim));
+    assert_eq!((*way, *allowed), ("along the axis", only(&housed).rim));
     // Looked at every 16 windows.
     assert!(*distance > *allowed && *distance <= 1.01 * allowed, "{error}");
 }
@@ -465,18 +490,16 @@ fn a_race_that_hangs_in_the_wall_ends_the_run() {
     let soft = |nodes| Seat { penalty: Penalty::PerArea(1e6), ..seat(nodes, f64::INFINITY) };
     for axis in [1, 2] {
         let (model, nodes) = housing(true, 77.0);
-        let at = still(&model);
         let short = rated(0.8, 2e-5, 2e-6);
-        let mut housed =
-            HousedBearing::new(mounted([0.0; 5]), model, soft(nodes), at, &short).unwrap();
-        let layout = housed.bearing.system.sets[0].layout;
+        let mut housed = joined(mounted([0.0; 5]), model, soft(nodes), &short).unwrap();
+        let layout = housed.simulation.system.sets[0].layout;
         for at in [layout.inner(), layout.outer()] {
-            housed.bearing.state[at + VELOCITY + axis] = -40.0;
+            housed.simulation.state[at + VELOCITY + axis] = -40.0;
         }
         for i in 0..layout.balls {
-            housed.bearing.state[layout.ball(VELOCITY + axis) + i] = -40.0;
+            housed.simulation.state[layout.ball(VELOCITY + axis) + i] = -40.0;
         }
-        let error = (0..20_000).find_map(|_| housed.exchange().err()).expect("an error");
+        let error = (0..20_000).find_map(|_| housed.advance().err()).expect("an error");
         let ExchangeError::LeftBore { way, distance, allowed, .. } = &error else {
             panic!("{error}");
         };
@@ -491,16 +514,19 @@ fn a_race_that_hangs_in_the_wall_ends_the_run() {
 fn what_cannot_be_run_is_refused_by_name() {
     let (model, nodes) = housing(true, 0.0);
     let try_with = |problem: DynamicProblem, nodes: &[ContactNode], options: ExchangeOptions| {
-        let at = still(&model);
         let seat = seat(nodes.to_vec(), f64::INFINITY);
-        HousedBearing::new(problem, model.clone(), seat, at, &options).err().expect("an error")
+        joined(problem, model.clone(), seat, &options).err().expect("an error")
     };
     let fixed = bearing(table_4_1(-5e-6), [0.0; 5], 0.0);
-    assert_eq!(try_with(fixed, &nodes, options()), ExchangeError::FixedRace);
+    let race = "the outer race".to_string();
+    assert_eq!(try_with(fixed, &nodes, options()), ExchangeError::FixedRace { race: race.clone() });
     let mut sprung = mounted([0.0; 5]);
     sprung.outer.as_mut().unwrap().foundation_damping[2] = 1.0;
-    assert_eq!(try_with(sprung, &nodes, options()), ExchangeError::Foundation);
-    assert_eq!(try_with(mounted([0.0; 5]), &[], options()), ExchangeError::NoSeat);
+    assert_eq!(try_with(sprung, &nodes, options()), ExchangeError::Foundation { race });
+    assert_eq!(
+        try_with(mounted([0.0; 5]), &[], options()),
+        ExchangeError::NoSeat { seat: String::new() }
+    );
     for phase in [0.0, 2.0, f64::NAN] {
         let refused = try_with(mounted([0.0; 5]), &nodes, rated(0.8, phase, 2e-6));
         assert!(matches!(refused, ExchangeError::Option { .. }), "{refused}");

@@ -11,3 +11,6 @@ mod housing_assembly;
 mod housing_bore;
 mod housing_exchange;
 mod housing_nonlinear;
+mod housing_reduced;
+mod housing_seats;
+mod several_housings;

@@ -13,7 +13,7 @@ use bearing_dynamics::solver::solid::model::{
 };
 use bearing_dynamics::solver::solid::step_limit::{step_limit, step_limit_within};
 use bearing_dynamics::solver::solid::tangent::MassMatrix;
-use bearing_dynamics::solver::solid::team::Team;
+use bearing_dynamics::solver::solid::team::Crew;
 use proptest::prelude::*;
 use solid_common::{DENSITY, cut_cubes, solid};
 
@@ -380,11 +380,11 @@ fn threads_change_no_bit() {
         }
         for threads in [2, 3] {
             let mut shared = make();
-            let mut team = Team::new(&shared, threads);
-            assert!(team.elements() > shared.model.problem.elements.len());
-            team.advance(10).unwrap();
-            team.advance(20).unwrap();
-            team.gather(&mut shared);
+            shared.share(&Crew::new(threads), threads);
+            assert!(shared.elements_a_step() > shared.model.problem.elements.len());
+            for _ in 0..30 {
+                shared.step(|_, _, _| {}).unwrap();
+            }
             assert!(shared.steps == 30 && shared.time.to_bits() == alone.time.to_bits());
             for (a, b) in shared.displacement.iter().zip(&alone.displacement) {
                 assert!(a[..3].iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits()));

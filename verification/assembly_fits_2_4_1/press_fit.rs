@@ -5,6 +5,7 @@ use bearing_dynamics::ch2_housing::bore_contact::{Penalty, REFERENCE_AREA, STEEL
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::solver::housing::bore_equilibrium::{BoreSearch, RaceLoad};
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::housed::race_under_load;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel};
 
@@ -33,8 +34,11 @@ struct Pressure {
 
 fn pressed(bore: &CondensedBore, stiffness: f64) -> Result<Pressure, CaseError> {
     let penalty = Penalty::PerArea(stiffness);
-    let state =
-        BoreSearch::new(bore, penalty).under_load(&fit(INTERFERENCE), &RaceLoad::default())?;
+    let state = race_under_load(
+        &mut BoreSearch::new(bore, penalty),
+        &fit(INTERFERENCE),
+        &RaceLoad::default(),
+    )?;
     let area: f64 = bore.nodes.iter().map(|node| node.area).sum();
     let mean = state.loads.iter().sum::<f64>() / area;
     Ok(Pressure { mean, peak: largest(state.pressure(bore)) })

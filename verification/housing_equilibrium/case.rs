@@ -18,6 +18,8 @@ use crate::oracles::elastic::ElasticBody;
 use crate::oracles::seated::{self, Distance, Seat, SeatNode, Seated};
 use crate::solids::{STEEL, Vec3, largest, name_of};
 
+mod two_housings;
+
 pub const CASE: Case = Case {
     id: "housing_equilibrium",
     title: "A bearing in its housing, against a condensed solution of its own",
@@ -115,12 +117,16 @@ struct Placed {
 }
 
 impl Placed {
+    fn at_home() -> Placed {
+        Placed { turn: Rotation3::identity(), centre: Vector3::zeros() }
+    }
+
     fn of(variant: &Variant) -> Placed {
         if variant.turned {
             let centre = Vector3::new(0.11, -0.07, 0.23);
             return Placed { turn: Rotation3::from_euler_angles(0.7, -1.1, 2.3), centre };
         }
-        Placed { turn: Rotation3::identity(), centre: Vector3::zeros() }
+        Placed::at_home()
     }
 
     fn world(&self, place: Vec3) -> Vec3 {
@@ -441,6 +447,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     for variant in &VARIANTS {
         rows.push(compare(context, variant)?);
     }
+    two_housings::compare(context)?;
     context.table(
         "variants",
         "Outer race in its bore, ours against the oracle's; both take the mesh and the nodes' shares of the bore as given",

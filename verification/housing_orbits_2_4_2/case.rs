@@ -75,7 +75,7 @@ struct Turn {
     unknowns: usize,
     nodes: usize,
     seconds: f64,
-    rounds: usize,
+    iterations: usize,
     changes: usize,
 }
 
@@ -168,7 +168,7 @@ fn turn(
         unknowns: bore.sizes.unknowns,
         nodes: bore.sizes.kept,
         seconds,
-        rounds: moments.iter().map(|moment| moment.state.rounds).sum(),
+        iterations: moments.iter().map(|moment| moment.state.iterations).sum(),
         changes: moments.iter().map(|moment| moment.state.contact_changes).sum(),
         outer,
     };
@@ -263,7 +263,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 format!("{:.2}", 1e9 * mean(&radii(&turn.outer))),
                 if variant == FINEST { "–".into() } else { format!("{:.2}", 100.0 * error) },
                 format!("{:.2}", turn.seconds),
-                turn.rounds.to_string(),
+                turn.iterations.to_string(),
                 turn.changes.to_string(),
             ]);
             if variant == LADDER[4] {

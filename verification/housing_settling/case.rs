@@ -5,13 +5,13 @@ use std::time::Instant;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::solver::dynamics::assembly::{INNER, OUTER};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::dynamics::state::{BODY, BodyState};
-use bearing_dynamics::solver::housing::assembly::AssemblyState;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::exchange::{
-    ExchangeOptions, HousedBearing, Seat, outer_state,
-};
+use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::solver::housing::housed::HousedState;
+use bearing_dynamics::solver::housing::seat::Seat;
+use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 
 use crate::case::{Case, CaseError, Tier};
@@ -62,13 +62,13 @@ fn loads(part: f64) -> [f64; 5] {
     [0.0, part * LOAD[0], part * LOAD[1], 0.0, 0.0]
 }
 
-fn equilibrium(bore: &CondensedBore, problem: &DynamicProblem) -> Result<AssemblyState, CaseError> {
+fn equilibrium(bore: &CondensedBore, problem: &DynamicProblem) -> Result<HousedState, CaseError> {
     let held = DynamicProblem { outer: None, ..problem.clone() };
     let still = held.statics(0.0);
     Ok(housings::search(bore).solve(&still, &housings::fit(0.0), [0.0; 3])?)
 }
 
-fn places(state: &AssemblyState) -> Places {
+fn places(state: &HousedState) -> Places {
     let (inner, outer) = (&state.bearing.coordinates, &state.bore.pose);
     [[inner[1], inner[2]], [outer[0], outer[1]]]
 }
@@ -93,6 +93,9 @@ fn settle(letter: char, cells: [usize; 3], order: Order) -> Result<Settled, Case
     let [y, z, xi, lambda] = first.bore.pose;
     problem.outer_start = [0.0, y, z, xi, lambda];
     let seat = Seat {
+        name: None,
+        mount: Mount::at_centre(OUTER),
+        solid: 0,
         radius: Profile::Constant(BORE_RADIUS),
         width: WIDTH,
         penalty: Penalty::default(),
@@ -104,18 +107,23 @@ fn settle(letter: char, cells: [usize; 3], order: Order) -> Result<Settled, Case
     let displacement = bore.displacement(&first.bore.loads);
     let elements = model.problem.elements.len();
     let clock = Instant::now();
-    let mut housed = HousedBearing::new(problem, model, seat, displacement, &options)?;
+    let mut housed = Exchange::new(
+        problem,
+        vec![SolidPart { name: None, model, displacement }],
+        vec![seat],
+        &options,
+    )?;
     while housed.time() < END {
-        housed.exchange()?;
+        housed.advance()?;
     }
     let snapshot = housed.snapshot()?;
-    let at = housed.bearing.system.sets[0].layout.inner();
-    let inner = BodyState::from_slice(&housed.bearing.state[at..at + BODY]).position;
-    let outer = outer_state(&housed.bearing).position;
+    let force = snapshot.solids[0].seats[0].contact.force;
+    let inner = housed.simulation.body(INNER).position;
+    let outer = housed.simulation.body(OUTER).position;
     Ok(Settled {
         still: places(&still),
         moving: [[inner[1], inner[2]], [outer[1], outer[2]]],
-        force: [snapshot.contact.force[1], snapshot.contact.force[2]],
+        force: [force[1], force[2]],
         residual: snapshot.residual.abs() / snapshot.turned_over,
         windows: housed.exchanges,
         elements,

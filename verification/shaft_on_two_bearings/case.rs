@@ -107,10 +107,11 @@ impl Shaft {
     }
 
     /// What the program makes of it.
-    fn assembly(&self) -> Result<StaticAssembly, CaseError> {
+    fn assembly(&self) -> Result<StaticAssembly<'static>, CaseError> {
         let [left, right] = &self.ends;
         let radius = left.lengths.ball_radius.min(right.lengths.ball_radius);
         let loaded = Loaded {
+            axes: Pose::identity(),
             conditions: self.loads.map(Condition::Load),
             springs: [0.0; 5],
             rest: [0.0; 5],
@@ -143,7 +144,7 @@ impl Shaft {
                 centrifugal: 0.0,
             });
         }
-        Ok(StaticAssembly { bodies, bearings, connections: Vec::new() })
+        Ok(StaticAssembly { bodies, bearings, ..StaticAssembly::default() })
     }
 
     /// What the independent solver makes of it.

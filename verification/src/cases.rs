@@ -40,6 +40,8 @@ mod kinematic_frequencies;
 mod line_contact_plane_strain;
 #[path = "../misalignment_moment/case.rs"]
 mod misalignment_moment;
+#[path = "../reduced_housing/case.rs"]
+mod reduced_housing;
 #[path = "../rod_wave/case.rs"]
 mod rod_wave;
 #[path = "../rotating_load_orbit/case.rs"]
@@ -94,6 +96,7 @@ pub const CASES: &[Case] = &[
     assembly_fits_2_4_1::CASE,
     housing_orbits_2_4_2::CASE,
     housing_inertia_estimate::CASE,
+    reduced_housing::CASE,
     steel_load_rates_2_4_3::CASE,
     steel_impact_2_4_3::CASE,
 ];

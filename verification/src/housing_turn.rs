@@ -5,12 +5,13 @@ use std::f64::consts::TAU;
 
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::TetMesh;
+use bearing_dynamics::solver::dynamics::assembly::OUTER;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
-use bearing_dynamics::solver::housing::assembly::{AssemblySearch, AssemblyState};
-use bearing_dynamics::solver::housing::exchange::{
-    ExchangeOptions, HousedBearing, Seat, outer_state,
-};
+use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState};
 use bearing_dynamics::solver::housing::quasi_static::{Course, Moment, history};
+use bearing_dynamics::solver::housing::seat::Seat;
+use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::SolidModel;
 
@@ -70,10 +71,10 @@ impl Turning {
 
 /// One equilibrium after the other, `visit` called after each.
 pub fn equilibria(
-    search: &mut AssemblySearch,
+    search: &mut HousedSearch,
     turning: &Turning,
     times: &[f64],
-    mut visit: impl FnMut(&AssemblySearch, &Moment),
+    mut visit: impl FnMut(&HousedSearch, &Moment),
 ) -> Result<Vec<Moment>, CaseError> {
     let bearing = housings::bearing()?;
     let mut moments = Vec::new();
@@ -96,7 +97,7 @@ pub fn equilibria(
 }
 
 /// y and z of the outer race, m.
-pub fn outer_place(state: &AssemblyState) -> [f64; 2] {
+pub fn outer_place(state: &HousedState) -> [f64; 2] {
     [state.bore.pose[0], state.bore.pose[1]]
 }
 
@@ -119,6 +120,9 @@ pub struct ExplicitTurn {
 /// The seat of Table 2.2's outer race in a bore.
 pub fn seat(mesh: &TetMesh) -> Result<Seat, CaseError> {
     Ok(Seat {
+        name: None,
+        mount: Mount::at_centre(OUTER),
+        solid: 0,
         radius: Profile::Constant(BORE_RADIUS),
         width: WIDTH,
         penalty: Penalty::default(),
@@ -140,7 +144,7 @@ pub fn options() -> ExchangeOptions {
 pub fn explicit(
     mesh: &TetMesh,
     model: SolidModel,
-    start: &AssemblyState,
+    start: &HousedState,
     displacement: Vec<[f64; 3]>,
     turning: &Turning,
 ) -> Result<ExplicitTurn, CaseError> {
@@ -156,9 +160,14 @@ pub fn explicit(
     let elements = model.problem.elements.len();
     let radius = Profile::Constant(BORE_RADIUS + turning.interference);
     let seat = Seat { radius, ..seat(mesh)? };
-    let mut housed = HousedBearing::new(problem, model, seat, displacement, &options())?;
-    let place = |housed: &HousedBearing| {
-        let [_, y, z] = outer_state(&housed.bearing).position;
+    let mut housed = Exchange::new(
+        problem,
+        vec![SolidPart { name: None, model, displacement }],
+        vec![seat],
+        &options(),
+    )?;
+    let place = |housed: &Exchange| {
+        let [_, y, z] = housed.simulation.body(OUTER).position;
         (housed.time(), [y, z])
     };
     let watch = Stopwatch::start();
@@ -168,7 +177,7 @@ pub fn explicit(
         let mut before = now;
         while now.0 < time {
             before = now;
-            housed.exchange()?;
+            housed.advance()?;
             now = place(&housed);
         }
         // A window is next to nothing of a turn; at the start there is none yet.
@@ -181,7 +190,7 @@ pub fn explicit(
         outer,
         window: housed.window,
         windows: housed.exchanges,
-        solid_steps: housed.solid_steps,
+        solid_steps: housed.solids[0].steps,
         elements,
         residual,
         seconds: watch.seconds(),

@@ -9,9 +9,9 @@ use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::mesh::generate::{Housing, HousingMesh, PillowBlock};
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::solver::dynamics::model::{DynamicProblem, RaceBody, Rotation};
-use bearing_dynamics::solver::housing::assembly::{AssemblyOptions, AssemblySearch};
 use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreSearch, BoreState, Fit};
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, Reach, condense};
+use bearing_dynamics::solver::housing::housed::HousedSearch;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel};
 use bearing_dynamics::solver::statics::{Condition, StaticProblem};
@@ -105,8 +105,8 @@ pub fn fit(interference: f64) -> Fit {
     Fit { radius, axial: Axial::Held }
 }
 
-pub fn search(bore: &CondensedBore) -> AssemblySearch<'_> {
-    AssemblySearch::new(BoreSearch::new(bore, Penalty::default()), AssemblyOptions::default())
+pub fn search(bore: &CondensedBore) -> HousedSearch<'_> {
+    HousedSearch::new(BoreSearch::new(bore, Penalty::default()))
 }
 
 /// The bearing with all coordinates of its inner race driven by loads, zero until a course sets them.

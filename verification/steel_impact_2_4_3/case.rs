@@ -5,10 +5,14 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::solver::dynamics::assembly::INNER;
+use bearing_dynamics::solver::dynamics::assembly::OUTER;
 use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, VELOCITY};
 use bearing_dynamics::solver::housing::bore_equilibrium::{BoreSearch, RaceLoad};
-use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, HousedBearing, Seat};
+use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::solver::housing::housed::race_under_load;
+use bearing_dynamics::solver::housing::seat::Seat;
+use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::SolidModel;
 
@@ -73,8 +77,11 @@ fn run_with([young, damping]: [f64; 2]) -> Result<History, CaseError> {
     let model = SolidModel::new(problem)?;
     let bore = condensed(&mesh, &model)?;
     let fit = housings::fit(INTERFERENCE);
-    let fitted = BoreSearch::new(&bore, Penalty::default())
-        .under_load(&fit, &RaceLoad { force: [0.0; 3], moment: [0.0; 3] })?;
+    let fitted = race_under_load(
+        &mut BoreSearch::new(&bore, Penalty::default()),
+        &fit,
+        &RaceLoad::default(),
+    )?;
     let mut problem = mounted([0.0; 5])?;
     problem.inner.drives[2] = Drive::Load(impact());
     let outer = problem.outer.as_ref().map_or(f64::NAN, |outer| outer.inertia.mass);
@@ -85,6 +92,9 @@ fn run_with([young, damping]: [f64; 2]) -> Result<History, CaseError> {
         ..History::default()
     };
     let seat = Seat {
+        name: None,
+        mount: Mount::at_centre(OUTER),
+        solid: 0,
         radius: Profile::Constant(fit.radius),
         width: WIDTH,
         penalty: Penalty::default(),
@@ -97,14 +107,19 @@ fn run_with([young, damping]: [f64; 2]) -> Result<History, CaseError> {
         bearing: motion::fixed_step(2e-6),
     };
     let displacement = bore.displacement(&fitted.loads);
-    let mut housed = HousedBearing::new(problem, model, seat, displacement, &options)?;
+    let mut housed = Exchange::new(
+        problem,
+        vec![SolidPart { name: None, model, displacement }],
+        vec![seat],
+        &options,
+    )?;
     while housed.time() < END {
         let before = history.force.last().copied().unwrap_or(0.0);
         for _ in 0..EVERY {
-            housed.exchange()?;
+            housed.advance()?;
         }
-        housed.bearing.snapshot()?;
-        let force = housed.bearing.system.sets[0].on_races[1].force[2];
+        housed.simulation.snapshot()?;
+        let force = housed.simulation.system.sets[0].on_races[1].force[2];
         history.impulse += 0.5 * (force + before) * EVERY as f64 * housed.window;
         history.times.push(housed.time());
         history.force.push(force);
@@ -115,7 +130,7 @@ fn run_with([young, damping]: [f64; 2]) -> Result<History, CaseError> {
         }
     }
     history.windows = housed.exchanges;
-    let bearing = &housed.bearing;
+    let bearing = &housed.simulation;
     let layout = bearing.system.sets[0].layout;
     let inner = BodyState::from_slice(&bearing.state[layout.inner()..layout.inner() + BODY]);
     let ball = |i| layout.ball_vector(&bearing.state, VELOCITY, i)[2];

@@ -5,11 +5,13 @@ use std::f64::consts::TAU;
 
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
+use bearing_dynamics::solver::dynamics::assembly::OUTER;
 use bearing_dynamics::solver::dynamics::model::Drive;
-use bearing_dynamics::solver::housing::assembly::AssemblyState;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::exchange::{HousedBearing, Seat, outer_state};
+use bearing_dynamics::solver::housing::exchange::{Exchange, SolidPart};
+use bearing_dynamics::solver::housing::housed::HousedState;
 use bearing_dynamics::solver::housing::quasi_static::{Course, history};
+use bearing_dynamics::solver::housing::seat::Seat;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::SolidModel;
 use bearing_dynamics::solver::statics::Condition;
@@ -60,14 +62,14 @@ struct Motion {
     windows: u64,
 }
 
-fn drop_of(first: &AssemblyState, state: &AssemblyState) -> f64 {
+fn drop_of(first: &HousedState, state: &HousedState) -> f64 {
     first.bore.pose[1] - state.bore.pose[1]
 }
 
 /// Equilibria under growing loads, and a frequency (Hz) below which bearing and bushing do not vibrate along the load:
 /// Dunkerley's 1/ω² ≤ Σ m u/F over the masses, each with its own compliance, the softest on the way. The
 /// balls count as much as the inner race moves.
-fn equilibria(bore: &CondensedBore) -> Result<(AssemblyState, Path, f64), CaseError> {
+fn equilibria(bore: &CondensedBore) -> Result<(HousedState, Path, f64), CaseError> {
     let mut search = search(bore);
     let mut bearing = housings::bearing()?;
     let mut solve = |load: f64| {
@@ -98,7 +100,7 @@ fn moved(
     mesh: &TetMesh,
     model: &SolidModel,
     bore: &CondensedBore,
-    first: &AssemblyState,
+    first: &HousedState,
     duration: f64,
 ) -> Result<Motion, CaseError> {
     let rise = Profile::SmoothRamp { from: 0.0, to: LOAD, start: 0.0, duration };
@@ -111,14 +113,19 @@ fn moved(
     let seat = Seat { radius, ..housing_turn::seat(mesh)? };
     let displacement = bore.displacement(&first.bore.loads);
     let options = housing_turn::options();
-    let mut housed = HousedBearing::new(problem, model.clone(), seat, displacement, &options)?;
+    let mut housed = Exchange::new(
+        problem,
+        vec![SolidPart { name: None, model: model.clone(), displacement }],
+        vec![seat],
+        &options,
+    )?;
     let mut path = vec![[0.0, 0.0]];
     let end = f64::max((1.0 + AFTER) * duration, LEAST);
     while housed.time() < end {
         for _ in 0..EVERY {
-            housed.exchange()?;
+            housed.advance()?;
         }
-        let [_, _, now] = outer_state(&housed.bearing).position;
+        let [_, _, now] = housed.simulation.body(OUTER).position;
         path.push([rise.value(housed.time()), z - now]);
     }
     let snapshot = housed.snapshot()?;

@@ -20,7 +20,7 @@ use std::time::Instant;
 pub struct Found<'s> {
     /// Of the bearings.
     pub names: Vec<&'s str>,
-    pub assembly: StaticAssembly,
+    pub assembly: StaticAssembly<'static>,
     pub solution: AssemblySolution,
     pub remarks: Vec<String>,
     pub record: RunRecord,

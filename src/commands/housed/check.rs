@@ -1,6 +1,8 @@
 //! `bearing check` of a bearing in its housing.
 
-use super::{condensed, defaults, echo, mesh_text, prepare, refuse_moving, shape_text};
+use super::{
+    condensed, defaults, echo, mesh_text, prepare, refuse_moved_supports, refuse_moving, shape_text,
+};
 use crate::commands::check::{bearing_lines, bodies, stepping};
 use crate::commands::solid::mesh_notes;
 use crate::commands::{CommandResult, Outcome, echo_run, say};
@@ -26,6 +28,12 @@ pub fn run(path: &Path, document: &Document, scene: &HousedScene, json: bool) ->
     if scene.housing.method == HousingMethod::QuasiStatic {
         refuse_moving(document, scene)?;
         // What cannot be condensed cannot be run.
+        if free_motions(&setup.solid.problem).count > 0 {
+            condensed(&prepared)?;
+        }
+    }
+    if scene.housing.method == HousingMethod::Reduced {
+        refuse_moved_supports(document, scene)?;
         if free_motions(&setup.solid.problem).count > 0 {
             condensed(&prepared)?;
         }
@@ -114,6 +122,14 @@ fn motion(scene: &HousedScene) -> Vec<(&'static str, String)> {
             ("run", format!("to t = {end} s, an equilibrium every {interval} s")),
             ("motion", "none but along the equilibria: inertia is left out".into()),
         ],
+        HousingMethod::Reduced => {
+            let mut said = vec![
+                ("run", format!("to t = {end} s, a row every {interval} s")),
+                ("steps", format!("{}, of bearing and housing together", stepping(run))),
+            ];
+            said.extend(bodies(&scene.bearing));
+            said
+        }
         HousingMethod::Explicit => {
             let windows = format!(
                 "windows of {} of the seat's phase; the housing by central differences, {} of the \

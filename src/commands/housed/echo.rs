@@ -14,6 +14,7 @@ pub fn method(scene: &HousedScene) -> &'static str {
     match scene.housing.method {
         HousingMethod::QuasiStatic => "quasi-static",
         HousingMethod::Explicit => "explicit",
+        HousingMethod::Reduced => "reduced",
     }
 }
 
@@ -34,7 +35,7 @@ pub fn scene(scene: &HousedScene) -> Result<Value, Box<dyn Error>> {
 /// How a run is computed; of a course of equilibria what has a meaning without steps.
 fn numerics(scene: &HousedScene, run: &RunSettings) -> Result<Value, ResultsError> {
     let mut echo = match scene.housing.method {
-        HousingMethod::Explicit => echo_run::numerics(run)?,
+        HousingMethod::Explicit | HousingMethod::Reduced => echo_run::numerics(run)?,
         HousingMethod::QuasiStatic => json!({
             "end": quantity("end", run.end, "s")?,
             "output_interval": quantity("output_interval", run.output_interval, "s")?,
@@ -82,6 +83,9 @@ fn housing(scene: &HousedScene) -> Result<Value, ResultsError> {
         {
             echo.insert(name.into(), quantity(name, value, "1")?);
         }
+    }
+    if let Some(modes_to) = housing.modes_to {
+        echo.insert("modes_to".into(), quantity("modes_to", modes_to, "Hz")?);
     }
     Ok(Value::Object(echo))
 }

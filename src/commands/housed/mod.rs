@@ -3,6 +3,7 @@
 pub mod check;
 pub mod echo;
 pub mod plan;
+pub mod reduced;
 pub mod statics;
 
 use super::memory::watched;
@@ -15,13 +16,15 @@ use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::session::{HousedParts, RunRequest};
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
-use bearing_dynamics::scene::housing_problem::{HousingSetup, check_constant, excitations, setup};
+use bearing_dynamics::scene::housing_problem::{
+    HousingSetup, check_constant, check_supports, excitations, setup,
+};
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{DefaultUsed, Document, RunSettings};
+use bearing_dynamics::solver::dynamics::assembly::OUTER;
 use bearing_dynamics::solver::dynamics::model::Drive;
-use bearing_dynamics::solver::dynamics::run::RunOptions;
-use bearing_dynamics::solver::housing::assembly::{AssemblyOptions, AssemblySearch, AssemblyState};
+use bearing_dynamics::solver::dynamics::run::{RunOptions, Start};
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
 use bearing_dynamics::solver::housing::condensed::{
     CondensedBore, Sizes, condense_over, cost, sizes,
@@ -29,8 +32,11 @@ use bearing_dynamics::solver::housing::condensed::{
 use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, course_inertia,
 };
-use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, Seat};
+use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, SolidPart};
+use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState};
 use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate};
+use bearing_dynamics::solver::housing::seat::Seat;
+use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::support::free_motions;
 use bearing_dynamics::solver::solid::tangent::Unknowns;
@@ -60,6 +66,11 @@ pub fn prepare(document: &Document, scene: &HousedScene) -> Fallible<Prepared> {
     let setup = setup(scene, &built).map_err(|error| placed(document, error.about(), error))?;
     built.notes.extend(setup.solid.notes.iter().chain(&setup.notes).cloned());
     Ok(Prepared { built, setup, mesh_seconds: start.elapsed().as_secs_f64() })
+}
+
+/// What a reduced housing cannot have.
+pub fn refuse_moved_supports(document: &Document, scene: &HousedScene) -> Fallible<()> {
+    check_supports(scene).map_err(|error| placed(document, error.about(), error))
 }
 
 /// What a condensed housing cannot have.
@@ -96,9 +107,9 @@ pub fn condensed(prepared: &Prepared) -> Fallible<CondensedBore> {
 /// What needs no factors.
 const INSTEAD: &str = ", explicit steps (method = \"explicit\" in [housing])";
 
-pub fn search<'b>(scene: &HousedScene, bore: &'b CondensedBore) -> AssemblySearch<'b> {
+pub fn search<'b>(scene: &HousedScene, bore: &'b CondensedBore) -> HousedSearch<'b> {
     let bore = BoreSearch::new(bore, scene.housing.penalty);
-    AssemblySearch::new(bore, AssemblyOptions::default())
+    HousedSearch::new(bore)
 }
 
 /// The bearing in equilibrium at time `t`, under all loads that it has then.
@@ -111,9 +122,9 @@ pub fn bearing_at(scene: &HousedScene, t: f64) -> Fallible<StaticProblem> {
 pub fn equilibrium_at(
     scene: &HousedScene,
     setup: &HousingSetup,
-    search: &mut AssemblySearch,
+    search: &mut HousedSearch,
     t: f64,
-) -> Fallible<(StaticProblem, AssemblyState)> {
+) -> Fallible<(StaticProblem, HousedState)> {
     let problem = bearing_at(scene, t)?;
     let state = search.solve(&problem, &setup.fit(scene), on_outer(scene, t))?;
     Ok((problem, state))
@@ -152,8 +163,8 @@ pub fn inertia_estimate(
 pub fn estimate_at(
     scene: &HousedScene,
     problem: &StaticProblem,
-    search: &AssemblySearch,
-    state: &AssemblyState,
+    search: &HousedSearch,
+    state: &HousedState,
 ) -> Option<InertiaEstimate> {
     let mut problem = problem.clone();
     let along = &scene.bearing.dynamics.inner.drives[0];
@@ -203,7 +214,7 @@ pub fn along_course(
             .ok_or("no equilibrium")
             .map_err(Box::<dyn Error>::from)
     })?;
-    Ok(Some(found).filter(|found| found.swing > 0.0))
+    Ok(Some(found).filter(|found| found.swing > 0.0 || found.displacement > 0.0))
 }
 
 /// Bearing, housing and seat for explicit steps.
@@ -211,9 +222,13 @@ pub fn parts(
     scene: &HousedScene,
     setup: &HousingSetup,
     run: &RunSettings,
+    threads: usize,
 ) -> Fallible<HousedParts> {
     let housing = &scene.housing;
     let seat = Seat {
+        name: None,
+        mount: Mount::at_centre(OUTER),
+        solid: 0,
         radius: setup.radius(scene),
         width: setup.width,
         penalty: housing.penalty,
@@ -226,13 +241,18 @@ pub fn parts(
         // Both together are balanced, not the bearing alone.
         bearing: RunOptions { energy_limit: f64::INFINITY, ..run.options },
     };
-    let problem = dynamic_problem(&scene.bearing)?;
-    Ok(HousedParts { problem, model: setup.model.clone(), seat, options })
+    let assembly = dynamic_problem(&scene.bearing)?.assembly();
+    let solids = vec![SolidPart::undeformed(None, setup.model.clone())];
+    Ok(HousedParts { assembly, solids, seats: vec![seat], options, threads })
 }
 
 pub fn request(scene: &HousedScene, run: &RunSettings) -> RunRequest {
     // With the channels that a plot needs.
-    let request = super::run::request(&scene.bearing, run);
+    let mut request = super::run::request(&scene.bearing, run);
+    if scene.housing.method == HousingMethod::Reduced {
+        // Where the outer race and the housing start is in the assembly.
+        request.options.start = Start::Equilibrium;
+    }
     RunRequest { fields_interval: scene.housing.fields_interval, ..request }
 }
 

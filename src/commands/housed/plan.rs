@@ -3,7 +3,7 @@
 
 use super::{
     Prepared, along_course, bearing_at, condensed, condensing, inertia_estimate, mesh_text, notes,
-    parts, prepare,
+    parts, prepare, reduced, refuse_moved_supports,
 };
 use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::run::request as bearing_request;
@@ -22,6 +22,7 @@ use bearing_dynamics::solver::clock::{rounded, to_digits, whole_number};
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, Sizes};
 use bearing_dynamics::solver::housing::course_inertia::CourseInertia;
+use bearing_dynamics::solver::housing::exchange::SteppedSolid;
 use bearing_dynamics::solver::housing::inertia::InertiaEstimate;
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -36,6 +37,10 @@ pub fn run(document: &Document, scene: &HousedScene) -> CommandResult {
     let prepared = prepare(document, scene)?;
     let mut lines = lines(scene, &prepared)?;
     lines.extend(notes(&prepared).iter().map(|note| line("notes", "housing mesh", note)));
+    if scene.housing.method == HousingMethod::Reduced {
+        refuse_moved_supports(document, scene)?;
+        lines.extend(reduced::plan_lines(scene, &prepared)?);
+    }
     lines.extend(equilibrium_lines(scene, &prepared)?);
     if let Some(run) = &scene.bearing.dynamics.run {
         if scene.housing.method == HousingMethod::QuasiStatic {
@@ -47,7 +52,7 @@ pub fn run(document: &Document, scene: &HousedScene) -> CommandResult {
     Ok(Outcome::Done)
 }
 
-fn line(mark: &str, name: &str, said: &str) -> String {
+pub(super) fn line(mark: &str, name: &str, said: &str) -> String {
     format!("{mark} {name:<28} {said}")
 }
 
@@ -55,7 +60,7 @@ fn line(mark: &str, name: &str, said: &str) -> String {
 pub fn lines(scene: &HousedScene, prepared: &Prepared) -> Result<Vec<String>, Box<dyn Error>> {
     let setup = &prepared.setup;
     let of_bearing = match (scene.housing.method, &scene.bearing.dynamics.run) {
-        (HousingMethod::Explicit, Some(run)) => {
+        (HousingMethod::Explicit | HousingMethod::Reduced, Some(run)) => {
             let problem = dynamic_problem(&scene.bearing)?;
             let request = bearing_request(&scene.bearing, run);
             let alone = AssemblyScene::alone(scene.bearing.clone());
@@ -78,7 +83,7 @@ pub fn lines(scene: &HousedScene, prepared: &Prepared) -> Result<Vec<String>, Bo
         "housing damping",
         match (setup.solid.problem.damping == 0.0, scene.housing.method) {
             (true, _) => "none is given",
-            (false, HousingMethod::Explicit) => "mass-proportional",
+            (false, HousingMethod::Explicit | HousingMethod::Reduced) => "mass-proportional",
             (false, HousingMethod::QuasiStatic) => {
                 "in explicit steps; nothing moves in an equilibrium"
             }
@@ -101,6 +106,11 @@ pub fn lines(scene: &HousedScene, prepared: &Prepared) -> Result<Vec<String>, Bo
             "does ",
             "explicit housing",
             "bearing and housing in steps of their own, which exchange impulses",
+        ),
+        HousingMethod::Reduced => line(
+            "does ",
+            "reduced housing",
+            "some shapes of the housing, which move with the bearing in its steps",
         ),
     });
     Ok(lines)
@@ -286,35 +296,44 @@ fn timed(
     prepared: &Prepared,
     run: &RunSettings,
 ) -> Result<String, Box<dyn Error>> {
-    let parts = parts(scene, &prepared.setup, run)?;
+    let parts = parts(scene, &prepared.setup, run, 1)?;
     let (mut housed, windows) = parts.started(run.output_interval)?;
     let all = whole_number(run.end, run.output_interval) * windows;
-    let (tested, out_of_reach) = housed.counts();
-    let sorted = match out_of_reach {
-        0 => String::new(),
-        _ => format!(
-            ", sorted anew each time that race and bore have moved by {} um",
-            to_digits(0.5e6 * housed.seat.reach, 3)
-        ),
+    let mut nodes = String::new();
+    for seat in housed.seats() {
+        let (tested, out_of_reach) = seat.counts();
+        let of = seat.seat.suffix();
+        nodes +=
+            &format!("at the start {tested} bore nodes{of} tested, {out_of_reach} out of reach");
+        if out_of_reach > 0 {
+            let moved = to_digits(0.5e6 * seat.seat.reach, 3);
+            nodes +=
+                &format!(", sorted anew each time that race and bore have moved by {moved} um");
+        }
+        nodes += "; ";
+    }
+    let steps = |part: &SteppedSolid| {
+        let of = part.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
+        let limit = part.solid.limit.step;
+        format!("{} of the housing{of} (limit {limit:.3e} s)", steps(part.steps))
     };
+    let solids: Vec<String> = housed.solids.iter().map(steps).collect();
     let start = Instant::now();
     let mut done = 0u64;
     while start.elapsed() < TIMED && done < all {
         for _ in 0..10 {
-            housed.exchange()?;
+            housed.advance()?;
         }
         done += 10;
     }
     let seconds = start.elapsed().as_secs_f64() / done as f64 * all as f64;
     Ok(format!(
-        "{all} windows of {:.3e} s to t = {} s, each {} of the housing (limit {:.3e} s) and steps of \
-         the bearing up to {:.3e} s; at the start {tested} bore nodes tested, {out_of_reach} out of \
-         reach{sorted}; about {} of wall time here",
+        "{all} windows of {:.3e} s to t = {} s, each {} and steps of the bearing up to {:.3e} s; {nodes}about \
+         {} of wall time here",
         housed.window,
         run.end,
-        steps(housed.solid_steps),
-        housed.solid.limit.step,
-        housed.bearing.step_size,
+        solids.join(" and "),
+        housed.simulation.step_size,
         duration(seconds)
     ))
 }

@@ -22,9 +22,9 @@ use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::Plot;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::scene::housing_problem::excitations;
-use bearing_dynamics::solver::housing::assembly::AssemblyState;
 use bearing_dynamics::solver::housing::bore_equilibrium::POSE_NAMES;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::housed::HousedState;
 use serde_json::json;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -100,7 +100,7 @@ pub fn run(
 }
 
 /// The outer race in its bore, as a person reads it.
-fn housing_table(bore: &CondensedBore, state: &AssemblyState, von_mises: f64) -> String {
+fn housing_table(bore: &CondensedBore, state: &HousedState, von_mises: f64) -> String {
     let mut text = "\nouter race      displacement, tilt      of the housing\n".to_string();
     let seat = SeatRow::of_equilibrium(bore, &state.bore);
     let place = outer_place(bore, state);
@@ -120,7 +120,7 @@ fn housing_table(bore: &CondensedBore, state: &AssemblyState, von_mises: f64) ->
          {} of {} bore nodes touch, penetration up to {:.6} um, pressure up to {:.4} MPa, von Mises \
          stress up to {:.4} MPa\n\
          this pressure is {PEAK_PRESSURE}\n\
-         {} rounds, {} changes of contact, unbalanced part of the load {:.1e}",
+         {} iterations, {} changes of contact, unbalanced part of the load {:.1e}",
         stiffness(0),
         stiffness(1),
         seat.touching,
@@ -128,7 +128,7 @@ fn housing_table(bore: &CondensedBore, state: &AssemblyState, von_mises: f64) ->
         1e6 * seat.deepest,
         1e-6 * seat.peak_pressure,
         1e-6 * von_mises,
-        state.rounds,
+        state.iterations,
         state.contact_changes,
         state.residual
     );

@@ -1,6 +1,7 @@
 //! The few numbers of a run that `bearing run` ends with.
 
 use bearing_dynamics::output::course::Course;
+use bearing_dynamics::output::recorder::seat::prefix;
 use bearing_dynamics::output::session::{Motion, Session};
 use bearing_dynamics::output::summary::housing::PEAK_PRESSURE;
 use bearing_dynamics::output::table::RunTable;
@@ -17,24 +18,29 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
     match &session.motion {
         Motion::Bearing(simulation) => of_bearing(simulation, table, &mut lines),
         Motion::Solid(_) => {}
-        Motion::Housed(_) => {
-            let [y, z] = ["outer_y", "outer_z"].map(|name| 1e6 * largest(table, name));
-            let said = format!("{y:.6} um along y, {z:.6} um along z");
-            lines.push(("outer race, farthest".into(), said));
+        Motion::Housed(housed) => {
+            for bearing in &housed.simulation.system.assembly.bearings {
+                let of = bearing.prefix();
+                let [y, z] =
+                    ["y", "z"].map(|axis| 1e6 * largest(table, &format!("{of}outer_{axis}")));
+                let said = format!("{y:.6} um along y, {z:.6} um along z");
+                lines.push((format!("{}outer race, farthest", of.replace('_', " ")), said));
+            }
         }
         Motion::Course(_) => races_apart(table, &mut lines),
     }
-    if matches!(session.motion, Motion::Housed(_) | Motion::Course(_)) {
-        let deepest = 1e6 * largest(table, "bore_deepest_penetration");
-        let touching = largest(table, "bore_nodes_touching");
-        let pressure = 1e-6 * largest(table, "bore_peak_pressure");
-        let said = format!(
-            "penetration up to {deepest:.6} um, up to {touching} nodes touching, pressure up to \
-             {pressure:.4} MPa, {PEAK_PRESSURE}"
-        );
-        lines.push(("bore".into(), said));
+    match &session.motion {
+        Motion::Housed(housed) => {
+            housed.seats().for_each(|seat| lines.push(of_bore(table, &seat.seat.name)));
+        }
+        Motion::Bearing(simulation) => {
+            let seats = &simulation.system.assembly.seats;
+            lines.extend(seats.iter().map(|seat| of_bore(table, &seat.label)));
+        }
+        Motion::Course(_) => lines.push(of_bore(table, &None)),
+        Motion::Solid(_) => {}
     }
-    if session.motion.solid().is_some() {
+    if !session.motion.solids().is_empty() {
         let (most, of) = (session.watch.largest_residual, session.watch.turned_over);
         let said = format!("{most:.3e} J at most, of {of:.3e} J turned over");
         lines.push(("energy unaccounted for".into(), said));
@@ -45,7 +51,8 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
             ("steps".into(), format!("{done} in {seconds:.2} s"))
         }
         Motion::Housed(housed) => {
-            let (of_housing, of_bearing) = (housed.solid.steps, housed.bearing.steps);
+            let of_housing: u64 = housed.solids.iter().map(|part| part.solid.steps).sum();
+            let of_bearing = housed.simulation.steps;
             let said = format!(
                 "{done} in {seconds:.2} s; {of_housing} steps of the housing, {of_bearing} of the bearing"
             );
@@ -56,6 +63,20 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
     lines.iter().map(|(label, value)| format!("{label:<22} {value}\n")).collect()
 }
 
+/// The seat of this name.
+fn of_bore(table: &RunTable, name: &Option<String>) -> (String, String) {
+    let of = prefix(name);
+    let largest = |column: &str| largest(table, &format!("{of}{column}"));
+    let deepest = 1e6 * largest("bore_deepest_penetration");
+    let touching = largest("bore_nodes_touching");
+    let pressure = 1e-6 * largest("bore_peak_pressure");
+    let said = format!(
+        "penetration up to {deepest:.6} um, up to {touching} nodes touching, pressure up to \
+         {pressure:.4} MPa, {PEAK_PRESSURE}"
+    );
+    (format!("{}bore", of.replace('_', " ")), said)
+}
+
 /// Largest size of a column over all rows.
 fn largest(table: &RunTable, name: &str) -> f64 {
     table.all(name).unwrap_or_default().iter().fold(0.0f64, |a, b| a.max(b.abs()))
@@ -64,9 +85,9 @@ fn largest(table: &RunTable, name: &str) -> f64 {
 fn effort(course: &Course, seconds: f64) -> String {
     let effort = &course.effort;
     format!(
-        "{} in {seconds:.2} s, {} rounds, {} changes of contact, unbalanced part of the load up to \
+        "{} in {seconds:.2} s, {} iterations, {} changes of contact, unbalanced part of the load up to \
          {:.1e}",
-        course.found, effort.rounds, effort.contact_changes, effort.largest_residual
+        course.found, effort.iterations, effort.contact_changes, effort.largest_residual
     )
 }
 

@@ -12,6 +12,8 @@ use super::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::session::{Motion, Session, SessionError, Status};
 use bearing_dynamics::output::state::{self, StateFile, StateRecord, Stopped};
 use bearing_dynamics::scene::{Document, resolve_subject};
+use bearing_dynamics::solver::housing::exchange::SteppedSolid;
+use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
 use indicatif::{ProgressBar, ProgressStyle};
 use prepared::{Prepared, check_end};
 use results::{Seconds, write_fields_file, write_results};
@@ -209,13 +211,14 @@ impl Running<'_> {
 
 /// Steps, windows or equilibria between two looks at signals and clock.
 fn at_once(session: &Session) -> u64 {
-    let elements = session.motion.solid().map_or(1, |solid| solid.model.problem.elements.len());
+    let elements = |solid: &ExplicitSolid| solid.model.problem.elements.len().max(1) as u64;
     match &session.motion {
         Motion::Bearing(_) => STEPS_AT_ONCE,
         Motion::Course(_) => 1,
-        Motion::Solid(_) => (ELEMENTS_AT_ONCE / elements as u64).max(1),
+        Motion::Solid(moving) => (ELEMENTS_AT_ONCE / elements(&moving.solid)).max(1),
         Motion::Housed(housed) => {
-            (ELEMENTS_AT_ONCE / (elements * housed.solid_steps) as u64).max(1)
+            let in_window = |part: &SteppedSolid| elements(&part.solid) * part.steps as u64;
+            (ELEMENTS_AT_ONCE / housed.solids.iter().map(in_window).sum::<u64>()).max(1)
         }
     }
 }

@@ -1,10 +1,12 @@
 //! From a scene to what moves in its run: the one place that asks what the scene is of.
 
+use crate::commands::housed::reduced::Reduced;
 use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::{self, housed, solid};
+use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::course::CourseParts;
 use bearing_dynamics::output::results::RunRecord;
-use bearing_dynamics::output::session::{Parts, RunRequest, SolidParts};
+use bearing_dynamics::output::session::{Parts, RunRequest, Session, SolidParts};
 use bearing_dynamics::output::state::{self, StateFile};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::dynamics::{DynamicsError, run_options};
@@ -42,6 +44,8 @@ pub(super) enum Prepared<'s> {
         mesh: Box<housed::Prepared>,
         /// Of equilibria, and the wall time that condensing took, s.
         bore: Option<(Box<CondensedBore>, f64)>,
+        /// Of a housing in shapes.
+        reduced: Option<Box<Reduced>>,
     },
 }
 
@@ -78,14 +82,21 @@ impl<'s> Prepared<'s> {
             Subject::Housed(scene) => {
                 let settings = scene.bearing.dynamics.run.clone().ok_or(NO_END)?;
                 let mesh = housed::prepare(document, scene)?;
-                let mut bore = None;
-                if scene.housing.method == HousingMethod::QuasiStatic {
-                    housed::refuse_moving(document, scene)?;
-                    let start = Instant::now();
-                    let condensed = Box::new(housed::condensed(&mesh)?);
-                    bore = Some((condensed, start.elapsed().as_secs_f64()));
+                let (mut bore, mut reduced) = (None, None);
+                match scene.housing.method {
+                    HousingMethod::Explicit => {}
+                    HousingMethod::QuasiStatic => {
+                        housed::refuse_moving(document, scene)?;
+                        let start = Instant::now();
+                        let condensed = Box::new(housed::condensed(&mesh)?);
+                        bore = Some((condensed, start.elapsed().as_secs_f64()));
+                    }
+                    HousingMethod::Reduced => {
+                        housed::refuse_moved_supports(document, scene)?;
+                        reduced = Some(Box::new(housed::reduced::reduced(scene, &mesh)?));
+                    }
                 }
-                Prepared::Housed { settings, mesh: Box::new(mesh), bore, scene }
+                Prepared::Housed { settings, mesh: Box::new(mesh), bore, reduced, scene }
             }
         })
     }
@@ -112,8 +123,11 @@ impl<'s> Prepared<'s> {
                 let problem = static_problem(&scene.bearing)?;
                 Parts::Course(Box::new(CourseParts { scene, setup: &mesh.setup, bore, problem }))
             }
-            Prepared::Housed { scene, settings, mesh, bore: None } => {
-                Parts::Housed(Box::new(housed::parts(scene, &mesh.setup, settings)?))
+            Prepared::Housed { reduced: Some(reduced), .. } => {
+                Parts::Bearing(Box::new(reduced.assembly.clone()))
+            }
+            Prepared::Housed { scene, settings, mesh, .. } => {
+                Parts::Housed(Box::new(housed::parts(scene, &mesh.setup, settings, threads)?))
             }
         })
     }
@@ -123,6 +137,10 @@ impl<'s> Prepared<'s> {
         Ok(match self {
             Prepared::Bearings { scene, settings, assembly } => {
                 planned_request(scene, settings, assembly, kept)
+            }
+            Prepared::Housed { scene, settings, reduced: Some(reduced), .. } => {
+                let request = housed::request(scene, settings);
+                planned(request, settings, &reduced.assembly, kept)
             }
             Prepared::Solid { settings, .. } => {
                 let request = RunRequest {
@@ -168,6 +186,16 @@ impl<'s> Prepared<'s> {
             Prepared::Bearings { scene, .. } => Some(scene.common()),
             Prepared::Housed { scene, .. } => Some(&scene.bearing),
             Prepared::Solid { .. } => None,
+        }
+    }
+
+    /// Displacements of the solid, m; empty without one.
+    pub fn displacement(&self, session: &Session) -> Vec<Vec3> {
+        match self {
+            Prepared::Housed { reduced: Some(reduced), .. } => {
+                reduced.fields(&session.motion).map_or_else(Vec::new, |[of, _]| of)
+            }
+            _ => session.displacement(0),
         }
     }
 
@@ -243,15 +271,23 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
     }
 }
 
-/// The same with the integrator that the plan chooses, where the scene leaves it to the plan. A run that
-/// goes on does so as it began: a later end may let another one look better.
+/// The same with the integrator that the plan chooses, where the scene leaves it to the plan.
 pub fn planned_request(
     scene: &AssemblyScene,
     settings: &RunSettings,
     assembly: &Assembly,
     kept: Option<&StateFile>,
 ) -> (RunRequest, Option<Choice>) {
-    let mut request = request(scene.common(), settings);
+    planned(request(scene.common(), settings), settings, assembly, kept)
+}
+
+/// A run that goes on does so as it began: a later end may let another integrator look better.
+fn planned(
+    mut request: RunRequest,
+    settings: &RunSettings,
+    assembly: &Assembly,
+    kept: Option<&StateFile>,
+) -> (RunRequest, Option<Choice>) {
     if !settings.by_plan {
         return (request, None);
     }
@@ -261,7 +297,7 @@ pub fn planned_request(
             file.fingerprint == state::fingerprint(&assembly.clone().into(), &request)
         };
         if kept.is_some_and(same) {
-            return (request, Some(Choice { integrator, mean_steps: None, kept: true }));
+            return (request, Some(Choice::kept(assembly, integrator)));
         }
     }
     let choice = choose(assembly, &request);

@@ -13,7 +13,7 @@ use bearing_dynamics::output::remarks as of_solid;
 use bearing_dynamics::output::session::{Motion, RunRequest, Session, Status};
 use bearing_dynamics::output::spectrum::Spectrum;
 use bearing_dynamics::output::summary::housing::{
-    equilibrium_section, inertia_section, seat_section,
+    equilibrium_section, inertia_section, reduced_section, seat_section,
 };
 use bearing_dynamics::output::summary::solid::{field_sections, mass_section};
 use bearing_dynamics::output::summary::{RunReport, write_run_results};
@@ -80,10 +80,16 @@ pub(super) fn write_results(
     if let Prepared::Housed { bore: Some((_, seconds)), .. } = prepared {
         stages.push(("condense".into(), *seconds));
     }
+    if let Prepared::Housed { reduced: Some(reduced), .. } = prepared {
+        let [condense, reduce] = reduced.seconds;
+        stages.extend([("condense".into(), condense), ("reduce".into(), reduce)]);
+    }
     let mut record = prepared.record(request, choice.as_ref(), stages)?;
     record.sections.append(&mut said.sections);
-    if let Motion::Solid(moving) = &session.motion {
-        record.threads = moving.threads;
+    match &session.motion {
+        Motion::Solid(moving) => record.threads = moving.threads,
+        Motion::Housed(housed) => record.threads = housed.threads(),
+        Motion::Bearing(_) | Motion::Course(_) => {}
     }
     let (stepping, integrator) = (request.options.stepping, request.options.integrator);
     let report = RunReport {
@@ -114,7 +120,7 @@ fn solid_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fal
     let (Some(built), Motion::Solid(moving)) = (prepared.built(), &session.motion) else {
         return Ok(());
     };
-    let (model, displacement) = (&moving.solid.model, session.displacement());
+    let (model, displacement) = (&moving.solid.model, session.displacement(0));
     let stress = stresses(model, &displacement);
     said.sections.push(("mass".into(), mass_section(model, built)?));
     said.sections.extend(field_sections(built, &displacement, &stress)?);
@@ -130,17 +136,17 @@ fn housing_results(
     session: &mut Session,
     said: &mut Said,
 ) -> Fallible<()> {
-    let Prepared::Housed { scene, mesh, bore, .. } = prepared else { return Ok(()) };
+    let Prepared::Housed { scene, mesh, bore, reduced, .. } = prepared else { return Ok(()) };
     let setup = &mesh.setup;
     // Of explicit steps that stopped on the way the state at the last row is not at hand.
-    let is_sound = bore.is_some() || session.status == Status::Complete;
+    let is_sound = bore.is_some() || reduced.is_some() || session.status == Status::Complete;
     if is_sound && session.recorder.rows() > 0 {
         if session.clock.fields_due().is_none() {
             let row = session.recorder.rows() as u64 - 1;
             let index = session.clock.rows_per_fields.map_or(0, |every| row / every + 1);
             write_fields_file(folder, prepared, session, index)?;
         }
-        let displacement = session.displacement();
+        let displacement = prepared.displacement(session);
         if !displacement.is_empty() {
             let stress = stresses(&setup.model, &displacement);
             said.remarks = match &session.motion {
@@ -156,12 +162,16 @@ fn housing_results(
             }
             said.sections.extend(field_sections(&mesh.built, &displacement, &stress)?);
             said.sections.push(("housing_remarks".into(), json!(said.remarks)));
-            write_bore(folder, &bore_nodes(&session.motion, &setup.model))?;
+            write_bore(folder, &bore_nodes(&session.motion, 0, &setup.model))?;
             said.files += 1;
         }
     }
     let Some((bore, _)) = bore else {
         said.sections.push(("seat".into(), seat_section(setup)?));
+        if let Some(reduced) = reduced {
+            let section = reduced_section(&reduced.reduction.cut_off, &excitations(scene))?;
+            said.sections.push(("reduced_housing".into(), section));
+        }
         return Ok(());
     };
     // A course that was found is kept, whatever becomes of the estimate.
@@ -186,7 +196,7 @@ pub(super) fn write_fields_file(
     index: u64,
 ) -> Fallible<()> {
     let Some(built) = prepared.built() else { return Ok(()) };
-    let displacement = session.displacement();
+    let displacement = prepared.displacement(session);
     if displacement.is_empty() {
         return Ok(());
     }
@@ -195,15 +205,21 @@ pub(super) fn write_fields_file(
         Prepared::Housed { mesh, .. } => Some(&mesh.setup.model),
         Prepared::Bearings { .. } | Prepared::Solid { .. } => None,
     };
-    let bore = housing.map(|model: &SolidModel| bore_nodes(&session.motion, model));
+    let bore = housing.map(|model: &SolidModel| bore_nodes(&session.motion, 0, model));
     let (velocity, stress) = match &mut session.motion {
         Motion::Solid(moving) => {
             (Some(moving.solid.velocity()), stresses(&moving.solid.model, &displacement))
         }
         motion => {
             // Between kicks the rates of a housing are those of the bearing's time.
-            let rates = motion.solid().map(|solid| solid.rates());
+            let rates = motion.solids().first().map(|solid| solid.rates());
             let rates = rates.map(|rates| rates.iter().map(|v| [v[0], v[1], v[2]]).collect());
+            let rates = match prepared {
+                Prepared::Housed { reduced: Some(reduced), .. } => {
+                    reduced.fields(motion).map(|[_, velocities]| velocities)
+                }
+                _ => rates,
+            };
             let Some(model) = housing else { return Ok(()) };
             (rates, stresses(model, &displacement))
         }

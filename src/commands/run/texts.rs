@@ -6,7 +6,7 @@ use bearing_dynamics::output::state::StateFile;
 use bearing_dynamics::solver::clock::{Clock, given_steps, rounded};
 use bearing_dynamics::solver::dynamics::foretell::Choice;
 use bearing_dynamics::solver::dynamics::run::{Integrator, Simulation, Stepping};
-use bearing_dynamics::solver::housing::exchange::HousedBearing;
+use bearing_dynamics::solver::housing::exchange::{Exchange, SteppedSolid};
 use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
 
 /// Step, its reason, how many there will be, and where it goes on from.
@@ -19,7 +19,15 @@ pub(super) fn announcement(
 ) -> String {
     let clock = &session.clock;
     let mut text = match (&session.motion, prepared) {
-        (Motion::Bearing(simulation), _) => of_bearing(simulation, clock, request, choice),
+        (Motion::Bearing(simulation), prepared) => {
+            let steps = of_bearing(simulation, clock, request, choice);
+            match prepared {
+                Prepared::Housed { reduced: Some(reduced), .. } => {
+                    format!("{}\n{steps}", reduced.text())
+                }
+                _ => steps,
+            }
+        }
         (Motion::Solid(moving), _) => of_solid(&moving.solid, clock),
         (Motion::Housed(housed), _) => of_housed(housed, clock),
         (Motion::Course(_), Prepared::Housed { bore: Some((bore, seconds)), .. }) => {
@@ -99,26 +107,40 @@ fn of_solid(solid: &ExplicitSolid, clock: &Clock) -> String {
     )
 }
 
-fn of_housed(housed: &HousedBearing, clock: &Clock) -> String {
-    let limit = &housed.solid.limit;
-    let [x, y, z] = limit.at.map(|at| 1e3 * at);
-    let (tested, out_of_reach) = housed.counts();
+fn of_housed(housed: &Exchange, clock: &Clock) -> String {
     let windows = clock.last.unwrap_or(0);
-    let steps = match housed.solid_steps {
+    let solids: Vec<String> = housed.solids.iter().map(of_solid_in_window).collect();
+    let seats: String = housed
+        .seats()
+        .map(|seat| {
+            let (tested, out_of_reach) = seat.counts();
+            let of = seat.seat.suffix();
+            format!("{tested} bore nodes{of} in reach, {out_of_reach} out of it\n")
+        })
+        .collect();
+    format!(
+        "window {:.4e} s, {}; bearing steps up to {:.4e} s\n{seats}{windows} windows to t = {} s, {}\n",
+        housed.window,
+        solids.join("; "),
+        housed.simulation.step_size,
+        rounded(windows as f64 * housed.window),
+        rows(clock, "windows")
+    )
+}
+
+fn of_solid_in_window(part: &SteppedSolid) -> String {
+    let limit = &part.solid.limit;
+    let [x, y, z] = limit.at.map(|at| 1e3 * at);
+    let steps = match part.steps {
         1 => "one step".into(),
         count => format!("{count} steps"),
     };
+    let of = part.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
     format!(
-        "window {:.4e} s, {steps} of the housing in it; limit of the housing {:.4e} s, its fastest element, {}, \
-         at x {x:.3}, y {y:.3}, z {z:.3} mm; bearing steps up to {:.4e} s\n\
-         {tested} bore nodes in reach, {out_of_reach} out of it\n\
-         {windows} windows to t = {} s, {}\n",
-        housed.window,
+        "{steps} of the housing{of} in it; limit of the housing {:.4e} s, its fastest element, {}, at x {x:.3}, \
+         y {y:.3}, z {z:.3} mm",
         limit.step,
-        housed.solid.model.labels.element(limit.element),
-        housed.bearing.step_size,
-        rounded(windows as f64 * housed.window),
-        rows(clock, "windows")
+        part.solid.model.labels.element(limit.element),
     )
 }
 

@@ -1,10 +1,13 @@
 //! The bore of a housing under its bearing: force and pressure as fields, and a table of its nodes.
 
-use crate::kinematics::vec3::{Vec3, dot};
+use crate::ch2_housing::bore_contact::{ContactNode, Penalty};
+use crate::kinematics::vec3::{Vec3, dot, scale};
 use crate::output::series::{Column, Series, SeriesError};
 use crate::output::session::Motion;
-use crate::solver::housing::assembly::AssemblyState;
+use crate::solver::dynamics::seat::TouchingNode;
+use crate::solver::dynamics::system::System;
 use crate::solver::housing::condensed::CondensedBore;
+use crate::solver::housing::housed::HousedState;
 use crate::solver::solid::model::SolidModel;
 use ndarray::Array2;
 
@@ -22,19 +25,18 @@ pub struct BoreNodeState {
     pub force: Vec3,
 }
 
-/// Nodes of the bore now, with `model` that of the housing: of explicit steps those that touch; empty
+/// Nodes of the bores of a solid now, with `model` its own: of explicit steps those that touch; empty
 /// where there is no bore, or no equilibrium yet.
-pub fn bore_nodes(motion: &Motion, model: &SolidModel) -> Vec<BoreNodeState> {
+pub fn bore_nodes(motion: &Motion, solid: usize, model: &SolidModel) -> Vec<BoreNodeState> {
     match motion {
-        Motion::Bearing(_) | Motion::Solid(_) => Vec::new(),
+        Motion::Solid(_) => Vec::new(),
+        Motion::Bearing(simulation) => seat_nodes(&simulation.system),
         Motion::Course(course) => {
-            let of = |state: &AssemblyState| condensed_nodes(model, course.bore(), state);
+            let of = |state: &HousedState| condensed_nodes(model, course.bore(), state);
             course.latest.as_ref().map_or_else(Vec::new, |moment| of(&moment.state))
         }
         Motion::Housed(housed) => {
-            let penalty = housed.seat.penalty;
-            let touching = housed.nodal_forces().into_iter();
-            let state = |(node, force): (crate::ch2_housing::bore_contact::ContactNode, Vec3)| {
+            let state = |(node, penalty, force): (ContactNode, Penalty, Vec3)| {
                 let load = dot(force, force).sqrt();
                 BoreNodeState {
                     node: node.node,
@@ -44,16 +46,36 @@ pub fn bore_nodes(motion: &Motion, model: &SolidModel) -> Vec<BoreNodeState> {
                     force,
                 }
             };
-            touching.map(state).collect()
+            housed.nodal_forces(solid).into_iter().map(state).collect()
         }
     }
+}
+
+/// Nodes that touch in the first seat of a bearing in a reduced housing; none without one.
+fn seat_nodes(system: &System) -> Vec<BoreNodeState> {
+    let Some((seat, now)) = system.assembly.seats.first().zip(system.seats.first()) else {
+        return Vec::new();
+    };
+    let surface = &system.assembly.solids[seat.solid].surfaces[seat.surface];
+    let state = |touching: &TouchingNode| {
+        let node = &surface.nodes[touching.node];
+        let load = touching.load / touching.along;
+        BoreNodeState {
+            node: node.node,
+            place: node.place,
+            area: node.area,
+            penetration: load / touching.stiffness,
+            force: scale(touching.normal, load),
+        }
+    };
+    now.touching.iter().map(state).collect()
 }
 
 /// Nodes of a condensed bore in an equilibrium.
 pub fn condensed_nodes(
     model: &SolidModel,
     bore: &CondensedBore,
-    state: &AssemblyState,
+    state: &HousedState,
 ) -> Vec<BoreNodeState> {
     bore.nodes
         .iter()

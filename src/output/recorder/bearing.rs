@@ -1,6 +1,7 @@
 //! Columns of a bearing in motion.
 
 use super::Recorder;
+use super::seat::{SeatRow, prefix, seat_columns};
 use crate::ch2_housing::bearing::cage::Guidance;
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::{Motion, Sliding, TractionLaw, sliding};
@@ -24,6 +25,9 @@ pub(super) enum Term {
     Gravity,
     Foundation,
     BallContact,
+    SolidStrain,
+    SolidKinetic,
+    Seat,
     Work(Ledger),
     Residual,
 }
@@ -53,6 +57,9 @@ impl BearingColumns {
         for &group in &groups {
             add_columns(assembly, group, &terms, columns);
         }
+        for seat in &assembly.seats {
+            columns.extend(seat_columns(&prefix(&seat.label)));
+        }
         BearingColumns { groups, terms }
     }
 }
@@ -80,6 +87,9 @@ impl Recorder {
                     }
                 }
             }
+        }
+        for seat in &system.seats {
+            self.values.extend(SeatRow::of_contact(&seat.contact).values());
         }
         self.bearing = Some(BearingColumns { groups, terms });
     }
@@ -363,6 +373,8 @@ fn terms(assembly: &Assembly) -> Vec<Term> {
         .any(|body| body.foundation_stiffness != [0.0; 5] || body.foundation_damping != [0.0; 5]);
     // Springs and dashpots between bodies are booked with those to the ground.
     let on_foundation = on_foundation || !assembly.connections.is_empty();
+    // With them the damping of solids.
+    let solids = !assembly.solids.is_empty();
     let terms = [
         (Term::Kinetic, true),
         (Term::Contact, true),
@@ -370,10 +382,13 @@ fn terms(assembly: &Assembly) -> Vec<Term> {
         (Term::Gravity, assembly.gravity != [0.0; 3]),
         (Term::Foundation, on_foundation),
         (Term::BallContact, meet),
+        (Term::SolidStrain, solids),
+        (Term::SolidKinetic, solids),
+        (Term::Seat, solids),
         (Term::Work(Ledger::Traction), traction),
         (Term::Work(Ledger::ContactDamping), damping),
         (Term::Work(Ledger::CageFriction), cage),
-        (Term::Work(Ledger::Foundation), on_foundation),
+        (Term::Work(Ledger::Foundation), on_foundation || solids),
         (Term::Work(Ledger::BallFriction), meet),
         (Term::Work(Ledger::Drives), true),
         (Term::Residual, true),
@@ -389,6 +404,9 @@ fn term_name(term: Term) -> &'static str {
         Term::Gravity => "energy_gravity",
         Term::Foundation => "energy_foundation",
         Term::BallContact => "energy_ball_contact",
+        Term::SolidStrain => "energy_housing_strain",
+        Term::SolidKinetic => "energy_housing_kinetic",
+        Term::Seat => "energy_seat",
         Term::Work(Ledger::Traction) => "work_traction",
         Term::Work(Ledger::ContactDamping) => "work_contact_damping",
         Term::Work(Ledger::CageFriction) => "work_cage_friction",
@@ -407,6 +425,9 @@ fn energy_term(term: Term, snapshot: &Snapshot) -> f64 {
         Term::Gravity => snapshot.energy.gravity,
         Term::Foundation => snapshot.energy.foundation,
         Term::BallContact => snapshot.energy.ball_contact,
+        Term::SolidStrain => snapshot.energy.solid_strain,
+        Term::SolidKinetic => snapshot.energy.solid_kinetic,
+        Term::Seat => snapshot.energy.seat,
         Term::Work(entry) => snapshot.ledger[entry as usize],
         Term::Residual => snapshot.residual,
     }

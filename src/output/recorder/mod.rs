@@ -39,8 +39,8 @@ impl Recorder {
                 columns.extend(solid::columns(&probes, &supports));
             }
             Parts::Housed(parts) => {
-                bearing = Some(of_bearing(&parts.problem.assembly()));
-                columns.extend(seat::explicit_columns());
+                bearing = Some(of_bearing(&parts.assembly));
+                columns.extend(seat::explicit_columns(&parts.solids, &parts.seats));
             }
             Parts::Course(parts) => {
                 let balls = parts.problem.geometry.ball_count;

@@ -1,5 +1,5 @@
-//! Columns of the seat in a housing, the same whichever way it is solved, and of what stands beside it:
-//! the housing in explicit steps, or the races in equilibrium.
+//! Columns of a seat in a housing, the same whichever way it is solved, and of what stands beside it:
+//! housings in explicit steps, or the races in equilibrium.
 
 use super::{Recorder, solid::check_finite};
 use crate::ch2_housing::bore_contact::ContactSum;
@@ -7,10 +7,12 @@ use crate::kinematics::vec3::Vec3;
 use crate::output::course::{Course, outer_place};
 use crate::output::series::Column;
 use crate::output::session::{LedgerWatch, SessionError};
-use crate::solver::dynamics::state::Ledger;
 use crate::solver::housing::bore_equilibrium::BoreState;
 use crate::solver::housing::condensed::CondensedBore;
-use crate::solver::housing::exchange::HousedBearing;
+use crate::solver::housing::exchange::{Exchange, ExchangeError, SolidPart};
+use crate::solver::housing::seat::Seat;
+use crate::solver::solid::explicit::ExplicitSolid;
+use crate::solver::solid::model::SolidError;
 use crate::solver::solid::stress::first_inverted;
 
 /// The seat at one time.
@@ -56,35 +58,45 @@ impl SeatRow {
     }
 }
 
-pub fn seat_columns() -> Vec<Column> {
+/// Of one seat; what it is called by stands before each name.
+pub fn seat_columns(prefix: &str) -> Vec<Column> {
     let axes = ["x", "y", "z"];
     let mut columns: Vec<Column> = Vec::new();
-    columns.extend(axes.map(|a| Column::new(format!("housing_force_on_outer_{a}"), "N")));
-    columns.extend(axes.map(|a| Column::new(format!("housing_moment_on_outer_{a}"), "N m")));
-    columns.push(Column::new("bore_nodes_touching", "1"));
-    columns.push(Column::new("bore_deepest_penetration", "m"));
-    columns.push(Column::new("bore_peak_pressure", "Pa"));
+    columns.extend(axes.map(|a| Column::new(format!("{prefix}housing_force_on_outer_{a}"), "N")));
+    columns
+        .extend(axes.map(|a| Column::new(format!("{prefix}housing_moment_on_outer_{a}"), "N m")));
+    columns.push(Column::new(format!("{prefix}bore_nodes_touching"), "1"));
+    columns.push(Column::new(format!("{prefix}bore_deepest_penetration"), "m"));
+    columns.push(Column::new(format!("{prefix}bore_peak_pressure"), "Pa"));
     columns
 }
 
-/// Beside the bearing's own.
-pub(super) fn explicit_columns() -> Vec<Column> {
-    let mut columns = seat_columns();
-    for name in [
-        "energy_housing_strain",
-        "energy_housing_kinetic",
-        "energy_seat",
-        "work_housing_on_outer",
-        "work_on_housing",
-        "work_housing_damping",
-        "work_fit",
-        "energy_coupled_residual",
-    ] {
-        columns.push(Column::new(name, "J"));
+/// "left_", before the names of columns; nothing for the only one.
+pub fn prefix(name: &Option<String>) -> String {
+    name.as_ref().map_or(String::new(), |name| format!("{name}_"))
+}
+
+/// Beside the bearings' own. Seats come with their solids, as they do in the exchange.
+pub(super) fn explicit_columns(solids: &[SolidPart], seats: &[Seat]) -> Vec<Column> {
+    let of_solids: Vec<String> = solids.iter().map(|solid| prefix(&solid.name)).collect();
+    let by_solid =
+        (0..solids.len()).flat_map(|index| seats.iter().filter(move |s| s.solid == index));
+    let of_seats: Vec<String> = by_solid.map(|seat| prefix(&seat.name)).collect();
+    let mut columns: Vec<Column> = of_seats.iter().flat_map(|seat| seat_columns(seat)).collect();
+    let mut energies = |prefixes: &[String], names: &[&str]| {
+        for prefix in prefixes {
+            columns.extend(names.iter().map(|name| Column::new(format!("{prefix}{name}"), "J")));
+        }
+    };
+    energies(&of_solids, &["energy_housing_strain", "energy_housing_kinetic"]);
+    energies(&of_seats, &["energy_seat", "work_housing_on_outer"]);
+    energies(&of_solids, &["work_on_housing", "work_housing_damping"]);
+    energies(&of_seats, &["work_fit"]);
+    columns.push(Column::new("energy_coupled_residual", "J"));
+    for seat in &of_seats {
+        let name = |axis| format!("{seat}housing_impulse_on_outer_{axis}");
+        columns.extend(["x", "y", "z"].map(|axis| Column::new(name(axis), "N s")));
     }
-    columns.extend(
-        ["x", "y", "z"].map(|a| Column::new(format!("housing_impulse_on_outer_{a}"), "N s")),
-    );
     columns
 }
 
@@ -102,7 +114,7 @@ pub(super) fn equilibrium_columns(balls: usize) -> Vec<Column> {
         let axes = ["x", "y", "z"];
         columns.extend(axes.map(|a| Column::new(format!("contact_force_on_{race}_{a}"), "N")));
     }
-    columns.extend(seat_columns());
+    columns.extend(seat_columns(""));
     columns.push(Column::new("energy_housing_strain", "J"));
     columns.push(Column::new("energy_seat", "J"));
     for ball in 1..=balls {
@@ -113,22 +125,22 @@ pub(super) fn equilibrium_columns(balls: usize) -> Vec<Column> {
 }
 
 impl Recorder {
-    /// Adds a row of bearing and housing in explicit steps.
+    /// Adds a row of bearings and housings in explicit steps.
     ///
     /// # Errors
     /// A value that is not finite, an inverted element, a ledger that does not close.
     pub(in crate::output) fn record_housed(
         &mut self,
-        housed: &mut HousedBearing,
+        housed: &mut Exchange,
         watch: &mut LedgerWatch,
         limit: f64,
     ) -> Result<(), SessionError> {
         let (time, window) = (housed.time(), housed.exchanges);
-        let displacement: Vec<Vec3> =
-            housed.solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect();
-        check_finite(&housed.solid, &displacement, time, window)?;
-        if let Some((element, ratio)) = first_inverted(&housed.solid.model, &displacement) {
-            return Err(housed.solid.model.inverted(element, ratio, time, window).into());
+        for part in &housed.solids {
+            check_solid(&part.solid, time, window).map_err(|source| {
+                let name = part.name.clone();
+                ExchangeError::Solid { name, source }
+            })?;
         }
         let snapshot = housed.snapshot()?;
         let residual = snapshot.residual;
@@ -136,20 +148,18 @@ impl Recorder {
             let turned_over = watch.turned_over;
             return Err(SessionError::EnergyOfBoth { residual, turned_over, limit, time, window });
         }
-        self.record(&housed.bearing, &snapshot.bearing);
-        let solid = &snapshot.solid;
-        self.values.extend(SeatRow::of_contact(&snapshot.contact).values());
-        self.values.extend([
-            solid.energy.strain,
-            solid.energy.kinetic,
-            snapshot.contact.energy,
-            snapshot.bearing.ledger[Ledger::Foundation as usize],
-            solid.external_work,
-            solid.damping_work,
-            snapshot.growth_work,
-            residual,
-        ]);
-        self.values.extend(housed.impulse);
+        self.record(&housed.simulation, &snapshot.simulation);
+        // In the order of [`explicit_columns`].
+        let solids = || snapshot.solids.iter().map(|solid| &solid.ledger);
+        let seats = || snapshot.solids.iter().flat_map(|solid| &solid.seats);
+        let values = &mut self.values;
+        seats().for_each(|seat| values.extend(SeatRow::of_contact(&seat.contact).values()));
+        solids().for_each(|solid| values.extend([solid.energy.strain, solid.energy.kinetic]));
+        seats().for_each(|seat| values.extend([seat.contact.energy, seat.work]));
+        solids().for_each(|solid| values.extend([solid.external_work, solid.damping_work]));
+        values.extend(seats().map(|seat| seat.growth_work));
+        values.push(residual);
+        values.extend(housed.seats().flat_map(|seat| seat.impulse));
         Ok(())
     }
 
@@ -172,5 +182,16 @@ impl Recorder {
         let loads = state.bearing.balls.iter();
         let loads = loads.flat_map(|ball| [ball.inner.normal_load, ball.outer.normal_load]);
         self.values.extend(loads.take(full - self.values.len()));
+    }
+}
+
+/// # Errors
+/// A value that is not finite, an inverted element.
+fn check_solid(solid: &ExplicitSolid, time: f64, window: u64) -> Result<(), SolidError> {
+    let displacement: Vec<Vec3> = solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect();
+    check_finite(solid, &displacement, time, window)?;
+    match first_inverted(&solid.model, &displacement) {
+        Some((element, ratio)) => Err(solid.model.inverted(element, ratio, time, window)),
+        None => Ok(()),
     }
 }

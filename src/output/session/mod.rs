@@ -20,6 +20,7 @@ use crate::solver::dynamics::run::SimulationError;
 use crate::solver::housing::bore_equilibrium::BoreError;
 use crate::solver::housing::exchange::ExchangeError;
 use crate::solver::housing::quasi_static::CourseError;
+use crate::solver::solid::explicit::ExplicitSolid;
 use crate::solver::solid::model::SolidError;
 use thiserror::Error;
 
@@ -204,7 +205,8 @@ impl<'p> Session<'p> {
             moved?;
             if let Some(index) = self.clock.fields_due()
                 && self.clock.rows > rows
-                && self.clock.is_on_grid(self.motion.done())
+                && (matches!(self.motion, Motion::Bearing(_))
+                    || self.clock.is_on_grid(self.motion.done()))
             {
                 return Ok(Status::Fields(index));
             }
@@ -300,15 +302,15 @@ impl<'p> Session<'p> {
         self.recorder.series(self.recorder.rows())
     }
 
-    /// Displacements of the solid, m; empty without one. In a window they are half a step of its own ahead
-    /// of the bearing's time.
-    pub fn displacement(&self) -> Vec<Vec3> {
-        let of = |solid: &crate::solver::solid::explicit::ExplicitSolid| {
+    /// Displacements of a solid, m; empty where there is none of that number. In a window they are half a
+    /// step of its own ahead of the bodies' time.
+    pub fn displacement(&self, solid: usize) -> Vec<Vec3> {
+        let of = |solid: &&ExplicitSolid| {
             solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect()
         };
         match &self.motion {
             Motion::Course(course) => course.displacement(),
-            motion => motion.solid().map_or_else(Vec::new, of),
+            motion => motion.solids().get(solid).map_or_else(Vec::new, of),
         }
     }
 }

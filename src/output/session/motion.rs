@@ -1,4 +1,5 @@
-//! What moves in a run: a bearing, a solid, both exchanging impulses, or one equilibrium after the other.
+//! What moves in a run: bearings, a solid, bearings and solids exchanging impulses, or one equilibrium after
+//! the other.
 
 use super::SessionError;
 use crate::output::course::{Course, CourseCheckpoint, CourseParts};
@@ -9,13 +10,14 @@ use crate::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
 use crate::solver::dynamics::clocked::{self, Arrival, RunRequest};
 use crate::solver::dynamics::model::DynamicProblem;
 use crate::solver::dynamics::run::Simulation;
-use crate::solver::housing::checkpoint::{HousedCheckpoint, Windows};
-use crate::solver::housing::exchange::{ExchangeError, ExchangeOptions, HousedBearing, Seat};
+use crate::solver::housing::checkpoint::{ExchangeCheckpoint, Windows};
+use crate::solver::housing::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
+use crate::solver::housing::seat::Seat;
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
 use crate::solver::solid::model::{SolidError, SolidModel};
 use crate::solver::solid::step_limit::{SolidStepLimit, step_limit};
-use crate::solver::solid::team::Team;
+use crate::solver::solid::team::Crew;
 
 /// What a run is made of.
 pub enum Parts<'p> {
@@ -47,20 +49,22 @@ pub struct SolidParts<'p> {
     pub threads: usize,
 }
 
-/// A bearing and its housing in explicit steps.
+/// Bodies with their bearings, solids in explicit steps, and the seats of one in the other.
 #[derive(Clone, Debug)]
 pub struct HousedParts {
-    pub problem: DynamicProblem,
-    pub model: SolidModel,
-    pub seat: Seat,
+    pub assembly: Assembly,
+    pub solids: Vec<SolidPart>,
+    pub seats: Vec<Seat>,
     pub options: ExchangeOptions,
+    /// Threads that step the solids, with the same bits.
+    pub threads: usize,
 }
 
 /// What moves.
 pub enum Motion<'p> {
     Bearing(Box<Simulation>),
     Solid(Box<MovingSolid>),
-    Housed(Box<HousedBearing>),
+    Housed(Box<Exchange>),
     Course(Box<Course<'p>>),
 }
 
@@ -68,8 +72,6 @@ pub enum Motion<'p> {
 pub struct MovingSolid {
     pub solid: ExplicitSolid,
     pub threads: usize,
-    /// Made with the first step.
-    team: Option<Team>,
 }
 
 /// All that a motion goes on from with the same bits.
@@ -77,7 +79,7 @@ pub struct MovingSolid {
 pub enum Checkpoint {
     Bearing(Box<BearingCheckpoint>),
     Solid(Box<SolidCheckpoint>, SolidStepLimit),
-    Housed(Box<HousedCheckpoint>, Windows),
+    Housed(Box<ExchangeCheckpoint>, Windows),
     Course(CourseCheckpoint),
 }
 
@@ -142,9 +144,10 @@ impl<'p> Motion<'p> {
                 Motion::Solid(moving)
             }
             (Parts::Housed(parts), Checkpoint::Housed(kept, windows)) => {
-                let HousedParts { problem, model, seat, options } = *parts;
-                let housed =
-                    HousedBearing::from_checkpoint(problem, model, seat, &options, windows, kept)?;
+                let HousedParts { assembly, solids, seats, options, threads } = *parts;
+                let mut housed =
+                    Exchange::from_checkpoint(assembly, solids, seats, &options, windows, kept)?;
+                housed.share(threads);
                 Motion::Housed(Box::new(housed))
             }
             (Parts::Course(parts), Checkpoint::Course(kept)) => {
@@ -170,11 +173,11 @@ impl<'p> Motion<'p> {
         }
     }
 
-    /// The bearing, where one moves in steps.
+    /// Bodies and bearings, where they move in steps.
     pub fn bearing(&self) -> Option<&Simulation> {
         match self {
             Motion::Bearing(simulation) => Some(simulation),
-            Motion::Housed(housed) => Some(&housed.bearing),
+            Motion::Housed(housed) => Some(&housed.simulation),
             Motion::Solid(_) | Motion::Course(_) => None,
         }
     }
@@ -182,17 +185,17 @@ impl<'p> Motion<'p> {
     pub fn bearing_mut(&mut self) -> Option<&mut Simulation> {
         match self {
             Motion::Bearing(simulation) => Some(simulation),
-            Motion::Housed(housed) => Some(&mut housed.bearing),
+            Motion::Housed(housed) => Some(&mut housed.simulation),
             Motion::Solid(_) | Motion::Course(_) => None,
         }
     }
 
-    /// The solid, where one moves in steps.
-    pub fn solid(&self) -> Option<&ExplicitSolid> {
+    /// The solids that move in steps.
+    pub fn solids(&self) -> Vec<&ExplicitSolid> {
         match self {
-            Motion::Solid(moving) => Some(&moving.solid),
-            Motion::Housed(housed) => Some(&housed.solid),
-            Motion::Bearing(_) | Motion::Course(_) => None,
+            Motion::Solid(moving) => vec![&moving.solid],
+            Motion::Housed(housed) => housed.solids.iter().map(|part| &part.solid).collect(),
+            Motion::Bearing(_) | Motion::Course(_) => Vec::new(),
         }
     }
 
@@ -228,11 +231,13 @@ impl<'p> Motion<'p> {
         };
         match self {
             Motion::Bearing(_) => {}
-            Motion::Solid(moving) => moving.advance(count)?,
+            Motion::Solid(moving) => {
+                (0..count).try_for_each(|_| moving.solid.step(|_, _, _| {}))?;
+            }
             Motion::Housed(housed) => {
-                (0..count).try_for_each(|_| housed.exchange())?;
+                (0..count).try_for_each(|_| housed.advance())?;
                 if clock.is_on_grid(housed.exchanges) {
-                    let bearing = &mut housed.bearing;
+                    let bearing = &mut housed.simulation;
                     if let Some(step) = bearing.watch_step().map_err(ExchangeError::from)? {
                         bearing.shorten_step(step);
                     }
@@ -294,35 +299,24 @@ impl SolidParts<'_> {
         let still = vec![[0.0; 4]; model.mass.len()];
         let velocity = padded(self.setup.velocity.clone());
         let stepping = SolidStepping::Fixed(step);
-        let solid =
+        let mut solid =
             ExplicitSolid::with_limit(model, self.method, stepping, limit, still, velocity)?;
-        Ok(Box::new(MovingSolid { solid, threads: self.threads, team: None }))
+        solid.share(&Crew::new(self.threads), self.threads);
+        Ok(Box::new(MovingSolid { solid, threads: self.threads }))
     }
 }
 
 impl HousedParts {
-    /// Both at the start, in windows that divide the rows, which are `interval` apart (s); and how many
+    /// All at the start, in windows that divide the rows, which are `interval` apart (s); and how many
     /// a row has.
     ///
     /// # Errors
-    /// As [`HousedBearing::new`].
-    pub fn started(self, interval: f64) -> Result<(HousedBearing, u64), ExchangeError> {
-        let HousedParts { problem, model, seat, options } = self;
-        let still = vec![[0.0; 3]; model.mass.len()];
-        let mut housed = HousedBearing::new(problem, model, seat, still, &options)?;
+    /// As [`Exchange::new`].
+    pub fn started(self, interval: f64) -> Result<(Exchange, u64), ExchangeError> {
+        let HousedParts { assembly, solids, seats, options, threads } = self;
+        let mut housed = Exchange::new(assembly, solids, seats, &options)?;
+        housed.share(threads);
         let windows = housed.divide(interval)?;
         Ok((housed, windows))
-    }
-}
-
-impl MovingSolid {
-    fn advance(&mut self, count: u64) -> Result<(), SolidError> {
-        if self.threads <= 1 {
-            return (0..count).try_for_each(|_| self.solid.step(|_, _, _| {}));
-        }
-        let team = self.team.get_or_insert_with(|| Team::new(&self.solid, self.threads));
-        team.advance(count)?;
-        team.gather(&mut self.solid);
-        Ok(())
     }
 }

@@ -5,8 +5,9 @@ use crate::output::atomic::write_atomic;
 use crate::output::series::Series;
 use crate::output::session::Checkpoint;
 use crate::solver::solid::checkpoint::SolidCheckpoint;
-use ndarray::Array2;
+use ndarray::{Array2, Axis, Slice};
 use ndarray_npy::WriteNpyExt;
+use std::ops::Range;
 use std::path::Path;
 
 /// Numbers kept for each node of a solid.
@@ -17,8 +18,8 @@ pub(super) fn arrays_name(steps: u64) -> String {
     format!("state-{steps}.npy")
 }
 
-/// Writes the arrays of a checkpoint after so many steps: of a solid's nodes, or of those of a condensed
-/// bore. Returns the name of the file, if there is something to write.
+/// Writes the arrays of a checkpoint after so many steps: of the nodes of one solid behind the other, or of
+/// those of a condensed bore. Returns the name of the file, if there is something to write.
 pub(super) fn write_arrays(
     folder: &Path,
     checkpoint: &Checkpoint,
@@ -27,10 +28,12 @@ pub(super) fn write_arrays(
     let (width, values) = match checkpoint {
         Checkpoint::Bearing(_) => return Ok(None),
         Checkpoint::Solid(kept, _) => (WIDTH, of_nodes(kept)),
-        Checkpoint::Housed(kept, _) => (WIDTH, of_nodes(&kept.solid)),
+        Checkpoint::Housed(kept, _) => {
+            (WIDTH, kept.solids.iter().flat_map(|part| of_nodes(&part.solid)).collect())
+        }
         Checkpoint::Course(kept) => {
             let mut touches = vec![0.0; kept.nodes];
-            kept.memory.bore.touching.iter().for_each(|&node| touches[node] = 1.0);
+            kept.memory.touching.iter().for_each(|&node| touches[node] = 1.0);
             (1, touches)
         }
     };
@@ -70,18 +73,21 @@ fn table(folder: &Path, file: &str, shape: (usize, usize)) -> Result<Series, Ref
     Ok(arrays)
 }
 
-/// The arrays of a solid with so many nodes; `file` is named in `folder`. Time, steps and work stay zero.
+/// The arrays of a solid; `file` is named in `folder` and has so many `nodes` in all, its own being those of
+/// `rows`. Time, steps and work stay zero.
 pub(super) fn read_arrays(
     folder: &Path,
     file: &str,
     nodes: usize,
+    rows: Range<usize>,
 ) -> Result<SolidCheckpoint, Refused> {
     let arrays = table(folder, file, (nodes, WIDTH))?;
+    let own = arrays.data().slice_axis(Axis(0), Slice::from(rows));
     let part = |from: usize| {
         let row = |row: ndarray::ArrayView1<f64>| [row[from], row[from + 1], row[from + 2], 0.0];
-        arrays.data().rows().into_iter().map(row).collect()
+        own.rows().into_iter().map(row).collect()
     };
-    let column = |at: usize| arrays.data().column(at).to_vec();
+    let column = |at: usize| own.column(at).to_vec();
     Ok(SolidCheckpoint {
         displacement: part(0),
         rate: part(3),

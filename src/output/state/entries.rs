@@ -6,7 +6,7 @@ use super::{
 };
 use crate::output::course::{CourseCheckpoint, Effort};
 use crate::output::series::SeriesError;
-use crate::output::session::{Checkpoint, Parts};
+use crate::output::session::{Checkpoint, HousedParts, Parts};
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
 use crate::solver::dynamics::contacts::Work;
@@ -16,15 +16,17 @@ use crate::solver::dynamics::extremes::Extremes;
 use crate::solver::dynamics::run::ContactTurnover;
 use crate::solver::dynamics::stability::{Cause, StepLimit};
 use crate::solver::dynamics::step_watch::{Shortened, StepWatch, Stiffness};
-use crate::solver::housing::assembly::SearchMemory;
-use crate::solver::housing::bore_equilibrium::BoreMemory;
-use crate::solver::housing::checkpoint::{HousedCheckpoint, Windows};
-use crate::solver::housing::exchange::Growth;
+use crate::solver::housing::checkpoint::{
+    ExchangeCheckpoint, SeatCheckpoint, SteppedCheckpoint, Windows,
+};
+use crate::solver::housing::housed::HousedMemory;
+use crate::solver::housing::seat::Growth;
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::SolidWork;
 use crate::solver::solid::step_limit::SolidStepLimit;
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 use std::path::Path;
 
 /// Why a state is not gone on from.
@@ -55,6 +57,9 @@ pub struct BearingEntry {
     pub was_loaded: Vec<bool>,
     /// Kinetic, contact, cage contact, gravity, foundation, ball contact, J.
     pub first_energy: [f64; 6],
+    /// Of reduced solids: kinetic, strain, seats, J.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub first_energy_of_solids: Option<[f64; 3]>,
     pub largest_contact_energy: f64,
     /// See [`ContactTurnover`]: sum and last, J.
     pub contact_turnover: [f64; 2],
@@ -105,7 +110,8 @@ pub struct ShortenedEntry {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SolidEntry {
-    /// File with one row a node: displacement (m), rate (m/s), work of loads and of damping (J).
+    /// File with one row a node, those of one solid behind the other's: displacement (m), rate (m/s), work of
+    /// loads and of damping (J).
     pub arrays: String,
     /// s.
     pub time: f64,
@@ -153,19 +159,30 @@ impl SolidLimitEntry {
     }
 }
 
-/// What a bearing and its housing exchange.
+/// What bodies and solids exchange.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExchangeEntry {
-    pub steps_per_window: usize,
+    /// Of each solid, in a window.
+    pub steps_per_window: Vec<usize>,
+    /// Of each solid.
+    pub seats: Vec<Vec<SeatEntry>>,
+    /// What the ledger of all held at the start, J.
+    pub first: f64,
+}
+
+/// See [`SeatCheckpoint`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SeatEntry {
     /// N·s.
     pub impulse: [f64; 3],
+    /// On the body, J.
+    pub work: f64,
     /// Work (J), radius (m) and load (N) of an interference that grows in.
     pub growth: [f64; 3],
     pub tested: u64,
     pub sorts: u64,
-    /// What the ledgers of the bearing and of both held at the start, J.
-    pub first: [f64; 2],
 }
 
 /// A course of equilibria.
@@ -175,13 +192,12 @@ pub struct CourseEntry {
     /// File with one row a node of the bore: 1 where it touched.
     pub arrays: String,
     pub largest_residual: f64,
-    pub rounds: usize,
+    pub iterations: usize,
     pub contact_changes: usize,
-    /// Where the search found the inner race (m, rad), the outer one from either side (m, rad).
+    /// Where the search found the inner race and the outer one (m, rad).
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub inner: Option<[f64; 5]>,
     pub outer: [f64; 4],
-    pub pose: [f64; 4],
 }
 
 impl BearingEntry {
@@ -220,6 +236,8 @@ impl BearingEntry {
                 energy.foundation,
                 energy.ball_contact,
             ],
+            first_energy_of_solids: Some([energy.solid_kinetic, energy.solid_strain, energy.seat])
+                .filter(|of| *of != [0.0; 3]),
             largest_contact_energy: checkpoint.largest_contact_energy,
             contact_turnover: [checkpoint.contact_turnover.sum, checkpoint.contact_turnover.last],
             work: [
@@ -249,6 +267,7 @@ impl BearingEntry {
             limit.chain(watched).chain(watch.exceeded.into_iter().flatten()).chain(shortened);
         let energy = [self.step_size, self.largest_contact_energy].into_iter();
         let energy = energy.chain(self.first_energy).chain(self.contact_turnover);
+        let energy = energy.chain(self.first_energy_of_solids.into_iter().flatten());
         vec![
             ("an extreme", self.extremes.clone()),
             ("a size of the error control", self.control.into_iter().flatten().collect()),
@@ -282,6 +301,7 @@ impl BearingEntry {
     fn checkpoint(&self, time: f64) -> BearingCheckpoint {
         let [oscillation, decay] = self.step_watch.stiffest;
         let [kinetic, contact, cage_contact, gravity, foundation, ball_contact] = self.first_energy;
+        let [solid_kinetic, solid_strain, seat] = self.first_energy_of_solids.unwrap_or_default();
         let [
             evaluations,
             distance_tests,
@@ -325,6 +345,9 @@ impl BearingEntry {
                 gravity,
                 foundation,
                 ball_contact,
+                solid_kinetic,
+                solid_strain,
+                seat,
             },
             largest_contact_energy: self.largest_contact_energy,
             contact_turnover: ContactTurnover {
@@ -363,30 +386,58 @@ impl SolidEntry {
         }
     }
 
-    fn checkpoint(&self, folder: &Path, nodes: usize) -> Result<SolidCheckpoint, Refused> {
+    /// Where the arrays have so many `nodes` in all, those of `rows` its own.
+    fn checkpoint(
+        &self,
+        folder: &Path,
+        nodes: usize,
+        rows: Range<usize>,
+    ) -> Result<SolidCheckpoint, Refused> {
         Ok(SolidCheckpoint {
             time: self.time,
             steps: self.steps,
             work: SolidWork { evaluations: self.work[0], elements: self.work[1] },
-            ..read_arrays(folder, &self.arrays, nodes)?
+            ..read_arrays(folder, &self.arrays, nodes, rows)?
         })
     }
 }
 
 impl ExchangeEntry {
-    pub(super) fn of(kept: &HousedCheckpoint, windows: &Windows) -> ExchangeEntry {
+    pub(super) fn of(kept: &ExchangeCheckpoint, windows: &Windows) -> ExchangeEntry {
+        let seats = |part: &SteppedCheckpoint| part.seats.iter().map(SeatEntry::of).collect();
         ExchangeEntry {
-            steps_per_window: windows.solid_steps,
-            impulse: kept.impulse,
-            growth: [kept.growth.work, kept.growth.radius, kept.growth.load],
-            tested: kept.tested,
-            sorts: kept.sorts,
+            steps_per_window: windows.solids.iter().map(|(steps, _)| *steps).collect(),
+            seats: kept.solids.iter().map(seats).collect(),
             first: kept.first,
         }
     }
 
     pub(super) fn numbers(&self) -> Vec<f64> {
-        self.impulse.into_iter().chain(self.growth).chain(self.first).collect()
+        let of = |seat: &SeatEntry| seat.impulse.into_iter().chain(seat.growth).chain([seat.work]);
+        self.seats.iter().flatten().flat_map(of).chain([self.first]).collect()
+    }
+}
+
+impl SeatEntry {
+    fn of(kept: &SeatCheckpoint) -> SeatEntry {
+        SeatEntry {
+            impulse: kept.impulse,
+            work: kept.work,
+            growth: [kept.growth.work, kept.growth.radius, kept.growth.load],
+            tested: kept.tested,
+            sorts: kept.sorts,
+        }
+    }
+
+    fn checkpoint(&self) -> SeatCheckpoint {
+        let [work, radius, load] = self.growth;
+        SeatCheckpoint {
+            impulse: self.impulse,
+            work: self.work,
+            growth: Growth { work, radius, load },
+            tested: self.tested,
+            sorts: self.sorts,
+        }
     }
 }
 
@@ -395,11 +446,10 @@ impl CourseEntry {
         CourseEntry {
             arrays: arrays_name(kept.found),
             largest_residual: kept.effort.largest_residual,
-            rounds: kept.effort.rounds,
+            iterations: kept.effort.iterations,
             contact_changes: kept.effort.contact_changes,
             inner: kept.memory.inner,
             outer: kept.memory.outer,
-            pose: kept.memory.bore.pose,
         }
     }
 }
@@ -413,10 +463,12 @@ pub(super) fn place(checkpoint: &Checkpoint) -> (f64, u64) {
     match checkpoint {
         Checkpoint::Bearing(kept) => (kept.time, kept.steps),
         Checkpoint::Solid(kept, _) => (kept.time, kept.steps),
-        Checkpoint::Housed(kept, _) => (kept.bearing.time, kept.exchanges),
+        Checkpoint::Housed(kept, _) => (kept.simulation.time, kept.exchanges),
         Checkpoint::Course(kept) => (kept.time, kept.found),
     }
 }
+
+const LACKS: Refused = Refused::Damaged("it lacks a part that the scene has");
 
 /// What a state file read from `folder` says of these parts.
 pub(super) fn checkpoint(
@@ -424,38 +476,20 @@ pub(super) fn checkpoint(
     file: &StateFile,
     parts: &Parts,
 ) -> Result<Checkpoint, Refused> {
-    const LACKS: Refused = Refused::Damaged("it lacks a part that the scene has");
-    let solid = || file.solid.as_ref().ok_or(LACKS);
     let bearing = || file.bearing.as_deref().ok_or(LACKS);
     Ok(match parts {
         Parts::Bearing(assembly) => {
             Checkpoint::Bearing(Box::new(bearing()?.checked(file.time, assembly)?))
         }
         Parts::Solid(parts) => {
-            let kept = solid()?.checkpoint(folder, parts.setup.problem.nodes.len())?;
-            Checkpoint::Solid(Box::new(kept), solid()?.limit.to_limit())
+            let [solid] = file.solids.as_slice() else { return Err(LACKS) };
+            let nodes = parts.setup.problem.nodes.len();
+            let kept = solid.checkpoint(folder, nodes, 0..nodes)?;
+            Checkpoint::Solid(Box::new(kept), solid.limit.to_limit())
         }
         Parts::Housed(parts) => {
-            let exchange = file.exchange.as_ref().ok_or(LACKS)?;
-            if exchange.steps_per_window == 0 {
-                return Err(Refused::Damaged("no step from one row to the next"));
-            }
-            let [work, radius, load] = exchange.growth;
-            let kept = HousedCheckpoint {
-                bearing: bearing()?.checked(file.time, &parts.problem.assembly())?,
-                solid: solid()?.checkpoint(folder, parts.model.problem.nodes.len())?,
-                exchanges: file.steps,
-                impulse: exchange.impulse,
-                growth: Growth { work, radius, load },
-                tested: exchange.tested,
-                sorts: exchange.sorts,
-                first: exchange.first,
-            };
-            let windows = Windows {
-                window: file.step,
-                solid_steps: exchange.steps_per_window,
-                limit: solid()?.limit.to_limit(),
-            };
+            let simulation = bearing()?.checked(file.time, &parts.assembly)?;
+            let (kept, windows) = exchange(folder, file, parts, simulation)?;
             Checkpoint::Housed(Box::new(kept), windows)
         }
         Parts::Course(parts) => {
@@ -466,16 +500,50 @@ pub(super) fn checkpoint(
                 found: file.steps,
                 effort: Effort {
                     largest_residual: course.largest_residual,
-                    rounds: course.rounds,
+                    iterations: course.iterations,
                     contact_changes: course.contact_changes,
                 },
-                memory: SearchMemory {
-                    inner: course.inner,
-                    outer: course.outer,
-                    bore: BoreMemory { pose: course.pose, touching },
-                },
+                memory: HousedMemory { inner: course.inner, outer: course.outer, touching },
                 nodes: parts.bore.nodes.len(),
             })
         }
     })
+}
+
+/// The same of bodies, kept in `simulation`, and solids with seats between them.
+fn exchange(
+    folder: &Path,
+    file: &StateFile,
+    parts: &HousedParts,
+    simulation: BearingCheckpoint,
+) -> Result<(ExchangeCheckpoint, Windows), Refused> {
+    let exchange = file.exchange.as_ref().ok_or(LACKS)?;
+    let ExchangeEntry { steps_per_window, seats, .. } = exchange;
+    let count = parts.solids.len();
+    if [file.solids.len(), steps_per_window.len(), seats.len()] != [count; 3] {
+        return Err(LACKS);
+    }
+    if steps_per_window.contains(&0) {
+        return Err(Refused::Damaged("no step from one row to the next"));
+    }
+    let nodes: Vec<usize> = parts.solids.iter().map(|part| part.model.mass.len()).collect();
+    let mut solids = Vec::with_capacity(count);
+    for (index, (entry, seats)) in file.solids.iter().zip(seats).enumerate() {
+        if seats.len() != parts.seats.iter().filter(|seat| seat.solid == index).count() {
+            return Err(LACKS);
+        }
+        let from: usize = nodes[..index].iter().sum();
+        let rows = from..from + nodes[index];
+        solids.push(SteppedCheckpoint {
+            solid: entry.checkpoint(folder, nodes.iter().sum(), rows)?,
+            seats: seats.iter().map(SeatEntry::checkpoint).collect(),
+        });
+    }
+    let limits = file.solids.iter().map(|entry| entry.limit.to_limit());
+    let windows = Windows {
+        window: file.step,
+        solids: steps_per_window.iter().copied().zip(limits).collect(),
+    };
+    let (exchanges, first) = (file.steps, exchange.first);
+    Ok((ExchangeCheckpoint { simulation, solids, exchanges, first }, windows))
 }

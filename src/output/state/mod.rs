@@ -21,6 +21,7 @@ use crate::solver::channels::ChannelGroup;
 use crate::solver::clock::{Clock, rounded};
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::run::Stepping;
+use crate::solver::housing::checkpoint::SteppedCheckpoint;
 use crate::solver::solid::model::SolidProblem;
 use arrays::{remove_arrays, write_arrays};
 use entries::{BearingEntry, CourseEntry, ExchangeEntry, SolidEntry};
@@ -29,8 +30,9 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Of `state.json`; the first one had a form of its own for each kind of run, and no number.
-pub const FORM: u32 = 2;
+/// Of `state.json`; the first one had a form of its own for each kind of run, and no number, the second room
+/// for one solid, and two places of the outer race in a course.
+pub const FORM: u32 = 3;
 
 /// Content of `state.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -68,8 +70,8 @@ pub struct StateFile {
     pub ledger: ([f64; 3], u32),
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub bearing: Option<Box<BearingEntry>>,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub solid: Option<SolidEntry>,
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub solids: Vec<SolidEntry>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub exchange: Option<ExchangeEntry>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
@@ -130,9 +132,12 @@ pub fn fingerprint(parts: &Parts, request: &RunRequest) -> String {
             hash.update(format!("{:?} {:?}", setup.probes, setup.supports));
         }
         Parts::Housed(parts) => {
-            hash_bearing(&mut hash, &parts.problem.assembly(), request);
-            hash_solid(&mut hash, &parts.model.problem);
-            hash.update(format!("{:?} {:?}", parts.seat, parts.options));
+            hash_bearing(&mut hash, &parts.assembly, request);
+            for solid in &parts.solids {
+                hash.update(format!("{:?}", solid.name));
+                hash_solid(&mut hash, &solid.model.problem);
+            }
+            hash.update(format!("{:?} {:?}", parts.seats, parts.options));
         }
         Parts::Course(parts) => {
             hash_solid(&mut hash, &parts.setup.model.problem);
@@ -288,16 +293,20 @@ fn state_file(sound: &Sound, clock: &Clock, record: &StateRecord) -> StateFile {
         seconds: record.seconds,
         ledger: ([watch.first, watch.turned_over, watch.largest_residual], watch.rows_open),
         bearing: None,
-        solid: None,
+        solids: Vec::new(),
         exchange: None,
         course: None,
     };
     match &sound.checkpoint {
         Checkpoint::Bearing(kept) => file.bearing = Some(Box::new(BearingEntry::of(kept))),
-        Checkpoint::Solid(kept, limit) => file.solid = Some(SolidEntry::of(kept, limit, steps)),
+        Checkpoint::Solid(kept, limit) => file.solids = vec![SolidEntry::of(kept, limit, steps)],
         Checkpoint::Housed(kept, windows) => {
-            file.bearing = Some(Box::new(BearingEntry::of(&kept.bearing)));
-            file.solid = Some(SolidEntry::of(&kept.solid, &windows.limit, steps));
+            file.bearing = Some(Box::new(BearingEntry::of(&kept.simulation)));
+            let solids = kept.solids.iter().zip(&windows.solids);
+            let entry = |(part, (_, limit)): (&SteppedCheckpoint, &(_, _))| {
+                SolidEntry::of(&part.solid, limit, steps)
+            };
+            file.solids = solids.map(entry).collect();
             file.exchange = Some(ExchangeEntry::of(kept, windows));
         }
         Checkpoint::Course(kept) => file.course = Some(CourseEntry::of(kept)),
@@ -314,7 +323,7 @@ fn check_finite(file: &StateFile) -> Result<(), StateError> {
         parts.extend(bearing.numbers());
     }
     if let Some(exchange) = &file.exchange {
-        parts.push(("what bearing and housing exchange", exchange.numbers()));
+        parts.push(("what bodies and solids exchange", exchange.numbers()));
     }
     for (what, values) in parts {
         if let Some(&value) = values.iter().find(|value| !value.is_finite()) {

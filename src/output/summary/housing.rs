@@ -3,16 +3,17 @@
 use super::{Part, solid::limit_section};
 use crate::kinematics::vec3::Vec3;
 use crate::output::course::outer_place;
-use crate::output::recorder::seat::SeatRow;
+use crate::output::recorder::seat::{SeatRow, prefix};
 use crate::output::results::{ResultsError, quantity};
 use crate::output::session::Motion;
 use crate::scene::housing_problem::{Excitation, HousingSetup};
-use crate::solver::housing::assembly::AssemblyState;
 use crate::solver::housing::bore_equilibrium::POSE_NAMES;
 use crate::solver::housing::condensed::{CondensedBore, geometry_error};
 use crate::solver::housing::course_inertia::CourseInertia;
-use crate::solver::housing::exchange::HousedBearing;
+use crate::solver::housing::exchange::Exchange;
+use crate::solver::housing::housed::HousedState;
 use crate::solver::housing::inertia::InertiaEstimate;
+use crate::solver::housing::reduce::CutOff;
 use serde_json::{Map, Value, json};
 
 /// What a largest pressure of bore nodes is worth: measured on housings of 2.4.2, where it moved by 24 %
@@ -88,6 +89,41 @@ pub fn inertia_section(
     Ok(section.into())
 }
 
+/// What a reduced housing moves in, and what is cut off.
+///
+/// # Errors
+/// A value that is not finite.
+pub fn reduced_section(cut_off: &CutOff, excitations: &[Excitation]) -> Part {
+    let mut section = json!({
+        "natural_shapes": cut_off.natural,
+        "patterns_of_the_bore": cut_off.patterns,
+        "weight_and_loads": cut_off.own,
+        "bore_nodes": cut_off.nodes,
+        "masses": "lumped",
+        "modes_to": quantity("frequency", cut_off.modes_to, "Hz")?,
+        "lowest_frequency": quantity("frequency", cut_off.lowest, "Hz")?,
+        "highest_frequency": quantity("frequency", cut_off.highest, "Hz")?,
+        "compliance_left_out": quantity("part", cut_off.static_left_out, "1")?,
+        "compliance_without_natural_shape": quantity("part", cut_off.by_patterns, "1")?,
+    });
+    if cut_off.first_left_out.is_finite() {
+        section["first_frequency_left_out"] = quantity("frequency", cut_off.first_left_out, "Hz")?;
+        let mut driven = Map::new();
+        for excitation in excitations {
+            let error = cut_off.dynamic_error(excitation.frequency);
+            driven.insert(
+                excitation.what.clone(),
+                json!({
+                    "frequency": quantity("frequency", excitation.frequency, "Hz")?,
+                    "error_at_most": quantity("error", error, "1")?,
+                }),
+            );
+        }
+        section["error_of_what_drives"] = driven.into();
+    }
+    Ok(section)
+}
+
 /// The largest of these errors, and what causes it.
 pub fn largest_error<'e>(
     estimate: &InertiaEstimate,
@@ -104,7 +140,7 @@ pub fn largest_error<'e>(
 pub fn equilibrium_section(
     setup: &HousingSetup,
     bore: &CondensedBore,
-    state: &AssemblyState,
+    state: &HousedState,
     displacement: &[Vec3],
 ) -> Part {
     let sizes = bore.sizes;
@@ -158,7 +194,7 @@ pub fn equilibrium_section(
             "error_of_fixed_normals": quantity("geometry error", geometry, "m")?,
         },
         "solver": {
-            "rounds": state.rounds,
+            "iterations": state.iterations,
             "contact_changes": state.contact_changes,
             "residual": quantity("residual", state.residual, "1")?,
         },
@@ -168,33 +204,54 @@ pub fn equilibrium_section(
 /// How a housing takes part in a run.
 pub(super) fn method(motion: &Motion) -> Option<&'static str> {
     match motion {
-        Motion::Bearing(_) | Motion::Solid(_) => None,
+        Motion::Bearing(simulation) => {
+            (!simulation.system.assembly.seats.is_empty()).then_some("reduced")
+        }
+        Motion::Solid(_) => None,
         Motion::Housed(_) => Some("explicit"),
         Motion::Course(_) => Some("quasi-static"),
     }
 }
 
-pub(super) fn step(housed: &HousedBearing) -> Part {
-    Ok(json!({
-        "window": quantity("window", housed.window, "s")?,
-        "housing": quantity("step", housed.solid.step_size, "s")?,
-        "housing_steps_a_window": housed.solid_steps,
-        "bearing_at_most": quantity("step", housed.bearing.step_size.min(housed.window), "s")?,
-        "housing_limit": limit_section(&housed.solid.limit, &housed.solid.model.labels)?,
-    }))
+/// Keys of a solid and of its seats begin with their names, where they have some.
+pub(super) fn step(housed: &Exchange) -> Part {
+    let bodies = &housed.simulation;
+    let mut section = Map::new();
+    section.insert("window".into(), quantity("window", housed.window, "s")?);
+    for part in &housed.solids {
+        let (of, solid) = (prefix(&part.name), &part.solid);
+        section.insert(format!("{of}housing"), quantity("step", solid.step_size, "s")?);
+        section.insert(format!("{of}housing_steps_a_window"), json!(part.steps));
+    }
+    let most = bodies.step_size.min(housed.window);
+    section.insert("bearing_at_most".into(), quantity("step", most, "s")?);
+    for part in &housed.solids {
+        let limit = limit_section(&part.solid.limit, &part.solid.model.labels)?;
+        section.insert(format!("{}housing_limit", prefix(&part.name)), limit);
+    }
+    Ok(section.into())
 }
 
-pub(super) fn work(housed: &HousedBearing) -> Value {
-    let (tested, out_of_reach) = housed.counts();
-    json!({
-        "windows": housed.exchanges,
-        "housing_steps": housed.solid.steps,
-        "bearing_steps": housed.bearing.steps,
-        "elements_evaluated": housed.solid.work.elements,
-        "bearing_evaluations": housed.bearing.system.work.evaluations,
-        "bore_nodes_in_reach": tested,
-        "bore_nodes_out_of_reach": out_of_reach,
-        "bore_node_tests": housed.tested,
-        "sorts_by_reach": housed.sorts,
-    })
+pub(super) fn work(housed: &Exchange) -> Value {
+    let mut section = Map::new();
+    section.insert("windows".into(), json!(housed.exchanges));
+    for part in &housed.solids {
+        section.insert(format!("{}housing_steps", prefix(&part.name)), json!(part.solid.steps));
+    }
+    section.insert("bearing_steps".into(), json!(housed.simulation.steps));
+    for part in &housed.solids {
+        let elements = part.solid.work.elements;
+        section.insert(format!("{}elements_evaluated", prefix(&part.name)), json!(elements));
+    }
+    let evaluations = housed.simulation.system.work.evaluations;
+    section.insert("bearing_evaluations".into(), json!(evaluations));
+    for seat in housed.seats() {
+        let of = prefix(&seat.seat.name);
+        let (tested, out_of_reach) = seat.counts();
+        section.insert(format!("{of}bore_nodes_in_reach"), json!(tested));
+        section.insert(format!("{of}bore_nodes_out_of_reach"), json!(out_of_reach));
+        section.insert(format!("{of}bore_node_tests"), json!(seat.tested));
+        section.insert(format!("{of}sorts_by_reach"), json!(seat.sorts));
+    }
+    section.into()
 }

@@ -127,7 +127,7 @@ pub fn run_summary(
             summary.insert("largest_unbalanced_part_of_load".into(), residual);
             json!({
                 "equilibria": session.recorder.rows(),
-                "rounds": effort.rounds,
+                "iterations": effort.iterations,
                 "contact_changes": effort.contact_changes,
             })
         }
@@ -199,7 +199,8 @@ fn energy(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsE
     let Some(last) = table.series.data().nrows().checked_sub(1) else { return Ok(None) };
     let mut terms = Map::new();
     for (index, column) in table.series.columns().iter().enumerate() {
-        if column.name.starts_with("energy_") || column.name.starts_with("work_") {
+        let own = unprefixed(&column.name, &session.motion);
+        if own.starts_with("energy_") || own.starts_with("work_") {
             let value = table.series.data()[(last, index)];
             terms.insert(column.name.clone(), quantity(&column.name, value, &column.unit)?);
         }
@@ -211,7 +212,7 @@ fn energy(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsE
         let largest = residuals.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
         terms.insert("largest_residual".into(), quantity("largest_residual", largest, "J")?);
     }
-    if session.motion.solid().is_some() {
+    if !session.motion.solids().is_empty() {
         let watch = &session.watch;
         let (residual, turned_over) = (watch.largest_residual, watch.turned_over);
         let part = if turned_over > 0.0 { residual / turned_over } else { 0.0 };
@@ -223,6 +224,15 @@ fn energy(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsE
         terms.insert("largest_residual_part".into(), quantity("part", part, "1")?);
     }
     Ok(Some(Value::Object(terms)))
+}
+
+/// The name of a column without that of the solid or seat it is of.
+fn unprefixed<'n>(column: &'n str, motion: &Motion) -> &'n str {
+    let Motion::Housed(housed) = motion else { return column };
+    let solids = housed.solids.iter().map(|part| &part.name);
+    let mut names = solids.chain(housed.seats().map(|seat| &seat.seat.name)).flatten();
+    let own = |name: &String| column.strip_prefix(name.as_str())?.strip_prefix('_');
+    names.find_map(own).unwrap_or(column)
 }
 
 fn final_values(table: &RunTable) -> Result<Value, ResultsError> {

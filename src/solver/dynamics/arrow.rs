@@ -1,15 +1,17 @@
 //! The matrix of a linearly implicit step, M + hγ D + h²γ² K over all velocities: balls touch hubs
 //! (races, cage) and never each other, so that each ball is eliminated into the hubs and what
-//! remains is six equations for each body that moves.
+//! remains is six equations for each body that moves, and one for each shape of a reduced solid.
 //!
 //! Balls are eliminated a block of [`LANES`] at a time, with every driver.
 
+use super::assembly::Assembly;
 use super::ball_set::BallSet;
 use super::elimination::{
     Block, Dense, ZERO, add_product, factor_lanes, solve_columns, solve_lanes, subtract_product,
     total,
 };
 use super::linearised::{BallBlock, Hub, Lane, LaneContact, Linearised, from_basis, to_basis};
+use super::reduced_solid::Surface;
 use super::state::{LANES, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use super::system::System;
 use crate::ch2_housing::bearing::inertia::Inertia;
@@ -33,25 +35,42 @@ pub struct Arrow {
     coupled: Vec<[bool; HUBS]>,
     schur: Dense,
     balls: Vec<[Lane; 6]>,
-    /// Of all hubs: right-hand side and rates, and what they have moved.
+    /// Of all hubs and then all shapes: right-hand side and rates; what the hubs have moved.
     hubs: Vec<f64>,
     moved: Vec<[f64; 6]>,
+    /// Of each seat: its shapes node by node, and room for the displacement of its nodes.
+    seats: Vec<SeatShapes>,
+}
+
+#[derive(Clone, Debug)]
+struct SeatShapes {
+    by_node: Vec<f64>,
+    surface: Surface,
+    outward: Vec<f64>,
 }
 
 impl Arrow {
     pub fn new(system: &System, linearised: &Linearised) -> Arrow {
         let blocks = linearised.blocks.len();
         let hubs = linearised.hubs.len();
+        let size = 6 * hubs + linearised.shapes();
+        let Assembly { seats, solids, .. } = &system.assembly;
+        let seats = seats.iter().zip(&system.seats).map(|(seat, now)| SeatShapes {
+            by_node: now.by_node.clone(),
+            surface: solids[seat.solid].surfaces[seat.surface].clone(),
+            outward: now.outward.clone(),
+        });
         Arrow {
             ball: system.assembly.bearings.iter().map(|bearing| bearing.ball).collect(),
             scale: 0.0,
             factors: vec![[[ZERO; 6]; 6]; blocks],
             eliminated: vec![[[[ZERO; 6]; 6]; HUBS]; blocks],
             coupled: vec![[false; HUBS]; blocks],
-            schur: Dense::new(6 * hubs),
+            schur: Dense::new(size),
             balls: vec![[ZERO; 6]; blocks],
-            hubs: vec![0.0; 6 * hubs],
+            hubs: vec![0.0; size],
             moved: vec![[0.0; 6]; hubs],
+            seats: seats.collect(),
         }
     }
 
@@ -66,6 +85,7 @@ impl Arrow {
             }
         }
         add_joints(linearised, scale, &mut self.schur);
+        add_solids(linearised, &self.seats, scale, &mut self.schur);
         for (index, block) in linearised.blocks.iter().enumerate() {
             self.factor_block(index, block);
         }
@@ -160,7 +180,8 @@ impl Arrow {
     ) {
         w.copy_from_slice(r);
         let scale = self.scale;
-        let Arrow { ball, factors, eliminated, coupled, schur, balls, hubs, moved, .. } = self;
+        let Arrow { ball, factors, eliminated, coupled, schur, balls, hubs, moved, seats, .. } =
+            self;
         for (index, hub) in linearised.hubs.iter().enumerate() {
             moved[index] = displacement(hub, at, r);
             let rate = to_basis(hub, vector(r, hub.at + VELOCITY), vector(r, hub.at + SPIN));
@@ -170,6 +191,7 @@ impl Arrow {
             }
         }
         joint_forces(linearised, scale, moved, hubs);
+        solid_forces(linearised, scale, seats, r, moved, hubs);
         for (index, block) in linearised.blocks.iter().enumerate() {
             let right = &mut balls[index];
             let layout = &sets[block.bearing].layout;
@@ -211,6 +233,14 @@ impl Arrow {
         for (moved, rate) in moved.iter_mut().zip(rates) {
             for i in 0..6 {
                 moved[i] += scale * rate[i];
+            }
+        }
+        let (_, shapes) = hubs.split_at(6 * linearised.hubs.len());
+        for solid in &linearised.solids {
+            let (at, count) = (solid.at, solid.stiffness.len());
+            for (k, rate) in shapes[solid.first..solid.first + count].iter().enumerate() {
+                w[at + k] = r[at + k] + scale * rate;
+                w[at + count + k] = *rate;
             }
         }
         let mut power = 0.0;
@@ -498,6 +528,77 @@ fn joint_forces(linearised: &Linearised, scale: f64, moved: &[[f64; 6]], hubs: &
                 for j in 0..6 {
                     hubs[6 * hub + j] -= lever[j] * push;
                 }
+            }
+        }
+    }
+}
+
+/// Springs, dampers and seats of reduced solids, whose equations come after those of the hubs.
+fn add_solids(linearised: &Linearised, seats: &[SeatShapes], scale: f64, schur: &mut Dense) {
+    let before = 6 * linearised.hubs.len();
+    for solid in &linearised.solids {
+        for (k, stiffness) in solid.stiffness.iter().enumerate() {
+            let at = before + solid.first + k;
+            *schur.at(at, at) = 1.0 + scale * (solid.damping + scale * stiffness);
+        }
+    }
+    for (joint, seat) in linearised.seats.iter().zip(seats) {
+        let solid = &linearised.solids[joint.solid];
+        let (first, count) = (before + solid.first, solid.stiffness.len());
+        for row in &joint.nodes {
+            let shapes = &seat.by_node[row.node * count..(row.node + 1) * count];
+            let weight = scale * scale * row.stiffness;
+            if let Some(hub) = joint.hub {
+                for i in 0..6 {
+                    let push = row.lever[i] * weight;
+                    for j in i..6 {
+                        *schur.at(6 * hub + i, 6 * hub + j) += push * row.lever[j];
+                    }
+                    schur.add_to_row(6 * hub + i, first, push * row.along, shapes);
+                }
+            }
+            let weight = weight * row.along * row.along;
+            for (k, shape) in shapes.iter().enumerate() {
+                schur.add_to_row(first + k, first + k, weight * shape, &shapes[k..]);
+            }
+        }
+    }
+}
+
+/// Right-hand sides of the shapes, and what the displacements in `r` push back through the seats.
+fn solid_forces(
+    linearised: &Linearised,
+    scale: f64,
+    seats: &mut [SeatShapes],
+    r: &[f64],
+    moved: &[[f64; 6]],
+    hubs: &mut [f64],
+) {
+    let before = 6 * linearised.hubs.len();
+    for solid in &linearised.solids {
+        let (at, count) = (solid.at, solid.stiffness.len());
+        for (k, stiffness) in solid.stiffness.iter().enumerate() {
+            hubs[before + solid.first + k] = r[at + count + k] - scale * stiffness * r[at + k];
+        }
+    }
+    for (joint, seat) in linearised.seats.iter().zip(seats) {
+        let solid = &linearised.solids[joint.solid];
+        let (first, count) = (before + solid.first, solid.stiffness.len());
+        seat.surface.along_normals(&r[solid.at..solid.at + count], &mut seat.outward);
+        for row in &joint.nodes {
+            let mut push = row.along * seat.outward[row.node];
+            if let Some(hub) = joint.hub {
+                push += (0..6).map(|j| row.lever[j] * moved[hub][j]).sum::<f64>();
+            }
+            push *= scale * row.stiffness;
+            if let Some(hub) = joint.hub {
+                for j in 0..6 {
+                    hubs[6 * hub + j] -= row.lever[j] * push;
+                }
+            }
+            let shapes = &seat.by_node[row.node * count..(row.node + 1) * count];
+            for (to, shape) in hubs[first..first + count].iter_mut().zip(shapes) {
+                *to -= row.along * push * shape;
             }
         }
     }

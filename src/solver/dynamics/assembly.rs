@@ -1,4 +1,5 @@
-//! What is simulated, as lists: rigid bodies, the bearings that join them, gravity.
+//! What is simulated, as lists: rigid bodies, the bearings that join them, solids reduced to some shapes and the
+//! seats in them, gravity.
 //!
 //! A bearing takes hold of its two bodies at a place along each (a [`Mount`]); several may take hold of
 //! one body, as two bearings of a shaft do. The order of the lists is the order of every sum.
@@ -6,6 +7,8 @@
 use super::bounds::{HERTZ_SCALE, cage_room};
 use super::connection::Connection;
 use super::model::{CageBody, Drive, DynamicProblem, RaceBody, RotatingLoad, Rotation};
+use super::reduced_solid::ReducedSolid;
+use super::seat::Seat;
 use crate::ch2_housing::bearing::ball_contact::BallContactLaw;
 use crate::ch2_housing::bearing::cage::CageContacts;
 use crate::ch2_housing::bearing::contact::ContactDamping;
@@ -24,6 +27,10 @@ pub struct Assembly {
     pub bearings: Vec<Bearing>,
     /// Between bodies, besides the bearings.
     pub connections: Vec<Connection>,
+    /// Flexible solids with inertia.
+    pub solids: Vec<ReducedSolid>,
+    /// Rigid bodies in the bores of solids.
+    pub seats: Vec<Seat>,
     /// m/s².
     pub gravity: [f64; 3],
 }
@@ -229,12 +236,19 @@ impl Assembly {
         self.bodies.iter().filter_map(|body| body.rotating_load.as_ref())
     }
 
+    /// Loads on solids, and radii of races in their seats.
+    fn of_solids(&self) -> impl Iterator<Item = &Profile> {
+        let loads = self.solids.iter().flat_map(|solid| &solid.loads).map(|load| &load.profile);
+        loads.chain(self.seats.iter().map(|seat| &seat.radius))
+    }
+
     /// Times after t = 0 at which a load or a given motion has a corner, in order, each once: no
     /// step should cross them.
     pub fn corners(&self) -> Vec<f64> {
         let turning = self.rotating_loads().flat_map(|load| [&load.force, &load.speed]);
         let profiles = self.driven().flat_map(|race| race.loads().chain(race.given()));
-        let mut corners: Vec<f64> = profiles.chain(turning).flat_map(Profile::corners).collect();
+        let profiles = profiles.chain(turning).chain(self.of_solids());
+        let mut corners: Vec<f64> = profiles.flat_map(Profile::corners).collect();
         corners.retain(|time| *time > 0.0 && time.is_finite());
         corners.sort_by(f64::total_cmp);
         corners.dedup();
@@ -256,13 +270,30 @@ impl Assembly {
                 };
             }
         }
+        for load in later.solids.iter_mut().flat_map(|solid| &mut solid.loads) {
+            load.profile = load.profile.from_time(t0);
+        }
+        for seat in &mut later.seats {
+            seat.radius = seat.radius.from_time(t0);
+        }
         later
+    }
+
+    /// The same with every body that sits in a solid fixed where it rests, and no solid: what is left to find an
+    /// equilibrium of.
+    pub fn with_seats_held(&self) -> Assembly {
+        let mut held = self.clone();
+        for seat in held.seats.drain(..) {
+            held.bodies[seat.race.body].mobility = Mobility::Fixed;
+        }
+        held.solids.clear();
+        held
     }
 
     /// Whether a load or a given motion changes over time; one that turns at a speed of its own does.
     pub fn changes(&self) -> bool {
-        let mut own = self.driven().flat_map(|race| race.loads().chain(race.given()));
-        own.any(|profile| !matches!(profile, Profile::Constant(_)))
+        let own = self.driven().flat_map(|race| race.loads().chain(race.given()));
+        own.chain(self.of_solids()).any(|profile| !matches!(profile, Profile::Constant(_)))
             || self.rotating_loads().next().is_some()
     }
 
@@ -327,6 +358,8 @@ impl From<&DynamicProblem> for Assembly {
             bodies,
             bearings: vec![bearing],
             connections: Vec::new(),
+            solids: Vec::new(),
+            seats: Vec::new(),
             gravity: problem.gravity,
         }
     }

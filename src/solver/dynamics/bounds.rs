@@ -7,6 +7,7 @@ use super::failure::SimulationError;
 use super::model::Drive;
 use super::race::{RaceNow, mounted};
 use super::run::Simulation;
+use super::seat::Seat;
 use super::state::{BODY, POSITION};
 use crate::ch2_housing::bearing::cage::{CageContact, CageContacts, Guidance};
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
@@ -48,6 +49,9 @@ pub fn cage_room(geometry: &BearingGeometry, cage: &CageContacts) -> f64 {
 /// nothing that holds gives way by a metre.
 pub const FARTHEST: f64 = 1.0;
 
+/// How far the middle of a race may go across its bore, in its radii.
+const FARTHEST_IN_BORE: f64 = 0.1;
+
 /// How deep a cage may lie in balls or its guide at a start in equilibrium where no contact of a race is deeper, in ball radii.
 const CAGE_AT_START: f64 = 1e-3;
 
@@ -74,6 +78,14 @@ impl Simulation {
             if !self.state[at..at + BODY].iter().all(|v| v.is_finite()) {
                 return Err(self.not_finite(body.name.clone()));
             }
+        }
+        for (solid, at) in system.assembly.solids.iter().zip(&system.solids) {
+            if !self.state[*at..at + 2 * solid.count()].iter().all(|v| v.is_finite()) {
+                return Err(self.not_finite(solid.name.clone()));
+            }
+        }
+        for seat in &system.assembly.seats {
+            self.watch_seat(seat)?;
         }
         for (set, bearing) in system.sets.iter().zip(&system.assembly.bearings) {
             self.watch_travel(bearing)?;
@@ -175,6 +187,35 @@ impl Simulation {
             return Err(SimulationError::FlownOff {
                 body,
                 coordinate,
+                distance,
+                allowed,
+                time,
+                step,
+            });
+        }
+        Ok(())
+    }
+
+    /// A race in its bore: beyond these its nodes no longer stand for what is under it, or it hangs in the wall.
+    fn watch_seat(&self, seat: &Seat) -> Result<(), SimulationError> {
+        let body = self.system.body_state(&self.state, seat.race.body);
+        let race = mounted(&RaceNow::new(body), &seat.race).motion;
+        let (along, across) = split(sub(race.position, seat.nominal), race.axis);
+        let radius = seat.radius.value(self.time);
+        for (way, distance, allowed) in [
+            ("along the axis", along.abs(), seat.rim),
+            ("across it", across, FARTHEST_IN_BORE * radius),
+        ] {
+            // NaN is too far.
+            if distance <= allowed {
+                continue;
+            }
+            let body = self.system.assembly.bodies[seat.race.body].name.clone();
+            let (seat, time, step) = (seat.name.clone(), self.time, self.steps);
+            return Err(SimulationError::LeftSeat {
+                body,
+                seat,
+                way,
                 distance,
                 allowed,
                 time,

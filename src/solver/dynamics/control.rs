@@ -58,6 +58,51 @@ pub struct Controller {
     balls: Vec<(Layout, Scale)>,
     /// First entry of each body that moves, with its scales.
     bodies: Vec<(usize, Scale)>,
+    /// Shapes of reduced solids.
+    shapes: Vec<ShapeScale>,
+}
+
+/// What makes a shape of a reduced solid comparable.
+#[derive(Clone, Copy, Debug)]
+struct ShapeScale {
+    /// Entries of how far it has gone, and how fast.
+    at: [usize; 2],
+    /// Largest displacement of a seat for a unit of it.
+    reach: f64,
+    /// rad/s.
+    frequency: f64,
+    /// Of the lightest race that sits in the solid.
+    race: Scale,
+}
+
+/// Scales of all shapes. Errors count by how far they move a seat; the speed of a shape that swings slower than
+/// the race on its balls by that of the race.
+fn shapes(assembly: &Assembly, places: &Places) -> Vec<ShapeScale> {
+    let mut all = Vec::new();
+    for (index, (solid, at)) in assembly.solids.iter().zip(places.solids(assembly)).enumerate() {
+        let mut reach = vec![0.0f64; solid.count()];
+        let mut race: Option<Scale> = None;
+        for seat in assembly.seats.iter().filter(|seat| seat.solid == index) {
+            for (reach, here) in reach.iter_mut().zip(solid.surfaces[seat.surface].largest()) {
+                *reach = reach.max(here);
+            }
+            let body = seat.race.body;
+            if let Some(mass) = assembly.bodies[body].inertia().map(|inertia| inertia.mass)
+                && race.is_none_or(|other| mass < other.mass)
+            {
+                race = Some(Scale { mass, arm: arm(assembly, body) });
+            }
+        }
+        let Some(race) = race else { continue };
+        let count = solid.count();
+        all.extend((0..count).map(|k| ShapeScale {
+            at: [at + k, at + count + k],
+            reach: reach[k],
+            frequency: solid.frequencies[k],
+            race,
+        }));
+    }
+    all
 }
 
 /// What makes lengths and displacements of a body comparable.
@@ -105,6 +150,7 @@ impl Controller {
             }),
             balls: balls.collect(),
             bodies: bodies.collect(),
+            shapes: shapes(assembly, &places),
         }
     }
 
@@ -163,6 +209,12 @@ impl Controller {
             take(per * scale.arm * 2.0 * largest(at + ORIENTATION, VELOCITY - ORIENTATION));
             take(per_speed * largest(at + VELOCITY, SPIN - VELOCITY));
             take(per_speed * scale.arm * largest(at + SPIN, BODY - SPIN));
+        }
+        for shape in &self.shapes {
+            let frequency = shape.frequency.max(self.frequency(&shape.race));
+            let [gone, speed] = shape.at;
+            take(per * shape.reach * error[gone].abs());
+            take(per * shape.reach * error[speed].abs() / frequency);
         }
         norm
     }

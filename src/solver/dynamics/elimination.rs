@@ -103,6 +103,15 @@ impl Dense {
         &mut self.values[row * self.size + column]
     }
 
+    /// Adds a multiple of some values to a row from a column on.
+    #[inline(always)]
+    pub fn add_to_row(&mut self, row: usize, column: usize, factor: f64, values: &[f64]) {
+        let from = row * self.size + column;
+        for (to, value) in self.values[from..from + values.len()].iter_mut().zip(values) {
+            *to += factor * value;
+        }
+    }
+
     pub fn factor(&mut self) {
         let n = self.size;
         for k in 0..n {

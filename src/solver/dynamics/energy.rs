@@ -1,4 +1,4 @@
-//! What is stored in a state: kinetic energy, contacts, gravity, springs.
+//! What is stored in a state: kinetic energy, contacts, gravity, springs, reduced solids and their seats.
 
 use super::race::mounted;
 use super::state::{POSITION, SPIN, VELOCITY};
@@ -16,12 +16,17 @@ pub struct Energy {
     pub contact: f64,
     /// Stored in cage contacts.
     pub cage_contact: f64,
-    /// −m g·r of all bodies.
+    /// −m g·r of all bodies and reduced solids.
     pub gravity: f64,
     /// Stored in springs to the ground and between bodies.
     pub foundation: f64,
     /// Stored in contacts between balls.
     pub ball_contact: f64,
+    /// Motion and strain of reduced solids.
+    pub solid_kinetic: f64,
+    pub solid_strain: f64,
+    /// Stored in contacts of seats.
+    pub seat: f64,
 }
 
 impl Energy {
@@ -32,6 +37,7 @@ impl Energy {
             + self.gravity
             + self.foundation
             + self.ball_contact
+            + (self.solid_kinetic + self.solid_strain + self.seat)
     }
 }
 
@@ -91,6 +97,13 @@ impl System {
             let ends = connection.ends.map(|mount| mounted(&self.bodies[mount.body], &mount));
             energy.foundation += connection.pull([&ends[0], &ends[1]]).energy;
         }
+        for solid in 0..assembly.solids.len() {
+            let of = self.energy_of_solid(state, solid);
+            energy.solid_kinetic += of.kinetic;
+            energy.solid_strain += of.strain;
+            energy.gravity += of.gravity;
+        }
+        energy.seat = self.seats.iter().map(|seat| seat.contact.energy).sum();
         energy
     }
 }

@@ -133,7 +133,7 @@ fn largest_load(bearings: &[BearingState]) -> f64 {
 
 /// The static problem of an assembly at time `t`; a rotating load stands still where it is then, an
 /// unbalance is left out.
-pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAssembly {
+pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAssembly<'static> {
     let carries_outer =
         |body: usize| assembly.bearings.iter().any(|bearing| bearing.mounts[1].body == body);
     let room = |body: usize| {
@@ -152,6 +152,7 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
                     && assembly.bearings.len() == 1
                     && is_held(&assembly.bodies[assembly.bearings[0].mounts[1].body]);
                 Place::Loaded(Loaded {
+                    axes: Pose::identity(),
                     conditions: conditions(assembly, body, race, t),
                     springs: race.foundation_stiffness,
                     rest: *rest,
@@ -176,6 +177,7 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
         bodies: bodies.collect(),
         bearings: bearings.collect(),
         connections: assembly.connections.clone(),
+        ..StaticAssembly::default()
     }
 }
 

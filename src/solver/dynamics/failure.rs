@@ -108,6 +108,20 @@ pub enum SimulationError {
         step: u64,
     },
     #[error(
+        "{body} has left {seat} at t = {at} s, step {step}: it is {distance:.3e} m off {way}, where {allowed:.3e} m \
+         are left of its seat",
+        at = told(*time)
+    )]
+    LeftSeat {
+        body: String,
+        seat: String,
+        way: &'static str,
+        distance: f64,
+        allowed: f64,
+        time: f64,
+        step: u64,
+    },
+    #[error(
         "energy is lost or made: {residual:.3e} J of {turned_over:.3e} J are unaccounted for at \
          t = {at} s, step {step} (limit {limit}); take a smaller step or accuracy (numerics.step, \
          numerics.accuracy), or allow more (numerics.energy_limit)",

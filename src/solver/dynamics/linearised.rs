@@ -3,7 +3,7 @@
 //!
 //! In it are, all symmetric: the normal stiffness (Hertz, damping, penalty) of race, pocket and
 //! guide contacts; the slope of traction by slip and spin; the slope of the cage's friction by
-//! sliding; foundations.
+//! sliding; foundations; springs and dampers of reduced solids and the penalty of their seats.
 //!
 //! How slip changes as the contact point moves round the bodies, and how traction follows the normal
 //! load, is known too, but only for displacements in a right-hand side: that keeps the matrix
@@ -17,6 +17,7 @@ use super::ball_set::{BallSet, guiding_side};
 use super::connection::{self, Connection};
 use super::model::{Drive, RaceBody, Rotation};
 use super::race::{RaceNow, directions, mounted};
+use super::seat::{Seat, SeatNow};
 use super::state::{LANES, POSITION};
 use super::system::System;
 use crate::ch2_housing::bearing::cage::{CageContact, CageContacts, cage_stiffness};
@@ -79,6 +80,40 @@ pub struct JointRow {
     pub damping: f64,
 }
 
+/// Shapes of a reduced solid, one equation each with a mass of 1 kg.
+#[derive(Clone, Debug, Default)]
+pub struct Shapes {
+    /// First of its entries in the state.
+    pub at: usize,
+    /// First of its equations among those of all solids.
+    pub first: usize,
+    /// ω², 1/s², and α, 1/s.
+    pub stiffness: Vec<f64>,
+    pub damping: f64,
+}
+
+/// A race in the bore of a reduced solid: one direction for each node that touches. How the normals turn, load over
+/// radius against the stiffness (a part of 1e-4), is left out.
+#[derive(Clone, Debug, Default)]
+pub struct SeatJoint {
+    pub hub: Option<usize>,
+    pub solid: usize,
+    pub nodes: Vec<SeatRow>,
+}
+
+/// Approach of race and bore at a node.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SeatRow {
+    /// In the surface.
+    pub node: usize,
+    /// N/m.
+    pub stiffness: f64,
+    /// That the six velocities of the hub make.
+    pub lever: [f64; 6],
+    /// That the node's speed along its own normal makes.
+    pub along: f64,
+}
+
 /// A body that many balls touch. Its rotations count about `basis`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Hub {
@@ -117,6 +152,8 @@ pub struct Linearised {
     pub hubs: Vec<Hub>,
     /// Of each body of the assembly.
     pub hub_of: Vec<Option<usize>>,
+    pub solids: Vec<Shapes>,
+    pub seats: Vec<SeatJoint>,
 }
 
 impl Linearised {
@@ -156,12 +193,30 @@ impl Linearised {
             let hubs = connection.ends.map(|mount| hub_of[mount.body]);
             Joint { hubs, count: connection::ROWS, ..Joint::default() }
         }));
-        Linearised { blocks, joints, hubs, hub_of }
+        let mut first = 0;
+        let solids = assembly.solids.iter().zip(&system.solids).map(|(solid, &at)| {
+            let stiffness: Vec<f64> = solid.frequencies.iter().map(|w| w * w).collect();
+            let shapes = Shapes { at, first, stiffness, damping: solid.damping };
+            first += solid.count();
+            shapes
+        });
+        let seats = assembly.seats.iter().zip(&system.seats).map(|(seat, now)| SeatJoint {
+            hub: hub_of[seat.race.body],
+            solid: seat.solid,
+            nodes: Vec::with_capacity(now.outward.len()),
+        });
+        let (solids, seats) = (solids.collect(), seats.collect());
+        Linearised { blocks, joints, hubs, hub_of, solids, seats }
+    }
+
+    /// Equations of all reduced solids.
+    pub fn shapes(&self) -> usize {
+        self.solids.iter().map(|solid| solid.stiffness.len()).sum()
     }
 
     /// Takes up the contacts that `system` has just evaluated, slopes included.
     pub fn update(&mut self, system: &System, state: &[f64]) {
-        let Linearised { blocks, joints, hubs, hub_of } = self;
+        let Linearised { blocks, joints, hubs, hub_of, seats, .. } = self;
         for ((body, now), hub) in system.assembly.bodies.iter().zip(&system.bodies).zip(hub_of) {
             let Some(hub) = hub.map(|hub| &mut hubs[hub]) else { continue };
             match body.driven() {
@@ -195,7 +250,27 @@ impl Linearised {
         for (joint, connection) in others.iter_mut().zip(&system.assembly.connections) {
             update_connection(joint, connection, &system.bodies, hubs);
         }
+        for ((joint, seat), now) in seats.iter_mut().zip(&system.assembly.seats).zip(&system.seats)
+        {
+            update_seat(joint, seat, now, &system.bodies[seat.race.body], hubs);
+        }
     }
+}
+
+fn update_seat(joint: &mut SeatJoint, seat: &Seat, now: &SeatNow, body: &RaceNow, hubs: &[Hub]) {
+    // Levers count about the hub's centre, from where the seat may be some way along the shaft.
+    let off = scale(body.motion.axis, seat.race.along);
+    let hub = joint.hub.map(|hub| &hubs[hub]);
+    joint.nodes.clear();
+    joint.nodes.extend(now.touching.iter().map(|node| {
+        let turning = cross(add(node.arm, off), node.normal);
+        SeatRow {
+            node: node.node,
+            stiffness: node.stiffness,
+            lever: hub.map_or([0.0; 6], |hub| on_hub(hub, node.normal, turning)),
+            along: -node.along,
+        }
+    }));
 }
 
 fn update_guides(

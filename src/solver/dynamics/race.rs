@@ -5,6 +5,7 @@ use super::model::{Drive, RaceBody, Rotation};
 use super::state::BodyState;
 use crate::ch2_housing::bearing::cage::AxisMotion;
 use crate::ch2_housing::bearing::inertia::Inertia;
+use crate::kinematics::Pose;
 use crate::kinematics::euler::about;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 use crate::solver::mount::Mount;
@@ -124,6 +125,13 @@ fn with_tilts(orientation: &UnitQuaternion<f64>, tilts: [f64; 2]) -> UnitQuatern
 pub fn fixed(at: &[f64; 5]) -> RaceNow {
     let mut state = BodyState::at_rest([at[0], at[1], at[2]]);
     state.orientation = about(Vector3::y(), at[3]) * about(Vector3::z(), at[4]);
+    RaceNow::new(state)
+}
+
+/// A race that stands still at a pose.
+pub fn standing(pose: &Pose) -> RaceNow {
+    let mut state = BodyState::at_rest(pose.position.into());
+    state.orientation = pose.orientation;
     RaceNow::new(state)
 }
 

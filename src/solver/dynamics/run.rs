@@ -11,7 +11,7 @@ use super::rk4::RungeKutta;
 use super::rosenbrock::{self, Rosenbrock};
 use super::stability::{StepLimit, step_limit};
 use super::start;
-use super::state::{LEDGER, Ledger};
+use super::state::{BodyState, LEDGER, Ledger};
 use super::step_watch::{StepWatch, Stiffness, stiffness};
 use super::system::System;
 
@@ -330,9 +330,16 @@ impl Simulation {
         }
     }
 
-    /// Lets something outside push a body from now on; its work goes with that of foundations.
-    pub fn set_outside_load(&mut self, body: usize, load: RaceLoads) {
-        self.system.outside[body] = Some(load);
+    /// A body at the present time.
+    pub fn body(&self, index: usize) -> BodyState {
+        self.system.body_state(&self.state, index)
+    }
+
+    /// Lets something outside push bodies from now on; its work goes with that of foundations.
+    pub fn set_outside_loads(&mut self, loads: &[(usize, RaceLoads)]) {
+        for (body, load) in loads {
+            self.system.outside[*body] = Some(*load);
+        }
         self.take_first_rates();
     }
 

@@ -7,6 +7,7 @@ use super::state::{ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use super::system::System;
 use crate::ch2_housing::bearing::cage::CageForce;
 use crate::ch2_housing::bearing::traction::TractionLaw;
+use crate::ch2_housing::bore_contact::Penalty;
 use nalgebra::{Complex, DMatrix, Quaternion, Schur};
 
 /// Where the step of an explicit method ends.
@@ -33,10 +34,12 @@ pub enum Cause {
     FoundationDashpot,
     ConnectionSpring,
     ConnectionDashpot,
+    Seat,
+    Solid,
 }
 
 impl Cause {
-    pub const ALL: [Cause; 11] = [
+    pub const ALL: [Cause; 13] = [
         Cause::Contact,
         Cause::CageContact,
         Cause::BallContact,
@@ -48,6 +51,8 @@ impl Cause {
         Cause::FoundationDashpot,
         Cause::ConnectionSpring,
         Cause::ConnectionDashpot,
+        Cause::Seat,
+        Cause::Solid,
     ];
 
     pub fn name(self) -> &'static str {
@@ -63,6 +68,8 @@ impl Cause {
             Cause::FoundationDashpot => "dashpot of the foundation",
             Cause::ConnectionSpring => "spring between bodies",
             Cause::ConnectionDashpot => "dashpot between bodies",
+            Cause::Seat => "seat in a solid",
+            Cause::Solid => "shape of a reduced solid",
         }
     }
 
@@ -118,6 +125,22 @@ impl Cause {
             }),
             Cause::FoundationSpring => foundations(system, |race| &mut race.foundation_stiffness),
             Cause::FoundationDashpot => foundations(system, |race| &mut race.foundation_damping),
+            Cause::Seat => {
+                for seat in &mut system.assembly.seats {
+                    seat.penalty = Penalty::PerArea(0.0);
+                }
+                !system.assembly.seats.is_empty()
+            }
+            Cause::Solid => {
+                // Without springs and forces shapes swing at no frequency.
+                for solid in &mut system.assembly.solids {
+                    solid.frequencies.fill(0.0);
+                    for surface in &mut solid.surfaces {
+                        surface.shapes.fill(0.0);
+                    }
+                }
+                !system.assembly.solids.is_empty()
+            }
             Cause::ConnectionSpring | Cause::ConnectionDashpot => {
                 let mut any = false;
                 for connection in &mut system.assembly.connections {
@@ -256,6 +279,12 @@ fn directions(system: &System) -> Vec<Direction> {
     for body in moving {
         directions.extend((0..3).map(|axis| Direction::Turn { body, axis }));
     }
+    for (solid, at) in system.assembly.solids.iter().zip(&system.solids) {
+        for shape in 0..solid.count() {
+            directions.push(Direction::Position(at + shape));
+            directions.push(Direction::Rate(at + solid.count() + shape));
+        }
+    }
     directions
 }
 
@@ -279,7 +308,14 @@ fn cause(system: &mut System, t: f64, state: &[f64], step: f64, eigenvalue: Comp
             Cause::ConnectionDashpot,
         ]
     } else {
-        &[Cause::CageContact, Cause::BallContact, Cause::FoundationSpring, Cause::ConnectionSpring]
+        &[
+            Cause::CageContact,
+            Cause::BallContact,
+            Cause::FoundationSpring,
+            Cause::ConnectionSpring,
+            Cause::Seat,
+            Cause::Solid,
+        ]
     };
     let mut found = (1.1 * step, Cause::Contact);
     for &candidate in candidates {
@@ -287,11 +323,13 @@ fn cause(system: &mut System, t: f64, state: &[f64], step: f64, eigenvalue: Comp
         let sets: Vec<_> =
             system.sets.iter().map(|set| (set.laws.clone(), set.damping.clone())).collect();
         let longer = if candidate.remove(system) {
+            system.renew_seats();
             limiting(system, t, state).map_or(f64::INFINITY, |limit| limit.0)
         } else {
             step
         };
         system.assembly = assembly;
+        system.renew_seats();
         for (set, (laws, damping)) in system.sets.iter_mut().zip(sets) {
             (set.laws, set.damping) = (laws, damping);
         }

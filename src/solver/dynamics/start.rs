@@ -16,9 +16,16 @@ use std::f64::consts::TAU;
 /// all as fast as the equilibrium moves on (see [`quasi_static`]); what turns stands still for the
 /// equilibrium itself (see [`at_start`]).
 ///
+/// What sits in a solid starts where it rests, the others in equilibrium with it there; solids start as their
+/// `start` says, still.
+///
 /// # Errors
 /// When the loads have no equilibrium, at t = 0 or, since nothing holds the bearing against them, later.
 pub fn at_equilibrium(assembly: &Assembly) -> Result<Vec<f64>, StaticsError> {
+    if !assembly.solids.is_empty() {
+        let held = at_equilibrium(&assembly.with_seats_held())?;
+        return Ok(with_solids(assembly, &held));
+    }
     let now = at_start(assembly)?;
     check_held(assembly)?;
     let rates = quasi_static::rates(assembly, &now);
@@ -47,7 +54,19 @@ pub fn nominal(assembly: &Assembly) -> Vec<f64> {
         at
     };
     let bodies: Vec<[f64; 5]> = assembly.bodies.iter().map(place).collect();
-    fill(assembly, &bodies, None, &Rates::rest(assembly))
+    with_solids(assembly, &fill(assembly, &bodies, None, &Rates::rest(assembly)))
+}
+
+/// A state without solids with them put in, the ledger behind.
+fn with_solids(assembly: &Assembly, state: &[f64]) -> Vec<f64> {
+    let places = Places::of(assembly);
+    let mut whole = vec![0.0; places.state_len()];
+    let bodies = places.body(assembly.bodies.len());
+    whole[..bodies].copy_from_slice(&state[..bodies]);
+    for (solid, at) in assembly.solids.iter().zip(places.solids(assembly)) {
+        whole[at..at + solid.start.len()].copy_from_slice(&solid.start);
+    }
+    whole
 }
 
 /// Positions of a bearing's balls on the pitch circle of its outer race.

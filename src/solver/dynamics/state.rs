@@ -2,23 +2,42 @@
 //! plain numbers.
 //!
 //! The balls of each bearing lie component by component (all x, all y, …), padded to whole lanes; bodies
-//! (races, cages, shafts) follow one by one; the energy ledger comes last.
+//! (races, cages, shafts) follow one by one; then the shapes of each reduced solid, how far and how fast; the
+//! energy ledger comes last.
 
 use super::assembly::Assembly;
+use super::reduced_solid::ReducedSolid;
 use crate::kinematics::vec3::Vec3;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-/// Where bodies and ledger are in the state vector.
+/// Where bodies, solids and ledger are in the state vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Places {
     first_body: usize,
     bodies: usize,
+    /// Entries of all reduced solids.
+    of_solids: usize,
 }
 
 impl Places {
     pub fn of(assembly: &Assembly) -> Places {
         let balls = assembly.bearings.iter().map(|bearing| bearing.geometry.ball_count);
-        Places { first_body: balls.map(ball_entries).sum(), bodies: assembly.bodies.len() }
+        Places {
+            first_body: balls.map(ball_entries).sum(),
+            bodies: assembly.bodies.len(),
+            of_solids: assembly.solids.iter().map(|solid| 2 * solid.count()).sum(),
+        }
+    }
+
+    /// First entries of each reduced solid: so many shapes how far (m), then as many how fast (m/s).
+    pub fn solids(&self, assembly: &Assembly) -> Vec<usize> {
+        let mut next = self.body(self.bodies);
+        let mut first = |solid: &ReducedSolid| {
+            let at = next;
+            next += 2 * solid.count();
+            at
+        };
+        assembly.solids.iter().map(&mut first).collect()
     }
 
     /// First of the 13 entries of a body.
@@ -27,7 +46,7 @@ impl Places {
     }
 
     pub fn ledger(&self) -> usize {
-        self.body(self.bodies)
+        self.body(self.bodies) + self.of_solids
     }
 
     pub fn ledger_entry(&self, entry: Ledger) -> usize {
@@ -56,8 +75,10 @@ pub enum Ledger {
     Traction,
     ContactDamping,
     CageFriction,
-    /// Dashpots to the ground and between bodies, or all that a housing does to the outer race.
+    /// Dashpots to the ground, between bodies and of reduced solids, or all that a housing in explicit steps does
+    /// to the outer race.
     Foundation,
+    /// Loads, given motions, and races that grow in their seats.
     Drives,
     BallFriction,
 }

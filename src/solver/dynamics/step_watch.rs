@@ -66,6 +66,13 @@ pub fn stiffness(system: &System) -> Stiffness {
     for (set, bearing) in system.sets.iter().zip(&system.assembly.bearings) {
         most = most.largest(&stiffness_of(system, set, bearing));
     }
+    for (seat, now) in system.assembly.seats.iter().zip(&system.seats) {
+        let inertia = system.assembly.bodies[seat.race.body].inertia();
+        let per_mass = inertia.map_or(0.0, |inertia| 1.0 / inertia.mass);
+        let touching: f64 = now.touching.iter().map(|node| node.stiffness).sum();
+        let oscillation = touching * per_mass;
+        most = most.largest(&Stiffness { oscillation, decay: 0.0 });
+    }
     most
 }
 

@@ -5,6 +5,8 @@ use super::ball_set::{BallSet, onto_body};
 use super::contacts::{Driver, Want, Work};
 use super::model::Rotation;
 use super::race::{self, RaceLoads, RaceNow, mounted};
+use super::reduced_solid::ModalEnergy;
+use super::seat::SeatNow;
 use super::state::{
     BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, POSITION, Places, SPIN, VELOCITY,
     quaternion_rate,
@@ -18,6 +20,10 @@ pub struct System {
     pub places: Places,
     /// One for each bearing.
     pub sets: Vec<BallSet>,
+    /// One for each seat.
+    pub seats: Vec<SeatNow>,
+    /// First entry of each reduced solid in the state.
+    pub solids: Vec<usize>,
     /// Every body as last evaluated.
     pub bodies: Vec<RaceNow>,
     /// What something outside does to a body, about its centre; stays as it is within a step.
@@ -42,8 +48,12 @@ impl System {
             .zip(Layout::of(&assembly))
             .map(|(bearing, layout)| BallSet::new(bearing, layout, &bodies))
             .collect();
+        let places = Places::of(&assembly);
+        let seats = assembly.seats.iter();
         System {
-            places: Places::of(&assembly),
+            seats: seats.map(|seat| SeatNow::new(seat, &assembly.solids[seat.solid])).collect(),
+            solids: places.solids(&assembly),
+            places,
             sets,
             outside: vec![None; bodies.len()],
             loads: vec![RaceLoads::default(); bodies.len()],
@@ -55,7 +65,7 @@ impl System {
         }
     }
 
-    pub(super) fn body_state(&self, state: &[f64], body: usize) -> BodyState {
+    pub fn body_state(&self, state: &[f64], body: usize) -> BodyState {
         let at = self.places.body(body);
         BodyState::from_slice(&state[at..at + BODY])
     }
@@ -106,11 +116,62 @@ impl System {
                 self.loads[mount.body].add(&onto_body(mount, end, body, loads));
             }
         }
+        self.solid_rates(t, state, rates, &mut ledger);
         for index in 0..self.assembly.bodies.len() {
             self.body_rates(index, t, rates, &mut ledger);
         }
         let at = self.places.ledger();
         rates[at..at + LEDGER].copy_from_slice(&ledger);
+    }
+
+    /// Rates of the reduced solids; what their seats do to bodies is summed.
+    fn solid_rates(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        rates: &mut [f64],
+        ledger: &mut [f64; LEDGER],
+    ) {
+        let t = t.min(self.latest);
+        let Assembly { solids, seats, .. } = &self.assembly;
+        for (solid, &at) in solids.iter().zip(&self.solids) {
+            let (gone, speeds) = state[at..at + 2 * solid.count()].split_at(solid.count());
+            let (to, accelerations) = rates[at..at + 2 * solid.count()].split_at_mut(solid.count());
+            to.copy_from_slice(speeds);
+            let [damped, driven] = solid.accelerations(t, gone, speeds, accelerations);
+            ledger[Ledger::Foundation as usize] += damped;
+            ledger[Ledger::Drives as usize] += driven;
+        }
+        for (seat, now) in seats.iter().zip(&mut self.seats) {
+            let (solid, at) = (&solids[seat.solid], self.solids[seat.solid]);
+            let body = &self.bodies[seat.race.body];
+            let race = mounted(body, &seat.race);
+            let gone = &state[at..at + solid.count()];
+            let pushes = &mut rates[at + solid.count()..at + 2 * solid.count()];
+            let loads = now.evaluate(seat, solid, &race, t, gone, pushes);
+            self.loads[seat.race.body].add(&onto_body(&seat.race, &race, body, &loads));
+            // What lets the race grow works against the contact.
+            ledger[Ledger::Drives as usize] += now.contact.radial_load * seat.radius.rate(t);
+        }
+    }
+
+    /// Seats as the assembly has them now.
+    pub(super) fn renew_seats(&mut self) {
+        let solids = &self.assembly.solids;
+        let seats = self.assembly.seats.iter();
+        self.seats = seats.map(|seat| SeatNow::new(seat, &solids[seat.solid])).collect();
+    }
+
+    /// How far the shapes of a reduced solid have gone (m), and how fast (m/s).
+    pub fn shapes_of<'s>(&self, state: &'s [f64], solid: usize) -> (&'s [f64], &'s [f64]) {
+        let (at, count) = (self.solids[solid], self.assembly.solids[solid].count());
+        state[at..at + 2 * count].split_at(count)
+    }
+
+    /// Energy of a reduced solid in a state.
+    pub fn energy_of_solid(&self, state: &[f64], solid: usize) -> ModalEnergy {
+        let (gone, speeds) = self.shapes_of(state, solid);
+        self.assembly.solids[solid].energy(gone, speeds)
     }
 
     /// Rates of one body under the loads that have been summed.

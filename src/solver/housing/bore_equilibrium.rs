@@ -1,12 +1,12 @@
-//! Equilibrium of a rigid outer race in a condensed bore, contact on one side only.
+//! What a condensed bore answers to a rigid race at a pose, contact on one side only.
 //!
 //! With q the race's coordinates (y, z, tilts about Y and Z), B the outward motion of its surface at
 //! the nodes for a unit of each, u = C p the nodes' own outward motion under the loads p ≥ 0, and
 //! g₀ the overlap before anything moves, the penetration of (2.19) is g = g₀ + B q − C p, and
-//! p = K g where g > 0. All is linear but for which nodes touch, so the equilibrium Bᵀp = load is
-//! the minimum of a convex energy and has one set of loads. Nodes are let in and out of contact all at once as long as
-//! that leaves fewer of them wrong, and one by one otherwise (block principal pivoting, Júdice and
-//! Pires 1994), which ends for every load.
+//! p = K g where g > 0. All is linear but for which nodes touch: the loads p are the one minimum of a convex energy
+//! whose value is ½ p·(g₀ + B q), its slope over q the load Bᵀp, its curvature Bᵀ(C + 1/K)⁻¹B over the nodes that touch.
+//! Nodes are let in and out of contact all at once as long as that leaves fewer of them wrong, and one by one
+//! otherwise (block principal pivoting, Júdice and Pires 1994), which ends for every pose.
 
 use super::condensed::{BoreNode, CondensedBore, lever, race_motion};
 use crate::ch2_housing::bore_contact::Penalty;
@@ -121,9 +121,6 @@ pub struct BoreState {
     pub elastic_energy: f64,
     pub contact_energy: f64,
     pub touching: usize,
-    /// Changes of the set of touching nodes, the first one included.
-    pub iterations: usize,
-    pub factorisations: usize,
 }
 
 impl BoreState {
@@ -138,26 +135,30 @@ impl BoreState {
     }
 }
 
-/// A linear spring between the race and a place, besides its load.
+/// Of the race at a pose, its nodes eliminated.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Tether {
+pub struct BoreAnswer {
+    /// In the solid by contact and in the penalty springs, J.
+    pub energy: f64,
+    /// What the race puts on the bore along its four coordinates: N, N, N·m, N·m.
+    pub load: Vector4<f64>,
+    /// ∂load/∂pose while the same nodes touch.
     pub stiffness: Matrix4<f64>,
-    pub place: Vector4<f64>,
-}
-
-/// What a search starts from besides its bore.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct BoreMemory {
-    /// y, z (m), tilts about Y and Z (rad).
-    pub pose: [f64; 4],
-    /// Nodes of the bore, ascending.
-    pub touching: Vec<usize>,
+    /// What rounding leaves of the load, N.
+    pub rounding: f64,
 }
 
 /// Nodes in contact with the factors that belong to them.
 struct Contact {
     nodes: Vec<usize>,
     factor: DenseFactor,
+    /// What follows from them once it has been asked for.
+    answer: Option<Motion>,
+}
+
+/// How loads follow the race while the same nodes touch.
+#[derive(Clone)]
+struct Motion {
     /// (C + 1/K)⁻¹ B, its four columns.
     by_motion: [Vec<f64>; 4],
     stiffness: Matrix4<f64>,
@@ -170,49 +171,40 @@ pub struct BoreSearch<'a> {
     levers: Vec<[f64; 4]>,
     /// 1/K of each node, m/N.
     softness: Vec<f64>,
-    /// A lower bound of the stiffness against radial motion with all nodes in contact, N/m.
-    scale: f64,
     contact: Option<Contact>,
-    pose: Vector4<f64>,
-    changes: usize,
-    factorisations: usize,
+    pose: [f64; 4],
+    /// R − d of each node with the race at its pose and the bore as its own loads leave it, m.
+    overlap: Vec<f64>,
+    /// Outward load on each node, and what it moves each by: N, m.
+    loads: Vec<f64>,
+    moves: Vec<f64>,
+    /// Sets of touching nodes whose compliance has been factorised so far.
+    pub changes: usize,
 }
 
 /// Changes of the touching nodes after which a search gives up; a cold start takes about ten.
 const MOST_CHANGES: usize = 2000;
-/// Unbalanced part of the load at which the race is in equilibrium.
-const BALANCED: f64 = 1e-12;
-/// The same, where the race has gone too far: rounding over travels of millimetres leaves more.
-const MET: f64 = 1e-6;
-/// Artificial stiffness against the last pose, as a part of [`BoreSearch::scale`]: it decides where
-/// nothing else does, and its force is iterated away.
-const HINT: f64 = 1e-8;
+/// Unbalanced part of a load that is met, where the race has gone too far: rounding over travels of millimetres leaves
+/// more than over micrometres.
+pub(crate) const MET: f64 = 1e-6;
 
 impl<'a> BoreSearch<'a> {
     pub fn new(bore: &'a CondensedBore, penalty: Penalty) -> BoreSearch<'a> {
         let levers: Vec<[f64; 4]> = bore.nodes.iter().map(lever).collect();
         let softness: Vec<f64> =
             bore.nodes.iter().map(|node| 1.0 / penalty.of_node(node.area)).collect();
-        // The true compliance minimises this energy over all loads of unit sum.
-        let compliance = |axis: usize| {
-            let sum: f64 = levers.iter().map(|b| b[axis] * b[axis]).sum();
-            let loads: Vec<f64> = levers.iter().map(|b| b[axis] / sum).collect();
-            let all: Vec<usize> = (0..loads.len()).collect();
-            let mut moves: Vec<f64> = softness.iter().zip(&loads).map(|(c, p)| c * p).collect();
-            bore.compliance.add_product(&all, &loads, &mut moves);
-            moves.iter().zip(&loads).map(|(u, p)| u * p).sum::<f64>()
-        };
-        let scale = 1.0 / compliance(0).max(compliance(1));
+        let count = bore.nodes.len();
         BoreSearch {
             bore,
             penalty,
             levers,
             softness,
-            scale,
             contact: None,
-            pose: Vector4::zeros(),
+            pose: [0.0; 4],
+            overlap: vec![0.0; count],
+            loads: vec![0.0; count],
+            moves: vec![0.0; count],
             changes: 0,
-            factorisations: 0,
         }
     }
 
@@ -220,23 +212,25 @@ impl<'a> BoreSearch<'a> {
         self.bore
     }
 
-    /// Where the race was last, and which nodes touched.
-    pub fn memory(&self) -> BoreMemory {
-        let touching = self.contact.as_ref().map_or_else(Vec::new, |c| c.nodes.clone());
-        BoreMemory { pose: self.pose.into(), touching }
+    /// Nodes of the bore that touched last, ascending: all that the next answer starts from.
+    pub fn touching(&self) -> &[usize] {
+        self.contact.as_ref().map_or(&[], |contact| &contact.nodes)
     }
 
-    /// Goes on from what a search of the same bore remembered, with its bits.
+    /// Goes on from nodes that touched in the same bore, with the same bits.
     ///
     /// # Errors
     /// Nodes that the bore does not have, or a factor that there is not.
-    pub fn recall(&mut self, memory: &BoreMemory) -> Result<(), BoreError> {
-        check_finite("the race's pose", memory.pose.iter().sum())?;
-        if let Some(&node) = memory.touching.iter().find(|&&node| node >= self.levers.len()) {
+    pub fn recall(&mut self, touching: &[usize]) -> Result<(), BoreError> {
+        if let Some(&node) = touching.iter().find(|&&node| node >= self.levers.len()) {
             return Err(BoreError::NoSuchNode { node, count: self.levers.len() });
         }
-        self.pose = Vector4::from(memory.pose);
-        self.make_contact(memory.touching.clone())
+        self.make_contact(touching.to_vec())
+    }
+
+    /// Where the race was last: y, z (m), tilts (rad).
+    pub fn pose(&self) -> [f64; 4] {
+        self.pose
     }
 
     pub fn penalty(&self) -> Penalty {
@@ -244,28 +238,15 @@ impl<'a> BoreSearch<'a> {
     }
 
     /// Change of the nodes' loads with each coordinate of the race, N/m and N/rad, while the same
-    /// nodes touch as in the last equilibrium.
+    /// nodes touch as in the last answer.
     pub fn loads_by_pose(&self) -> [Vec<f64>; 4] {
         let mut loads: [Vec<f64>; 4] = std::array::from_fn(|_| vec![0.0; self.levers.len()]);
-        if let Some(contact) = &self.contact {
-            for (loads, by_motion) in loads.iter_mut().zip(&contact.by_motion) {
-                contact.nodes.iter().zip(by_motion).for_each(|(&i, load)| loads[i] = *load);
+        if let Some(Contact { nodes, answer: Some(answer), .. }) = &self.contact {
+            for (loads, by_motion) in loads.iter_mut().zip(&answer.by_motion) {
+                nodes.iter().zip(by_motion).for_each(|(&i, load)| loads[i] = *load);
             }
         }
         loads
-    }
-
-    /// The race under `load`, searched for from where it was last.
-    ///
-    /// A loose race without load stays where it is. Loads that leave it several places get the one
-    /// nearest to the last.
-    ///
-    /// # Errors
-    /// A load that the bore cannot hold.
-    pub fn under_load(&mut self, fit: &Fit, load: &RaceLoad) -> Result<BoreState, BoreError> {
-        let pull = check_load(fit, load)?;
-        let none = Tether { stiffness: Matrix4::zeros(), place: Vector4::zeros() };
-        self.under_load_and_tether(fit, &pull, &none)
     }
 
     /// The race at a given pose: y, z (m), tilts (rad).
@@ -273,182 +254,96 @@ impl<'a> BoreSearch<'a> {
     /// # Errors
     /// [`BoreError::BeyondReach`], [`BoreError::NotFinite`].
     pub fn at_pose(&mut self, fit: &Fit, pose: [f64; 4]) -> Result<BoreState, BoreError> {
+        self.answer(fit, pose)?;
+        self.state()
+    }
+
+    /// Energy, load and stiffness at a given pose: y, z (m), tilts (rad).
+    ///
+    /// # Errors
+    /// [`BoreError::NotFinite`], contact that does not settle.
+    pub fn answer(&mut self, fit: &Fit, pose: [f64; 4]) -> Result<BoreAnswer, BoreError> {
         check_finite("the race's pose", pose.iter().sum())?;
         check_finite("the race's radius", fit.radius)?;
-        (self.changes, self.factorisations) = (0, 0);
-        self.pose = Vector4::from(pose);
-        let overlap = self.overlap(fit);
-        let loads = self.settle(&overlap, |_, _| Some(Vector4::from(pose)))?;
-        self.finish(&overlap, loads)
-    }
-
-    pub(super) fn under_load_and_tether(
-        &mut self,
-        fit: &Fit,
-        pull: &Vector4<f64>,
-        tether: &Tether,
-    ) -> Result<BoreState, BoreError> {
-        check_finite("the race's radius", fit.radius)?;
-        (self.changes, self.factorisations) = (0, 0);
-        let overlap = self.overlap(fit);
-        let metres = self.metres(fit);
-        let scale = self.scale;
-        let mut hint = HINT * scale;
-        let mut last = f64::INFINITY;
-        for _ in 0..40 {
-            let before = self.pose;
-            let hold = Matrix4::from_diagonal(&metres.component_mul(&metres)) * hint;
-            let loads = self.settle(&overlap, |contact, by_overlap| {
-                let stiffness = contact.map_or(Matrix4::zeros(), |contact| contact.stiffness);
-                // Scaled, so that tilts and metres weigh alike.
-                let per = metres.map(|m| 1.0 / m);
-                // A bearing that is about to leave a saddle pushes the race on: the artificial stiffness
-                // has to be larger than that.
-                let mut hold = hold;
-                let step = loop {
-                    let right = pull + tether.stiffness * tether.place + hold * before - by_overlap;
-                    let whole = stiffness + tether.stiffness + hold;
-                    let scaled = Matrix4::from_fn(|i, j| whole[(i, j)] * per[i] * per[j]);
-                    if let Some(factor) = scaled.cholesky() {
-                        break factor.solve(&right.component_mul(&per));
-                    }
-                    // Stiffer than the whole bore: it is not this that is missing.
-                    if hold[(0, 0)].is_nan() || hold[(0, 0)] > 10.0 * scale {
-                        return None;
-                    }
-                    hold *= 10.0;
-                };
-                Some(step.component_mul(&per))
-            })?;
-            let state = self.finish(&overlap, loads)?;
-            let left = pull
-                - Vector4::from(state.load)
-                - tether.stiffness * (Vector4::from(state.pose) - tether.place);
-            let left = left.component_div(&metres);
-            let radial: f64 = state.loads.iter().sum();
-            // Beside a load the loads of an interference, as far as they round.
-            let size = pull.component_div(&metres).amax().max(1e-2 * radial);
-            if left.amax() <= BALANCED * size {
-                return Ok(state);
-            }
-            let travel = self.pose.component_mul(&metres);
-            let worst = travel.iamax();
-            // Nothing that a bore holds moves by a hundredth of its radius.
-            let lost = travel.amax().is_nan() || travel.amax() > 1e-2 * metres[2];
-            if lost {
-                let (coordinate, travel) = (POSE_NAMES[worst], self.pose[worst]);
-                let (load, force) = (pull.component_div(&metres).amax(), left.amax());
-                // All of the load meets resistance, only late.
-                if load > 0.0 && force <= MET * load {
-                    let youngs_modulus = self.bore.youngs_modulus;
-                    let radius = fit.radius;
-                    return Err(BoreError::GivesWay {
-                        coordinate,
-                        travel,
-                        load,
-                        radius,
-                        youngs_modulus,
-                    });
-                }
-                return Err(BoreError::NotHeld { coordinate, travel, force });
-            }
-            // Rounding is what is left: of the loads, or of gaps (some ulps of the radius).
-            let gaps = 8.0 * f64::EPSILON * fit.radius * self.scale;
-            let rounding = (1e3 * BALANCED * size).max(gaps);
-            if left.amax() > 0.5 * last && left.amax() <= rounding {
-                return Ok(state);
-            }
-            // A load that the artificial stiffness takes: let it take less.
-            if left.amax() > 1e-3 * last {
-                hint *= 0.1;
-            }
-            last = left.amax();
+        self.pose = pose;
+        for (i, node) in self.bore.nodes.iter().enumerate() {
+            let before = fit.radius - node.distance - self.bore.own[i];
+            self.overlap[i] = before + race_motion(node, &pose);
         }
-        let worst = self.pose.component_mul(&metres).iamax();
-        Err(BoreError::NotHeld {
-            coordinate: POSE_NAMES[worst],
-            travel: self.pose[worst],
-            force: last,
-        })
+        self.settle()?;
+        let stiffness = self.motion().map_or(Matrix4::zeros(), |motion| motion.stiffness);
+        let (mut energy, mut load, mut sum) = (0.0, Vector4::zeros(), 0.0);
+        for ((lever, p), g) in self.levers.iter().zip(&self.loads).zip(&self.overlap) {
+            load += Vector4::from(*lever) * *p;
+            energy += 0.5 * p * g;
+            sum += p;
+        }
+        // Of the sum, and of the pose.
+        let travel = norm([0.0, pose[0], pose[1]]);
+        let rounding = 8.0 * f64::EPSILON * (sum + stiffness.diagonal().rows(0, 2).amax() * travel);
+        Ok(BoreAnswer { energy, load, stiffness, rounding })
     }
 
-    /// Metres of motion at the bore per unit of each coordinate.
-    fn metres(&self, fit: &Fit) -> Vector4<f64> {
-        Vector4::new(1.0, 1.0, fit.radius, fit.radius)
+    /// Why a race is too far from its place along coordinate `worst`, `left` of its load (N) being unbalanced.
+    pub(crate) fn lost(
+        &self,
+        fit: &Fit,
+        worst: usize,
+        pose: &[f64; 4],
+        left: f64,
+        load: f64,
+    ) -> BoreError {
+        let (coordinate, travel) = (POSE_NAMES[worst], pose[worst]);
+        // All of the load meets resistance, only late.
+        if load > 0.0 && left <= MET * load {
+            let (radius, youngs_modulus) = (fit.radius, self.bore.youngs_modulus);
+            return BoreError::GivesWay { coordinate, travel, load, radius, youngs_modulus };
+        }
+        BoreError::NotHeld { coordinate, travel, force: left }
     }
 
-    /// R − d of every node before race and bore move, m; the solid's own loads included.
-    fn overlap(&self, fit: &Fit) -> Vec<f64> {
-        let bore = self.bore;
-        bore.nodes.iter().zip(&bore.own).map(|(n, own)| fit.radius - n.distance - own).collect()
-    }
-
-    /// Finds the touching nodes; `pose_of` gives the race's coordinates for a set of them and
-    /// (Bᵀ(C + 1/K)⁻¹ g₀) of it. Returns the loads.
-    fn settle(
-        &mut self,
-        overlap: &[f64],
-        pose_of: impl Fn(Option<&Contact>, &Vector4<f64>) -> Option<Vector4<f64>>,
-    ) -> Result<Vec<f64>, BoreError> {
+    /// Finds the nodes that touch, their loads and what these move all by.
+    fn settle(&mut self) -> Result<(), BoreError> {
         const PATIENCE: usize = 10;
-        let count = overlap.len();
+        let count = self.overlap.len();
         if self.contact.is_none() {
-            let start = (0..count).filter(|&i| overlap[i] > 0.0).collect();
+            let start = (0..count).filter(|&i| self.overlap[i] > 0.0).collect();
             self.make_contact(start)?;
         }
-        let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
+        let (mut fewest, mut patience, mut changes) = (usize::MAX, PATIENCE, 0);
         loop {
-            self.changes += 1;
-            if self.changes > MOST_CHANGES {
+            changes += 1;
+            if changes > MOST_CHANGES {
                 return Err(BoreError::NotSettled { changes: MOST_CHANGES });
             }
-            let contact = self.contact.as_ref();
-            let nodes: &[usize] = contact.map_or(&[], |contact| &contact.nodes);
-            let mut on_nodes: Vec<f64> = nodes.iter().map(|&i| overlap[i]).collect();
-            let mut by_overlap = Vector4::zeros();
-            if let Some(contact) = contact {
-                contact.factor.solve_columns(&mut on_nodes, 1);
-                for (&i, load) in contact.nodes.iter().zip(&on_nodes) {
-                    by_overlap += Vector4::from(self.levers[i]) * *load;
-                }
-            }
-            let Some(pose) = pose_of(contact, &by_overlap) else {
-                return Err(FactorError::NotPositiveDefinite { pivot: 0 }.into());
-            };
-            let mut moves = vec![0.0; count];
-            let mut loads = vec![0.0; count];
-            if let Some(contact) = contact {
-                for (at, load) in on_nodes.iter_mut().enumerate() {
-                    for (by, q) in contact.by_motion.iter().zip(pose.iter()) {
-                        *load += by[at] * q;
-                    }
-                }
-                self.bore.compliance.add_product(nodes, &on_nodes, &mut moves);
-                for (&i, load) in nodes.iter().zip(&on_nodes) {
-                    loads[i] = *load;
-                }
-            }
+            self.moves.fill(0.0);
+            self.loads.fill(0.0);
             // Loads of either sign that are rounding of the largest change nothing.
-            let largest = on_nodes.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
+            let mut largest = 0.0f64;
             let mut inside = vec![false; count];
-            nodes.iter().for_each(|&i| inside[i] = true);
+            if let Some(Contact { nodes, factor, .. }) = &self.contact {
+                let mut on_nodes: Vec<f64> = nodes.iter().map(|&i| self.overlap[i]).collect();
+                factor.solve_columns(&mut on_nodes, 1);
+                self.bore.compliance.add_product(nodes, &on_nodes, &mut self.moves);
+                for (&i, load) in nodes.iter().zip(&on_nodes) {
+                    (self.loads[i], inside[i]) = (*load, true);
+                    largest = largest.max(load.abs());
+                }
+            }
             let rounding = 4.0 * f64::EPSILON * self.bore.reach.radius;
             let wrong: Vec<usize> = (0..count)
                 .filter(|&i| {
                     if inside[i] {
-                        loads[i].is_nan() || loads[i] < -1e-12 * largest
+                        self.loads[i].is_nan() || self.loads[i] < -1e-12 * largest
                     } else {
-                        let motion: f64 =
-                            self.levers[i].iter().zip(pose.iter()).map(|(b, q)| b * q).sum();
-                        let g = overlap[i] + motion - moves[i];
+                        let g = self.overlap[i] - self.moves[i];
                         g.is_nan() || g > rounding.max(1e-12 * largest * self.softness[i])
                     }
                 })
                 .collect();
             if wrong.is_empty() {
-                self.pose = pose;
-                loads.iter_mut().for_each(|load| *load = load.max(0.0));
-                return Ok(loads);
+                self.loads.iter_mut().for_each(|load| *load = load.max(0.0));
+                return Ok(());
             }
             let mut flipped = &wrong[..];
             if wrong.len() < fewest {
@@ -470,37 +365,45 @@ impl<'a> BoreSearch<'a> {
         }
         let softness: Vec<f64> = nodes.iter().map(|&i| self.softness[i]).collect();
         let factor = self.bore.compliance.factor(&nodes, &softness)?;
-        self.factorisations += 1;
-        let mut right = Vec::with_capacity(4 * nodes.len());
-        for axis in 0..4 {
-            right.extend(nodes.iter().map(|&i| self.levers[i][axis]));
-        }
-        factor.solve_columns(&mut right, 4);
-        let mut columns = right.chunks_exact(nodes.len()).map(<[f64]>::to_vec);
-        let by_motion: [Vec<f64>; 4] = std::array::from_fn(|_| columns.next().unwrap_or_default());
-        let mut stiffness = Matrix4::from_fn(|i, j| {
-            let of = nodes.iter().zip(&by_motion[j]);
-            of.map(|(&node, load)| self.levers[node][i] * load).sum()
-        });
-        stiffness = 0.5 * (stiffness + stiffness.transpose());
-        self.contact = Some(Contact { nodes, factor, by_motion, stiffness });
+        self.changes += 1;
+        self.contact = Some(Contact { nodes, factor, answer: None });
         Ok(())
     }
 
-    fn finish(&self, overlap: &[f64], loads: Vec<f64>) -> Result<BoreState, BoreError> {
-        let bore = self.bore;
-        let pose: [f64; 4] = self.pose.into();
-        let all: Vec<usize> = (0..loads.len()).collect();
-        let mut moves = vec![0.0; loads.len()];
-        bore.compliance.add_product(&all, &loads, &mut moves);
-        let motion: Vec<f64> = bore.nodes.iter().map(|node| race_motion(node, &pose)).collect();
+    /// Loads over motion of the nodes that touch.
+    fn motion(&mut self) -> Option<&Motion> {
+        let Contact { nodes, factor, answer } = self.contact.as_mut()?;
+        Some(answer.get_or_insert_with(|| {
+            let mut right = Vec::with_capacity(4 * nodes.len());
+            for axis in 0..4 {
+                right.extend(nodes.iter().map(|&i| self.levers[i][axis]));
+            }
+            factor.solve_columns(&mut right, 4);
+            let mut columns = right.chunks_exact(nodes.len()).map(<[f64]>::to_vec);
+            let by_motion: [Vec<f64>; 4] =
+                std::array::from_fn(|_| columns.next().unwrap_or_default());
+            let stiffness = Matrix4::from_fn(|i, j| {
+                let of = nodes.iter().zip(&by_motion[j]);
+                of.map(|(&node, load)| self.levers[node][i] * load).sum()
+            });
+            Motion { by_motion, stiffness: 0.5 * (stiffness + stiffness.transpose()) }
+        }))
+    }
+
+    /// All about the last answer.
+    ///
+    /// # Errors
+    /// [`BoreError::BeyondReach`].
+    pub fn state(&mut self) -> Result<BoreState, BoreError> {
+        let stiffness = self.motion().map_or(Matrix4::zeros(), |motion| motion.stiffness);
+        let (bore, pose, loads) = (self.bore, self.pose, &self.loads);
         let penetration: Vec<f64> =
-            overlap.iter().zip(&motion).zip(&moves).map(|((g, b), u)| g + b - u).collect();
+            self.overlap.iter().zip(&self.moves).map(|(g, u)| g - u).collect();
         let mut load = Vector4::zeros();
-        for (lever, p) in self.levers.iter().zip(&loads) {
+        for (lever, p) in self.levers.iter().zip(loads) {
             load += Vector4::from(*lever) * *p;
         }
-        let outward: Vec<f64> = moves.iter().zip(&bore.own).map(|(u, own)| u + own).collect();
+        let outward: Vec<f64> = self.moves.iter().zip(&bore.own).map(|(u, own)| u + own).collect();
         if let Some(travel) = bore.reach.travel {
             let largest = |of: &[f64]| of.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
             let motion = norm([0.0, pose[0], pose[1]])
@@ -510,26 +413,24 @@ impl<'a> BoreSearch<'a> {
                 return Err(BoreError::BeyondReach { motion, travel });
             }
         }
-        let half_work = |of: &[f64]| 0.5 * of.iter().zip(&loads).map(|(u, p)| u * p).sum::<f64>();
-        let squeeze: Vec<f64> = self.softness.iter().zip(&loads).map(|(c, p)| c * p).collect();
+        let half_work = |of: &[f64]| 0.5 * of.iter().zip(loads).map(|(u, p)| u * p).sum::<f64>();
+        let squeeze: Vec<f64> = self.softness.iter().zip(loads).map(|(c, p)| c * p).collect();
         Ok(BoreState {
             pose,
             penetration,
-            elastic_energy: half_work(&moves),
+            elastic_energy: half_work(&self.moves),
             contact_energy: half_work(&squeeze),
             outward,
             load: load.into(),
-            stiffness: self.contact.as_ref().map_or(Matrix4::zeros(), |c| c.stiffness),
+            stiffness,
             touching: loads.iter().filter(|load| **load > 0.0).count(),
-            loads,
-            iterations: self.changes,
-            factorisations: self.factorisations,
+            loads: loads.clone(),
         })
     }
 }
 
 /// The load along the four coordinates.
-pub(super) fn check_load(fit: &Fit, load: &RaceLoad) -> Result<Vector4<f64>, BoreError> {
+pub(crate) fn check_load(fit: &Fit, load: &RaceLoad) -> Result<Vector4<f64>, BoreError> {
     let RaceLoad { force, moment } = load;
     check_finite("a force on the race", force.iter().sum())?;
     check_finite("a moment on the race", moment.iter().sum())?;

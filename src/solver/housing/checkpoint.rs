@@ -1,105 +1,125 @@
-//! Everything that a bearing and its housing in explicit steps need to go on with the same bits.
+//! Everything that bodies and solids in explicit steps, with seats between them, need to go on with the
+//! same bits.
 
-use super::exchange::{ExchangeError, ExchangeOptions, Growth, HousedBearing, Seat};
-use crate::ch2_housing::bore_contact::{ContactSum, Cylinder, Frame};
-use crate::kinematics::Pose;
+use super::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart, SteppedSolid, seated};
+use super::seat::{Growth, Seat};
 use crate::kinematics::vec3::Vec3;
+use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::checkpoint::Checkpoint;
-use crate::solver::dynamics::model::DynamicProblem;
 use crate::solver::dynamics::run::Simulation;
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid};
-use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::step_limit::SolidStepLimit;
 
-/// Both at the end of a window, as plain numbers.
+/// All at the end of a window, as plain numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct HousedCheckpoint {
-    pub bearing: Checkpoint,
-    pub solid: SolidCheckpoint,
+pub struct ExchangeCheckpoint {
+    pub simulation: Checkpoint,
+    pub solids: Vec<SteppedCheckpoint>,
     pub exchanges: u64,
-    /// On the outer race since the start, N·s.
+    /// What the ledger of all held at the start, J.
+    pub first: f64,
+}
+
+/// A solid and its seats.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SteppedCheckpoint {
+    pub solid: SolidCheckpoint,
+    pub seats: Vec<SeatCheckpoint>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SeatCheckpoint {
+    /// On the race since the start, N·s.
     pub impulse: Vec3,
+    /// On its body since the start, J.
+    pub work: f64,
     pub growth: Growth,
     pub tested: u64,
     pub sorts: u64,
-    /// What the ledgers of the bearing and of both held at the start, J.
-    pub first: [f64; 2],
 }
 
 /// Sizes that were chosen at the start and stay.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Windows {
     /// s.
     pub window: f64,
-    pub solid_steps: usize,
-    pub limit: SolidStepLimit,
+    /// Of each solid: steps in a window, and what limits them.
+    pub solids: Vec<(usize, SolidStepLimit)>,
 }
 
-impl HousedBearing {
-    /// Where both are now. Nodes are sorted by reach first, so that going on from here and going on
+impl Exchange {
+    /// Where all are now. Nodes are sorted by reach first, so that going on from here and going on
     /// from the checkpoint tests the same ones.
-    pub fn checkpoint_into(&mut self, checkpoint: &mut HousedCheckpoint) {
-        self.sort();
-        self.bearing.checkpoint_into(&mut checkpoint.bearing);
-        self.solid.checkpoint_into(&mut checkpoint.solid);
+    pub fn checkpoint_into(&mut self, checkpoint: &mut ExchangeCheckpoint) {
+        self.simulation.checkpoint_into(&mut checkpoint.simulation);
+        checkpoint.solids.resize_with(self.solids.len(), SteppedCheckpoint::default);
+        for (part, kept) in self.solids.iter_mut().zip(&mut checkpoint.solids) {
+            part.sort(&self.simulation);
+            part.solid.checkpoint_into(&mut kept.solid);
+            kept.seats.clear();
+            kept.seats.extend(part.seats.iter().map(|seat| SeatCheckpoint {
+                impulse: seat.impulse,
+                work: seat.work,
+                growth: seat.growth,
+                tested: seat.tested,
+                sorts: seat.sorts,
+            }));
+        }
         checkpoint.exchanges = self.exchanges;
-        checkpoint.impulse = self.impulse;
-        checkpoint.growth = self.growth;
-        checkpoint.tested = self.tested;
-        checkpoint.sorts = self.sorts;
-        checkpoint.first = [self.first_bearing, self.first];
+        checkpoint.first = self.first;
     }
 
     pub fn windows(&self) -> Windows {
-        let Self { window, solid_steps, .. } = *self;
-        Windows { window, solid_steps, limit: self.solid.limit }
+        let of = |part: &SteppedSolid| (part.steps, part.solid.limit);
+        Windows { window: self.window, solids: self.solids.iter().map(of).collect() }
     }
 
-    /// Goes on where a checkpoint of the same problem, seat and options was taken.
+    /// Goes on where a checkpoint of the same assembly, solids, seats and options was taken.
     ///
     /// # Errors
     /// A step size that is no step.
     ///
     /// # Panics
-    /// If the checkpoint has other numbers of balls or nodes.
+    /// If the checkpoint has other numbers of balls, solids, nodes or seats.
     pub fn from_checkpoint(
-        problem: DynamicProblem,
-        model: SolidModel,
-        mut seat: Seat,
+        assembly: impl Into<Assembly>,
+        solids: Vec<SolidPart>,
+        seats: Vec<Seat>,
         options: &ExchangeOptions,
         windows: &Windows,
-        checkpoint: &HousedCheckpoint,
-    ) -> Result<HousedBearing, ExchangeError> {
-        let rim = seat.keep_under(&problem.outer_start);
-        let bearing = Simulation::from_checkpoint(problem, options.bearing, &checkpoint.bearing)?;
+        checkpoint: &ExchangeCheckpoint,
+    ) -> Result<Exchange, ExchangeError> {
+        assert_eq!(solids.len(), windows.solids.len());
         let method = ExplicitMethod::CentralDifferences;
-        let step = windows.window / windows.solid_steps as f64;
-        let mut solid = ExplicitSolid::at_rest(model, method, step, windows.limit);
-        solid.restore(&checkpoint.solid);
-        let cylinder = Cylinder { radius: seat.radius.value(0.0), width: seat.width };
-        let [first_bearing, first] = checkpoint.first;
-        let mut housed = HousedBearing {
-            bearing,
-            solid,
-            seat,
-            rim,
-            window: windows.window,
-            solid_steps: windows.solid_steps,
-            exchanges: checkpoint.exchanges,
-            contact: ContactSum::default(),
-            impulse: checkpoint.impulse,
-            growth: checkpoint.growth,
-            tested: checkpoint.tested,
-            sorts: 0,
-            near: Vec::new(),
-            far: Vec::new(),
-            sorted_at: (cylinder, Frame::new(&Pose::identity())),
-            first_bearing,
-            first,
-        };
-        housed.sort();
-        housed.sorts = checkpoint.sorts;
-        Ok(housed)
+        let mut solids: Vec<SteppedSolid> = solids
+            .into_iter()
+            .zip(&windows.solids)
+            .map(|(SolidPart { name, model, .. }, &(steps, limit))| {
+                let step = windows.window / steps as f64;
+                let solid = ExplicitSolid::at_rest(model, method, step, limit);
+                SteppedSolid { name, solid, steps, seats: Vec::new() }
+            })
+            .collect();
+        let assembly = assembly.into();
+        seated(&assembly, &mut solids, seats);
+        let simulation =
+            Simulation::from_checkpoint(assembly, options.bearing, &checkpoint.simulation)?;
+        let mut exchange = Exchange::of(simulation, solids, windows.window);
+        exchange.exchanges = checkpoint.exchanges;
+        exchange.first = checkpoint.first;
+        for (part, kept) in exchange.solids.iter_mut().zip(&checkpoint.solids) {
+            part.solid.restore(&kept.solid);
+            part.sort(&exchange.simulation);
+            assert_eq!(part.seats.len(), kept.seats.len());
+            for (seat, kept) in part.seats.iter_mut().zip(&kept.seats) {
+                seat.impulse = kept.impulse;
+                seat.work = kept.work;
+                seat.growth = kept.growth;
+                seat.tested = kept.tested;
+                seat.sorts = kept.sorts;
+            }
+        }
+        Ok(exchange)
     }
 }

@@ -15,6 +15,7 @@ use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::tangent::{PRESCRIBED, Unknowns, pattern, stiffness};
 use crate::solver::sparse::{Cost, Factor, FactorError};
 use nalgebra::Vector3;
+use std::fmt;
 use thiserror::Error;
 
 /// Which nodes of the bore can be touched at all.
@@ -39,6 +40,16 @@ const RIM: f64 = 1e-3;
 pub fn is_under(along: f64, width: f64) -> bool {
     along.abs() <= (0.5 + RIM) * width
 }
+
+/// How far a node of the seat of a race of `width` (m) may slide over its rim and still be touched, m: half of what a
+/// node stands for, since the part of the bore that it carries is still under the race by then, and no more than a
+/// quarter of the seat. `areas` (m²) are those of the nodes under the race.
+pub fn rim(areas: impl ExactSizeIterator<Item = f64>, width: f64) -> f64 {
+    let count = areas.len().max(1);
+    let area: f64 = areas.sum();
+    (0.5 * (area / count as f64).sqrt()).min(0.25 * width)
+}
+
 /// Right-hand sides solved at once.
 const BLOCK: usize = 32;
 
@@ -106,6 +117,13 @@ pub struct CondensedBore {
     factor: Factor,
     unknowns: Unknowns,
     own_displacement: Vec<Vec3>,
+}
+
+impl fmt::Debug for CondensedBore {
+    fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
+        let CondensedBore { reach, sizes, .. } = self;
+        to.debug_struct("CondensedBore").field("reach", reach).field("sizes", sizes).finish()
+    }
 }
 
 /// The nodes of the bore under the race that are solved for, and what was left out.
@@ -265,8 +283,13 @@ impl CondensedBore {
 
     /// The same without the solid's own loads.
     pub fn response(&self, loads: &[f64]) -> Vec<Vec3> {
+        self.response_to(self.nodal_forces(loads))
+    }
+
+    /// The whole displacement field, m, under forces on nodes (N).
+    pub fn response_to(&self, forces: impl Iterator<Item = (u32, Vec3)>) -> Vec<Vec3> {
         let mut right = vec![0.0; self.unknowns.count];
-        for (node, force) in self.nodal_forces(loads) {
+        for (node, force) in forces {
             scatter(&self.unknowns, node, force, &mut right);
         }
         self.factor.solve(&mut right);
@@ -279,6 +302,11 @@ impl CondensedBore {
             (node.node, scale(in_world(&self.frame, node.normal), load))
         };
         self.nodes.iter().zip(loads).map(force)
+    }
+
+    /// The unknowns of the solid.
+    pub fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
     }
 
     /// World components of a vector in the race's nominal axes.

@@ -15,7 +15,7 @@
 //! with the size that it has where it arises. Left out: the balls' mass, modes of the housing that its
 //! static shapes do not hold, what loads do that jump themselves, and how balls without a cage stray.
 
-use super::assembly::{AssemblySearch, AssemblyState};
+use super::housed::{HousedSearch, HousedState};
 use super::inertia::{Coordinates, Masses, Mode, housing_mass, modes};
 use std::f64::consts::TAU;
 
@@ -101,8 +101,8 @@ fn jumps(pair: &[Look]) -> bool {
 /// Those of `at`.
 pub fn course_inertia<E>(
     looks: &CourseLooks,
-    search: &mut AssemblySearch,
-    mut at: impl FnMut(&mut AssemblySearch, f64) -> Result<AssemblyState, E>,
+    search: &mut HousedSearch,
+    mut at: impl FnMut(&mut HousedSearch, f64) -> Result<HousedState, E>,
 ) -> Result<CourseInertia, E> {
     let interval = (looks.end - looks.start) / looks.count as f64;
     let mut found = Vec::with_capacity(looks.count + 1);
@@ -126,7 +126,7 @@ pub fn course_inertia<E>(
     Ok(judge(&found, interval, looks.damping))
 }
 
-fn coordinates(state: &AssemblyState) -> Coordinates {
+fn coordinates(state: &HousedState) -> Coordinates {
     let (outer, inner) = (&state.bore.pose, &state.bearing.coordinates);
     Coordinates::from_fn(|i, _| if i < 4 { outer[i] } else { inner[i - 4] })
 }

@@ -1,56 +1,53 @@
-//! Bearing and housing in motion together, each in steps of its own; what they exchange is momentum.
+//! Rigid bodies with their bearings, and solids in explicit steps, in motion together, each in steps of its
+//! own; what they exchange is momentum.
 //!
-//! Central differences know the housing's velocities half a step before its displacements. The
-//! bearing's time is that of the velocities. From there on both go through a window of equal length:
-//! the outer race as if free, while the housing takes its steps against it and the impulses of the
-//! contact are summed; then the bearing, under the mean of these impulses. Whatever the housing gets
-//! the race gets too, with the other sign. Drift, kick, drift: of second order, and an elastic
-//! contact between the two neither makes nor loses energy in the long run.
+//! Central differences know a solid's velocities half a step before its displacements. The bodies' time
+//! is that of the velocities. From there on all go through a window of equal length: the races as if
+//! their bodies were free, while every solid takes its steps against them and the impulses of its seats
+//! are summed; then the bodies, under the means of these impulses. Whatever a solid gets the body gets
+//! too, with the other sign. Drift, kick, drift: of second order, and an elastic contact between the two
+//! neither makes nor loses energy in the long run. Within a window no solid knows of another.
 
-use super::condensed::is_under;
-use crate::ch2_housing::bore_contact::{
-    ContactNode, ContactSum, Cylinder, Frame, Penalty, contact, split_by_reach,
-};
-use crate::kinematics::Pose;
-use crate::kinematics::vec3::{Vec3, add, add_scaled, dot, norm, scale, sub};
-use crate::solver::dynamics::assembly::OUTER;
-use crate::solver::dynamics::model::DynamicProblem;
+use super::seat::{Seat, SeatSnapshot, SeatState};
+use crate::ch2_housing::bore_contact::{ContactNode, Penalty};
+use crate::kinematics::vec3::Vec3;
+use crate::solver::dynamics::assembly::{Assembly, Body, Mobility};
 use crate::solver::dynamics::race::{self, RaceLoads};
 use crate::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Snapshot};
 use crate::solver::dynamics::start;
 use crate::solver::dynamics::state::{BODY, BodyState, Ledger, Places};
-use crate::solver::profile::Profile;
-use crate::solver::solid::contact::{closed_limit, moved, press};
+use crate::solver::solid::contact::closed_limit;
 use crate::solver::solid::energy::SolidLedger;
-use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid};
+use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, padded};
 use crate::solver::solid::model::{SolidError, SolidModel};
 use crate::solver::solid::step_limit::step_limit;
-use crate::solver::solid::tet4_blocks::Node;
+use crate::solver::solid::team::Crew;
 use crate::solver::statics::StaticsError;
-use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
-/// The outer race's seat in the bore.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Seat {
-    /// Of the outer race's outside, m; an interference grows in by it.
-    pub radius: Profile,
-    /// Of the outer race, m.
-    pub width: f64,
-    pub penalty: Penalty,
-    /// From [`contact_nodes`](crate::ch2_housing::bore_contact::contact_nodes).
-    pub nodes: Vec<ContactNode>,
-    /// Nodes farther than this from touching are not tested until something has moved half as far,
-    /// m. Infinite: all are.
-    pub reach: f64,
+/// A solid that takes part, as it starts.
+#[derive(Clone, Debug)]
+pub struct SolidPart {
+    /// As messages and columns name it; `None` for the only one.
+    pub name: Option<String>,
+    pub model: SolidModel,
+    /// m, one for each node.
+    pub displacement: Vec<Vec3>,
+}
+
+impl SolidPart {
+    pub fn undeformed(name: Option<String>, model: SolidModel) -> SolidPart {
+        let displacement = vec![[0.0; 3]; model.mass.len()];
+        SolidPart { name, model, displacement }
+    }
 }
 
 /// How far to go in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExchangeOptions {
-    /// Steps of the housing, as a fraction of their stability limit with the contact closed.
+    /// Steps of the solids, as a fraction of their stability limit with the contact closed.
     pub solid_fraction: f64,
-    /// Windows, as ωH of the outer race on its whole seat; stable below 2.
+    /// Windows, as ωH of a body on all of its seats; stable below 2.
     pub seat_phase: f64,
     pub bearing: RunOptions,
 }
@@ -59,212 +56,290 @@ pub struct ExchangeOptions {
 pub enum ExchangeError {
     #[error(transparent)]
     Bearing(#[from] SimulationError),
-    #[error(transparent)]
-    Solid(#[from] SolidError),
+    #[error("{}{source}", of_solid(name))]
+    Solid { name: Option<String>, source: SolidError },
     #[error("the start has no equilibrium: {0}")]
     Start(#[from] StaticsError),
     #[error(
-        "the outer race is fixed: it needs equations of its own to move in a housing \
-         (outer_race.motion)"
+        "{race} is fixed: it needs equations of its own to move in a housing (outer_race.motion)"
     )]
-    FixedRace,
+    FixedRace { race: String },
     #[error(
-        "the outer race rests on a foundation and in a housing; take one of them \
-         (outer_race.foundation)"
+        "{race} rests on a foundation and in a housing; take one of them (outer_race.foundation)"
     )]
-    Foundation,
+    Foundation { race: String },
     #[error("{name} is {value}; it must be between 0 and {most}")]
     Option { name: &'static str, value: f64, most: f64 },
     #[error(
-        "no node of the housing carries a part of the bore's surface; check the set of the bore"
+        "no node of the housing{seat} carries a part of the bore's surface; check the set of the bore"
     )]
-    NoSeat,
+    NoSeat { seat: String },
     #[error(
-        "the outer race has left its bore at t = {time} s, step {step}: it is {distance:.3e} m off \
+        "{race} has left its bore at t = {time} s, step {step}: it is {distance:.3e} m off \
          {way}, where {allowed:.3e} m are left of its seat"
     )]
-    LeftBore { way: &'static str, distance: f64, allowed: f64, time: f64, step: u64 },
+    LeftBore { race: String, way: &'static str, distance: f64, allowed: f64, time: f64, step: u64 },
+}
+
+fn of_solid(name: &Option<String>) -> String {
+    name.as_ref().map_or(String::new(), |name| format!("solid {name}: "))
 }
 
 /// Steps between two looks at how far things have moved.
 const LOOK: u64 = 16;
 
-/// A bearing in a flexible housing.
-pub struct HousedBearing {
-    pub bearing: Simulation,
+/// A solid in steps of its own, and the seats in its bores.
+pub struct SteppedSolid {
+    pub name: Option<String>,
     pub solid: ExplicitSolid,
-    /// Its nodes are those under the race at the start.
-    pub seat: Seat,
-    /// How far a node may slide over the rim and still be touched, m.
-    pub rim: f64,
-    /// Of the window in which both are taken on, s, and the steps of the housing in it.
+    /// In a window.
+    pub steps: usize,
+    pub seats: Vec<SeatState>,
+}
+
+/// An assembly of bodies and bearings with its races in the bores of solids.
+pub struct Exchange {
+    pub simulation: Simulation,
+    /// The seats lie with their solids; that is the order of every sum over them.
+    pub solids: Vec<SteppedSolid>,
+    /// In which all are taken on, s.
     pub window: f64,
-    pub solid_steps: usize,
     pub exchanges: u64,
-    /// Of the contact as last evaluated.
-    pub contact: ContactSum,
-    /// On the outer race since the start, N·s.
-    pub impulse: Vec3,
-    /// Of an interference that grows in.
-    pub growth: Growth,
-    /// Nodes tested so far, and how often they were sorted by reach.
-    pub tested: u64,
-    pub sorts: u64,
-    pub(super) near: Vec<ContactNode>,
-    pub(super) far: Vec<(ContactNode, Vec3)>,
-    pub(super) sorted_at: (Cylinder, Frame),
-    /// What the ledgers of the bearing and of both held at the start, J.
-    pub(super) first_bearing: f64,
+    /// What the ledger of all held at the start, J.
     pub(super) first: f64,
-}
-
-/// Work that growth of the race's radius does against the contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Growth {
-    /// Since the start, J.
-    pub work: f64,
-    /// When the contact was last evaluated, m, and what it resisted growth with, N.
-    pub radius: f64,
-    pub load: f64,
-}
-
-impl Growth {
-    /// With the contact as it is at a later radius: the trapezium between the two.
-    fn to(self, radius: f64, load: f64) -> Growth {
-        let work = self.work + 0.5 * (self.load + load) * (radius - self.radius);
-        Growth { work, radius, load }
-    }
+    /// Whether one seat is all that pushes or brakes the bodies from outside.
+    is_alone: bool,
+    /// Of the present window, for each body in a seat.
+    loads: Vec<(usize, RaceLoads)>,
+    crew: Crew,
 }
 
 /// Everything at the present time.
-#[derive(Clone, Copy, Debug)]
-pub struct HousedSnapshot {
-    pub bearing: Snapshot,
-    pub outer: BodyState,
-    pub solid: SolidLedger,
-    pub contact: ContactSum,
-    /// Of an interference that grew in, J.
-    pub growth_work: f64,
-    /// Energy unaccounted for in both together, J.
+#[derive(Clone, Debug)]
+pub struct ExchangeSnapshot {
+    pub simulation: Snapshot,
+    pub solids: Vec<SolidSnapshot>,
+    /// Energy unaccounted for in all together, J.
     pub residual: f64,
-    /// Energy held in both and all work and losses, J: what the residual is a part of.
+    /// Energy held in all and all work and losses, J: what the residual is a part of.
     pub turned_over: f64,
 }
 
-impl Seat {
-    /// The race at time `t`, wider by `rim` (m) at each end.
-    fn race(&self, t: f64, rim: f64) -> Cylinder {
-        Cylinder { radius: self.radius.value(t), width: self.width + 2.0 * rim }
+/// A solid with its seats at the present time.
+#[derive(Clone, Debug)]
+pub struct SolidSnapshot {
+    pub ledger: SolidLedger,
+    pub seats: Vec<SeatSnapshot>,
+}
+
+impl SteppedSolid {
+    /// Through a window whose beginning its seats have been told, in which their bodies are as if free.
+    fn advance(&mut self) -> Result<(), SolidError> {
+        let step = self.solid.step_size;
+        for k in 0..self.steps {
+            let after = (k as f64 + 0.5) * step;
+            let seats = &mut self.seats;
+            self.solid.step(|t, displacement, forces| {
+                for seat in seats.iter_mut() {
+                    seat.press(t, [after, step], displacement, forces);
+                }
+            })?;
+        }
+        Ok(())
     }
 
-    /// Leaves out the nodes beside a race that starts at `start` (X, Y, Z, m; tilts, rad), as a condensed
-    /// housing does. How far the others may slide over the rim and still be touched, m: half of what a node
-    /// stands for, since the part of the bore that it carries is still under the race by then, and no more
-    /// than a quarter of the seat.
-    pub(super) fn keep_under(&mut self, start: &[f64; 5]) -> f64 {
-        let frame = Frame::new(&pose_after(&race::fixed(start).state, 0.0));
-        let width = self.width;
-        self.nodes.retain(|node| is_under(frame.seen(node.place)[0], width));
-        let area: f64 = self.nodes.iter().map(|node| node.area).sum();
-        (0.5 * (area / self.nodes.len().max(1) as f64).sqrt()).min(0.25 * self.width)
+    /// In windows of so many s, before the first one.
+    fn step_in(&mut self, window: f64) {
+        self.solid.step_size = window / self.steps as f64;
+        self.solid.time = 0.5 * self.solid.step_size;
+    }
+
+    /// Energies of solid and seats, their bodies where `simulation` has them.
+    fn snapshot(&mut self, simulation: &Simulation) -> SolidSnapshot {
+        let SteppedSolid { solid, seats, .. } = self;
+        let ahead = 0.5 * solid.step_size;
+        let mut found = Vec::with_capacity(seats.len());
+        let ledger = solid.ledger_with(|t, displacement, forces| {
+            for seat in seats.iter() {
+                let body = simulation.body(seat.seat.mount.body);
+                found.push(seat.snapshot(&body, [t, ahead], displacement, forces));
+            }
+        });
+        SolidSnapshot { ledger, seats: found }
+    }
+
+    pub(super) fn sort(&mut self, simulation: &Simulation) {
+        for seat in &mut self.seats {
+            seat.sort(&simulation.body(seat.seat.mount.body), &self.solid);
+        }
     }
 }
 
-/// ΣK of a seat for a shift of the race, N/m, and ΣKx² for a tilt, N·m/rad, all nodes touching.
-fn seat_stiffness(seat: &Seat, centre: f64) -> [f64; 2] {
-    let mut sums = [0.0; 2];
-    for node in &seat.nodes {
-        let along = node.place[0] - centre;
-        let stiffness = seat.penalty.of_node(node.area);
-        sums[0] += stiffness;
-        sums[1] += stiffness * along * along;
+/// The longest window for which no body goes further on its seats than `phase`, s.
+fn longest_window(assembly: &Assembly, seats: &[Seat], phase: f64) -> Result<f64, ExchangeError> {
+    if seats.is_empty() {
+        return Err(ExchangeError::NoSeat { seat: String::new() });
     }
-    sums
+    let mut most = 0.0f64;
+    for (index, body) in assembly.bodies.iter().enumerate() {
+        let mut sums = [0.0; 2];
+        for seat in seats.iter().filter(|seat| seat.mount.body == index) {
+            let [shift, tilt] = seat.stiffness(body.rest[0]);
+            if shift.is_nan() || shift <= 0.0 {
+                return Err(ExchangeError::NoSeat { seat: seat.suffix() });
+            }
+            sums = [sums[0] + shift, sums[1] + tilt];
+        }
+        let Some(inertia) = body.inertia() else { continue };
+        most = most.max((sums[0] / inertia.mass).max(sums[1] / inertia.transverse));
+    }
+    Ok(phase / most.sqrt())
 }
 
-impl HousedBearing {
-    /// Starts with the outer race where `problem.outer_start` puts it, the bearing in equilibrium with
-    /// it there and rolling, the housing still and displaced by `displacement` (m, one for each node).
+/// How many steps of at most `step` s (one a solid) fill a window, whole steps of one of them and no
+/// longer than `longest` (s); and its length, s. Of the windows that offer themselves the one that
+/// evaluates the fewest elements a second, the longer one of two.
+fn divided(elements: &[usize], step: &[f64], longest: f64) -> (f64, Vec<usize>) {
+    let mut best: Option<(f64, f64, Vec<usize>)> = None;
+    for whole in step {
+        let window = ((longest / whole) as usize).max(1) as f64 * whole;
+        let steps: Vec<usize> = step
+            .iter()
+            .map(|step| ((window / step * (1.0 - 1e-12)).ceil() as usize).max(1))
+            .collect();
+        let each = elements.iter().zip(&steps).map(|(elements, steps)| (elements * steps) as f64);
+        let cost = each.sum::<f64>() / window;
+        let better = |(least, length, _): &(f64, f64, Vec<usize>)| {
+            cost < *least || (cost == *least && window > *length)
+        };
+        if best.as_ref().is_none_or(better) {
+            best = Some((cost, window, steps));
+        }
+    }
+    best.map_or((longest, Vec::new()), |(_, window, steps)| (window, steps))
+}
+
+/// # Errors
+/// Options out of range, a race that is fixed or on a foundation.
+fn check(
+    assembly: &Assembly,
+    seats: &[Seat],
+    options: &ExchangeOptions,
+) -> Result<(), ExchangeError> {
+    let ranges = [
+        ("the fraction of the solid's step limit", options.solid_fraction, 1.0),
+        ("the phase of the seat in a window", options.seat_phase, 1.9),
+    ];
+    for (name, value, most) in ranges {
+        if !(value > 0.0 && value <= most) {
+            return Err(ExchangeError::Option { name, value, most });
+        }
+    }
+    for seat in seats {
+        let body = &assembly.bodies[seat.mount.body];
+        let race = body.name.clone();
+        let Some(driven) = body.driven() else { return Err(ExchangeError::FixedRace { race }) };
+        if driven.foundation_stiffness.iter().chain(&driven.foundation_damping).any(|k| *k != 0.0) {
+            return Err(ExchangeError::Foundation { race });
+        }
+    }
+    Ok(())
+}
+
+impl Exchange {
+    /// Starts with the bodies that sit in solids where they rest, the others in equilibrium with them there
+    /// and the bearings rolling, the solids still and displaced as they are given.
     ///
     /// # Errors
     /// No equilibrium, a fixed race or one on a foundation, options out of range.
+    ///
+    /// # Panics
+    /// If a seat names a body or a solid that is not there.
     pub fn new(
-        problem: DynamicProblem,
-        model: SolidModel,
-        mut seat: Seat,
-        displacement: Vec<Vec3>,
+        assembly: impl Into<Assembly>,
+        solids: Vec<SolidPart>,
+        seats: Vec<Seat>,
         options: &ExchangeOptions,
-    ) -> Result<HousedBearing, ExchangeError> {
-        let ranges = [
-            ("the fraction of the solid's step limit", options.solid_fraction, 1.0),
-            ("the phase of the seat in a window", options.seat_phase, 1.9),
-        ];
-        for (name, value, most) in ranges {
-            if !(value > 0.0 && value <= most) {
-                return Err(ExchangeError::Option { name, value, most });
-            }
-        }
-        let outer = problem.outer.as_ref().ok_or(ExchangeError::FixedRace)?;
-        if outer.foundation_stiffness.iter().chain(&outer.foundation_damping).any(|k| *k != 0.0) {
-            return Err(ExchangeError::Foundation);
-        }
-        let rim = seat.keep_under(&problem.outer_start);
-        let [shift, tilt] = seat_stiffness(&seat, problem.outer_start[0]);
-        let square = (shift / outer.inertia.mass).max(tilt / outer.inertia.transverse);
-        if square.is_nan() || square <= 0.0 {
-            return Err(ExchangeError::NoSeat);
-        }
-        let longest = options.seat_phase / square.sqrt();
-        let displacement: Vec<Node> =
-            displacement.into_iter().map(|u| [u[0], u[1], u[2], 0.0]).collect();
+    ) -> Result<Exchange, ExchangeError> {
+        let assembly = assembly.into();
+        check(&assembly, &seats, options)?;
         let method = ExplicitMethod::CentralDifferences;
-        let limit = step_limit(&model, &displacement, method);
-        let stable = closed_limit(&model, &seat.nodes, seat.penalty, &limit).step;
-        let mut step = (options.solid_fraction * stable).min(longest);
-        let state = held_start(&problem)?;
-        let bearing = Simulation::from_state(problem, options.bearing, state, 0.0)?;
-        // Windows of as many steps as the race allows; the bearing's own steps divide them or are
-        // divided by them.
-        let solid_steps = ((longest / step) as usize).max(1);
-        let window = solid_steps as f64 * step;
-        step = window / solid_steps as f64;
-        let mut solid = ExplicitSolid::at_rest(model, method, step, limit);
-        solid.displacement = displacement;
-        solid.time = 0.5 * step;
-        let frame = Frame::new(&pose_after(&outer_state(&bearing), 0.0));
-        let cylinder = seat.race(0.0, rim);
-        let mut housed = HousedBearing {
-            bearing,
-            solid,
-            seat,
-            rim,
-            window,
-            solid_steps,
-            exchanges: 0,
-            contact: ContactSum::default(),
-            impulse: [0.0; 3],
-            growth: Growth { radius: cylinder.radius, ..Growth::default() },
-            tested: 0,
-            sorts: 0,
-            near: Vec::new(),
-            far: Vec::new(),
-            sorted_at: (cylinder, frame),
-            first_bearing: 0.0,
-            first: 0.0,
-        };
-        housed.growth.radius = housed.ahead().0.radius;
-        housed.sort();
-        housed.count_from_here()?;
-        Ok(housed)
+        let mut solids: Vec<SteppedSolid> = solids
+            .into_iter()
+            .map(|SolidPart { name, model, displacement }| {
+                let displacement = padded(displacement);
+                let limit = step_limit(&model, &displacement, method);
+                let mut solid = ExplicitSolid::at_rest(model, method, limit.step, limit);
+                solid.displacement = displacement;
+                SteppedSolid { name, solid, steps: 1, seats: Vec::new() }
+            })
+            .collect();
+        let seats = seated(&assembly, &mut solids, seats);
+        let longest = longest_window(&assembly, &seats, options.seat_phase)?;
+        let steps: Vec<f64> = solids
+            .iter()
+            .map(|SteppedSolid { solid, seats, .. }| {
+                // With every node of every seat closed.
+                let closed = seats.iter().fold(solid.limit, |limit, seat| {
+                    closed_limit(&solid.model, &seat.seat.nodes, seat.seat.penalty, &limit)
+                });
+                (options.solid_fraction * closed.step).min(longest)
+            })
+            .collect();
+        let elements: Vec<usize> =
+            solids.iter().map(|part| part.solid.model.problem.elements.len()).collect();
+        let state = held_start(&assembly, &seats)?;
+        let simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
+        // The bodies' own steps divide the windows or are divided by them.
+        let (window, steps) = divided(&elements, &steps, longest);
+        for (part, steps) in solids.iter_mut().zip(steps) {
+            part.steps = steps;
+        }
+        let mut exchange = Exchange::of(simulation, solids, window);
+        exchange.begin()?;
+        Ok(exchange)
     }
 
-    /// Balances energy from the present state on.
-    fn count_from_here(&mut self) -> Result<(), ExchangeError> {
-        self.first_bearing = 0.0;
-        let start = self.balance()?;
-        self.first_bearing = start.bearing.ledger[Ledger::Foundation as usize];
-        // The balance counts from there.
-        self.first = start.residual - self.first_bearing;
+    /// Before its first window.
+    pub(super) fn of(simulation: Simulation, solids: Vec<SteppedSolid>, window: f64) -> Exchange {
+        Exchange {
+            is_alone: is_alone(&simulation.system.assembly, &solids),
+            loads: Vec::with_capacity(simulation.system.assembly.bodies.len()),
+            simulation,
+            solids,
+            window,
+            exchanges: 0,
+            first: 0.0,
+            crew: Crew::default(),
+        }
+    }
+
+    /// From now on steps its solids on so many threads, with the same bits: each solid in as many parts as
+    /// its share of all elements that are evaluated comes to.
+    pub fn share(&mut self, threads: usize) {
+        self.crew = Crew::new(threads);
+        let cost = |part: &SteppedSolid| part.solid.model.problem.elements.len() * part.steps;
+        let all: usize = self.solids.iter().map(cost).sum();
+        for part in &mut self.solids {
+            let parts = (2 * self.crew.threads() * cost(part) + all) / (2 * all).max(1);
+            part.solid.share(&self.crew, parts.max(1));
+        }
+    }
+
+    pub fn threads(&self) -> usize {
+        self.crew.threads()
+    }
+
+    /// Steps of the windows as they are now; contact and balance count from the present state.
+    fn begin(&mut self) -> Result<(), ExchangeError> {
+        for part in &mut self.solids {
+            part.step_in(self.window);
+            for seat in &mut part.seats {
+                seat.grow_from(&part.solid);
+            }
+            part.sort(&self.simulation);
+        }
+        self.first = self.balance()?.residual;
         Ok(())
     }
 
@@ -272,207 +347,188 @@ impl HousedBearing {
     /// first exchange; returns how many.
     ///
     /// # Errors
-    /// As [`HousedBearing::snapshot`].
+    /// As [`Exchange::snapshot`].
     pub fn divide(&mut self, interval: f64) -> Result<u64, ExchangeError> {
         // A ratio that is whole but for rounding is whole.
         let windows = (interval / self.window * (1.0 - 1e-12)).ceil().max(1.0);
         self.window = interval / windows;
-        self.solid.step_size = self.window / self.solid_steps as f64;
-        self.solid.time = 0.5 * self.solid.step_size;
-        // No step of the bearing is longer than its window, whatever it might be by itself.
-        if self.bearing.control.is_none() {
-            self.bearing.step_size = self.bearing.step_size.min(self.window);
+        // No step of the bodies is longer than its window, whatever it might be by itself.
+        if self.simulation.control.is_none() {
+            self.simulation.step_size = self.simulation.step_size.min(self.window);
         }
-        // Where the contact is looked at first, it has not grown yet.
-        self.growth = Growth::default();
-        let (cylinder, _) = self.ahead();
-        self.growth.radius = cylinder.radius;
-        self.sort();
-        self.count_from_here()?;
+        self.begin()?;
         Ok(windows as u64)
     }
 
-    /// Present time: that of the bearing and of the housing's velocities, s.
+    /// Present time: that of the bodies and of the solids' velocities, s.
     pub fn time(&self) -> f64 {
-        self.bearing.time
+        self.simulation.time
     }
 
-    /// Takes both through one window.
+    pub fn seats(&self) -> impl Iterator<Item = &SeatState> {
+        self.solids.iter().flat_map(|part| &part.seats)
+    }
+
+    /// Takes all through one window.
     ///
     /// # Errors
-    /// What ends either, or a race that has left its bore.
-    pub fn exchange(&mut self) -> Result<(), ExchangeError> {
+    /// What ends one of them, or a race that has left its bore.
+    pub fn advance(&mut self) -> Result<(), ExchangeError> {
         if self.exchanges.is_multiple_of(LOOK) {
             self.look()?;
         }
-        let race = outer_state(&self.bearing);
-        let step = self.solid.step_size;
-        let mut impulse = RaceLoads::default();
-        for k in 0..self.solid_steps {
-            let pose = pose_after(&race, (k as f64 + 0.5) * step);
-            let HousedBearing { solid, seat, near, contact: last, growth, rim, .. } = self;
-            let frame = Frame::new(&pose);
-            solid.step(|t, displacement, forces| {
-                let cylinder = seat.race(t, *rim);
-                *last = press(&cylinder, &frame, seat.penalty, near, displacement, forces);
-                *growth = growth.to(cylinder.radius, last.radial_load);
-            })?;
-            self.tested += self.contact.tested as u64;
-            impulse.force = add_scaled(impulse.force, step, self.contact.force);
-            impulse.moment = add_scaled(impulse.moment, step, self.contact.moment);
-        }
-        self.impulse = add(self.impulse, impulse.force);
-        self.bearing.set_outside_load(
-            OUTER,
-            RaceLoads {
-                force: scale(impulse.force, 1.0 / self.window),
-                moment: scale(impulse.moment, 1.0 / self.window),
-            },
-        );
-        self.exchanges += 1;
-        let target = self.window * self.exchanges as f64;
-        let mut left = target - self.bearing.time;
-        while left > 1e-9 * self.window {
-            let parts = (left / self.bearing.step_size * (1.0 - 1e-9)).ceil().max(1.0);
-            left -= self.bearing.step_by(left / parts)?;
-        }
-        self.bearing.time = target;
-        Ok(())
-    }
-
-    /// The seat and its frame half a step of the housing ahead, where its displacements are.
-    fn ahead(&self) -> (Cylinder, Frame) {
-        let race = outer_state(&self.bearing);
-        let frame = Frame::new(&pose_after(&race, 0.5 * self.solid.step_size));
-        (self.seat.race(self.solid.time, self.rim), frame)
-    }
-
-    /// Sorts the nodes of the bore into those that are tested and those out of reach.
-    pub(super) fn sort(&mut self) {
-        let (cylinder, frame) = self.ahead();
-        let displacement = &self.solid.displacement;
-        let at = |n: u32| moved(displacement, n);
-        let (near, far) = split_by_reach(&cylinder, &frame, &self.seat.nodes, at, self.seat.reach);
-        self.near = near;
-        self.far = far.into_iter().map(|node| (node, at(node.node))).collect();
-        self.sorted_at = (cylinder, frame);
-        self.sorts += 1;
-    }
-
-    /// Whether the race is still in its bore, and nodes out of reach still are.
-    fn look(&mut self) -> Result<(), ExchangeError> {
-        let (cylinder, frame) = self.ahead();
-        let (time, step) = (self.bearing.time, self.exchanges);
-        let [along, across, up] = frame.centre;
-        let start = self.bearing.system.assembly.bodies[OUTER].rest;
-        // Nodes no longer stand for what is under the race, or it hangs in the wall.
-        for (way, distance, allowed) in [
-            ("along the axis", (along - start[0]).abs(), self.rim),
-            ("across it", libm::hypot(across - start[1], up - start[2]), 0.1 * cylinder.radius),
-        ] {
-            if distance.is_nan() || distance > allowed {
-                return Err(ExchangeError::LeftBore { way, distance, allowed, time, step });
+        for part in &mut self.solids {
+            for seat in &mut part.seats {
+                seat.begin_window(self.simulation.body(seat.seat.mount.body));
             }
         }
-        if self.far.is_empty() {
-            return Ok(());
+        self.crew.each(&mut self.solids, |part| {
+            let moved = part.advance();
+            moved.map_err(|source| ExchangeError::Solid { name: part.name.clone(), source })
+        })?;
+        self.hand_over();
+        self.exchanges += 1;
+        let target = self.window * self.exchanges as f64;
+        let mut left = target - self.simulation.time;
+        while left > 1e-9 * self.window {
+            let parts = (left / self.simulation.step_size * (1.0 - 1e-9)).ceil().max(1.0);
+            left -= self.simulation.step_by(left / parts)?;
         }
-        let displacement = &self.solid.displacement;
-        let by_nodes = self
-            .far
-            .iter()
-            .map(|(node, then)| norm(sub(moved(displacement, node.node), *then)))
-            .fold(0.0, f64::max);
-        let before = &self.sorted_at.1;
-        let turned: f64 = norm(sub(frame.to_body[0], before.to_body[0]));
-        let by_race = norm(sub(frame.centre, before.centre))
-            + turned * (cylinder.radius + cylinder.width)
-            + (cylinder.radius - self.sorted_at.0.radius).max(0.0);
-        if by_nodes + by_race > 0.5 * self.seat.reach {
-            self.sort();
+        self.simulation.time = target;
+        self.book();
+        Ok(())
+    }
+
+    /// The bodies get what their seats have summed up in the window.
+    fn hand_over(&mut self) {
+        self.loads.clear();
+        for seat in self.solids.iter_mut().flat_map(|part| &mut part.seats) {
+            let (body, load) = (seat.seat.mount.body, seat.mean_load(self.window));
+            match self.loads.iter_mut().find(|(other, _)| *other == body) {
+                Some((_, sum)) => sum.add(&load),
+                None => self.loads.push((body, load)),
+            }
+        }
+        self.simulation.set_outside_loads(&self.loads);
+    }
+
+    /// Work of the seats on their bodies in the window behind.
+    fn book(&mut self) {
+        // The bodies' own ledger has it integrated with their motion, where nothing else goes into that entry.
+        let integrated = self.is_alone.then(|| {
+            self.simulation.state[self.simulation.system.places.ledger_entry(Ledger::Foundation)]
+        });
+        for seat in self.solids.iter_mut().flat_map(|part| &mut part.seats) {
+            match integrated {
+                Some(work) => seat.work = work,
+                None => seat.book(self.window, &self.simulation.body(seat.seat.mount.body)),
+            }
+        }
+    }
+
+    /// Whether the races are still in their bores, and nodes out of reach still are.
+    fn look(&mut self) -> Result<(), ExchangeError> {
+        let (time, step) = (self.simulation.time, self.exchanges);
+        for part in &mut self.solids {
+            for seat in &mut part.seats {
+                let index = seat.seat.mount.body;
+                let left = |(way, distance, allowed)| {
+                    let race = self.simulation.system.assembly.bodies[index].name.clone();
+                    ExchangeError::LeftBore { race, way, distance, allowed, time, step }
+                };
+                seat.look(&self.simulation.body(index), &part.solid).map_err(left)?;
+            }
         }
         Ok(())
     }
 
-    /// Nodes that are tested, and nodes out of reach.
-    pub fn counts(&self) -> (usize, usize) {
-        (self.near.len(), self.far.len())
-    }
-
-    /// Nodes that touch now, and the force on each, N.
-    pub fn nodal_forces(&self) -> Vec<(ContactNode, Vec3)> {
-        let (cylinder, frame) = self.ahead();
-        let at = |n: u32| moved(&self.solid.displacement, n);
+    /// Nodes of a solid that touch now, how stiff their contact is, and the force on each, N.
+    pub fn nodal_forces(&self, solid: usize) -> Vec<(ContactNode, Penalty, Vec3)> {
+        let part = &self.solids[solid];
         let mut found = Vec::new();
-        contact(&cylinder, &frame, self.seat.penalty, &self.near, at, |node, _, _, force| {
-            found.push((*node, force));
-        });
+        for seat in &part.seats {
+            let body = self.simulation.body(seat.seat.mount.body);
+            let touching = seat.nodal_forces(&body, &part.solid).into_iter();
+            found.extend(touching.map(|(node, force)| (node, seat.seat.penalty, force)));
+        }
         found
     }
 
     /// Loads, energies and what is unaccounted for.
     ///
     /// # Errors
-    /// More energy unaccounted for in the bearing than its options allow.
-    pub fn snapshot(&mut self) -> Result<HousedSnapshot, ExchangeError> {
+    /// More energy unaccounted for in the bodies than their options allow.
+    pub fn snapshot(&mut self) -> Result<ExchangeSnapshot, ExchangeError> {
         let mut snapshot = self.balance()?;
         snapshot.residual -= self.first;
         Ok(snapshot)
     }
 
-    /// The bearing is balanced where its time is, housing and contact half a step later: what the
-    /// contact does to the race in between is added.
-    fn balance(&mut self) -> Result<HousedSnapshot, ExchangeError> {
-        let bearing = self.bearing.snapshot()?;
-        let outer = outer_state(&self.bearing);
-        let (cylinder, frame) = self.ahead();
-        let HousedBearing { solid, seat, near, .. } = self;
-        let mut touching = ContactSum::default();
-        let solid = solid.ledger_with(|_, displacement, forces| {
-            touching = press(&cylinder, &frame, seat.penalty, near, displacement, forces);
+    /// The bodies are balanced where their time is, solids and contacts half a step later: what the
+    /// contacts do to the bodies in between is added.
+    fn balance(&mut self) -> Result<ExchangeSnapshot, ExchangeError> {
+        let bodies = self.simulation.snapshot()?;
+        let Exchange { simulation, solids, .. } = self;
+        let solids: Vec<SolidSnapshot> =
+            solids.iter_mut().map(|part| part.snapshot(simulation)).collect();
+        let of_seats = |of: fn(&SeatSnapshot) -> f64| -> f64 {
+            solids.iter().flat_map(|solid| &solid.seats).map(of).sum()
+        };
+        let of_solids = |of: fn(&SolidSnapshot) -> f64| -> f64 { solids.iter().map(of).sum() };
+        let held = of_solids(|solid| {
+            let SolidLedger { energy, .. } = solid.ledger;
+            let seats: f64 = solid.seats.iter().map(|seat| seat.contact.energy).sum();
+            energy.strain + energy.kinetic + seats
         });
-        let ahead = 0.5 * self.solid.step_size;
-        let power = dot(touching.force, outer.velocity) + dot(touching.moment, outer.spin);
-        let on_race = bearing.ledger[Ledger::Foundation as usize] - self.first_bearing;
-        let growth_work = self.growth.to(cylinder.radius, touching.radial_load).work;
-        let held = solid.energy.strain + solid.energy.kinetic + touching.energy;
-        let residual = bearing.residual + on_race + ahead * power + held
-            - solid.external_work
-            - solid.damping_work
-            - growth_work;
-        let work: f64 = bearing.ledger.iter().map(|entry| entry.abs()).sum();
-        let turned_over = bearing.energy.contact
+        let residual =
+            bodies.residual + of_seats(|seat| seat.work) + of_seats(|seat| seat.to_come) + held
+                - of_solids(|solid| solid.ledger.external_work)
+                - of_solids(|solid| solid.ledger.damping_work)
+                - of_seats(|seat| seat.growth_work);
+        let work: f64 = bodies.ledger.iter().map(|entry| entry.abs()).sum();
+        let turned_over = bodies.energy.contact
             + held
             + work
-            + solid.external_work.abs()
-            + solid.damping_work.abs()
-            + growth_work.abs();
-        let contact = touching;
-        Ok(HousedSnapshot { bearing, outer, solid, contact, growth_work, residual, turned_over })
+            + of_solids(|solid| solid.ledger.external_work.abs())
+            + of_solids(|solid| solid.ledger.damping_work.abs())
+            + of_seats(|seat| seat.growth_work.abs());
+        Ok(ExchangeSnapshot { simulation: bodies, solids, residual, turned_over })
     }
 }
 
-/// The outer race of a simulation.
-pub fn outer_state(bearing: &Simulation) -> BodyState {
-    let at = bearing.system.places.body(OUTER);
-    BodyState::from_slice(&bearing.state[at..at + BODY])
+/// Whether one seat is all that pushes or brakes the bodies of an assembly from outside.
+fn is_alone(assembly: &Assembly, solids: &[SteppedSolid]) -> bool {
+    let mut brakes =
+        assembly.bodies.iter().filter_map(Body::driven).flat_map(|b| b.foundation_damping);
+    let seats: usize = solids.iter().map(|part| part.seats.len()).sum();
+    seats == 1 && assembly.connections.is_empty() && brakes.all(|damping| damping == 0.0)
 }
 
-/// Where a race is after `time` s if nothing pushes it.
-fn pose_after(race: &BodyState, time: f64) -> Pose {
-    let turn = UnitQuaternion::from_scaled_axis(Vector3::from(race.spin) * time);
-    Pose {
-        position: add_scaled(race.position, time, race.velocity).into(),
-        orientation: turn * race.orientation,
+/// Puts the seats into their solids, with the nodes under the races alone; returns them in that order.
+pub(super) fn seated(
+    assembly: &Assembly,
+    solids: &mut [SteppedSolid],
+    seats: Vec<Seat>,
+) -> Vec<Seat> {
+    for seat in seats {
+        let body = &assembly.bodies[seat.mount.body];
+        solids[seat.solid].seats.push(SeatState::new(seat, body));
     }
+    solids.iter().flat_map(|part| &part.seats).map(|state| state.seat.clone()).collect()
 }
 
-/// State of a bearing in equilibrium whose outer race is held where it starts.
-fn held_start(problem: &DynamicProblem) -> Result<Vec<f64>, StaticsError> {
-    let held = DynamicProblem { outer: None, ..problem.clone() }.assembly();
+/// State of an assembly in equilibrium whose bodies in solids are held where they rest.
+fn held_start(assembly: &Assembly, seats: &[Seat]) -> Result<Vec<f64>, StaticsError> {
+    let mut held = assembly.clone();
+    for seat in seats {
+        held.bodies[seat.mount.body].mobility = Mobility::Fixed;
+    }
     let mut state = start::at_equilibrium(&held)?;
-    let outer = race::fixed(&problem.outer_start).state.to_array();
-    let at = Places::of(&held).body(OUTER);
-    state[at..at + BODY].copy_from_slice(&outer);
+    for seat in seats {
+        let body = seat.mount.body;
+        let still: BodyState = race::fixed(&assembly.bodies[body].rest).state;
+        let at = Places::of(&held).body(body);
+        state[at..at + BODY].copy_from_slice(&still.to_array());
+    }
     Ok(state)
 }

@@ -5,8 +5,8 @@
 //! (ω/ω_n)² is the part that leaving out inertia misses, as long as it is small and the drive is
 //! smooth. [`super::course_inertia`] follows a whole course, whose velocity jumps.
 
-use super::assembly::{AssemblySearch, AssemblyState};
 use super::condensed::CondensedBore;
+use super::housed::{HousedSearch, HousedState};
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::kinematics::vec3::dot;
 use crate::solver::statics::{Condition, StaticProblem};
@@ -57,7 +57,7 @@ pub(super) struct Mode {
 /// is not positive.
 pub(super) fn modes(
     free: &[bool; 5],
-    state: &AssemblyState,
+    state: &HousedState,
     masses: &Masses,
     housing: &Matrix4<f64>,
 ) -> Vec<Mode> {
@@ -134,8 +134,8 @@ pub(super) fn modes(
 /// upper bound of the frequency, near the truth while the housing's own modes are higher.
 pub fn estimate(
     bearing: &StaticProblem,
-    search: &AssemblySearch,
-    state: &AssemblyState,
+    search: &HousedSearch,
+    state: &HousedState,
     masses: &Masses,
 ) -> InertiaEstimate {
     let free = bearing.conditions.map(|condition| matches!(condition, Condition::Load(_)));
@@ -159,7 +159,7 @@ fn race_mass(masses: &Masses) -> [f64; 4] {
 
 /// Mass of the housing along the outer race's coordinates about the last equilibrium: its shape is
 /// that under the loads which go with a unit of each while the same nodes touch.
-pub(super) fn housing_mass(search: &AssemblySearch) -> Matrix4<f64> {
+pub(super) fn housing_mass(search: &HousedSearch) -> Matrix4<f64> {
     let (bore, loads): (&CondensedBore, _) = (search.bore().bore(), search.bore().loads_by_pose());
     let shapes = loads.each_ref().map(|loads| bore.response(loads));
     Matrix4::from_fn(|i, j| {

@@ -3,13 +3,13 @@
 //! Balls go round at the speed of the cage in pure rolling; nothing is inert but, on wish, the balls
 //! in their orbit. What that leaves out [`super::inertia`] estimates.
 
-use super::assembly::{AssemblyError, AssemblySearch, AssemblyState};
 use super::bore_equilibrium::Fit;
+use super::housed::{HousedSearch, HousedState};
 use crate::ch2_housing::bearing::frequencies::ratios;
 use crate::kinematics::vec3::Vec3;
 use crate::solver::dynamics::model::RotatingLoad;
 use crate::solver::profile::Profile;
-use crate::solver::statics::{Condition, StaticProblem};
+use crate::solver::statics::{Condition, StaticProblem, StaticsError};
 use thiserror::Error;
 
 /// What happens over time.
@@ -39,14 +39,14 @@ pub struct Moment {
     pub time: f64,
     /// Azimuth of ball 1, rad.
     pub ball_phase: f64,
-    pub state: AssemblyState,
+    pub state: HousedState,
 }
 
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("at t = {time} s: {source}")]
 pub struct CourseError {
     pub time: f64,
-    pub source: AssemblyError,
+    pub source: StaticsError,
 }
 
 /// Equilibria at the times of a course. `fit.radius` is the race's before it grows.
@@ -54,7 +54,7 @@ pub struct CourseError {
 /// # Errors
 /// The first time at which there is no equilibrium.
 pub fn history(
-    search: &mut AssemblySearch,
+    search: &mut HousedSearch,
     bearing: &StaticProblem,
     fit: &Fit,
     course: &Course,

@@ -4,6 +4,7 @@ use super::energy::{SolidEnergy, SolidLedger, strain_energy};
 use super::model::{Prescribed, SolidError, SolidModel};
 use super::rigid_motion::{RigidMotion, rigid_motion};
 use super::step_limit::{SolidStepLimit, step_limit};
+use super::team::Team;
 use super::tet4_blocks::Node;
 use crate::kinematics::vec3::Vec3;
 use crate::solver::clock::whole_steps;
@@ -65,6 +66,8 @@ pub struct ExplicitSolid {
     pub(super) damping_work: Vec<f64>,
     pub work: SolidWork,
     stages: Option<Box<Stages>>,
+    /// Where several threads share its elements.
+    pub(super) team: Option<Team>,
 }
 
 /// Vectors as the force loop reads them.
@@ -168,6 +171,7 @@ impl ExplicitSolid {
             damping_work: vec![0.0; count],
             work: SolidWork::default(),
             stages,
+            team: None,
             model,
         }
     }
@@ -211,10 +215,13 @@ impl ExplicitSolid {
     /// Forces of elements and loads at the present state.
     fn evaluate(&mut self) {
         self.force.fill([0.0; 4]);
-        self.model.add_internal_forces(&self.displacement, &mut self.force);
+        match &mut self.team {
+            Some(team) => team.add_internal_forces(&self.displacement, &mut self.force),
+            None => self.model.add_internal_forces(&self.displacement, &mut self.force),
+        }
         self.model.add_external_forces(self.time, &mut self.force);
         self.work.evaluations += 1;
-        self.work.elements += self.model.problem.elements.len() as u64;
+        self.work.elements += self.elements_a_step() as u64;
     }
 
     /// One step. `contacts` adds further forces on the nodes, given time and displacements; their

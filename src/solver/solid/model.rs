@@ -251,6 +251,11 @@ impl SolidModel {
     /// order of convergence; the consistent load pulls corners upwards.
     pub fn add_static_forces(&self, t: f64, forces: &mut [Node]) {
         self.add_loads(t, forces);
+        self.add_weight(forces);
+    }
+
+    /// Of [`SolidModel::add_static_forces`] what gravity does, N.
+    pub fn add_weight(&self, forces: &mut [Node]) {
         match &self.problem.elements {
             Elements::Linear(_) => {
                 self.add_gravity(forces, self.mass.iter().copied().enumerate());

@@ -1,167 +1,140 @@
-//! Central differences on several threads with the bits of one.
+//! Several threads with the bits of one: within a solid, and one solid beside the other.
 //!
-//! Each thread owns a range of nodes and computes every element that touches one of them, so that
-//! the forces on its nodes are summed in the order in which one thread sums them; elements between
-//! two ranges are computed twice. After each step the threads hand each other the displacements of
-//! the nodes that others touch, with one barrier a step. A part is a solid of its own, whose foreign
-//! nodes do not move by themselves.
+//! Of a solid each part owns a range of nodes and computes every element that touches one of them, so that
+//! the forces on its nodes are summed in the order in which one thread sums them; elements between two
+//! ranges are computed twice. What is left of a step, contacts and the motion of nodes, one thread does.
 
-use super::explicit::{ExplicitMethod, ExplicitSolid};
+use super::explicit::ExplicitSolid;
 use super::labels::Labels;
-use super::model::{DampedMotion, Load, Prescribed, SolidError, SolidModel, SolidProblem};
+use super::model::{SolidModel, SolidProblem};
 use super::tet4_blocks::Node;
 use crate::mesh::tet_mesh::Elements;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::ops::Range;
-use std::sync::{Barrier, Mutex};
+use std::sync::Arc;
 
-/// Below this many elements a thread a barrier costs more than it brings.
+/// Below this many elements a thread sharing out costs more than it brings.
 pub const ELEMENTS_A_THREAD: usize = 2500;
 
-/// A solid shared out to threads.
-pub struct Team {
+/// Threads that work is shared out to.
+#[derive(Clone, Debug, Default)]
+pub struct Crew {
+    /// None where one thread does it all.
+    pool: Option<Arc<ThreadPool>>,
+}
+
+impl Crew {
+    /// So many threads; one where the system gives no more.
+    pub fn new(threads: usize) -> Crew {
+        let pool = (threads > 1).then(|| ThreadPoolBuilder::new().num_threads(threads).build());
+        Crew { pool: pool.and_then(Result::ok).map(Arc::new) }
+    }
+
+    pub fn threads(&self) -> usize {
+        self.pool.as_ref().map_or(1, |pool| pool.current_num_threads())
+    }
+
+    /// Does the same to each of a list.
+    ///
+    /// # Errors
+    /// That of the first in the list that has one.
+    pub fn each<T: Send, E: Send>(
+        &self,
+        list: &mut [T],
+        go: impl Fn(&mut T) -> Result<(), E> + Sync,
+    ) -> Result<(), E> {
+        let Some(pool) = self.pool.as_ref().filter(|_| list.len() > 1) else {
+            return list.iter_mut().try_for_each(go);
+        };
+        let mut errors: Vec<Option<E>> = list.iter().map(|_| None).collect();
+        pool.scope(|scope| {
+            for (one, error) in list.iter_mut().zip(&mut errors) {
+                let go = &go;
+                scope.spawn(move |_| *error = go(one).err());
+            }
+        });
+        errors.into_iter().flatten().next().map_or(Ok(()), Err)
+    }
+}
+
+/// The force loop of a solid, shared out to threads.
+#[derive(Debug)]
+pub(super) struct Team {
+    crew: Crew,
     parts: Vec<Part>,
 }
 
+#[derive(Debug)]
 struct Part {
-    solid: ExplicitSolid,
+    model: SolidModel,
     /// Its own nodes in the whole body; the first ones in its own numbering.
     owned: Range<usize>,
-    /// Foreign nodes behind its own ones: owner, and place in what the owner hands out.
-    foreign: Vec<(usize, usize)>,
-    /// Own nodes that others touch, in its own numbering.
-    handed_out: Vec<usize>,
+    /// Foreign nodes behind its own ones, in the whole body, ascending.
+    foreign: Vec<usize>,
+    displacement: Vec<Node>,
+    force: Vec<Node>,
+}
+
+impl ExplicitSolid {
+    /// From now on evaluates its elements in so many parts, on the threads of a crew, with the same bits;
+    /// in fewer where there are few of them.
+    pub fn share(&mut self, crew: &Crew, parts: usize) {
+        let ranges = ranges(&self.model.problem, parts);
+        self.team = (ranges.len() > 1).then(|| Team {
+            crew: crew.clone(),
+            parts: ranges.into_iter().map(|owned| part(&self.model, owned)).collect(),
+        });
+    }
+
+    /// Elements computed a step, those between two parts twice.
+    pub fn elements_a_step(&self) -> usize {
+        let whole = || self.model.problem.elements.len();
+        self.team.as_ref().map_or_else(whole, |team| {
+            team.parts.iter().map(|part| part.model.problem.elements.len()).sum()
+        })
+    }
 }
 
 impl Team {
-    /// Shares out a solid in its present state. Solids whose damping follows their rigid motion,
-    /// and Runge–Kutta, stay on one thread.
-    pub fn new(solid: &ExplicitSolid, threads: usize) -> Team {
-        let problem = &solid.model.problem;
-        let alone = solid.method != ExplicitMethod::CentralDifferences
-            || problem.damped_motion == DampedMotion::RelativeToRigid;
-        let threads = if alone { 1 } else { threads.max(1) };
-        let ranges = ranges(problem, threads);
-        let owner = |node: usize| ranges.iter().position(|range| range.contains(&node));
-        let mut parts = Vec::new();
-        let mut wanted: Vec<Vec<usize>> = vec![Vec::new(); ranges.len()];
-        let mut foreigners = Vec::new();
-        for owned in &ranges {
-            let (part, foreign) = part(solid, owned.clone());
-            for node in &foreign {
-                wanted[owner(*node).expect("every node has an owner")].push(*node);
+    /// Adds the forces of all elements to `forces` (N).
+    pub fn add_internal_forces(&mut self, displacement: &[Node], forces: &mut [Node]) {
+        let mut left = forces;
+        let mut work = Vec::with_capacity(self.parts.len());
+        for part in &mut self.parts {
+            let (own, others) = left.split_at_mut(part.owned.len());
+            work.push((part, own));
+            left = others;
+        }
+        let done: Result<(), ()> = self.crew.each(&mut work, |(part, own)| {
+            part.evaluate(displacement);
+            for (sum, force) in own.iter_mut().zip(&part.force) {
+                for i in 0..4 {
+                    sum[i] += force[i];
+                }
             }
-            parts.push(part);
-            foreigners.push(foreign);
-        }
-        for list in &mut wanted {
-            list.sort_unstable();
-            list.dedup();
-        }
-        for (index, (part, foreign)) in parts.iter_mut().zip(foreigners).enumerate() {
-            part.handed_out = wanted[index].iter().map(|node| node - part.owned.start).collect();
-            part.foreign = foreign
-                .into_iter()
-                .map(|node| {
-                    let owner = owner(node).expect("every node has an owner");
-                    (owner, wanted[owner].binary_search(&node).expect("listed above"))
-                })
-                .collect();
-        }
-        Team { parts }
-    }
-
-    /// Elements computed a step, those between two ranges twice.
-    pub fn elements(&self) -> usize {
-        self.parts.iter().map(|part| part.solid.model.problem.elements.len()).sum()
-    }
-
-    /// Steps all parts together.
-    ///
-    /// # Errors
-    /// A value that is not finite.
-    pub fn advance(&mut self, steps: u64) -> Result<(), SolidError> {
-        let count = self.parts.len();
-        let barrier = Barrier::new(count);
-        // Two sets in turn: while one is read the next step writes the other.
-        let outboxes: [Vec<Mutex<Vec<Node>>>; 2] =
-            [(); 2].map(|()| (0..count).map(|_| Mutex::new(Vec::new())).collect());
-        let results: Vec<Result<(), SolidError>> = std::thread::scope(|scope| {
-            let threads: Vec<_> = self
-                .parts
-                .iter_mut()
-                .enumerate()
-                .map(|(index, part)| {
-                    let (barrier, outboxes) = (&barrier, &outboxes);
-                    scope.spawn(move || part.advance(index, steps, barrier, outboxes))
-                })
-                .collect();
-            threads.into_iter().map(|thread| thread.join().expect("no part panics")).collect()
+            Ok(())
         });
-        results.into_iter().collect()
-    }
-
-    /// Writes the parts' state back into the whole solid.
-    pub fn gather(&self, solid: &mut ExplicitSolid) {
-        let first = &self.parts[0].solid;
-        let taken = first.steps - solid.steps;
-        for part in &self.parts {
-            let own = 0..part.owned.len();
-            solid.displacement[part.owned.clone()]
-                .copy_from_slice(&part.solid.displacement[own.clone()]);
-            solid.rate[part.owned.clone()].copy_from_slice(&part.solid.rate[own.clone()]);
-            solid.external_work[part.owned.clone()]
-                .copy_from_slice(&part.solid.external_work[own.clone()]);
-            solid.damping_work[part.owned.clone()].copy_from_slice(&part.solid.damping_work[own]);
-        }
-        solid.time = first.time;
-        solid.steps = first.steps;
-        solid.work.evaluations += taken;
-        solid.work.elements += taken * self.elements() as u64;
+        debug_assert!(done.is_ok());
     }
 }
 
 impl Part {
-    fn advance(
-        &mut self,
-        index: usize,
-        steps: u64,
-        barrier: &Barrier,
-        outboxes: &[Vec<Mutex<Vec<Node>>>; 2],
-    ) -> Result<(), SolidError> {
+    /// The forces on its nodes; those on foreign ones lack what is not its own.
+    fn evaluate(&mut self, displacement: &[Node]) {
         let own = self.owned.len();
-        // An error is kept until the end: the others wait at the barrier.
-        let mut result = Ok(());
-        for step in 0..steps {
-            if result.is_ok() {
-                result = self.solid.step(|_, _, _| {});
-            }
-            let boxes = &outboxes[(step % 2) as usize];
-            {
-                let mut outbox = boxes[index].lock().expect("no part panics");
-                outbox.clear();
-                outbox.extend(self.handed_out.iter().map(|node| self.solid.displacement[*node]));
-            }
-            barrier.wait();
-            let mut last = usize::MAX;
-            let mut inbox = None;
-            for (node, (owner, place)) in self.foreign.iter().enumerate() {
-                if *owner != last {
-                    drop(inbox.take());
-                    inbox = Some(boxes[*owner].lock().expect("no part panics"));
-                    last = *owner;
-                }
-                let from = inbox.as_ref().expect("locked above");
-                self.solid.displacement[own + node] = from[*place];
-            }
+        self.displacement[..own].copy_from_slice(&displacement[self.owned.clone()]);
+        for (here, node) in self.displacement[own..].iter_mut().zip(&self.foreign) {
+            *here = displacement[*node];
         }
-        result
+        self.force.fill([0.0; 4]);
+        self.model.add_internal_forces(&self.displacement, &mut self.force);
     }
 }
 
 /// Ranges of nodes with about the same number of element corners each.
-fn ranges(problem: &SolidProblem, threads: usize) -> Vec<Range<usize>> {
+fn ranges(problem: &SolidProblem, parts: usize) -> Vec<Range<usize>> {
     let count = problem.nodes.len();
-    let threads = threads.min(problem.elements.len().div_ceil(ELEMENTS_A_THREAD)).max(1);
+    let parts = parts.min(problem.elements.len().div_ceil(ELEMENTS_A_THREAD)).max(1);
     let mut corners = vec![0usize; count];
     for node in problem.elements.all_nodes() {
         corners[*node as usize] += 1;
@@ -171,7 +144,7 @@ fn ranges(problem: &SolidProblem, threads: usize) -> Vec<Range<usize>> {
     let (mut start, mut sum) = (0, 0);
     for (node, share) in corners.iter().enumerate() {
         sum += share;
-        if sum * threads >= total * (ranges.len() + 1) || node + 1 == count {
+        if sum * parts >= total * (ranges.len() + 1) || node + 1 == count {
             ranges.push(start..node + 1);
             start = node + 1;
         }
@@ -179,9 +152,8 @@ fn ranges(problem: &SolidProblem, threads: usize) -> Vec<Range<usize>> {
     ranges
 }
 
-/// The part of a solid that owns a range of nodes, and the foreign nodes it touches, ascending.
-fn part(solid: &ExplicitSolid, owned: Range<usize>) -> (Part, Vec<usize>) {
-    let whole = &solid.model;
+/// The part of a solid that owns a range of nodes.
+fn part(whole: &SolidModel, owned: Range<usize>) -> Part {
     let problem = &whole.problem;
     let mine = |node: u32| owned.contains(&(node as usize));
     let touching: Vec<u32> = (0..problem.elements.len() as u32)
@@ -211,47 +183,19 @@ fn part(solid: &ExplicitSolid, owned: Range<usize>) -> (Part, Vec<usize>) {
             touching.iter().map(|element| list[*element as usize].map(local)).collect(),
         ),
     };
-    let all = || owned.clone().chain(foreign.iter().copied());
-    let of = |load: &Load| Load {
-        forces: load
-            .forces
-            .iter()
-            .filter(|(node, _)| mine(*node))
-            .map(|(node, force)| (local(*node), *force))
-            .collect(),
-        profile: load.profile.clone(),
-    };
+    let all: Vec<usize> = owned.clone().chain(foreign.iter().copied()).collect();
     let problem = SolidProblem {
-        nodes: all().map(|node| problem.nodes[node]).collect(),
+        nodes: all.iter().map(|node| problem.nodes[*node]).collect(),
         elements,
-        prescribed: problem
-            .prescribed
-            .iter()
-            .filter(|prescribed| mine(prescribed.node))
-            .map(|prescribed| Prescribed { node: local(prescribed.node), ..prescribed.clone() })
-            .collect(),
-        loads: problem.loads.iter().map(of).collect(),
+        prescribed: Vec::new(),
+        loads: Vec::new(),
         ..problem.clone()
     };
     let labels = Labels {
         elements: touching.iter().map(|e| whole.labels.element(*e as usize)).collect(),
-        nodes: all().map(|node| whole.labels.node(node)).collect(),
+        nodes: all.iter().map(|node| whole.labels.node(*node)).collect(),
     };
-    let mut model = SolidModel::labelled(problem, labels).expect("the whole was checked");
-    for (place, node) in all().enumerate() {
-        model.mass[place] = whole.mass[node];
-        model.per_mass[place] = if mine(node as u32) { whole.per_mass[node] } else { [0.0; 4] };
-    }
-    let mut of_part = ExplicitSolid::at_rest(model, solid.method, solid.step_size, solid.limit);
-    for (place, node) in all().enumerate() {
-        of_part.displacement[place] = solid.displacement[node];
-        if place < owned.len() {
-            of_part.rate[place] = solid.rate[node];
-            of_part.external_work[place] = solid.external_work[node];
-            of_part.damping_work[place] = solid.damping_work[node];
-        }
-    }
-    of_part.time = solid.time;
-    of_part.steps = solid.steps;
-    (Part { solid: of_part, owned, foreign: Vec::new(), handed_out: Vec::new() }, foreign)
+    let model = SolidModel::labelled(problem, labels).expect("the whole was checked");
+    let still = vec![[0.0; 4]; all.len()];
+    Part { model, owned, foreign, displacement: still.clone(), force: still }
 }

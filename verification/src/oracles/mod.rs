@@ -14,6 +14,7 @@ pub mod misalignment;
 pub mod ring;
 pub mod rolling;
 pub mod seated;
+pub mod seated_shaft;
 pub mod shaft;
 pub mod statics;
 #[cfg(test)]

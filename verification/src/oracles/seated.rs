@@ -89,7 +89,7 @@ impl Seat<'_> {
 
     /// Forces on the nodes and on the race (conjugate to its coordinates), with their derivatives:
     /// the bare ones by all unknowns.
-    fn contact(&self, unknowns: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+    pub(super) fn contact(&self, unknowns: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let count = self.nodes.len();
         let (mut slope, mut curvature) =
             (DVector::zeros(3 * count + 4), DMatrix::zeros(3 * count + 4, 3 * count + 4));
@@ -124,27 +124,36 @@ fn pull(
     bearing.outer_position = [0.0, y, z];
     bearing.outer_rotation = [[cx * cl, -cx * sl, sx], [sl, cl, 0.0], [-sx * cl, sx * sl, cx]];
     let found = bearing.solve(known, start);
+    let whole = passed_on(&found.coordinates, &found.loads, [0.0, y, z]);
+    let about_z = match distance {
+        Distance::True => whole[3] * sx + whole[5] * cx,
+        Distance::FirstOrder => whole[5],
+    };
+    ([whole[1], whole[2], whole[4], about_z], found.coordinates, found.loads)
+}
+
+/// Force and moment about `centre` that reach the outer race from the loads (conjugate to the coordinates) which hold
+/// the inner one.
+pub(super) fn passed_on(coordinates: &Coordinates, loads: &Coordinates, centre: Vec3) -> [f64; 6] {
     // The bearing as a whole passes on what is put on its inner race: the force, and the moment of
     // which two components are known and the third, about the inner race's axis, is zero.
-    let [fx, fy, fz, about_y, about_own_z] = found.loads;
-    let (tilt_y, tilt_z) = (found.coordinates[3], found.coordinates[4]);
+    let [fx, fy, fz, about_y, about_own_z] = *loads;
+    let (tilt_y, tilt_z) = (coordinates[3], coordinates[4]);
     let turning = about_y * tilt_z.tan();
     let moment = [
         about_own_z * tilt_y.sin() - turning * tilt_y.cos(),
         about_y,
         about_own_z * tilt_y.cos() + turning * tilt_y.sin(),
     ];
-    let arm = [found.coordinates[0], found.coordinates[1] - y, found.coordinates[2] - z];
-    let whole = [
+    let arm: Vec3 = std::array::from_fn(|i| coordinates[i] - centre[i]);
+    [
+        fx,
+        fy,
+        fz,
         moment[0] + arm[1] * fz - arm[2] * fy,
         moment[1] + arm[2] * fx - arm[0] * fz,
         moment[2] + arm[0] * fy - arm[1] * fx,
-    ];
-    let about_z = match distance {
-        Distance::True => whole[0] * sx + whole[2] * cx,
-        Distance::FirstOrder => whole[2],
-    };
-    ([fy, fz, whole[1], about_z], found.coordinates, found.loads)
+    ]
 }
 
 /// Equilibrium from `start`, a place of the outer race at which it touches the bore, by Newton's method.

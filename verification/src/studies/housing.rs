@@ -7,8 +7,9 @@ use std::f64::consts::TAU;
 
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::mesh::{Order, TetMesh};
+use bearing_dynamics::solver::dynamics::assembly::OUTER;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::housing::exchange::{HousedBearing, outer_state};
+use bearing_dynamics::solver::housing::exchange::{Exchange, SolidPart};
 use bearing_dynamics::solver::profile::Profile;
 
 use crate::case::CaseError;
@@ -224,11 +225,16 @@ fn settled(mesh: &TetMesh) -> Result<([f64; 3], u64), CaseError> {
             problem.inner.drives[axis] = Drive::Load(rise);
         }
         let unloaded = vec![[0.0; 3]; mesh.nodes.len()];
-        let mut housed = HousedBearing::new(problem, model, seat(mesh)?, unloaded, &options())?;
+        let mut housed = Exchange::new(
+            problem,
+            vec![SolidPart { name: None, model, displacement: unloaded }],
+            vec![seat(mesh)?],
+            &options(),
+        )?;
         while housed.time() < SETTLED {
-            housed.exchange()?;
+            housed.advance()?;
         }
-        let [_, y, z] = outer_state(&housed.bearing).position;
+        let [_, y, z] = housed.simulation.body(OUTER).position;
         *stiffness = along([y, z], direction);
         windows += housed.exchanges;
     }

@@ -1,0 +1,471 @@
+//! A linear housing reduced to some shapes: its natural ones up to a frequency, and its static answers to what acts on
+//! it besides.
+//!
+//! With natural shapes φ_k (φᵀMφ = 1) and forces f_j, each a pattern of pressure on the bore, the weight or a load, the
+//! basis is φ and ψ_j = K⁻¹f_j − Σ φ_k φ_kᵀf_j/ω_k², what the natural shapes leave of the static answer (residual
+//! attachment shapes, MacNeal 1971, Rubin 1975). Rayleigh and Ritz over both: natural shapes stay as they are, since ψ is
+//! orthogonal to them under M and K, and the ψ combine among themselves into shapes of higher frequencies. What comes
+//! out is diagonal, free of coupled masses, and statically exact for every f_j. Interface shapes with fixed-interface modes
+//! (Craig and Bampton) span no more, and would need an interface of few coordinates first.
+//!
+//! Patterns are the eigenvectors of the bore's compliance that natural shapes leave, scaled by the springs of the
+//! contact: the first ones give way most beside these. So many are kept that under given loads hardly any
+//! compliance is left out. The masses are the lumped ones, as of explicit steps.
+
+use super::bore_equilibrium::{BoreSearch, Fit, RaceLoad};
+use super::condensed::{CondensedBore, rim};
+use super::housed::race_under_load;
+use crate::ch2_housing::bore_contact::Penalty;
+use crate::kinematics::vec3::{Vec3, add_scaled, dot};
+use crate::solver::dense::DenseSymmetric;
+use crate::solver::dynamics::reduced_solid::{ModalLoad, ReducedSolid, Surface, SurfaceNode};
+use crate::solver::dynamics::seat::Seat;
+use crate::solver::mount::Mount;
+use crate::solver::profile::Profile;
+use crate::solver::solid::model::SolidModel;
+use crate::solver::solid::modes::{Mode, ModeError, ModeOptions, modes_over};
+use crate::solver::solid::tangent::MassMatrix;
+use crate::solver::sparse::FactorError;
+use crate::solver::statics::StaticsError;
+use nalgebra::{DMatrix, SymmetricEigen};
+use std::f64::consts::TAU;
+use thiserror::Error;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReduceOptions {
+    /// Natural shapes up to this frequency are kept, Hz.
+    pub modes_to: f64,
+    /// Part of the compliance under given loads that may be left out.
+    pub left_out: f64,
+}
+
+/// Part of the compliance that is left out where nothing else is asked for.
+pub const LEFT_OUT: f64 = 1e-3;
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ReduceError {
+    #[error(transparent)]
+    Modes(#[from] ModeError),
+    #[error(transparent)]
+    Factor(#[from] FactorError),
+    #[error("natural shapes up to {frequency} Hz are asked for; that must be positive and finite")]
+    Frequency { frequency: f64 },
+    #[error(
+        "the housing has more than {most} natural shapes below {frequency:.4e} Hz: a reduced body has some dozens; \
+         ask for a lower frequency (housing.modes_to)"
+    )]
+    TooMany { most: usize, frequency: f64 },
+}
+
+/// What was kept and what is cut off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutOff {
+    /// Natural shapes, patterns of the bore, and answers to weight and loads that are kept.
+    pub natural: usize,
+    pub patterns: usize,
+    pub own: usize,
+    /// Asked for, the lowest natural frequency, and the lowest one left out, Hz.
+    pub modes_to: f64,
+    pub lowest: f64,
+    pub first_left_out: f64,
+    /// Of the stiffest shape, Hz.
+    pub highest: f64,
+    /// Largest part of the compliance of housing and contact under the given loads that no shape has.
+    pub static_left_out: f64,
+    /// Largest part of it that only patterns have: what follows without natural shapes.
+    pub by_patterns: f64,
+    /// Nodes of the bore that can touch.
+    pub nodes: usize,
+}
+
+impl CutOff {
+    /// Part of the displacement that goes wrong at a frequency (Hz) because natural shapes beyond the first one left
+    /// out follow by patterns: at most their part of the compliance, grown as a swing of that frequency grows.
+    pub fn dynamic_error(&self, frequency: f64) -> f64 {
+        let square = (frequency / self.first_left_out).powi(2);
+        if square < 1.0 {
+            (self.by_patterns * square / (1.0 - square)).min(1.0)
+        } else {
+            self.by_patterns.min(1.0)
+        }
+    }
+}
+
+/// A housing in shapes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reduction {
+    pub solid: ReducedSolid,
+    /// Displacements of all nodes for a unit of each shape.
+    pub shapes: Vec<Vec<Vec3>>,
+    pub cut_off: CutOff,
+}
+
+impl Reduction {
+    /// Displacements of all nodes where the shapes have gone so far (m), m.
+    pub fn displacement(&self, gone: &[f64]) -> Vec<Vec3> {
+        let nodes = self.shapes.first().map_or(0, Vec::len);
+        let mut sum = vec![[0.0; 3]; nodes];
+        for (shape, gone) in self.shapes.iter().zip(gone) {
+            for (sum, here) in sum.iter_mut().zip(shape) {
+                *sum = add_scaled(*sum, *gone, *here);
+            }
+        }
+        sum
+    }
+
+    /// Outward displacement of each node of the bore under outward unit forces on each, as the shapes have it, m/N.
+    pub fn compliance(&self) -> DenseSymmetric {
+        let surface = &self.solid.surfaces[0];
+        let count = surface.nodes.len();
+        let mut values = vec![0.0; count * count];
+        for (shape, w) in surface.shapes.chunks_exact(count).zip(&self.solid.frequencies) {
+            for (column, to) in shape.iter().zip(values.chunks_exact_mut(count)) {
+                let factor = column / (w * w);
+                to.iter_mut().zip(shape).for_each(|(to, row)| *to += factor * row);
+            }
+        }
+        DenseSymmetric::new(count, values).0
+    }
+
+    /// Outward displacement of each node of the bore under weight and loads at t = 0, m.
+    pub fn own(&self) -> Vec<f64> {
+        let mut own = vec![0.0; self.solid.surfaces[0].nodes.len()];
+        let gone = self.solid.rest(&own_forces(&self.solid, 0.0));
+        self.solid.surfaces[0].along_normals(&gone, &mut own);
+        own
+    }
+
+    /// Where the shapes rest under outward loads on the bore's nodes (N), weight and loads at t = 0, m.
+    pub fn rest(&self, loads: &[f64]) -> Vec<f64> {
+        let mut forces = own_forces(&self.solid, 0.0);
+        let surface = &self.solid.surfaces[0];
+        for (force, shape) in forces.iter_mut().zip(surface.shapes.chunks_exact(loads.len())) {
+            *force += shape.iter().zip(loads).map(|(shape, load)| shape * load).sum::<f64>();
+        }
+        self.solid.rest(&forces)
+    }
+
+    /// The race of `mount` in the bore.
+    pub fn seat(
+        &self,
+        bore: &CondensedBore,
+        race: Mount,
+        solid: usize,
+        radius: Profile,
+        penalty: Penalty,
+    ) -> Seat {
+        let width = bore.reach.width;
+        Seat {
+            name: "its bore".into(),
+            label: None,
+            race,
+            solid,
+            surface: 0,
+            radius,
+            width,
+            rim: rim(bore.nodes.iter().map(|node| node.area), width),
+            penalty,
+            nominal: bore.reach.nominal.position.into(),
+        }
+    }
+}
+
+/// Forces of weight and loads on the shapes at time `t`, N.
+fn own_forces(solid: &ReducedSolid, t: f64) -> Vec<f64> {
+    let mut forces = solid.weight.clone();
+    for load in &solid.loads {
+        let factor = load.profile.value(t);
+        forces.iter_mut().zip(&load.forces).for_each(|(to, force)| *to += factor * force);
+    }
+    forces
+}
+
+/// Natural shapes that are looked for at first, and the most that are kept.
+const AT_FIRST: usize = 8;
+const MOST: usize = 400;
+/// Residual of natural shapes: their frequencies are known to its square, and shapes stay as orthogonal.
+const RESIDUAL: f64 = 1e-7;
+
+/// Natural shapes (lumped masses) up to a frequency, and the frequency of the first one beyond, Hz.
+///
+/// # Errors
+/// More than some hundred shapes; what [`modes_over`] finds wrong.
+pub fn natural_shapes(
+    model: &SolidModel,
+    bore: &CondensedBore,
+    frequency: f64,
+) -> Result<(Vec<Mode>, f64), ReduceError> {
+    if !(frequency > 0.0 && frequency.is_finite()) {
+        return Err(ReduceError::Frequency { frequency });
+    }
+    let unknowns = bore.unknowns();
+    let mut count = AT_FIRST.min(unknowns.count);
+    loop {
+        let options = ModeOptions { count, mass: MassMatrix::Lumped, tolerance: RESIDUAL };
+        let mut modes = modes_over(model, unknowns, &options)?.modes;
+        let kept = modes.iter().filter(|mode| mode.frequency <= frequency).count();
+        if let Some(next) = modes.get(kept).map(|mode| mode.frequency) {
+            modes.truncate(kept);
+            return Ok((modes, next));
+        }
+        if count == unknowns.count {
+            return Ok((modes, f64::INFINITY));
+        }
+        if count >= MOST {
+            return Err(ReduceError::TooMany { most: MOST, frequency });
+        }
+        count = (2 * count).min(MOST).min(unknowns.count);
+    }
+}
+
+/// Directions in which [`pressed`] presses.
+const DIRECTIONS: usize = 8;
+
+/// Loads on the bore's nodes (N) of a race pressed into it by `force` (N) in directions all round, and what they differ
+/// by from those of the fit alone: what compliance is measured under. Of a tight fit the differences are what moves
+/// the race.
+///
+/// # Errors
+/// A bore that does not hold the race.
+pub fn pressed(
+    bore: &CondensedBore,
+    penalty: Penalty,
+    fit: &Fit,
+    force: f64,
+) -> Result<Vec<Vec<f64>>, StaticsError> {
+    let mut search = BoreSearch::new(bore, penalty);
+    let alone = race_under_load(&mut search, fit, &RaceLoad::default())?.loads;
+    let mut all = Vec::with_capacity(2 * DIRECTIONS);
+    for i in 0..DIRECTIONS {
+        let (sin, cos) = libm::sincos(TAU * i as f64 / DIRECTIONS as f64);
+        let load = RaceLoad { force: [0.0, force * cos, force * sin], moment: [0.0; 3] };
+        let loads = race_under_load(&mut search, fit, &load)?.loads;
+        all.push(loads.iter().zip(&alone).map(|(p, alone)| p - alone).collect());
+        all.push(loads);
+    }
+    Ok(all)
+}
+
+/// A force on the solid and what its natural shapes leave of the static answer.
+struct Answer {
+    forces: Vec<(u32, Vec3)>,
+    shape: Vec<Vec3>,
+}
+
+/// Reduces `model`, condensed as `bore`, for contact of stiffness `penalty`; `loads` (N on the bore's nodes) are what
+/// compliance is measured under, see [`pressed`].
+///
+/// # Errors
+/// See [`ReduceError`].
+pub fn reduce(
+    model: &SolidModel,
+    bore: &CondensedBore,
+    penalty: Penalty,
+    loads: &[Vec<f64>],
+    options: &ReduceOptions,
+) -> Result<Reduction, ReduceError> {
+    let (modes, first_left_out) = natural_shapes(model, bore, options.modes_to)?;
+    let lowest = modes.first().map_or(first_left_out, |mode| mode.frequency);
+    let natural: Vec<(f64, Vec<Vec3>)> =
+        modes.into_iter().map(|mode| (TAU * mode.frequency, mode.shape)).collect();
+    let outward: Vec<Vec3> = bore
+        .nodes
+        .iter()
+        .map(|node| bore.to_world([0.0, node.normal[0], node.normal[1]]))
+        .collect();
+    let at_bore = |shape: &[Vec3]| -> Vec<f64> {
+        let nodes = bore.nodes.iter().zip(&outward);
+        nodes.map(|(node, out)| dot(shape[node.node as usize], *out)).collect()
+    };
+
+    let kept = patterns(bore, penalty, &natural, loads, options.left_out, at_bore)?;
+    let own = own_loads(model);
+    let mut answers: Vec<Answer> = Vec::new();
+    let all = own.iter().map(|(forces, _)| forces.clone());
+    let on_bore = kept.vectors.iter().map(|pattern| bore.nodal_forces(pattern).collect());
+    for forces in all.chain(on_bore) {
+        let forces: Vec<(u32, Vec3)> = forces;
+        let mut shape = bore.response_to(forces.iter().copied());
+        for (frequency, known) in &natural {
+            let share = work(&forces, known) / (frequency * frequency);
+            for (s, k) in shape.iter_mut().zip(known) {
+                *s = add_scaled(*s, -share, *k);
+            }
+        }
+        answers.push(Answer { forces, shape });
+    }
+    let (count, first_pattern) = (natural.len(), own.len());
+    let mut all = natural;
+    all.extend(combine(&answers, &model.mass));
+    let (frequencies, shapes): (Vec<f64>, Vec<Vec<Vec3>>) = all.into_iter().unzip();
+
+    let nodes = bore.nodes.iter().zip(&outward).map(|(node, &normal)| SurfaceNode {
+        node: node.node,
+        place: model.problem.nodes[node.node as usize],
+        normal,
+        area: node.area,
+    });
+    let surface = Surface {
+        nodes: nodes.collect(),
+        shapes: shapes.iter().flat_map(|shape| at_bore(shape)).collect(),
+    };
+    let mut weight = vec![0.0; shapes.len()];
+    let mut of_loads = Vec::new();
+    for (forces, profile) in &own {
+        let forces: Vec<f64> = shapes.iter().map(|shape| work(forces, shape)).collect();
+        match profile {
+            None => weight = forces,
+            Some(profile) => of_loads.push(ModalLoad { forces, profile: profile.clone() }),
+        }
+    }
+    let cut_off = CutOff {
+        natural: count,
+        patterns: shapes.len() - count - first_pattern.min(shapes.len() - count),
+        own: first_pattern,
+        modes_to: options.modes_to,
+        lowest,
+        first_left_out,
+        highest: frequencies.iter().fold(0.0, |most: f64, w| most.max(w / TAU)),
+        static_left_out: kept.left_out,
+        by_patterns: kept.by_patterns,
+        nodes: bore.nodes.len(),
+    };
+    let solid = ReducedSolid {
+        name: "the housing".into(),
+        start: vec![0.0; frequencies.len()],
+        frequencies,
+        damping: model.problem.damping,
+        weight,
+        loads: of_loads,
+        surfaces: vec![surface],
+    };
+    Ok(Reduction { solid, shapes, cut_off })
+}
+
+/// What forces do along a displacement, J.
+fn work(forces: &[(u32, Vec3)], displacement: &[Vec3]) -> f64 {
+    forces.iter().map(|(node, force)| dot(*force, displacement[*node as usize])).sum()
+}
+
+/// Weight (without a profile) and loads (at profile value 1) of a solid.
+fn own_loads(model: &SolidModel) -> Vec<(Vec<(u32, Vec3)>, Option<Profile>)> {
+    let problem = &model.problem;
+    let mut own = Vec::new();
+    if problem.gravity != [0.0; 3] {
+        let mut weight = vec![[0.0; 4]; model.mass.len()];
+        model.add_weight(&mut weight);
+        let forces = (0u32..).zip(weight).map(|(node, [x, y, z, _])| (node, [x, y, z]));
+        own.push((forces.collect(), None));
+    }
+    let loads = problem.loads.iter().map(|load| (load.forces.clone(), Some(load.profile.clone())));
+    own.extend(loads);
+    own
+}
+
+/// Patterns of force on the bore that get a static answer.
+struct Patterns {
+    vectors: Vec<Vec<f64>>,
+    left_out: f64,
+    by_patterns: f64,
+}
+
+/// So many patterns that under each of `loads` no more than `tolerance` of the compliance is left out.
+fn patterns(
+    bore: &CondensedBore,
+    penalty: Penalty,
+    natural: &[(f64, Vec<Vec3>)],
+    loads: &[Vec<f64>],
+    tolerance: f64,
+    at_bore: impl Fn(&[Vec3]) -> Vec<f64>,
+) -> Result<Patterns, ReduceError> {
+    let count = bore.nodes.len();
+    let root: Vec<f64> = bore.nodes.iter().map(|node| penalty.of_node(node.area).sqrt()).collect();
+    // What natural shapes leave of the compliance, over that of the contact's springs.
+    let mut left: Vec<f64> = (0..count).flat_map(|i| bore.compliance.column(i).to_vec()).collect();
+    for (frequency, shape) in natural {
+        let along = at_bore(shape);
+        for (column, to) in along.iter().zip(left.chunks_exact_mut(count)) {
+            let factor = column / (frequency * frequency);
+            to.iter_mut().zip(&along).for_each(|(to, row)| *to -= factor * row);
+        }
+    }
+    for (column, to) in root.iter().zip(left.chunks_exact_mut(count)) {
+        to.iter_mut().zip(&root).for_each(|(to, row)| *to *= column * row);
+    }
+    let found = DenseSymmetric::new(count, left).0.eigen()?;
+
+    // For each load its whole compliance, and what is left with the first 0, 1, 2, … patterns.
+    let left_of = |load: &Vec<f64>| -> Vec<f64> {
+        let scaled: Vec<f64> = load.iter().zip(&root).map(|(p, root)| p / root).collect();
+        let everyone: Vec<usize> = (0..count).collect();
+        let mut moves = vec![0.0; count];
+        bore.compliance.add_product(&everyone, load, &mut moves);
+        let whole: f64 = moves.iter().zip(load).map(|(u, p)| u * p).sum::<f64>()
+            + scaled.iter().map(|p| p * p).sum::<f64>();
+        let mut left = vec![0.0; count + 1];
+        for (i, (value, vector)) in found.iter().enumerate().rev() {
+            let along: f64 = vector.iter().zip(&scaled).map(|(v, p)| v * p).sum();
+            let part = if whole > 0.0 { value.max(0.0) * along * along / whole } else { 0.0 };
+            left[i] = left[i + 1] + part;
+        }
+        left
+    };
+    let left: Vec<Vec<f64>> = loads.iter().map(left_of).collect();
+    let largest = |patterns: usize| left.iter().fold(0.0f64, |most, of| most.max(of[patterns]));
+    // Rounding has no pattern of its own.
+    let sound = found.iter().take_while(|(value, _)| *value > 1e-9 * found[0].0).count();
+    let kept = (0..sound).find(|patterns| largest(*patterns) <= tolerance).unwrap_or(sound);
+    let vectors = found[..kept]
+        .iter()
+        .map(|(_, vector)| vector.iter().zip(&root).map(|(v, root)| v * root).collect());
+    Ok(Patterns {
+        vectors: vectors.collect(),
+        left_out: largest(kept),
+        by_patterns: largest(0) - largest(kept),
+    })
+}
+
+/// Part of the largest energy below which a combination of answers is rounding of the others.
+const NOTHING_NEW: f64 = 1e-10;
+
+/// Frequencies (rad/s, ascending) and shapes of unit mass that the answers span.
+fn combine(answers: &[Answer], mass: &[f64]) -> Vec<(f64, Vec<Vec3>)> {
+    let size = answers.len();
+    if size == 0 {
+        return Vec::new();
+    }
+    let energy = DMatrix::from_fn(size, size, |i, j| {
+        let of = |i: usize, j: usize| work(&answers[i].forces, &answers[j].shape);
+        0.5 * (of(i, j) + of(j, i))
+    });
+    let inertia = DMatrix::from_fn(size, size, |i, j| {
+        let pairs = answers[i].shape.iter().zip(&answers[j].shape).zip(mass);
+        pairs.map(|((a, b), m)| m * dot(*a, *b)).sum::<f64>()
+    });
+    let unit: Vec<f64> = (0..size)
+        .map(|i| if energy[(i, i)] > 0.0 { 1.0 / energy[(i, i)].sqrt() } else { 0.0 })
+        .collect();
+    let scaled = DMatrix::from_fn(size, size, |i, j| unit[i] * energy[(i, j)] * unit[j]);
+    let first = SymmetricEigen::new(scaled);
+    let new: Vec<usize> = (0..size).filter(|k| first.eigenvalues[*k] > NOTHING_NEW).collect();
+    // Columns of unit energy.
+    let basis = DMatrix::from_fn(size, new.len(), |i, k| {
+        unit[i] * first.eigenvectors[(i, new[k])] / first.eigenvalues[new[k]].sqrt()
+    });
+    let projected = basis.transpose() * inertia * &basis;
+    let second = SymmetricEigen::new(0.5 * (&projected + projected.transpose()));
+    let mut order: Vec<usize> = (0..new.len()).collect();
+    order.sort_by(|a, b| second.eigenvalues[*b].total_cmp(&second.eigenvalues[*a]));
+    let shape = |k: usize| {
+        let per_root = 1.0 / second.eigenvalues[k].sqrt();
+        let shares = &basis * second.eigenvectors.column(k) * per_root;
+        let mut shape = vec![[0.0; 3]; mass.len()];
+        for (answer, share) in answers.iter().zip(shares.iter()) {
+            for (to, from) in shape.iter_mut().zip(&answer.shape) {
+                *to = add_scaled(*to, *share, *from);
+            }
+        }
+        (per_root, shape)
+    };
+    order.into_iter().map(shape).collect()
+}

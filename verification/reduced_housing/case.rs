@@ -1,0 +1,462 @@
+//! A housing reduced to shapes against explicit steps of the whole one.
+
+use std::f64::consts::TAU;
+
+use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::mesh::{Order, TetMesh};
+use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
+use bearing_dynamics::solver::dynamics::assembly::{Assembly, OUTER};
+use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
+use bearing_dynamics::solver::dynamics::reduced_solid::ReducedSolid;
+use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
+use bearing_dynamics::solver::housing::bore_equilibrium::BoreState;
+use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::solver::housing::reduce::{
+    LEFT_OUT, ReduceOptions, Reduction, pressed, reduce,
+};
+use bearing_dynamics::solver::housing::reduced_start::{
+    Housing, add_housing, ball_frequency, put_in_equilibrium,
+};
+use bearing_dynamics::solver::housing::seat::Seat;
+use bearing_dynamics::solver::mount::Mount;
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::model::SolidModel;
+
+use crate::case::{Case, CaseError, Tier};
+use crate::check::Check;
+use crate::context::CaseContext;
+use crate::golden::GoldenTolerance;
+use crate::housing_turn::{equilibria, outer_place};
+use crate::housings::{self, BORE_RADIUS, WIDTH, assumptions};
+use crate::motion;
+use crate::pareto::Stopwatch;
+use crate::solids::largest;
+
+pub const CASE: Case = Case {
+    id: "reduced_housing",
+    title: "A housing reduced to shapes, against explicit steps of the whole one",
+    section: "2.2.4, 2.4.2, 2.4.3",
+    tier: Tier::Smoke,
+    published: include_str!("published.toml"),
+    run,
+};
+
+/// Coarse, so that explicit steps take seconds.
+const CELLS: [usize; 3] = [16, 1, 1];
+/// m, with which no node of the bore lets go.
+const TIGHT: f64 = 1e-6;
+/// 1/s, of Table 2.3.
+const DAMPING: f64 = 77.0;
+/// N.
+const BLOW: f64 = 500.0;
+const TURNING: f64 = 250.0;
+/// Parts of the default frequency up to which natural shapes are kept, the default last but one.
+const PARTS: [f64; 4] = [0.25, 0.5, 1.0, 2.0];
+const DEFAULT: usize = 2;
+/// Between rows, s.
+const INTERVAL: f64 = 10e-6;
+
+/// Housing, whole and condensed.
+struct Whole {
+    mesh: TetMesh,
+    model: SolidModel,
+    bore: CondensedBore,
+}
+
+/// y and z of the outer race at even times, m.
+type Places = Vec<[f64; 2]>;
+
+struct Motion {
+    places: Places,
+    seconds: f64,
+    steps: u64,
+}
+
+fn run(context: &mut CaseContext) -> Result<(), CaseError> {
+    assumptions(context);
+    let (what, text, default) = motion::RACE_INERTIA;
+    context.assumption(what, text, default);
+    let mesh = housings::mesh('C', Order::Quadratic, CELLS)?;
+    let mut model = housings::solid(&mesh)?;
+    model.problem.damping = DAMPING;
+    let bore = housings::condensed(&mesh, &model)?;
+    let mut whole = Whole { mesh, model, bore };
+    one_shape(context)?;
+
+    let still = housings::mounted([0.0; 5])?;
+    let modes_to = 2.0 * ball_frequency(&still.assembly().bearings[0], BLOW);
+    let mut reductions = Vec::new();
+    for part in PARTS {
+        reductions.push(reduced(&whole, part * modes_to)?);
+    }
+    statics(context, &mut whole, &reductions[DEFAULT])?;
+
+    let mut struck = mounted()?;
+    struck.inner.drives[2] =
+        Drive::Load(Profile::HalfSine { base: 0.0, peak: BLOW, start: 0.1e-3, duration: 0.4e-3 });
+    let blow = compare(&mut whole, &struck, &reductions, 1.0e-3)?;
+    judge(context, "blow", "a blow of 500 N over 0.4 ms", &blow, 0.01);
+
+    let speed = TAU * 0.3 * reductions[DEFAULT].cut_off.lowest;
+    let mut turned = mounted()?;
+    let rise = Profile::SmoothRamp { from: 0.0, to: speed, start: 0.0, duration: 0.5e-3 };
+    turned.rotating_load =
+        Some(RotatingLoad { force: Profile::Constant(TURNING), speed: rise, phase: 0.0 });
+    let turn = compare(&mut whole, &turned, &reductions, 2.5e-3)?;
+    judge(context, "turn", "250 N turning at 0.3 of the lowest frequency", &turn, 0.01);
+    inertia(context, &whole, &turned, &turn)?;
+
+    table(context, &[("blow", &blow), ("turning load", &turn)], &reductions);
+    figure(context, &blow)
+}
+
+/// The bearing of Table 2.2 whose outer race is held along its axis.
+fn mounted() -> Result<DynamicProblem, CaseError> {
+    let mut problem = housings::mounted([0.0; 5])?;
+    if let Some(outer) = &mut problem.outer {
+        outer.drives[0] = Drive::Motion(Profile::ZERO);
+    }
+    Ok(problem)
+}
+
+fn reduced(whole: &Whole, modes_to: f64) -> Result<Reduction, CaseError> {
+    let penalty = Penalty::default();
+    let loads = pressed(&whole.bore, penalty, &housings::fit(TIGHT), BLOW)?;
+    let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
+    Ok(reduce(&whole.model, &whole.bore, penalty, &loads, &options)?)
+}
+
+/// The bearing in a reduced housing, in equilibrium.
+fn seated(
+    whole: &mut Whole,
+    problem: &DynamicProblem,
+    reduction: &Reduction,
+) -> Result<(Assembly, BoreState), CaseError> {
+    let (fit, penalty) = (housings::fit(TIGHT), Penalty::default());
+    let radius = Profile::Constant(fit.radius);
+    let mut assembly = problem.assembly();
+    add_housing(&mut assembly, OUTER, reduction, &whole.bore, radius, penalty);
+    let housing = Housing { reduction, bore: &mut whole.bore, fit, penalty };
+    let mut found = put_in_equilibrium(&mut assembly, &mut [housing])?;
+    Ok((assembly, found.seats.remove(0)))
+}
+
+/// (f/ω²)(1 − e^(−αt/2)(cos νt + α/(2ν) sin νt)), ν² = ω² − α²/4.
+fn one_shape(context: &mut CaseContext) -> Result<(), CaseError> {
+    let (frequency, damping, force, end) = (4e4f64, 6e3, 3.0, 2e-4);
+    let mut assembly = DynamicProblem { outer: None, ..housings::mounted([0.0; 5])? }.assembly();
+    assembly.solids.push(ReducedSolid {
+        name: "one shape".into(),
+        frequencies: vec![frequency],
+        damping,
+        weight: vec![force],
+        start: vec![0.0],
+        ..ReducedSolid::default()
+    });
+    let options = RunOptions { integrator: Integrator::RungeKutta, ..motion::fixed_step(5e-7) };
+    let mut simulation = Simulation::new(assembly, options)?;
+    while simulation.time < end - 1e-7 {
+        simulation.step()?;
+    }
+    let ours = simulation.state[simulation.system.solids[0]];
+    let nu = (frequency * frequency - 0.25 * damping * damping).sqrt();
+    let swing = (nu * end).cos() + 0.5 * damping / nu * (nu * end).sin();
+    let exact = force / (frequency * frequency) * (1.0 - (-0.5 * damping * end).exp() * swing);
+    context.check(
+        Check::new(
+            "one_shape",
+            "one shape under a constant force from rest, after 1.3 periods",
+            "nm",
+            1e9 * ours,
+        )
+        .closed_form(1e9 * exact, "damped oscillator under a step")
+        .relative(1e-7, "fourth order, 310 steps a period"),
+    );
+    Ok(())
+}
+
+/// The race's place in equilibrium under 250 N, with the compliance that shapes have and with all of it.
+fn statics(
+    context: &mut CaseContext,
+    whole: &mut Whole,
+    reduction: &Reduction,
+) -> Result<(), CaseError> {
+    let problem = DynamicProblem {
+        rotating_load: Some(RotatingLoad {
+            force: Profile::Constant(TURNING),
+            speed: Profile::ZERO,
+            phase: 0.7,
+        }),
+        ..mounted()?
+    };
+    let exact = {
+        let mut search = housings::search(&whole.bore);
+        search.solve(&problem.statics(0.0), &housings::fit(TIGHT), [0.0; 3])?.bore
+    };
+    let (assembly, state) = seated(whole, &problem, reduction)?;
+    let size = |state: &BoreState| state.pose[0].hypot(state.pose[1]);
+    context.check(
+        Check::new(
+            "static_place",
+            "outer race under 250 N, from its place",
+            "nm",
+            1e9 * size(&state),
+        )
+        .consistency(
+            1e9 * size(&exact),
+            "equilibrium with the compliance of shapes, and with the whole condensed one",
+        )
+        .relative(0.005, "0.1 % of the compliance is left out under loads all round")
+        .golden(GoldenTolerance { relative: 1e-4, absolute: 0.0 }),
+    );
+    let mut simulation = Simulation::new(assembly, options())?;
+    let first = place(&simulation);
+    let mut away = 0.0f64;
+    while simulation.time < 2e-4 {
+        simulation.step()?;
+        let now = place(&simulation);
+        away = largest([away, (now[0] - first[0]).hypot(now[1] - first[1])]);
+    }
+    context.check(
+        Check::new("stays", "in motion from there: farthest in 0.2 ms", "nm", 1e9 * away)
+            .closed_form(0.0, "equilibrium")
+            .absolute(
+                1e-3 * 1e9 * size(&exact),
+                "what a linear bore leaves out of the race's turns and shifts",
+            ),
+    );
+    Ok(())
+}
+
+fn options() -> RunOptions {
+    RunOptions {
+        integrator: Integrator::DormandPrince,
+        stepping: Stepping::Accuracy(1e-3),
+        energy_limit: f64::INFINITY,
+        ..RunOptions::default()
+    }
+}
+
+fn place(simulation: &Simulation) -> [f64; 2] {
+    let at = simulation.system.places.body(OUTER);
+    [simulation.state[at + 1], simulation.state[at + 2]]
+}
+
+fn in_shapes(assembly: Assembly, end: f64) -> Result<Motion, CaseError> {
+    let watch = Stopwatch::start();
+    let mut simulation = Simulation::new(assembly, options())?;
+    let mut places = vec![place(&simulation)];
+    let rows = (end / INTERVAL).round() as usize;
+    for row in 1..=rows {
+        let time = row as f64 * INTERVAL;
+        while simulation.time < time {
+            let left = time - simulation.time;
+            if simulation.step_by(left.min(simulation.step_size))? == left {
+                simulation.time = time;
+            }
+        }
+        places.push(place(&simulation));
+    }
+    Ok(Motion { places, seconds: watch.seconds(), steps: simulation.steps })
+}
+
+fn explicit(
+    whole: &Whole,
+    problem: &DynamicProblem,
+    start: &BoreState,
+    end: f64,
+) -> Result<Motion, CaseError> {
+    let [y, z, tilt_y, tilt_z] = start.pose;
+    let problem = DynamicProblem { outer_start: [0.0, y, z, tilt_y, tilt_z], ..problem.clone() };
+    let seat = Seat {
+        name: None,
+        mount: Mount::at_centre(OUTER),
+        solid: 0,
+        radius: Profile::Constant(BORE_RADIUS + TIGHT),
+        width: WIDTH,
+        penalty: Penalty::default(),
+        nodes: housings::bore_nodes(&whole.mesh)?,
+        reach: f64::INFINITY,
+    };
+    let options = ExchangeOptions {
+        solid_fraction: 0.9,
+        seat_phase: 0.25,
+        bearing: RunOptions { integrator: Integrator::RungeKutta, ..motion::fixed_step(1e-6) },
+    };
+    let displacement = whole.bore.displacement(&start.loads);
+    let watch = Stopwatch::start();
+    let solid = SolidPart { name: None, model: whole.model.clone(), displacement };
+    let mut housed = Exchange::new(problem, vec![solid], vec![seat], &options)?;
+    let windows = housed.divide(INTERVAL)?;
+    let place = |housed: &Exchange| {
+        let [_, y, z] = housed.simulation.body(OUTER).position;
+        [y, z]
+    };
+    let mut places = vec![place(&housed)];
+    for _ in 0..(end / INTERVAL).round() as usize {
+        for _ in 0..windows {
+            housed.advance()?;
+        }
+        places.push(place(&housed));
+    }
+    Ok(Motion { places, seconds: watch.seconds(), steps: housed.solids[0].solid.steps })
+}
+
+/// The same motion both ways.
+struct Compared {
+    explicit: Motion,
+    shapes: Vec<Motion>,
+    swing: f64,
+    /// Largest distance of the outer race, for each reduction, over the swing.
+    errors: Vec<f64>,
+}
+
+fn apart(one: &Places, other: &Places) -> f64 {
+    largest(one.iter().zip(other).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])))
+}
+
+fn swing(places: &Places) -> f64 {
+    let side = |i: usize| {
+        let all = places.iter().map(|place| place[i]);
+        let (low, high) = all
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        high - low
+    };
+    side(0).max(side(1))
+}
+
+fn compare(
+    whole: &mut Whole,
+    problem: &DynamicProblem,
+    reductions: &[Reduction],
+    end: f64,
+) -> Result<Compared, CaseError> {
+    let start = {
+        let mut search = housings::search(&whole.bore);
+        search.solve(&problem.statics(0.0), &housings::fit(TIGHT), [0.0; 3])?.bore
+    };
+    let explicit = explicit(whole, problem, &start, end)?;
+    let mut shapes = Vec::new();
+    for reduction in reductions {
+        let (assembly, _) = seated(whole, problem, reduction)?;
+        shapes.push(in_shapes(assembly, end)?);
+    }
+    let swing = swing(&explicit.places);
+    let errors = shapes.iter().map(|of| apart(&of.places, &explicit.places) / swing).collect();
+    Ok(Compared { explicit, shapes, swing, errors })
+}
+
+fn judge(context: &mut CaseContext, id: &str, what: &str, found: &Compared, most: f64) {
+    const WAYS: &str =
+        "shapes in one state with the bearing, against explicit steps of all elements";
+    context.check(
+        Check::new(
+            &format!("{id}_default"),
+            &format!("{what}: farthest of the outer race from the explicit run, of its swing"),
+            "1",
+            found.errors[DEFAULT],
+        )
+        .consistency(most, WAYS)
+        .at_most(0.0, "natural shapes up to twice the frequency of a ball between its races: one per cent is asked for"),
+    );
+    context.check(
+        Check::new(
+            &format!("{id}_more_shapes"),
+            &format!("{what}: the same with half of these frequencies over that with twice as many"),
+            "1",
+            found.errors[DEFAULT - 1] / found.errors[DEFAULT + 1],
+        )
+        .consistency(2.0, WAYS)
+        .at_least(0.0, "what natural shapes miss falls with the square of the first frequency left out, sixteenfold, until static answers and steps are left"),
+    );
+}
+
+/// What equilibria, which have no inertia, are away.
+fn inertia(
+    context: &mut CaseContext,
+    whole: &Whole,
+    problem: &DynamicProblem,
+    found: &Compared,
+) -> Result<(), CaseError> {
+    let mut turning = crate::housing_turn::Turning::steady(1.0);
+    if let Some(load) = &problem.rotating_load {
+        turning.load = load.clone();
+    }
+    turning.interference = TIGHT;
+    let times: Vec<f64> = (0..found.explicit.places.len()).map(|i| i as f64 * INTERVAL).collect();
+    let mut search = housings::search(&whole.bore);
+    let moments = equilibria(&mut search, &turning, &times, |_, _| {})?;
+    let places: Places = moments.iter().map(|moment| outer_place(&moment.state)).collect();
+    let missed = apart(&places, &found.explicit.places) / found.swing;
+    context.check(
+        Check::new(
+            "quasi_static",
+            "the turning load by equilibria: farthest of the outer race from the explicit run, of its swing",
+            "1",
+            missed,
+        )
+        .consistency(5.0 * found.errors[DEFAULT], "equilibria of the condensed housing against explicit steps")
+        .at_least(0.0, "they leave out what a reduced housing has, inertia: else the comparison would show nothing")
+        .golden(GoldenTolerance { relative: 1e-2, absolute: 0.0 }),
+    );
+    Ok(())
+}
+
+fn table(context: &mut CaseContext, all: &[(&str, &Compared)], reductions: &[Reduction]) {
+    let mut rows = Vec::new();
+    for (name, found) in all {
+        rows.push(vec![
+            name.to_string(),
+            "explicit".into(),
+            String::new(),
+            found.explicit.steps.to_string(),
+            format!("{:.3}", found.explicit.seconds),
+            String::new(),
+            "1".into(),
+        ]);
+        for (index, (motion, reduction)) in found.shapes.iter().zip(reductions).enumerate() {
+            let cut = &reduction.cut_off;
+            rows.push(vec![
+                name.to_string(),
+                format!("{:.0} Hz", cut.modes_to),
+                format!("{} + {}", cut.natural, cut.patterns),
+                motion.steps.to_string(),
+                format!("{:.4}", motion.seconds),
+                format!("{:.2e}", found.errors[index]),
+                format!("{:.0}", found.explicit.seconds / motion.seconds),
+            ]);
+        }
+    }
+    context.table(
+        "cost",
+        "Explicit steps and shapes up to a frequency: natural shapes and patterns, steps, processor time of the run (s), farthest from the explicit run of the swing, times faster",
+        &["motion", "housing", "shapes", "steps", "s", "error", "faster"],
+        rows,
+    );
+}
+
+fn figure(context: &mut CaseContext, blow: &Compared) -> Result<(), CaseError> {
+    let curve = |name: &str, motion: &Motion| {
+        let points = motion.places.iter().enumerate();
+        let points = points.map(|(i, [_, z])| [1e3 * INTERVAL * i as f64, 1e9 * z]).collect();
+        Curve::new(name.to_string(), points)
+    };
+    let plot = XyPlot {
+        title: "A blow on the bearing, housing C pressed in by 1 µm".into(),
+        x: Axis::linear("time", "ms"),
+        y: Axis::linear("outer race, z", "nm"),
+        style: Style::Lines,
+        curves: vec![
+            curve("explicit steps", &blow.explicit),
+            curve("shapes, a quarter of the frequencies", &blow.shapes[0]),
+            curve("shapes, default", &blow.shapes[DEFAULT]),
+        ],
+    };
+    context.figure(
+        "blow",
+        xy(&plot)?,
+        "Height of the outer race over time: explicit steps of all elements, and shapes.",
+    );
+    Ok(())
+}
