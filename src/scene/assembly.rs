@@ -2,7 +2,9 @@
 
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::scene::dynamics::{DynamicsError, dynamic_problem};
+use crate::scene::housing::{HousedScene, HousingMethod, HousingSettings};
 use crate::scene::resolved::{DefaultUsed, RunSettings, Scene};
+use crate::scene::solid::SolidScene;
 use crate::scene::statics::{ball_mass, orbital_speed};
 use crate::solver::dynamics::assembly::{Assembly, Body, CAGE, GROUND, INNER, Mobility, OUTER};
 use crate::solver::dynamics::connection::{Connection, Law, SpringDashpot};
@@ -31,12 +33,37 @@ pub struct PlacedBearing {
     pub carriers: [Carrier; 2],
     pub reversed: bool,
     pub scene: Scene,
+    /// What the outer race sits in, if it is flexible.
+    pub housing: Option<PlacedHousing>,
+}
+
+/// A flexible housing about a bearing's place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedHousing {
+    pub settings: HousingSettings,
+    pub solid: SolidScene,
 }
 
 impl PlacedBearing {
     /// Whether it has no name and stands where a bearing alone does.
     fn is_alone(&self) -> bool {
-        self.name.is_none() && !self.reversed && self.carriers == [Carrier::Own { at: 0.0 }; 2]
+        let alone = self.carriers == [Carrier::Own { at: 0.0 }; 2] && self.housing.is_none();
+        self.name.is_none() && !self.reversed && alone
+    }
+
+    /// The bearing with its flexible housing as a scene of the two where they stand.
+    pub fn housed(&self) -> Option<HousedScene> {
+        let PlacedHousing { settings, solid } = self.housing.clone()?;
+        let at = self.carriers[1].at();
+        let mut housed = HousedScene { bearing: self.scene.clone(), housing: settings, solid };
+        housed.solid.mesh.place.at = at;
+        housed.bearing.outer_race[0] += at;
+        if let Some(outer) = &mut housed.bearing.dynamics.outer
+            && let Drive::Motion(profile) = &mut outer.drives[0]
+        {
+            *profile = profile.shifted(at);
+        }
+        Some(housed)
     }
 }
 
@@ -81,7 +108,7 @@ impl AssemblyScene {
     /// A bearing alone.
     pub fn alone(scene: Scene) -> AssemblyScene {
         let carriers = [Carrier::Own { at: 0.0 }; 2];
-        let bearing = PlacedBearing { name: None, carriers, reversed: false, scene };
+        let bearing = PlacedBearing { name: None, carriers, reversed: false, scene, housing: None };
         AssemblyScene {
             bearings: vec![bearing],
             bodies: Vec::new(),
@@ -103,6 +130,12 @@ impl AssemblyScene {
     /// What all bearings share.
     pub fn common(&self) -> &Scene {
         &self.bearings[0].scene
+    }
+
+    /// How the housings are solved, where there are any: all the same way.
+    pub fn housing_method(&self) -> Option<HousingMethod> {
+        let mut housings = self.bearings.iter().filter_map(|placed| placed.housing.as_ref());
+        housings.next().map(|housing| housing.settings.method)
     }
 
     pub fn run(&self) -> Option<&RunSettings> {

@@ -7,7 +7,7 @@ use crate::scene::housing::{FitSize, HousedScene, HousingMethod, HousingSettings
 use crate::scene::resolve::{Reader, resolve_bearing, text};
 use crate::scene::resolve_solid::housing_solid;
 use crate::scene::resolved::{Plot, RunPlot, Scene};
-use crate::scene::solid::Subject;
+use crate::scene::solid::{SolidScene, Subject};
 use crate::scene::units::plain;
 use crate::scene::value::Checked;
 use crate::solver::channels::ChannelGroup;
@@ -25,6 +25,21 @@ const LARGEST_FIT: f64 = 0.01;
 /// # Errors
 /// The first key, in a fixed order, that is missing or contradicts others.
 pub(crate) fn housed(document: &Document) -> Result<Subject, SceneError> {
+    Ok(match in_housing(document)? {
+        (bearing, None) => Subject::Bearing(Box::new(bearing)),
+        (bearing, Some((housing, solid))) => {
+            Subject::Housed(Box::new(HousedScene { bearing, housing, solid }))
+        }
+    })
+}
+
+/// A bearing and its housing; none that is rigid.
+///
+/// # Errors
+/// As [`housed`].
+pub(crate) fn in_housing(
+    document: &Document,
+) -> Result<(Scene, Option<(HousingSettings, SolidScene)>), SceneError> {
     let mut bearing = resolve_bearing(document)?;
     let mut reader = Reader::new(document);
     let method = reader.choice("housing.method").unwrap_or("quasi-static");
@@ -41,7 +56,7 @@ pub(crate) fn housed(document: &Document) -> Result<Subject, SceneError> {
             name: "housing.method = rigid".into(),
             text: "the outer race is fixed; the housing's mesh is not even read".into(),
         });
-        return Ok(Subject::Bearing(Box::new(bearing)));
+        return Ok((bearing, None));
     }
     let method = match method {
         "explicit" => HousingMethod::Explicit,
@@ -66,7 +81,7 @@ pub(crate) fn housed(document: &Document) -> Result<Subject, SceneError> {
     output(document, &reader, &mut bearing, method)?;
     let mut housing = housing;
     housing.defaults_used = reader.into_defaults_used();
-    Ok(Subject::Housed(Box::new(HousedScene { bearing, housing, solid })))
+    Ok((bearing, Some((housing, solid))))
 }
 
 fn not_applicable<T>(

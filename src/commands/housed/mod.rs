@@ -224,26 +224,34 @@ pub fn parts(
     run: &RunSettings,
     threads: usize,
 ) -> Fallible<HousedParts> {
-    let housing = &scene.housing;
-    let seat = Seat {
-        name: None,
-        mount: Mount::at_centre(OUTER),
-        solid: 0,
-        radius: setup.radius(scene),
-        width: setup.width,
-        penalty: housing.penalty,
-        nodes: setup.nodes.clone(),
-        reach: REACH * setup.bore_radius,
-    };
-    let options = ExchangeOptions {
-        solid_fraction: housing.step_fraction,
-        seat_phase: housing.window_phase,
-        // Both together are balanced, not the bearing alone.
-        bearing: RunOptions { energy_limit: f64::INFINITY, ..run.options },
-    };
     let assembly = dynamic_problem(&scene.bearing)?.assembly();
     let solids = vec![SolidPart::undeformed(None, setup.model.clone())];
-    Ok(HousedParts { assembly, solids, seats: vec![seat], options, threads })
+    let (seats, options) = (vec![seat(scene, setup, OUTER, 0)], exchange_options(scene, run));
+    Ok(HousedParts { assembly, solids, seats, options, threads })
+}
+
+/// The race of a body in the bore of explicit solid `solid`.
+pub fn seat(scene: &HousedScene, setup: &HousingSetup, body: usize, solid: usize) -> Seat {
+    Seat {
+        name: None,
+        mount: Mount::at_centre(body),
+        solid,
+        radius: setup.radius(scene),
+        width: setup.width,
+        penalty: scene.housing.penalty,
+        nodes: setup.nodes.clone(),
+        reach: REACH * setup.bore_radius,
+    }
+}
+
+/// How housings and bearings exchange.
+pub fn exchange_options(scene: &HousedScene, run: &RunSettings) -> ExchangeOptions {
+    ExchangeOptions {
+        solid_fraction: scene.housing.step_fraction,
+        seat_phase: scene.housing.window_phase,
+        // All together are balanced, not the bearings alone.
+        bearing: RunOptions { energy_limit: f64::INFINITY, ..run.options },
+    }
 }
 
 pub fn request(scene: &HousedScene, run: &RunSettings) -> RunRequest {

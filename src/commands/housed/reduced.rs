@@ -8,9 +8,10 @@ use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::scene::housing_problem::{Excitation, excitations};
 use bearing_dynamics::solver::clock::to_digits;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, OUTER};
+use bearing_dynamics::solver::dynamics::assembly::{Assembly, Bearing, OUTER};
 use bearing_dynamics::solver::dynamics::run::Start;
 use bearing_dynamics::solver::housing::bore_equilibrium::Fit;
+use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::reduce::{
     LEFT_OUT, ReduceOptions, Reduction, pressed, reduce,
 };
@@ -31,23 +32,42 @@ pub struct Reduced {
 /// Frequencies of the housing that are kept, over that of a ball between its races.
 const BEYOND_BALLS: f64 = 2.0;
 
-/// Condenses and reduces the housing of a scene, and finds the equilibrium that a run starts from.
-pub fn reduced(scene: &HousedScene, prepared: &Prepared) -> Fallible<Reduced> {
+/// A housing condensed and reduced, and the wall time of both, s.
+pub struct Found {
+    pub bore: CondensedBore,
+    pub reduction: Reduction,
+    pub seconds: [f64; 2],
+}
+
+/// Condenses a housing and reduces it for a bearing with up to `force` (N) on it.
+pub fn reduction(
+    scene: &HousedScene,
+    prepared: &Prepared,
+    bearing: &Bearing,
+    force: f64,
+) -> Fallible<Found> {
     let setup = &prepared.setup;
     let penalty = scene.housing.penalty;
     let start = Instant::now();
-    let mut bore = condensed(prepared)?;
+    let bore = condensed(prepared)?;
     let condensing = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let mut assembly = dynamic_problem(&scene.bearing)?.assembly();
-    let force = largest_force(scene);
     let loads = pressed(&bore, penalty, &setup.fit(scene), force.max(1.0))?;
-    let modes_to = scene
-        .housing
-        .modes_to
-        .unwrap_or_else(|| BEYOND_BALLS * ball_frequency(&assembly.bearings[0], force));
+    let by_default = || BEYOND_BALLS * ball_frequency(bearing, force);
+    let modes_to = scene.housing.modes_to.unwrap_or_else(by_default);
     let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
     let reduction = reduce(&setup.model, &bore, penalty, &loads, &options)?;
+    Ok(Found { bore, reduction, seconds: [condensing, start.elapsed().as_secs_f64()] })
+}
+
+/// Condenses and reduces the housing of a scene, and finds the equilibrium that a run starts from.
+pub fn reduced(scene: &HousedScene, prepared: &Prepared) -> Fallible<Reduced> {
+    let (setup, penalty) = (&prepared.setup, scene.housing.penalty);
+    let mut assembly = dynamic_problem(&scene.bearing)?.assembly();
+    let force = largest_force(scene);
+    let Found { mut bore, reduction, seconds: [condensing, reducing] } =
+        reduction(scene, prepared, &assembly.bearings[0], force)?;
+    let start = Instant::now();
     let radius = setup.radius(scene);
     let fit = Fit { radius: radius.value(0.0), ..setup.fit(scene) };
     add_housing(&mut assembly, OUTER, &reduction, &bore, radius, penalty);
@@ -56,7 +76,8 @@ pub fn reduced(scene: &HousedScene, prepared: &Prepared) -> Fallible<Reduced> {
         let housing = Housing { reduction: &reduction, bore: &mut bore, fit, penalty };
         put_in_equilibrium(&mut assembly, &mut [housing])?;
     }
-    Ok(Reduced { reduction, assembly, seconds: [condensing, start.elapsed().as_secs_f64()] })
+    let seconds = [condensing, reducing + start.elapsed().as_secs_f64()];
+    Ok(Reduced { reduction, assembly, seconds })
 }
 
 /// On the inner race across its axis, N.
