@@ -207,14 +207,17 @@ fn what_is_left_out_of_the_compliance_is_what_is_said() {
         assert!(error < last);
         last = error;
     }
-    // Every pattern: nothing is left out.
+    // Every pattern: nothing is left out of what the loads move.
     let housing = ring(YOUNG, |_| {}, 40e3, 0.0);
-    let whole = &housing.bore.compliance;
     let found = housing.reduction.compliance();
-    for column in 0..whole.size() {
-        for (a, b) in whole.column(column).iter().zip(found.column(column)) {
-            assert!((a - b).abs() <= 1e-6 * whole.column(column)[column], "{a:e} {b:e}");
-        }
+    let everyone: Vec<usize> = (0..housing.bore.nodes.len()).collect();
+    for load in pressed(&housing.bore, PENALTY(), &fit(0.0), 250.0).unwrap() {
+        let [whole, ours] = [&housing.bore.compliance, &found].map(|compliance| {
+            let mut moves = vec![0.0; load.len()];
+            compliance.add_product(&everyone, &load, &mut moves);
+            moves.iter().zip(&load).map(|(u, p)| u * p).sum::<f64>()
+        });
+        assert!((ours / whole - 1.0).abs() <= 1e-6, "{ours:e} {whole:e}");
     }
 }
 
