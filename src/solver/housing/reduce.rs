@@ -38,7 +38,7 @@ pub struct ReduceOptions {
 }
 
 /// Part of the compliance that is left out where nothing else is asked for.
-pub const LEFT_OUT: f64 = 1e-3;
+pub const LEFT_OUT: f64 = 1e-4;
 
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ReduceError {
@@ -221,7 +221,7 @@ pub fn natural_shapes(
 }
 
 /// Directions in which [`pressed`] presses: patches of contact move on by a part of their width from one to the next.
-const DIRECTIONS: usize = 24;
+const DIRECTIONS: usize = 48;
 
 /// Loads on the bore's nodes (N) of a race pressed into it by `force` (N) in directions all round, and what they differ
 /// by from those of the fit alone: what compliance is measured under. Of a tight fit the differences are what moves
