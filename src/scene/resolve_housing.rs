@@ -318,11 +318,13 @@ fn refuse_start(document: &Document, bearing: &Scene) -> Result<(), SceneError> 
     for (i, (name, drive)) in COORDINATE_NAMES.iter().zip(&outer.drives).enumerate() {
         match drive {
             Drive::Motion(_) if i > 0 => {
-                let reason = "in the equilibrium of the start the housing says where the outer race is";
+                let reason =
+                    "in the equilibrium of the start the housing says where the outer race is";
                 return not_applicable(document, &drive_key(name, false), reason, ADVICE);
             }
             Drive::Load(load) if i > 2 && load.value(0.0) != 0.0 => {
-                let reason = "in the equilibrium of the start the outer race takes forces, not moments";
+                let reason =
+                    "in the equilibrium of the start the outer race takes forces, not moments";
                 return not_applicable(document, &drive_key(name, true), reason, ADVICE);
             }
             _ => {}

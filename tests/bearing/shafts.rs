@@ -70,8 +70,8 @@ fn on_two(loads: [f64; 5], speed: f64) -> Assembly {
             seated(geometry, "left", -40e-3, false, 1),
             seated(geometry, "right", 40e-3, true, 2),
         ],
-        connections: Vec::new(),
         gravity: GRAVITY,
+        ..Assembly::default()
     }
 }
 

@@ -13,11 +13,12 @@ use bearing_dynamics::mesh::Order;
 use bearing_dynamics::solver::dynamics::arrow::Arrow;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, OUTER};
 use bearing_dynamics::solver::dynamics::contacts::{Driver, Want};
+use bearing_dynamics::solver::dynamics::control::{Attempt, Controller, SHARE};
 use bearing_dynamics::solver::dynamics::linearised::Linearised;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::reduced_solid::{ModalLoad, ReducedSolid};
 use bearing_dynamics::solver::dynamics::run::{
-    Integrator, RunOptions, Simulation, Start, Stepping,
+    Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };
 use bearing_dynamics::solver::dynamics::stability::{growth, jacobian, step_limit};
 use bearing_dynamics::solver::dynamics::start;
@@ -201,7 +202,10 @@ fn what_is_left_out_of_the_compliance_is_what_is_said() {
         let found = loads_of(&housing);
         let [y, z] = [0, 1].map(|i| (found.pose[i] - whole.pose[i]).abs());
         let error = y.hypot(z) / whole.pose[0].hypot(whole.pose[1]);
-        println!("{left_out:e}: {} patterns, {:.1e} said, {error:.1e}", cut.patterns, cut.static_left_out);
+        println!(
+            "{left_out:e}: {} patterns, {:.1e} said, {error:.1e}",
+            cut.patterns, cut.static_left_out
+        );
         // To first order the race gives way by as much less in the directions that were looked at. Between them, where this
         // load lies, other nodes touch: measured 3.4 times as much.
         assert!(error <= 6.0 * cut.static_left_out, "{error:e}");
@@ -526,10 +530,12 @@ fn one_shape_under_a_constant_force_swings_as_it_must() {
         * (1.0 - fading * ((nu * end).cos() + 0.5 * damping / nu * (nu * end).sin()));
     let run = |integrator, step: f64| {
         let steps = (end / step).round() as usize;
-        let options = RunOptions { start: Start::Equilibrium, ..options(integrator, Stepping::Fixed(step)) };
+        let options =
+            RunOptions { start: Start::Equilibrium, ..options(integrator, Stepping::Fixed(step)) };
         let mut simulation = Simulation::new(assembly.clone(), options).unwrap();
         (0..steps).for_each(|_| simulation.step().unwrap());
-        (simulation.state[simulation.system.solids[0]] - exact).abs() / (force / (frequency * frequency))
+        (simulation.state[simulation.system.solids[0]] - exact).abs()
+            / (force / (frequency * frequency))
     };
     // Errors fall with the order of each.
     for (integrator, order) in
@@ -540,4 +546,65 @@ fn one_shape_under_a_constant_force_swings_as_it_must() {
         assert!(coarse <= 1e-3, "{coarse:e}");
         assert!(fine <= coarse / f64::from(1 << order) * 1.6 + 1e-12, "{coarse:e} {fine:e}");
     }
+}
+
+/// Everything stays where the equilibrium of bearing and shapes puts it.
+#[test]
+fn it_starts_in_equilibrium() {
+    let mut housing = ring(YOUNG, |model| model.problem.gravity = [0.0, 0.0, -9.81], 60e3, 1e-2);
+    let problem = DynamicProblem { gravity: [0.0, 0.0, -9.81], ..mounted(400.0) };
+    let assembly = settled(&mut housing, &problem, 0.5e-6);
+    let options = options(Integrator::DormandPrince, Stepping::Accuracy(1e-4));
+    let mut simulation = Simulation::new(assembly, options).unwrap();
+    let at = simulation.system.places.body(OUTER);
+    let first = simulation.state.clone();
+    let gone = |state: &[f64]| {
+        first[at + 1].hypot(first[at + 2]).max((state[at + 2] - first[at + 2]).abs())
+    };
+    assert!(gone(&first) > 1e-9, "the race has sunk into its bore");
+    while simulation.time < 1e-4 {
+        simulation.step().unwrap();
+        let now = &simulation.state;
+        let away = (now[at + 1] - first[at + 1]).hypot(now[at + 2] - first[at + 2]);
+        // What fixed normals leave out, and the bearing's own equilibrium.
+        assert!(away <= 1e-3 * gone(&first), "{away:e} of {:e}", gone(&first));
+    }
+}
+
+#[test]
+fn error_control_sees_the_shapes() {
+    let mut housing = plain();
+    let assembly = settled(&mut housing, &mounted(400.0), 0.5e-6);
+    let (system, state) = state_of(&assembly);
+    let mut control = Controller::new(&assembly, 1e-3, 5.0);
+    control.see(&system);
+    let (at, count) = (system.solids[0], assembly.solids[0].count());
+    let reach: Vec<f64> = assembly.solids[0].surfaces[0].largest().collect();
+    let mut attempt = Attempt::new(state.len());
+    assert_eq!(control.norm(&attempt), 0.0);
+    for k in 0..count {
+        // So much of the scale of displacements at the bore is what a step may miss.
+        attempt.error[at + k] = SHARE * 1e-3 * control.memory.displacement / reach[k];
+        assert!((control.norm(&attempt) - 1.0).abs() <= 1e-9, "{k}");
+        attempt.error[at + k] = 0.0;
+        attempt.error[at + count + k] = f64::NAN;
+        assert!(control.norm(&attempt).is_nan(), "{k}");
+        attempt.error[at + count + k] = 0.0;
+    }
+}
+
+#[test]
+fn a_race_beside_its_seat_and_a_shape_that_is_no_number_end_the_run() {
+    let mut housing = plain();
+    let assembly = settled(&mut housing, &mounted(400.0), 0.5e-6);
+    let options = options(Integrator::RungeKutta, Stepping::Fixed(1e-8));
+    let mut beside = assembly.clone();
+    beside.seats[0].nominal[0] = 2.0 * beside.seats[0].rim;
+    let error = Simulation::new(beside, options).err().expect("refused");
+    assert!(matches!(error, SimulationError::LeftSeat { way: "along the axis", .. }), "{error}");
+    assert!(error.to_string().contains("the outer race has left its bore"), "{error}");
+    let mut lost = assembly;
+    lost.solids[0].start[0] = f64::NAN;
+    let error = Simulation::new(lost, options).err().expect("refused");
+    assert!(error.to_string().contains("not finite"), "{error}");
 }

@@ -187,9 +187,14 @@ fn one_shape(context: &mut CaseContext) -> Result<(), CaseError> {
     let swing = (nu * end).cos() + 0.5 * damping / nu * (nu * end).sin();
     let exact = force / (frequency * frequency) * (1.0 - (-0.5 * damping * end).exp() * swing);
     context.check(
-        Check::new("one_shape", "one shape under a constant force from rest, after 1.3 periods", "nm", 1e9 * ours)
-            .closed_form(1e9 * exact, "damped oscillator under a step")
-            .relative(1e-7, "fourth order, 310 steps a period"),
+        Check::new(
+            "one_shape",
+            "one shape under a constant force from rest, after 1.3 periods",
+            "nm",
+            1e9 * ours,
+        )
+        .closed_form(1e9 * exact, "damped oscillator under a step")
+        .relative(1e-7, "fourth order, 310 steps a period"),
     );
     Ok(())
 }
@@ -231,7 +236,10 @@ fn statics(
     context.check(
         Check::new("stays", "in motion from there: farthest in 0.2 ms", "nm", 1e9 * away)
             .closed_form(0.0, "equilibrium")
-            .absolute(1e-3 * 1e9 * size(&exact), "what a linear bore leaves out of the race's turns and shifts"),
+            .absolute(
+                1e-3 * 1e9 * size(&exact),
+                "what a linear bore leaves out of the race's turns and shifts",
+            ),
     );
     Ok(())
 }
@@ -323,9 +331,8 @@ fn apart(one: &Places, other: &Places) -> f64 {
 fn swing(places: &Places) -> f64 {
     let side = |i: usize| {
         let all = places.iter().map(|place| place[i]);
-        let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-            (low.min(x), high.max(x))
-        });
+        let (low, high) = all
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         high - low
     };
     side(0).max(side(1))
@@ -462,6 +469,10 @@ fn figure(context: &mut CaseContext, blow: &Compared) -> Result<(), CaseError> {
             curve("shapes, default", &blow.shapes[DEFAULT]),
         ],
     };
-    context.figure("blow", xy(&plot)?, "Height of the outer race over time: explicit steps of all elements, and shapes.");
+    context.figure(
+        "blow",
+        xy(&plot)?,
+        "Height of the outer race over time: explicit steps of all elements, and shapes.",
+    );
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! A housing reduced to some shapes, and its bearing in it.
 
-use super::{Fallible, Prepared, condensed, most_loaded, plan::line};
+use super::{Fallible, Prepared, condensed, plan::line};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::course::on_inner;
 use bearing_dynamics::output::session::Motion;
@@ -40,12 +40,10 @@ pub fn reduced(scene: &HousedScene, prepared: &Prepared) -> Fallible<Reduced> {
     let condensing = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let problem = dynamic_problem(&scene.bearing)?;
-    let force = largest_force(scene);
+    let force = largest_force(scene, &problem.assembly().corners());
     let loads = pressed(&bore, penalty, &setup.fit(scene), force.max(1.0))?;
-    let modes_to = scene
-        .housing
-        .modes_to
-        .unwrap_or_else(|| BEYOND_BALLS * ball_frequency(&problem, force));
+    let modes_to =
+        scene.housing.modes_to.unwrap_or_else(|| BEYOND_BALLS * ball_frequency(&problem, force));
     let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
     let reduction = reduce(&setup.model, &bore, penalty, &loads, &options)?;
     let radius = setup.radius(scene);
@@ -58,14 +56,28 @@ pub fn reduced(scene: &HousedScene, prepared: &Prepared) -> Fallible<Reduced> {
     Ok(Reduced { reduction, assembly, seconds: [condensing, start.elapsed().as_secs_f64()] })
 }
 
-/// On the inner race across its axis, N.
-fn largest_force(scene: &HousedScene) -> f64 {
-    let conditions = on_inner(scene, most_loaded(scene));
+/// Looks at loads between two of their corners, and how long after the last one, s.
+const LOOKS: usize = 64;
+const AFTER: f64 = 1.0;
+
+/// On the inner race across its axis, N, at any time: a run that is extended keeps its housing.
+fn largest_force(scene: &HousedScene, corners: &[f64]) -> f64 {
     let load = |condition: &Condition| match condition {
         Condition::Load(load) => *load,
         Condition::Displacement(_) => 0.0,
     };
-    load(&conditions[1]).hypot(load(&conditions[2]))
+    let at = |t: f64| {
+        let conditions = on_inner(scene, t);
+        load(&conditions[1]).hypot(load(&conditions[2]))
+    };
+    let mut largest = at(0.0);
+    let mut from = 0.0;
+    for to in corners.iter().copied().chain([corners.last().unwrap_or(&0.0) + AFTER]) {
+        let times = (1..=LOOKS).map(|i| from + (to - from) * i as f64 / LOOKS as f64);
+        largest = times.map(at).fold(largest, f64::max);
+        from = to;
+    }
+    largest
 }
 
 impl Reduced {

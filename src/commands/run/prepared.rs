@@ -1,7 +1,7 @@
 //! From a scene to what moves in its run: the one place that asks what the scene is of.
 
-use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::housed::reduced::Reduced;
+use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::{self, echo, echo_run, housed, solid};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::course::CourseParts;

@@ -137,8 +137,7 @@ fn housing_results(
     let Prepared::Housed { scene, mesh, bore, reduced, .. } = prepared else { return Ok(()) };
     let setup = &mesh.setup;
     // Of explicit steps that stopped on the way the state at the last row is not at hand.
-    let is_sound =
-        bore.is_some() || reduced.is_some() || session.status == Status::Complete;
+    let is_sound = bore.is_some() || reduced.is_some() || session.status == Status::Complete;
     if is_sound && session.recorder.rows() > 0 {
         if session.clock.fields_due().is_none() {
             let row = session.recorder.rows() as u64 - 1;

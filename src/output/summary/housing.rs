@@ -107,8 +107,7 @@ pub fn reduced_section(cut_off: &CutOff, excitations: &[Excitation]) -> Part {
         "compliance_without_natural_shape": quantity("part", cut_off.by_patterns, "1")?,
     });
     if cut_off.first_left_out.is_finite() {
-        section["first_frequency_left_out"] =
-            quantity("frequency", cut_off.first_left_out, "Hz")?;
+        section["first_frequency_left_out"] = quantity("frequency", cut_off.first_left_out, "Hz")?;
         let mut driven = Map::new();
         for excitation in excitations {
             let error = cut_off.dynamic_error(excitation.frequency);

@@ -180,7 +180,8 @@ impl Arrow {
     ) {
         w.copy_from_slice(r);
         let scale = self.scale;
-        let Arrow { ball, factors, eliminated, coupled, schur, balls, hubs, moved, seats, .. } = self;
+        let Arrow { ball, factors, eliminated, coupled, schur, balls, hubs, moved, seats, .. } =
+            self;
         for (index, hub) in linearised.hubs.iter().enumerate() {
             moved[index] = displacement(hub, at, r);
             let rate = to_basis(hub, vector(r, hub.at + VELOCITY), vector(r, hub.at + SPIN));

@@ -53,8 +53,7 @@ fn work_of_rosenbrock(assembly: &Assembly) -> f64 {
     }
     let equations = shapes as f64;
     let matrix = equations * equations * equations / 3.0 + coupled;
-    (WORK_OF_ROSENBROCK * WORK_OF_BEARING + 8.0 * moved + matrix)
-        / (WORK_OF_BEARING + 6.0 * moved)
+    (WORK_OF_ROSENBROCK * WORK_OF_BEARING + 8.0 * moved + matrix) / (WORK_OF_BEARING + 6.0 * moved)
 }
 
 /// What a trial says of a run.

@@ -96,13 +96,7 @@ impl ReducedSolid {
 
     /// Accelerations of the shapes under weight, loads, springs and damping at time `t` where they have gone so
     /// far (m) at these speeds (m/s). Returns the power of damping and that of the loads, W.
-    pub fn accelerations(
-        &self,
-        t: f64,
-        gone: &[f64],
-        speeds: &[f64],
-        to: &mut [f64],
-    ) -> [f64; 2] {
+    pub fn accelerations(&self, t: f64, gone: &[f64], speeds: &[f64], to: &mut [f64]) -> [f64; 2] {
         let (mut damped, mut driven) = (0.0, 0.0);
         for (k, to) in to.iter_mut().enumerate() {
             let (frequency, speed) = (self.frequencies[k], speeds[k]);

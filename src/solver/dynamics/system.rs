@@ -136,8 +136,7 @@ impl System {
         let Assembly { solids, seats, .. } = &self.assembly;
         for (solid, &at) in solids.iter().zip(&self.solids) {
             let (gone, speeds) = state[at..at + 2 * solid.count()].split_at(solid.count());
-            let (to, accelerations) =
-                rates[at..at + 2 * solid.count()].split_at_mut(solid.count());
+            let (to, accelerations) = rates[at..at + 2 * solid.count()].split_at_mut(solid.count());
             to.copy_from_slice(speeds);
             let [damped, driven] = solid.accelerations(t, gone, speeds, accelerations);
             ledger[Ledger::Foundation as usize] += damped;

@@ -275,8 +275,11 @@ pub fn reduce(
     let lowest = modes.first().map_or(first_left_out, |mode| mode.frequency);
     let natural: Vec<(f64, Vec<Vec3>)> =
         modes.into_iter().map(|mode| (TAU * mode.frequency, mode.shape)).collect();
-    let outward: Vec<Vec3> =
-        bore.nodes.iter().map(|node| bore.to_world([0.0, node.normal[0], node.normal[1]])).collect();
+    let outward: Vec<Vec3> = bore
+        .nodes
+        .iter()
+        .map(|node| bore.to_world([0.0, node.normal[0], node.normal[1]]))
+        .collect();
     let at_bore = |shape: &[Vec3]| -> Vec<f64> {
         let nodes = bore.nodes.iter().zip(&outward);
         nodes.map(|(node, out)| dot(shape[node.node as usize], *out)).collect()

@@ -71,8 +71,7 @@ pub fn ball_frequency(problem: &DynamicProblem, force: f64) -> f64 {
     let share = libm::cbrt((outer / inner) * (outer / inner));
     let overlap = preload * share / (1.0 + share);
     let load = 5.0 * force / problem.geometry.ball_count as f64 + normal_load(inner, overlap);
-    let stiffness =
-        |of: f64| normal_stiffness(of, libm::cbrt((load / of) * (load / of)));
+    let stiffness = |of: f64| normal_stiffness(of, libm::cbrt((load / of) * (load / of)));
     ((stiffness(inner) + stiffness(outer)) / problem.ball.mass).sqrt() / TAU
 }
 
