@@ -58,7 +58,7 @@ fn it_moves_as_in_explicit_steps() {
     assert!(summary["largest"].is_object());
     // Fields on the way and of the last row; the nodes of the bore that touch.
     for folder in [&explicit, &shapes] {
-        assert_eq!(std::fs::read_dir(folder.join("fields")).unwrap().count(), 3);
+        assert_eq!(std::fs::read_dir(folder.join("fields")).unwrap().count(), 4);
     }
     let bore = column(&shapes.join("bore.csv"), "pressure");
     let peak = *column(&shapes.join("series.csv"), "bore_peak_pressure").last().unwrap();
@@ -147,7 +147,7 @@ fn what_a_reduced_housing_cannot_have_is_refused() {
     refused(&explicit, &["housing.modes_to", "only `reduced`"]);
     let stepped = blow("reduced", "1 ms", "").replace("fit_ramp", "window_phase = 0.2\nfit_ramp");
     refused(&stepped, &["housing.window_phase"]);
-    let moved = blow("reduced", "1 ms", "").replace("x = true", "x = { displacement = \"1 um\" }");
+    let moved = blow("reduced", "1 ms", "").replace("x = true", "x = { half_sine = \"1 um\", start = \"0 s\", duration = \"1 ms\" }");
     refused(&moved, &["solid.held", "`reduced` is held at zero"]);
     let tilted = blow("reduced", "1 ms", "")
         .replace("[outer_race]\n", "[outer_race]\ntilt_y = { moment = \"1 N m\" }\n");

@@ -99,6 +99,19 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         Drive::Load(Profile::HalfSine { base: 0.0, peak: BLOW, start: 0.1e-3, duration: 0.4e-3 });
     let blow = compare(&mut whole, &struck, &reductions, 1.0e-3)?;
     judge(context, "blow", "a blow of 500 N over 0.4 ms", &blow, 0.01);
+    context.check(
+        Check::new(
+            "blow_runge_kutta",
+            "the same in steps of half the stability limit",
+            "1",
+            blow.errors[DEFAULT + 1],
+        )
+        .consistency(0.01, WAYS)
+        .at_most(
+            0.0,
+            "what rings as fast as the limit dies in such steps, and the race does not follow it",
+        ),
+    );
     converges(context, &blow);
 
     let speed = TAU * OF_LOWEST * lowest_across(&reductions[DEFAULT])?;
@@ -258,9 +271,9 @@ fn place(simulation: &Simulation) -> [f64; 2] {
     [simulation.state[at + 1], simulation.state[at + 2]]
 }
 
-fn in_shapes(assembly: Assembly, end: f64) -> Result<Motion, CaseError> {
+fn in_shapes(assembly: Assembly, options: RunOptions, end: f64) -> Result<Motion, CaseError> {
     let watch = Stopwatch::start();
-    let mut simulation = Simulation::new(assembly, options())?;
+    let mut simulation = Simulation::new(assembly, options)?;
     let mut places = vec![place(&simulation)];
     let rows = (end / INTERVAL).round() as usize;
     for row in 1..=rows {
@@ -352,8 +365,16 @@ fn compare(
     let mut shapes = Vec::new();
     for reduction in reductions {
         let (assembly, _) = seated(whole, problem, reduction)?;
-        shapes.push(in_shapes(assembly, end)?);
+        shapes.push(in_shapes(assembly, options(), end)?);
     }
+    // The last one by the source's integrator too, whose step the seat sets.
+    let (assembly, _) = seated(whole, problem, &reductions[DEFAULT])?;
+    let by_limit = RunOptions {
+        integrator: Integrator::RungeKutta,
+        stepping: Stepping::FractionOfLimit(0.5),
+        ..options()
+    };
+    shapes.push(in_shapes(assembly, by_limit, end)?);
     let swing = swing(&explicit.places);
     let errors = shapes.iter().map(|of| apart(&of.places, &explicit.places) / swing).collect();
     Ok(Compared { explicit, shapes, swing, errors })
@@ -431,11 +452,12 @@ fn table(context: &mut CaseContext, all: &[(&str, &Compared)], reductions: &[Red
             String::new(),
             "1".into(),
         ]);
-        for (index, (motion, reduction)) in found.shapes.iter().zip(reductions).enumerate() {
-            let cut = &reduction.cut_off;
+        for (index, motion) in found.shapes.iter().enumerate() {
+            let cut = &reductions[index.min(DEFAULT)].cut_off;
+            let way = if index > DEFAULT { "rk4" } else { "dormand-prince" };
             rows.push(vec![
                 name.to_string(),
-                format!("{:.0} Hz", cut.modes_to),
+                format!("{:.0} Hz, {way}", cut.modes_to),
                 format!("{} + {}", cut.natural, cut.patterns),
                 motion.steps.to_string(),
                 format!("{:.4}", motion.seconds),
