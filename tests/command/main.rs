@@ -32,6 +32,7 @@ mod housed_command_errors;
 mod housed_command_numbers;
 mod housed_command_resume;
 mod housed_command_sweep;
+mod housed_reduced;
 mod run_command;
 mod run_plan;
 mod run_recorder;

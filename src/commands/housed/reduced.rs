@@ -1,6 +1,6 @@
 //! A housing reduced to some shapes, and its bearing in it.
 
-use super::{Fallible, Prepared, condensed, most_loaded, plan::line};
+use super::{Fallible, Prepared, condensed, plan::line};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::course::on_inner;
 use bearing_dynamics::output::session::Motion;
@@ -64,7 +64,7 @@ pub fn reduction(
 pub fn reduced(scene: &HousedScene, prepared: &Prepared) -> Fallible<Reduced> {
     let (setup, penalty) = (&prepared.setup, scene.housing.penalty);
     let mut assembly = dynamic_problem(&scene.bearing)?.assembly();
-    let force = largest_force(scene);
+    let force = largest_force(scene, &assembly.corners());
     let Found { mut bore, reduction, seconds: [condensing, reducing] } =
         reduction(scene, prepared, &assembly.bearings[0], force)?;
     let start = Instant::now();
@@ -80,14 +80,28 @@ pub fn reduced(scene: &HousedScene, prepared: &Prepared) -> Fallible<Reduced> {
     Ok(Reduced { reduction, assembly, seconds })
 }
 
-/// On the inner race across its axis, N.
-fn largest_force(scene: &HousedScene) -> f64 {
-    let conditions = on_inner(scene, most_loaded(scene));
+/// Looks at loads between two of their corners, and how long after the last one, s.
+const LOOKS: usize = 64;
+const AFTER: f64 = 1.0;
+
+/// On the inner race across its axis, N, at any time: a run that is extended keeps its housing.
+fn largest_force(scene: &HousedScene, corners: &[f64]) -> f64 {
     let load = |condition: &Condition| match condition {
         Condition::Load(load) => *load,
         Condition::Displacement(_) => 0.0,
     };
-    load(&conditions[1]).hypot(load(&conditions[2]))
+    let at = |t: f64| {
+        let conditions = on_inner(scene, t);
+        load(&conditions[1]).hypot(load(&conditions[2]))
+    };
+    let mut largest = at(0.0);
+    let mut from = 0.0;
+    for to in corners.iter().copied().chain([corners.last().unwrap_or(&0.0) + AFTER]) {
+        let times = (1..=LOOKS).map(|i| from + (to - from) * i as f64 / LOOKS as f64);
+        largest = times.map(at).fold(largest, f64::max);
+        from = to;
+    }
+    largest
 }
 
 impl Reduced {
