@@ -183,8 +183,6 @@ fn own_forces(solid: &ReducedSolid, t: f64) -> Vec<f64> {
 /// Natural shapes that are looked for at first, and the most that are kept.
 const AT_FIRST: usize = 8;
 const MOST: usize = 400;
-/// How often one shape more is asked for where the last one does not settle.
-const TRIES: usize = 8;
 /// Residual of natural shapes: their frequencies are known to its square, and shapes stay as orthogonal.
 const RESIDUAL: f64 = 1e-7;
 
@@ -202,18 +200,9 @@ pub fn natural_shapes(
     }
     let unknowns = bore.unknowns();
     let mut count = AT_FIRST.min(unknowns.count);
-    let mut tries = 0;
     loop {
         let options = ModeOptions { count, mass: MassMatrix::Lumped, tolerance: RESIDUAL };
-        let mut modes = match modes_over(model, unknowns, &options) {
-            // The last one asked for may be one of two alike, which come together.
-            Err(ModeError::NotConverged { .. }) if tries < TRIES => {
-                tries += 1;
-                count = (count + 1).min(unknowns.count);
-                continue;
-            }
-            found => found?.modes,
-        };
+        let mut modes = modes_over(model, unknowns, &options)?.modes;
         let kept = modes.iter().filter(|mode| mode.frequency <= frequency).count();
         if let Some(next) = modes.get(kept).map(|mode| mode.frequency) {
             modes.truncate(kept);
