@@ -148,6 +148,24 @@ fn drive_key(name: &str, load: bool) -> String {
     format!("outer_race.{name}.{kind}")
 }
 
+/// Whether explicit steps start in equilibrium; keys that have no effect then are refused.
+fn start(reader: &mut Reader, method: HousingMethod) -> Result<bool, SceneError> {
+    let key = "housing.start";
+    if method != HousingMethod::Explicit {
+        if reader.is_given(key) {
+            let reason = "equilibria and shapes start in equilibrium by themselves";
+            return not_applicable(reader.document, key, reason, "leave it out");
+        }
+        return Ok(false);
+    }
+    let from_equilibrium = reader.choice(key) == Some("equilibrium");
+    if from_equilibrium && reader.is_given("housing.fit_ramp") {
+        let reason = "a start in equilibrium has the race grown into its fit";
+        return not_applicable(reader.document, "housing.fit_ramp", reason, "leave it out");
+    }
+    Ok(from_equilibrium)
+}
+
 fn settings(
     reader: &mut Reader,
     bearing: &Scene,
@@ -164,8 +182,10 @@ fn settings(
         FitSize::Interference(interference) => interference > 0.0,
         FitSize::OuterRadius(_) => true,
     };
+    let from_equilibrium = start(reader, method)?;
+    let ramps = grows && method == HousingMethod::Explicit && !from_equilibrium;
     let fit_ramp = reader.given_number("housing.fit_ramp").or_else(|| {
-        let ramp = 0.1 * end.filter(|_| grows && method == HousingMethod::Explicit)?;
+        let ramp = 0.1 * end.filter(|_| ramps)?;
         let reason = "an interference grows in over a tenth of the run, as in section 2.4.1";
         reader.note("housing.fit_ramp", &format!("{} s", plain(ramp)), reason);
         Some(ramp)
@@ -232,6 +252,7 @@ fn settings(
         return Err(document.error("numerics.fields_interval", problem));
     }
     Ok(HousingSettings {
+        from_equilibrium,
         method,
         bore,
         fit,

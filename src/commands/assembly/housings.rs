@@ -15,9 +15,8 @@ use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::exchange::SolidPart;
 use bearing_dynamics::solver::housing::reduce::Reduction;
 use bearing_dynamics::solver::housing::reduced_start::{self, add_housing, put_in_equilibrium};
-use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::static_assembly::{StaticAssembly, StaticSeat};
+use bearing_dynamics::solver::static_assembly::StaticAssembly;
 use std::time::Instant;
 
 /// A housing and the bearing that it holds.
@@ -75,15 +74,7 @@ pub fn statics<'b>(
 ) -> Fallible<StaticAssembly<'b>> {
     let mut still: StaticAssembly<'b> = scene.statics()?;
     for (housing, bore) in housings.iter().zip(bores) {
-        let body = still.bearings[housing.bearing].mounts[1].body;
-        still.seats.push(StaticSeat {
-            name: Some(still.bodies[body].name.clone()),
-            mount: Mount::at_centre(body),
-            nominal: bore.reach.nominal,
-            bore,
-            penalty: housing.scene.housing.penalty,
-            fit: housing.mesh.setup.fit(&housing.scene),
-        });
+        housed::add_seat(&mut still, housing.bearing, &housing.scene, &housing.mesh, bore);
     }
     Ok(still)
 }
@@ -147,8 +138,10 @@ pub fn explicit(
     housings: &[Housing],
     threads: usize,
 ) -> Fallible<HousedParts> {
-    let assembly = scene.assembly()?;
+    let mut assembly = scene.assembly()?;
     let run = scene.run().ok_or("a run needs `end` in [numerics]")?;
+    let in_bores: Vec<_> = housings.iter().map(|h| (h.bearing, &h.scene, &h.mesh)).collect();
+    let mut start = housed::start_of_steps(&mut assembly, &in_bores)?.into_iter();
     let first = housings.first().ok_or("no housing")?;
     let mut seats = Vec::with_capacity(housings.len());
     let mut solids = Vec::with_capacity(housings.len());
@@ -160,7 +153,11 @@ pub fn explicit(
             ..seat
         });
         let model = housing.mesh.setup.model.clone();
-        solids.push(SolidPart::undeformed(housing.name.clone(), model));
+        let name = housing.name.clone();
+        solids.push(match start.next() {
+            Some(displacement) => SolidPart { name, model, displacement },
+            None => SolidPart::undeformed(name, model),
+        });
     }
     let options = housed::exchange_options(&first.scene, run);
     Ok(HousedParts { assembly, solids, seats, options, threads })

@@ -164,7 +164,7 @@ impl<'s> Prepared<'s> {
                 Parts::Bearing(Box::new(reduced.assembly.clone()))
             }
             Prepared::Housed { scene, settings, mesh, .. } => {
-                Parts::Housed(Box::new(housed::parts(scene, &mesh.setup, settings, threads)?))
+                Parts::Housed(Box::new(housed::parts(scene, mesh, settings, threads)?))
             }
         })
     }
