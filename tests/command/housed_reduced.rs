@@ -147,7 +147,8 @@ fn what_a_reduced_housing_cannot_have_is_refused() {
     refused(&explicit, &["housing.modes_to", "only `reduced`"]);
     let stepped = blow("reduced", "1 ms", "").replace("fit_ramp", "window_phase = 0.2\nfit_ramp");
     refused(&stepped, &["housing.window_phase"]);
-    let moved = blow("reduced", "1 ms", "").replace("x = true", "x = { half_sine = \"1 um\", start = \"0 s\", duration = \"1 ms\" }");
+    let moved = blow("reduced", "1 ms", "")
+        .replace("x = true", "x = { half_sine = \"1 um\", start = \"0 s\", duration = \"1 ms\" }");
     refused(&moved, &["solid.held", "`reduced` is held at zero"]);
     let tilted = blow("reduced", "1 ms", "")
         .replace("[outer_race]\n", "[outer_race]\ntilt_y = { moment = \"1 N m\" }\n");

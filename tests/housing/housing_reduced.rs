@@ -333,6 +333,31 @@ fn what_the_shapes_get_the_race_gets() {
     }
 }
 
+/// The body that sits there accelerates and turns by what the seat says.
+#[test]
+fn the_race_moves_by_the_force_and_the_moment_of_its_seat() {
+    let mut housing = plain();
+    let assembly = settled(&mut housing, &mounted(400.0), 0.2e-6);
+    let (mut system, state) = state_of(&assembly);
+    let state = shaken_state(&system, &state, &mut Noise(7));
+    let held = rates_of(&mut system, 0.0, &state);
+    let contact = system.seats[0].contact;
+    assert!(contact.moment[1].abs() + contact.moment[2].abs() > 1e-2, "{contact:?}");
+    let mut loose = assembly.clone();
+    loose.seats[0].radius = Profile::Constant(BORE - 1e-4);
+    let free = rates_of(&mut System::new(loose, Driver::Lanes), 0.0, &state);
+    let inertia = *assembly.bodies[OUTER].inertia().unwrap();
+    let at = system.places.body(OUTER);
+    for i in 1..3 {
+        let change = |entry: usize| held[at + entry + i] - free[at + entry + i];
+        let (force, moment) = (inertia.mass * change(VELOCITY), inertia.transverse * change(SPIN));
+        // Along the world's axes: the race is tilted by some 1e-6.
+        assert!((force - contact.force[i]).abs() <= 1e-6 * contact.force[2].abs(), "{force}");
+        let scale = contact.force[2].abs() * BORE;
+        assert!((moment - contact.moment[i]).abs() <= 1e-6 * scale, "{moment} {contact:?}");
+    }
+}
+
 fn energy_closes(integrator: Integrator, stepping: Stepping, most: f64) {
     let mut housing = ring(YOUNG, |model| model.problem.damping = 2000.0, 60e3, 1e-2);
     let mut problem = mounted(0.0);
