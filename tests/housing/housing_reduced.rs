@@ -1,5 +1,6 @@
 //! A housing reduced to shapes: what the shapes are, what the seat does, energy and momentum, the matrix of an implicit
 //! step, and limits that are known.
+#![allow(clippy::needless_range_loop)] // indices are the notation of components
 
 use crate::common;
 use crate::dynamics;
@@ -334,6 +335,31 @@ fn what_the_shapes_get_the_race_gets() {
     for i in 0..3 {
         assert!((force[i] + now.contact.force[i]).abs() <= 1e-9 * 400.0, "{force:?}");
         assert!((moment[i] + now.contact.moment[i]).abs() <= 1e-9 * 400.0 * BORE, "{moment:?}");
+    }
+}
+
+/// The body that sits there accelerates and turns by what the seat says.
+#[test]
+fn the_race_moves_by_the_force_and_the_moment_of_its_seat() {
+    let mut housing = plain();
+    let assembly = settled(&mut housing, &mounted(400.0), 0.2e-6);
+    let (mut system, state) = state_of(&assembly);
+    let state = shaken_state(&system, &state, &mut Noise(7));
+    let held = rates_of(&mut system, 0.0, &state);
+    let contact = system.seats[0].contact;
+    assert!(contact.moment[1].abs() + contact.moment[2].abs() > 1e-2, "{contact:?}");
+    let mut loose = assembly.clone();
+    loose.seats[0].radius = Profile::Constant(BORE - 1e-4);
+    let free = rates_of(&mut System::new(loose, Driver::Lanes), 0.0, &state);
+    let inertia = *assembly.bodies[OUTER].inertia().unwrap();
+    let at = system.places.body(OUTER);
+    for i in 1..3 {
+        let change = |entry: usize| held[at + entry + i] - free[at + entry + i];
+        let (force, moment) = (inertia.mass * change(VELOCITY), inertia.transverse * change(SPIN));
+        // Along the world's axes: the race is tilted by some 1e-6.
+        assert!((force - contact.force[i]).abs() <= 1e-6 * contact.force[2].abs(), "{force}");
+        let scale = contact.force[2].abs() * BORE;
+        assert!((moment - contact.moment[i]).abs() <= 1e-6 * scale, "{moment} {contact:?}");
     }
 }
 
