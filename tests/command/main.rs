@@ -18,6 +18,7 @@ mod run_common;
 mod solid_command_common;
 
 mod assembly_command;
+mod assembly_housings;
 mod command_line;
 mod command_line_check;
 mod command_line_compare;
