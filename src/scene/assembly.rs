@@ -4,7 +4,7 @@ use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::scene::dynamics::{DynamicsError, dynamic_problem};
 use crate::scene::housing::{HousedScene, HousingMethod, HousingSettings};
 use crate::scene::resolved::{DefaultUsed, RunSettings, Scene};
-use crate::scene::solid::SolidScene;
+use crate::scene::solid::{SolidScene, Subject};
 use crate::scene::statics::{ball_mass, orbital_speed};
 use crate::solver::dynamics::assembly::{Assembly, Body, CAGE, GROUND, INNER, Mobility, OUTER};
 use crate::solver::dynamics::connection::{Connection, Law, SpringDashpot};
@@ -47,8 +47,8 @@ pub struct PlacedHousing {
 impl PlacedBearing {
     /// Whether it has no name and stands where a bearing alone does.
     fn is_alone(&self) -> bool {
-        let alone = self.carriers == [Carrier::Own { at: 0.0 }; 2] && self.housing.is_none();
-        self.name.is_none() && !self.reversed && alone
+        let at_origin = self.carriers == [Carrier::Own { at: 0.0 }; 2];
+        self.name.is_none() && !self.reversed && at_origin
     }
 
     /// The bearing with its flexible housing as a scene of the two where they stand.
@@ -120,10 +120,28 @@ impl AssemblyScene {
     /// The scene of a bearing alone; `None` where there is more.
     pub fn only(&self) -> Option<&Scene> {
         match &self.bearings[..] {
-            [one] if one.is_alone() && self.bodies.is_empty() && self.springs.is_empty() => {
-                Some(&one.scene)
-            }
+            [one] if self.is_of_one() && one.housing.is_none() => Some(&one.scene),
             _ => None,
+        }
+    }
+
+    /// Whether one bearing is all there is, besides its housing.
+    fn is_of_one(&self) -> bool {
+        let alone = matches!(&self.bearings[..], [one] if one.is_alone());
+        alone && self.bodies.is_empty() && self.springs.is_empty()
+    }
+
+    /// As a bearing alone, or with its housing, where there is no more.
+    pub fn into_subject(mut self) -> Subject {
+        if !self.is_of_one() {
+            return Subject::Assembly(Box::new(self));
+        }
+        let PlacedBearing { scene: bearing, housing, .. } = self.bearings.remove(0);
+        match housing {
+            None => Subject::Bearing(Box::new(bearing)),
+            Some(PlacedHousing { settings: housing, solid }) => {
+                Subject::Housed(Box::new(HousedScene { bearing, housing, solid }))
+            }
         }
     }
 

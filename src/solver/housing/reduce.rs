@@ -353,8 +353,11 @@ fn work(forces: &[(u32, Vec3)], displacement: &[Vec3]) -> f64 {
     forces.iter().map(|(node, force)| dot(*force, displacement[*node as usize])).sum()
 }
 
+/// Nodes and the forces on them, N.
+type NodalForces = Vec<(u32, Vec3)>;
+
 /// Weight (without a profile) and loads (at profile value 1) of a solid.
-fn own_loads(model: &SolidModel) -> Vec<(Vec<(u32, Vec3)>, Option<Profile>)> {
+fn own_loads(model: &SolidModel) -> Vec<(NodalForces, Option<Profile>)> {
     let problem = &model.problem;
     let mut own = Vec::new();
     if problem.gravity != [0.0; 3] {
