@@ -1,6 +1,6 @@
 //! `bearing check SCENE`.
 
-use super::run::planned_request;
+use super::run::{planned_request, request};
 use super::{CommandResult, Outcome, assembly, echo, echo_run, say};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::results::pretty;
@@ -39,11 +39,15 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     for placed in &scene.bearings {
         static_problem(&placed.scene)?;
     }
+    let housings = assembly::housings::prepare(&document, &scene)?;
     if let Some(settings) = scene.run().cloned() {
         // Bearings that are to move have to make bodies, too.
         let assembly = scene.assembly()?;
-        let (request, _) = planned_request(&scene, &settings, &assembly, None);
-        table_size(assembly, &request)?;
+        let mut request = request(scene.common(), &settings);
+        if scene.housing_method().is_none() {
+            (request, _) = planned_request(&scene, &settings, &assembly, None);
+            table_size(assembly, &request)?;
+        }
         let run = RunSettings { options: request.options, ..settings };
         scene.bearings[0].scene.dynamics.run = Some(run);
     }
@@ -63,6 +67,9 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         say(&pretty(&understood))?;
     } else {
         say(&summary(&arguments.scene.display().to_string(), scene))?;
+        for housing in &housings {
+            say(&housing.text())?;
+        }
     }
     Ok(Outcome::Done)
 }

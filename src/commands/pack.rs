@@ -45,7 +45,8 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     };
     let (manifest, runs) = match &subject {
         Subject::Assembly(scene) => {
-            let Found { names, assembly, solution, record, .. } = find_equilibrium(scene, read)?;
+            let Found { names, assembly, solution, record, .. } =
+                find_equilibrium(&document, scene, read)?;
             let solved = Solved { assembly: &assembly, names: &names, solution: &solution };
             let results = |folder: &Path| assembly_results::write(folder, &solved, &record);
             (write_pack(&folder, &input(&record.scene), &record, results)?, scene.run().is_some())

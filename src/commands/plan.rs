@@ -1,11 +1,13 @@
 //! `bearing plan SCENE`.
 
+use super::assembly::housings;
 use super::plan_step::step_lines;
-use super::run::planned_request;
+use super::run::{ONE_AFTER_THE_OTHER, planned_request};
 use super::solve::{lines, plan_lines};
 use super::{CommandResult, Outcome, say};
 use bearing_dynamics::output::session::{RunRequest, table_size};
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
+use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::scene::{
     CageInRun, Document, Subject, resolve_subject, statics::static_problem,
 };
@@ -29,12 +31,26 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         Subject::Assembly(scene) => *scene,
     };
     let mut planned = match (scene.run(), scene.only()) {
+        (Some(_), _) if scene.housing_method() == Some(HousingMethod::QuasiStatic) => {
+            let mut lines = super::assembly::plan_lines(&scene)?;
+            let said = format!("WARNING: the run will be refused: {ONE_AFTER_THE_OTHER}");
+            lines.push(format!("notes {:<28} {said}", "run"));
+            lines
+        }
         (Some(settings), _) => {
-            let assembly = scene.assembly()?;
+            let prepared = housings::prepare(&document, &scene)?;
+            let assembly = match scene.housing_method() {
+                Some(HousingMethod::Reduced) => housings::reduced(&scene, &prepared)?.assembly,
+                _ => scene.assembly()?,
+            };
             let (request, choice) = planned_request(&scene, settings, &assembly, None);
             let mut lines = dynamic_plan_lines(&scene, &assembly, &request, choice.as_ref());
             lines.extend(step_lines(&assembly, &request));
             lines.push(size_line(&assembly, &request));
+            lines.retain(|line| prepared.is_empty() || !line.contains("flexible bodies"));
+            lines.extend(
+                prepared.iter().map(|housing| format!("does{}", &housing.text().trim_end()[1..])),
+            );
             lines
         }
         (None, Some(alone)) => plan_lines(&static_problem(alone)?),

@@ -34,7 +34,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         }
         Subject::Assembly(assembly) => {
             let Arguments { scene, out, dry } = arguments;
-            return super::assembly::statics::run(scene, &assembly, out, *dry);
+            return super::assembly::statics::run(scene, &document, &assembly, out, *dry);
         }
         Subject::Bearing(scene) => *scene,
     };

@@ -31,21 +31,22 @@ pub fn render(solution: &StaticSolution, remarks: &[String]) -> String {
     text
 }
 
-/// The same of several bodies and bearings; `names` are those of the bearings.
+/// The same of several bodies and bearings; `names` are those of the bearings, `housings` lines of their own.
 pub fn render_assembly(
     assembly: &StaticAssembly,
     names: &[&str],
     solution: &AssemblySolution,
+    housings: &str,
     remarks: &[String],
 ) -> String {
     let mut text = String::new();
     let all = solution.bearings.iter().flat_map(|bearing| &bearing.balls);
     let largest = all.map(|ball| ball.inner.normal_load).fold(0.0, f64::max);
     for (index, body) in assembly.bodies.iter().enumerate() {
-        if matches!(body.place, Place::Held(_)) {
-            continue;
-        }
-        let (q, loads) = (&solution.coordinates[index], &solution.loads[index]);
+        let Place::Loaded(place) = &body.place else { continue };
+        let (mut q, loads) = (solution.coordinates[index], &solution.loads[index]);
+        // From where it sits along the axis.
+        q[0] -= place.rest[0];
         coordinates(&mut text, &body.name, q.as_slice(), loads.as_slice(), largest);
         text.push('\n');
     }
@@ -67,6 +68,7 @@ pub fn render_assembly(
             fixed(extent.to_degrees(), 3)
         );
     }
+    text += housings;
     let _ = writeln!(
         text,
         "{} iterations, {} ball-race evaluations, unbalanced load {:.1e} N",

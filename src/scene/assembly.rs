@@ -2,7 +2,9 @@
 
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::scene::dynamics::{DynamicsError, dynamic_problem};
+use crate::scene::housing::{HousedScene, HousingMethod, HousingSettings};
 use crate::scene::resolved::{DefaultUsed, RunSettings, Scene};
+use crate::scene::solid::{SolidScene, Subject};
 use crate::scene::statics::{ball_mass, orbital_speed};
 use crate::solver::dynamics::assembly::{Assembly, Body, CAGE, GROUND, INNER, Mobility, OUTER};
 use crate::solver::dynamics::connection::{Connection, Law, SpringDashpot};
@@ -31,12 +33,37 @@ pub struct PlacedBearing {
     pub carriers: [Carrier; 2],
     pub reversed: bool,
     pub scene: Scene,
+    /// What the outer race sits in, if it is flexible.
+    pub housing: Option<PlacedHousing>,
+}
+
+/// A flexible housing about a bearing's place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedHousing {
+    pub settings: HousingSettings,
+    pub solid: SolidScene,
 }
 
 impl PlacedBearing {
     /// Whether it has no name and stands where a bearing alone does.
     fn is_alone(&self) -> bool {
-        self.name.is_none() && !self.reversed && self.carriers == [Carrier::Own { at: 0.0 }; 2]
+        let at_origin = self.carriers == [Carrier::Own { at: 0.0 }; 2];
+        self.name.is_none() && !self.reversed && at_origin
+    }
+
+    /// The bearing with its flexible housing as a scene of the two where they stand.
+    pub fn housed(&self) -> Option<HousedScene> {
+        let PlacedHousing { settings, solid } = self.housing.clone()?;
+        let at = self.carriers[1].at();
+        let mut housed = HousedScene { bearing: self.scene.clone(), housing: settings, solid };
+        housed.solid.mesh.place.at = at;
+        housed.bearing.outer_race[0] += at;
+        if let Some(outer) = &mut housed.bearing.dynamics.outer
+            && let Drive::Motion(profile) = &mut outer.drives[0]
+        {
+            *profile = profile.shifted(at);
+        }
+        Some(housed)
     }
 }
 
@@ -81,7 +108,7 @@ impl AssemblyScene {
     /// A bearing alone.
     pub fn alone(scene: Scene) -> AssemblyScene {
         let carriers = [Carrier::Own { at: 0.0 }; 2];
-        let bearing = PlacedBearing { name: None, carriers, reversed: false, scene };
+        let bearing = PlacedBearing { name: None, carriers, reversed: false, scene, housing: None };
         AssemblyScene {
             bearings: vec![bearing],
             bodies: Vec::new(),
@@ -93,16 +120,40 @@ impl AssemblyScene {
     /// The scene of a bearing alone; `None` where there is more.
     pub fn only(&self) -> Option<&Scene> {
         match &self.bearings[..] {
-            [one] if one.is_alone() && self.bodies.is_empty() && self.springs.is_empty() => {
-                Some(&one.scene)
-            }
+            [one] if self.is_of_one() && one.housing.is_none() => Some(&one.scene),
             _ => None,
+        }
+    }
+
+    /// Whether one bearing is all there is, besides its housing.
+    fn is_of_one(&self) -> bool {
+        let alone = matches!(&self.bearings[..], [one] if one.is_alone());
+        alone && self.bodies.is_empty() && self.springs.is_empty()
+    }
+
+    /// As a bearing alone, or with its housing, where there is no more.
+    pub fn into_subject(mut self) -> Subject {
+        if !self.is_of_one() {
+            return Subject::Assembly(Box::new(self));
+        }
+        let PlacedBearing { scene: bearing, housing, .. } = self.bearings.remove(0);
+        match housing {
+            None => Subject::Bearing(Box::new(bearing)),
+            Some(PlacedHousing { settings: housing, solid }) => {
+                Subject::Housed(Box::new(HousedScene { bearing, housing, solid }))
+            }
         }
     }
 
     /// What all bearings share.
     pub fn common(&self) -> &Scene {
         &self.bearings[0].scene
+    }
+
+    /// How the housings are solved, where there are any: all the same way.
+    pub fn housing_method(&self) -> Option<HousingMethod> {
+        let mut housings = self.bearings.iter().filter_map(|placed| placed.housing.as_ref());
+        housings.next().map(|housing| housing.settings.method)
     }
 
     pub fn run(&self) -> Option<&RunSettings> {

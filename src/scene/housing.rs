@@ -32,6 +32,8 @@ pub struct HousingSettings {
     /// Surface set of the solid.
     pub bore: String,
     pub fit: FitSize,
+    /// Whether explicit steps start in the equilibrium of all, the race grown into its fit.
+    pub from_equilibrium: bool,
     /// Time over which an interference grows in, s.
     pub fit_ramp: Option<f64>,
     /// Of the seat, m; `None`: as wide as the bore.

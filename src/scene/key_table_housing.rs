@@ -6,6 +6,7 @@ use crate::scene::units::Dimension::{Frequency, Length, Stiffness, StiffnessPerA
 use Need::{Default, Depends, Optional};
 
 pub const METHODS: &[&str] = &["quasi-static", "explicit", "reduced", "rigid"];
+pub const STARTS: &[&str] = &["undeformed", "equilibrium"];
 pub const AXIAL: &[&str] = &["held", "free"];
 
 const FIT: Kind = Kind::Quantity(Length, closed(-10_000.0, 10_000.0, "um"));
@@ -29,6 +30,8 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("housing.fit.diametral", FIT, FIT_NEED, "Diametral interference, twice the radial one; negative is clearance.").group("fit").hint(FIT_HINT),
     Key::new("housing.fit_ramp", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("`explicit` with an interference: a tenth of the run; else there from the start"),
         "Time over which an interference grows in from the start of a run.").example_of("2 ms"),
+    Key::new("housing.start", Kind::Choice(STARTS), Default { value: "undeformed", reason: "the source's explicit runs start so" },
+        "`explicit`: what a run starts from: an undeformed housing into which the fit grows, or the equilibrium of all under the loads at the start, found with the housing condensed."),
     Key::new("housing.width", RADIUS, Depends("`bearing.length`; without it the bore's own"), "Width of the outer race in its seat; nodes of the bore beside it are not touched.").hint("a positive width, along the axis; check the unit").example_of("20 mm"),
     Key::new("housing.axial", Kind::Choice(AXIAL), Default { value: "held", reason: "a shoulder or ring beside the bore; the bore has no friction" },
         "What takes an axial force on the outer race: something beside the bore, or nothing."),

@@ -2,13 +2,14 @@
 
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::scene::assembly::{
-    AssemblyScene, Carrier, NO_INERTIA, PlacedBearing, SceneBody, Spring,
+    AssemblyScene, Carrier, NO_INERTIA, PlacedBearing, PlacedHousing, SceneBody, Spring,
 };
 use crate::scene::document::Document;
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::key_table_assembly::{GROUND, OWN_RACES};
 use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_dynamics::{check_inertia, foundation, rotating_load, rotation};
+use crate::scene::resolve_housing::in_housing;
 use crate::scene::resolved::{DefaultUsed, Scene};
 use crate::scene::value::Checked;
 use crate::solver::dynamics::model::RaceBody;
@@ -43,6 +44,7 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
         bearings.push(bearing(document, name, &bodies, &mut told)?);
     }
     refuse_shared_places(document, &bearings)?;
+    refuse_mixed_methods(document, &bearings)?;
     let ball = bearings.iter().map(|b| b.scene.geometry.ball_radius).fold(0.0, f64::max);
     let needs_mass =
         bearings[0].scene.dynamics.run.is_some() || bearings[0].scene.gravity != [0.0; 3];
@@ -160,7 +162,21 @@ fn bearing(
             scoped.take_over(&document.scoped(bodies[body]), "body.speed", "inner_race.speed");
         }
     }
-    let mut scene = resolve(&scoped)?;
+    let (mut scene, housing) = match scoped.first_below("housing") {
+        Some(_) => in_housing(&scoped)?,
+        None => (resolve(&scoped)?, None),
+    };
+    if let (Some(body), Some(_)) = (on[1], &housing) {
+        let reason = format!("the outer race sits on body.{}, not in a bore", bodies[body]);
+        let advice = "leave out outer_on, or the housing".into();
+        return Err(scoped.error("bearing.outer_on", Problem::Refused { reason, advice }));
+    }
+    let mut housing = housing.map(|(settings, solid)| PlacedHousing { settings, solid });
+    if let Some(PlacedHousing { settings, solid }) = housing.as_mut().filter(|_| name.is_some()) {
+        for used in settings.defaults_used.iter_mut().chain(&mut solid.defaults_used) {
+            used.key = scoped.shown(&used.key, true);
+        }
+    }
     if let Some(body) = on[1] {
         let speed = Reader::new(&document.scoped(bodies[body])).profile("body.speed");
         scene.outer_speed = speed.map(|speed| speed.value(0.0));
@@ -169,7 +185,7 @@ fn bearing(
         forget_race(&mut scene, race);
     }
     name_defaults(&mut scene, &scoped, name, told);
-    Ok(PlacedBearing { name: name.map(str::to_string), carriers, reversed, scene })
+    Ok(PlacedBearing { name: name.map(str::to_string), carriers, reversed, scene, housing })
 }
 
 /// The body that carries a race; `None` for a race that is one itself.
@@ -263,6 +279,17 @@ fn refuse_shared_places(document: &Document, bearings: &[PlacedBearing]) -> Resu
         }
     }
     Ok(())
+}
+
+/// Housings that are solved in different ways.
+fn refuse_mixed_methods(document: &Document, bearings: &[PlacedBearing]) -> Result<(), SceneError> {
+    let method = |placed: &PlacedBearing| placed.housing.as_ref().map(|h| h.settings.method);
+    let first = bearings.iter().find_map(method);
+    let other = bearings.iter().find(|placed| method(placed).is_some_and(|m| Some(m) != first));
+    let Some(PlacedBearing { name: Some(name), .. }) = other else { return Ok(()) };
+    let reason = "this housing and another are solved in different ways".into();
+    let advice = "give all the same method, in [housing]".into();
+    Err(document.scoped(name).error("housing.method", Problem::Refused { reason, advice }))
 }
 
 /// Bodies that nothing is joined to.

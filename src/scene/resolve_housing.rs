@@ -7,7 +7,7 @@ use crate::scene::housing::{FitSize, HousedScene, HousingMethod, HousingSettings
 use crate::scene::resolve::{Reader, resolve_bearing, text};
 use crate::scene::resolve_solid::housing_solid;
 use crate::scene::resolved::{Plot, RunPlot, Scene};
-use crate::scene::solid::Subject;
+use crate::scene::solid::{SolidScene, Subject};
 use crate::scene::units::plain;
 use crate::scene::value::Checked;
 use crate::solver::channels::ChannelGroup;
@@ -25,6 +25,21 @@ const LARGEST_FIT: f64 = 0.01;
 /// # Errors
 /// The first key, in a fixed order, that is missing or contradicts others.
 pub(crate) fn housed(document: &Document) -> Result<Subject, SceneError> {
+    Ok(match in_housing(document)? {
+        (bearing, None) => Subject::Bearing(Box::new(bearing)),
+        (bearing, Some((housing, solid))) => {
+            Subject::Housed(Box::new(HousedScene { bearing, housing, solid }))
+        }
+    })
+}
+
+/// A bearing and its housing; none that is rigid.
+///
+/// # Errors
+/// As [`housed`].
+pub(crate) fn in_housing(
+    document: &Document,
+) -> Result<(Scene, Option<(HousingSettings, SolidScene)>), SceneError> {
     let mut bearing = resolve_bearing(document)?;
     let mut reader = Reader::new(document);
     let method = reader.choice("housing.method").unwrap_or("quasi-static");
@@ -41,7 +56,7 @@ pub(crate) fn housed(document: &Document) -> Result<Subject, SceneError> {
             name: "housing.method = rigid".into(),
             text: "the outer race is fixed; the housing's mesh is not even read".into(),
         });
-        return Ok(Subject::Bearing(Box::new(bearing)));
+        return Ok((bearing, None));
     }
     let method = match method {
         "explicit" => HousingMethod::Explicit,
@@ -66,7 +81,7 @@ pub(crate) fn housed(document: &Document) -> Result<Subject, SceneError> {
     output(document, &reader, &mut bearing, method)?;
     let mut housing = housing;
     housing.defaults_used = reader.into_defaults_used();
-    Ok(Subject::Housed(Box::new(HousedScene { bearing, housing, solid })))
+    Ok((bearing, Some((housing, solid))))
 }
 
 fn not_applicable<T>(
@@ -133,6 +148,24 @@ fn drive_key(name: &str, load: bool) -> String {
     format!("outer_race.{name}.{kind}")
 }
 
+/// Whether explicit steps start in equilibrium; keys that have no effect then are refused.
+fn start(reader: &mut Reader, method: HousingMethod) -> Result<bool, SceneError> {
+    let key = "housing.start";
+    if method != HousingMethod::Explicit {
+        if reader.is_given(key) {
+            let reason = "equilibria and shapes start in equilibrium by themselves";
+            return not_applicable(reader.document, key, reason, "leave it out");
+        }
+        return Ok(false);
+    }
+    let from_equilibrium = reader.choice(key) == Some("equilibrium");
+    if from_equilibrium && reader.is_given("housing.fit_ramp") {
+        let reason = "a start in equilibrium has the race grown into its fit";
+        return not_applicable(reader.document, "housing.fit_ramp", reason, "leave it out");
+    }
+    Ok(from_equilibrium)
+}
+
 fn settings(
     reader: &mut Reader,
     bearing: &Scene,
@@ -149,8 +182,10 @@ fn settings(
         FitSize::Interference(interference) => interference > 0.0,
         FitSize::OuterRadius(_) => true,
     };
+    let from_equilibrium = start(reader, method)?;
+    let ramps = grows && method == HousingMethod::Explicit && !from_equilibrium;
     let fit_ramp = reader.given_number("housing.fit_ramp").or_else(|| {
-        let ramp = 0.1 * end.filter(|_| grows && method == HousingMethod::Explicit)?;
+        let ramp = 0.1 * end.filter(|_| ramps)?;
         let reason = "an interference grows in over a tenth of the run, as in section 2.4.1";
         reader.note("housing.fit_ramp", &format!("{} s", plain(ramp)), reason);
         Some(ramp)
@@ -217,6 +252,7 @@ fn settings(
         return Err(document.error("numerics.fields_interval", problem));
     }
     Ok(HousingSettings {
+        from_equilibrium,
         method,
         bore,
         fit,

@@ -29,11 +29,7 @@ const STEP_FRACTION: f64 = 0.8;
 /// without `[housing]`.
 pub fn resolve_subject(document: &Document) -> Result<Subject, SceneError> {
     if is_assembly(document) {
-        let scene = assembly(document)?;
-        return Ok(match scene.only() {
-            Some(alone) => Subject::Bearing(Box::new(alone.clone())),
-            None => Subject::Assembly(Box::new(scene)),
-        });
+        return Ok(assembly(document)?.into_subject());
     }
     document.refuse_names()?;
     if document.first_below("housing").is_some() {

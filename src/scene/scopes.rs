@@ -67,7 +67,7 @@ impl Document {
 
     /// The document as the things of one name see it: what has no name, with the tables of this name laid
     /// over it.
-    pub(crate) fn scoped(&self, name: &str) -> Document {
+    pub fn scoped(&self, name: &str) -> Document {
         let mut scoped = self.clone();
         scoped.scope = Some(name.to_string());
         scoped.named.clear();

@@ -52,20 +52,6 @@ impl DenseSymmetric {
         }
     }
 
-    /// Eigenvalues, the largest first, with their vectors of unit length.
-    ///
-    /// # Errors
-    /// Values that are not finite.
-    pub fn eigen(&self) -> Result<Vec<(f64, Vec<f64>)>, FactorError> {
-        let whole = Mat::from_fn(self.size, self.size, |i, j| self.values[i + j * self.size]);
-        let found = whole
-            .self_adjoint_eigen(Side::Lower)
-            .map_err(|_| FactorError::NotPositiveDefinite { pivot: 0 })?;
-        let (values, vectors) = (found.S().column_vector(), found.U());
-        let pair = |k: usize| (values[k], (0..self.size).map(|i| vectors[(i, k)]).collect());
-        Ok((0..self.size).rev().map(pair).collect())
-    }
-
     /// Cholesky factors of the `picked` rows and columns with `diagonal` (one for each of them)
     /// added.
     ///

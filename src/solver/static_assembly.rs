@@ -43,8 +43,8 @@ pub enum Place {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
     /// What the coordinates count from, in the assembly's frame: a body at zero stands there, and its
-    /// displacements, tilts and loads are along and about these axes.
-    pub axes: Pose,
+    /// displacements, tilts and loads are along and about these axes. [`None`] is the frame itself.
+    pub axes: Option<Box<Pose>>,
     pub conditions: [Condition; 5],
     /// Springs to the ground, N/m and N·m/rad, and where they are at rest.
     pub springs: [f64; 5],
@@ -112,6 +112,11 @@ impl StaticBearing {
 }
 
 impl Loaded {
+    /// What its coordinates count from.
+    pub fn axes(&self) -> Pose {
+        self.axes.as_deref().copied().unwrap_or(Pose::identity())
+    }
+
     /// Value of coordinate `i` where it is given.
     pub fn given(&self, i: usize) -> Option<f64> {
         match self.conditions[i] {

@@ -71,7 +71,7 @@ fn origin(assembly: &StaticAssembly, bearing: &StaticBearing) -> Vector3<f64> {
         Place::Held(pose) => pose.position + pose.orientation * Vector3::x() * outer.along,
         Place::Loaded(loaded) => {
             let [x, y, z, ..] = loaded.start.unwrap_or(loaded.rest);
-            loaded.axes.point_to_parent(&Vector3::new(x + outer.along, y, z))
+            loaded.axes().point_to_parent(&Vector3::new(x + outer.along, y, z))
         }
     }
 }
@@ -113,7 +113,7 @@ impl<'a> Model<'a> {
         let bearings = bearings.collect();
         let seat_axes = assembly.seats.iter().map(|seat| {
             let axes = match &assembly.bodies[seat.mount.body].place {
-                Place::Loaded(loaded) => loaded.axes,
+                Place::Loaded(loaded) => loaded.axes(),
                 Place::Held(_) => Pose::identity(),
             };
             axes.relative_to(&seat.nominal)
@@ -142,7 +142,7 @@ impl<'a> Model<'a> {
     /// Axes of a body's coordinates where they are not the assembly's.
     fn axes(&self, body: usize) -> Option<&Pose> {
         match &self.assembly.bodies[body].place {
-            Place::Loaded(loaded) => Some(&loaded.axes).filter(|axes| **axes != Pose::identity()),
+            Place::Loaded(loaded) => loaded.axes.as_deref(),
             Place::Held(_) => None,
         }
     }
@@ -334,8 +334,8 @@ impl<'a, 'b> Search<'a, 'b> {
         let Some(bearing) = bearing else { return Five::zeros() };
         let outer = &self.model.assembly.bodies[bearing.mounts[1].body].place;
         let origin = match outer {
-            Place::Held(pose) => loaded.axes.point_to_body(&pose.position),
-            Place::Loaded(under) => loaded.axes.point_to_body(&under.axes.position),
+            Place::Held(pose) => loaded.axes().point_to_body(&pose.position),
+            Place::Loaded(under) => loaded.axes().point_to_body(&under.axes().position),
         };
         let loads = [0, 1, 2, 3, 4].map(|i| loaded.load(i));
         static_start::guess(&bearing.geometry, &bearing.contacts(), &loads, &origin)

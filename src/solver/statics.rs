@@ -232,7 +232,7 @@ impl StaticProblem {
     /// The same as lists: the inner race under its conditions, the outer race held.
     pub fn assembly(&self) -> StaticAssembly<'static> {
         let inner = Loaded {
-            axes: Pose::identity(),
+            axes: None,
             conditions: self.conditions,
             springs: [0.0; 5],
             rest: [0.0; 5],

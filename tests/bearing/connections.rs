@@ -320,7 +320,7 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
     let loads = [200.0, -100.0, 300.0, 1.5, -2.0];
     let held = Place::Held(Pose::identity());
     let loaded = Loaded {
-        axes: Pose::identity(),
+        axes: None,
         conditions: loads.map(Condition::Load),
         springs: [0.0; 5],
         rest: [0.0; 5],
@@ -415,7 +415,7 @@ fn on_two_bodies(mut connection: Connection, spring: bool) -> Assembly {
 #[test]
 fn what_a_connection_holds_is_determinate() {
     let loaded = Loaded {
-        axes: Pose::identity(),
+        axes: None,
         conditions: [200.0, -100.0, 300.0, 1.5, -2.0].map(Condition::Load),
         springs: [0.0; 5],
         rest: [0.0; 5],

@@ -86,7 +86,7 @@ fn pair(
     let geometry = table_5_3();
     let still = problem(geometry, FREE);
     let loaded = Loaded {
-        axes: Pose::identity(),
+        axes: None,
         conditions,
         springs: [0.0; 5],
         rest: [0.0; 5],

@@ -18,6 +18,7 @@ mod run_common;
 mod solid_command_common;
 
 mod assembly_command;
+mod assembly_housings;
 mod command_line;
 mod command_line_check;
 mod command_line_compare;
@@ -32,6 +33,7 @@ mod housed_command_errors;
 mod housed_command_numbers;
 mod housed_command_resume;
 mod housed_command_sweep;
+mod housed_reduced;
 mod run_command;
 mod run_plan;
 mod run_recorder;

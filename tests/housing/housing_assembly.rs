@@ -72,6 +72,19 @@ fn both_races_balance() {
     }
 }
 
+/// What keeps balls in their orbits comes from the outer race: the bore takes what the balls put on it.
+#[test]
+fn both_races_balance_while_balls_go_round() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    let conditions = loads([20.0, 100.0, -250.0, 0.2, -0.3]);
+    let problem = StaticProblem { orbital_speed: 200.0, ..bearing(conditions) };
+    let state = solve(&bore, &fit(1e-6), &problem);
+    assert!(state.residual <= 1e-9, "{:e}", state.residual);
+    // Displaced balls are flung more to one side than to the other.
+    let more = (state.bore.load[1] + 250.0).abs();
+    assert!(more >= 1e-5, "{more:e}");
+}
+
 /// Every force on a ball goes through its centre and they balance: what the
 /// balls and their cage put on both races sums to no moment, about every axis.
 #[test]

@@ -112,7 +112,7 @@ fn two_housings<'b>(
     ];
     let named = |name: &str, place| StaticBody { name: name.into(), place };
     let free = |axes: Pose, conditions: [Condition; 5], room: f64| {
-        let (springs, rest) = ([0.0; 5], [0.0; 5]);
+        let (axes, springs, rest) = (Some(Box::new(axes)), [0.0; 5], [0.0; 5]);
         Place::Loaded(Loaded { axes, conditions, springs, rest, start: Some([0.0; 5]), room })
     };
     let none = Condition::Load(0.0);
@@ -280,7 +280,7 @@ fn the_stiffness_of_the_lists_is_the_slope_of_their_loads() {
             Pose { position: Vector3::new(8e-3, 0.0, 0.0), orientation: about(Vector3::z(), PI) };
         let nominal = assembly.seats[1].nominal;
         let Place::Loaded(sleeve) = &mut assembly.bodies[2].place else { unreachable!() };
-        sleeve.axes = away.seen_from_parent_of(&nominal);
+        sleeve.axes = Some(Box::new(away.seen_from_parent_of(&nominal)));
         let mount = Mount { body: 2, along: 8e-3, reversed: true };
         assembly.seats[1].mount = mount;
         assembly.bearings[1].mounts[1] = mount;

@@ -468,7 +468,13 @@ fn understood(text: &str, name: &str) -> Result<Subject, String> {
         Subject::Bearing(scene) => forget(scene),
         Subject::Assembly(scene) => {
             scene.defaults_used.clear();
-            scene.bearings.iter_mut().for_each(|placed| forget(&mut placed.scene));
+            for placed in &mut scene.bearings {
+                forget(&mut placed.scene);
+                if let Some(housing) = &mut placed.housing {
+                    housing.settings.defaults_used.clear();
+                    housing.solid.defaults_used.clear();
+                }
+            }
         }
         Subject::Solid(scene) => scene.defaults_used.clear(),
         Subject::Housed(scene) => {

@@ -32,18 +32,21 @@ const LOADS: [f64; 5] = [60.0, 180.0, -450.0, 3.0, -2.0];
 
 fn assembly<'b>(bores: &'b [CondensedBore; 2]) -> Result<StaticAssembly<'b>, CaseError> {
     let at = |x: f64| Pose { position: Vector3::new(x, 0.0, 0.0), ..Pose::identity() };
-    let free = |axes: Pose, conditions: [Condition; 5]| {
+    let free = |axes: Option<Box<Pose>>, conditions: [Condition; 5]| {
         let (springs, rest, start) = ([0.0; 5], [0.0; 5], Some([0.0; 5]));
         Place::Loaded(Loaded { axes, conditions, springs, rest, start, room: BORE_RADIUS })
     };
-    let shaft = free(Pose::identity(), LOADS.map(Condition::Load));
+    let shaft = free(None, LOADS.map(Condition::Load));
     let mut assembly = StaticAssembly {
         bodies: vec![StaticBody { name: "the shaft".into(), place: shaft }],
         ..StaticAssembly::default()
     };
     let none = Condition::Load(0.0);
     for (side, bore) in bores.iter().enumerate() {
-        let race = free(at(ALONG[side]), [Condition::Displacement(0.0), none, none, none, none]);
+        let race = free(
+            Some(Box::new(at(ALONG[side]))),
+            [Condition::Displacement(0.0), none, none, none, none],
+        );
         let name = Some(["left", "right"][side].to_string());
         assembly.bodies.push(StaticBody { name: "the outer race".into(), place: race });
         let alone = bearings::problem(&BEARING, Hertz::Fit, PHASE[side], [none; 5])?;
@@ -103,7 +106,7 @@ pub(super) fn compare(context: &mut CaseContext) -> Result<(), CaseError> {
         compliances.push(body.compliance(&of));
         bores.push(bore);
     }
-    let two = |what: &str| CaseError::message(&format!("two {what}"));
+    let two = |what: &str| CaseError::message(format!("two {what}"));
     let bores: [CondensedBore; 2] = bores.try_into().map_err(|_| two("bores"))?;
     let nodes: [Vec<SeatNode>; 2] = nodes.try_into().map_err(|_| two("lists of nodes"))?;
     let compliances = compliances.try_into().map_err(|_| two("compliances"))?;

@@ -111,7 +111,7 @@ impl Shaft {
         let [left, right] = &self.ends;
         let radius = left.lengths.ball_radius.min(right.lengths.ball_radius);
         let loaded = Loaded {
-            axes: Pose::identity(),
+            axes: None,
             conditions: self.loads.map(Condition::Load),
             springs: [0.0; 5],
             rest: [0.0; 5],

@@ -1,8 +1,11 @@
 //! The commands on a scene of several bearings and bodies; here what they share. Of a bearing alone all of this
 //! is what its own scene says.
 
+pub mod housings;
 pub mod statics;
 
+use super::housed::echo as housed_echo;
+use super::solid::echo as solid_echo;
 use super::{echo, echo_run, solve};
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::DefaultUsed;
@@ -19,7 +22,12 @@ type Fallible<T> = Result<T, Box<dyn Error>>;
 
 /// Defaults in use: of bodies and springs, then of each bearing.
 pub fn defaults(scene: &AssemblyScene) -> Vec<DefaultUsed> {
-    let of_bearings = scene.bearings.iter().flat_map(|placed| echo_run::defaults(&placed.scene));
+    let of_bearings = scene.bearings.iter().flat_map(|placed| {
+        let of_housing = placed.housing.iter().flat_map(|housing| {
+            housing.settings.defaults_used.iter().chain(&housing.solid.defaults_used)
+        });
+        echo_run::defaults(&placed.scene).into_iter().chain(of_housing.cloned())
+    });
     scene.defaults_used.iter().cloned().chain(of_bearings).collect()
 }
 
@@ -61,6 +69,10 @@ pub fn echo(scene: &AssemblyScene) -> Result<Value, ResultsError> {
                 map.insert(format!("{side}_at"), at);
             }
             map.insert("reversed".into(), json!(placed.reversed));
+            if let Some(housed) = placed.housed() {
+                map.insert("housing".into(), housed_echo::housing(&housed)?);
+                map.insert("solid".into(), solid_echo::scene(&housed.solid)?["solid"].take());
+            }
         }
         bearings.insert(name_of(placed).into(), own);
     }
@@ -170,14 +182,19 @@ pub fn plan_lines(scene: &AssemblyScene) -> Fallible<Vec<String>> {
             "equilibrium"
         ),
     });
+    lines.extend(scene.bearings.iter().filter(|placed| placed.housing.is_some()).map(|placed| {
+        let of = placed.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
+        let said = "condensed onto its bore; contact on one side only, in the same search";
+        format!("does  {:<28} {said}", format!("housing{of}"))
+    }));
     lines.push(match still.connections.len() {
         0 => format!("skips {:<28} none is given", "springs between bodies"),
         some => format!("does  {:<28} {some} of them", "springs between bodies"),
     });
-    lines.push(format!(
-        "skips {:<28} the scene has none: no mesh, no element stage",
-        "flexible bodies"
-    ));
+    if scene.housing_method().is_none() {
+        let said = "the scene has none: no mesh, no element stage";
+        lines.push(format!("skips {:<28} {said}", "flexible bodies"));
+    }
     Ok(lines)
 }
 

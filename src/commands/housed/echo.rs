@@ -47,7 +47,8 @@ fn numerics(scene: &HousedScene, run: &RunSettings) -> Result<Value, ResultsErro
     Ok(echo)
 }
 
-fn housing(scene: &HousedScene) -> Result<Value, ResultsError> {
+/// What `[housing]` says.
+pub fn housing(scene: &HousedScene) -> Result<Value, ResultsError> {
     let housing = &scene.housing;
     let mut echo = Map::new();
     echo.insert("method".into(), json!(method(scene)));

@@ -9,6 +9,7 @@ pub mod statics;
 use super::memory::watched;
 use super::solid::mesh_notes;
 use super::{echo_run, placed, say};
+use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::course::{masses, moments, on_inner, on_outer};
 use bearing_dynamics::output::fields::bore::{BoreNodeState, bore_series};
@@ -22,7 +23,8 @@ use bearing_dynamics::scene::housing_problem::{
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{DefaultUsed, Document, RunSettings};
-use bearing_dynamics::solver::dynamics::assembly::OUTER;
+use bearing_dynamics::solver::dynamics::assembly::{Assembly, OUTER};
+use bearing_dynamics::solver::dynamics::equilibrium::static_assembly;
 use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::run::{RunOptions, Start};
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
@@ -41,7 +43,8 @@ use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::support::free_motions;
 use bearing_dynamics::solver::solid::tangent::Unknowns;
 use bearing_dynamics::solver::sparse::Cost;
-use bearing_dynamics::solver::statics::{Condition, StaticProblem};
+use bearing_dynamics::solver::static_assembly::{StaticAssembly, StaticSeat};
+use bearing_dynamics::solver::statics::{Condition, StaticOptions, StaticProblem, solve_assembly};
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -220,30 +223,88 @@ pub fn along_course(
 /// Bearing, housing and seat for explicit steps.
 pub fn parts(
     scene: &HousedScene,
-    setup: &HousingSetup,
+    prepared: &Prepared,
     run: &RunSettings,
     threads: usize,
 ) -> Fallible<HousedParts> {
-    let housing = &scene.housing;
-    let seat = Seat {
+    let setup = &prepared.setup;
+    let mut assembly = dynamic_problem(&scene.bearing)?.assembly();
+    let start = start_of_steps(&mut assembly, &[(0, scene, prepared)])?.pop();
+    let model = setup.model.clone();
+    let solid = match start {
+        Some(displacement) => SolidPart { name: None, model, displacement },
+        None => SolidPart::undeformed(None, model),
+    };
+    let (seats, options) = (vec![seat(scene, setup, OUTER, 0)], exchange_options(scene, run));
+    Ok(HousedParts { assembly, solids: vec![solid], seats, options, threads })
+}
+
+/// Puts races that explicit steps start from where all is in equilibrium; how far the nodes of their housings have
+/// gone there, m. Nothing where they start undeformed. With the index of each bearing.
+pub fn start_of_steps(
+    assembly: &mut Assembly,
+    housings: &[(usize, &HousedScene, &Prepared)],
+) -> Fallible<Vec<Vec<Vec3>>> {
+    if !housings.iter().all(|(_, scene, _)| scene.housing.from_equilibrium) {
+        return Ok(Vec::new());
+    }
+    let bores: Vec<CondensedBore> =
+        housings.iter().map(|(.., prepared)| condensed(prepared)).collect::<Result<_, _>>()?;
+    let mut still = static_assembly(assembly, 0.0, &[]);
+    for ((bearing, scene, prepared), bore) in housings.iter().zip(&bores) {
+        add_seat(&mut still, *bearing, scene, prepared, bore);
+    }
+    let found = solve_assembly(&still, None, &StaticOptions::default())?;
+    let mut displacements = Vec::with_capacity(housings.len());
+    for (((bearing, ..), bore), state) in housings.iter().zip(&bores).zip(&found.seats) {
+        let body = assembly.bearings[*bearing].mounts[1].body;
+        assembly.bodies[body].rest = found.coordinates[body].into();
+        displacements.push(bore.displacement(&state.loads));
+    }
+    Ok(displacements)
+}
+
+/// Adds the outer race of a bearing in its bore, grown into its fit, to what is in equilibrium.
+pub fn add_seat<'b>(
+    still: &mut StaticAssembly<'b>,
+    bearing: usize,
+    scene: &HousedScene,
+    prepared: &Prepared,
+    bore: &'b CondensedBore,
+) {
+    let body = still.bearings[bearing].mounts[1].body;
+    still.seats.push(StaticSeat {
+        name: Some(still.bodies[body].name.clone()),
+        mount: Mount::at_centre(body),
+        nominal: bore.reach.nominal,
+        bore,
+        penalty: scene.housing.penalty,
+        fit: prepared.setup.fit(scene),
+    });
+}
+
+/// The race of a body in the bore of explicit solid `solid`.
+pub fn seat(scene: &HousedScene, setup: &HousingSetup, body: usize, solid: usize) -> Seat {
+    Seat {
         name: None,
-        mount: Mount::at_centre(OUTER),
-        solid: 0,
+        mount: Mount::at_centre(body),
+        solid,
         radius: setup.radius(scene),
         width: setup.width,
-        penalty: housing.penalty,
+        penalty: scene.housing.penalty,
         nodes: setup.nodes.clone(),
         reach: REACH * setup.bore_radius,
-    };
-    let options = ExchangeOptions {
-        solid_fraction: housing.step_fraction,
-        seat_phase: housing.window_phase,
-        // Both together are balanced, not the bearing alone.
+    }
+}
+
+/// How housings and bearings exchange.
+pub fn exchange_options(scene: &HousedScene, run: &RunSettings) -> ExchangeOptions {
+    ExchangeOptions {
+        solid_fraction: scene.housing.step_fraction,
+        seat_phase: scene.housing.window_phase,
+        // All together are balanced, not the bearings alone.
         bearing: RunOptions { energy_limit: f64::INFINITY, ..run.options },
-    };
-    let assembly = dynamic_problem(&scene.bearing)?.assembly();
-    let solids = vec![SolidPart::undeformed(None, setup.model.clone())];
-    Ok(HousedParts { assembly, solids, seats: vec![seat], options, threads })
+    }
 }
 
 pub fn request(scene: &HousedScene, run: &RunSettings) -> RunRequest {

@@ -1,6 +1,6 @@
 //! A housing reduced to some shapes, and its bearing in it.
 
-use super::{Fallible, Prepared, condensed, most_loaded, plan::line};
+use super::{Fallible, Prepared, condensed, plan::line};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::course::on_inner;
 use bearing_dynamics::output::session::Motion;
@@ -8,9 +8,10 @@ use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::scene::housing_problem::{Excitation, excitations};
 use bearing_dynamics::solver::clock::to_digits;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, OUTER};
+use bearing_dynamics::solver::dynamics::assembly::{Assembly, Bearing, OUTER};
 use bearing_dynamics::solver::dynamics::run::Start;
 use bearing_dynamics::solver::housing::bore_equilibrium::Fit;
+use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::reduce::{
     LEFT_OUT, ReduceOptions, Reduction, pressed, reduce,
 };
@@ -31,23 +32,42 @@ pub struct Reduced {
 /// Frequencies of the housing that are kept, over that of a ball between its races.
 const BEYOND_BALLS: f64 = 2.0;
 
-/// Condenses and reduces the housing of a scene, and finds the equilibrium that a run starts from.
-pub fn reduced(scene: &HousedScene, prepared: &Prepared) -> Fallible<Reduced> {
+/// A housing condensed and reduced, and the wall time of both, s.
+pub struct Found {
+    pub bore: CondensedBore,
+    pub reduction: Reduction,
+    pub seconds: [f64; 2],
+}
+
+/// Condenses a housing and reduces it for a bearing with up to `force` (N) on it.
+pub fn reduction(
+    scene: &HousedScene,
+    prepared: &Prepared,
+    bearing: &Bearing,
+    force: f64,
+) -> Fallible<Found> {
     let setup = &prepared.setup;
     let penalty = scene.housing.penalty;
     let start = Instant::now();
-    let mut bore = condensed(prepared)?;
+    let bore = condensed(prepared)?;
     let condensing = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let mut assembly = dynamic_problem(&scene.bearing)?.assembly();
-    let force = largest_force(scene);
     let loads = pressed(&bore, penalty, &setup.fit(scene), force.max(1.0))?;
-    let modes_to = scene
-        .housing
-        .modes_to
-        .unwrap_or_else(|| BEYOND_BALLS * ball_frequency(&assembly.bearings[0], force));
+    let by_default = || BEYOND_BALLS * ball_frequency(bearing, force);
+    let modes_to = scene.housing.modes_to.unwrap_or_else(by_default);
     let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
     let reduction = reduce(&setup.model, &bore, penalty, &loads, &options)?;
+    Ok(Found { bore, reduction, seconds: [condensing, start.elapsed().as_secs_f64()] })
+}
+
+/// Condenses and reduces the housing of a scene, and finds the equilibrium that a run starts from.
+pub fn reduced(scene: &HousedScene, prepared: &Prepared) -> Fallible<Reduced> {
+    let (setup, penalty) = (&prepared.setup, scene.housing.penalty);
+    let mut assembly = dynamic_problem(&scene.bearing)?.assembly();
+    let force = largest_force(scene, &assembly.corners());
+    let Found { mut bore, reduction, seconds: [condensing, reducing] } =
+        reduction(scene, prepared, &assembly.bearings[0], force)?;
+    let start = Instant::now();
     let radius = setup.radius(scene);
     let fit = Fit { radius: radius.value(0.0), ..setup.fit(scene) };
     add_housing(&mut assembly, OUTER, &reduction, &bore, radius, penalty);
@@ -56,17 +76,32 @@ pub fn reduced(scene: &HousedScene, prepared: &Prepared) -> Fallible<Reduced> {
         let housing = Housing { reduction: &reduction, bore: &mut bore, fit, penalty };
         put_in_equilibrium(&mut assembly, &mut [housing])?;
     }
-    Ok(Reduced { reduction, assembly, seconds: [condensing, start.elapsed().as_secs_f64()] })
+    let seconds = [condensing, reducing + start.elapsed().as_secs_f64()];
+    Ok(Reduced { reduction, assembly, seconds })
 }
 
-/// On the inner race across its axis, N.
-fn largest_force(scene: &HousedScene) -> f64 {
-    let conditions = on_inner(scene, most_loaded(scene));
+/// Looks at loads between two of their corners, and how long after the last one, s.
+const LOOKS: usize = 64;
+const AFTER: f64 = 1.0;
+
+/// On the inner race across its axis, N, at any time: a run that is extended keeps its housing.
+fn largest_force(scene: &HousedScene, corners: &[f64]) -> f64 {
     let load = |condition: &Condition| match condition {
         Condition::Load(load) => *load,
         Condition::Displacement(_) => 0.0,
     };
-    load(&conditions[1]).hypot(load(&conditions[2]))
+    let at = |t: f64| {
+        let conditions = on_inner(scene, t);
+        load(&conditions[1]).hypot(load(&conditions[2]))
+    };
+    let mut largest = at(0.0);
+    let mut from = 0.0;
+    for to in corners.iter().copied().chain([corners.last().unwrap_or(&0.0) + AFTER]) {
+        let times = (1..=LOOKS).map(|i| from + (to - from) * i as f64 / LOOKS as f64);
+        largest = times.map(at).fold(largest, f64::max);
+        from = to;
+    }
+    largest
 }
 
 impl Reduced {

@@ -87,7 +87,7 @@ pub fn run(
     // The other plots move the bearing on, which would move the outer race.
     drawn.plots.retain(|plot| *plot == Plot::LoadZone);
     let mut written = pictures::write(&folder, &drawn, &problem, &state.bearing)?;
-    let nodes = condensed_nodes(&setup.model, &bore, &state);
+    let nodes = condensed_nodes(&setup.model, &bore, &state.bore);
     written.push(write_bore(&folder, &nodes)?);
     let file = file_name("fields", 0);
     let fields = folder.join(&file);

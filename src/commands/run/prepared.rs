@@ -1,12 +1,13 @@
 //! From a scene to what moves in its run: the one place that asks what the scene is of.
 
+use crate::commands::assembly::housings::{self, Housing, Reduced as Reductions};
 use crate::commands::housed::reduced::Reduced;
 use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::{self, housed, solid};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::course::CourseParts;
 use bearing_dynamics::output::results::RunRecord;
-use bearing_dynamics::output::session::{Parts, RunRequest, Session, SolidParts};
+use bearing_dynamics::output::session::{Motion, Parts, RunRequest, Session, SolidParts};
 use bearing_dynamics::output::state::{self, StateFile};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::dynamics::{DynamicsError, run_options};
@@ -18,8 +19,9 @@ use bearing_dynamics::scene::{Document, RunPlot, RunSettings, Scene, SolidScene,
 use bearing_dynamics::solver::channels::ChannelGroup;
 use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::foretell::{Choice, choose};
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions};
+use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Start};
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::solid::model::SolidModel;
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
@@ -31,7 +33,10 @@ pub(super) enum Prepared<'s> {
     Bearings {
         scene: Box<AssemblyScene>,
         settings: RunSettings,
+        /// With the housings that are reduced.
         assembly: Box<Assembly>,
+        housings: Vec<Housing>,
+        reduced: Option<Box<Reductions>>,
     },
     Solid {
         scene: &'s SolidScene,
@@ -48,6 +53,25 @@ pub(super) enum Prepared<'s> {
         reduced: Option<Box<Reduced>>,
     },
 }
+
+/// A solid of a scene and its mesh.
+#[derive(Clone, Copy)]
+pub(super) struct SolidOf<'p> {
+    /// `None` for the only one.
+    pub name: Option<&'p str>,
+    pub built: &'p BuiltMesh,
+    /// Of a housing; that of a solid by itself is in the motion.
+    pub model: Option<&'p SolidModel>,
+}
+
+/// What fields are made of, a vector a node.
+pub(super) struct Fields {
+    pub displacement: Vec<Vec3>,
+    pub velocity: Option<Vec<Vec3>>,
+}
+
+pub const ONE_AFTER_THE_OTHER: &str = "several bearings do not run through equilibria one after the other; \
+    `bearing statics` and `sweep` give their equilibria, and they run with method = \"reduced\" or \"explicit\" in [housing]";
 
 /// Refuses a scene that gives no end.
 pub(super) fn check_end(path: &Path, subject: &Subject) -> Fallible<()> {
@@ -72,8 +96,12 @@ impl<'s> Prepared<'s> {
     pub fn new(document: &Document, subject: &'s Subject) -> Fallible<Prepared<'s>> {
         const NO_END: &str = "a run needs `end` in [numerics]";
         Ok(match subject {
-            Subject::Bearing(scene) => Prepared::bearings(AssemblyScene::alone((**scene).clone()))?,
-            Subject::Assembly(scene) => Prepared::bearings((**scene).clone())?,
+            Subject::Bearing(scene) => {
+                Prepared::bearings(AssemblyScene::alone((**scene).clone()), Vec::new())?
+            }
+            Subject::Assembly(scene) => {
+                Prepared::bearings((**scene).clone(), housings::prepare(document, scene)?)?
+            }
             Subject::Solid(scene) => Prepared::Solid {
                 settings: scene.run.ok_or(NO_END)?,
                 mesh: Box::new(solid::prepare(document, scene)?),
@@ -101,17 +129,26 @@ impl<'s> Prepared<'s> {
         })
     }
 
-    fn bearings(scene: AssemblyScene) -> Fallible<Prepared<'s>> {
-        Ok(Prepared::Bearings {
-            settings: scene.run().cloned().ok_or(DynamicsError::NoEnd)?,
-            assembly: Box::new(scene.assembly()?),
-            scene: Box::new(scene),
-        })
+    fn bearings(scene: AssemblyScene, housings: Vec<Housing>) -> Fallible<Prepared<'s>> {
+        let settings = scene.run().cloned().ok_or(DynamicsError::NoEnd)?;
+        let (assembly, reduced) = match scene.housing_method() {
+            None | Some(HousingMethod::Explicit) => (scene.assembly()?, None),
+            Some(HousingMethod::Reduced) => {
+                let reduced = housings::reduced(&scene, &housings)?;
+                (reduced.assembly.clone(), Some(Box::new(reduced)))
+            }
+            Some(HousingMethod::QuasiStatic) => return Err(ONE_AFTER_THE_OTHER.into()),
+        };
+        let (scene, assembly) = (Box::new(scene), Box::new(assembly));
+        Ok(Prepared::Bearings { scene, settings, assembly, housings, reduced })
     }
 
     /// What moves.
     pub fn parts(&self, threads: usize) -> Fallible<Parts<'_>> {
         Ok(match self {
+            Prepared::Bearings { scene, housings, reduced: None, .. } if !housings.is_empty() => {
+                Parts::Housed(Box::new(housings::explicit(scene, housings, threads)?))
+            }
             Prepared::Bearings { assembly, .. } => Parts::from((**assembly).clone()),
             Prepared::Solid { settings, mesh, .. } => Parts::Solid(SolidParts {
                 setup: &mesh.setup,
@@ -127,7 +164,7 @@ impl<'s> Prepared<'s> {
                 Parts::Bearing(Box::new(reduced.assembly.clone()))
             }
             Prepared::Housed { scene, settings, mesh, .. } => {
-                Parts::Housed(Box::new(housed::parts(scene, &mesh.setup, settings, threads)?))
+                Parts::Housed(Box::new(housed::parts(scene, mesh, settings, threads)?))
             }
         })
     }
@@ -135,8 +172,21 @@ impl<'s> Prepared<'s> {
     /// What the scene asks of the run, with the integrator that the plan chooses for a bearing.
     pub fn request(&self, kept: Option<&StateFile>) -> Fallible<(RunRequest, Option<Choice>)> {
         Ok(match self {
-            Prepared::Bearings { scene, settings, assembly } => {
-                planned_request(scene, settings, assembly, kept)
+            Prepared::Bearings { scene, settings, housings, reduced: None, .. }
+                if !housings.is_empty() =>
+            {
+                let mut request = request(scene.common(), settings);
+                request.fields_interval = housings[0].scene.housing.fields_interval;
+                (request, None)
+            }
+            Prepared::Bearings { scene, settings, assembly, housings, .. } => {
+                let (mut request, choice) = planned_request(scene, settings, assembly, kept);
+                if let Some(first) = housings.first() {
+                    request.fields_interval = first.scene.housing.fields_interval;
+                    // Where races and housings start is in the assembly.
+                    request.options.start = Start::Equilibrium;
+                }
+                (request, choice)
             }
             Prepared::Housed { scene, settings, reduced: Some(reduced), .. } => {
                 let request = housed::request(scene, settings);
@@ -162,7 +212,15 @@ impl<'s> Prepared<'s> {
     /// What a person should know of mesh and bore before results.
     pub fn notes(&self) -> Vec<String> {
         match self {
-            Prepared::Bearings { .. } => Vec::new(),
+            Prepared::Bearings { housings, .. } => {
+                let said = |housing: &Housing| {
+                    let name =
+                        housing.name.clone().map_or(String::new(), |name| format!("{name}: "));
+                    let notes = housed::notes(&housing.mesh).into_iter();
+                    notes.map(|note| format!("{name}{note}")).collect::<Vec<_>>()
+                };
+                housings.iter().flat_map(said).collect()
+            }
             Prepared::Solid { mesh, .. } => solid::mesh_notes(&mesh.built),
             Prepared::Housed { mesh, .. } => housed::notes(mesh),
         }
@@ -189,22 +247,48 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// Displacements of the solid, m; empty without one.
-    pub fn displacement(&self, session: &Session) -> Vec<Vec3> {
-        match self {
-            Prepared::Housed { reduced: Some(reduced), .. } => {
-                reduced.fields(&session.motion).map_or_else(Vec::new, |[of, _]| of)
+    /// Displacements (m) and velocities (m/s) of a solid; `None` where there is nothing yet.
+    pub fn fields(&self, session: &mut Session, solid: usize) -> Option<Fields> {
+        let by_shapes = match self {
+            Prepared::Housed { reduced: Some(reduced), .. } => reduced.fields(&session.motion),
+            Prepared::Bearings { reduced: Some(reduced), .. } => {
+                housings::fields(reduced, &session.motion, solid)
             }
-            _ => session.displacement(0),
+            _ => None,
+        };
+        if let Some([displacement, velocity]) = by_shapes {
+            return Some(Fields { displacement, velocity: Some(velocity) });
         }
+        let displacement = session.displacement(solid);
+        let velocity = match &mut session.motion {
+            Motion::Solid(moving) => Some(moving.solid.velocity()),
+            // Between kicks the rates of a housing are those of the bearing's time.
+            motion => motion
+                .solids()
+                .get(solid)
+                .map(|solid| solid.rates().iter().map(|v| [v[0], v[1], v[2]]).collect()),
+        };
+        (!displacement.is_empty()).then_some(Fields { displacement, velocity })
     }
 
-    /// The mesh of the scene, if it has one.
-    pub fn built(&self) -> Option<&BuiltMesh> {
+    /// The solids of the scene: by themselves, or housings.
+    pub fn solids(&self) -> Vec<SolidOf<'_>> {
         match self {
-            Prepared::Bearings { .. } => None,
-            Prepared::Solid { mesh, .. } => Some(&mesh.built),
-            Prepared::Housed { mesh, .. } => Some(&mesh.built),
+            Prepared::Bearings { housings, .. } => housings
+                .iter()
+                .map(|Housing { name, mesh, .. }| SolidOf {
+                    name: name.as_deref(),
+                    built: &mesh.built,
+                    model: Some(&mesh.setup.model),
+                })
+                .collect(),
+            Prepared::Solid { mesh, .. } => {
+                vec![SolidOf { name: None, built: &mesh.built, model: None }]
+            }
+            Prepared::Housed { mesh, .. } => {
+                let model = Some(&mesh.setup.model);
+                vec![SolidOf { name: None, built: &mesh.built, model }]
+            }
         }
     }
 

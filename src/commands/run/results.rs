@@ -1,11 +1,11 @@
 //! What a run leaves in its folder: fields on the way; tables, plots and the summary at its end.
 
 use super::figures::key_figures;
-use super::prepared::Prepared;
+use super::prepared::{Fields, Prepared, SolidOf};
 use crate::commands::housed::{along_course, inertia_estimate, plan::verdict, write_bore};
 use crate::commands::{remarks, say};
 use bearing_dynamics::output::atomic::write_atomic;
-use bearing_dynamics::output::fields::bore::bore_nodes;
+use bearing_dynamics::output::fields::bore::{bore_nodes, bore_series};
 use bearing_dynamics::output::fields::{FOLDER, file_name, stresses, write_fields, write_list};
 use bearing_dynamics::output::pictures::bearing::{Picture, draw};
 use bearing_dynamics::output::pictures::solid::{probe_spectra, series_plots, spectrum_plot};
@@ -21,8 +21,7 @@ use bearing_dynamics::output::table::RunTable;
 use bearing_dynamics::scene::housing_problem::excitations;
 use bearing_dynamics::scene::{Plot, RunPlot, Scene};
 use bearing_dynamics::solver::dynamics::foretell::Choice;
-use bearing_dynamics::solver::solid::model::SolidModel;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -59,10 +58,13 @@ pub(super) fn write_results(
     let start = Instant::now();
     let mut said = Said::default();
     match prepared {
-        Prepared::Bearings { scene, .. } => {
+        Prepared::Bearings { scene, housings, .. } => {
             if let Some(simulation) = session.motion.bearing() {
                 said.remarks = remarks::of_run(scene, simulation);
                 said.sections.push(("remarks".into(), json!(said.remarks)));
+            }
+            if !housings.is_empty() {
+                housings_results(folder, prepared, session, &mut said)?;
             }
         }
         Prepared::Solid { .. } => solid_results(prepared, session, &mut said)?,
@@ -80,8 +82,12 @@ pub(super) fn write_results(
     if let Prepared::Housed { bore: Some((_, seconds)), .. } = prepared {
         stages.push(("condense".into(), *seconds));
     }
-    if let Prepared::Housed { reduced: Some(reduced), .. } = prepared {
-        let [condense, reduce] = reduced.seconds;
+    let of_shapes = match prepared {
+        Prepared::Housed { reduced: Some(reduced), .. } => Some(reduced.seconds),
+        Prepared::Bearings { reduced: Some(reduced), .. } => Some(reduced.seconds),
+        _ => None,
+    };
+    if let Some([condense, reduce]) = of_shapes {
         stages.extend([("condense".into(), condense), ("reduce".into(), reduce)]);
     }
     let mut record = prepared.record(request, choice.as_ref(), stages)?;
@@ -117,15 +123,61 @@ pub(super) fn write_results(
 }
 
 fn solid_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fallible<()> {
-    let (Some(built), Motion::Solid(moving)) = (prepared.built(), &session.motion) else {
+    let (Prepared::Solid { mesh, .. }, Motion::Solid(moving)) = (prepared, &session.motion) else {
         return Ok(());
     };
+    let built = &mesh.built;
     let (model, displacement) = (&moving.solid.model, session.displacement(0));
     let stress = stresses(model, &displacement);
     said.sections.push(("mass".into(), mass_section(model, built)?));
     said.sections.extend(field_sections(built, &displacement, &stress)?);
     said.remarks = of_solid::of_run(session, model, &stress);
     said.sections.push(("remarks".into(), json!(said.remarks)));
+    Ok(())
+}
+
+/// Fields of the last state and the nodes of the bores of several housings.
+fn housings_results(
+    folder: &Path,
+    prepared: &Prepared,
+    session: &mut Session,
+    said: &mut Said,
+) -> Fallible<()> {
+    let Prepared::Bearings { housings, reduced, .. } = prepared else { return Ok(()) };
+    // Of explicit steps that stopped on the way the state at the last row is not at hand.
+    let is_sound = reduced.is_some() || session.status == Status::Complete;
+    let mut sections = Map::new();
+    let mut remarks = Vec::new();
+    if is_sound && session.recorder.rows() > 0 {
+        if session.clock.fields_due().is_none() {
+            let row = session.recorder.rows() as u64 - 1;
+            let index = session.clock.rows_per_fields.map_or(0, |every| row / every + 1);
+            write_fields_file(folder, prepared, session, index)?;
+        }
+        for (number, housing) in housings.iter().enumerate() {
+            let Some(Fields { displacement, .. }) = prepared.fields(session, number) else { break };
+            let (model, name) = (&housing.mesh.setup.model, housing.name.as_deref());
+            let stress = stresses(model, &displacement);
+            let mut section = Map::new();
+            section.insert("seat".into(), seat_section(&housing.mesh.setup)?);
+            if let Some(reduced) = reduced {
+                let cut = &reduced.reductions[number].cut_off;
+                section.insert("shapes".into(), reduced_section(cut, &[])?);
+            }
+            section.extend(field_sections(&housing.mesh.built, &displacement, &stress)?);
+            sections.insert(name.unwrap_or("housing").into(), Value::Object(section));
+            let own = of_solid::of_motion(model, &displacement, &stress).into_iter();
+            let of = name.map_or(String::new(), |name| format!("housing {name}: "));
+            remarks.extend(own.map(|remark| format!("{of}{remark}")));
+            let series = bore_series(&bore_nodes(&session.motion, number, model))?;
+            let file = name.map_or("bore.csv".into(), |name| format!("bore_{name}.csv"));
+            series.write_csv(&folder.join(file))?;
+            said.files += 1;
+        }
+    }
+    said.sections.push(("housings".into(), Value::Object(sections)));
+    said.sections.push(("housing_remarks".into(), json!(remarks)));
+    said.remarks.append(&mut remarks);
     Ok(())
 }
 
@@ -146,8 +198,7 @@ fn housing_results(
             let index = session.clock.rows_per_fields.map_or(0, |every| row / every + 1);
             write_fields_file(folder, prepared, session, index)?;
         }
-        let displacement = prepared.displacement(session);
-        if !displacement.is_empty() {
+        if let Some(Fields { displacement, .. }) = prepared.fields(session, 0) {
             let stress = stresses(&setup.model, &displacement);
             said.remarks = match &session.motion {
                 Motion::Course(_) => of_solid::of_equilibrium(&setup.model, &displacement, &stress),
@@ -195,43 +246,35 @@ pub(super) fn write_fields_file(
     session: &mut Session,
     index: u64,
 ) -> Fallible<()> {
-    let Some(built) = prepared.built() else { return Ok(()) };
-    let displacement = prepared.displacement(session);
-    if displacement.is_empty() {
+    let solids = prepared.solids();
+    for (number, solid) in solids.iter().enumerate() {
+        let Some(Fields { displacement, velocity }) = prepared.fields(session, number) else {
+            return Ok(());
+        };
+        let (bore, stress) = match (solid.model, &session.motion) {
+            (Some(model), motion) => {
+                (Some(bore_nodes(motion, number, model)), stresses(model, &displacement))
+            }
+            (None, Motion::Solid(moving)) => (None, stresses(&moving.solid.model, &displacement)),
+            _ => return Ok(()),
+        };
+        let path = folder.join(file_name(solid.name.unwrap_or("fields"), index as usize));
+        let (mesh, velocity) = (&solid.built.mesh, velocity.as_deref());
+        write_fields(&path, mesh, &displacement, velocity, &stress, bore.as_deref())?;
+    }
+    if solids.is_empty() {
         return Ok(());
     }
-    let path = folder.join(file_name("fields", index as usize));
-    let housing = match prepared {
-        Prepared::Housed { mesh, .. } => Some(&mesh.setup.model),
-        Prepared::Bearings { .. } | Prepared::Solid { .. } => None,
-    };
-    let bore = housing.map(|model: &SolidModel| bore_nodes(&session.motion, 0, model));
-    let (velocity, stress) = match &mut session.motion {
-        Motion::Solid(moving) => {
-            (Some(moving.solid.velocity()), stresses(&moving.solid.model, &displacement))
-        }
-        motion => {
-            // Between kicks the rates of a housing are those of the bearing's time.
-            let rates = motion.solids().first().map(|solid| solid.rates());
-            let rates = rates.map(|rates| rates.iter().map(|v| [v[0], v[1], v[2]]).collect());
-            let rates = match prepared {
-                Prepared::Housed { reduced: Some(reduced), .. } => {
-                    reduced.fields(motion).map(|[_, velocities]| velocities)
-                }
-                _ => rates,
-            };
-            let Some(model) = housing else { return Ok(()) };
-            (rates, stresses(model, &displacement))
-        }
-    };
-    write_fields(&path, &built.mesh, &displacement, velocity.as_deref(), &stress, bore.as_deref())?;
     let last = session.recorder.rows().saturating_sub(1);
     let every = session.clock.rows_per_fields.map(|every| every as usize);
     let row = |index: u64| every.map_or(last, |every| (every * index as usize).min(last));
     let first = if every.is_none() { index } else { 0 };
-    let files: Vec<(f64, String)> = (first..=index)
-        .map(|index| (session.row_time(row(index)), file_name("fields", index as usize)))
-        .collect();
+    let mut files: Vec<(f64, String)> = Vec::new();
+    for index in first..=index {
+        let time = session.row_time(row(index));
+        let name = |solid: &SolidOf| file_name(solid.name.unwrap_or("fields"), index as usize);
+        files.extend(solids.iter().map(|solid| (time, name(solid))));
+    }
     write_list(folder, &files)?;
     Ok(())
 }

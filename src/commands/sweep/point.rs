@@ -2,6 +2,7 @@
 
 use super::grid::Grid;
 use super::housed::{self, Kept};
+use crate::commands::assembly::housings;
 use bearing_dynamics::output::Column;
 use bearing_dynamics::output::assembly_results::key;
 use bearing_dynamics::output::results::load_zone_of;
@@ -38,7 +39,9 @@ pub fn solve(
         }
         Subject::Bearing(scene) => *scene,
         Subject::Assembly(scene) => {
-            let still = scene.statics().map_err(|error| text(&error))?;
+            let housings = housings::prepare(document, &scene).map_err(|error| text(&error))?;
+            let bores = housings::condensed(&housings).map_err(|error| text(&error))?;
+            let still = housings::statics(&scene, &housings, &bores).map_err(|e| text(&e))?;
             let solution = solve_assembly(&still, neighbour, &StaticOptions::default())
                 .map_err(|error| text(&error))?;
             let determinate = solution.determinacy == Determinacy::Determinate;

@@ -125,13 +125,16 @@ pub fn write_pvd(steps: &[(f64, &str)]) -> Result<String, MeshError> {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n",
     );
-    for &(time, file) in steps {
+    let mut part = 0;
+    for (index, &(time, file)) in steps.iter().enumerate() {
+        // Files of one time are parts of one picture.
+        part = if index > 0 && steps[index - 1].0 == time { part + 1 } else { 0 };
         check_name(file)?;
         if !time.is_finite() {
             let allowed = "the finite numbers".to_string();
             return Err(MeshError::Dimension { what: "time", value: time, unit: "", allowed });
         }
-        text += &format!("    <DataSet timestep=\"{time}\" part=\"0\" file=\"{file}\"/>\n");
+        text += &format!("    <DataSet timestep=\"{time}\" part=\"{part}\" file=\"{file}\"/>\n");
     }
     text += "  </Collection>\n</VTKFile>\n";
     Ok(text)

@@ -6,6 +6,7 @@ use crate::output::series::{Column, Series, SeriesError};
 use crate::output::session::Motion;
 use crate::solver::dynamics::seat::TouchingNode;
 use crate::solver::dynamics::system::System;
+use crate::solver::housing::bore_equilibrium::BoreState;
 use crate::solver::housing::condensed::CondensedBore;
 use crate::solver::housing::housed::HousedState;
 use crate::solver::solid::model::SolidModel;
@@ -30,9 +31,9 @@ pub struct BoreNodeState {
 pub fn bore_nodes(motion: &Motion, solid: usize, model: &SolidModel) -> Vec<BoreNodeState> {
     match motion {
         Motion::Solid(_) => Vec::new(),
-        Motion::Bearing(simulation) => seat_nodes(&simulation.system),
+        Motion::Bearing(simulation) => seat_nodes(&simulation.system, solid),
         Motion::Course(course) => {
-            let of = |state: &HousedState| condensed_nodes(model, course.bore(), state);
+            let of = |state: &HousedState| condensed_nodes(model, course.bore(), &state.bore);
             course.latest.as_ref().map_or_else(Vec::new, |moment| of(&moment.state))
         }
         Motion::Housed(housed) => {
@@ -51,9 +52,10 @@ pub fn bore_nodes(motion: &Motion, solid: usize, model: &SolidModel) -> Vec<Bore
     }
 }
 
-/// Nodes that touch in the first seat of a bearing in a reduced housing; none without one.
-fn seat_nodes(system: &System) -> Vec<BoreNodeState> {
-    let Some((seat, now)) = system.assembly.seats.first().zip(system.seats.first()) else {
+/// Nodes that touch in the first seat in a reduced solid; none without one.
+fn seat_nodes(system: &System, solid: usize) -> Vec<BoreNodeState> {
+    let mut seats = system.assembly.seats.iter().zip(&system.seats);
+    let Some((seat, now)) = seats.find(|(seat, _)| seat.solid == solid) else {
         return Vec::new();
     };
     let surface = &system.assembly.solids[seat.solid].surfaces[seat.surface];
@@ -75,12 +77,12 @@ fn seat_nodes(system: &System) -> Vec<BoreNodeState> {
 pub fn condensed_nodes(
     model: &SolidModel,
     bore: &CondensedBore,
-    state: &HousedState,
+    state: &BoreState,
 ) -> Vec<BoreNodeState> {
     bore.nodes
         .iter()
-        .zip(&state.bore.penetration)
-        .zip(bore.nodal_forces(&state.bore.loads))
+        .zip(&state.penetration)
+        .zip(bore.nodal_forces(&state.loads))
         .map(|((node, penetration), (_, force))| BoreNodeState {
             node: node.node,
             place: model.problem.nodes[node.node as usize],

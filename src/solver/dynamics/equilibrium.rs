@@ -152,7 +152,7 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
                     && assembly.bearings.len() == 1
                     && is_held(&assembly.bodies[assembly.bearings[0].mounts[1].body]);
                 Place::Loaded(Loaded {
-                    axes: Pose::identity(),
+                    axes: None,
                     conditions: conditions(assembly, body, race, t),
                     springs: race.foundation_stiffness,
                     rest: *rest,

@@ -158,7 +158,7 @@ fn lists<'b>(
     let mut assembly = bearing.assembly();
     let nominal = bore.reach.nominal.relative_to(&bearing.frame);
     let weight = RaceLoad { force: bore.to_nominal(weight), moment: [0.0; 3] };
-    let race = race(nominal, fit, &weight);
+    let race = race(Some(Box::new(nominal)), fit, &weight);
     assembly.bodies[OUTER].place = Place::Loaded(race);
     let (mount, penalty) = (Mount::at_centre(OUTER), search.penalty());
     assembly.seats.push(StaticSeat { name: None, mount, nominal, bore, penalty, fit: *fit });
@@ -166,7 +166,7 @@ fn lists<'b>(
 }
 
 /// A race in a bore under a load besides what else the lists put on it.
-fn race(axes: Pose, fit: &Fit, load: &RaceLoad) -> Loaded {
+fn race(axes: Option<Box<Pose>>, fit: &Fit, load: &RaceLoad) -> Loaded {
     let [_, y, z] = load.force;
     let [_, about_y, about_z] = load.moment;
     let loads = [y, z, about_y, about_z].map(Condition::Load);
@@ -192,7 +192,7 @@ pub fn race_under_load(
     load: &RaceLoad,
 ) -> Result<BoreState, StaticsError> {
     check_load(fit, load).map_err(in_bore)?;
-    let place = Place::Loaded(race(Pose::identity(), fit, load));
+    let place = Place::Loaded(race(None, fit, load));
     let seat = StaticSeat {
         name: None,
         mount: Mount::at_centre(0),

@@ -81,6 +81,11 @@ pub fn modes(model: &SolidModel, options: &ModeOptions) -> Result<Modes, ModeErr
     modes_over(model, &Unknowns::new(model), options)
 }
 
+/// Numbers that trial vectors may take beyond those that large bodies have room for, half a gigabyte with their
+/// images, and the most trial vectors then.
+const FREE_TRIALS: usize = 30_000_000;
+const MOST_TRIALS: usize = 400;
+
 /// The same over unknowns that are numbered already.
 ///
 /// # Errors
@@ -102,7 +107,8 @@ pub fn modes_over(
     shifted.add_scaled(-shift, &masses);
     let factor = unknowns.factor(&shifted)?;
 
-    let most = (4 * options.count + 60).min(size);
+    // Short thick bodies have many modes close to each other; a small one may take more trials.
+    let most = (4 * options.count + 60).max((FREE_TRIALS / size).min(MOST_TRIALS)).min(size);
     let mut krylov = Krylov::new(&masses, &factor);
     krylov.start(size.min(BLOCK));
     let mut before = Vec::new();

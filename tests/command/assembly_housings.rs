@@ -1,0 +1,162 @@
+//! A shaft on two bearings in two housings, by equilibrium, in shapes and in explicit steps.
+
+use crate::command_line_common::{changed, done, json, read, refused, scene, text, write};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// The shipped scene, cut to 1 ms, with these words changed.
+fn variant(folder: &Path, name: &str, changes: &[(&str, &str)]) -> String {
+    let mut words = read(Path::new(&scene("shaft_in_two_housings.toml")));
+    for (from, to) in [("end = \"2 ms\"", "end = \"1 ms\"")].iter().chain(changes) {
+        words = changed(&words, from, to);
+    }
+    write(folder, &format!("{name}.toml"), &words)
+}
+
+fn run(folder: &Path, name: &str, changes: &[(&str, &str)], further: &[&str]) -> PathBuf {
+    let (path, out) = (variant(folder, name, changes), folder.join(name));
+    let out_text = text(&out);
+    let arguments = [&["run", &path, "--out", &out_text], further].concat();
+    let said = done(&arguments);
+    assert!(said.contains("left bore") && said.contains("right bore"), "{said}");
+    out
+}
+
+/// One column of a run.
+fn column(folder: &Path, name: &str) -> Vec<f64> {
+    let csv = read(&folder.join("series.csv"));
+    let mut lines = csv.lines();
+    let header = lines.next().expect("a header");
+    let at = header.split(',').position(|own| own.split(' ').next() == Some(name));
+    let at = at.unwrap_or_else(|| panic!("{name} in {header}"));
+    lines.map(|row| row.split(',').nth(at).expect("a cell").parse().expect("a number")).collect()
+}
+
+fn swing(of: &[f64]) -> f64 {
+    let low = of.iter().copied().fold(f64::INFINITY, f64::min);
+    of.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
+}
+
+fn farthest(one: &[f64], other: &[f64]) -> f64 {
+    assert_eq!(one.len(), other.len());
+    one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+const EXPLICIT: [(&str, &str); 1] =
+    [("method = \"reduced\"", "method = \"explicit\"\nstart = \"equilibrium\"")];
+
+#[test]
+fn a_blow_in_shapes_and_in_explicit_steps_is_the_same() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let shapes = run(folder.path(), "shapes", &[], &[]);
+    let steps = run(folder.path(), "steps", &EXPLICIT, &[]);
+    // Both start from one equilibrium: 0.004 % of the compliance has no shape.
+    // Of what moves: the shaft on its balls hardly feels the housings; races move with what shapes leave out.
+    for (name, most) in
+        [("shaft_z", 1e-4), ("shaft_tilt_y", 1e-3), ("left_outer_z", 0.01), ("right_outer_z", 0.01)]
+    {
+        let [one, other] = [&shapes, &steps].map(|folder| column(folder, name));
+        let swing = swing(&other);
+        assert!(
+            (one[0] - other[0]).abs() <= 1e-3 * swing,
+            "{name} starts at {} and {}",
+            one[0],
+            other[0]
+        );
+        let off = farthest(&one, &other);
+        assert!(off <= most * swing, "{name}: {off:e} of {swing:e} m");
+    }
+    for run in [&shapes, &steps] {
+        let summary = json(&run.join("summary.json"));
+        assert_eq!(summary["complete"], true);
+        for file in ["fields.pvd", "bore_left.csv", "bore_right.csv"] {
+            assert!(run.join(file).is_file(), "{file}");
+        }
+        let list = read(&run.join("fields.pvd"));
+        assert!(list.contains("part=\"0\" file=\"fields/left_"), "{list}");
+        assert!(list.contains("part=\"1\" file=\"fields/right_"), "{list}");
+    }
+    // The balance of shapes: what is missing, of the energy of the blow.
+    let summary = json(&shapes.join("summary.json"));
+    let missing = summary["energy"]["largest_residual"]["value"].as_f64().expect("a number");
+    let held = column(&shapes, "energy_contact").into_iter().fold(0.0, f64::max);
+    assert!(missing <= 1e-4 * held, "{missing:e} of {held:e} J");
+}
+
+/// The equilibrium of `statics` is where a run in shapes starts, but for the compliance they leave out.
+#[test]
+fn statics_is_where_a_run_starts() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = variant(folder.path(), "still", &[]);
+    let out = folder.path().join("still");
+    let said = done(&["statics", &path, "--out", &text(&out)]);
+    assert!(
+        said.contains("housing left: outer race") && said.contains("bore nodes touch"),
+        "{said}"
+    );
+    let summary = json(&out.join("summary.json"));
+    let shapes = run(folder.path(), "shapes", &[("end = \"1 ms\"", "end = \"10 us\"")], &[]);
+    for (column_name, body) in [
+        ("left_outer_z", "outer_race_of_bearing_left"),
+        ("right_outer_z", "outer_race_of_bearing_right"),
+        ("shaft_z", "shaft"),
+    ] {
+        let still = value(&summary["bodies"][body]["position"]["z"]);
+        let start = column(&shapes, column_name)[0];
+        assert!((start - still).abs() <= 0.005 * still.abs(), "{body}: {start:e} and {still:e}");
+    }
+    // What the housings hold is the load.
+    let held: f64 = ["left", "right"]
+        .map(|name| value(&summary["housings"][name]["housing_force_on_outer_z"]))
+        .iter()
+        .sum();
+    assert!((held - 300.0).abs() <= 1e-6, "{held}");
+}
+
+fn value(of: &Value) -> f64 {
+    of["value"].as_f64().unwrap_or_else(|| panic!("no value in {of}"))
+}
+
+#[test]
+fn threads_and_a_break_change_no_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let short = [EXPLICIT[0], ("end = \"1 ms\"", "end = \"60 us\"")];
+    let one = run(folder.path(), "one", &short, &[]);
+    let first = [EXPLICIT[0], ("end = \"1 ms\"", "end = \"30 us\"")];
+    let two = run(folder.path(), "two", &first, &["--threads", "2"]);
+    let path = variant(folder.path(), "two", &short);
+    done(&["run", &path, "--out", &text(&two), "--resume", "--threads", "2"]);
+    for file in ["series.csv", "bore_left.csv", "bore_right.csv"] {
+        let [a, b] = [&one, &two].map(|folder| read(&folder.join(file)));
+        assert!(a == b, "{file} differs");
+    }
+    let whole = run(folder.path(), "whole", &[("end = \"1 ms\"", "end = \"60 us\"")], &[]);
+    let part = run(folder.path(), "part", &[("end = \"1 ms\"", "end = \"30 us\"")], &[]);
+    let path = variant(folder.path(), "part", &[("end = \"1 ms\"", "end = \"60 us\"")]);
+    done(&["run", &path, "--out", &text(&part), "--resume"]);
+    assert!(read(&whole.join("series.csv")) == read(&part.join("series.csv")), "shapes differ");
+}
+
+#[test]
+fn what_several_housings_cannot_do_is_refused_before_anything_is_solved() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = text(&folder.path().join("out"));
+    let still =
+        variant(folder.path(), "still", &[("method = \"reduced\"", "method = \"quasi-static\"")]);
+    let said = refused(&["run", &still, "--out", &out]);
+    assert!(said.contains("equilibria one after the other") && said.contains("reduced"), "{said}");
+    let mixed = variant(
+        folder.path(),
+        "mixed",
+        &[("[solid]\n", "[housing.right]\nmethod = \"explicit\"\n\n[solid]\n")],
+    );
+    let said = refused(&["check", &mixed]);
+    assert!(said.contains("housing.right.method") && said.contains("different ways"), "{said}");
+    let strange =
+        variant(folder.path(), "strange", &[("[solid.right.mesh]", "[solid.wrong.mesh]")]);
+    let said = refused(&["check", &strange]);
+    assert!(said.contains("solid.wrong") && said.contains("no bearing \"wrong\""), "{said}");
+    let beside =
+        variant(folder.path(), "beside", &[("[outer_race]\n", "[outer_race]\nx = \"30 mm\"\n")]);
+    assert!(!refused(&["check", &beside]).is_empty());
+}

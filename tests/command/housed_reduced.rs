@@ -1,0 +1,156 @@
+//! A bearing in a reduced housing as a user meets it: beside explicit steps, its results, what it goes on from, what is
+//! refused.
+
+use crate::housed_command_common;
+use crate::resume_common;
+
+use housed_command_common::*;
+use resume_common::assert_same_results;
+use std::path::Path;
+
+/// A blow on a bearing that grows into its fit; the housing starts undeformed, as in explicit steps.
+fn blow(method: &str, end: &str, further: &str) -> String {
+    let housing = format!("method = \"{method}\"\nfit.radial = \"1 um\"\nfit_ramp = \"0.1 ms\"");
+    let run = format!(
+        "[numerics]\nend = \"{end}\"\noutput_interval = \"20 us\"\nfields_interval = \"0.4 ms\"\n{further}"
+    );
+    let pulse =
+        "z = { load = { half_sine = \"-500 N\", start = \"0.2 ms\", duration = \"0.4 ms\" } }";
+    scene_text(&housing, &run).replace("z = { load = \"-250 N\" }", pulse)
+}
+
+const NOMINAL: &str = "start = \"nominal\"\n";
+const SOURCE: &str = "integrator = \"rk4\"\nstep_fraction = 0.3\n";
+
+fn apart(one: &Path, other: &Path, name: &str) -> [f64; 2] {
+    let [a, b] = [one, other].map(|folder| column(&folder.join("series.csv"), name));
+    let largest = |of: &mut dyn Iterator<Item = f64>| of.fold(0.0f64, |most, x| most.max(x.abs()));
+    let error = largest(&mut a.iter().zip(&b).map(|(a, b)| a - b));
+    [error, largest(&mut b.iter().copied())]
+}
+
+#[test]
+fn it_moves_as_in_explicit_steps() {
+    let place = Place::new();
+    let run = |name: &str, text: &str| {
+        let scene = place.scene(&format!("{name}.toml"), text);
+        let folder = place.path(name);
+        let said = succeed(into_folder("run", &scene, &folder, &[]));
+        (folder, said)
+    };
+    let (explicit, _) = run("explicit", &blow("explicit", "1 ms", ""));
+    let (shapes, said) = run("shapes", &blow("reduced", "1 ms", NOMINAL));
+    assert!(said.contains("natural shapes up to") && said.contains("static answers"), "{said}");
+    assert!(said.contains("bore                   penetration up to"), "{said}");
+    // Of the largest value: accuracy 1e-3, and shapes that are cut off.
+    for name in ["outer_z", "inner_z", "bore_deepest_penetration", "energy_housing_strain"] {
+        let [error, largest] = apart(&shapes, &explicit, name);
+        println!("{name}: {:.1e}", error / largest);
+        assert!(error <= 0.02 * largest, "{name}: {error:e} of {largest:e}");
+    }
+    let summary = json(shapes.join("summary.json"));
+    assert_eq!(summary["housing_method"], "reduced");
+    let reduced = &summary["reduced_housing"];
+    assert!(reduced["natural_shapes"].as_u64().unwrap() > 0, "{reduced}");
+    assert!(reduced["compliance_left_out"]["value"].as_f64().unwrap() <= 1e-4, "{reduced}");
+    assert_eq!(reduced["masses"], "lumped");
+    assert!(summary["seat"]["interference"]["value"].as_f64().unwrap() > 0.0);
+    assert!(summary["largest"].is_object());
+    // Fields on the way and of the last row; the nodes of the bore that touch.
+    for folder in [&explicit, &shapes] {
+        assert_eq!(std::fs::read_dir(folder.join("fields")).unwrap().count(), 4);
+    }
+    let bore = column(&shapes.join("bore.csv"), "pressure");
+    let peak = *column(&shapes.join("series.csv"), "bore_peak_pressure").last().unwrap();
+    let largest = bore.iter().fold(0.0f64, |most, p| most.max(*p));
+    assert!((largest / peak - 1.0).abs() <= 1e-9, "{largest:e} {peak:e}");
+}
+
+#[test]
+fn it_starts_in_the_common_equilibrium() {
+    let place = Place::new();
+    let still = |method: &str, further: &str| {
+        let run = format!("[numerics]\nend = \"0.2 ms\"\noutput_interval = \"20 us\"\n{further}");
+        scene_text(&format!("method = \"{method}\"\nfit.radial = \"1 um\""), &run)
+    };
+    let scene = place.scene("scene.toml", &still("reduced", ""));
+    let folder = place.path("out");
+    succeed(into_folder("run", &scene, &folder, &[]));
+    let z = column(&folder.join("series.csv"), "outer_z");
+    let course = place.scene("course.toml", &still("quasi-static", ""));
+    let equilibria = place.path("course");
+    succeed(into_folder("run", &course, &equilibria, &[]));
+    let whole = column(&equilibria.join("series.csv"), "outer_z");
+    // It stays there, and that is where the condensed housing has it.
+    for z in &z {
+        assert!(
+            (z / z.abs().max(whole[0].abs()) - whole[0] / whole[0].abs()).abs() <= 5e-3,
+            "{z:e} {:e}",
+            whole[0]
+        );
+    }
+}
+
+#[test]
+fn extended_runs_end_with_the_same_bytes() {
+    for further in [NOMINAL, SOURCE] {
+        let place = Place::new();
+        let (longer, extended) = (place.path("longer"), place.path("extended"));
+        let scene = place.scene("scene.toml", &blow("reduced", "0.5 ms", further));
+        succeed(into_folder("run", &scene, &extended, &[]));
+        let scene = place.scene("scene.toml", &blow("reduced", "0.9 ms", further));
+        let said = succeed(into_folder("run", &scene, &extended, &["--resume"]));
+        assert!(said.contains("resumed at"), "{said}");
+        succeed(into_folder("run", &scene, &longer, &[]));
+        assert_same_results(&longer, &extended);
+        // Of other shapes it is refused.
+        let text =
+            blow("reduced", "1 ms", further).replace("fit_ramp", "modes_to = \"50 kHz\"\nfit_ramp");
+        let other = place.scene("other.toml", &text);
+        let output = into_folder("run", &other, &longer, &["--resume"]).output().unwrap();
+        assert!(stderr(&output).contains("another scene"), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn plan_and_check_say_what_moves_and_what_is_cut_off() {
+    let place = Place::new();
+    let scene = place.scene("scene.toml", &blow("reduced", "1 ms", ""));
+    let plan = succeed(command("plan", &scene, &[]));
+    for said in [
+        "does  reduced housing",
+        "does  shapes of the housing",
+        "notes cut off",
+        "the lowest natural shape left out swings at",
+        "of what goes with inner_race.z",
+    ] {
+        assert!(plan.contains(said), "{said} is not in {plan}");
+    }
+    let check = succeed(command("check", &scene, &[]));
+    assert!(check.contains("elements of 4; reduced"), "{check}");
+}
+
+#[test]
+fn what_a_reduced_housing_cannot_have_is_refused() {
+    let place = Place::new();
+    let refused = |text: &str, expected: &[&str]| {
+        let scene = place.scene("refused.toml", text);
+        let output = into_folder("run", &scene, &place.path("none"), &[]).output().unwrap();
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        for expected in expected {
+            assert!(said.contains(expected), "{expected} is not in {said}");
+        }
+    };
+    let explicit =
+        blow("explicit", "1 ms", "").replace("fit_ramp", "modes_to = \"9 kHz\"\nfit_ramp");
+    refused(&explicit, &["housing.modes_to", "only `reduced`"]);
+    let stepped = blow("reduced", "1 ms", "").replace("fit_ramp", "window_phase = 0.2\nfit_ramp");
+    refused(&stepped, &["housing.window_phase"]);
+    let moved = blow("reduced", "1 ms", "")
+        .replace("x = true", "x = { half_sine = \"1 um\", start = \"0 s\", duration = \"1 ms\" }");
+    refused(&moved, &["solid.held", "`reduced` is held at zero"]);
+    let tilted = blow("reduced", "1 ms", "")
+        .replace("[outer_race]\n", "[outer_race]\ntilt_y = { moment = \"1 N m\" }\n");
+    refused(&tilted, &["tilt_y", "not moments", "nominal"]);
+}
