@@ -58,10 +58,8 @@ impl PlacedBearing {
         let mut housed = HousedScene { bearing: self.scene.clone(), housing: settings, solid };
         housed.solid.mesh.place.at = at;
         housed.bearing.outer_race[0] += at;
-        if let Some(outer) = &mut housed.bearing.dynamics.outer
-            && let Drive::Motion(profile) = &mut outer.drives[0]
-        {
-            *profile = profile.shifted(at);
+        if let Some(outer) = &mut housed.bearing.dynamics.outer {
+            move_drive(outer, at);
         }
         Some(housed)
     }
@@ -253,9 +251,14 @@ fn add_bearing(all: &mut Assembly, placed: &PlacedBearing) -> Result<(), Dynamic
 /// A body as it was at X = 0, at `at`.
 fn move_along(body: &mut Body, at: f64) {
     body.rest[0] += at;
-    if let Some(race) = body.driven_mut()
-        && let Drive::Motion(profile) = &mut race.drives[0]
-    {
+    if let Some(race) = body.driven_mut() {
+        move_drive(race, at);
+    }
+}
+
+/// A motion given along X, at `at` in place of X = 0.
+fn move_drive(race: &mut RaceBody, at: f64) {
+    if let Drive::Motion(profile) = &mut race.drives[0] {
         *profile = profile.shifted(at);
     }
 }

@@ -5,6 +5,7 @@ mod common;
 #[path = "../common/dynamics.rs"]
 mod dynamics;
 
+mod clock_laws;
 mod connections;
 mod dynamics_balls;
 mod dynamics_cage;

@@ -593,3 +593,66 @@ fn a_soft_foundation_carries_everything_above_it() {
         assert!((found.coordinates[0][2] + sunk).abs() <= 20e-6, "{}", found.coordinates[0][2]);
     }
 }
+
+/// Two bearings that share nothing go as each of them goes alone, to the bit: each has its own history of which
+/// contact began at which speed.
+#[test]
+fn bearings_side_by_side_have_histories_of_damping_of_their_own() {
+    let alone = |geometry, loads| {
+        let mut problem = bearing(geometry, loads, 1000.0 * RPM);
+        problem.gravity = GRAVITY;
+        problem.damping = ContactDamping::LankaraniNikravesh { restitution: 0.8, slowest: 1e-3 };
+        problem.assembly()
+    };
+    // Loose, so that contacts come and go: eight balls under a radial load, eleven under one of another direction.
+    let ones = [
+        alone(table_4_1(8e-6), [0.0, 0.0, -400.0, 0.0, 0.0]),
+        alone(table_5_3(), [60.0, 900.0, 0.0, 0.0, 0.0]),
+    ];
+    let end = |assembly: &Assembly| {
+        let mut simulation =
+            Simulation::new(assembly.clone(), fixed_step(1e-6, Start::Nominal)).unwrap();
+        let mut histories: Vec<Vec<Vec<f64>>> = vec![Vec::new(); assembly.bearings.len()];
+        for _ in 0..600 {
+            simulation.step().unwrap();
+            for (history, set) in histories.iter_mut().zip(&simulation.system.sets) {
+                history.push(set.damping.clone());
+            }
+        }
+        let bodies: Vec<Vec<f64>> = (0..assembly.bodies.len())
+            .map(|body| simulation.system.places.body(body))
+            .map(|at| simulation.state[at..at + 13].to_vec())
+            .collect();
+        (bodies, histories)
+    };
+    let [first, second] = ones.each_ref().map(&end);
+    // Damping that is there after a step and was not, or the other way round.
+    let changes = |history: &[Vec<f64>]| -> usize {
+        let differ =
+            |pair: &[Vec<f64>]| pair[0].iter().zip(&pair[1]).filter(|(a, b)| a != b).count();
+        history.windows(2).map(differ).sum()
+    };
+    for one in [&first, &second] {
+        assert!(changes(&one.1[0]) > 10, "{}", changes(&one.1[0]));
+    }
+    for order in [[0, 1], [1, 0]] {
+        let mut both = ones[order[0]].clone();
+        let offset = both.bodies.len();
+        let mut other = ones[order[1]].clone();
+        for (assembly, name) in [(&mut both, "one"), (&mut other, "other")] {
+            assembly.bearings[0].name = Some(name.into());
+        }
+        for mount in &mut other.bearings[0].mounts {
+            mount.body += offset;
+        }
+        both.bodies.extend(other.bodies);
+        both.bearings.extend(other.bearings);
+        let (bodies, histories) = end(&both);
+        let expected = order.map(|index| [&first, &second][index]);
+        for (side, expected) in expected.into_iter().enumerate() {
+            let own = &bodies[side * offset..][..expected.0.len()];
+            assert!(histories[side] == expected.1[0], "{order:?} {side}");
+            assert_eq!(own, expected.0, "{order:?} {side}");
+        }
+    }
+}

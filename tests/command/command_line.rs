@@ -344,3 +344,28 @@ fn the_plan_says_what_is_done_and_why_the_rest_is_not() {
     }
     insta::assert_snapshot!("plans", plans);
 }
+
+/// With much clearance the races part by it under any load, and nothing is wrong.
+#[test]
+fn clearance_alone_is_no_reason_to_remark_how_far_the_races_are_apart() {
+    let root = tempdir().unwrap();
+    let remarks = |clearance: &str, x: &str, z: &str| {
+        let bearing = changed(DEEP_GROOVE, "-5 um", clearance);
+        let bearing = changed(&bearing, "6.013 mm", "6.5 mm");
+        let bearing = changed(&bearing, "6.310 mm", "6.5 mm");
+        let scene = format!("{bearing}[inner_race]\nx = {{ {x} }}\nz = {{ {z} }}\n");
+        let path = write(root.path(), "scene.toml", &scene);
+        let out = root.path().join("out");
+        done(&["statics", &path, "--out", &text(&out)]);
+        let summary = json(&out.join("summary.json"));
+        let position = &summary["inner_race"]["position"]["x"]["value"];
+        (position.as_f64().unwrap(), summary["remarks"].to_string())
+    };
+    // The axial play of so much clearance; a tenth of the ball radius is 0.56 mm.
+    let (gone, said) = remarks("270 um", "load = \"250 N\"", "displacement = \"0 um\"");
+    assert!(gone > 0.6e-3, "{gone}");
+    assert!(!said.contains("mm apart"), "{said}");
+    // As far without clearance is a mistake.
+    let (_, said) = remarks("5 um", "displacement = \"0 um\"", "displacement = \"-800 um\"");
+    assert!(said.contains("the centres of the races are 0.8000 mm apart"), "{said}");
+}

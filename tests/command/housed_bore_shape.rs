@@ -246,3 +246,33 @@ fn a_bore_anywhere_along_any_axis_is_put_in_its_place() {
     }
     assert!(numbers > 60, "{numbers}");
 }
+
+/// Points that a sweep has kept are those of its mesh, whatever the scene beside it says.
+#[test]
+fn a_sweep_does_not_go_on_in_another_mesh() {
+    let place = Place::new();
+    let scene = place.scene("scene.toml", &with_mesh(&place, &annulus(24, Order::Linear), 1, ""));
+    let first = fs::read(place.path("housing.msh")).unwrap();
+    let out = place.path("out");
+    let further = ["--vary", "inner_race.z.load=-250 N .. -50 N / 3000", "--threads", "1"];
+    let sweep = || into_folder("sweep", &scene, &out, &further);
+    let quiet = || std::process::Stdio::null();
+    let mut child = sweep().stdout(quiet()).stderr(quiet()).spawn().unwrap();
+    let journal = out.join("sweep.journal");
+    let start = std::time::Instant::now();
+    // The header, a chunk of points and the empty rest after the last line break.
+    while fs::read(&journal).map_or(0, |text| text.split(|&b| b == b'\n').count()) < 3 {
+        assert!(start.elapsed().as_secs() < 60, "no journal");
+        assert!(child.try_wait().unwrap().is_none(), "over before it could be killed");
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    fs::write(place.path("housing.msh"), write_gmsh(&annulus(32, Order::Linear)).unwrap()).unwrap();
+    let refused = sweep().output().unwrap();
+    assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
+    let said = stderr(&refused);
+    assert!(said.contains("sweep.journal belongs to an unfinished sweep"), "{said}");
+    fs::write(place.path("housing.msh"), first).unwrap();
+    assert!(succeed(sweep()).contains(" resumed) in "));
+}

@@ -9,8 +9,9 @@ use bearing_dynamics::output::table::RunTable;
 use bearing_dynamics::solver::channels::ChannelGroup;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
-use bearing_dynamics::solver::dynamics::state::POSITION;
+use bearing_dynamics::solver::dynamics::state::{POSITION, VELOCITY};
 use bearing_dynamics::solver::profile::Profile;
+use nalgebra::{Matrix3, Vector3};
 use run_common::{
     common, complete, frictionless, jolted, request, simulation, simulation_mut, sliding,
 };
@@ -421,4 +422,92 @@ fn slip_is_told_against_the_contact_angle_that_balls_have() {
     // A tenth of it at most: what spin leaves, and the angle of each ball beside the mean.
     assert!(of("ball_set_slip").abs() <= 0.1 * nominal.abs(), "{}", summary["kinematics"]);
     assert!(summary["kinematics"]["rolling_at"].as_str().unwrap().contains("mean contact angles"));
+}
+
+/// Balls go round the outer race's centre: what all of them have in common is no orbiting.
+#[test]
+fn orbital_speeds_count_from_the_moving_outer_race() {
+    let mut wanted = request(1e-6, 2);
+    // The push takes energy that no ledger knows of.
+    wanted.options.energy_limit = 1e9;
+    let mut session = Session::start(complete(), &wanted).unwrap();
+    let before: Vec<f64> = session.recorder.row(0).to_vec();
+    let simulation = simulation_mut(&mut session);
+    let (layout, at) = (simulation.system.sets[0].layout, simulation.system.places.body(1));
+    let velocity = [0.0, 0.7, -0.4];
+    for (i, by) in velocity.into_iter().enumerate() {
+        simulation.state[at + VELOCITY + i] += by;
+        for ball in 0..layout.balls {
+            simulation.state[layout.ball(VELOCITY + i) + ball] += by;
+        }
+    }
+    let snapshot = simulation.snapshot().unwrap();
+    session.recorder.record(session.motion.bearing().unwrap(), &snapshot);
+    for ball in 1..=layout.balls {
+        let name = format!("ball_{ball}_orbital_speed");
+        let index = session.recorder.columns().iter().position(|c| c.name == name).unwrap();
+        let (was, is) = (before[index], session.recorder.row(1)[index]);
+        // Rounding; the common velocity alone would be 0.8/0.026 of it.
+        assert!((is - was).abs() <= 1e-12 * was.abs() && was > 10.0, "{name}: {was} {is}");
+    }
+}
+
+/// The largest energy that was missing is that of all rows, not of the last one.
+#[test]
+fn the_summary_tells_the_largest_residual_of_all_rows() {
+    // What the steps leave changes its sign between the third row and the fourth.
+    let wanted = RunRequest { end: 30e-6, ..request(1e-6, 3) };
+    let session = to_the_end(jolted(), &wanted);
+    let summary = run_summary(&session, &table(&session), &[], &RunReport::default()).unwrap();
+    let of = |name: &str| summary["energy"][name]["value"].as_f64().unwrap();
+    let rows = column(&session, "energy_residual");
+    let largest = rows.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+    assert_eq!(of("energy_residual"), rows[rows.len() - 1]);
+    assert_eq!(of("largest_residual"), largest);
+    assert!(largest > rows[rows.len() - 1].abs(), "{rows:?}");
+}
+
+/// Speed of the balls' orbits where they slip at neither contact and do not spin on one of the races, from the
+/// velocities of the surfaces: contact angles (rad) and speeds (rad/s) of the inner and the outer race.
+fn orbit_without_slip(ball: f64, pitch: f64, angles: [f64; 2], speeds: [f64; 2], on: usize) -> f64 {
+    // Radially outwards and along the axis, from the ball's centre to its contacts.
+    let normals = [[-angles[0].cos(), -angles[0].sin()], [angles[1].cos(), angles[1].sin()]];
+    // Unknown: the orbit's speed, the ball's spin along the axis and along the radius.
+    let row = |[r, x]: [f64; 2]| [pitch, ball * r, -ball * x];
+    let surface = |side: usize| speeds[side] * (pitch + ball * normals[side][0]);
+    let [r, x] = normals[on];
+    let matrix =
+        Matrix3::from_rows(&[row(normals[0]).into(), row(normals[1]).into(), [0.0, x, r].into()]);
+    let right = Vector3::new(surface(0), surface(1), speeds[on] * x);
+    matrix.lu().solve(&right).expect("two contacts")[0]
+}
+
+/// At speed balls press outwards: they touch the inner race at the larger angle, and which race they spin on counts.
+#[test]
+fn speeds_of_rolling_follow_from_the_velocities_at_both_contacts() {
+    let mut problem = DynamicProblem { geometry: common::table_5_3(), ..frictionless() };
+    problem.inner.drives = [const { Drive::Motion(Profile::ZERO) }; 5];
+    problem.inner.drives[0] = Drive::Load(Profile::Constant(400.0));
+    problem.inner.rotation = Rotation::Speed(Profile::Constant(2000.0));
+    let mut outer = problem.inner.clone();
+    outer.drives[0] = Drive::Motion(Profile::ZERO);
+    outer.rotation = Rotation::Speed(Profile::Constant(-300.0));
+    problem.outer = Some(outer);
+    let mut wanted = request(1e-6, 20);
+    wanted.options.energy_limit = f64::INFINITY;
+    let session = to_the_end(problem, &wanted);
+    let summary = run_summary(&session, &table(&session), &[], &RunReport::default()).unwrap();
+    let of = |name: &str| summary["kinematics"][name]["value"].as_f64().unwrap();
+    let degrees = ["inner_contact_angle", "outer_contact_angle"].map(of);
+    assert!(degrees[0] > degrees[1] + 1.0, "{degrees:?}");
+    let geometry = simulation(&session).system.assembly.bearings[0].geometry;
+    let (ball, pitch) = (geometry.ball_radius, geometry.pitch_radius);
+    let angles = degrees.map(f64::to_radians);
+    let expected = [0, 1].map(|on| orbit_without_slip(ball, pitch, angles, [2000.0, -300.0], on));
+    assert!((expected[0] / expected[1] - 1.0).abs() > 1e-4, "{expected:?}");
+    for (race, expected) in ["inner", "outer"].into_iter().zip(expected) {
+        let told = of(&format!("rolling_cage_speed_{race}_control"));
+        // Rounding of angles in degrees.
+        assert!((told / expected - 1.0).abs() <= 1e-12, "{race}: {told} {expected}");
+    }
 }

@@ -101,3 +101,50 @@ fn a_run_that_fails_says_where_and_keeps_its_state() {
         &[],
     ));
 }
+
+/// Steps of a solid are whole: the last one may end past the end, and a complete run is then resumed as any other.
+#[test]
+fn a_complete_run_whose_last_step_ends_past_the_end_is_resumed() {
+    let place = Place::new();
+    let mut past = 0;
+    for end in ["0.1001 ms", "0.1002 ms", "0.1003 ms", "0.1004 ms", "0.1005 ms", "0.1006 ms"] {
+        let numerics = format!("{SHORT_RUN}end = \"{end}\"\noutput_interval = \"10 us\"\n");
+        let scene = place.scene("scene.toml", &numerics);
+        let out = place.path(end);
+        succeed(into_folder("run", &scene, &out, &[]));
+        let state = json(out.join("state.json"));
+        let summary = json(out.join("summary.json"));
+        let (asked, time) =
+            (state["end"].as_f64().unwrap(), summary["time"]["value"].as_f64().unwrap());
+        past += usize::from(time > asked);
+        let rows = column(&out, "time");
+        succeed(into_folder("run", &scene, &out, &["--resume"]));
+        assert_eq!(column(&out, "time"), rows);
+    }
+    assert!(past > 0, "no end of these lies before its last step's");
+}
+
+/// Whatever decides the motion decides whether a state is gone on from.
+#[test]
+fn a_solid_of_another_law_does_not_go_on_from_a_state() {
+    let place = Place::new();
+    let scene = |from: &str, to: &str, end: &str| {
+        assert!(SHORT_RUN.contains(from), "{from}");
+        let text = format!("{SHORT_RUN}end = \"{end}\"\noutput_interval = \"10 us\"\n");
+        place.scene("scene.toml", &text.replace(from, to))
+    };
+    let out = place.path("out");
+    succeed(into_folder("run", &scene("100 1/s", "100 1/s", "0.1 ms"), &out, &[]));
+    for (from, to) in [
+        ("damping = \"100 1/s\"", "damping = \"101 1/s\""),
+        ("amplitude = \"1 um\"", "amplitude = \"2 um\""),
+        ("width = \"10 mm\"", "width = \"11 mm\""),
+        ("[solid]", "[solid]\nmaterial = { density = \"7000 kg/m^3\" }"),
+    ] {
+        let other = scene(from, to, "0.2 ms");
+        let refused = into_folder("run", &other, &out, &["--resume"]).output().unwrap();
+        assert_eq!(refused.status.code(), Some(2), "{to}");
+        assert!(stderr(&refused).contains("another scene"), "{to}: {}", stderr(&refused));
+    }
+    succeed(into_folder("run", &scene("100 1/s", "100 1/s", "0.2 ms"), &out, &["--resume"]));
+}

@@ -44,15 +44,15 @@ use nalgebra::Complex;
 
 const PENALTY: fn() -> Penalty = Penalty::default;
 
-fn fit(interference: f64) -> Fit {
+pub(crate) fn fit(interference: f64) -> Fit {
     Fit { radius: BORE + interference, axial: Axial::Held }
 }
 
 /// The ring of housing D on a coarse mesh, condensed, and reduced.
-struct Housing {
+pub(crate) struct Housing {
     model: SolidModel,
-    bore: CondensedBore,
-    reduction: Reduction,
+    pub(crate) bore: CondensedBore,
+    pub(crate) reduction: Reduction,
 }
 
 fn reduced_model(model: SolidModel, bore: CondensedBore, modes_to: f64, left_out: f64) -> Housing {
@@ -62,7 +62,12 @@ fn reduced_model(model: SolidModel, bore: CondensedBore, modes_to: f64, left_out
     Housing { model, bore, reduction }
 }
 
-fn ring(young: f64, change: impl FnOnce(&mut SolidModel), modes_to: f64, left_out: f64) -> Housing {
+pub(crate) fn ring(
+    young: f64,
+    change: impl FnOnce(&mut SolidModel),
+    modes_to: f64,
+    left_out: f64,
+) -> Housing {
     let mesh = mesh_of(&RING, &COARSE, Order::Linear);
     let mut model = model_of(&mesh, young);
     change(&mut model);
@@ -70,12 +75,12 @@ fn ring(young: f64, change: impl FnOnce(&mut SolidModel), modes_to: f64, left_ou
     reduced_model(model, bore, modes_to, left_out)
 }
 
-fn plain() -> Housing {
+pub(crate) fn plain() -> Housing {
     ring(YOUNG, |_| {}, 60e3, 1e-3)
 }
 
 /// Table 2.2's bearing whose outer race moves in a housing.
-fn mounted(load: f64) -> DynamicProblem {
+pub(crate) fn mounted(load: f64) -> DynamicProblem {
     let mut outer = RaceBody {
         inertia: inertia::hollow_cylinder(32e-3, BORE, WIDTH, 7850.0),
         ..race([0.0; 5], Rotation::Speed(Profile::ZERO))
@@ -85,14 +90,18 @@ fn mounted(load: f64) -> DynamicProblem {
     DynamicProblem { outer: Some(outer), ..bearing(table_4_1(-5e-6), loads, 0.0) }
 }
 
-fn seated(housing: &Housing, problem: &DynamicProblem, radius: Profile) -> Assembly {
+pub(crate) fn seated(housing: &Housing, problem: &DynamicProblem, radius: Profile) -> Assembly {
     let mut assembly = problem.assembly();
     add_housing(&mut assembly, OUTER, &housing.reduction, &housing.bore, radius, PENALTY());
     assembly
 }
 
 /// In equilibrium, with this interference.
-fn settled(housing: &mut Housing, problem: &DynamicProblem, interference: f64) -> Assembly {
+pub(crate) fn settled(
+    housing: &mut Housing,
+    problem: &DynamicProblem,
+    interference: f64,
+) -> Assembly {
     let fit = fit(interference);
     let mut assembly = seated(housing, problem, Profile::Constant(fit.radius));
     let Housing { bore, reduction, .. } = housing;
@@ -105,19 +114,19 @@ fn options(integrator: Integrator, stepping: Stepping) -> RunOptions {
     RunOptions { integrator, stepping, ..RunOptions::default() }
 }
 
-fn state_of(assembly: &Assembly) -> (System, Vec<f64>) {
+pub(crate) fn state_of(assembly: &Assembly) -> (System, Vec<f64>) {
     let state = start::at_equilibrium(assembly).unwrap();
     (System::new(assembly.clone(), Driver::Lanes), state)
 }
 
-fn rates_of(system: &mut System, t: f64, state: &[f64]) -> Vec<f64> {
+pub(crate) fn rates_of(system: &mut System, t: f64, state: &[f64]) -> Vec<f64> {
     let mut rates = vec![0.0; state.len()];
     system.evaluate(t, state, &mut rates);
     rates
 }
 
 /// Shakes bodies and shapes of a state so that everything moves and some nodes touch.
-fn shaken_state(system: &System, state: &[f64], noise: &mut Noise) -> Vec<f64> {
+pub(crate) fn shaken_state(system: &System, state: &[f64], noise: &mut Noise) -> Vec<f64> {
     let mut shaken = state.to_vec();
     let at = system.places.body(OUTER);
     for i in 0..3 {

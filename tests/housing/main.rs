@@ -13,4 +13,5 @@ mod housing_exchange;
 mod housing_nonlinear;
 mod housing_reduced;
 mod housing_seats;
+mod reduced_laws;
 mod several_housings;

@@ -404,3 +404,16 @@ fn parameters_of_nodes_are_passed_over() {
     assert_eq!(mesh.nodes, places);
     assert_eq!(mesh.elements.len(), 1);
 }
+
+/// As Abaqus writes labels that are no plain words.
+#[test]
+fn names_in_quotes_are_names() {
+    let text = DECK
+        .replace("nset=more", "nset=\"more nodes\"")
+        .replace("nset=base,", "nset = \"base\" ,")
+        .replace("name=floor", "name=\"floor\"");
+    let mesh = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap().mesh;
+    assert_eq!(mesh.node_set("more nodes").unwrap(), [0, 1, 2, 3]);
+    assert_eq!(mesh.node_set("base").unwrap(), [0, 1, 2]);
+    assert_eq!(mesh.surface_set("floor").unwrap().len(), 1);
+}

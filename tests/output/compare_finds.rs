@@ -732,6 +732,49 @@ fn where_a_ball_without_load_is_shown_is_its_programs_choice() {
     assert_eq!(result.first_divergence.unwrap().channel, "inner_approach");
 }
 
+/// In a summary as in a table: one loaded contact determines where the ball is.
+#[test]
+fn a_summary_leaves_out_where_balls_without_load_are_shown_and_nothing_else() {
+    let (_root, reference, candidate) = pair();
+    let (expected, given) = (reference.join("summary.json"), candidate.join("summary.json"));
+    let summary = read_json(&expected);
+    let series = Series::read_csv(&reference.join("series.csv")).unwrap();
+    let idle = (0..8).find(|&row| carries_nothing(&series, row)).unwrap();
+    let loaded = (0..8).find(|&row| !carries_nothing(&series, row)).unwrap();
+    let at = |ball: usize, what: &str| format!("/balls/{ball}/{what}/value");
+    let put = |value: &Value, changes: &[(String, Value)]| {
+        let mut altered = value.clone();
+        for (pointer, to) in changes {
+            *altered.pointer_mut(pointer).unwrap_or_else(|| panic!("{pointer}")) = to.clone();
+        }
+        altered
+    };
+    let outcome = |from: &Value, changes: &[(String, Value)], class| {
+        fs::write(&expected, from.to_string()).unwrap();
+        fs::write(&given, put(from, changes).to_string()).unwrap();
+        compared(&expected, &given, class)
+    };
+    let [reordered, _] = CLASSES;
+    let elsewhere = [
+        (at(idle, "position/y"), json!(0.03)),
+        (at(idle, "inner/approach"), json!(-1e-6)),
+        (at(idle, "outer/contact_angle"), json!(12.5)),
+    ];
+    let result = outcome(&summary, &elsewhere, reordered);
+    assert!(result.equal && report(&result).contains("balls without load"), "{}", report(&result));
+    assert!(!outcome(&summary, &elsewhere, ToleranceClass::F64Exact).equal);
+    assert!(!outcome(&summary, &[(at(idle, "position/y"), Value::Null)], reordered).equal);
+    assert!(!outcome(&summary, &[(at(idle, "inner/load"), json!(1e-3))], reordered).equal);
+    assert!(!outcome(&summary, &[(at(loaded, "position/y"), json!(0.03))], reordered).equal);
+    for race in ["inner", "outer"] {
+        let held = put(&summary, &[(at(idle, &format!("{race}/load")), json!(0.07))]);
+        for change in &elsewhere {
+            let result = outcome(&held, std::slice::from_ref(change), reordered);
+            assert!(!result.equal && result.differing == 1, "{race}: {}", report(&result));
+        }
+    }
+}
+
 #[test]
 fn npy_without_names_takes_those_of_the_reference() {
     let (_root, reference, candidate) = pair();

@@ -3,6 +3,7 @@
 #[path = "../fuzz_common/mod.rs"]
 mod fuzz_common;
 
+mod scene_assembly;
 mod scene_docs;
 mod scene_dynamics;
 mod scene_dynamics_errors;

@@ -611,3 +611,19 @@ fn readers_name_no_other_default_than_the_table() {
     }
     assert!(seen >= 12, "{seen}");
 }
+
+/// Whether inertia is given or follows from the geometry, what is added weighs and has no size.
+#[test]
+fn added_mass_adds_to_the_mass_alone() {
+    let given =
+        "inertia = { mass = \"0.2 kg\", axial = \"1 kg mm^2\", transverse = \"1 kg mm^2\" }\n";
+    for inertia in ["", given] {
+        let of = |added: &str| problem(&format!("[inner_race]\n{added}{inertia}"));
+        let (plain, laden) = (of(""), of("added_mass = \"0.75 kg\"\n"));
+        let (was, is) = (plain.inner.inertia, laden.inner.inertia);
+        assert_eq!(is.mass, was.mass + 0.75);
+        assert_eq!((is.axial, is.transverse), (was.axial, was.transverse));
+        let outer = |of: &DynamicProblem| of.outer.as_ref().map(|race| race.inertia);
+        assert_eq!(outer(&plain), outer(&laden));
+    }
+}
