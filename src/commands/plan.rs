@@ -1,7 +1,8 @@
 //! `bearing plan SCENE`.
 
 use super::assembly::housings;
-use super::plan_step::step_lines;
+use super::housed::plan::windows_text;
+use super::plan_step::{note, refused, step_lines};
 use super::run::{ONE_AFTER_THE_OTHER, planned_request};
 use super::solve::{lines, plan_lines};
 use super::{CommandResult, Outcome, say};
@@ -45,7 +46,15 @@ pub fn run(arguments: &Arguments) -> CommandResult {
             };
             let (request, choice) = planned_request(&scene, settings, &assembly, None);
             let mut lines = dynamic_plan_lines(&scene, &assembly, &request, choice.as_ref());
-            lines.extend(step_lines(&assembly, &request));
+            if scene.housing_method() == Some(HousingMethod::Explicit) {
+                // Races without their housings would have nothing to hold them.
+                let windows = housings::explicit(&scene, &prepared, 1)
+                    .and_then(|parts| windows_text(parts, settings));
+                let said = windows.unwrap_or_else(|error| refused(&*error));
+                lines.push(note("step", &said));
+            } else {
+                lines.extend(step_lines(&assembly, &request));
+            }
             lines.push(size_line(&assembly, &request));
             lines.retain(|line| prepared.is_empty() || !line.contains("flexible bodies"));
             lines.extend(

@@ -12,6 +12,7 @@ use bearing_dynamics::solver::dynamics::run::{
 use bearing_dynamics::solver::dynamics::stability::{Cause, StepLimit, step_limit};
 use bearing_dynamics::solver::dynamics::step_watch::TOLERATED;
 use bearing_dynamics::solver::dynamics::system::System;
+use std::error::Error;
 
 /// From here on a friction onset that makes steps shorter than contacts need is worth a word.
 const WORTH_A_WORD: f64 = 3.0;
@@ -47,11 +48,11 @@ pub fn step_lines(assembly: &Assembly, request: &RunRequest) -> Vec<String> {
 
 const NOT_STIFF: &str = "no contact is stiff at the start";
 
-fn note(name: &str, said: &str) -> String {
+pub fn note(name: &str, said: &str) -> String {
     format!("notes {name:<28} {said}")
 }
 
-fn refused(error: &SimulationError) -> String {
+pub fn refused(error: &dyn Error) -> String {
     format!("WARNING: the run will be refused: {error}")
 }
 

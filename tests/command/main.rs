@@ -25,6 +25,7 @@ mod command_line_compare;
 mod command_line_files;
 mod command_line_sweep;
 mod documented_commands;
+mod features;
 mod frozen_scenes;
 mod housed_bore_shape;
 mod housed_command;

@@ -15,6 +15,7 @@ use bearing_dynamics::output::course::{masses, moments, on_inner, on_outer};
 use bearing_dynamics::output::fields::bore::{BoreNodeState, bore_series};
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::session::{HousedParts, RunRequest};
+use bearing_dynamics::scene::about::About;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
 use bearing_dynamics::scene::housing_problem::{
@@ -26,7 +27,7 @@ use bearing_dynamics::scene::{DefaultUsed, Document, RunSettings};
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, OUTER};
 use bearing_dynamics::solver::dynamics::equilibrium::static_assembly;
 use bearing_dynamics::solver::dynamics::model::Drive;
-use bearing_dynamics::solver::dynamics::run::{RunOptions, Start};
+use bearing_dynamics::solver::dynamics::run::{RunOptions, Start, Stepping};
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
 use bearing_dynamics::solver::housing::condensed::{
     CondensedBore, Sizes, condense_over, cost, sizes,
@@ -76,8 +77,23 @@ pub fn refuse_moved_supports(document: &Document, scene: &HousedScene) -> Fallib
     check_supports(scene).map_err(|error| placed(document, error.about(), error))
 }
 
+/// Error control where nothing is stepped in time.
+pub fn refuse_accuracy(document: &Document, scene: &HousedScene) -> Fallible<()> {
+    const KEY: &str = "numerics.accuracy";
+    let by_accuracy = |run: &RunSettings| matches!(run.options.stepping, Stepping::Accuracy(_));
+    let chosen = || echo_run::defaults(&scene.bearing).iter().any(|used| used.key == KEY);
+    if !scene.bearing.dynamics.run.as_ref().is_some_and(by_accuracy) || chosen() {
+        return Ok(());
+    }
+    let place = document.place_of(&About::key(KEY));
+    let reason = "equilibria one after the other take no steps in time";
+    let hint = "leave it out, or write method = \"reduced\" in [housing]";
+    Err(format!("{place}: {KEY}: refused: {reason}. Hint: {hint}").into())
+}
+
 /// What a condensed housing cannot have.
 pub fn refuse_moving(document: &Document, scene: &HousedScene) -> Fallible<()> {
+    refuse_accuracy(document, scene)?;
     check_constant(scene).map_err(|error| placed(document, error.about(), error))
 }
 

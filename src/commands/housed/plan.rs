@@ -3,12 +3,13 @@
 
 use super::{
     Prepared, along_course, bearing_at, condensed, condensing, inertia_estimate, mesh_text, notes,
-    parts, prepare, reduced, refuse_moved_supports,
+    parts, prepare, reduced, refuse_accuracy, refuse_moved_supports,
 };
 use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::run::request as bearing_request;
 use crate::commands::solve::plan_lines;
 use crate::commands::{CommandResult, Outcome, memory, say};
+use bearing_dynamics::output::session::HousedParts;
 use bearing_dynamics::output::summary::housing::largest_error;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::RunSettings;
@@ -44,6 +45,7 @@ pub fn run(document: &Document, scene: &HousedScene) -> CommandResult {
     lines.extend(equilibrium_lines(scene, &prepared)?);
     if let Some(run) = &scene.bearing.dynamics.run {
         if scene.housing.method == HousingMethod::QuasiStatic {
+            refuse_accuracy(document, scene)?;
             lines.push(equilibria_line(run));
         }
         lines.push(explicit_line(scene, &prepared, run));
@@ -299,7 +301,11 @@ fn timed(
     // Where it starts does not matter here, and finding out takes long.
     let mut anywhere = scene.clone();
     anywhere.housing.from_equilibrium = false;
-    let parts = parts(&anywhere, prepared, run, 1)?;
+    windows_text(parts(&anywhere, prepared, run, 1)?, run)
+}
+
+/// Windows of explicit steps from here, and about how long they take.
+pub fn windows_text(parts: HousedParts, run: &RunSettings) -> Result<String, Box<dyn Error>> {
     let (mut housed, windows) = parts.started(run.output_interval)?;
     let all = whole_number(run.end, run.output_interval) * windows;
     let mut nodes = String::new();

@@ -29,7 +29,7 @@ pub(super) fn announcement(
             }
         }
         (Motion::Solid(moving), _) => of_solid(&moving.solid, clock),
-        (Motion::Housed(housed), _) => of_housed(housed, clock),
+        (Motion::Housed(housed), _) => of_housed(housed, clock, request),
         (Motion::Course(_), Prepared::Housed { bore: Some((bore, seconds)), .. }) => {
             let (unknowns, kept) = (bore.sizes.unknowns, bore.sizes.kept);
             let count = clock.last.unwrap_or(0);
@@ -107,8 +107,15 @@ fn of_solid(solid: &ExplicitSolid, clock: &Clock) -> String {
     )
 }
 
-fn of_housed(housed: &Exchange, clock: &Clock) -> String {
+fn of_housed(housed: &Exchange, clock: &Clock, request: &RunRequest) -> String {
     let windows = clock.last.unwrap_or(0);
+    let by_accuracy = match request.options.stepping {
+        Stepping::Accuracy(accuracy) => format!(
+            "{}, accuracy {accuracy}: the bearing's steps follow from it, windows and the housing's steps do not\n",
+            request.options.integrator.name()
+        ),
+        _ => String::new(),
+    };
     let solids: Vec<String> = housed.solids.iter().map(of_solid_in_window).collect();
     let seats: String = housed
         .seats()
@@ -119,7 +126,7 @@ fn of_housed(housed: &Exchange, clock: &Clock) -> String {
         })
         .collect();
     format!(
-        "window {:.4e} s, {}; bearing steps up to {:.4e} s\n{seats}{windows} windows to t = {} s, {}\n",
+        "window {:.4e} s, {}; bearing steps up to {:.4e} s\n{by_accuracy}{seats}{windows} windows to t = {} s, {}\n",
         housed.window,
         solids.join("; "),
         housed.simulation.step_size,
