@@ -300,7 +300,7 @@ fn fields(place: &Place) -> Cell {
         list.split("file=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
     let there = names.iter().all(|name| place.path("fields").join(name).is_file());
     // At the start, half way and at the end, of each solid.
-    place.yes(there && names.len() >= 3 && names.len() % 3 == 0, &list)
+    place.yes(there && names.len() >= 3 && names.len().is_multiple_of(3), &list)
 }
 
 fn spectrum(place: &Place) -> Cell {
