@@ -290,7 +290,7 @@ pub fn add_seat<'b>(
 ) {
     let body = still.bearings[bearing].mounts[1].body;
     still.seats.push(StaticSeat {
-        name: Some(still.bodies[body].name.clone()),
+        name: still.bearings[bearing].name.clone(),
         mount: Mount::at_centre(body),
         nominal: bore.reach.nominal,
         bore,
