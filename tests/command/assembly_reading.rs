@@ -251,7 +251,7 @@ fn a_hub_that_turns_has_the_frequencies_of_its_speed_against_the_axle() {
 /// A hub whose load has no part along X and Y stands at zero there, not at what rounding leaves.
 #[test]
 fn rounding_is_no_displacement() {
-    let (_, summary) = statics(&on_a_hub(600.0, 0.0));
+    let (_, summary) = statics(&changed(&on_a_hub(600.0, 0.0), "300 N", "900 N"));
     for (axis, place) in summary["bodies"]["hub"]["position"].as_object().expect("a position") {
         let at = value(place).abs();
         assert!(at == 0.0 || at > 1e-14, "{axis}: {at:e}");
