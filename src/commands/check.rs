@@ -1,5 +1,6 @@
 //! `bearing check SCENE`.
 
+use super::remarks::of_springs;
 use super::run::{planned_request, request};
 use super::{CommandResult, Outcome, assembly, echo, echo_run, say};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
@@ -101,6 +102,9 @@ fn summary(name: &str, scene: &AssemblyScene) -> String {
             }
             if let Some(run) = scene.run() {
                 line("run", format!("to t = {} s by {}", run.end, stepping(run)));
+            }
+            for remark in of_springs(scene) {
+                line("note", remark);
             }
         }
     }

@@ -3,6 +3,7 @@
 use super::assembly::housings;
 use super::housed::plan::windows_text;
 use super::plan_step::{note, refused, step_lines};
+use super::remarks::of_springs;
 use super::run::{ONE_AFTER_THE_OTHER, planned_request};
 use super::solve::{lines, plan_lines};
 use super::{CommandResult, Outcome, say};
@@ -31,6 +32,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         Subject::Bearing(scene) => AssemblyScene::alone(*scene),
         Subject::Assembly(scene) => *scene,
     };
+    let prepared = housings::prepare(&document, &scene)?;
     let mut planned = match (scene.run(), scene.only()) {
         (Some(_), _) if scene.housing_method() == Some(HousingMethod::QuasiStatic) => {
             let mut lines = super::assembly::plan_lines(&scene)?;
@@ -39,7 +41,6 @@ pub fn run(arguments: &Arguments) -> CommandResult {
             lines
         }
         (Some(settings), _) => {
-            let prepared = housings::prepare(&document, &scene)?;
             let assembly = match scene.housing_method() {
                 Some(HousingMethod::Reduced) => housings::reduced(&scene, &prepared)?.assembly,
                 _ => scene.assembly()?,
@@ -65,6 +66,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         (None, Some(alone)) => plan_lines(&static_problem(alone)?),
         (None, None) => super::assembly::plan_lines(&scene)?,
     };
+    planned.extend(of_springs(&scene).iter().map(|said| note("spring", said)));
     if scene.common().rigid_housing {
         let reason = "housing.method = rigid: the outer race is fixed, no mesh is read";
         planned.push(format!("skips {:<28} {reason}", "housing"));

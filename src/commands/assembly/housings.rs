@@ -17,6 +17,7 @@ use bearing_dynamics::solver::housing::reduce::Reduction;
 use bearing_dynamics::solver::housing::reduced_start::{self, add_housing, put_in_equilibrium};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::static_assembly::StaticAssembly;
+use std::error::Error;
 use std::time::Instant;
 
 /// A housing and the bearing that it holds.
@@ -31,6 +32,14 @@ pub struct Housing {
 }
 
 impl Housing {
+    /// An error of this housing, under its name.
+    fn named(&self, error: &dyn std::fmt::Display) -> Box<dyn Error> {
+        match &self.name {
+            Some(name) => format!("housing {name}: {error}").into(),
+            None => error.to_string().into(),
+        }
+    }
+
     /// Mesh and seat, a line.
     pub fn text(&self) -> String {
         let of = self.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
@@ -50,20 +59,26 @@ pub fn prepare(document: &Document, scene: &AssemblyScene) -> Fallible<Vec<Housi
     for (bearing, placed) in scene.bearings.iter().enumerate() {
         let Some(own) = placed.housed() else { continue };
         let mesh = match &placed.name {
-            Some(name) => housed::prepare(&document.scoped(name), &own)?,
+            Some(name) => housed::prepare(&document.scoped(name), &own)
+                .map_err(|error| format!("{error} (housing {name})"))?,
             None => housed::prepare(document, &own)?,
         };
         if own.housing.method != HousingMethod::Explicit {
             housed::refuse_moved_supports(document, &own)?;
         }
-        housings.push(Housing { bearing, name: placed.name.clone(), scene: own, mesh });
+        let housing = Housing { bearing, name: placed.name.clone(), scene: own, mesh };
+        if housing.scene.housing.method != HousingMethod::Explicit {
+            housed::refuse_free(&housing.mesh).map_err(|error| housing.named(&error))?;
+        }
+        housings.push(housing);
     }
     Ok(housings)
 }
 
 /// Each condensed onto its bore.
 pub fn condensed(housings: &[Housing]) -> Fallible<Vec<CondensedBore>> {
-    housings.iter().map(|housing| housed::condensed(&housing.mesh)).collect()
+    let each = housings.iter();
+    each.map(|h| housed::condensed(&h.mesh).map_err(|error| h.named(&error))).collect()
 }
 
 /// What is in equilibrium at t = 0, races in their bores and grown into their fits.
@@ -102,8 +117,9 @@ pub fn reduced(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Reduced>
         let penalty = own.housing.penalty;
         let of = &found.reduction;
         add_housing(&mut assembly, body, of, &found.bore, setup.radius(own), penalty);
-        if let Some(seat) = assembly.seats.last_mut() {
-            seat.label.clone_from(&housing.name);
+        if let (Some(seat), Some(name)) = (assembly.seats.last_mut(), &housing.name) {
+            seat.label = Some(name.clone());
+            seat.name = format!("the bore of housing {name}");
         }
         seconds = [seconds[0] + found.seconds[0], seconds[1] + found.seconds[1]];
         reductions.push(found.reduction);

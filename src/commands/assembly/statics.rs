@@ -3,16 +3,17 @@
 use super::housings::{self, Housing};
 use super::{defaults, echo, name_of, plan_lines};
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::echo::{frequencies, hertz};
 use crate::commands::{CommandResult, Outcome, record, remarks, results_folder, say, table};
 use bearing_dynamics::kinematics::vec3::Vec3;
-use bearing_dynamics::output::assembly_results::{Solved, write};
+use bearing_dynamics::output::assembly_results::{Solved, readable, write};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::bore::{BoreNodeState, bore_series, condensed_nodes};
 use bearing_dynamics::output::fields::{Stresses, file_name, stresses, write_fields, write_list};
 use bearing_dynamics::output::plots::{LoadZone, load_zone};
 use bearing_dynamics::output::recorder::seat::{SeatRow, seat_columns};
 use bearing_dynamics::output::remarks as of_solid;
-use bearing_dynamics::output::results::{RunRecord, quantity};
+use bearing_dynamics::output::results::{ResultsError, RunRecord, quantity};
 use bearing_dynamics::output::summary::solid::field_sections;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::{Document, Plot};
@@ -30,6 +31,7 @@ pub struct Found<'s> {
     /// Of the bearings.
     pub names: Vec<&'s str>,
     pub assembly: StaticAssembly<'static>,
+    /// As people read it.
     pub solution: AssemblySolution,
     pub remarks: Vec<String>,
     pub record: RunRecord,
@@ -73,10 +75,30 @@ pub fn find_equilibrium<'s>(
         record.sections.push(("housings".into(), Value::Object(sections)));
     }
     record.sections.push(("remarks".into(), json!(remarks)));
+    let contacts = assembly.bearings.iter().map(|b| hertz([&b.inner_contact, &b.outer_contact]));
+    let speeds = scene.bearings.iter().map(|placed| frequencies(&placed.scene));
+    record.sections.push(("hertz".into(), by_name(scene, contacts)?));
+    record.sections.push(("frequencies".into(), by_name(scene, speeds)?));
+    let solution = readable(&scene.assembly()?, &assembly, &solution);
     let StaticAssembly { bodies, bearings, connections, .. } = assembly;
     // Bores are needed no longer.
     let assembly = StaticAssembly { bodies, bearings, connections, seats: Vec::new() };
     Ok(Found { names, assembly, solution, remarks, record, settled })
+}
+
+/// What there is of each bearing under its name; that of the only one by itself.
+fn by_name(
+    scene: &AssemblyScene,
+    each: impl Iterator<Item = Result<Value, ResultsError>>,
+) -> Result<Value, ResultsError> {
+    let mut named = Map::new();
+    for (placed, section) in scene.bearings.iter().zip(each) {
+        match &placed.name {
+            None => return section,
+            Some(name) => named.insert(name.clone(), section?),
+        };
+    }
+    Ok(Value::Object(named))
 }
 
 /// A housing in equilibrium.

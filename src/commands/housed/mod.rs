@@ -27,7 +27,7 @@ use bearing_dynamics::scene::{DefaultUsed, Document, RunSettings};
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, OUTER};
 use bearing_dynamics::solver::dynamics::equilibrium::static_assembly;
 use bearing_dynamics::solver::dynamics::model::Drive;
-use bearing_dynamics::solver::dynamics::run::{RunOptions, Start, Stepping};
+use bearing_dynamics::solver::dynamics::run::{RunOptions, Start};
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
 use bearing_dynamics::solver::housing::condensed::{
     CondensedBore, Sizes, condense_over, cost, sizes,
@@ -77,38 +77,41 @@ pub fn refuse_moved_supports(document: &Document, scene: &HousedScene) -> Fallib
     check_supports(scene).map_err(|error| placed(document, error.about(), error))
 }
 
-/// Error control where nothing is stepped in time.
-pub fn refuse_accuracy(document: &Document, scene: &HousedScene) -> Fallible<()> {
-    const KEY: &str = "numerics.accuracy";
-    let by_accuracy = |run: &RunSettings| matches!(run.options.stepping, Stepping::Accuracy(_));
-    let chosen = || echo_run::defaults(&scene.bearing).iter().any(|used| used.key == KEY);
-    if !scene.bearing.dynamics.run.as_ref().is_some_and(by_accuracy) || chosen() {
-        return Ok(());
-    }
-    let place = document.place_of(&About::key(KEY));
+/// What is said of steps where nothing is stepped in time.
+pub fn refuse_steps(document: &Document) -> Fallible<()> {
+    const KEYS: [&str; 4] =
+        ["numerics.accuracy", "numerics.step", "numerics.step_fraction", "numerics.integrator"];
+    let Some(key) = KEYS.into_iter().find(|key| document.is_given(key)) else { return Ok(()) };
+    let place = document.place_of(&About::key(key));
     let reason = "equilibria one after the other take no steps in time";
     let hint = "leave it out, or write method = \"reduced\" in [housing]";
-    Err(format!("{place}: {KEY}: refused: {reason}. Hint: {hint}").into())
+    Err(format!("{place}: {key}: refused: {reason}. Hint: {hint}").into())
 }
 
 /// What a condensed housing cannot have.
 pub fn refuse_moving(document: &Document, scene: &HousedScene) -> Fallible<()> {
-    refuse_accuracy(document, scene)?;
+    refuse_steps(document)?;
     check_constant(scene).map_err(|error| placed(document, error.about(), error))
+}
+
+/// A housing that can move as a whole.
+pub fn refuse_free(prepared: &Prepared) -> Fallible<()> {
+    let free = free_motions(&prepared.setup.solid.problem);
+    if free.count == 0 {
+        return Ok(());
+    }
+    Err(format!(
+        "an equilibrium needs a housing that is held, and this one is free to move {}; add \
+         [[solid.held]]",
+        free.names()
+    )
+    .into())
 }
 
 /// What condensing the housing onto the nodes of its bore takes, from its structure alone.
 pub fn condensing(prepared: &Prepared) -> Fallible<(Unknowns, Sizes, Cost)> {
+    refuse_free(prepared)?;
     let setup = &prepared.setup;
-    let free = free_motions(&setup.solid.problem);
-    if free.count > 0 {
-        return Err(format!(
-            "an equilibrium needs a housing that is held, and this one is free to move {}; add \
-             [[solid.held]]",
-            free.names()
-        )
-        .into());
-    }
     let unknowns = Unknowns::new(&setup.model);
     let sizes = sizes(&setup.model, &unknowns, &setup.nodes, &setup.reach())?;
     let cost = cost(&setup.model, &unknowns, &sizes);

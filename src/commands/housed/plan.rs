@@ -3,7 +3,7 @@
 
 use super::{
     Prepared, along_course, bearing_at, condensed, condensing, inertia_estimate, mesh_text, notes,
-    parts, prepare, reduced, refuse_accuracy, refuse_moved_supports,
+    parts, prepare, reduced, refuse_moved_supports, refuse_steps,
 };
 use crate::commands::plan::dynamic_plan_lines;
 use crate::commands::run::request as bearing_request;
@@ -45,7 +45,7 @@ pub fn run(document: &Document, scene: &HousedScene) -> CommandResult {
     lines.extend(equilibrium_lines(scene, &prepared)?);
     if let Some(run) = &scene.bearing.dynamics.run {
         if scene.housing.method == HousingMethod::QuasiStatic {
-            refuse_accuracy(document, scene)?;
+            refuse_steps(document)?;
             lines.push(equilibria_line(run));
         }
         lines.push(explicit_line(scene, &prepared, run));

@@ -4,7 +4,7 @@ use super::grid::Grid;
 use super::housed::{self, Kept};
 use crate::commands::assembly::housings;
 use bearing_dynamics::output::Column;
-use bearing_dynamics::output::assembly_results::key;
+use bearing_dynamics::output::assembly_results::{key, readable};
 use bearing_dynamics::output::results::load_zone_of;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::statics::static_problem;
@@ -45,8 +45,10 @@ pub fn solve(
             let solution = solve_assembly(&still, neighbour, &StaticOptions::default())
                 .map_err(|error| text(&error))?;
             let determinate = solution.determinacy == Determinacy::Determinate;
+            let moving = scene.assembly().map_err(|error| text(&error))?;
+            let read = readable(&moving, &still, &solution);
             return Ok(Solved {
-                row: [start_of_row(grid, point), of_assembly(&still, &solution)].concat(),
+                row: [start_of_row(grid, point), of_assembly(&still, &read)].concat(),
                 start_for_neighbour: determinate.then_some(solution.coordinates),
             });
         }
