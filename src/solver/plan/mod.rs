@@ -1,0 +1,265 @@
+//! What a solution does, as a list of items made once from what is solved.
+//!
+//! An item names a stage of the work, what of the assembly it is of, whether it is done and why. The step runs the
+//! items that say *does* and nothing else; `bearing plan` and every summary print the same list. Code that does a
+//! stage's work counts it ([`tally`]), and tests hold the counts against the items.
+
+pub mod motion;
+pub mod steps;
+pub mod tally;
+
+use super::channels::ChannelGroup;
+use std::fmt;
+
+/// Something that a solution may have to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    // Of the start and of steps.
+    StartEquilibrium,
+    StabilityLimit,
+    IntegratorChoice,
+    // Of a bearing.
+    DistanceTest,
+    BallEquilibrium,
+    BallGravity,
+    CentrifugalForce,
+    Traction,
+    CurvedSurface,
+    ContactDamping,
+    Pockets,
+    Guide,
+    BallContact,
+    // Of bodies and of what joins them.
+    Equilibrium,
+    Equilibria,
+    Gravity,
+    Motion,
+    Foundation,
+    Springs,
+    RotatingLoad,
+    Unbalance,
+    /// What seats in solids with steps of their own hand over.
+    Impulses,
+    Ledger,
+    // Of solids.
+    FlexibleBodies,
+    Housing,
+    Elements,
+    Supports,
+    Loads,
+    Damping,
+    QuasiStatic,
+    Reduced,
+    Explicit,
+    Seat,
+    SolidStatics,
+    Modes,
+    SolidRun,
+    // Of what is recorded.
+    RacesChannels,
+    CageChannels,
+    OrbitsChannels,
+    LoadsChannels,
+    PocketsChannels,
+    SlipChannels,
+    ForcesChannels,
+    EnergyChannels,
+}
+
+impl Stage {
+    pub const COUNT: usize = Stage::EnergyChannels as usize + 1;
+
+    /// In the order of their numbers.
+    pub const ALL: [Stage; Stage::COUNT] = [
+        Stage::StartEquilibrium,
+        Stage::StabilityLimit,
+        Stage::IntegratorChoice,
+        Stage::DistanceTest,
+        Stage::BallEquilibrium,
+        Stage::BallGravity,
+        Stage::CentrifugalForce,
+        Stage::Traction,
+        Stage::CurvedSurface,
+        Stage::ContactDamping,
+        Stage::Pockets,
+        Stage::Guide,
+        Stage::BallContact,
+        Stage::Equilibrium,
+        Stage::Equilibria,
+        Stage::Gravity,
+        Stage::Motion,
+        Stage::Foundation,
+        Stage::Springs,
+        Stage::RotatingLoad,
+        Stage::Unbalance,
+        Stage::Impulses,
+        Stage::Ledger,
+        Stage::FlexibleBodies,
+        Stage::Housing,
+        Stage::Elements,
+        Stage::Supports,
+        Stage::Loads,
+        Stage::Damping,
+        Stage::QuasiStatic,
+        Stage::Reduced,
+        Stage::Explicit,
+        Stage::Seat,
+        Stage::SolidStatics,
+        Stage::Modes,
+        Stage::SolidRun,
+        Stage::RacesChannels,
+        Stage::CageChannels,
+        Stage::OrbitsChannels,
+        Stage::LoadsChannels,
+        Stage::PocketsChannels,
+        Stage::SlipChannels,
+        Stage::ForcesChannels,
+        Stage::EnergyChannels,
+    ];
+
+    /// As a person reads it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Stage::StartEquilibrium => "equilibrium at the start",
+            Stage::StabilityLimit => "stability limit",
+            Stage::IntegratorChoice => "choice of the integrator",
+            Stage::DistanceTest => "distance test",
+            Stage::BallEquilibrium => "ball equilibrium",
+            Stage::BallGravity => "gravity on balls",
+            Stage::CentrifugalForce => "centrifugal force on balls",
+            Stage::Traction => "traction",
+            Stage::CurvedSurface => "curved contact surface",
+            Stage::ContactDamping => "contact damping",
+            Stage::Pockets => "cage",
+            Stage::Guide => "cage guide",
+            Stage::BallContact => "contact between balls",
+            Stage::Equilibrium => "equilibrium",
+            Stage::Equilibria => "equilibria",
+            Stage::Gravity => "gravity",
+            Stage::Motion => "motion",
+            Stage::Foundation => "foundation",
+            Stage::Springs => "springs between bodies",
+            Stage::RotatingLoad => "rotating load",
+            Stage::Unbalance => "unbalance",
+            Stage::Impulses => "impulses of seats",
+            Stage::Ledger => "ledger",
+            Stage::FlexibleBodies => "flexible bodies",
+            Stage::Housing => "housing",
+            Stage::Elements => "mesh",
+            Stage::Supports => "supports",
+            Stage::Loads => "loads",
+            Stage::Damping => "damping",
+            Stage::QuasiStatic => "quasi-static",
+            Stage::Reduced => "reduced",
+            Stage::Explicit => "explicit",
+            Stage::Seat => "seat",
+            Stage::SolidStatics => "statics",
+            Stage::Modes => "modes",
+            Stage::SolidRun => "run",
+            Stage::RacesChannels => "channels: races",
+            Stage::CageChannels => "channels: cage",
+            Stage::OrbitsChannels => "channels: orbits",
+            Stage::LoadsChannels => "channels: loads",
+            Stage::PocketsChannels => "channels: pockets",
+            Stage::SlipChannels => "channels: slip",
+            Stage::ForcesChannels => "channels: forces",
+            Stage::EnergyChannels => "channels: energy",
+        }
+    }
+
+    /// Recording a group of channels.
+    pub const fn recording(group: ChannelGroup) -> Stage {
+        match group {
+            ChannelGroup::Races => Stage::RacesChannels,
+            ChannelGroup::Cage => Stage::CageChannels,
+            ChannelGroup::Orbits => Stage::OrbitsChannels,
+            ChannelGroup::Loads => Stage::LoadsChannels,
+            ChannelGroup::Pockets => Stage::PocketsChannels,
+            ChannelGroup::Slip => Stage::SlipChannels,
+            ChannelGroup::Forces => Stage::ForcesChannels,
+            ChannelGroup::Energy => Stage::EnergyChannels,
+        }
+    }
+}
+
+/// What of the assembly an item is of: an index in its list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Subject {
+    Whole,
+    Bearing(usize),
+    Body(usize),
+    Solid(usize),
+    Seat(usize),
+}
+
+/// One stage of one thing, whether it is done, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Item {
+    pub stage: Stage,
+    pub subject: Subject,
+    /// The subject as a person reads it, where the stage alone does not tell.
+    pub of: Option<String>,
+    pub does: bool,
+    pub why: String,
+    /// How often it runs in each evaluation, where that is fixed.
+    pub cost: Option<u64>,
+}
+
+impl Item {
+    pub fn new(stage: Stage, subject: Subject, does: bool, why: impl Into<String>) -> Item {
+        Item { stage, subject, of: None, does, why: why.into(), cost: None }
+    }
+
+    pub fn does(stage: Stage, subject: Subject, why: impl Into<String>) -> Item {
+        Item::new(stage, subject, true, why)
+    }
+
+    pub fn skips(stage: Stage, subject: Subject, why: impl Into<String>) -> Item {
+        Item::new(stage, subject, false, why)
+    }
+
+    /// The same with its subject's name.
+    #[must_use]
+    pub fn named(self, of: Option<impl Into<String>>) -> Item {
+        Item { of: of.map(Into::into), ..self }
+    }
+
+    /// The same, which runs so often in each evaluation.
+    #[must_use]
+    pub fn costing(self, cost: u64) -> Item {
+        Item { cost: Some(cost), ..self }
+    }
+
+    /// As a person reads it: "left: traction", "outer race motion", "housing supports", "reduced housing".
+    pub fn name(&self) -> String {
+        let stage = self.stage.name();
+        let Some(of) = &self.of else { return stage.into() };
+        match (self.subject, self.stage) {
+            (_, Stage::QuasiStatic | Stage::Reduced | Stage::Explicit) => format!("{stage} {of}"),
+            (_, Stage::Motion) | (Subject::Solid(_), _) => format!("{of} {stage}"),
+            _ => format!("{of}: {stage}"),
+        }
+    }
+}
+
+/// A line of a plan.
+impl fmt::Display for Item {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mark = if self.does { "does " } else { "skips" };
+        write!(f, "{mark} {:<28} {}", self.name(), self.why)
+    }
+}
+
+/// Whether a list has an item that says so.
+pub fn does(items: &[Item], stage: Stage, subject: Subject) -> bool {
+    items.iter().any(|item| item.stage == stage && item.subject == subject && item.does)
+}
+
+/// How many times each item ran, by its name; what ran without an item is named by its stage and subject.
+pub fn counted(items: &[Item], ran: &tally::Ran) -> Vec<(String, u64)> {
+    let counted = ran.list().into_iter().map(|(stage, subject, count)| {
+        let of = items.iter().find(|item| item.stage == stage && item.subject == subject);
+        (of.map_or_else(|| format!("not planned: {stage:?} of {subject:?}"), Item::name), count)
+    });
+    counted.collect()
+}
