@@ -16,6 +16,7 @@ pub mod checkpoint;
 pub mod condensed;
 pub mod course_inertia;
 pub mod exchange;
+mod exchange_window;
 pub mod housed;
 pub mod inertia;
 pub mod quasi_static;
