@@ -11,7 +11,7 @@ use bearing_dynamics::solver::clock::given_steps;
 use bearing_dynamics::solver::dynamics::foretell::{WITHIN, choose, foretell};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
-use bearing_dynamics::solver::plan;
+use bearing_dynamics::solver::plan::{self, motion::Planned};
 use bearing_dynamics::solver::profile::Profile;
 use run_common::{frictionless, jolted, pressed, rattling, request, simulation, sliding};
 
@@ -48,14 +48,14 @@ fn planned(text: &str, channels: &[ChannelGroup]) -> String {
         CageInRun::Body(_) => None,
         CageInRun::LeftOut(reason) => Some(reason.as_str()),
     };
-    let stages = plan::dynamics(&problem.assembly(), &settings.options, channels, &[left_out]);
-    stages
-        .iter()
-        .map(|stage| {
-            let mark = if stage.included { "does " } else { "skips" };
-            format!("{mark} {:<28} {}\n", stage.name, stage.reason)
-        })
-        .collect()
+    let planned = Planned {
+        assembly: &problem.assembly(),
+        options: &settings.options,
+        channels,
+        cage_left_out: &[left_out],
+        solids: Vec::new(),
+    };
+    plan::motion::items(planned).iter().map(|item| format!("{item}\n")).collect()
 }
 
 fn guided(by: &str) -> String {

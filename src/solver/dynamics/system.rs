@@ -158,15 +158,16 @@ impl System {
     ) {
         let t = t.min(self.latest);
         let Assembly { solids, seats, .. } = &self.assembly;
-        for &index in &self.steps.solids {
+        for &(index, steps) in &self.steps.solids {
             let (solid, at) = (&solids[index], self.solids[index]);
             let (gone, speeds) = state[at..at + 2 * solid.count()].split_at(solid.count());
             let (to, accelerations) = rates[at..at + 2 * solid.count()].split_at_mut(solid.count());
             to.copy_from_slice(speeds);
-            let [damped, driven] = solid.accelerations(t, gone, speeds, accelerations);
+            let own = &mut self.ran.solids[index];
+            let [damped, driven] =
+                solid.accelerations(steps, t, [gone, speeds], accelerations, own);
             ledger[Ledger::Foundation as usize] += damped;
             ledger[Ledger::Drives as usize] += driven;
-            self.ran.solids[index].add(Stage::Reduced, 1);
         }
         for &index in &self.steps.seats {
             let (seat, now) = (&seats[index], &mut self.seats[index]);

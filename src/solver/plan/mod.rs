@@ -5,6 +5,8 @@
 //! stage's work counts it ([`tally`]), and tests hold the counts against the items.
 
 pub mod motion;
+pub mod solid;
+pub mod statics;
 pub mod steps;
 pub mod tally;
 
@@ -255,11 +257,26 @@ pub fn does(items: &[Item], stage: Stage, subject: Subject) -> bool {
     items.iter().any(|item| item.stage == stage && item.subject == subject && item.does)
 }
 
-/// How many times each item ran, by its name; what ran without an item is named by its stage and subject.
-pub fn counted(items: &[Item], ran: &tally::Ran) -> Vec<(String, u64)> {
-    let counted = ran.list().into_iter().map(|(stage, subject, count)| {
-        let of = items.iter().find(|item| item.stage == stage && item.subject == subject);
-        (of.map_or_else(|| format!("not planned: {stage:?} of {subject:?}"), Item::name), count)
-    });
-    counted.collect()
+/// An item by its name, and how many times it ran.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Counted {
+    pub name: String,
+    pub does: bool,
+    pub ran: u64,
+}
+
+/// How many times each item ran; after them what ran without an item, which says neither that it is done nor why.
+pub fn counted(items: &[Item], ran: &tally::Ran) -> Vec<Counted> {
+    let of = |item: &Item| {
+        let count = ran.of(item.stage, item.subject);
+        Counted { name: item.name(), does: item.does, ran: count }
+    };
+    let planned = |stage, subject| {
+        items.iter().any(|item| item.stage == stage && item.subject == subject)
+    };
+    let unplanned = ran.list().into_iter().filter(|(stage, subject, _)| !planned(*stage, *subject));
+    let without = |(stage, subject, ran): (Stage, Subject, u64)| {
+        Counted { name: format!("not planned: {stage:?} of {subject:?}"), does: false, ran }
+    };
+    items.iter().map(of).chain(unplanned.map(without)).collect()
 }

@@ -106,18 +106,44 @@ fn springs(assembly: &Assembly) -> Item {
 
 /// Solids in shapes, and the races in their bores.
 fn reduced_solids(assembly: &Assembly) -> Vec<Item> {
-    let solids = assembly.solids.iter().enumerate().map(|(index, solid)| {
+    let solids = assembly.solids.iter().enumerate().flat_map(|(index, solid)| {
         let why = "some shapes of the housing, which move with the bearing in its steps";
         let label = assembly.seats.iter().find(|seat| seat.solid == index);
         let label = label.and_then(|seat| seat.label.as_ref());
         let of = label.map_or_else(|| bare(&solid.name), |label| format!("housing {label}"));
-        Item::does(Stage::Reduced, Subject::Solid(index), why).named(Some(of)).costing(1)
+        let subject = Subject::Solid(index);
+        let acts = |stage, does, why: &str| {
+            let why = if does { why } else { "none is given" };
+            Item::new(stage, subject, does, why)
+        };
+        let loads = solid.loads.len();
+        let weighs = solid.weight.iter().any(|weight| *weight != 0.0);
+        let own = [
+            Item::does(Stage::Reduced, subject, why).costing(1),
+            acts(Stage::Loads, loads > 0, &format!("{loads}, on its shapes")),
+            acts(Stage::Gravity, weighs, "on its shapes"),
+            acts(Stage::Damping, solid.damping != 0.0, "mass-proportional, of all motion"),
+        ];
+        own.map(|item| item.named(Some(of.clone())))
     });
     let seats = assembly.seats.iter().enumerate().map(|(index, seat)| {
         let why = format!("{} in its bore, every node of it", assembly.bodies[seat.race.body].name);
         Item::does(Stage::Seat, Subject::Seat(index), why).named(seat.label.clone()).costing(1)
     });
     solids.chain(seats).collect()
+}
+
+/// A race in the bore of a solid with steps of its own: the `index`-th seat, the body and the seat's name.
+pub fn stepped_seat(
+    assembly: &Assembly,
+    index: usize,
+    (body, name): (usize, Option<&str>),
+) -> [Item; 2] {
+    let race = &assembly.bodies[body].name;
+    let why = format!("{race} in its bore, in every step of the housing");
+    let seat = Item::does(Stage::Seat, Subject::Seat(index), why).named(name);
+    let why = format!("on {race}, the mean of each window");
+    [seat, Item::does(Stage::Impulses, Subject::Body(body), why).named(name).costing(1)]
 }
 
 fn gravity(assembly: &Assembly) -> Item {

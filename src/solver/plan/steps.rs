@@ -1,5 +1,6 @@
 //! What each evaluation of a motion does, read once from the items of its plan.
 
+use super::solid::SolidSteps;
 use super::{Item, Stage, Subject, does};
 use crate::solver::dynamics::assembly::Assembly;
 
@@ -33,7 +34,7 @@ pub struct Steps {
     /// Bodies that have equations, in their order.
     pub moving: Vec<usize>,
     /// Reduced solids and the seats in them.
-    pub solids: Vec<usize>,
+    pub solids: Vec<(usize, SolidSteps)>,
     pub seats: Vec<usize>,
 }
 
@@ -60,6 +61,16 @@ impl Steps {
             }
         };
         let bodies = 0..assembly.bodies.len();
+        let solid = |index| {
+            let of = |stage| of(stage, Subject::Solid(index));
+            let acting = SolidSteps {
+                supports: false,
+                loads: of(Stage::Loads),
+                gravity: of(Stage::Gravity),
+                damping: of(Stage::Damping),
+            };
+            of(Stage::Reduced).then_some((index, acting))
+        };
         let solids = 0..assembly.solids.len();
         let seats = 0..assembly.seats.len();
         Steps {
@@ -68,7 +79,7 @@ impl Steps {
             bearings: (0..assembly.bearings.len()).map(bearing).collect(),
             bodies: bodies.clone().map(body).collect(),
             moving: bodies.filter(|index| of(Stage::Motion, Subject::Body(*index))).collect(),
-            solids: solids.filter(|index| of(Stage::Reduced, Subject::Solid(*index))).collect(),
+            solids: solids.filter_map(solid).collect(),
             seats: seats.filter(|index| of(Stage::Seat, Subject::Seat(*index))).collect(),
         }
     }

@@ -11,6 +11,9 @@ use crate::kinematics::vec3::Vec3;
 use crate::mesh::tet_mesh::Elements;
 use crate::solver::clock::rounded;
 use crate::solver::profile::Profile;
+use crate::solver::plan::Stage;
+use crate::solver::plan::solid::{Method, SolidSteps};
+use crate::solver::plan::tally::Tally;
 use thiserror::Error;
 
 /// What mass-proportional damping brakes.
@@ -120,6 +123,8 @@ pub struct SolidModel {
     pub mass: Vec<f64>,
     /// Reciprocal of the mass by component; zero where the displacement is prescribed.
     pub per_mass: Vec<Node>,
+    /// What acts on it, as planned.
+    pub steps: SolidSteps,
 }
 
 /// The undeformed corners of an element.
@@ -210,7 +215,8 @@ impl SolidModel {
                 return Err(SolidError::NoSuchNode { node: *node, count });
             }
         }
-        Ok(SolidModel { problem, labels, blocks, mass, per_mass })
+        let steps = SolidSteps::new(&problem, &Method::Explicit);
+        Ok(SolidModel { problem, labels, blocks, mass, per_mass, steps })
     }
 
     /// A value at a node that is not finite.
@@ -240,41 +246,45 @@ impl SolidModel {
 
     /// Adds loads and gravity at time `t`, N, gravity by the lumped masses: all nodes of a free
     /// body then fall alike.
-    pub fn add_external_forces(&self, t: f64, forces: &mut [Node]) {
-        self.add_loads(t, forces);
-        self.add_gravity(forces, self.mass.iter().copied().enumerate());
+    pub fn add_external_forces(&self, t: f64, forces: &mut [Node], ran: &mut Tally) {
+        self.add_loads(t, forces, ran);
+        self.add_gravity(forces, self.mass.iter().copied().enumerate(), ran);
     }
 
     /// Adds loads and gravity at time `t`, N, gravity as ∫Nρg dV: what equilibrium needs. For
     /// four-node elements this is the same as by lumped masses. For ten-node elements lumped
     /// masses are positive everywhere, as explicit steps need them, but as a load they would cost an
     /// order of convergence; the consistent load pulls corners upwards.
-    pub fn add_static_forces(&self, t: f64, forces: &mut [Node]) {
-        self.add_loads(t, forces);
-        self.add_weight(forces);
+    pub fn add_static_forces(&self, t: f64, forces: &mut [Node], ran: &mut Tally) {
+        self.add_loads(t, forces, ran);
+        self.add_weight(forces, ran);
     }
 
     /// Of [`SolidModel::add_static_forces`] what gravity does, N.
-    pub fn add_weight(&self, forces: &mut [Node]) {
+    pub fn add_weight(&self, forces: &mut [Node], ran: &mut Tally) {
         match &self.problem.elements {
             Elements::Linear(_) => {
-                self.add_gravity(forces, self.mass.iter().copied().enumerate());
+                self.add_gravity(forces, self.mass.iter().copied().enumerate(), ran);
             }
-            Elements::Quadratic(list) if self.problem.gravity != [0.0; 3] => {
+            Elements::Quadratic(list) if self.steps.gravity => {
                 for element in list {
                     let shares = tet10::consistent_mass(
                         &corners(&self.problem.nodes, element),
                         self.problem.density,
                     );
                     let sums = shares.map(|row| row.iter().sum());
-                    self.add_gravity(forces, element.iter().map(|n| *n as usize).zip(sums));
+                    self.add_gravity(forces, element.iter().map(|n| *n as usize).zip(sums), ran);
                 }
             }
             Elements::Quadratic(_) => {}
         }
     }
 
-    fn add_loads(&self, t: f64, forces: &mut [Node]) {
+    fn add_loads(&self, t: f64, forces: &mut [Node], ran: &mut Tally) {
+        if !self.steps.loads {
+            return;
+        }
+        ran.add(Stage::Loads, self.problem.loads.len() as u64);
         for load in &self.problem.loads {
             let factor = load.profile.value(t);
             for (node, force) in &load.forces {
@@ -287,11 +297,17 @@ impl SolidModel {
     }
 
     /// Weight of masses at nodes; nothing without gravity.
-    fn add_gravity(&self, forces: &mut [Node], masses: impl Iterator<Item = (usize, f64)>) {
-        let gravity = self.problem.gravity;
-        if gravity == [0.0; 3] {
+    fn add_gravity(
+        &self,
+        forces: &mut [Node],
+        masses: impl Iterator<Item = (usize, f64)>,
+        ran: &mut Tally,
+    ) {
+        if !self.steps.gravity {
             return;
         }
+        ran.add(Stage::Gravity, 1);
+        let gravity = self.problem.gravity;
         for (node, mass) in masses {
             for i in 0..3 {
                 forces[node][i] += mass * gravity[i];
