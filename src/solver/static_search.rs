@@ -166,7 +166,7 @@ impl<'a, 'b> Search<'a, 'b> {
             self.ran.seats[index].add(Stage::Seat, 1);
             self.ran.solids[index].add(Stage::QuasiStatic, 1);
         }
-        self.ran.whole.add(Stage::Ledger, 1);
+        self.ran.whole.add(Stage::Evaluation, 1);
         Ok(here)
     }
 

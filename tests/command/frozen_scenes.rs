@@ -168,7 +168,7 @@ fn every_scene_runs_what_its_plan_does_and_nothing_else() {
         let does = |line: &&Value| line.as_str().expect("a line").starts_with("does ");
         let done = stages.iter().filter(|stage| stage["does"] == true).count();
         assert_eq!(lines.iter().filter(does).count(), done, "{name}");
-        assert!(done >= 5 && stages.len() >= lines.len(), "{name}: {plan}");
+        assert!(done >= 2 && stages.len() >= lines.len(), "{name}: {plan}");
         for stage in stages {
             let ran = stage["ran"].as_u64().expect("a count");
             if (ran > 0) != (stage["does"] == true) {

@@ -32,6 +32,7 @@ pub enum Stage {
     Guide,
     BallContact,
     // Of bodies and of what joins them.
+    Evaluation,
     Equilibrium,
     Equilibria,
     Gravity,
@@ -86,6 +87,7 @@ impl Stage {
         Stage::Pockets,
         Stage::Guide,
         Stage::BallContact,
+        Stage::Evaluation,
         Stage::Equilibrium,
         Stage::Equilibria,
         Stage::Gravity,
@@ -135,6 +137,7 @@ impl Stage {
             Stage::Pockets => "cage",
             Stage::Guide => "cage guide",
             Stage::BallContact => "contact between balls",
+            Stage::Evaluation => "evaluation",
             Stage::Equilibrium => "equilibrium",
             Stage::Equilibria => "equilibria",
             Stage::Gravity => "gravity",

@@ -16,6 +16,8 @@ pub fn items(assembly: &StaticAssembly, solids: Vec<Item>, centrifugal: &str) ->
         let own = of_bearing(bearing, Subject::Bearing(index), centrifugal);
         items.extend(own.into_iter().map(|item| item.named(bearing.name.clone())));
     }
+    let why = "energy, load and stiffness at one place of all bodies";
+    items.push(Item::does(Stage::Evaluation, Subject::Whole, why).costing(1));
     items.push(equilibrium(assembly));
     for (index, body) in assembly.bodies.iter().enumerate() {
         if matches!(body.place, Place::Held(_)) && body.name != GROUND {
