@@ -13,7 +13,7 @@ use crate::solver::dynamics::run::Simulation;
 use crate::solver::housing::checkpoint::{ExchangeCheckpoint, Windows};
 use crate::solver::housing::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
 use crate::solver::housing::seat::Seat;
-use crate::solver::plan::tally::Ran;
+use crate::solver::plan::tally::{Ran, Tally};
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
 use crate::solver::solid::model::{SolidError, SolidModel};
@@ -83,6 +83,24 @@ impl Motion<'_> {
             Motion::Solid(moving) => Ran { solids: vec![moving.solid.ran], ..Ran::default() },
             Motion::Housed(housed) => housed.ran(),
             Motion::Course(course) => course.ran.clone(),
+        }
+    }
+
+    /// The same into counts that have room.
+    pub(super) fn ran_into(&self, to: &mut Ran) {
+        match self {
+            Motion::Bearing(simulation) => to.copy_from(&simulation.system.ran),
+            Motion::Solid(_) | Motion::Housed(_) | Motion::Course(_) => *to = self.ran(),
+        }
+    }
+
+    /// Counts anew: what has run before is kept elsewhere.
+    pub(super) fn forget_ran(&mut self) {
+        match self {
+            Motion::Bearing(simulation) => simulation.system.ran.clear(),
+            Motion::Solid(moving) => moving.solid.ran = Tally::default(),
+            Motion::Housed(housed) => housed.forget_ran(),
+            Motion::Course(course) => course.ran.clear(),
         }
     }
 }

@@ -309,6 +309,15 @@ impl Exchange {
         ran
     }
 
+    /// Counts anew.
+    pub fn forget_ran(&mut self) {
+        self.simulation.system.ran.clear();
+        for part in &mut self.solids {
+            part.solid.ran = Tally::default();
+            part.seats.iter_mut().for_each(|seat| seat.presses = 0);
+        }
+    }
+
     pub fn seats(&self) -> impl Iterator<Item = &SeatState> {
         self.solids.iter().flat_map(|part| &part.seats)
     }

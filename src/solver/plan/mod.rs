@@ -197,6 +197,31 @@ pub enum Subject {
     Seat(usize),
 }
 
+impl Subject {
+    /// Its list's number and its own, as files keep them.
+    pub fn numbers(self) -> [usize; 2] {
+        match self {
+            Subject::Whole => [0, 0],
+            Subject::Bearing(at) => [1, at],
+            Subject::Body(at) => [2, at],
+            Subject::Solid(at) => [3, at],
+            Subject::Seat(at) => [4, at],
+        }
+    }
+
+    /// `None` where there is no such list.
+    pub fn from_numbers([list, at]: [usize; 2]) -> Option<Subject> {
+        let of = [
+            |_| Subject::Whole,
+            Subject::Bearing,
+            Subject::Body,
+            Subject::Solid,
+            Subject::Seat,
+        ] as [fn(usize) -> Subject; 5];
+        of.get(list).map(|of| of(at))
+    }
+}
+
 /// One stage of one thing, whether it is done, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {

@@ -143,7 +143,7 @@ pub fn stepped_seat(
     let why = format!("{race} in its bore, in every step of the housing");
     let seat = Item::does(Stage::Seat, Subject::Seat(index), why).named(name);
     let why = format!("on {race}, the mean of each window");
-    [seat, Item::does(Stage::Impulses, Subject::Body(body), why).named(name).costing(1)]
+    [seat, Item::does(Stage::Impulses, Subject::Body(body), why).named(name)]
 }
 
 fn gravity(assembly: &Assembly) -> Item {

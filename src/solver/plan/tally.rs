@@ -30,7 +30,7 @@ impl Tally {
     }
 
     pub fn absorb(&mut self, other: &Tally) {
-        self.0.iter_mut().zip(&other.0).for_each(|(to, more)| *to += more);
+        self.0.iter_mut().zip(&other.0).for_each(|(to, more)| *to = to.saturating_add(*more));
     }
 }
 
@@ -63,6 +63,15 @@ impl Ran {
         [bearings, bodies, solids, seats].into_iter().for_each(|list| list.fill(Tally::default()));
     }
 
+    /// Takes over counts without making room where there is enough.
+    pub fn copy_from(&mut self, other: &Ran) {
+        self.whole = other.whole;
+        self.bearings.clone_from(&other.bearings);
+        self.bodies.clone_from(&other.bodies);
+        self.solids.clone_from(&other.solids);
+        self.seats.clone_from(&other.seats);
+    }
+
     /// The same with what another part of the solution has counted.
     pub fn absorb(&mut self, other: &Ran) {
         self.whole.absorb(&other.whole);
@@ -87,6 +96,19 @@ impl Ran {
             Subject::Solid(at) => in_list(&self.solids, at),
             Subject::Seat(at) => in_list(&self.seats, at),
         }
+    }
+
+    /// Counts something so often more.
+    pub fn add(&mut self, stage: Stage, subject: Subject, times: u64) {
+        let (list, at) = match subject {
+            Subject::Whole => return self.whole.add(stage, times),
+            Subject::Bearing(at) => (&mut self.bearings, at),
+            Subject::Body(at) => (&mut self.bodies, at),
+            Subject::Solid(at) => (&mut self.solids, at),
+            Subject::Seat(at) => (&mut self.seats, at),
+        };
+        list.resize(list.len().max(at + 1), Tally::default());
+        list[at].add(stage, times);
     }
 
     /// All that has run at least once.
