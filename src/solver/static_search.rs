@@ -7,7 +7,7 @@
 use super::ball::energy_noise;
 use super::housing::bore_equilibrium::BoreSearch;
 use super::plan::{Stage, tally::Ran};
-use super::static_assembly::{Loaded, Place, StaticBearing};
+use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing};
 use super::static_bearing::add_bearing;
 use super::static_connection::add_connection;
 use super::static_model::{Evaluation, Five, Model};
@@ -275,11 +275,14 @@ impl<'a, 'b> Search<'a, 'b> {
         }
     }
 
-    /// One more step of Newton's where a race in its bore is soft against tilts: a balance that rounding may already have
-    /// spoilt leaves these far less certain than the rest, and the error falls as its square.
+    /// One more step of Newton's where more than one bearing holds the bodies: a balance that rounding may already have
+    /// spoilt leaves what is soft (a race in its bore against tilts) far less certain than the rest, and the error
+    /// falls as its square.
     fn polish(&mut self, here: &mut Evaluation, residual: f64) -> Result<(), StaticsError> {
+        let StaticAssembly { bearings, connections, seats, .. } = self.model.assembly;
+        let one_holds = bearings.len() <= 1 && connections.is_empty() && seats.is_empty();
         let strict = self.options.tolerance * self.applied().max(here.largest_ball_load);
-        if self.model.assembly.seats.is_empty() || residual <= 1e-2 * strict {
+        if one_holds || residual <= 1e-2 * strict {
             return Ok(());
         }
         let step = self.newton_step(here, self.step_scale());
