@@ -80,8 +80,8 @@ fn of_run(
     let items = dynamic_items(scene, &assembly, &request, choice.as_ref(), solids);
     let mut notes = if scene.housing_method() == Some(HousingMethod::Explicit) {
         // Races without their housings would have nothing to hold them.
-        let windows = housings::explicit(scene, &prepared, 1)
-            .and_then(|parts| windows_text(parts, settings));
+        let windows =
+            housings::explicit(scene, &prepared, 1).and_then(|parts| windows_text(parts, settings));
         vec![note("step", &windows.unwrap_or_else(|error| refused(&*error)))]
     } else {
         step_lines(&assembly, &request)

@@ -11,11 +11,11 @@
 
 use crate::output::atomic::{WriteError, write_atomic};
 use crate::output::series::{Column, Series, SeriesError};
+use crate::solver::plan::tally::Ran;
+use crate::solver::plan::{Item, counted};
 use crate::solver::statics::{
     BallState, COORDINATE_NAMES, ContactState, Determinacy, StaticSolution,
 };
-use crate::solver::plan::tally::Ran;
-use crate::solver::plan::{Item, counted};
 use nalgebra::Vector3;
 use ndarray::Array2;
 use serde_json::{Map, Value, json};

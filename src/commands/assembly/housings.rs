@@ -74,7 +74,12 @@ pub fn items(scene: &AssemblyScene, housings: &[Housing], assembly: &Assembly) -
     for (index, housing) in housings.iter().enumerate() {
         let bearing = &assembly.bearings[housing.bearing];
         let seat = (bearing.mounts[1].body, housing.name.as_deref());
-        items.extend(housed::plan::solid_items(&housing.scene, &housing.mesh, index, &housing.of()));
+        items.extend(housed::plan::solid_items(
+            &housing.scene,
+            &housing.mesh,
+            index,
+            &housing.of(),
+        ));
         if scene.housing_method() == Some(HousingMethod::Explicit) {
             items.extend(motion::stepped_seat(assembly, index, seat));
         }

@@ -7,15 +7,15 @@ pub mod statics;
 use super::housed::echo as housed_echo;
 use super::solid::echo as solid_echo;
 use super::{echo, echo_run};
-use housings::Housing;
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::DefaultUsed;
 use bearing_dynamics::scene::assembly::{AssemblyScene, Carrier, PlacedBearing, Spring};
 use bearing_dynamics::scene::dynamics::dynamic_problem;
+use bearing_dynamics::solver::plan::Item;
 use bearing_dynamics::solver::plan::motion::race_freedom;
 use bearing_dynamics::solver::plan::solid::{self, Method};
 use bearing_dynamics::solver::plan::statics as of_statics;
-use bearing_dynamics::solver::plan::Item;
+use housings::Housing;
 use serde_json::{Map, Value, json};
 use std::error::Error;
 
@@ -167,7 +167,13 @@ pub fn statics_items(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Ve
     for (index, housing) in housings.iter().enumerate() {
         let problem = &housing.mesh.setup.solid.problem;
         let mesh = super::housed::mesh_text(&housing.mesh.built);
-        solids.extend(solid::items(problem, index, Some(&housing.of()), &mesh, &Method::QuasiStatic));
+        solids.extend(solid::items(
+            problem,
+            index,
+            Some(&housing.of()),
+            &mesh,
+            &Method::QuasiStatic,
+        ));
         let body = still.bearings[housing.bearing].mounts[1].body;
         solids.push(of_statics::seat(index, &still.bodies[body].name));
     }

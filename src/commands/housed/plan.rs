@@ -97,12 +97,7 @@ pub fn items(
 }
 
 /// Items of the housing: what acts on it, and how it is solved for.
-pub fn solid_items(
-    scene: &HousedScene,
-    prepared: &Prepared,
-    index: usize,
-    of: &str,
-) -> Vec<Item> {
+pub fn solid_items(scene: &HousedScene, prepared: &Prepared, index: usize, of: &str) -> Vec<Item> {
     let method = match scene.housing.method {
         HousingMethod::QuasiStatic => Method::QuasiStatic,
         HousingMethod::Reduced => Method::Reduced,
@@ -141,7 +136,8 @@ fn items_of_course(
     prepared: &Prepared,
     run: &RunSettings,
 ) -> Result<Vec<Item>, Box<dyn Error>> {
-    const GO_ROUND: &str = "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
+    const GO_ROUND: &str =
+        "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
     let mut problem = bearing_at(scene, 0.0)?;
     let turning = &scene.bearing.dynamics.inner.rotation;
     let turns = matches!(turning, Rotation::Speed(speed) if !speed.is_zero());

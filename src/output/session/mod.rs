@@ -121,7 +121,12 @@ impl<'p> Session<'p> {
         size::size_of(&columns, request)?;
         let (motion, clock) = Motion::start(parts, request)?;
         let recorder = columns.with_room(clock.rows_in_all())?;
-        let sound = Sound { checkpoint: motion.room(), watch: LedgerWatch::default(), rows: 0, ran: Ran::default() };
+        let sound = Sound {
+            checkpoint: motion.room(),
+            watch: LedgerWatch::default(),
+            rows: 0,
+            ran: Ran::default(),
+        };
         let mut session = Session::new(motion, clock, recorder, sound, request);
         if let Motion::Solid(moving) = &mut session.motion {
             session.watch.first = moving.solid.ledger().balance();

@@ -12,10 +12,10 @@ use super::state::{
     BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, POSITION, Places, SPIN, VELOCITY,
     quaternion_rate,
 };
+use crate::kinematics::vec3::{Vec3, add, add_scaled, dot};
 use crate::solver::plan::steps::{BodySteps, Steps};
 use crate::solver::plan::tally::{Ran, Tally};
 use crate::solver::plan::{Item, Stage, motion};
-use crate::kinematics::vec3::{Vec3, add, add_scaled, dot};
 use nalgebra::Vector3;
 
 /// An assembly with everything precomputed and room to work in.
@@ -115,7 +115,8 @@ impl System {
         let gravity = self.steps.gravity.then_some(self.assembly.gravity);
         let mut ledger = [0.0; LEDGER];
         self.loads.fill(RaceLoads::default());
-        for ((set, bearing), own) in self.sets.iter_mut().zip(bearings).zip(&mut self.ran.bearings) {
+        for ((set, bearing), own) in self.sets.iter_mut().zip(bearings).zip(&mut self.ran.bearings)
+        {
             let (driver, work) = (self.driver, &mut self.work);
             set.evaluate(bearing, gravity, driver, want, state, rates, &mut ledger, work, own);
             self.ran.whole.add(Stage::Gravity, own.take(Stage::Gravity));

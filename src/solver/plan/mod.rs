@@ -211,13 +211,9 @@ impl Subject {
 
     /// `None` where there is no such list.
     pub fn from_numbers([list, at]: [usize; 2]) -> Option<Subject> {
-        let of = [
-            |_| Subject::Whole,
-            Subject::Bearing,
-            Subject::Body,
-            Subject::Solid,
-            Subject::Seat,
-        ] as [fn(usize) -> Subject; 5];
+        let of =
+            [|_| Subject::Whole, Subject::Bearing, Subject::Body, Subject::Solid, Subject::Seat]
+                as [fn(usize) -> Subject; 5];
         of.get(list).map(|of| of(at))
     }
 }
@@ -299,12 +295,13 @@ pub fn counted(items: &[Item], ran: &tally::Ran) -> Vec<Counted> {
         let count = ran.of(item.stage, item.subject);
         Counted { name: item.name(), does: item.does, ran: count }
     };
-    let planned = |stage, subject| {
-        items.iter().any(|item| item.stage == stage && item.subject == subject)
-    };
+    let planned =
+        |stage, subject| items.iter().any(|item| item.stage == stage && item.subject == subject);
     let unplanned = ran.list().into_iter().filter(|(stage, subject, _)| !planned(*stage, *subject));
-    let without = |(stage, subject, ran): (Stage, Subject, u64)| {
-        Counted { name: format!("not planned: {stage:?} of {subject:?}"), does: false, ran }
+    let without = |(stage, subject, ran): (Stage, Subject, u64)| Counted {
+        name: format!("not planned: {stage:?} of {subject:?}"),
+        does: false,
+        ran,
     };
     items.iter().map(of).chain(unplanned.map(without)).collect()
 }

@@ -307,7 +307,9 @@ fn free_coordinates(body: &RaceBody) -> usize {
 pub fn race_freedom(body: &RaceBody) -> String {
     match free_coordinates(body) {
         6 => "all six coordinates follow from loads".into(),
-        0 => "all six coordinates are given and imposed; the work of what drives it is booked".into(),
+        0 => {
+            "all six coordinates are given and imposed; the work of what drives it is booked".into()
+        }
         free => format!("{free} of 6 coordinates follow from loads, the others are given"),
     }
 }

@@ -28,8 +28,10 @@ pub fn items(assembly: &StaticAssembly, solids: Vec<Item>, centrifugal: &str) ->
     }
     items.push(match springs_to_ground(assembly) {
         0 => Item::skips(Stage::Foundation, Subject::Whole, "no spring to the ground"),
-        some => Item::does(Stage::Foundation, Subject::Whole, format!("{some} springs to the ground"))
-            .costing(some as u64),
+        some => {
+            Item::does(Stage::Foundation, Subject::Whole, format!("{some} springs to the ground"))
+                .costing(some as u64)
+        }
     });
     items.push(match assembly.connections.len() {
         0 => Item::skips(Stage::Springs, Subject::Whole, "none is given"),

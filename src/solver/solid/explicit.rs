@@ -1,6 +1,5 @@
 //! Explicit steps of a solid: central differences, or Runge–Kutta as in the source.
 
-use crate::solver::plan::{Stage, tally::Tally};
 use super::energy::{SolidEnergy, SolidLedger, strain_energy};
 use super::model::{Prescribed, SolidError, SolidModel};
 use super::rigid_motion::{RigidMotion, rigid_motion};
@@ -9,6 +8,7 @@ use super::team::Team;
 use super::tet4_blocks::Node;
 use crate::kinematics::vec3::Vec3;
 use crate::solver::clock::whole_steps;
+use crate::solver::plan::{Stage, tally::Tally};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExplicitMethod {

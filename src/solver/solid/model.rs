@@ -10,10 +10,10 @@ use crate::elements::tet10::{self, Tet10};
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::tet_mesh::Elements;
 use crate::solver::clock::rounded;
-use crate::solver::profile::Profile;
 use crate::solver::plan::Stage;
 use crate::solver::plan::solid::{Method, SolidSteps};
 use crate::solver::plan::tally::Tally;
+use crate::solver::profile::Profile;
 use thiserror::Error;
 
 /// What mass-proportional damping brakes.
