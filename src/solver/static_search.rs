@@ -280,7 +280,8 @@ impl<'a, 'b> Search<'a, 'b> {
     /// falls as its square.
     fn polish(&mut self, here: &mut Evaluation, residual: f64) -> Result<(), StaticsError> {
         let StaticAssembly { bearings, connections, seats, .. } = self.model.assembly;
-        let one_holds = bearings.len() <= 1 && connections.is_empty() && seats.is_empty();
+        let springs = connections.iter().any(|connection| !connection.is_void());
+        let one_holds = bearings.len() <= 1 && !springs && seats.is_empty();
         let strict = self.options.tolerance * self.applied().max(here.largest_ball_load);
         if one_holds || residual <= 1e-2 * strict {
             return Ok(());

@@ -74,7 +74,7 @@ pub fn run(path: &Path, document: &Document, scene: &SolidScene, json: bool) -> 
         },
     );
     let mut forces = vec![[0.0; 4]; model.mass.len()];
-    model.add_external_forces(0.0, &mut forces, &mut Tally::default());
+    model.add_external_forces(model.acting(), 0.0, &mut forces, &mut Tally::default());
     let forces: Vec<[f64; 3]> = forces.iter().map(|f| [f[0], f[1], f[2]]).collect();
     let all: Vec<u32> = (0..forces.len() as u32).collect();
     let [x, y, z] = sum(&forces, &all);

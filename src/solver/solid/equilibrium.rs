@@ -184,7 +184,9 @@ impl<'a> Newton<'a> {
         let mut ran = Tally::default();
         match options.gravity {
             MassMatrix::Consistent => model.add_static_forces(t, &mut external, &mut ran),
-            MassMatrix::Lumped => model.add_external_forces(t, &mut external, &mut ran),
+            MassMatrix::Lumped => {
+                model.add_external_forces(model.acting(), t, &mut external, &mut ran);
+            }
         }
         Newton {
             matrix: pattern(&model.problem, &unknowns),

@@ -8,7 +8,7 @@ use super::team::Team;
 use super::tet4_blocks::Node;
 use crate::kinematics::vec3::Vec3;
 use crate::solver::clock::whole_steps;
-use crate::solver::plan::{Stage, tally::Tally};
+use crate::solver::plan::{Stage, solid::SolidSteps, tally::Tally};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExplicitMethod {
@@ -68,6 +68,8 @@ pub struct ExplicitSolid {
     pub work: SolidWork,
     /// How often each stage has run.
     pub ran: Tally,
+    /// What acts on it, as planned.
+    acting: SolidSteps,
     stages: Option<Box<Stages>>,
     /// Where several threads share its elements.
     pub(super) team: Option<Team>,
@@ -174,6 +176,7 @@ impl ExplicitSolid {
             damping_work: vec![0.0; count],
             work: SolidWork::default(),
             ran: Tally::default(),
+            acting: model.acting(),
             stages,
             team: None,
             model,
@@ -224,7 +227,7 @@ impl ExplicitSolid {
             Some(team) => team.add_internal_forces(&self.displacement, &mut self.force),
             None => self.model.add_internal_forces(&self.displacement, &mut self.force),
         }
-        self.model.add_external_forces(self.time, &mut self.force, &mut self.ran);
+        self.model.add_external_forces(self.acting, self.time, &mut self.force, &mut self.ran);
         self.work.evaluations += 1;
         self.work.elements += self.elements_a_step() as u64;
         self.ran.add(Stage::Elements, self.elements_a_step() as u64);
@@ -265,7 +268,7 @@ impl ExplicitSolid {
             self.external_work[n] += 0.5 * h * drive * (rate + before);
             self.rate[n][i] = rate;
         }
-        if !self.model.steps.damping {
+        if !self.acting.damping {
             let nodes = self.rate.iter_mut().zip(&mut self.displacement);
             let pulls = self.force.iter().zip(&self.model.per_mass);
             for ((rate, displacement), (force, per_mass)) in nodes.zip(pulls) {
@@ -330,7 +333,7 @@ impl ExplicitSolid {
             }
         }
         let gravity = problem.gravity;
-        if self.model.steps.gravity {
+        if self.acting.gravity {
             for (n, rate) in self.rate.iter().enumerate() {
                 self.external_work[n] += seconds
                     * mass[n]
@@ -354,7 +357,7 @@ impl ExplicitSolid {
             self.add_load_work(share);
             let SolidModel { per_mass, problem, mass, .. } = &self.model;
             let mut rigid = RigidMotion::default();
-            if self.model.steps.damping {
+            if self.acting.damping {
                 rigid = rigid_motion(problem, mass, &self.displacement, &self.rate);
                 self.ran.add(Stage::Damping, 1);
             }
@@ -457,7 +460,7 @@ impl ExplicitSolid {
             ExplicitMethod::RungeKutta => 0.0,
         };
         let mut loads = vec![[0.0; 4]; self.force.len()];
-        self.model.add_external_forces(self.time, &mut loads, &mut self.ran);
+        self.model.add_external_forces(self.acting, self.time, &mut loads, &mut self.ran);
         let SolidModel { mass, per_mass, .. } = &self.model;
         let (mut kinetic, mut external, mut damping) = (0.0, 0.0, 0.0);
         for (n, acceleration) in self.acceleration().into_iter().enumerate() {

@@ -123,8 +123,6 @@ pub struct SolidModel {
     pub mass: Vec<f64>,
     /// Reciprocal of the mass by component; zero where the displacement is prescribed.
     pub per_mass: Vec<Node>,
-    /// What acts on it, as planned.
-    pub steps: SolidSteps,
 }
 
 /// The undeformed corners of an element.
@@ -215,8 +213,7 @@ impl SolidModel {
                 return Err(SolidError::NoSuchNode { node: *node, count });
             }
         }
-        let steps = SolidSteps::new(&problem, &Method::Explicit);
-        Ok(SolidModel { problem, labels, blocks, mass, per_mass, steps })
+        Ok(SolidModel { problem, labels, blocks, mass, per_mass })
     }
 
     /// A value at a node that is not finite.
@@ -246,9 +243,17 @@ impl SolidModel {
 
     /// Adds loads and gravity at time `t`, N, gravity by the lumped masses: all nodes of a free
     /// body then fall alike.
-    pub fn add_external_forces(&self, t: f64, forces: &mut [Node], ran: &mut Tally) {
-        self.add_loads(t, forces, ran);
-        self.add_gravity(forces, self.mass.iter().copied().enumerate(), ran);
+    pub fn add_external_forces(
+        &self,
+        steps: SolidSteps,
+        t: f64,
+        forces: &mut [Node],
+        ran: &mut Tally,
+    ) {
+        self.add_loads(steps, t, forces, ran);
+        if steps.gravity {
+            self.add_gravity(forces, self.mass.iter().copied().enumerate(), ran);
+        }
     }
 
     /// Adds loads and gravity at time `t`, N, gravity as ∫Nρg dV: what equilibrium needs. For
@@ -256,8 +261,11 @@ impl SolidModel {
     /// masses are positive everywhere, as explicit steps need them, but as a load they would cost an
     /// order of convergence; the consistent load pulls corners upwards.
     pub fn add_static_forces(&self, t: f64, forces: &mut [Node], ran: &mut Tally) {
-        self.add_loads(t, forces, ran);
-        self.add_weight(forces, ran);
+        let steps = self.acting();
+        self.add_loads(steps, t, forces, ran);
+        if steps.gravity {
+            self.add_weight(forces, ran);
+        }
     }
 
     /// Of [`SolidModel::add_static_forces`] what gravity does, N.
@@ -266,7 +274,7 @@ impl SolidModel {
             Elements::Linear(_) => {
                 self.add_gravity(forces, self.mass.iter().copied().enumerate(), ran);
             }
-            Elements::Quadratic(list) if self.steps.gravity => {
+            Elements::Quadratic(list) => {
                 for element in list {
                     let shares = tet10::consistent_mass(
                         &corners(&self.problem.nodes, element),
@@ -276,12 +284,16 @@ impl SolidModel {
                     self.add_gravity(forces, element.iter().map(|n| *n as usize).zip(sums), ran);
                 }
             }
-            Elements::Quadratic(_) => {}
         }
     }
 
-    fn add_loads(&self, t: f64, forces: &mut [Node], ran: &mut Tally) {
-        if !self.steps.loads {
+    /// What its plan lets act on it.
+    pub fn acting(&self) -> SolidSteps {
+        SolidSteps::new(&self.problem, &Method::Explicit)
+    }
+
+    fn add_loads(&self, steps: SolidSteps, t: f64, forces: &mut [Node], ran: &mut Tally) {
+        if !steps.loads {
             return;
         }
         ran.add(Stage::Loads, self.problem.loads.len() as u64);
@@ -296,16 +308,13 @@ impl SolidModel {
         }
     }
 
-    /// Weight of masses at nodes; nothing without gravity.
+    /// Weight of masses at nodes.
     fn add_gravity(
         &self,
         forces: &mut [Node],
         masses: impl Iterator<Item = (usize, f64)>,
         ran: &mut Tally,
     ) {
-        if !self.steps.gravity {
-            return;
-        }
         ran.add(Stage::Gravity, 1);
         let gravity = self.problem.gravity;
         for (node, mass) in masses {
