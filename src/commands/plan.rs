@@ -5,17 +5,20 @@ use super::housed::plan::windows_text;
 use super::plan_step::{note, refused, step_lines};
 use super::remarks::of_springs;
 use super::run::{ONE_AFTER_THE_OTHER, planned_request};
-use super::solve::{lines, plan_lines};
+use super::solve::statics_items;
 use super::{CommandResult, Outcome, say};
 use bearing_dynamics::output::session::{RunRequest, table_size};
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
 use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::scene::{
-    CageInRun, Document, Subject, resolve_subject, statics::static_problem,
+    CageInRun, Document, RunSettings, Subject, resolve_subject, statics::static_problem,
 };
 use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::foretell::Choice;
-use bearing_dynamics::solver::plan;
+use bearing_dynamics::solver::dynamics::run::Start;
+use bearing_dynamics::solver::plan::motion::{self, Planned};
+use bearing_dynamics::solver::plan::{Item, Stage, Subject as PlanSubject};
+use std::error::Error;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -32,47 +35,62 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         Subject::Bearing(scene) => AssemblyScene::alone(*scene),
         Subject::Assembly(scene) => *scene,
     };
-    let prepared = housings::prepare(&document, &scene)?;
-    let mut planned = match (scene.run(), scene.only()) {
+    let (items, notes) = match (scene.run(), scene.only()) {
         (Some(_), _) if scene.housing_method() == Some(HousingMethod::QuasiStatic) => {
-            let mut lines = super::assembly::plan_lines(&scene)?;
             let said = format!("WARNING: the run will be refused: {ONE_AFTER_THE_OTHER}");
-            lines.push(format!("notes {:<28} {said}", "run"));
-            lines
+            let housings = housings::prepare(&document, &scene)?;
+            (super::assembly::statics_items(&scene, &housings)?, vec![note("run", &said)])
         }
-        (Some(settings), _) => {
-            let assembly = match scene.housing_method() {
-                Some(HousingMethod::Reduced) => housings::reduced(&scene, &prepared)?.assembly,
-                _ => scene.assembly()?,
-            };
-            let (request, choice) = planned_request(&scene, settings, &assembly, None);
-            let mut lines = dynamic_plan_lines(&scene, &assembly, &request, choice.as_ref());
-            if scene.housing_method() == Some(HousingMethod::Explicit) {
-                // Races without their housings would have nothing to hold them.
-                let windows = housings::explicit(&scene, &prepared, 1)
-                    .and_then(|parts| windows_text(parts, settings));
-                let said = windows.unwrap_or_else(|error| refused(&*error));
-                lines.push(note("step", &said));
-            } else {
-                lines.extend(step_lines(&assembly, &request));
-            }
-            lines.push(size_line(&assembly, &request));
-            lines.retain(|line| prepared.is_empty() || !line.contains("flexible bodies"));
-            lines.extend(
-                prepared.iter().map(|housing| format!("does{}", &housing.text().trim_end()[1..])),
-            );
-            lines
+        (Some(settings), _) => of_run(&document, &scene, settings)?,
+        (None, Some(alone)) => (statics_items(&static_problem(alone)?), Vec::new()),
+        (None, None) => {
+            let housings = housings::prepare(&document, &scene)?;
+            (super::assembly::statics_items(&scene, &housings)?, Vec::new())
         }
-        (None, Some(alone)) => plan_lines(&static_problem(alone)?),
-        (None, None) => super::assembly::plan_lines(&scene)?,
     };
-    planned.extend(of_springs(&scene).iter().map(|said| note("spring", said)));
-    if scene.common().rigid_housing {
-        let reason = "housing.method = rigid: the outer race is fixed, no mesh is read";
-        planned.push(format!("skips {:<28} {reason}", "housing"));
-    }
-    say(&planned.iter().map(|line| format!("{line}\n")).collect::<String>())?;
+    let springs = of_springs(&scene);
+    let notes = notes.into_iter().chain(springs.iter().map(|said| note("spring", said)));
+    let items = items.into_iter().chain(rigid_housing(&scene));
+    say_plan(&items.collect::<Vec<_>>(), &notes.collect::<Vec<_>>())?;
     Ok(Outcome::Done)
+}
+
+/// Says items, a line each, and then notes.
+pub fn say_plan(items: &[Item], notes: &[String]) -> Result<(), Box<dyn Error>> {
+    items.iter().try_for_each(|item| say(&format!("{item}\n")))?;
+    notes.iter().try_for_each(|line| say(&format!("{line}\n")))
+}
+
+/// A housing that the scene asks to leave out.
+fn rigid_housing(scene: &AssemblyScene) -> Option<Item> {
+    let why = "housing.method = rigid: the outer race is fixed, no mesh is read";
+    scene.common().rigid_housing.then(|| Item::skips(Stage::Housing, PlanSubject::Whole, why))
+}
+
+/// Items of a run, and what there is to note of its steps and its table.
+fn of_run(
+    document: &Document,
+    scene: &AssemblyScene,
+    settings: &RunSettings,
+) -> Result<(Vec<Item>, Vec<String>), Box<dyn Error>> {
+    let prepared = housings::prepare(document, scene)?;
+    let assembly = match scene.housing_method() {
+        Some(HousingMethod::Reduced) => housings::reduced(scene, &prepared)?.assembly,
+        _ => scene.assembly()?,
+    };
+    let (request, choice) = planned_request(scene, settings, &assembly, None);
+    let solids = housings::items(scene, &prepared, &assembly);
+    let items = dynamic_items(scene, &assembly, &request, choice.as_ref(), solids);
+    let mut notes = if scene.housing_method() == Some(HousingMethod::Explicit) {
+        // Races without their housings would have nothing to hold them.
+        let windows =
+            housings::explicit(scene, &prepared, 1).and_then(|parts| windows_text(parts, settings));
+        vec![note("step", &windows.unwrap_or_else(|error| refused(&*error)))]
+    } else {
+        step_lines(&assembly, &request)
+    };
+    notes.push(size_line(&assembly, &request));
+    Ok((items, notes))
 }
 
 /// How much the run is going to write.
@@ -81,26 +99,38 @@ fn size_line(assembly: &Assembly, request: &RunRequest) -> String {
         Ok(size) => size.to_string(),
         Err(error) => format!("WARNING: the run will be refused: {error}"),
     };
-    format!("notes {:<28} {said}", "table")
+    note("table", &said)
 }
 
-/// The plan of a run as text, one line a stage.
-pub fn dynamic_plan_lines(
+/// Items of a run; `solids` are those of flexible solids.
+pub fn dynamic_items(
     scene: &AssemblyScene,
     assembly: &Assembly,
     request: &RunRequest,
     choice: Option<&Choice>,
-) -> Vec<String> {
+    solids: Vec<Item>,
+) -> Vec<Item> {
     let left_out = |placed: &PlacedBearing| match &placed.scene.dynamics.cage {
         CageInRun::Body(_) => None,
         CageInRun::LeftOut(reason) => Some(reason.clone()),
     };
     let left_out: Vec<Option<String>> = scene.bearings.iter().map(left_out).collect();
     let left_out: Vec<Option<&str>> = left_out.iter().map(Option::as_deref).collect();
-    let mut all = lines(plan::dynamics(assembly, &request.options, &request.channels, &left_out));
+    let mut options = request.options;
+    if scene.housing_method() == Some(HousingMethod::Explicit) {
+        // Bearings roll in equilibrium with races that are held where they sit in their housings.
+        options.start = Start::Equilibrium;
+    }
+    let mut items = motion::items(Planned {
+        assembly,
+        options: &options,
+        channels: &request.channels,
+        cage_left_out: &left_out,
+        solids,
+    });
     if let Some(choice) = choice {
         let said = format!("{}: {}", choice.integrator.name(), choice.reason());
-        all.push(format!("does  {:<28} {said}", "choice of the integrator"));
+        items.push(Item::does(Stage::IntegratorChoice, PlanSubject::Whole, said));
     }
-    all
+    items
 }

@@ -4,7 +4,8 @@ use super::{echo, remarks};
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::scene::Scene;
 use bearing_dynamics::scene::statics::static_problem;
-use bearing_dynamics::solver::plan;
+use bearing_dynamics::solver::plan::Item;
+use bearing_dynamics::solver::plan::statics::{self, ASKED_FOR};
 use bearing_dynamics::solver::statics::{StaticProblem, StaticSolution, solve};
 use serde_json::json;
 use std::error::Error;
@@ -29,24 +30,14 @@ pub fn solve_scene(scene: &Scene, read_seconds: f64) -> Result<Solved, Box<dyn E
     sections.push(("remarks".into(), json!(remarks)));
     let seconds = vec![("read".into(), read_seconds), ("solve".into(), solve_seconds)];
     let (assumptions, defaults) = (&scene.assumptions, &scene.defaults_used);
-    let plan = plan_lines(&problem);
+    let plan = statics_items(&problem);
     let mut record = super::record(echo::scene(scene)?, plan, assumptions, defaults, seconds);
     record.sections = sections;
+    record.ran.clone_from(&solution.ran);
     Ok(Solved { problem, solution, remarks, record })
 }
 
-/// The plan as text, one line a stage.
-pub fn plan_lines(problem: &StaticProblem) -> Vec<String> {
-    lines(plan::statics(problem))
-}
-
-/// Stages as text, one line each.
-pub fn lines(stages: Vec<plan::Stage>) -> Vec<String> {
-    stages
-        .into_iter()
-        .map(|stage| {
-            let mark = if stage.included { "does " } else { "skips" };
-            format!("{mark} {:<28} {}", stage.name, stage.reason)
-        })
-        .collect()
+/// The plan of statics.
+pub fn statics_items(problem: &StaticProblem) -> Vec<Item> {
+    statics::items(&problem.assembly(), Vec::new(), ASKED_FOR)
 }

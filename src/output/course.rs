@@ -9,6 +9,7 @@ use crate::solver::housing::condensed::CondensedBore;
 use crate::solver::housing::housed::{HousedMemory, HousedSearch, HousedState};
 use crate::solver::housing::inertia::Masses;
 use crate::solver::housing::quasi_static::{Course as CourseLoads, CourseError, Moment, history};
+use crate::solver::plan::{Stage, tally::Ran};
 use crate::solver::profile::Profile;
 use crate::solver::statics::{Condition, StaticProblem};
 
@@ -32,6 +33,8 @@ pub struct Course<'p> {
     /// The latest one.
     pub latest: Option<Moment>,
     pub effort: Effort,
+    /// How often each stage ran.
+    pub ran: Ran,
 }
 
 /// What equilibria took.
@@ -62,7 +65,7 @@ impl<'p> Course<'p> {
         let bore = BoreSearch::new(parts.bore, parts.scene.housing.penalty);
         let search = HousedSearch::new(bore);
         let effort = Effort::default();
-        Course { parts, search, interval, found: 0, latest: None, effort }
+        Course { parts, search, interval, found: 0, latest: None, effort, ran: Ran::default() }
     }
 
     pub fn bore(&self) -> &'p CondensedBore {
@@ -96,6 +99,8 @@ impl<'p> Course<'p> {
             effort.largest_residual = effort.largest_residual.max(state.residual);
             effort.iterations += state.iterations;
             effort.contact_changes += state.contact_changes;
+            self.ran.absorb(&state.ran);
+            self.ran.whole.add(Stage::Equilibria, 1);
             self.latest = Some(moment);
         }
         self.found += 1;

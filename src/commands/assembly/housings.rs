@@ -15,6 +15,8 @@ use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::exchange::SolidPart;
 use bearing_dynamics::solver::housing::reduce::Reduction;
 use bearing_dynamics::solver::housing::reduced_start::{self, add_housing, put_in_equilibrium};
+use bearing_dynamics::solver::plan::tally::Tally;
+use bearing_dynamics::solver::plan::{Item, motion};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::static_assembly::StaticAssembly;
 use std::error::Error;
@@ -40,12 +42,17 @@ impl Housing {
         }
     }
 
+    /// "housing left".
+    pub fn of(&self) -> String {
+        let of = self.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
+        format!("housing{of}")
+    }
+
     /// Mesh and seat, a line.
     pub fn text(&self) -> String {
-        let of = self.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
         format!(
             "  {:<22} {}; {}; bore {}\n",
-            format!("housing{of}"),
+            self.of(),
             housed::mesh_text(&self.mesh.built),
             housed::echo::method(&self.scene),
             housed::shape_text(&self.mesh.setup)
@@ -75,6 +82,25 @@ pub fn prepare(document: &Document, scene: &AssemblyScene) -> Fallible<Vec<Housi
     Ok(housings)
 }
 
+/// Items of the housings of a run: what acts on them, how they move, and the races in explicit ones.
+pub fn items(scene: &AssemblyScene, housings: &[Housing], assembly: &Assembly) -> Vec<Item> {
+    let mut items = Vec::new();
+    for (index, housing) in housings.iter().enumerate() {
+        let bearing = &assembly.bearings[housing.bearing];
+        let seat = (bearing.mounts[1].body, housing.name.as_deref());
+        items.extend(housed::plan::solid_items(
+            &housing.scene,
+            &housing.mesh,
+            index,
+            &housing.of(),
+        ));
+        if scene.housing_method() == Some(HousingMethod::Explicit) {
+            items.extend(motion::stepped_seat(assembly, index, seat));
+        }
+    }
+    items
+}
+
 /// Each condensed onto its bore.
 pub fn condensed(housings: &[Housing]) -> Fallible<Vec<CondensedBore>> {
     let each = housings.iter();
@@ -101,6 +127,8 @@ pub struct Reduced {
     pub reductions: Vec<Reduction>,
     /// Wall time that condensing, and finding shapes and start took, s.
     pub seconds: [f64; 2],
+    /// How often each stage of condensing ran, one for each housing.
+    pub ran: Vec<Tally>,
 }
 
 /// Condenses and reduces the housings, and finds the equilibrium that a run starts from.
@@ -138,7 +166,8 @@ pub fn reduced(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Reduced>
         put_in_equilibrium(&mut assembly, &mut parts)?;
     }
     seconds[1] += start.elapsed().as_secs_f64();
-    Ok(Reduced { assembly, reductions, seconds })
+    let ran = bores.iter().map(|bore| bore.ran).collect();
+    Ok(Reduced { assembly, reductions, seconds, ran })
 }
 
 /// Displacements (m) and velocities (m/s) of all nodes of a reduced housing now.

@@ -6,15 +6,16 @@ pub mod statics;
 
 use super::housed::echo as housed_echo;
 use super::solid::echo as solid_echo;
-use super::{echo, echo_run, solve};
+use super::{echo, echo_run};
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::DefaultUsed;
 use bearing_dynamics::scene::assembly::{AssemblyScene, Carrier, PlacedBearing, Spring};
 use bearing_dynamics::scene::dynamics::dynamic_problem;
-use bearing_dynamics::scene::statics::static_problem;
-use bearing_dynamics::solver::plan::race_freedom;
-use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
-use bearing_dynamics::solver::statics::Condition;
+use bearing_dynamics::solver::plan::Item;
+use bearing_dynamics::solver::plan::motion::race_freedom;
+use bearing_dynamics::solver::plan::solid::{self, Method};
+use bearing_dynamics::solver::plan::statics as of_statics;
+use housings::Housing;
 use serde_json::{Map, Value, json};
 use std::error::Error;
 
@@ -159,52 +160,22 @@ pub fn lines(scene: &AssemblyScene) -> Vec<(String, String)> {
     said
 }
 
-/// What statics of several bearings does, one line a stage: that of each bearing, and one search.
-pub fn plan_lines(scene: &AssemblyScene) -> Fallible<Vec<String>> {
-    let mut lines = Vec::new();
-    for placed in &scene.bearings {
-        let own = solve::plan_lines(&static_problem(&placed.scene)?);
-        // What these say of a bearing alone.
-        let shared = ["race equilibrium", "outer race motion", "flexible bodies"];
-        let own =
-            own.into_iter().filter(|line| !shared.iter().any(|name| line[6..].starts_with(name)));
-        lines.extend(own.map(|line| match &placed.name {
-            Some(name) => format!("{}{name}: {}", &line[..6], &line[6..]),
-            None => line,
-        }));
-    }
+/// What statics does: of each bearing, one search, and the housings in it.
+pub fn statics_items(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Vec<Item>> {
     let still = scene.statics()?;
-    let (free, bodies) = free_coordinates(&still);
-    lines.push(match free {
-        0 => format!("skips {:<28} all coordinates are given: one evaluation", "equilibrium"),
-        _ => format!(
-            "does  {:<28} {free} free coordinates of {bodies} bodies in one search",
-            "equilibrium"
-        ),
-    });
-    lines.extend(scene.bearings.iter().filter(|placed| placed.housing.is_some()).map(|placed| {
-        let of = placed.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
-        let said = "condensed onto its bore; contact on one side only, in the same search";
-        format!("does  {:<28} {said}", format!("housing{of}"))
-    }));
-    lines.push(match still.connections.len() {
-        0 => format!("skips {:<28} none is given", "springs between bodies"),
-        some => format!("does  {:<28} {some} of them", "springs between bodies"),
-    });
-    if scene.housing_method().is_none() {
-        let said = "the scene has none: no mesh, no element stage";
-        lines.push(format!("skips {:<28} {said}", "flexible bodies"));
+    let mut solids = Vec::new();
+    for (index, housing) in housings.iter().enumerate() {
+        let problem = &housing.mesh.setup.solid.problem;
+        let mesh = super::housed::mesh_text(&housing.mesh.built);
+        solids.extend(solid::items(
+            problem,
+            index,
+            Some(&housing.of()),
+            &mesh,
+            &Method::QuasiStatic,
+        ));
+        let body = still.bearings[housing.bearing].mounts[1].body;
+        solids.push(of_statics::seat(index, &still.bodies[body].name));
     }
-    Ok(lines)
-}
-
-/// Coordinates that loads decide, and bodies that have any.
-fn free_coordinates(still: &StaticAssembly) -> (usize, usize) {
-    let free = still.bodies.iter().map(|body| match &body.place {
-        Place::Held(_) => 0,
-        Place::Loaded(loaded) => {
-            loaded.conditions.iter().filter(|c| matches!(c, Condition::Load(_))).count()
-        }
-    });
-    free.fold((0, 0), |(all, bodies), own| (all + own, bodies + usize::from(own > 0)))
+    Ok(of_statics::items(&still, solids, of_statics::ASKED_FOR))
 }

@@ -1,7 +1,7 @@
 //! `bearing statics` of several bearings: one equilibrium of all bodies.
 
 use super::housings::{self, Housing};
-use super::{defaults, echo, name_of, plan_lines};
+use super::{defaults, echo, name_of, statics_items};
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
 use crate::commands::echo::{frequencies, hertz};
 use crate::commands::{CommandResult, Outcome, record, remarks, results_folder, say, table};
@@ -58,8 +58,12 @@ pub fn find_equilibrium<'s>(
     let mut remarks = remarks::of_assembly(scene, &assembly, &solution);
     let names: Vec<&str> = scene.bearings.iter().map(name_of).collect();
     let assumptions = &scene.common().assumptions;
-    let plan = plan_lines(scene)?;
+    let plan = statics_items(scene, &housings)?;
     let mut record = record(echo(scene)?, plan, assumptions, &defaults(scene), seconds);
+    record.ran.clone_from(&solution.ran);
+    for (tally, bore) in record.ran.solids.iter_mut().zip(&bores) {
+        tally.absorb(&bore.ran);
+    }
     let mut settled = Vec::with_capacity(housings.len());
     let mut sections = Map::new();
     for ((housing, bore), state) in housings.into_iter().zip(&bores).zip(&solution.seats) {

@@ -40,6 +40,7 @@ use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState};
 use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate};
 use bearing_dynamics::solver::housing::seat::Seat;
 use bearing_dynamics::solver::mount::Mount;
+use bearing_dynamics::solver::plan::Item;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::support::free_motions;
 use bearing_dynamics::solver::solid::tangent::Unknowns;
@@ -365,7 +366,7 @@ pub fn defaults(scene: &HousedScene) -> Vec<DefaultUsed> {
 /// Scene, assumptions, defaults and plan, as every summary has them.
 pub fn record(
     scene: &HousedScene,
-    plan: Vec<String>,
+    plan: Vec<Item>,
     seconds: Vec<(String, f64)>,
 ) -> Fallible<RunRecord> {
     let assumptions = &scene.bearing.assumptions;

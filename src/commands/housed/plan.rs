@@ -3,12 +3,11 @@
 
 use super::{
     Prepared, along_course, bearing_at, condensed, condensing, inertia_estimate, mesh_text, notes,
-    parts, prepare, reduced, refuse_moved_supports, refuse_steps,
+    parts, prepare, reduced, refuse_moved_supports, refuse_steps, request as housed_request,
 };
-use crate::commands::plan::dynamic_plan_lines;
-use crate::commands::run::request as bearing_request;
-use crate::commands::solve::plan_lines;
-use crate::commands::{CommandResult, Outcome, memory, say};
+use crate::commands::plan::{dynamic_items, say_plan};
+use crate::commands::plan_step::note;
+use crate::commands::{CommandResult, Outcome, memory};
 use bearing_dynamics::output::session::HousedParts;
 use bearing_dynamics::output::summary::housing::largest_error;
 use bearing_dynamics::scene::Document;
@@ -20,11 +19,18 @@ use bearing_dynamics::scene::housing_problem::{
     BALLS_PASSING, Excitation, check_constant, excitations,
 };
 use bearing_dynamics::solver::clock::{rounded, to_digits, whole_number};
+use bearing_dynamics::solver::dynamics::assembly::{Assembly, OUTER};
 use bearing_dynamics::solver::dynamics::model::Rotation;
+use bearing_dynamics::solver::dynamics::run::Start;
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, Sizes};
 use bearing_dynamics::solver::housing::course_inertia::CourseInertia;
 use bearing_dynamics::solver::housing::exchange::SteppedSolid;
+use bearing_dynamics::solver::housing::housed::without_bore;
 use bearing_dynamics::solver::housing::inertia::InertiaEstimate;
+use bearing_dynamics::solver::plan::solid::{self, Method};
+use bearing_dynamics::solver::plan::statics::{self, ASKED_FOR};
+use bearing_dynamics::solver::plan::{Item, Stage, Subject, motion};
+use bearing_dynamics::solver::statics::StaticProblem;
 use std::error::Error;
 use std::time::{Duration, Instant};
 
@@ -36,115 +42,118 @@ const TIMED: Duration = Duration::from_millis(300);
 
 pub fn run(document: &Document, scene: &HousedScene) -> CommandResult {
     let prepared = prepare(document, scene)?;
-    let mut lines = lines(scene, &prepared)?;
-    lines.extend(notes(&prepared).iter().map(|note| line("notes", "housing mesh", note)));
-    if scene.housing.method == HousingMethod::Reduced {
+    let method = scene.housing.method;
+    let mut reduced = None;
+    if method == HousingMethod::Reduced {
         refuse_moved_supports(document, scene)?;
-        lines.extend(reduced::plan_lines(scene, &prepared)?);
+        reduced = Some(reduced::reduced(scene, &prepared)?);
     }
-    lines.extend(equilibrium_lines(scene, &prepared)?);
+    let assembly = reduced.as_ref().map(|reduced| &reduced.assembly);
+    let items = items(scene, &prepared, assembly)?;
+    let mut lines: Vec<String> =
+        notes(&prepared).iter().map(|said| note("housing mesh", said)).collect();
+    if let Some(reduced) = &reduced {
+        lines.extend(reduced::plan_notes(scene, reduced));
+    }
+    if method == HousingMethod::Explicit && !scene.housing.from_equilibrium {
+        lines.push(note("start of the housing", UNDEFORMED));
+    }
+    lines.extend(equilibrium_notes(scene, &prepared)?);
     if let Some(run) = &scene.bearing.dynamics.run {
-        if scene.housing.method == HousingMethod::QuasiStatic {
+        if method == HousingMethod::QuasiStatic {
             refuse_steps(document)?;
-            lines.push(equilibria_line(run));
         }
-        lines.push(explicit_line(scene, &prepared, run));
+        lines.push(explicit_note(scene, &prepared, run));
     }
-    say(&lines.iter().map(|line| format!("{line}\n")).collect::<String>())?;
+    say_plan(&items, &lines)?;
     Ok(Outcome::Done)
 }
 
-pub(super) fn line(mark: &str, name: &str, said: &str) -> String {
-    format!("{mark} {name:<28} {said}")
-}
+const UNDEFORMED: &str = "undeformed, the outer race in its first place: what the bearing carries from the start \
+    swings in";
 
-/// One line a stage, from the scene and its mesh alone.
-pub fn lines(scene: &HousedScene, prepared: &Prepared) -> Result<Vec<String>, Box<dyn Error>> {
-    let setup = &prepared.setup;
-    let of_bearing = match (scene.housing.method, &scene.bearing.dynamics.run) {
-        (HousingMethod::Explicit | HousingMethod::Reduced, Some(run)) => {
-            let problem = dynamic_problem(&scene.bearing)?;
-            let request = bearing_request(&scene.bearing, run);
-            let alone = AssemblyScene::alone(scene.bearing.clone());
-            dynamic_plan_lines(&alone, &problem.assembly(), &request, None)
-        }
-        _ => plan_lines(&bearing_at(scene, 0.0)?),
-    };
-    // What these say of a bearing alone.
-    const ALONE: [&str; 2] = ["outer race motion", "flexible bodies"];
-    let mut lines: Vec<String> = of_bearing
-        .into_iter()
-        .filter(|line| !ALONE.iter().any(|name| line[6..].starts_with(name)))
-        .map(|line| if balls_go_round(scene) { with_centrifugal(line) } else { line })
-        .collect();
-    lines.push(line("does ", "housing mesh", &mesh_text(&prepared.built)));
-    let held = setup.solid.problem.prescribed.len();
-    lines.push(line("does ", "housing supports", &format!("{held} components held")));
-    lines.push(line(
-        if setup.solid.problem.damping == 0.0 { "skips" } else { "does " },
-        "housing damping",
-        match (setup.solid.problem.damping == 0.0, scene.housing.method) {
-            (true, _) => "none is given",
-            (false, HousingMethod::Explicit | HousingMethod::Reduced) => "mass-proportional",
-            (false, HousingMethod::QuasiStatic) => {
-                "in explicit steps; nothing moves in an equilibrium"
-            }
-        },
-    ));
+/// Items of what the scene's method does: a run, equilibria one after the other, or statics. `assembly` is that of
+/// a reduced housing.
+pub fn items(
+    scene: &HousedScene,
+    prepared: &Prepared,
+    assembly: Option<&Assembly>,
+) -> Result<Vec<Item>, Box<dyn Error>> {
+    let Some(run) = &scene.bearing.dynamics.run else { return items_of_statics(scene, prepared) };
+    if scene.housing.method == HousingMethod::QuasiStatic {
+        return items_of_course(scene, prepared, run);
+    }
+    let own = dynamic_problem(&scene.bearing)?.assembly();
+    let assembly = assembly.unwrap_or(&own);
+    let mut solids = solid_items(scene, prepared, 0, "housing");
     if scene.housing.method == HousingMethod::Explicit {
-        lines.push(line(
-            "notes",
-            "start of the housing",
-            "undeformed, the outer race in its first place: what the bearing carries from the start swings in",
-        ));
+        solids.extend(motion::stepped_seat(assembly, 0, (OUTER, None)));
     }
-    lines.push(match scene.housing.method {
-        HousingMethod::QuasiStatic => line(
-            "does ",
-            "quasi-static housing",
-            "condensed onto its bore; bearing and bore in one equilibrium after the other",
-        ),
-        HousingMethod::Explicit => line(
-            "does ",
-            "explicit housing",
-            "bearing and housing in steps of their own, which exchange impulses",
-        ),
-        HousingMethod::Reduced => line(
-            "does ",
-            "reduced housing",
-            "some shapes of the housing, which move with the bearing in its steps",
-        ),
-    });
-    Ok(lines)
+    let mut request = housed_request(scene, run);
+    // Bearings roll in equilibrium with races that are held where they sit in their housings.
+    request.options.start = Start::Equilibrium;
+    let alone = AssemblyScene::alone(scene.bearing.clone());
+    Ok(dynamic_items(&alone, assembly, &request, None, solids))
 }
 
-/// Whether the balls go round in a run of equilibria, which gives them their centrifugal force.
-fn balls_go_round(scene: &HousedScene) -> bool {
-    let dynamics = &scene.bearing.dynamics;
-    let turns = matches!(&dynamics.inner.rotation, Rotation::Speed(speed) if !speed.is_zero());
-    scene.housing.method == HousingMethod::QuasiStatic && dynamics.run.is_some() && turns
+/// Items of the housing: what acts on it, and how it is solved for.
+pub fn solid_items(scene: &HousedScene, prepared: &Prepared, index: usize, of: &str) -> Vec<Item> {
+    let method = match scene.housing.method {
+        HousingMethod::QuasiStatic => Method::QuasiStatic,
+        HousingMethod::Reduced => Method::Reduced,
+        HousingMethod::Explicit => Method::Explicit,
+    };
+    let problem = &prepared.setup.solid.problem;
+    solid::items(problem, index, Some(of), &mesh_text(&prepared.built), &method)
 }
 
-/// The line that says statics leaves centrifugal force out, if this is it, for both commands.
-fn with_centrifugal(of_statics: String) -> String {
-    const NAME: &str = "centrifugal force on balls";
-    if !of_statics.starts_with(&format!("skips {NAME}")) {
-        return of_statics;
-    }
-    let said = "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
-    line("does ", NAME, said)
+/// Of one equilibrium of both, whichever way the housing takes in a run.
+pub fn items_of_statics(
+    scene: &HousedScene,
+    prepared: &Prepared,
+) -> Result<Vec<Item>, Box<dyn Error>> {
+    Ok(equilibrium_items(scene, prepared, &bearing_at(scene, 0.0)?, ASKED_FOR))
 }
 
-/// As many as a run solves.
-fn equilibria_line(run: &RunSettings) -> String {
+fn equilibrium_items(
+    scene: &HousedScene,
+    prepared: &Prepared,
+    problem: &StaticProblem,
+    centrifugal: &str,
+) -> Vec<Item> {
+    let setup = &prepared.setup;
+    let still = without_bore(problem, &setup.fit(scene));
+    let mesh = mesh_text(&prepared.built);
+    let housing = &setup.solid.problem;
+    let mut solids = solid::items(housing, 0, Some("housing"), &mesh, &Method::QuasiStatic);
+    solids.push(statics::seat(0, &still.bodies[OUTER].name));
+    statics::items(&still, solids, centrifugal)
+}
+
+/// Of equilibria one after the other, in which balls go round and press outwards.
+fn items_of_course(
+    scene: &HousedScene,
+    prepared: &Prepared,
+    run: &RunSettings,
+) -> Result<Vec<Item>, Box<dyn Error>> {
+    const GO_ROUND: &str =
+        "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
+    let mut problem = bearing_at(scene, 0.0)?;
+    let turning = &scene.bearing.dynamics.inner.rotation;
+    let turns = matches!(turning, Rotation::Speed(speed) if !speed.is_zero());
+    // At any speed that it has.
+    problem.orbital_speed = f64::from(u8::from(turns));
+    let mut items = equilibrium_items(scene, prepared, &problem, GO_ROUND);
     let count = whole_number(run.end, run.output_interval) + 1;
     let last = rounded((count - 1) as f64 * run.output_interval);
-    line("does ", "equilibria", &format!("{count} equilibria to t = {last} s, one a row"))
+    let why = format!("{count} equilibria to t = {last} s, one a row");
+    items.push(Item::does(Stage::Equilibria, Subject::Whole, why));
+    Ok(items)
 }
 
 /// What condensing takes; of the quasi-static method also whether equilibria will do, which needs
 /// the condensed housing. Of an explicit scene nothing is factorised: its run needs no factors.
-fn equilibrium_lines(
+fn equilibrium_notes(
     scene: &HousedScene,
     prepared: &Prepared,
 ) -> Result<Vec<String>, Box<dyn Error>> {
@@ -156,19 +165,18 @@ fn equilibrium_lines(
     };
     let (sizes, cost) = match foretold {
         Ok((_, sizes, cost)) => (sizes, cost),
-        Err(error) => return Ok(vec![line("notes", name, &format!("not possible: {error}"))]),
+        Err(error) => return Ok(vec![note(name, &format!("not possible: {error}"))]),
     };
-    let mark = if chosen { "does " } else { "notes" };
     let mut lines = vec![
-        line(mark, "condensed bore", &condensed_text(&sizes)),
-        line("notes", "condensing takes", &memory::text(&cost)),
+        note("condensed bore", &condensed_text(&sizes)),
+        note("condensing takes", &memory::text(&cost)),
     ];
     lines.push(if chosen {
-        quasi_static_line(scene, prepared, &condensed(prepared)?)?
+        quasi_static_note(scene, prepared, &condensed(prepared)?)?
     } else {
         let said = "what leaving out inertia would change is found with the condensed housing: \
                     `plan` says it with method = \"quasi-static\" in [housing]";
-        line("notes", name, said)
+        note(name, said)
     });
     Ok(lines)
 }
@@ -182,21 +190,21 @@ fn condensed_text(sizes: &Sizes) -> String {
 }
 
 /// Whether equilibria will do, with the error of leaving out inertia.
-fn quasi_static_line(
+fn quasi_static_note(
     scene: &HousedScene,
     prepared: &Prepared,
     bore: &CondensedBore,
 ) -> Result<String, Box<dyn Error>> {
     let name = "inertia left out";
     let Some(estimate) = inertia_estimate(scene, &prepared.setup, bore)? else {
-        return Ok(line("notes", name, "nothing holds the outer race under the largest load"));
+        return Ok(note(name, "nothing holds the outer race under the largest load"));
     };
     let (along, missing) = match along_course(scene, &prepared.setup, bore) {
         Ok(along) => (along, String::new()),
         Err(error) => (None, format!("; no estimate along the course: {error}")),
     };
     let said = verdict(scene, &estimate, along.as_ref());
-    Ok(line("notes", name, &(said + &missing)))
+    Ok(note(name, &(said + &missing)))
 }
 
 /// The error estimate in words: along the course where there is one, else of what drives fastest.
@@ -284,12 +292,12 @@ pub fn percent(part: f64) -> String {
 }
 
 /// Windows of the explicit way, and about how long they take here.
-fn explicit_line(scene: &HousedScene, prepared: &Prepared, run: &RunSettings) -> String {
+fn explicit_note(scene: &HousedScene, prepared: &Prepared, run: &RunSettings) -> String {
     let chosen = scene.housing.method == HousingMethod::Explicit;
     let name = if chosen { "step" } else { "explicit instead" };
     match timed(scene, prepared, run) {
-        Ok(said) => line("notes", name, &said),
-        Err(error) => line("notes", name, &format!("not possible: {error}")),
+        Ok(said) => note(name, &said),
+        Err(error) => note(name, &format!("not possible: {error}")),
     }
 }
 

@@ -1,6 +1,7 @@
 //! A housing reduced to some shapes, and its bearing in it.
 
-use super::{Fallible, Prepared, condensed, plan::line};
+use super::{Fallible, Prepared, condensed};
+use crate::commands::plan_step::note;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::course::on_inner;
 use bearing_dynamics::output::session::Motion;
@@ -18,6 +19,7 @@ use bearing_dynamics::solver::housing::reduce::{
 use bearing_dynamics::solver::housing::reduced_start::{
     Housing, add_housing, ball_frequency, put_in_equilibrium,
 };
+use bearing_dynamics::solver::plan::tally::Tally;
 use bearing_dynamics::solver::statics::Condition;
 use std::time::Instant;
 
@@ -27,6 +29,8 @@ pub struct Reduced {
     pub assembly: Assembly,
     /// Wall time that condensing, and finding shapes and start took, s.
     pub seconds: [f64; 2],
+    /// How often each stage of condensing ran.
+    pub ran: Tally,
 }
 
 /// Frequencies of the housing that are kept, over that of a ball between its races.
@@ -77,7 +81,7 @@ pub fn reduced(scene: &HousedScene, prepared: &Prepared) -> Fallible<Reduced> {
         put_in_equilibrium(&mut assembly, &mut [housing])?;
     }
     let seconds = [condensing, reducing + start.elapsed().as_secs_f64()];
-    Ok(Reduced { reduction, assembly, seconds })
+    Ok(Reduced { reduction, assembly, seconds, ran: bore.ran })
 }
 
 /// Looks at loads between two of their corners, and how long after the last one, s.
@@ -131,9 +135,8 @@ impl Reduced {
     }
 }
 
-/// What the plan says of a reduced housing.
-pub fn plan_lines(scene: &HousedScene, prepared: &Prepared) -> Fallible<Vec<String>> {
-    let reduced = reduced(scene, prepared)?;
+/// What there is to note of a reduced housing.
+pub fn plan_notes(scene: &HousedScene, reduced: &Reduced) -> Vec<String> {
     let cut = &reduced.reduction.cut_off;
     let driven = |of: &Excitation| {
         let error = cut.dynamic_error(of.frequency);
@@ -148,9 +151,9 @@ pub fn plan_lines(scene: &HousedScene, prepared: &Prepared) -> Fallible<Vec<Stri
     if !errors.is_empty() {
         cut_off += &format!(", which changes at most {}", errors.join(", "));
     }
-    Ok(vec![
-        line("does ", "shapes of the housing", &reduced.text()),
-        line("notes", "cut off", &cut_off),
-        line("notes", "masses of the housing", "lumped, as of explicit steps"),
-    ])
+    vec![
+        note("shapes of the housing", &reduced.text()),
+        note("cut off", &cut_off),
+        note("masses of the housing", "lumped, as of explicit steps"),
+    ]
 }

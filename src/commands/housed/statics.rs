@@ -25,6 +25,7 @@ use bearing_dynamics::scene::housing_problem::excitations;
 use bearing_dynamics::solver::housing::bore_equilibrium::POSE_NAMES;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::housed::HousedState;
+use bearing_dynamics::solver::plan::tally::Ran;
 use serde_json::json;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -71,7 +72,9 @@ pub fn run(
         ("condense".into(), condense_seconds),
         ("solve".into(), solve_seconds),
     ];
-    let mut record = record(scene, plan::lines(scene, &prepared)?, seconds)?;
+    let mut record = record(scene, plan::items_of_statics(scene, &prepared)?, seconds)?;
+    record.ran.clone_from(&state.ran);
+    record.ran.absorb(&Ran { solids: vec![bore.ran], ..Ran::default() });
     record.sections = crate::commands::echo::sections(&scene.bearing, &problem)?;
     record
         .sections

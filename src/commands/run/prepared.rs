@@ -2,7 +2,7 @@
 
 use crate::commands::assembly::housings::{self, Housing, Reduced as Reductions};
 use crate::commands::housed::reduced::Reduced;
-use crate::commands::plan::dynamic_plan_lines;
+use crate::commands::plan::dynamic_items;
 use crate::commands::{self, housed, solid};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::course::CourseParts;
@@ -21,6 +21,7 @@ use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::foretell::{Choice, choose};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Start};
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::plan::Stage;
 use bearing_dynamics::solver::solid::model::SolidModel;
 use std::error::Error;
 use std::path::Path;
@@ -318,20 +319,30 @@ impl<'s> Prepared<'s> {
         seconds: Vec<(String, f64)>,
     ) -> Fallible<RunRecord> {
         match self {
-            Prepared::Bearings { scene, assembly, .. } => {
+            Prepared::Bearings { scene, assembly, housings, reduced, .. } => {
                 let defaults = commands::assembly::defaults(scene);
-                let plan = dynamic_plan_lines(scene, assembly, request, choice);
+                let solids = housings::items(scene, housings, assembly);
+                let plan = dynamic_items(scene, assembly, request, choice, solids);
                 let assumptions = &scene.common().assumptions;
                 let echo = commands::assembly::echo(scene)?;
                 let mut record = commands::record(echo, plan, assumptions, &defaults, seconds);
                 record.sections.push(("motion".into(), commands::assembly::motion(scene)?));
+                record.ran.whole.add(Stage::IntegratorChoice, u64::from(choice.is_some()));
+                record.ran.solids = reduced.as_ref().map_or(Vec::new(), |of| of.ran.clone());
                 Ok(record)
             }
             Prepared::Solid { scene, mesh, .. } => {
-                solid::record(scene, solid::plan::lines(scene, mesh), seconds)
+                let plan = solid::plan::items(scene, mesh, solid::plan::Of::Run);
+                solid::record(scene, plan, seconds)
             }
-            Prepared::Housed { scene, mesh, .. } => {
-                housed::record(scene, housed::plan::lines(scene, mesh)?, seconds)
+            Prepared::Housed { scene, mesh, bore, reduced, .. } => {
+                let assembly = reduced.as_ref().map(|reduced| &reduced.assembly);
+                let plan = housed::plan::items(scene, mesh, assembly)?;
+                let mut record = housed::record(scene, plan, seconds)?;
+                let condensing = bore.as_ref().map(|(bore, _)| bore.ran);
+                let reducing = reduced.as_ref().map(|reduced| reduced.ran);
+                record.ran.solids = condensing.or(reducing).into_iter().collect();
+                Ok(record)
             }
         }
     }

@@ -9,6 +9,7 @@ use super::condensed::{CondensedBore, placed};
 use crate::kinematics::Pose;
 use crate::kinematics::vec3::{Vec3, add};
 use crate::solver::mount::Mount;
+use crate::solver::plan::tally::Ran;
 use crate::solver::static_assembly::{Loaded, Place, StaticAssembly, StaticBody, StaticSeat};
 use crate::solver::statics::{
     AssemblySolution, Condition, StaticOptions, StaticProblem, StaticSolution, StaticsError,
@@ -30,6 +31,8 @@ pub struct HousedState {
     pub iterations: usize,
     pub contact_changes: usize,
     pub contact_evaluations: usize,
+    /// How often each stage ran.
+    pub ran: Ran,
 }
 
 /// What a search goes on from with the same bits.
@@ -135,6 +138,7 @@ impl<'b> HousedSearch<'b> {
             iterations: bearing.iterations,
             contact_changes: 0,
             contact_evaluations: bearing.contact_evaluations,
+            ran: bearing.ran.clone(),
             bearing,
             bore,
         };
@@ -144,6 +148,13 @@ impl<'b> HousedSearch<'b> {
 
 fn in_bore(source: BoreError) -> StaticsError {
     StaticsError::Seat { of: String::new(), source }
+}
+
+/// Both races of a bearing in a bore, without the bore: what a plan is made from.
+pub fn without_bore(bearing: &StaticProblem, fit: &Fit) -> StaticAssembly<'static> {
+    let mut assembly = bearing.assembly();
+    assembly.bodies[OUTER].place = Place::Loaded(race(None, fit, &RaceLoad::default()));
+    assembly
 }
 
 /// Inner race, outer race and bore, in the bearing's frame. The outer race's coordinates count from its nominal pose; it
