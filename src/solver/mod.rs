@@ -1,4 +1,11 @@
-//! Solvers: what a scene needs, and equilibrium.
+//! What computes: equilibria, motions, solids.
+//!
+//! - [`statics`] and the `static_*` files: one search for equilibria of any bodies, bearings, springs and seats; [`ball`] and [`ball_on_race`]
+//!   eliminate each ball.
+//! - [`dynamics`]: bodies, bearings, reduced solids in motion, one state and one step.
+//! - [`solid`]: flexible solids by themselves (explicit steps, equilibrium, modes); [`sparse`] their factors.
+//! - [`housing`]: bearings in flexible solids: exchange with explicit ones, condensed bores, reduction to shapes.
+//! - [`plan`]: what is done and what is left out; [`clock`] and [`profile`]: time; [`channels`]: what is recorded.
 pub mod ball;
 pub mod ball_on_race;
 mod ball_start;
