@@ -6,7 +6,6 @@ pub mod compare;
 pub mod earlier;
 pub mod echo;
 pub mod echo_run;
-pub mod housed;
 pub mod memory;
 pub mod modes;
 pub mod pack;

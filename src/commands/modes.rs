@@ -20,20 +20,16 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let Arguments { scene, out, dry } = arguments;
     let document = Document::read_file(scene)?;
     let subject = resolve_subject(&document)?;
-    let housed = match &subject {
-        Subject::Assembly(assembly) => assembly.housing_method().is_some(),
-        other => matches!(other, Subject::Housed(_)),
-    };
     match subject {
         Subject::Solid(solid) => super::solid::modes::run(scene, &document, &solid, out, *dry),
-        _ if housed => Err(format!(
+        Subject::Assembly(of) if of.housing_method().is_some() => Err(format!(
             "{}: modes takes a solid by itself, and the scene holds a bearing in a housing; write the \
              [solid] tables alone into a scene of their own for the housing's modes, or look at \
              `bearing plan` for the lowest frequency of bearing and housing",
             scene.display()
         )
         .into()),
-        _ => Err(format!(
+        Subject::Assembly(_) => Err(format!(
             "{}: modes takes a solid by itself, and the scene holds a bearing; `bearing statics` \
              gives a bearing's stiffness",
             scene.display()

@@ -162,7 +162,7 @@ fn bearing(
             scoped.take_over(&document.scoped(bodies[body]), "body.speed", "inner_race.speed");
         }
     }
-    let (mut scene, housing) = match scoped.first_below("housing") {
+    let (mut scene, mut housing) = match scoped.first_below("housing") {
         Some(_) => in_housing(&scoped)?,
         None => (resolve(&scoped)?, None),
     };
@@ -171,7 +171,6 @@ fn bearing(
         let advice = "leave out outer_on, or the housing".into();
         return Err(scoped.error("bearing.outer_on", Problem::Refused { reason, advice }));
     }
-    let mut housing = housing.map(|(settings, solid)| PlacedHousing { settings, solid });
     if let Some(PlacedHousing { settings, solid }) = housing.as_mut().filter(|_| name.is_some()) {
         for used in settings.defaults_used.iter_mut().chain(&mut solid.defaults_used) {
             used.key = scoped.shown(&used.key, true);

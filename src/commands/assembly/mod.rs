@@ -1,125 +1,69 @@
-//! The commands on a scene of several bearings and bodies; here what they share. Of a bearing alone all of this
-//! is what its own scene says.
+//! The commands on a scene of bearings, alone or with what they sit on and in; here what they share.
 
+pub mod check;
+pub mod course;
+pub mod echo;
+pub mod housing;
 pub mod housings;
+pub mod plan;
+pub mod shapes;
 pub mod statics;
 
-use super::housed::echo as housed_echo;
-use super::solid::echo as solid_echo;
-use super::{echo, echo_run, solve};
-use bearing_dynamics::output::results::{ResultsError, quantity};
+use super::echo_run;
+use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::scene::DefaultUsed;
-use bearing_dynamics::scene::assembly::{AssemblyScene, Carrier, PlacedBearing, Spring};
-use bearing_dynamics::scene::dynamics::dynamic_problem;
-use bearing_dynamics::scene::statics::static_problem;
+use bearing_dynamics::scene::assembly::{AssemblyScene, Carrier, PlacedBearing, PlacedHousing};
+use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::solver::plan::race_freedom;
-use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
-use bearing_dynamics::solver::statics::Condition;
-use serde_json::{Map, Value, json};
 use std::error::Error;
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
 
-/// Defaults in use: of bodies and springs, then of each bearing.
+/// Defaults in use: of bodies and springs, then of each bearing, its seat and its housing; of a course of equilibria
+/// without what only motion needs.
 pub fn defaults(scene: &AssemblyScene) -> Vec<DefaultUsed> {
-    let of_bearings = scene.bearings.iter().flat_map(|placed| {
-        let of_housing = placed.housing.iter().flat_map(|housing| {
-            housing.settings.defaults_used.iter().chain(&housing.solid.defaults_used)
-        });
-        echo_run::defaults(&placed.scene).into_iter().chain(of_housing.cloned())
-    });
-    scene.defaults_used.iter().cloned().chain(of_bearings).collect()
+    const OF_MOTION: [&str; 8] = [
+        "traction",
+        "contact_damping",
+        "ball_contact",
+        "numerics.start",
+        "numerics.integrator",
+        "numerics.step_fraction",
+        "numerics.accuracy",
+        "numerics.energy_limit",
+    ];
+    let of_bearing = |placed: &PlacedBearing| {
+        let mut all = echo_run::defaults(&placed.scene);
+        let Some(PlacedHousing { settings, solid }) = &placed.housing else { return all };
+        for used in &mut all {
+            if used.reason.starts_with("where the outer race starts") {
+                used.reason =
+                    "where the outer race starts, before loads and the housing move it".into();
+            }
+        }
+        if settings.method == HousingMethod::QuasiStatic {
+            all.retain(|used| !OF_MOTION.iter().any(|part| used.key.starts_with(part)));
+        }
+        all.extend_from_slice(&settings.defaults_used);
+        all.extend_from_slice(&solid.defaults_used);
+        all
+    };
+    scene.defaults_used.iter().cloned().chain(scene.bearings.iter().flat_map(of_bearing)).collect()
+}
+
+/// What results of a run or an equilibrium have of the scene: itself, its plan, assumptions and defaults.
+pub fn record(
+    scene: &AssemblyScene,
+    plan: Vec<String>,
+    seconds: Vec<(String, f64)>,
+) -> Fallible<RunRecord> {
+    let (assumptions, defaults) = (&scene.common().assumptions, defaults(scene));
+    Ok(super::record(echo::echo(scene)?, plan, assumptions, &defaults, seconds))
 }
 
 /// Name of a bearing in tables of names.
 pub fn name_of(placed: &PlacedBearing) -> &str {
     placed.name.as_deref().unwrap_or("bearing")
-}
-
-/// The scene as understood, every dimensional value with its unit.
-pub fn echo(scene: &AssemblyScene) -> Result<Value, ResultsError> {
-    if let Some(alone) = scene.only() {
-        return echo::scene(alone);
-    }
-    let mut echo = Map::new();
-    let common = scene.common();
-    for (name, text) in [("title", &common.title), ("source", &common.source)] {
-        if let Some(text) = text {
-            echo.insert(name.into(), json!(text));
-        }
-    }
-    let mut bearings = Map::new();
-    for placed in &scene.bearings {
-        let mut own = echo::scene(&placed.scene)?;
-        if let Value::Object(map) = &mut own {
-            map.remove("title");
-            map.remove("source");
-            for ((race, side), carrier) in
-                [("inner_race", "inner"), ("outer_race", "outer")].into_iter().zip(placed.carriers)
-            {
-                let at = quantity("place", 1e3 * carrier.at(), "mm")?;
-                let on = match carrier {
-                    Carrier::Own { .. } => json!(race),
-                    Carrier::Body { index, .. } => {
-                        map.remove(race);
-                        json!(scene.bodies[index].name)
-                    }
-                };
-                map.insert(format!("{side}_on"), on);
-                map.insert(format!("{side}_at"), at);
-            }
-            map.insert("reversed".into(), json!(placed.reversed));
-            if let Some(housed) = placed.housed() {
-                map.insert("housing".into(), housed_echo::housing(&housed)?);
-                map.insert("solid".into(), solid_echo::scene(&housed.solid)?["solid"].take());
-            }
-        }
-        bearings.insert(name_of(placed).into(), own);
-    }
-    echo.insert("bearings".into(), Value::Object(bearings));
-    let bodies = scene.bodies.iter().map(|body| Ok((body.name.clone(), echo_run::body(body)?)));
-    echo.insert("bodies".into(), Value::Object(bodies.collect::<Result<_, ResultsError>>()?));
-    let springs = scene.springs.iter().map(|s| Ok((s.name.clone(), spring(scene, s)?)));
-    echo.insert("springs".into(), Value::Object(springs.collect::<Result<_, ResultsError>>()?));
-    Ok(Value::Object(echo))
-}
-
-fn spring(scene: &AssemblyScene, spring: &Spring) -> Result<Value, ResultsError> {
-    let end = |(body, at): (Option<usize>, f64)| -> Result<Value, ResultsError> {
-        let name = body.map_or("ground", |index| scene.bodies[index].name.as_str());
-        Ok(json!({ "body": name, "at": quantity("place", 1e3 * at, "mm")? }))
-    };
-    let six = |values: &[f64; 6], units: [&str; 2]| -> Result<Value, ResultsError> {
-        let names = ["x", "y", "z", "turn_x", "turn_y", "turn_z"];
-        let entry = |(i, name): (usize, &&str)| {
-            Ok((name.to_string(), quantity(name, values[i], units[usize::from(i > 2)])?))
-        };
-        Ok(Value::Object(names.iter().enumerate().map(entry).collect::<Result<_, ResultsError>>()?))
-    };
-    Ok(json!({
-        "from": end(spring.ends[0])?,
-        "to": end(spring.ends[1])?,
-        "stiffness": six(&spring.stiffness, ["N/m", "N m/rad"])?,
-        "damping": six(&spring.damping, ["N s/m", "N m s/rad"])?,
-    }))
-}
-
-/// Bodies, loads and laws of a motion.
-pub fn motion(scene: &AssemblyScene) -> Fallible<Value> {
-    if let Some(alone) = scene.only() {
-        return Ok(echo_run::motion(&dynamic_problem(alone)?)?);
-    }
-    let mut bearings = Map::new();
-    for placed in &scene.bearings {
-        let mut own = echo_run::motion(&dynamic_problem(&placed.scene)?)?;
-        for (race, carrier) in ["inner_race", "outer_race"].into_iter().zip(placed.carriers) {
-            if let (Value::Object(map), Carrier::Body { .. }) = (&mut own, carrier) {
-                map.remove(race);
-            }
-        }
-        bearings.insert(name_of(placed).into(), own);
-    }
-    Ok(Value::Object(bearings))
 }
 
 /// Where bearings sit and how bodies move, a line each.
@@ -157,54 +101,4 @@ pub fn lines(scene: &AssemblyScene) -> Vec<(String, String)> {
         said.push((format!("spring {}", spring.name), format!("from {from} to {to}")));
     }
     said
-}
-
-/// What statics of several bearings does, one line a stage: that of each bearing, and one search.
-pub fn plan_lines(scene: &AssemblyScene) -> Fallible<Vec<String>> {
-    let mut lines = Vec::new();
-    for placed in &scene.bearings {
-        let own = solve::plan_lines(&static_problem(&placed.scene)?);
-        // What these say of a bearing alone.
-        let shared = ["race equilibrium", "outer race motion", "flexible bodies"];
-        let own =
-            own.into_iter().filter(|line| !shared.iter().any(|name| line[6..].starts_with(name)));
-        lines.extend(own.map(|line| match &placed.name {
-            Some(name) => format!("{}{name}: {}", &line[..6], &line[6..]),
-            None => line,
-        }));
-    }
-    let still = scene.statics()?;
-    let (free, bodies) = free_coordinates(&still);
-    lines.push(match free {
-        0 => format!("skips {:<28} all coordinates are given: one evaluation", "equilibrium"),
-        _ => format!(
-            "does  {:<28} {free} free coordinates of {bodies} bodies in one search",
-            "equilibrium"
-        ),
-    });
-    lines.extend(scene.bearings.iter().filter(|placed| placed.housing.is_some()).map(|placed| {
-        let of = placed.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
-        let said = "condensed onto its bore; contact on one side only, in the same search";
-        format!("does  {:<28} {said}", format!("housing{of}"))
-    }));
-    lines.push(match still.connections.len() {
-        0 => format!("skips {:<28} none is given", "springs between bodies"),
-        some => format!("does  {:<28} {some} of them", "springs between bodies"),
-    });
-    if scene.housing_method().is_none() {
-        let said = "the scene has none: no mesh, no element stage";
-        lines.push(format!("skips {:<28} {said}", "flexible bodies"));
-    }
-    Ok(lines)
-}
-
-/// Coordinates that loads decide, and bodies that have any.
-fn free_coordinates(still: &StaticAssembly) -> (usize, usize) {
-    let free = still.bodies.iter().map(|body| match &body.place {
-        Place::Held(_) => 0,
-        Place::Loaded(loaded) => {
-            loaded.conditions.iter().filter(|c| matches!(c, Condition::Load(_))).count()
-        }
-    });
-    free.fold((0, 0), |(all, bodies), own| (all + own, bodies + usize::from(own > 0)))
 }
