@@ -44,7 +44,11 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         class: ToleranceClass::F64Reordered,
     };
     let manifest = write_pack(&folder, &input, record, |folder| found.write(folder, record))?;
-    let of_run = if scene.run().is_some() { ": the statics of this scene; its run is not packed" } else { "" };
+    let of_run = if scene.run().is_some() {
+        ": the statics of this scene; its run is not packed"
+    } else {
+        ""
+    };
     let files = manifest.sha256.len() + 1;
     say(&format!("wrote {files} files to {}{of_run}\n", folder.display()))?;
     Ok(Outcome::Done)

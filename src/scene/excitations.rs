@@ -24,7 +24,13 @@ pub fn excitations(scene: &AssemblyScene) -> Vec<Excitation> {
     for body in &scene.bodies {
         let key = format!("body.{}", body.name);
         add_drives(&mut found, &key, &body.race);
-        add_turning(&mut found, &key, &format!("the load's turns on {key}"), &body.rotating_load, end);
+        add_turning(
+            &mut found,
+            &key,
+            &format!("the load's turns on {key}"),
+            &body.rotating_load,
+            end,
+        );
     }
     for placed in &scene.bearings {
         of_bearing(&mut found, scene, placed, end);

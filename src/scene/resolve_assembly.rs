@@ -6,6 +6,7 @@ use crate::scene::assembly::{
 };
 use crate::scene::document::Document;
 use crate::scene::error::{Problem, SceneError};
+use crate::scene::housing::HousingMethod;
 use crate::scene::key_table_assembly::{GROUND, OWN_RACES};
 use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_dynamics::{check_inertia, foundation, rotating_load, rotation};
@@ -58,7 +59,27 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
         .collect::<Result<Vec<_>, _>>()?;
     let scene = AssemblyScene { bearings, bodies: resolved, springs, defaults_used };
     refuse_free_bodies(document, &scene)?;
+    if scene.housing_method() == Some(HousingMethod::QuasiStatic) {
+        refuse_inertia(document, &scene)?;
+    }
     Ok(scene)
+}
+
+/// What bodies cannot have where equilibria follow one another.
+fn refuse_inertia(document: &Document, scene: &AssemblyScene) -> Result<(), SceneError> {
+    const WHAT: [(&str, &str); 2] = [
+        ("body.torque", "without inertia no speed follows from a torque"),
+        ("body.unbalance", "an unbalance is inertia"),
+    ];
+    for body in &scene.bodies {
+        let scoped = document.scoped(&body.name);
+        if let Some((key, reason)) = WHAT.iter().find(|(key, _)| scoped.value(key).is_some()) {
+            let reason = (*reason).to_string();
+            let advice = "leave it out, or write method = \"explicit\" in [housing]".into();
+            return Err(scoped.error(key, Problem::Refused { reason, advice }));
+        }
+    }
+    Ok(())
 }
 
 /// Names that nothing goes by, that two things go by, and tables that need one.

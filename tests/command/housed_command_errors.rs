@@ -253,7 +253,6 @@ fn other_commands_say_what_they_take() {
     let scene = place.scene("scene.toml", &good());
     for (name, further, part) in [
         ("modes", &[][..], "[solid] tables alone into a scene of their own"),
-        ("pack", &[][..], "`statics`, `sweep` and `run` take a bearing in a housing"),
         ("sweep", &["--vary", "housing.method=rigid,explicit"][..], "sweep the two by themselves"),
     ] {
         let output = command(name, &scene, further).output().unwrap();

@@ -3,9 +3,9 @@
 use super::echo::{echo, motion, numerics};
 use super::housing::Housing;
 use super::{defaults, housings, lines};
+use crate::commands::echo::through;
 use crate::commands::run::{planned_request, request};
 use crate::commands::{CommandResult, Outcome, echo_run, say};
-use crate::commands::echo::through;
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::session::table_size;
@@ -23,7 +23,12 @@ use bearing_dynamics::solver::solid::support::free_motions;
 use std::fmt::Write;
 use std::path::Path;
 
-pub fn run(path: &Path, document: &Document, mut scene: AssemblyScene, json: bool) -> CommandResult {
+pub fn run(
+    path: &Path,
+    document: &Document,
+    mut scene: AssemblyScene,
+    json: bool,
+) -> CommandResult {
     let housings = housings::prepare(document, &scene)?;
     for placed in &scene.bearings {
         static_problem(&placed.scene)?;

@@ -137,19 +137,18 @@ pub fn section(
 }
 
 /// The error estimate in words, for each body along the course where there is one, else of what drives fastest.
-pub fn verdicts(
-    scene: &AssemblyScene,
-    estimate: &InertiaEstimate,
-    along: &[Along],
-) -> Vec<String> {
-    let first = verdict(scene, estimate, along.first());
-    let others = along.iter().skip(1).map(|along| verdict(scene, estimate, Some(along)));
-    std::iter::once(first).chain(others).collect()
+pub fn verdicts(scene: &AssemblyScene, estimate: &InertiaEstimate, along: &[Along]) -> Vec<String> {
+    let frequency = format!("lowest natural frequency about {} Hz", to_digits(estimate.lowest, 4));
+    let first = format!("{frequency}{}", verdict(scene, estimate, along.first()));
+    let of =
+        |along: &Along| verdict(scene, estimate, Some(along)).trim_start_matches("; ").to_string();
+    std::iter::once(first).chain(along.iter().skip(1).map(of)).collect()
 }
 
+/// What follows the frequency.
 fn verdict(scene: &AssemblyScene, estimate: &InertiaEstimate, along: Option<&Along>) -> String {
     let excitations = excitations(scene);
-    let mut said = format!("lowest natural frequency about {} Hz", to_digits(estimate.lowest, 4));
+    let mut said = String::new();
     let chosen = scene.housing_method() == Some(HousingMethod::QuasiStatic);
     let Some((driven, cause)) = largest_error(estimate, &excitations) else {
         said += ", and nothing drives it at a frequency of its own";

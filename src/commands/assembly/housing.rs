@@ -65,7 +65,8 @@ impl Housing {
         let start = Instant::now();
         let mut built =
             build_housing(&scene).map_err(|error| placed(document, error.about(), error))?;
-        let setup = setup(&scene, &built).map_err(|error| placed(document, error.about(), error))?;
+        let setup =
+            setup(&scene, &built).map_err(|error| placed(document, error.about(), error))?;
         built.notes.extend(setup.solid.notes.iter().chain(&setup.notes).cloned());
         let mesh_seconds = start.elapsed().as_secs_f64();
         Ok(Housing { bearing, name, scene, built, setup, mesh_seconds })

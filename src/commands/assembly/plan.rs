@@ -190,7 +190,8 @@ fn with_centrifugal(of_statics: String) -> String {
     const NAME: &str = "centrifugal force on balls";
     match of_statics.strip_prefix("skips ").and_then(|said| said.split_once(NAME)) {
         Some((of, _)) if of.is_empty() || of.ends_with(": ") => {
-            let said = "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
+            let said =
+                "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
             line("does ", &format!("{of}{NAME}"), said)
         }
         _ => of_statics,

@@ -17,9 +17,7 @@ use bearing_dynamics::output::fields::{Stresses, file_name, stresses, write_fiel
 use bearing_dynamics::output::plots::{LoadZone, load_zone};
 use bearing_dynamics::output::recorder::seat::{SeatRow, seat_columns};
 use bearing_dynamics::output::remarks as of_solid;
-use bearing_dynamics::output::results::{
-    ResultsError, RunRecord, quantity, write_static_results,
-};
+use bearing_dynamics::output::results::{ResultsError, RunRecord, quantity, write_static_results};
 use bearing_dynamics::output::summary::housing::{
     PEAK_PRESSURE, equilibrium_section, solver_section,
 };
@@ -215,7 +213,12 @@ impl Settled {
     }
 
     /// Its sections: of the only one beside those of the bearing, of several under their names.
-    fn record(&self, bore: &CondensedBore, moment: &Moment, record: &mut RunRecord) -> Fallible<()> {
+    fn record(
+        &self,
+        bore: &CondensedBore,
+        moment: &Moment,
+        record: &mut RunRecord,
+    ) -> Fallible<()> {
         let Settled { housing, displacement, .. } = self;
         let mut equilibrium = equilibrium_section(&housing.setup, bore, &self.state, displacement)?;
         let fields = field_sections(&housing.built, displacement, &self.stress)?;
@@ -251,7 +254,8 @@ impl Settled {
             } else {
                 (place[1 + i].to_degrees(), "deg", "N m")
             };
-            let _ = writeln!(text, "  {name:<10} {value:>16.6} {unit} {:>18.6} {load_unit}", loads[i]);
+            let _ =
+                writeln!(text, "  {name:<10} {value:>16.6} {unit} {:>18.6} {load_unit}", loads[i]);
         }
         let stiffness = |i: usize| 1e-6 * state.stiffness[(i, i)];
         let _ = writeln!(

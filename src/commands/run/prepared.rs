@@ -273,6 +273,8 @@ impl<'s> Prepared<'s> {
             Prepared::Bearings { scene, assembly, housings, way, .. } => {
                 let planned = match way {
                     Way::Course(..) => plan::of_equilibria(scene, housings, true)?,
+                    // With housings a run that is extended has the bytes of an unbroken one.
+                    Way::Reduced(_) => plan::stages(scene, housings, assembly, request, None),
                     _ => plan::stages(scene, housings, assembly, request, choice),
                 };
                 let mut record = assembly::record(scene, planned, seconds)?;

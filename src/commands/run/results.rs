@@ -214,11 +214,7 @@ fn equilibrium(
 }
 
 /// What leaving out inertia costs. A course that was found is kept, whatever becomes of the estimate.
-fn inertia_results(
-    scene: &AssemblyScene,
-    course: &CourseProblem,
-    said: &mut Said,
-) -> Fallible<()> {
+fn inertia_results(scene: &AssemblyScene, course: &CourseProblem, said: &mut Said) -> Fallible<()> {
     let inertia = inertia_estimate(scene, course);
     let along = along_course(scene, course);
     let none = Vec::new();

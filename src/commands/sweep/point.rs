@@ -6,8 +6,8 @@ use crate::commands::assembly::housings::{Equilibrium, equilibrium, grown};
 use bearing_dynamics::output::Column;
 use bearing_dynamics::output::assembly_results::key;
 use bearing_dynamics::output::results::load_zone_of;
-use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::Document;
+use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
 use bearing_dynamics::solver::statics::{
     AssemblySolution, BallState, COORDINATE_NAMES, Determinacy, StaticSolution,
@@ -41,8 +41,7 @@ fn solve_scene(
 ) -> Result<Solved, Box<dyn Error>> {
     *kept = std::mem::take(kept).take(scene)?;
     let (housings, bores) = kept.parts();
-    let Equilibrium { still, moment, .. } =
-        equilibrium(scene, grown(housings, bores), neighbour)?;
+    let Equilibrium { still, moment, .. } = equilibrium(scene, grown(housings, bores), neighbour)?;
     let solution = moment.solution;
     let determinate = solution.determinacy == Determinacy::Determinate;
     let start_for_neighbour =

@@ -37,7 +37,8 @@ pub(super) fn columns(problem: &CourseProblem, with_loads: bool) -> Vec<Column> 
     for bearing in bearings.iter().filter(|_| with_loads) {
         for ball in 1..=bearing.geometry.ball_count {
             for race in RACES {
-                columns.push(Column::new(format!("{}ball_{ball}_{race}_load", bearing.prefix()), "N"));
+                columns
+                    .push(Column::new(format!("{}ball_{ball}_{race}_load", bearing.prefix()), "N"));
             }
         }
     }

@@ -182,12 +182,7 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
 }
 
 /// What is given of a body's coordinates or acts along them at time `t`: its drives, weight, rotating load.
-pub fn conditions(
-    assembly: &Assembly,
-    body: &Body,
-    race: &RaceBody,
-    t: f64,
-) -> [Condition; 5] {
+pub fn conditions(assembly: &Assembly, body: &Body, race: &RaceBody, t: f64) -> [Condition; 5] {
     let mut others = [0.0; 5];
     for (other, gravity) in others.iter_mut().zip(assembly.gravity) {
         *other = race.inertia.mass * gravity;

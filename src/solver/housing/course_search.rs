@@ -34,9 +34,7 @@ pub struct CourseMemory {
 
 impl<'b> CourseSearch<'b> {
     /// In these bores, in the order of the seats.
-    pub fn new(
-        bores: impl IntoIterator<Item = (&'b CondensedBore, Penalty)>,
-    ) -> CourseSearch<'b> {
+    pub fn new(bores: impl IntoIterator<Item = (&'b CondensedBore, Penalty)>) -> CourseSearch<'b> {
         let bores = bores.into_iter().map(|(bore, penalty)| BoreSearch::new(bore, penalty));
         let options = StaticOptions::default();
         CourseSearch { bores: bores.collect(), options, near: None }

@@ -3,6 +3,8 @@
 use super::bore_equilibrium::{BoreError, BoreSearch, BoreState, Fit, RaceLoad, check_load};
 use super::condensed::{CondensedBore, placed};
 use super::course_search::{CourseSearch, load_of_balls, unbalanced};
+use super::inertia::MovingBody;
+use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::kinematics::Pose;
 use crate::kinematics::vec3::{Vec3, add};
@@ -38,7 +40,8 @@ pub struct HousedSearch<'b> {
 }
 
 /// Bodies of the lists.
-const OUTER: usize = 1;
+const INNER: usize = 0;
+pub const OUTER: usize = 1;
 
 impl<'b> HousedSearch<'b> {
     pub fn new(bore: &'b CondensedBore, penalty: Penalty) -> HousedSearch<'b> {
@@ -173,4 +176,14 @@ pub fn race_under_load(
     let bores = std::slice::from_mut(search);
     let mut solution = solve_assembly_in(&assembly, bores, Some(&near), &StaticOptions::default())?;
     Ok(solution.seats.remove(0))
+}
+
+/// Both races as what takes part in natural motions; the inner one moves along these of its coordinates, the outer one is
+/// held along its axis.
+pub fn moving([inner, outer]: [Inertia; 2], free: [bool; 5]) -> Vec<MovingBody> {
+    let held = [false, true, true, true, true];
+    vec![
+        MovingBody { body: INNER, inertia: inner, free },
+        MovingBody { body: OUTER, inertia: outer, free: held },
+    ]
 }

@@ -124,7 +124,9 @@ pub fn estimate(
     };
     let of_race = |HousingMass { race, .. }: &HousingMass| {
         let own = diagonal(&bodies[*race].inertia);
-        (1..5).map(|i| own[i] * lowest.shape[5 * race + i] * lowest.shape[5 * race + i]).sum::<f64>()
+        (1..5)
+            .map(|i| own[i] * lowest.shape[5 * race + i] * lowest.shape[5 * race + i])
+            .sum::<f64>()
     };
     InertiaEstimate {
         lowest: lowest.square.max(0.0).sqrt() / TAU,
