@@ -5,13 +5,12 @@
 //! make the energy depend on them through the meridian coordinates of each race alone.
 
 use super::ball_start::starting_point;
-use super::mount::Mount;
+use super::race_position::InnerRacePosition;
 use crate::ch2_housing::bearing::contact::{
     MeridianContact, meridian_contact, normal_load, normal_stiffness, strain_energy,
 };
 use crate::ch2_housing::bearing::geometry::Raceway;
-use crate::kinematics::Pose;
-use nalgebra::{SMatrix, SVector, Vector3};
+use nalgebra::Vector3;
 
 /// The outer race's meridian plane that holds a ball, in the frame of the inner race's coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -54,100 +53,18 @@ pub struct BallContacts {
     pub outer_share: f64,
 }
 
-/// Position of the inner race and its derivatives with respect to the two tilts.
-#[derive(Clone, Copy, Debug)]
-pub struct InnerRacePosition {
-    pub centre: Vector3<f64>,
-    /// Unit vector along the race's axis: (cos λ cos ξ, sin λ, −cos λ sin ξ).
-    pub axis: Vector3<f64>,
-    axis_xi: Vector3<f64>,
-    axis_lambda: Vector3<f64>,
-    axis_xi_xi: Vector3<f64>,
-    axis_xi_lambda: Vector3<f64>,
-}
-
-impl InnerRacePosition {
-    /// From x, y, z (m), tilt_y = ξ, tilt_z = λ (rad), the Euler angles of (2.16) with η = 0.
-    pub fn new(coordinates: &SVector<f64, 5>) -> Self {
-        let (sin_xi, cos_xi) = libm::sincos(coordinates[3]);
-        let (sin_lambda, cos_lambda) = libm::sincos(coordinates[4]);
-        InnerRacePosition {
-            centre: Vector3::new(coordinates[0], coordinates[1], coordinates[2]),
-            axis: Vector3::new(cos_lambda * cos_xi, sin_lambda, -cos_lambda * sin_xi),
-            axis_xi: Vector3::new(-cos_lambda * sin_xi, 0.0, -cos_lambda * cos_xi),
-            axis_lambda: Vector3::new(-sin_lambda * cos_xi, cos_lambda, sin_lambda * sin_xi),
-            axis_xi_xi: Vector3::new(-cos_lambda * cos_xi, 0.0, cos_lambda * sin_xi),
-            axis_xi_lambda: Vector3::new(sin_lambda * sin_xi, 0.0, sin_lambda * cos_xi),
-        }
-    }
-
-    /// The race that sits at a mount of the body with these coordinates. Derivatives are by the body's
-    /// tilts, and leave out how these move the race's centre.
-    /// Its centre counts from `origin` (m), so that far from the axes' own origin no digits are lost.
-    pub fn mounted(coordinates: &SVector<f64, 5>, mount: &Mount, origin: &Vector3<f64>) -> Self {
-        let mut race = InnerRacePosition::new(coordinates);
-        if mount.along != 0.0 || *origin != Vector3::zeros() {
-            // The axis less X: 1 − cos λ cos ξ without a difference of numbers near one.
-            let half = |angle: f64| libm::sin(0.5 * angle).powi(2);
-            let (xi, lambda) = (half(coordinates[3]), half(coordinates[4]));
-            let shortening = 2.0 * (xi + lambda) - 4.0 * xi * lambda;
-            let off = Vector3::new(-shortening, race.axis.y, race.axis.z);
-            race.centre += (Vector3::x() * mount.along - origin) + off * mount.along;
-        }
-        if mount.reversed {
-            let turned = [
-                &mut race.axis,
-                &mut race.axis_xi,
-                &mut race.axis_lambda,
-                &mut race.axis_xi_xi,
-                &mut race.axis_xi_lambda,
-            ];
-            turned.into_iter().for_each(|vector| *vector = -*vector);
-        }
-        race
-    }
-
-    /// The same race, seen from the frame in which its present one stands at `axes`.
-    pub(super) fn seen_from_parent_of(mut self, axes: &Pose) -> Self {
-        self.centre = axes.point_to_parent(&self.centre);
-        let turned = [
-            &mut self.axis,
-            &mut self.axis_xi,
-            &mut self.axis_lambda,
-            &mut self.axis_xi_xi,
-            &mut self.axis_xi_lambda,
-        ];
-        turned.into_iter().for_each(|vector| *vector = axes.orientation * *vector);
-        self
-    }
-
-    /// First (by ξ, λ) and second derivatives (ξξ, ξλ, λλ) of the race's axis by its body's tilts.
-    pub(super) fn turning(&self) -> ([Vector3<f64>; 2], [Vector3<f64>; 3]) {
-        let second = [self.axis_xi_xi, self.axis_xi_lambda, -self.axis];
-        ([self.axis_xi, self.axis_lambda], second)
-    }
-
-    /// First (by ξ, λ) and second derivatives (ξξ, ξλ, λλ) of the centre of a race at a mount by its body's
-    /// tilts, m.
-    pub(super) fn along(&self, mount: &Mount) -> ([Vector3<f64>; 2], [Vector3<f64>; 3]) {
-        let by = if mount.reversed { -mount.along } else { mount.along };
-        let first = [self.axis_xi * by, self.axis_lambda * by];
-        (first, [self.axis_xi_xi * by, self.axis_xi_lambda * by, self.axis * -by])
-    }
-}
-
 /// Energy, slope and curvature of one contact in the race's meridian coordinates.
 #[derive(Clone, Copy, Debug)]
-struct ContactEnergy {
+pub(super) struct ContactEnergy {
     contact: MeridianContact,
     load: f64,
     energy: f64,
-    slope: [f64; 2],
+    pub(super) slope: [f64; 2],
     /// Second derivatives: axial–axial, axial–radial, radial–radial.
-    curvature: [f64; 3],
+    pub(super) curvature: [f64; 3],
 }
 
-fn contact_energy(
+pub(super) fn contact_energy(
     axial: f64,
     radial: f64,
     raceway: &Raceway,
@@ -178,14 +95,14 @@ fn contact_energy(
 
 /// Where the inner race sees a ball.
 #[derive(Clone, Copy, Debug)]
-struct Sighting {
+pub(super) struct Sighting {
     /// From the race's centre to the ball centre.
-    arm: Vector3<f64>,
-    axial: f64,
-    radial: f64,
+    pub(super) arm: Vector3<f64>,
+    pub(super) axial: f64,
+    pub(super) radial: f64,
 }
 
-fn sight(plane: &BallPlane, race: &InnerRacePosition, position: [f64; 2]) -> Sighting {
+pub(super) fn sight(plane: &BallPlane, race: &InnerRacePosition, position: [f64; 2]) -> Sighting {
     let arm = plane.origin + plane.axial * position[0] + plane.radial * position[1] - race.centre;
     let axial = race.axis.dot(&arm);
     let radial = (arm.norm_squared() - axial * axial).sqrt();
@@ -414,122 +331,4 @@ fn newton_step(slope: &[f64; 2], curvature: &[f64; 3]) -> [f64; 2] {
     }
     let size = libm::hypot(slope[0], slope[1]);
     [-1e-4 * slope[0] / size, -1e-4 * slope[1] / size]
-}
-
-/// Loads a ball puts on the inner race's five coordinates and their derivative, after the ball has
-/// found its equilibrium: adds ∂V/∂q and ∂²V/∂q² with the ball's coordinates condensed out. Returns the force
-/// on the race, N.
-pub fn add_to_race(
-    plane: &BallPlane,
-    race: &InnerRacePosition,
-    contacts: &BallContacts,
-    ball: &SettledBall,
-    gradient: &mut SVector<f64, 5>,
-    stiffness: &mut SMatrix<f64, 5, 5>,
-) -> Vector3<f64> {
-    if ball.inner_load == 0.0 {
-        return Vector3::zeros();
-    }
-    let (slope, curvature) = race_and_ball_derivatives(plane, race, contacts, ball.position);
-    let outer = contact_energy(
-        ball.position[0],
-        ball.position[1],
-        &contacts.outer,
-        contacts.ball_radius,
-        contacts.outer_stiffness,
-    );
-    let (uu, uv, vv) = (
-        curvature[(5, 5)] + outer.curvature[0],
-        curvature[(5, 6)] + outer.curvature[1],
-        curvature[(6, 6)] + outer.curvature[2] - plane.centrifugal,
-    );
-    let determinant = uu * vv - uv * uv;
-    for i in 0..5 {
-        gradient[i] += slope[i];
-        let (iu, iv) = (curvature[(i, 5)], curvature[(i, 6)]);
-        // Row of H_qu H_uu⁻¹.
-        let (fu, fv) = ((iu * vv - iv * uv) / determinant, (iv * uu - iu * uv) / determinant);
-        for j in i..5 {
-            let condensed = curvature[(i, j)] - fu * curvature[(j, 5)] - fv * curvature[(j, 6)];
-            stiffness[(i, j)] += condensed;
-            if j > i {
-                stiffness[(j, i)] += condensed;
-            }
-        }
-    }
-    Vector3::new(-slope[0], -slope[1], -slope[2])
-}
-
-/// First and second derivatives of the inner contact's energy with respect to the race's five
-/// coordinates and the ball's two.
-fn race_and_ball_derivatives(
-    plane: &BallPlane,
-    race: &InnerRacePosition,
-    contacts: &BallContacts,
-    position: [f64; 2],
-) -> (SVector<f64, 7>, SMatrix<f64, 7, 7>) {
-    let seen = sight(plane, race, position);
-    let inner = contact_energy(
-        seen.axial,
-        seen.radial,
-        &contacts.inner,
-        contacts.ball_radius,
-        contacts.inner_stiffness,
-    );
-    let (a, w) = (&race.axis, &seen.arm);
-    let (h, rho) = (seen.axial, seen.radial);
-    // h = a·w, and ρ² = w·w − h²; `half` is the gradient of w·w/2.
-    let dh = SVector::<f64, 7>::from([
-        -a.x,
-        -a.y,
-        -a.z,
-        race.axis_xi.dot(w),
-        race.axis_lambda.dot(w),
-        a.dot(&plane.axial),
-        a.dot(&plane.radial),
-    ]);
-    let half = SVector::<f64, 7>::from([
-        -w.x,
-        -w.y,
-        -w.z,
-        0.0,
-        0.0,
-        w.dot(&plane.axial),
-        w.dot(&plane.radial),
-    ]);
-    let dr = (half - dh * h) / rho;
-    let slope = dh * inner.slope[0] + dr * inner.slope[1];
-
-    let [c_hh, c_hr, c_rr] = inner.curvature;
-    let bend = inner.slope[1] / rho;
-    let mut curvature = SMatrix::<f64, 7, 7>::zeros();
-    for i in 0..7 {
-        for j in i..7 {
-            curvature[(i, j)] = (c_hh - bend) * dh[i] * dh[j]
-                + c_hr * (dh[i] * dr[j] + dr[i] * dh[j])
-                + (c_rr - bend) * dr[i] * dr[j];
-        }
-    }
-    // ∇²(w·w/2) times V_ρ/ρ.
-    for i in 0..3 {
-        curvature[(i, i)] += bend;
-        curvature[(i, 5)] -= bend * plane.axial[i];
-        curvature[(i, 6)] -= bend * plane.radial[i];
-    }
-    curvature[(5, 5)] += bend;
-    curvature[(6, 6)] += bend;
-    // ∇²h times V_h − h V_ρ/ρ.
-    let turn = inner.slope[0] - h * bend;
-    for i in 0..3 {
-        curvature[(i, 3)] -= turn * race.axis_xi[i];
-        curvature[(i, 4)] -= turn * race.axis_lambda[i];
-    }
-    curvature[(3, 3)] += turn * race.axis_xi_xi.dot(w);
-    curvature[(3, 4)] += turn * race.axis_xi_lambda.dot(w);
-    curvature[(4, 4)] -= turn * h;
-    curvature[(3, 5)] += turn * race.axis_xi.dot(&plane.axial);
-    curvature[(3, 6)] += turn * race.axis_xi.dot(&plane.radial);
-    curvature[(4, 5)] += turn * race.axis_lambda.dot(&plane.axial);
-    curvature[(4, 6)] += turn * race.axis_lambda.dot(&plane.radial);
-    (slope, curvature)
 }

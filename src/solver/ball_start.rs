@@ -1,8 +1,7 @@
 //! Where the search for a ball's equilibrium starts.
 
-use super::ball::{
-    BallContacts, BallPlane, InnerRacePosition, inner_centre_in_plane, plane_energy,
-};
+use super::ball::{BallContacts, BallPlane, inner_centre_in_plane, plane_energy};
+use super::race_position::InnerRacePosition;
 
 /// Point from which Newton's method starts, or `None` for a ball with room on both sides.
 ///

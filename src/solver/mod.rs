@@ -1,5 +1,6 @@
 //! Solvers: what a scene needs, and equilibrium.
 pub mod ball;
+pub mod ball_on_race;
 mod ball_start;
 pub mod channels;
 pub mod clock;
@@ -9,12 +10,16 @@ pub mod housing;
 pub mod mount;
 pub mod plan;
 pub mod profile;
+pub mod race_position;
 pub mod solid;
 pub mod sparse;
 pub mod static_assembly;
 mod static_bearing;
+mod static_connection;
+mod static_model;
 mod static_search;
 mod static_seat;
 mod static_start;
 pub mod static_tables;
+mod static_verdict;
 pub mod statics;

@@ -6,10 +6,12 @@
 //! balls does not turn with the outer race; its part in the stiffness is left out, which costs an iteration. What keeps
 //! balls in their orbits about the outer race's axis sums to a force on it that has no energy.
 
-use super::ball::{BallPlane, InnerRacePosition, add_to_race, settle};
+use super::ball::{BallPlane, settle};
+use super::ball_on_race::add_to_race;
 use super::mount::Mount;
+use super::race_position::InnerRacePosition;
 use super::static_assembly::StaticBearing;
-use super::static_search::{Evaluation, Five, Model};
+use super::static_model::{Evaluation, Five, Model};
 use crate::kinematics::Pose;
 use nalgebra::{Matrix3, Matrix3x5, SMatrix, UnitQuaternion, Vector3};
 

@@ -1,11 +1,11 @@
 //! What a race in a flexible bore brings to the search for an equilibrium: energy, load and stiffness over the
 //! coordinates of the body that carries it, the bore's nodes eliminated.
 
-use super::ball::InnerRacePosition;
 use super::housing::bore_equilibrium::BoreSearch;
 use super::mount::Mount;
+use super::race_position::InnerRacePosition;
 use super::static_bearing::motion_of_race;
-use super::static_search::{Evaluation, Five, Model};
+use super::static_model::{Evaluation, Five, Model};
 use super::statics::StaticsError;
 use nalgebra::{Matrix3, SMatrix, Vector3, Vector4};
 

@@ -1,8 +1,9 @@
 //! What a solution says of each bearing, ball by ball.
 
-use super::ball::{BallPlane, InnerRacePosition, SettledBall, contacts_at, inner_centre_in_plane};
+use super::ball::{BallPlane, SettledBall, contacts_at, inner_centre_in_plane};
+use super::race_position::InnerRacePosition;
 use super::static_assembly::StaticBearing;
-use super::static_search::{BearingModel, Evaluation, Model};
+use super::static_model::{BearingModel, Evaluation, Model};
 use super::statics::{BallState, ContactState};
 use crate::ch2_housing::bearing::contact::MeridianContact;
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};

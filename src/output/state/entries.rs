@@ -6,15 +6,7 @@ use super::{
 };
 use crate::output::series::SeriesError;
 use crate::output::session::{Checkpoint, HousedParts, Parts};
-use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
-use crate::solver::dynamics::contacts::Work;
-use crate::solver::dynamics::control::Memory;
-use crate::solver::dynamics::energy::Energy;
-use crate::solver::dynamics::extremes::Extremes;
-use crate::solver::dynamics::run::ContactTurnover;
-use crate::solver::dynamics::stability::{Cause, StepLimit};
-use crate::solver::dynamics::step_watch::{Shortened, StepWatch, Stiffness};
 use crate::solver::housing::checkpoint::{
     ExchangeCheckpoint, SeatCheckpoint, SteppedCheckpoint, Windows,
 };
@@ -24,7 +16,6 @@ use crate::solver::housing::seat::Growth;
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::SolidWork;
 use crate::solver::solid::step_limit::SolidStepLimit;
-use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::path::Path;
@@ -39,71 +30,6 @@ impl From<SeriesError> for Refused {
     fn from(error: SeriesError) -> Self {
         Refused::Series(error)
     }
-}
-
-/// A bearing in motion.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BearingEntry {
-    pub steps: u64,
-    pub step_size: f64,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub limit: Option<LimitEntry>,
-    pub step_watch: StepWatchEntry,
-    /// See [`Extremes::to_numbers`].
-    pub extremes: Vec<f64>,
-    pub state: Vec<f64>,
-    pub damping: Vec<f64>,
-    pub was_loaded: Vec<bool>,
-    /// Kinetic, contact, cage contact, gravity, foundation, ball contact, J.
-    pub first_energy: [f64; 6],
-    /// Of reduced solids: kinetic, strain, seats, J.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub first_energy_of_solids: Option<[f64; 3]>,
-    pub largest_contact_energy: f64,
-    /// See [`ContactTurnover`]: sum and last, J.
-    pub contact_turnover: [f64; 2],
-    /// Evaluations, distance tests, loaded contacts, slices, pocket tests, guide tests,
-    /// ball tests, factorisations, rejected steps.
-    pub work: [u64; 9],
-    /// With error control: largest overlap (m), error of the step before, smallest and largest
-    /// step (s).
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub control: Option<[f64; 4]>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LimitEntry {
-    pub step: f64,
-    /// Real and imaginary part, 1/s.
-    pub eigenvalue: [f64; 2],
-    /// As in [`Cause::name`].
-    pub cause: String,
-}
-
-/// See [`StepWatch`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StepWatchEntry {
-    pub judged: u64,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub smallest: Option<f64>,
-    /// Oscillation, 1/s²; decay, 1/s.
-    pub stiffest: [f64; 2],
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub exceeded: Option<[f64; 2]>,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub shortened: Option<ShortenedEntry>,
-}
-
-/// See [`Shortened`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ShortenedEntry {
-    pub times: u64,
-    pub from: f64,
-    pub last: f64,
 }
 
 /// A solid in explicit steps.
@@ -199,181 +125,6 @@ pub struct CourseEntry {
     pub places: Option<Vec<[f64; 5]>>,
 }
 
-impl BearingEntry {
-    pub(super) fn of(checkpoint: &BearingCheckpoint) -> BearingEntry {
-        let energy = &checkpoint.first_energy;
-        let work = &checkpoint.work;
-        let watch = &checkpoint.step_watch;
-        BearingEntry {
-            steps: checkpoint.steps,
-            step_size: checkpoint.step_size,
-            limit: checkpoint.limit.map(|limit| LimitEntry {
-                step: limit.step,
-                eigenvalue: [limit.eigenvalue.re, limit.eigenvalue.im],
-                cause: limit.cause.name().into(),
-            }),
-            step_watch: StepWatchEntry {
-                judged: watch.judged,
-                smallest: watch.smallest,
-                stiffest: [watch.stiffest.oscillation, watch.stiffest.decay],
-                exceeded: watch.exceeded,
-                shortened: watch.shortened.map(|Shortened { times, from, last }| ShortenedEntry {
-                    times,
-                    from,
-                    last,
-                }),
-            },
-            extremes: checkpoint.extremes.iter().flat_map(Extremes::to_numbers).collect(),
-            state: checkpoint.state.clone(),
-            damping: checkpoint.damping.clone(),
-            was_loaded: checkpoint.was_loaded.clone(),
-            first_energy: [
-                energy.kinetic,
-                energy.contact,
-                energy.cage_contact,
-                energy.gravity,
-                energy.foundation,
-                energy.ball_contact,
-            ],
-            first_energy_of_solids: Some([energy.solid_kinetic, energy.solid_strain, energy.seat])
-                .filter(|of| *of != [0.0; 3]),
-            largest_contact_energy: checkpoint.largest_contact_energy,
-            contact_turnover: [checkpoint.contact_turnover.sum, checkpoint.contact_turnover.last],
-            work: [
-                work.evaluations,
-                work.distance_tests,
-                work.loaded_contacts,
-                work.slices,
-                work.pocket_tests,
-                work.guide_tests,
-                work.ball_tests,
-                work.factorisations,
-                work.rejected_steps,
-            ],
-            control: checkpoint.control.map(|memory| {
-                [memory.displacement, memory.previous_error, memory.smallest, memory.largest]
-            }),
-        }
-    }
-
-    /// What has to be finite.
-    pub(super) fn numbers(&self) -> Vec<(&'static str, Vec<f64>)> {
-        let limit = self.limit.iter().flat_map(|l| [l.step, l.eigenvalue[0], l.eigenvalue[1]]);
-        let watch = &self.step_watch;
-        let watched = watch.stiffest.into_iter().chain(watch.smallest);
-        let shortened = watch.shortened.into_iter().flat_map(|s| [s.from, s.last]);
-        let limit =
-            limit.chain(watched).chain(watch.exceeded.into_iter().flatten()).chain(shortened);
-        let energy = [self.step_size, self.largest_contact_energy].into_iter();
-        let energy = energy.chain(self.first_energy).chain(self.contact_turnover);
-        let energy = energy.chain(self.first_energy_of_solids.into_iter().flatten());
-        vec![
-            ("an extreme", self.extremes.clone()),
-            ("a size of the error control", self.control.into_iter().flatten().collect()),
-            ("a step or an energy", energy.collect()),
-            ("a step limit", limit.collect()),
-            ("an entry of the state", self.state.clone()),
-            ("a damping factor", self.damping.clone()),
-        ]
-    }
-
-    /// # Errors
-    /// Lists of other lengths than the problem asks for, a step that is none.
-    fn checked(&self, time: f64, assembly: &Assembly) -> Result<BearingCheckpoint, Refused> {
-        let checkpoint = self.checkpoint(time);
-        let damaged = |what| Err(Refused::Damaged(what));
-        if self.limit.as_ref().is_some_and(|limit| cause(&limit.cause).is_none()) {
-            return damaged("its step limit has a cause that is not known");
-        }
-        if Extremes::all_from_numbers(&self.extremes).is_none_or(|all| all.is_empty()) {
-            return damaged("its extremes are not as many as a bearing has");
-        }
-        if !checkpoint.fits(assembly) {
-            return damaged("its lists have other lengths than the bearing asks for");
-        }
-        if self.step_size <= 0.0 {
-            return damaged("no step from one row to the next");
-        }
-        Ok(checkpoint)
-    }
-
-    fn checkpoint(&self, time: f64) -> BearingCheckpoint {
-        let [oscillation, decay] = self.step_watch.stiffest;
-        let [kinetic, contact, cage_contact, gravity, foundation, ball_contact] = self.first_energy;
-        let [solid_kinetic, solid_strain, seat] = self.first_energy_of_solids.unwrap_or_default();
-        let [
-            evaluations,
-            distance_tests,
-            loaded_contacts,
-            slices,
-            pocket_tests,
-            guide_tests,
-            ball_tests,
-            factorisations,
-            rejected_steps,
-        ] = self.work;
-        BearingCheckpoint {
-            time,
-            steps: self.steps,
-            step_size: self.step_size,
-            limit: self.limit.as_ref().and_then(|limit| {
-                Some(StepLimit {
-                    step: limit.step,
-                    eigenvalue: Complex::new(limit.eigenvalue[0], limit.eigenvalue[1]),
-                    cause: cause(&limit.cause)?,
-                })
-            }),
-            step_watch: StepWatch {
-                judged: self.step_watch.judged,
-                smallest: self.step_watch.smallest,
-                stiffest: Stiffness { oscillation, decay },
-                exceeded: self.step_watch.exceeded,
-                shortened: self
-                    .step_watch
-                    .shortened
-                    .map(|ShortenedEntry { times, from, last }| Shortened { times, from, last }),
-            },
-            extremes: Extremes::all_from_numbers(&self.extremes).unwrap_or_default(),
-            state: self.state.clone(),
-            damping: self.damping.clone(),
-            was_loaded: self.was_loaded.clone(),
-            first_energy: Energy {
-                kinetic,
-                contact,
-                cage_contact,
-                gravity,
-                foundation,
-                ball_contact,
-                solid_kinetic,
-                solid_strain,
-                seat,
-            },
-            largest_contact_energy: self.largest_contact_energy,
-            contact_turnover: ContactTurnover {
-                sum: self.contact_turnover[0],
-                last: self.contact_turnover[1],
-            },
-            work: Work {
-                evaluations,
-                distance_tests,
-                loaded_contacts,
-                slices,
-                pocket_tests,
-                guide_tests,
-                ball_tests,
-                factorisations,
-                rejected_steps,
-            },
-            control: self.control.map(|[displacement, previous_error, smallest, largest]| Memory {
-                displacement,
-                previous_error,
-                smallest,
-                largest,
-            }),
-        }
-    }
-}
-
 impl SolidEntry {
     pub(super) fn of(kept: &SolidCheckpoint, limit: &SolidStepLimit, number: u64) -> SolidEntry {
         SolidEntry {
@@ -450,10 +201,6 @@ impl CourseEntry {
             places: kept.memory.places.clone(),
         }
     }
-}
-
-fn cause(name: &str) -> Option<Cause> {
-    Cause::ALL.into_iter().find(|cause| cause.name() == name)
 }
 
 /// Time (s) and number of steps, windows or equilibria that a checkpoint is of.

@@ -6,6 +6,7 @@
 //! is killed at there is one whole state. There may be more rows than it speaks of; those are computed again.
 
 pub mod arrays;
+pub mod bearing_entry;
 pub mod entries;
 
 pub use crate::output::journal::{SERIES, STATE, Stopped};
@@ -25,7 +26,8 @@ use crate::solver::housing::checkpoint::SteppedCheckpoint;
 use crate::solver::housing::course::CourseSeat;
 use crate::solver::solid::model::SolidProblem;
 use arrays::{remove_arrays, write_arrays};
-use entries::{BearingEntry, CourseEntry, ExchangeEntry, SolidEntry};
+use bearing_entry::BearingEntry;
+use entries::{CourseEntry, ExchangeEntry, SolidEntry};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};

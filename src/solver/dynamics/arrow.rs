@@ -4,13 +4,15 @@
 //!
 //! Balls are eliminated a block of [`LANES`] at a time, with every driver.
 
+use super::arrow_terms::{
+    add_joints, add_solids, drive_power, joint_forces, solid_forces, spring_back, weigh,
+};
 use super::assembly::Assembly;
 use super::ball_set::BallSet;
 use super::elimination::{
-    Block, Dense, ZERO, add_product, factor_lanes, solve_columns, solve_lanes, subtract_product,
-    total,
+    Block, Dense, ZERO, add_product, factor_lanes, solve_columns, solve_lanes, total,
 };
-use super::linearised::{BallBlock, Hub, Lane, LaneContact, Linearised, from_basis, to_basis};
+use super::linearised::{BallBlock, Hub, Lane, Linearised, from_basis, to_basis};
 use super::reduced_solid::Surface;
 use super::state::{LANES, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use super::system::System;
@@ -43,10 +45,10 @@ pub struct Arrow {
 }
 
 #[derive(Clone, Debug)]
-struct SeatShapes {
-    by_node: Vec<f64>,
-    surface: Surface,
-    outward: Vec<f64>,
+pub(super) struct SeatShapes {
+    pub(super) by_node: Vec<f64>,
+    pub(super) surface: Surface,
+    pub(super) outward: Vec<f64>,
 }
 
 impl Arrow {
@@ -317,7 +319,7 @@ fn vector(of: &[f64], at: usize) -> [f64; 3] {
 }
 
 /// Shift and turn of a hub in a vector of rates or increments; prescribed parts push nothing.
-fn displacement(hub: &Hub, at: &[f64], r: &[f64]) -> [f64; 6] {
+pub(super) fn displacement(hub: &Hub, at: &[f64], r: &[f64]) -> [f64; 6] {
     let quaternion = |of: &[f64]| {
         let from = hub.at + ORIENTATION;
         Quaternion::new(of[from], of[from + 1], of[from + 2], of[from + 3])
@@ -325,281 +327,4 @@ fn displacement(hub: &Hub, at: &[f64], r: &[f64]) -> [f64; 6] {
     let turn = (quaternion(r) * quaternion(at).conjugate()).imag() * 2.0;
     let all = to_basis(hub, vector(r, hub.at + POSITION), turn.into());
     std::array::from_fn(|i| all[i] * hub.free[i])
-}
-
-/// Weights times levers: (h²γ² k + hγ c) along the normal, hγ · slope for the others.
-fn weigh(contact: &LaneContact, lever: &[[Lane; 6]; 4], scale: f64) -> [[Lane; 6]; 4] {
-    let mut pushed = [[ZERO; 6]; 4];
-    let mut normal = ZERO;
-    for l in 0..LANES {
-        normal[l] = scale * (contact.damping[l] + scale * contact.stiffness[l]);
-    }
-    for j in 0..6 {
-        for l in 0..LANES {
-            pushed[0][j][l] = normal[l] * lever[0][j][l];
-        }
-    }
-    if contact.rows == 1 {
-        return pushed;
-    }
-    let [tt, ts, tn, ss, sn, nn] = &contact.slope;
-    for j in 0..6 {
-        for l in 0..LANES {
-            let [t, s, n] = [1, 2, 3].map(|row: usize| scale * lever[row][j][l]);
-            pushed[1][j][l] = tt[l] * t + ts[l] * s + tn[l] * n;
-            pushed[2][j][l] = ts[l] * t + ss[l] * s + sn[l] * n;
-            pushed[3][j][l] = tn[l] * t + sn[l] * s + nn[l] * n;
-        }
-    }
-    pushed
-}
-
-/// What a contact pushes back along its rows for displacements and velocities of ball and hub. The
-/// drift of a frame closes contacts; sliding turns with the frame and does not change by it.
-#[inline(always)]
-fn reaction(
-    contact: &LaneContact,
-    [position, drift]: [&[Lane; 3]; 2],
-    moved: &[f64; 6],
-    velocity: Option<(&[Lane; 6], &[f64; 6])>,
-) -> [Lane; 4] {
-    let mut pushes = [ZERO; 4];
-    let mut approach = ZERO;
-    for i in 0..3 {
-        add_product(&mut approach, &contact.on_ball[0][i], &position[i]);
-        add_product(&mut approach, &contact.on_ball[0][i], &drift[i]);
-    }
-    if contact.hub.is_some() {
-        for (row, moved) in contact.on_hub[0].iter().zip(moved) {
-            for l in 0..LANES {
-                approach[l] += row[l] * moved;
-            }
-        }
-    }
-    for l in 0..LANES {
-        pushes[0][l] = contact.stiffness[l] * approach[l];
-    }
-    let mut slid = [ZERO; 3];
-    if contact.rows == 4 {
-        let mut between = *position;
-        if contact.hub.is_some() {
-            let mut shift = [moved[0], moved[1], moved[2]];
-            if let Some(turned) = &contact.shifts {
-                for (by, turn) in turned.iter().zip(&moved[3..]) {
-                    for i in 0..3 {
-                        shift[i] += turn * by[i];
-                    }
-                }
-            }
-            for i in 0..3 {
-                for l in 0..LANES {
-                    between[i][l] -= shift[i];
-                }
-            }
-        }
-        for (slid, row) in slid.iter_mut().zip(&contact.carried) {
-            for i in 0..3 {
-                add_product(slid, &row[i], &between[i]);
-            }
-        }
-    }
-    if let Some((ball, hub)) = velocity {
-        let mut closing = ZERO;
-        for i in 0..3 {
-            add_product(&mut closing, &contact.on_ball[0][i], &ball[i]);
-        }
-        for (row, slid) in slid.iter_mut().enumerate() {
-            for i in 0..6 {
-                add_product(slid, &contact.on_ball[1 + row][i], &ball[i]);
-            }
-        }
-        if contact.hub.is_some() {
-            for j in 0..6 {
-                for l in 0..LANES {
-                    closing[l] += contact.on_hub[0][j][l] * hub[j];
-                }
-                for (row, slid) in slid.iter_mut().enumerate() {
-                    for l in 0..LANES {
-                        slid[l] += contact.on_hub[1 + row][j][l] * hub[j];
-                    }
-                }
-            }
-        }
-        for l in 0..LANES {
-            pushes[0][l] += contact.damping[l] * closing[l];
-        }
-    }
-    if contact.rows == 4 {
-        let [tt, ts, tn, ss, sn, nn] = &contact.slope;
-        for l in 0..LANES {
-            let [t, s, n] = [slid[0][l], slid[1][l], slid[2][l]];
-            let follows = |row: usize| contact.per_load[row][l] * pushes[0][l];
-            let along = tt[l] * t + ts[l] * s + tn[l] * n - follows(0);
-            let across = ts[l] * t + ss[l] * s + sn[l] * n - follows(1);
-            let about = tn[l] * t + sn[l] * s + nn[l] * n - follows(2);
-            [pushes[1][l], pushes[2][l], pushes[3][l]] = [along, across, about];
-        }
-    }
-    pushes
-}
-
-/// hγ K r: takes from the right-hand sides what the displacements in them push back.
-fn spring_back(
-    contact: &LaneContact,
-    scale: f64,
-    at: [&[Lane; 3]; 2],
-    moved: &[[f64; 6]],
-    right: &mut [Lane; 6],
-    hubs: &mut [f64],
-) {
-    let of_hub = contact.hub.map_or(&[0.0; 6], |hub| &moved[hub]);
-    let mut pushes = reaction(contact, at, of_hub, None);
-    let rows = if contact.rows == 4 { 4 } else { 1 };
-    for (row, push) in pushes.iter_mut().enumerate().take(rows) {
-        for l in 0..LANES {
-            push[l] *= scale;
-        }
-        for i in 0..6 {
-            subtract_product(&mut right[i], &contact.on_ball[row][i], push);
-        }
-    }
-    if let Some(hub) = contact.hub {
-        for j in 0..6 {
-            let mut sum = ZERO;
-            for (row, push) in pushes.iter().enumerate().take(rows) {
-                add_product(&mut sum, &contact.on_hub[row][j], push);
-            }
-            hubs[6 * hub + j] -= total(&sum);
-        }
-    }
-}
-
-/// Change of the power of the drives that hold prescribed velocities.
-fn drive_power(
-    contact: &LaneContact,
-    at: [&[Lane; 3]; 2],
-    moved: &[f64; 6],
-    ball: &[Lane; 6],
-    hub: &[f64; 6],
-) -> f64 {
-    let pushes = reaction(contact, at, moved, Some((ball, hub)));
-    let mut driven = ZERO;
-    for (row, push) in pushes.iter().enumerate() {
-        add_product(&mut driven, &contact.driven[row], push);
-    }
-    total(&driven)
-}
-
-fn add_joints(linearised: &Linearised, scale: f64, schur: &mut Dense) {
-    for joint in &linearised.joints {
-        for row in &joint.rows[..joint.count] {
-            let spring = scale * scale * row.stiffness;
-            let weight = if row.damping == 0.0 { spring } else { spring + scale * row.damping };
-            for (a, rows) in joint.hubs.into_iter().enumerate() {
-                for (b, columns) in joint.hubs.into_iter().enumerate() {
-                    let (Some(rows), Some(columns)) = (rows, columns) else { continue };
-                    // The upper triangle alone is kept.
-                    if rows > columns {
-                        continue;
-                    }
-                    for i in 0..6 {
-                        for j in 0..6 {
-                            *schur.at(6 * rows + i, 6 * columns + j) +=
-                                row.levers[a][i] * weight * row.levers[b][j];
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
-fn joint_forces(linearised: &Linearised, scale: f64, moved: &[[f64; 6]], hubs: &mut [f64]) {
-    for joint in &linearised.joints {
-        for row in joint.rows[..joint.count].iter().filter(|row| row.stiffness != 0.0) {
-            let mut push = 0.0;
-            for (lever, hub) in row.levers.iter().zip(joint.hubs) {
-                let Some(hub) = hub else { continue };
-                push += (0..6).map(|j| lever[j] * moved[hub][j]).sum::<f64>();
-            }
-            push *= scale * row.stiffness;
-            for (lever, hub) in row.levers.iter().zip(joint.hubs) {
-                let Some(hub) = hub else { continue };
-                for j in 0..6 {
-                    hubs[6 * hub + j] -= lever[j] * push;
-                }
-            }
-        }
-    }
-}
-
-/// Springs, dampers and seats of reduced solids, whose equations come after those of the hubs.
-fn add_solids(linearised: &Linearised, seats: &[SeatShapes], scale: f64, schur: &mut Dense) {
-    let before = 6 * linearised.hubs.len();
-    for solid in &linearised.solids {
-        for (k, stiffness) in solid.stiffness.iter().enumerate() {
-            let at = before + solid.first + k;
-            *schur.at(at, at) = 1.0 + scale * (solid.damping + scale * stiffness);
-        }
-    }
-    for (joint, seat) in linearised.seats.iter().zip(seats) {
-        let solid = &linearised.solids[joint.solid];
-        let (first, count) = (before + solid.first, solid.stiffness.len());
-        for row in &joint.nodes {
-            let shapes = &seat.by_node[row.node * count..(row.node + 1) * count];
-            let weight = scale * scale * row.stiffness;
-            if let Some(hub) = joint.hub {
-                for i in 0..6 {
-                    let push = row.lever[i] * weight;
-                    for j in i..6 {
-                        *schur.at(6 * hub + i, 6 * hub + j) += push * row.lever[j];
-                    }
-                    schur.add_to_row(6 * hub + i, first, push * row.along, shapes);
-                }
-            }
-            let weight = weight * row.along * row.along;
-            for (k, shape) in shapes.iter().enumerate() {
-                schur.add_to_row(first + k, first + k, weight * shape, &shapes[k..]);
-            }
-        }
-    }
-}
-
-/// Right-hand sides of the shapes, and what the displacements in `r` push back through the seats.
-fn solid_forces(
-    linearised: &Linearised,
-    scale: f64,
-    seats: &mut [SeatShapes],
-    r: &[f64],
-    moved: &[[f64; 6]],
-    hubs: &mut [f64],
-) {
-    let before = 6 * linearised.hubs.len();
-    for solid in &linearised.solids {
-        let (at, count) = (solid.at, solid.stiffness.len());
-        for (k, stiffness) in solid.stiffness.iter().enumerate() {
-            hubs[before + solid.first + k] = r[at + count + k] - scale * stiffness * r[at + k];
-        }
-    }
-    for (joint, seat) in linearised.seats.iter().zip(seats) {
-        let solid = &linearised.solids[joint.solid];
-        let (first, count) = (before + solid.first, solid.stiffness.len());
-        seat.surface.along_normals(&r[solid.at..solid.at + count], &mut seat.outward);
-        for row in &joint.nodes {
-            let mut push = row.along * seat.outward[row.node];
-            if let Some(hub) = joint.hub {
-                push += (0..6).map(|j| row.lever[j] * moved[hub][j]).sum::<f64>();
-            }
-            push *= scale * row.stiffness;
-            if let Some(hub) = joint.hub {
-                for j in 0..6 {
-                    hubs[6 * hub + j] -= row.lever[j] * push;
-                }
-            }
-            let shapes = &seat.by_node[row.node * count..(row.node + 1) * count];
-            for (to, shape) in hubs[first..first + count].iter_mut().zip(shapes) {
-                *to -= row.along * push * shape;
-            }
-        }
-    }
 }

@@ -7,6 +7,7 @@
 //! `control` chooses steps for an accuracy, `extremes` remembers the largest loads, `run` takes a simulation from step to step,
 //! `clocked` up to what is due next, `foretell` for a while.
 pub mod arrow;
+mod arrow_terms;
 pub mod assembly;
 pub mod ball_set;
 pub mod bounds;
@@ -24,6 +25,7 @@ pub mod failure;
 pub mod foretell;
 pub mod held;
 pub mod linearised;
+mod linearised_contacts;
 pub mod model;
 pub mod orbit_frame;
 pub mod quasi_static;

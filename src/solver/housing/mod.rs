@@ -18,6 +18,7 @@ pub mod course;
 pub mod course_inertia;
 pub mod course_search;
 pub mod exchange;
+mod exchange_window;
 pub mod housed;
 pub mod inertia;
 pub mod quasi_static;

@@ -1,0 +1,80 @@
+//! How long the windows of an exchange are, and what cannot be exchanged.
+
+use super::exchange::{ExchangeError, ExchangeOptions};
+use super::seat::Seat;
+use crate::solver::dynamics::assembly::Assembly;
+
+/// The longest window for which no body goes further on its seats than `phase`, s.
+pub(super) fn longest_window(
+    assembly: &Assembly,
+    seats: &[Seat],
+    phase: f64,
+) -> Result<f64, ExchangeError> {
+    if seats.is_empty() {
+        return Err(ExchangeError::NoSeat { seat: String::new() });
+    }
+    let mut most = 0.0f64;
+    for (index, body) in assembly.bodies.iter().enumerate() {
+        let mut sums = [0.0; 2];
+        for seat in seats.iter().filter(|seat| seat.mount.body == index) {
+            let [shift, tilt] = seat.stiffness(body.rest[0]);
+            if shift.is_nan() || shift <= 0.0 {
+                return Err(ExchangeError::NoSeat { seat: seat.suffix() });
+            }
+            sums = [sums[0] + shift, sums[1] + tilt];
+        }
+        let Some(inertia) = body.inertia() else { continue };
+        most = most.max((sums[0] / inertia.mass).max(sums[1] / inertia.transverse));
+    }
+    Ok(phase / most.sqrt())
+}
+
+/// How many steps of at most `step` s (one a solid) fill a window, whole steps of one of them and no
+/// longer than `longest` (s); and its length, s. Of the windows that offer themselves the one that
+/// evaluates the fewest elements a second, the longer one of two.
+pub(super) fn divided(elements: &[usize], step: &[f64], longest: f64) -> (f64, Vec<usize>) {
+    let mut best: Option<(f64, f64, Vec<usize>)> = None;
+    for whole in step {
+        let window = ((longest / whole) as usize).max(1) as f64 * whole;
+        let steps: Vec<usize> = step
+            .iter()
+            .map(|step| ((window / step * (1.0 - 1e-12)).ceil() as usize).max(1))
+            .collect();
+        let each = elements.iter().zip(&steps).map(|(elements, steps)| (elements * steps) as f64);
+        let cost = each.sum::<f64>() / window;
+        let better = |(least, length, _): &(f64, f64, Vec<usize>)| {
+            cost < *least || (cost == *least && window > *length)
+        };
+        if best.as_ref().is_none_or(better) {
+            best = Some((cost, window, steps));
+        }
+    }
+    best.map_or((longest, Vec::new()), |(_, window, steps)| (window, steps))
+}
+
+/// # Errors
+/// Options out of range, a race that is fixed or on a foundation.
+pub(super) fn check(
+    assembly: &Assembly,
+    seats: &[Seat],
+    options: &ExchangeOptions,
+) -> Result<(), ExchangeError> {
+    let ranges = [
+        ("the fraction of the solid's step limit", options.solid_fraction, 1.0),
+        ("the phase of the seat in a window", options.seat_phase, 1.9),
+    ];
+    for (name, value, most) in ranges {
+        if !(value > 0.0 && value <= most) {
+            return Err(ExchangeError::Option { name, value, most });
+        }
+    }
+    for seat in seats {
+        let body = &assembly.bodies[seat.mount.body];
+        let race = body.name.clone();
+        let Some(driven) = body.driven() else { return Err(ExchangeError::FixedRace { race }) };
+        if driven.foundation_stiffness.iter().chain(&driven.foundation_damping).any(|k| *k != 0.0) {
+            return Err(ExchangeError::Foundation { race });
+        }
+    }
+    Ok(())
+}

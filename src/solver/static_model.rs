@@ -1,0 +1,226 @@
+//! What a search for an equilibrium looks at: bodies, their coordinates and axes, and what was found at one place.
+
+use super::ball::{BallContacts, BallPlane, SettledBall};
+use super::race_position::InnerRacePosition;
+use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing};
+use super::static_bearing::planes;
+use super::static_seat::SeatPlace;
+use crate::kinematics::Pose;
+use crate::kinematics::euler::quaternion;
+use nalgebra::{DMatrix, DVector, Matrix3, SVector, Vector3};
+use std::f64::consts::TAU;
+
+pub(super) type Five = SVector<f64, 5>;
+
+/// What does not change while bodies move.
+pub(super) struct Model<'a> {
+    pub(super) assembly: &'a StaticAssembly<'a>,
+    pub(super) bearings: Vec<BearingModel>,
+    /// Axes of each body's coordinates as each seat sees them from where its race's motion is measured.
+    seat_axes: Vec<Pose>,
+    /// First unknown of each body; `None` where it is held.
+    pub(super) unknowns: Vec<Option<usize>>,
+    /// Metres per unit of each unknown: 1 for lengths, a pitch radius (that of a seat, without a bearing) for tilts.
+    pub(super) scale: DVector<f64>,
+}
+
+pub(super) struct BearingModel {
+    pub(super) contacts: BallContacts,
+    pub(super) azimuths: Vec<f64>,
+    /// Places of races and balls count from here.
+    pub(super) origin: Vector3<f64>,
+    /// Where the outer race is held.
+    pub(super) planes: Vec<BallPlane>,
+}
+
+/// Where a bearing's outer race stands as far as it is known beforehand; for one whose races are bodies
+/// themselves that of the frame.
+fn origin(assembly: &StaticAssembly, bearing: &StaticBearing) -> Vector3<f64> {
+    let [inner, outer] = &bearing.mounts;
+    if inner.is_direct() && outer.is_direct() {
+        return Vector3::zeros();
+    }
+    match &assembly.bodies[outer.body].place {
+        Place::Held(pose) => pose.position + pose.orientation * Vector3::x() * outer.along,
+        Place::Loaded(loaded) => {
+            let [x, y, z, ..] = loaded.start.unwrap_or(loaded.rest);
+            loaded.axes().point_to_parent(&Vector3::new(x + outer.along, y, z))
+        }
+    }
+}
+
+impl<'a> Model<'a> {
+    pub(super) fn new(assembly: &'a StaticAssembly) -> Self {
+        let mut unknowns = Vec::with_capacity(assembly.bodies.len());
+        let mut scale = Vec::new();
+        for (index, body) in assembly.bodies.iter().enumerate() {
+            unknowns.push(match body.place {
+                Place::Held(_) => None,
+                Place::Loaded(_) => {
+                    let sits = |bearing: &&StaticBearing| {
+                        bearing.mounts.iter().any(|mount| mount.body == index)
+                    };
+                    let own = assembly.bearings.iter().find(sits);
+                    let seat = assembly.seats.iter().find(|seat| seat.mount.body == index);
+                    let pitch = match (own, seat) {
+                        (Some(bearing), _) => bearing.geometry.pitch_radius,
+                        (None, Some(seat)) => seat.fit.radius,
+                        (None, None) => 1.0,
+                    };
+                    scale.extend([1.0, 1.0, 1.0, pitch, pitch]);
+                    Some(scale.len() - 5)
+                }
+            });
+        }
+        let bearings = assembly.bearings.iter().map(|bearing| {
+            let count = bearing.geometry.ball_count;
+            let azimuths: Vec<f64> =
+                (0..count).map(|j| bearing.ball_phase + TAU * j as f64 / count as f64).collect();
+            let mut held = Vec::new();
+            let origin = origin(assembly, bearing);
+            if let Place::Held(pose) = &assembly.bodies[bearing.mounts[1].body].place {
+                planes(bearing, &azimuths, pose, &origin, &mut held);
+            }
+            BearingModel { contacts: bearing.contacts(), azimuths, origin, planes: held }
+        });
+        let bearings = bearings.collect();
+        let seat_axes = assembly.seats.iter().map(|seat| {
+            let axes = match &assembly.bodies[seat.mount.body].place {
+                Place::Loaded(loaded) => loaded.axes(),
+                Place::Held(_) => Pose::identity(),
+            };
+            axes.relative_to(&seat.nominal)
+        });
+        let seat_axes = seat_axes.collect();
+        Model { assembly, bearings, seat_axes, unknowns, scale: DVector::from_vec(scale) }
+    }
+
+    pub(super) fn loaded(&self) -> impl Iterator<Item = (usize, usize, &Loaded)> {
+        let bodies = self.assembly.bodies.iter().zip(&self.unknowns).enumerate();
+        bodies.filter_map(|(index, (body, first))| match (&body.place, first) {
+            (Place::Loaded(loaded), Some(first)) => Some((index, *first, loaded)),
+            _ => None,
+        })
+    }
+
+    /// Coordinates of a body.
+    pub(super) fn coordinates(&self, body: usize, at: &DVector<f64>) -> Five {
+        match (&self.assembly.bodies[body].place, self.unknowns[body]) {
+            (Place::Loaded(_), Some(first)) => at.fixed_rows::<5>(first).into_owned(),
+            (Place::Held(pose), _) => five(pose),
+            _ => Five::zeros(),
+        }
+    }
+
+    /// Axes of a body's coordinates where they are not the assembly's.
+    pub(super) fn axes(&self, body: usize) -> Option<&Pose> {
+        match &self.assembly.bodies[body].place {
+            Place::Loaded(loaded) => loaded.axes.as_deref(),
+            Place::Held(_) => None,
+        }
+    }
+
+    /// Whether a body's coordinates are along the assembly's own axes.
+    pub(super) fn is_plain(&self, body: usize) -> bool {
+        self.axes(body).is_none()
+    }
+
+    /// The axes of a body's coordinates in the assembly's frame.
+    pub(super) fn turn(&self, body: usize) -> Matrix3<f64> {
+        let turn = |axes: &Pose| axes.orientation.to_rotation_matrix().into_inner();
+        self.axes(body).map_or(Matrix3::identity(), turn)
+    }
+
+    /// About which a body's two tilts turn it, in the assembly's frame.
+    pub(super) fn tilt_axes(&self, body: usize, at: &DVector<f64>) -> [Vector3<f64>; 2] {
+        let q = self.coordinates(body, at);
+        let own = [Vector3::y(), quaternion(0.0, q[3], q[4]) * Vector3::z()];
+        match self.axes(body) {
+            Some(axes) => own.map(|axis| axes.orientation * axis),
+            None => own,
+        }
+    }
+
+    /// A body in the assembly's frame.
+    pub(super) fn pose(&self, body: usize, at: &DVector<f64>) -> Pose {
+        let q = self.coordinates(body, at);
+        let own = Pose {
+            position: Vector3::new(q[0], q[1], q[2]),
+            orientation: quaternion(0.0, q[3], q[4]),
+        };
+        self.axes(body).map_or(own, |axes| own.seen_from_parent_of(axes))
+    }
+
+    /// A race of a bearing, its centre from the bearing's origin.
+    pub(super) fn race(&self, bearing: usize, side: usize, at: &DVector<f64>) -> InnerRacePosition {
+        let mount = &self.assembly.bearings[bearing].mounts[side];
+        let coordinates = self.coordinates(mount.body, at);
+        let origin = &self.bearings[bearing].origin;
+        match self.axes(mount.body) {
+            None => InnerRacePosition::mounted(&coordinates, mount, origin),
+            Some(axes) => {
+                let from_origin = Pose { position: axes.position - origin, ..*axes };
+                InnerRacePosition::mounted(&coordinates, mount, &Vector3::zeros())
+                    .seen_from_parent_of(&from_origin)
+            }
+        }
+    }
+
+    /// A seat's race in its bore.
+    pub(super) fn seat_place(&self, seat: usize, at: &DVector<f64>) -> SeatPlace {
+        let (mount, axes) = (&self.assembly.seats[seat].mount, &self.seat_axes[seat]);
+        let coordinates = self.coordinates(mount.body, at);
+        let own = axes.position == Vector3::zeros() && axes.orientation.imag() == Vector3::zeros();
+        if own && mount.is_direct() {
+            return SeatPlace::direct(&coordinates);
+        }
+        let race = InnerRacePosition::mounted(&coordinates, mount, &Vector3::zeros());
+        let turn = axes.orientation.to_rotation_matrix().into_inner();
+        SeatPlace::new(race.seen_from_parent_of(axes), mount, &turn)
+    }
+
+    /// The first seat of a body.
+    pub(super) fn seat_of(&self, body: usize) -> Option<usize> {
+        self.assembly.seats.iter().position(|seat| seat.mount.body == body)
+    }
+
+    pub(super) fn first_unknown(&self, body: usize) -> Option<usize> {
+        self.unknowns[body]
+    }
+}
+
+/// Position and tilts of a pose.
+fn five(pose: &Pose) -> Five {
+    let axis = pose.orientation * Vector3::x();
+    let tilts = [libm::atan2(-axis.z, axis.x), libm::asin(axis.y.clamp(-1.0, 1.0))];
+    let p = pose.position;
+    Five::from([p.x, p.y, p.z, tilts[0], tilts[1]])
+}
+
+/// Bodies at one place.
+#[derive(Clone, Default)]
+pub(super) struct Evaluation {
+    pub(super) at: DVector<f64>,
+    /// Energy of contacts and springs minus the work of loads and body forces, J.
+    pub(super) energy: f64,
+    pub(super) gradient: DVector<f64>,
+    pub(super) stiffness: DMatrix<f64>,
+    pub(super) largest_ball_load: f64,
+    /// Largest stiffness against one coordinate that is none of a seat's, N/m.
+    pub(super) stiffest: f64,
+    /// Forces that have no energy, N.
+    pub(super) without_energy: f64,
+    /// What rounding leaves of the loads of all seats, N.
+    pub(super) seat_noise: f64,
+    /// Of each bearing.
+    pub(super) balls: Vec<Vec<Option<SettledBall>>>,
+    /// Where the outer race is not held.
+    pub(super) planes: Vec<Vec<BallPlane>>,
+}
+
+impl Evaluation {
+    pub(super) fn planes<'e>(&'e self, model: &'e Model, bearing: usize) -> &'e [BallPlane] {
+        let moved = &self.planes[bearing];
+        if moved.is_empty() { &model.bearings[bearing].planes } else { moved }
+    }
+}

@@ -1,0 +1,236 @@
+//! What an equilibrium, or a search for one, has to be looked at for: bodies that go away, balls that leave, directions
+//! in which nothing holds.
+
+use super::ball::overlap_of_races;
+use super::housing::bore_equilibrium::BoreState;
+use super::static_assembly::{Place, StaticBearing};
+use super::static_model::{Evaluation, Five};
+use super::static_search::Search;
+use super::statics::{COORDINATE_NAMES, Determinacy, StaticsError};
+use crate::ch2_housing::bearing::contact::normal_load;
+use nalgebra::{DVector, SymmetricEigen, Vector3};
+
+/// Stiffness below this fraction of the largest one counts as none. Rounding of the overlaps leaves
+/// about 1e-12; the softest real direction, the swivel of a loaded ball, has about 1e-3.
+const NO_STIFFNESS: f64 = 1e-9;
+/// Part of its radius by which a race may leave its place while it is looked for, and in the end: nothing that a bore
+/// holds moves by a hundredth of its radius.
+const LOST: f64 = 1e3;
+pub(super) const FAR: f64 = 1e-2;
+
+impl Search<'_, '_> {
+    /// Every ball settled, and none past the edge of what a torus can hold.
+    pub(super) fn check_balls(&self, here: &Evaluation) -> Result<(), StaticsError> {
+        /// Newton's last step leaves 1e-11; anything above this is a ball still on its way.
+        const SETTLED: f64 = 1e-8;
+        for (bearing, of) in self.model.assembly.bearings.iter().enumerate() {
+            let race = self.model.race(bearing, 0, &here.at);
+            let contacts = &self.model.bearings[bearing].contacts;
+            for (index, (plane, ball)) in
+                here.planes(self.model, bearing).iter().zip(&here.balls[bearing]).enumerate()
+            {
+                let named = || format!("ball {}{}", index + 1, of.suffix());
+                match ball {
+                    Some(ball) if ball.unbalance > SETTLED || ball.unbalance.is_nan() => {
+                        let unbalance = ball.unbalance;
+                        return Err(StaticsError::BallNotSettled { ball: named(), unbalance });
+                    }
+                    Some(_) => {}
+                    None => {
+                        let (overlap, angle) = overlap_of_races(plane, &race, contacts);
+                        if overlap > 0.0 && angle.abs() > std::f64::consts::FRAC_PI_2 {
+                            let (ball, degrees) = (named(), angle.to_degrees());
+                            return Err(StaticsError::BallOutside { ball, overlap, degrees });
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn give_up(
+        &self,
+        here: &Evaluation,
+        residual: f64,
+        allowed: f64,
+    ) -> Result<(), StaticsError> {
+        // Of the body that is farthest from balance.
+        let worst = |first: usize| {
+            (first..first + 5)
+                .filter(|&i| self.free[i])
+                .map(|i| (here.gradient[i] / self.model.scale[i]).abs())
+                .fold(0.0, f64::max)
+        };
+        let bodies = self.model.loaded().map(|(_, first, _)| first);
+        let at = bodies.max_by(|a, b| worst(*a).total_cmp(&worst(*b))).unwrap_or(0);
+        Err(StaticsError::NotConverged {
+            iterations: self.iterations,
+            residual,
+            allowed,
+            position: [here.at[at], here.at[at + 1], here.at[at + 2]],
+            tilts: [here.at[at + 3], here.at[at + 4]],
+        })
+    }
+
+    pub(super) fn check_travel(&self, here: &Evaluation) -> Result<(), StaticsError> {
+        self.check_seats(here, LOST)?;
+        for (index, first, body) in self.model.loaded() {
+            if self.model.seat_of(index).is_some() {
+                continue;
+            }
+            let from = Five::from(body.start.unwrap_or([0.0; 5])) + self.carried(index, here);
+            for i in (0..5).filter(|&i| self.free[first + i]) {
+                let travel = (here.at[first + i] - from[i]) * self.model.scale[first + i];
+                // NaN leaves here too.
+                if travel.is_nan() || travel.abs() > body.room {
+                    let body = &self.model.assembly.bodies[index];
+                    return Err(StaticsError::NoEquilibrium {
+                        body: body.name.clone(),
+                        coordinate: COORDINATE_NAMES[i],
+                        travel,
+                        room: match &body.place {
+                            Place::Loaded(loaded) => loaded.room,
+                            Place::Held(_) => 0.0,
+                        },
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Every race within a part of its radius of its place in its bore.
+    ///
+    /// # Errors
+    /// A race that nothing holds, a housing that gives way.
+    pub(super) fn check_seats(&self, here: &Evaluation, part: f64) -> Result<(), StaticsError> {
+        for (index, seat) in self.model.assembly.seats.iter().enumerate() {
+            let place = self.model.seat_place(index, &here.at);
+            let (pose, radius) = (place.pose, seat.fit.radius);
+            // Angles of an axis come round.
+            let turn = if place.is_direct() { part } else { part.min(1.0) };
+            let allowed = [part * radius, part * radius, turn, turn];
+            let parts: [f64; 4] = std::array::from_fn(|i| pose[i].abs() / allowed[i]);
+            let worst = (0..4).max_by(|a, b| parts[*a].total_cmp(&parts[*b])).unwrap_or(0);
+            let within = parts[worst] <= 1.0;
+            if !within {
+                let source = self.bores[index].lost(
+                    &seat.fit,
+                    worst,
+                    &pose,
+                    self.residual(here),
+                    self.applied(),
+                );
+                return Err(StaticsError::Seat { of: seat.suffix(), source });
+            }
+        }
+        Ok(())
+    }
+
+    /// Each race in its bore.
+    ///
+    /// # Errors
+    /// Contact that does not settle, a race beyond what its bore was condensed for.
+    pub(super) fn seat_states(
+        &mut self,
+        here: &Evaluation,
+    ) -> Result<Vec<BoreState>, StaticsError> {
+        let mut states = Vec::with_capacity(self.bores.len());
+        for (index, seat) in self.model.assembly.seats.iter().enumerate() {
+            let pose = self.model.seat_place(index, &here.at).pose;
+            let bore = &mut self.bores[index];
+            // As the last evaluation has it, unless that was a step too far.
+            let state =
+                if bore.pose() == pose { bore.state() } else { bore.at_pose(&seat.fit, pose) };
+            states.push(state.map_err(|source| StaticsError::Seat { of: seat.suffix(), source })?);
+        }
+        Ok(states)
+    }
+
+    /// How far the body under a body's first outer race has gone: it takes the inner one along.
+    fn carried(&self, body: usize, here: &Evaluation) -> Five {
+        let on_it = |bearing: &&StaticBearing| bearing.mounts[0].body == body;
+        let bearing = self.model.assembly.bearings.iter().find(on_it);
+        let under = bearing.map(|bearing| bearing.mounts[1].body);
+        let Some((under, first)) = under.and_then(|u| Some((u, self.model.unknowns[u]?))) else {
+            return Five::zeros();
+        };
+        let Place::Loaded(loaded) = &self.model.assembly.bodies[under].place else {
+            return Five::zeros();
+        };
+        let mut gone =
+            here.at.fixed_rows::<5>(first) - Five::from(loaded.start.unwrap_or([0.0; 5]));
+        if let Some(axes) = self.model.axes(under) {
+            let shift = axes.orientation * Vector3::new(gone[0], gone[1], gone[2]);
+            gone.fixed_rows_mut::<3>(0).copy_from(&shift);
+        }
+        gone
+    }
+
+    /// Coordinates that are looked for, but for those of bodies in bores: a race may be loose in its bore, and
+    /// whether loads determine where another body is then means against it.
+    fn free_but_for_seats(&self) -> Vec<bool> {
+        let mut free = self.free.clone();
+        for (index, first, _) in self.model.loaded() {
+            if self.model.seat_of(index).is_some() {
+                free[first..first + 5].fill(false);
+            }
+        }
+        free
+    }
+
+    /// Eigenvalues and eigenvectors of the scaled stiffness over these free coordinates.
+    fn free_modes(&self, here: &Evaluation, free: &[bool]) -> Vec<(f64, DVector<f64>)> {
+        if free.is_empty() {
+            return Vec::new();
+        }
+        let (_, mut stiffness) = self.scaled(here);
+        let count = free.len();
+        for i in (0..count).filter(|&i| !free[i]) {
+            stiffness.row_mut(i).fill(0.0);
+            stiffness.column_mut(i).fill(0.0);
+        }
+        let eigen = SymmetricEigen::new(stiffness);
+        (0..count)
+            .map(|k| (eigen.eigenvalues[k], eigen.eigenvectors.column(k).into_owned()))
+            .filter(|(_, v)| (0..count).any(|i| free[i] && v[i].abs() > 1e-6))
+            .collect()
+    }
+
+    /// A small displacement along the most negative stiffness, if there is one.
+    pub(super) fn falling_direction(&self, here: &Evaluation) -> Option<DVector<f64>> {
+        let modes = self.free_modes(here, &self.free);
+        let largest = modes.iter().map(|mode| mode.0.abs()).fold(0.0, f64::max);
+        let (value, vector) = modes.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        if value >= -NO_STIFFNESS * largest {
+            return None;
+        }
+        let length = 0.1 * self.step_scale();
+        Some((vector * length).component_div(&self.model.scale))
+    }
+
+    pub(super) fn determinacy(&self, here: &Evaluation) -> Determinacy {
+        let modes = self.free_modes(here, &self.free_but_for_seats());
+        // The scale is that of the whole bearing, so that one lone free coordinate is judged too.
+        let scaled_diagonal = here.stiffest;
+        // An overlap of some ulps of the radius is no contact, and its stiffness none.
+        let noise = self.model.bearings.iter().fold(0.0, |most: f64, of| {
+            let contacts = &of.contacts;
+            let rounding = 256.0 * f64::EPSILON * contacts.outer.centre_radius;
+            let stiffest = contacts.inner_stiffness.max(contacts.outer_stiffness);
+            most.max(normal_load(stiffest, rounding))
+        });
+        let springs = !self.springs.is_empty() || !self.model.assembly.connections.is_empty();
+        let nothing_touches = here.largest_ball_load <= noise && !springs;
+        let threshold =
+            if nothing_touches { f64::INFINITY } else { NO_STIFFNESS * scaled_diagonal };
+        let free_directions: Vec<_> =
+            modes.into_iter().filter(|mode| mode.0 <= threshold).map(|mode| mode.1).collect();
+        if free_directions.is_empty() {
+            Determinacy::Determinate
+        } else {
+            Determinacy::Indeterminate { free_directions }
+        }
+    }
+}
