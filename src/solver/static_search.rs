@@ -13,7 +13,7 @@ use super::static_model::{Evaluation, Five, Model};
 use super::static_seat::add_seat;
 use super::static_start;
 use super::statics::{StaticOptions, StaticsError};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Vector3};
 
 /// First trust radius where nothing but springs holds, m: it grows by itself.
 const WITHOUT_BEARING: f64 = 1e-4;
