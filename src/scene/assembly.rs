@@ -5,7 +5,7 @@ use crate::scene::dynamics::{DynamicsError, dynamic_problem};
 use crate::scene::housing::{HousedScene, HousingMethod, HousingSettings};
 use crate::scene::resolved::{DefaultUsed, RunSettings, Scene};
 use crate::scene::solid::SolidScene;
-use crate::scene::statics::{ball_mass, orbital_speed, static_problem};
+use crate::scene::statics::{ball_mass, orbital_speed};
 use crate::solver::dynamics::assembly::{Assembly, Body, CAGE, GROUND, INNER, Mobility, OUTER};
 use crate::solver::dynamics::connection::{Connection, Law, SpringDashpot};
 use crate::solver::dynamics::equilibrium::static_assembly;
@@ -200,14 +200,11 @@ impl AssemblyScene {
     }
 
     /// What is in equilibrium at t = 0: as a motion would start, without the centrifugal force of the balls
-    /// unless it is asked for; of a bearing alone the loads that are given, without the weight of its races.
+    /// unless it is asked for.
     ///
     /// # Errors
     /// As [`AssemblyScene::assembly`].
     pub fn statics(&self) -> Result<StaticAssembly<'static>, DynamicsError> {
-        if let Some(alone) = self.only() {
-            return Ok(static_problem(alone)?.assembly());
-        }
         let mut still = static_assembly(&self.assembly()?, 0.0, &[]);
         for (bearing, placed) in still.bearings.iter_mut().zip(&self.bearings) {
             let scene = &placed.scene;

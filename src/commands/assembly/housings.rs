@@ -98,7 +98,7 @@ pub fn equilibrium<'b>(
     seats: Vec<CourseSeat<'b>>,
     near: Option<&[SVector<f64, 5>]>,
 ) -> Fallible<Equilibrium<'b>> {
-    let mut still: StaticAssembly<'b> = scene.statics()?;
+    let mut still: StaticAssembly<'b> = super::still(scene)?;
     if seats.is_empty() {
         let solution = solve_assembly(&still, near, &StaticOptions::default())?;
         let moment = Moment { time: 0.0, residual: 0.0, contact_changes: 0, solution };

@@ -5,6 +5,7 @@ pub mod course;
 pub mod echo;
 pub mod housing;
 pub mod housings;
+pub mod modes;
 pub mod plan;
 pub mod shapes;
 pub mod statics;
@@ -14,7 +15,9 @@ use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::scene::DefaultUsed;
 use bearing_dynamics::scene::assembly::{AssemblyScene, Carrier, PlacedBearing, PlacedHousing};
 use bearing_dynamics::scene::housing::HousingMethod;
+use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::solver::plan::race_freedom;
+use bearing_dynamics::solver::static_assembly::StaticAssembly;
 use std::error::Error;
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
@@ -49,6 +52,14 @@ pub fn defaults(scene: &AssemblyScene) -> Vec<DefaultUsed> {
         all
     };
     scene.defaults_used.iter().cloned().chain(scene.bearings.iter().flat_map(of_bearing)).collect()
+}
+
+/// What `statics` finds the equilibrium of; of a bearing alone under the loads that are given, its outer race held.
+pub fn still(scene: &AssemblyScene) -> Fallible<StaticAssembly<'static>> {
+    Ok(match scene.only() {
+        Some(alone) => static_problem(alone)?.assembly(),
+        None => scene.statics()?,
+    })
 }
 
 /// What results of a run or an equilibrium have of the scene: itself, its plan, assumptions and defaults.

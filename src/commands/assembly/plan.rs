@@ -4,7 +4,7 @@
 use super::course::{along_course, inertia_estimate, verdicts};
 use super::housing::Housing;
 use super::shapes::{Shapes, shapes};
-use super::{Fallible, housings};
+use super::{Fallible, housings, still};
 use crate::commands::plan_step::{note, refused, step_lines};
 use crate::commands::run::planned_request;
 use crate::commands::solve::{lines, plan_lines};
@@ -122,7 +122,7 @@ pub fn of_equilibria(
     housings: &[Housing],
     in_run: bool,
 ) -> Fallible<Vec<String>> {
-    let still = scene.statics()?;
+    let still = still(scene)?;
     let all = match scene.one() {
         Some(one) => plan_lines(&of_one(one, &still)?),
         None => of_several(scene, &still)?,

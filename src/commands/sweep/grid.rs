@@ -1,5 +1,6 @@
 //! The points of a sweep: a grid over the varied keys, the last one fastest.
 
+use crate::commands::assembly::still;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::{
     Document, SceneError, Subject, SweepAxis, keys, resolve, resolve_subject,
@@ -109,7 +110,7 @@ impl Grid {
     pub fn check(&self, document: &Document) -> Result<(), Box<dyn Error>> {
         const LOOKS: usize = 1000;
         let problem = |point| -> Result<(), Box<dyn Error>> {
-            Ok(self.scene(document, point)?.statics().map(|_| ())?)
+            still(&self.scene(document, point)?).map(|_| ())
         };
         if self.axes.iter().any(|axis| axis.key == "housing.method") {
             let text = "housing.method: statics of a flexible housing is one for all methods, and a \

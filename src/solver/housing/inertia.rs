@@ -38,7 +38,7 @@ impl InertiaEstimate {
 }
 
 /// x, y, z (m) and tilts (rad) of each body that takes part, or their rates.
-pub(super) type Coordinates = DVector<f64>;
+pub type Coordinates = DVector<f64>;
 
 /// Mass of a housing along y, z and the tilts of a race in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,7 +50,7 @@ pub struct HousingMass {
 
 /// One natural motion about an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Mode {
+pub struct Mode {
     /// ω², 1/s².
     pub square: f64,
     /// Of unit modal mass; zero in coordinates that are given.
@@ -63,7 +63,7 @@ pub(super) struct Mode {
 
 /// Natural motions about an equilibrium with this stiffness over the coordinates of the bodies, slowest first. None of
 /// a mass matrix that is not positive.
-pub(super) fn modes(
+pub fn modes(
     stiffness: &DMatrix<f64>,
     bodies: &[MovingBody],
     housings: &[HousingMass],
