@@ -75,9 +75,4 @@ impl LinearElastic {
             + 2.0 * strain[3..].iter().map(|e| e * e).sum::<f64>();
         0.5 * self.lambda * trace * trace + self.shear_modulus * squares
     }
-
-    /// Speed of a plane pressure wave in a body of density ρ (kg/m³), m/s.
-    pub fn pressure_wave_speed(&self, density: f64) -> f64 {
-        ((self.lambda + 2.0 * self.shear_modulus) / density).sqrt()
-    }
 }

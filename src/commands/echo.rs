@@ -178,10 +178,12 @@ pub fn sections(
     scene: &Scene,
     problem: &StaticProblem,
 ) -> Result<Vec<(String, Value)>, ResultsError> {
-    Ok(vec![("hertz".into(), hertz(problem)?), ("frequencies".into(), frequencies(scene)?)])
+    let contacts = [&problem.inner_contact, &problem.outer_contact];
+    Ok(vec![("hertz".into(), hertz(contacts)?), ("frequencies".into(), frequencies(scene)?)])
 }
 
-fn hertz(problem: &StaticProblem) -> Echo {
+/// Of the inner and the outer race.
+pub fn hertz([inner, outer]: [&HertzContact; 2]) -> Echo {
     let contact = |contact: &HertzContact| -> Echo {
         Ok(json!({
             "stiffness": quantity("stiffness", contact.stiffness, "N/m^1.5")?,
@@ -191,25 +193,30 @@ fn hertz(problem: &StaticProblem) -> Echo {
         }))
     };
     Ok(json!({
-        "inner_race": contact(&problem.inner_contact)?,
-        "outer_race": contact(&problem.outer_contact)?,
+        "inner_race": contact(inner)?,
+        "outer_race": contact(outer)?,
     }))
 }
 
-/// Kinematic frequencies over shaft frequency, and in Hz where a speed is given.
-fn frequencies(scene: &Scene) -> Echo {
+/// Kinematic frequencies over shaft frequency, and in Hz where a speed is given. Where the outer race turns they go with
+/// its speed against the inner one's, and the cage is carried along.
+pub fn frequencies(scene: &Scene) -> Echo {
     let ratios = kinematic_ratios(scene);
-    let shaft = scene.inner_speed.map(|speed| speed / std::f64::consts::TAU);
+    let inner = scene.inner_speed.map(|speed| speed / std::f64::consts::TAU);
+    let outer = scene.outer_speed.map_or(0.0, |speed| speed / std::f64::consts::TAU);
     let mut echo = Map::new();
-    for (name, ratio) in [
-        ("cage", ratios.cage),
-        ("ball_pass_outer", ratios.ball_pass_outer),
-        ("ball_pass_inner", ratios.ball_pass_inner),
-        ("ball_spin", ratios.ball_spin),
+    for (name, ratio, carried) in [
+        ("cage", ratios.cage, outer),
+        ("ball_pass_outer", ratios.ball_pass_outer, 0.0),
+        ("ball_pass_inner", ratios.ball_pass_inner, 0.0),
+        ("ball_spin", ratios.ball_spin, 0.0),
     ] {
         let mut entry = json!({ "over_shaft": quantity(name, ratio, "1")? });
-        if let Some(shaft) = shaft {
-            entry["frequency"] = quantity(name, ratio * shaft, "Hz")?;
+        if inner.is_some() || outer != 0.0 {
+            let relative = inner.unwrap_or(0.0) - outer;
+            // How often something passes has no sign once both races turn.
+            let relative = if outer != 0.0 && name != "cage" { relative.abs() } else { relative };
+            entry["frequency"] = quantity(name, carried + ratio * relative, "Hz")?;
         }
         echo.insert(name.into(), entry);
     }

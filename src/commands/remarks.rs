@@ -3,12 +3,14 @@
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use bearing_dynamics::scene::Scene;
-use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
+use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing, Spring};
 use bearing_dynamics::scene::statics::{ball_mass, orbital_speed};
 use bearing_dynamics::solver::clock::told;
 use bearing_dynamics::solver::dynamics::assembly::Bearing;
 use bearing_dynamics::solver::dynamics::extremes::{Extreme, Extremes};
+use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::dynamics::run::Simulation;
+use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::static_assembly::StaticAssembly;
 use bearing_dynamics::solver::statics::{
     AssemblySolution, BallState, ContactState, Determinacy, StaticProblem, StaticSolution,
@@ -87,7 +89,7 @@ pub fn of_assembly(
     assembly: &StaticAssembly,
     solution: &AssemblySolution,
 ) -> Vec<String> {
-    let mut remarks = Vec::new();
+    let mut remarks = of_springs(scene);
     if let Determinacy::Indeterminate { free_directions } = &solution.determinacy {
         remarks.push(format!(
             "indeterminate: {} directions of the bodies meet no stiffness, the position shown is one of many; \
@@ -159,7 +161,37 @@ pub fn of_run(scene: &AssemblyScene, simulation: &Simulation) -> Vec<String> {
     let each = scene.bearings.iter().zip(bearings).map(|(placed, (bearing, extremes))| {
         named(placed, of_moving(&placed.scene, bearing, extremes))
     });
-    each.flatten().collect()
+    of_springs(scene).into_iter().chain(each.flatten()).collect()
+}
+
+/// Springs whose axes turn with the body that they begin at, and that are not the same along all of them.
+pub fn of_springs(scene: &AssemblyScene) -> Vec<String> {
+    let turns = |body: usize| match &scene.bodies[body].race.rotation {
+        Rotation::Speed(speed) => *speed != Profile::ZERO,
+        Rotation::Torque(_) => true,
+    };
+    let uneven = |of: &[f64; 6]| of[1] != of[2] || of[4] != of[5];
+    let said = |spring: &Spring| {
+        let [(from, _), (to, _)] = spring.ends;
+        let from = from.filter(|body| turns(*body))?;
+        if !uneven(&spring.stiffness) && !uneven(&spring.damping) {
+            return None;
+        }
+        let body = &scene.bodies[from].name;
+        let end = to.map_or("ground", |other| scene.bodies[other].name.as_str());
+        let advice = match to {
+            Some(other) if turns(other) => {
+                "both ends turn: make it alike along y and z".to_string()
+            }
+            _ => format!("for axes that stand still write from = {end:?}, to = {body:?}"),
+        };
+        Some(format!(
+            "spring {} turns with body.{body}, where it begins: its axes are those of that body, and what it does along \
+             y differs from along z, so that its force goes round with the body; {advice}",
+            spring.name
+        ))
+    };
+    scene.springs.iter().filter_map(said).collect()
 }
 
 /// With the name of the bearing that they are about.

@@ -11,7 +11,7 @@ use std::fmt::Write;
 pub fn render(solution: &StaticSolution, housing: &str, remarks: &[String]) -> String {
     let mut text = String::new();
     race(&mut text, solution);
-    stiffness(&mut text, solution);
+    stiffness(&mut text, |i, j| solution.stiffness[(i, j)]);
     ball_lines(&mut text, &solution.balls);
     let (loaded, extent) = load_zone_of(&solution.balls);
     let _ = writeln!(
@@ -43,13 +43,20 @@ pub fn render_assembly(
     let mut text = String::new();
     let all = solution.bearings.iter().flat_map(|bearing| &bearing.balls);
     let largest = all.map(|ball| ball.inner.normal_load).fold(0.0, f64::max);
-    for (index, body) in assembly.bodies.iter().enumerate() {
-        let Place::Loaded(place) = &body.place else { continue };
-        let (mut q, loads) = (solution.coordinates[index], &solution.loads[index]);
-        // From where it sits along the axis.
-        q[0] -= place.rest[0];
-        coordinates(&mut text, &body.name, q.as_slice(), loads.as_slice(), largest);
+    let loaded = assembly.bodies.iter().enumerate();
+    let loaded: Vec<usize> = loaded
+        .filter(|(_, b)| matches!(b.place, Place::Loaded(_)))
+        .map(|(index, _)| index)
+        .collect();
+    for (place, &index) in loaded.iter().enumerate() {
+        let (q, loads) = (&solution.coordinates[index], &solution.loads[index]);
+        let name = &assembly.bodies[index].name;
+        coordinates(&mut text, name, q.as_slice(), loads.as_slice(), largest);
+        stiffness(&mut text, |i, j| solution.stiffness[(5 * place + i, 5 * place + j)]);
         text.push('\n');
+    }
+    if loaded.len() > 1 {
+        text += "stiffness is that of each body with all others held; summary.json has what is between them\n\n";
     }
     for (name, bearing) in names.iter().zip(&solution.bearings) {
         let [force, _] = &bearing.forces;
@@ -101,19 +108,18 @@ fn coordinates(text: &mut String, body: &str, q: &[f64], loads: &[f64], largest:
 
 /// In N and N mm over um and mrad, in which the matrix is symmetric and its numbers are of one
 /// size: N um and N mm mrad are the same work.
-fn stiffness(text: &mut String, solution: &StaticSolution) {
+fn stiffness(text: &mut String, of: impl Fn(usize, usize) -> f64) {
     let _ = write!(text, "\nstiffness  ");
     for (i, name) in COORDINATE_NAMES.iter().enumerate() {
         let _ = write!(text, "{:>14}", format!("{name}, {}", if i < 3 { "um" } else { "mrad" }));
     }
     let _ = writeln!(text);
     let size = |i: usize| if i < 3 { 1e-6 } else { 1e-3 };
-    let matrix = &solution.stiffness;
     for (i, name) in COORDINATE_NAMES.iter().enumerate() {
         let _ = write!(text, "  {:<9}", format!("{name}, {}", if i < 3 { "N" } else { "N mm" }));
         for j in 0..5 {
             // One joule is 1e6 N um.
-            let value = matrix[(i, j)] * size(i) * size(j) * 1e6;
+            let value = of(i, j) * size(i) * size(j) * 1e6;
             let _ = write!(text, "{:>14}", fixed(value, 4));
         }
         let _ = writeln!(text);

@@ -40,13 +40,6 @@ impl Tet4 {
         Ok(Tet4 { gradients: [of_first, of_a, of_b], volume })
     }
 
-    /// The gradients of all four nodes, 1/m.
-    #[inline(always)]
-    pub fn all_gradients(&self) -> [Vec3; 4] {
-        let [a, b, c] = self.gradients;
-        [a, b, c, scale(add(a, add(b, c)), -1.0)]
-    }
-
     /// Displacement gradient H = Σ u ⊗ ∂N/∂X, the sum of (4.2), from displacements of the first
     /// three nodes relative to the fourth.
     #[inline(always)]
@@ -64,7 +57,7 @@ impl Tet4 {
     }
 
     /// Forces on the first three nodes, −V P ∂N/∂X with P = F S, N; the fourth takes minus their
-    /// sum.
+    /// sum. What (4.6) and (4.7) share out face by face comes to the same (errata: sign).
     #[inline(always)]
     pub fn nodal_forces(&self, relative: &[Vec3; 3], stress: impl Fn(&Sym3) -> Sym3) -> [Vec3; 3] {
         let h = self.displacement_gradient(relative);

@@ -2,30 +2,12 @@
 //!
 //! The state of a body is a unit quaternion; Euler angles are for input and output.
 
-use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-/// Transformation matrix of equation (2.16): takes the components of a vector in the inertial
-/// frame to its components in the body-fixed frame.
+/// Orientation (body to inertial) whose matrix is the transpose of (2.16), which takes the components of a vector in
+/// the inertial frame to those in the body-fixed frame.
 ///
 /// `eta` (about X), `xi` (about the once-turned Y) and `lambda` (about the twice-turned Z) in rad.
-pub fn inertial_to_body(eta: f64, xi: f64, lambda: f64) -> Matrix3<f64> {
-    let (sin_eta, cos_eta) = libm::sincos(eta);
-    let (sin_xi, cos_xi) = libm::sincos(xi);
-    let (sin_lambda, cos_lambda) = libm::sincos(lambda);
-    Matrix3::new(
-        cos_xi * cos_lambda,
-        cos_eta * sin_lambda + sin_eta * sin_xi * cos_lambda,
-        sin_eta * sin_lambda - cos_eta * sin_xi * cos_lambda,
-        -cos_xi * sin_lambda,
-        cos_eta * cos_lambda - sin_eta * sin_xi * sin_lambda,
-        sin_eta * cos_lambda + cos_eta * sin_xi * sin_lambda,
-        sin_xi,
-        -sin_eta * cos_xi,
-        cos_eta * cos_xi,
-    )
-}
-
-/// Orientation (body to inertial) whose transformation matrix is (2.16).
 pub fn quaternion(eta: f64, xi: f64, lambda: f64) -> UnitQuaternion<f64> {
     about(Vector3::x(), eta) * about(Vector3::y(), xi) * about(Vector3::z(), lambda)
 }
@@ -56,6 +38,25 @@ pub fn angles(orientation: &UnitQuaternion<f64>) -> (f64, f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Matrix3;
+
+    /// (2.16) as it is printed.
+    fn inertial_to_body(eta: f64, xi: f64, lambda: f64) -> Matrix3<f64> {
+        let (sin_eta, cos_eta) = libm::sincos(eta);
+        let (sin_xi, cos_xi) = libm::sincos(xi);
+        let (sin_lambda, cos_lambda) = libm::sincos(lambda);
+        Matrix3::new(
+            cos_xi * cos_lambda,
+            cos_eta * sin_lambda + sin_eta * sin_xi * cos_lambda,
+            sin_eta * sin_lambda - cos_eta * sin_xi * cos_lambda,
+            -cos_xi * sin_lambda,
+            cos_eta * cos_lambda - sin_eta * sin_xi * sin_lambda,
+            sin_eta * cos_lambda + cos_eta * sin_xi * sin_lambda,
+            sin_xi,
+            -sin_eta * cos_xi,
+            cos_eta * cos_xi,
+        )
+    }
 
     #[test]
     fn matrix_of_2_16_is_the_transpose_of_the_quaternion() {

@@ -7,20 +7,56 @@ use crate::output::results::{
     quantity, vector,
 };
 use crate::output::series::{Column, Series, columns_path};
+use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::static_assembly::{Place, StaticAssembly};
 use crate::solver::static_tables::BearingState;
 use crate::solver::statics::{AssemblySolution, COORDINATE_NAMES, Determinacy};
 use nalgebra::DVector;
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
+use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 
-/// An equilibrium and the names of its bearings.
+/// An equilibrium, [`readable`], and the names of its bearings.
 #[derive(Clone, Copy)]
 pub struct Solved<'s> {
     pub assembly: &'s StaticAssembly<'s>,
     pub names: &'s [&'s str],
     pub solution: &'s AssemblySolution,
+}
+
+/// What rounding leaves of a displacement (m) or tilt (rad) that is zero: 64 ulps of a pitch radius of 30 mm.
+const NOTHING: f64 = 4e-16;
+
+/// A solution as people read it, in the scene's axes whichever way round a bearing is put in: azimuths from +Y
+/// towards +Z, forces of the cage towards larger azimuth. X of races, balls and centres counts from
+/// where their bearing sits, `moving` being what the equilibrium is one of.
+pub fn readable(
+    moving: &Assembly,
+    assembly: &StaticAssembly,
+    solution: &AssemblySolution,
+) -> AssemblySolution {
+    let mut read = solution.clone();
+    for (body, coordinates) in read.coordinates.iter_mut().enumerate() {
+        coordinates[0] -= moving.origin_of(body);
+        for coordinate in coordinates.iter_mut().filter(|q| q.abs() <= NOTHING) {
+            *coordinate = 0.0;
+        }
+    }
+    let bearings = moving.bearings.iter().zip(&assembly.bearings);
+    for ((own, still), state) in bearings.zip(&mut read.bearings) {
+        let place = moving.place_of(own);
+        state.centres.iter_mut().for_each(|centre| centre.x -= place);
+        for ball in &mut state.balls {
+            ball.position.x -= place;
+            if still.mounts[1].reversed {
+                // Half a turn about Z.
+                ball.azimuth = (PI - ball.azimuth).rem_euclid(TAU);
+                ball.cage_force = -ball.cage_force;
+            }
+        }
+    }
+    read
 }
 
 /// Writes the results folder and returns the files in it.

@@ -334,11 +334,11 @@ impl Document {
             if key.in_list() { Err(Problem::NotSweepable) } else { value::check_bare(key, text) };
         let value = checked
             .map_err(|problem| SceneError::new(Place::file(&self.source.name), path, problem))?;
-        let layer = match named {
-            Some(index) => &mut self.named[index].layer,
-            None => &mut self.layer,
-        };
-        layer.put(row, key, Given { value, offset: None, named: named.is_some() });
+        let given = Given { value, offset: None, named: named.is_some() };
+        match named {
+            Some(name) => self.layer_of(key, name).put(row, key, given),
+            None => self.layer.put(row, key, given),
+        }
         Ok(())
     }
 
@@ -349,16 +349,15 @@ impl Document {
             .map_err(|problem| SceneError::new(Place::file(&self.source.name), path, problem))
     }
 
-    /// Row of a key, and the named table that the path leads into.
-    fn row(&self, path: &str) -> Result<(usize, &'static Key, Option<usize>), SceneError> {
-        let unknown =
-            || SceneError::new(Place::file(&self.source.name), path, sweep::unknown_key(path));
-        let (row, key, name) = keys::find_named(path).ok_or_else(unknown)?;
-        let Some(name) = name else { return Ok((row, key, None)) };
-        let found = self.named.iter().position(|named| {
-            named.name == name && key.path.split('.').next() == Some(named.table)
-        });
-        Ok((row, key, Some(found.ok_or_else(unknown)?)))
+    /// Row of a key, and the name of a table that the path leads into.
+    fn row<'p>(&self, path: &'p str) -> Result<(usize, &'static Key, Option<&'p str>), SceneError> {
+        let error = |problem| SceneError::new(Place::file(&self.source.name), path, problem);
+        let (row, key, name) =
+            keys::find_named(path).ok_or_else(|| error(sweep::unknown_key(path)))?;
+        match name.and_then(|name| self.refused_name(key, name)) {
+            Some(problem) => Err(error(problem)),
+            None => Ok((row, key, name)),
+        }
     }
 
     /// File name as given.
@@ -378,6 +377,11 @@ impl Document {
     /// The `[sweep]` table, in the order of the file.
     pub fn sweep(&self) -> &[SweepAxis] {
         &self.sweep
+    }
+
+    /// Whether the scene says anything of a key.
+    pub fn is_given(&self, path: &str) -> bool {
+        self.value(path).is_some()
     }
 
     /// The checked value of a key, if given. `path` must be in the key table.

@@ -77,7 +77,7 @@ pub(super) const KEYS: &[Key] = &[
         .hint("one or two balls cannot hold a race in every radial direction"),
     quantity("bearing.ball_phase", Kind::Quantity(Angle, closed(-360.0, 360.0, "deg")),
         Default { value: "0 deg", reason: "ball 1 sits on the Y axis" },
-        "Azimuth of ball 1, from +Y towards +Z."),
+        "Azimuth of ball 1, from +Y towards +Z. Of a `reversed` bearing in its own axes: its ball 1 stands at 180 deg less this in the scene, and its balls are counted the other way round."),
     Key::new("bearing.hertz", Kind::Choice(HERTZ_MODELS),
         Default { value: "hamrock-brewe", reason: "the source's contact model" },
         "Solution of the elliptic contact problem: curve fit, or complete elliptic integrals."),

@@ -180,13 +180,24 @@ a JSON Schema for editors.
 Axes: X axial, Y lateral, Z up. Ball azimuths run from +Y towards +Z.
 
 ## Several bearings, bodies, springs
-`[bearing.left]`, `[body.shaft]`, `[spring.coupling]` are tables with names of the user's, any number of each; `outer_race` and
-`inner_race` take the names of bearings. A table with a name has the keys of the one without, and what stands in the one without
-holds for all names that do not say otherwise: `[bearing]` is what all bearings have in common. Keys of `--vary` and
-`[sweep]` take names too, `bearing.left.clearance.radial`. Races sit on bodies (`inner_on`, `outer_on`) at places along their axes
-(`inner_at`, `outer_at`); a race that sits on none is a body of its own, as `[inner_race]` or `[outer_race]` say. Columns,
-tables and plots of a bearing begin with its name, `left_inner_z`, and count X from where it sits; those of a body with its
-own, `shaft_z`.
+`[bearing.left]`, `[body.shaft]`, `[spring.coupling]` are tables with names of the user's, any number of each; `inner_race`, `outer_race`,
+`housing` and `solid` take the names of bearings. A table with a name has the keys of the one without, and what stands in the one without
+holds for all names that do not say otherwise, key by key and in tables inside it too: `[bearing]` is what all bearings have in common,
+`[solid.left.mesh]` changes of `[solid.mesh]` what it says. Lists are taken whole: `[[solid.left.held]]` stands in place of all `[[solid.held]]`
+for that housing, and so do `set`, `load` and `probe`. Keys of `--vary` and `[sweep]` take names too, `bearing.left.clearance.radial`, also those
+of a table that the scene does not have, `housing.left.fit.radial`.
+
+A name begins with a letter and has letters, digits and underscores, up to 32. `inner_race`, `outer_race`, `ground`, `inner` and `outer` have a
+meaning of their own and are no names; one that is much like a key or table beside it (`[bearing.cagee]`) is taken for a mistyped one; a bearing, a
+body and a spring do not share one.
+
+Races sit on bodies (`inner_on`, `outer_on`) at places along their axes (`inner_at`, `outer_at`); a race that sits on none is a body of its own, as
+`[inner_race]` or `[outer_race]` say. Columns, tables and plots of a bearing begin with its name, `left_inner_z`, those of a body with its own, `shaft_z`.
+X of races, balls and cage counts from where the bearing sits (`inner_at`) in all results, of equilibria and runs; that of a body from the origin. A
+`reversed` bearing is read in the scene's axes as well: azimuths, tilts, speeds and slip; only contact angles are its own.
+
+Several bearings in `quasi-static` housings have equilibria: `statics`, `sweep`, `pack`, and `check` and `plan` of these. A `run` takes them by
+`reduced` or `explicit`; equilibria one after the other are for one bearing in its housing.
 
 ";
 

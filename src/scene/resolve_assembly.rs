@@ -8,10 +8,12 @@ use crate::scene::document::Document;
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::housing::HousingMethod;
 use crate::scene::key_table_assembly::{GROUND, OWN_RACES};
+use crate::scene::keys;
 use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_dynamics::{check_inertia, foundation, rotating_load, rotation};
 use crate::scene::resolve_housing::in_housing;
 use crate::scene::resolved::{DefaultUsed, Scene};
+use crate::scene::scopes::no_such;
 use crate::scene::value::Checked;
 use crate::solver::dynamics::model::RaceBody;
 
@@ -125,20 +127,6 @@ fn unknown<'n>(
     known: impl Iterator<Item = &'n str>,
 ) -> SceneError {
     document.error_of_name(table, name, no_such(name, kind, known))
-}
-
-fn no_such<'n>(name: &str, kind: &str, known: impl Iterator<Item = &'n str>) -> Problem {
-    let known: Vec<&str> = known.collect();
-    let nearest = crate::scene::keys::nearest(name, known.iter().copied(), 0.5);
-    let reason = match known.is_empty() {
-        true => format!("there is no {kind} {name:?}, nor any other with a name"),
-        false => format!("there is no {kind} {name:?}; there are: {}", known.join(", ")),
-    };
-    let advice = match nearest {
-        Some(nearest) => format!("did you mean {nearest}?"),
-        None => format!("add [{kind}.{name}]"),
-    };
-    Problem::Refused { reason, advice }
 }
 
 fn bearing(
@@ -347,13 +335,18 @@ fn body(
 ) -> Result<SceneBody, SceneError> {
     let scoped = document.scoped(name);
     let mut reader = Reader::new(&scoped);
-    let keys = ["mass", "axial", "transverse"].map(|key| format!("body.inertia.{key}"));
-    let inertia = if needs_mass || keys.iter().any(|key| reader.is_given(key)) {
-        let because = format!(" of body.{name}, for a run and with gravity");
+    let parts = ["mass", "axial", "transverse"].map(|key| format!("body.inertia.{key}"));
+    let inertia = if needs_mass || parts.iter().any(|key| reader.is_given(key)) {
+        let missing = |key: &String| {
+            let (_, key) = keys::find(key).ok_or_else(|| reader.missing(key, ""))?;
+            let because = format!(" of body.{name}, for a run and with gravity");
+            let example = format!("`inertia.{} = {}` to [body.{name}]", key.name(), key.example());
+            Err(scoped.error(key.path, Problem::Missing { because, example }))
+        };
         let [mass, axial, transverse] =
-            keys.each_ref().map(|k| reader.required_number(k, &because));
+            parts.each_ref().map(|k| reader.given_number(k).map_or_else(|| missing(k), Ok));
         let inertia = Inertia { mass: mass?, axial: axial?, transverse: transverse? };
-        check_inertia(&reader, &keys[1], inertia.axial, inertia.transverse)?;
+        check_inertia(&reader, &parts[1], inertia.axial, inertia.transverse)?;
         inertia
     } else {
         NO_INERTIA

@@ -406,32 +406,21 @@ fn run(reader: &mut Reader) -> Result<Option<SolidRun>, SceneError> {
         reader.note("numerics.energy_limit", "0.01", "1 % of the energy turned over");
         0.01
     });
-    let mut interval = |key: &str, parts: f64, reason: &str| -> Result<(f64, bool), SceneError> {
+    let mut interval = |key: &str, parts: f64, reason: &str| -> Result<f64, SceneError> {
         let Some(value) = reader.given_number(key) else {
             let value = end / parts;
             reader.note(key, &format!("{} s", plain(value)), reason);
-            return Ok((value, false));
+            return Ok(value);
         };
         if value <= end {
-            return Ok((value, true));
+            return Ok(value);
         }
         let (relation, other_name, other) = ("after", "the end of the run", end);
         let (allowed, advice) = ("up to", "check the units of both");
         let problem = Problem::WrongTime { value, relation, other_name, other, allowed, advice };
         Err(reader.document.error(key, problem))
     };
-    let (output_interval, output_given) =
-        interval("numerics.output_interval", 1000.0, "a thousandth of the run")?;
-    let (fields_interval, fields_given) =
-        interval("numerics.fields_interval", 20.0, "a twentieth of the run")?;
-    Ok(Some(SolidRun {
-        method,
-        stepping,
-        end,
-        output_interval,
-        output_given,
-        fields_interval,
-        fields_given,
-        energy_limit,
-    }))
+    let output_interval = interval("numerics.output_interval", 1000.0, "a thousandth of the run")?;
+    let fields_interval = interval("numerics.fields_interval", 20.0, "a twentieth of the run")?;
+    Ok(Some(SolidRun { method, stepping, end, output_interval, fields_interval, energy_limit }))
 }

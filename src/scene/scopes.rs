@@ -2,7 +2,7 @@
 
 use crate::scene::document::{Document, Item, Layer, Named};
 use crate::scene::error::{Problem, SceneError};
-use crate::scene::keys;
+use crate::scene::keys::{self, Key};
 use crate::scene::tree::{Entry, Value};
 
 /// A name this much like a key or table beside it is taken for a mistyped one.
@@ -100,6 +100,27 @@ impl Document {
         }
     }
 
+    /// What is wrong with a name before this key: tables that say more of a bearing go by the names of bearings,
+    /// whether they stand in the file or not.
+    pub(super) fn refused_name(&self, key: &Key, name: &str) -> Option<Problem> {
+        let kind = kind_of(key);
+        let known = || self.names(kind);
+        known().all(|known| known != name).then(|| no_such(name, kind, known()))
+    }
+
+    /// What the table of this name holds, an empty one where it does not stand in the file.
+    pub(super) fn layer_of(&mut self, key: &Key, name: &str) -> &mut Layer {
+        let table = table_of(key);
+        let own = |named: &Named| named.table == table && named.name == name;
+        let index = self.named.iter().position(own).unwrap_or_else(|| {
+            let of_kind = |named: &&Named| named.table == kind_of(key) && named.name == name;
+            let offset = self.named.iter().find(of_kind).map_or(0, |named| named.offset);
+            self.named.push(Named { table, name: name.into(), offset, layer: Layer::default() });
+            self.named.len() - 1
+        });
+        &mut self.named[index].layer
+    }
+
     /// An error about a table with a name.
     pub(crate) fn error_of_name(&self, table: &str, name: &str, problem: Problem) -> SceneError {
         let own = self.named.iter().find(|named| named.table == table && named.name == name);
@@ -109,6 +130,35 @@ impl Document {
             None => self.error(table, problem),
         }
     }
+}
+
+/// The table of names that a key is below.
+fn table_of(key: &Key) -> &'static str {
+    let table = key.path.split('.').next();
+    keys::NAMED.into_iter().find(|named| Some(*named) == table).unwrap_or("bearing")
+}
+
+/// What has the names of that table: bodies and springs their own, all others those of bearings.
+fn kind_of(key: &Key) -> &'static str {
+    match table_of(key) {
+        own @ ("body" | "spring") => own,
+        _ => "bearing",
+    }
+}
+
+/// A name that nothing goes by, and what it may have been meant for.
+pub(super) fn no_such<'n>(name: &str, kind: &str, known: impl Iterator<Item = &'n str>) -> Problem {
+    let known: Vec<&str> = known.collect();
+    let nearest = keys::nearest(name, known.iter().copied(), 0.5);
+    let reason = match known.is_empty() {
+        true => format!("there is no {kind} {name:?}, nor any other with a name"),
+        false => format!("there is no {kind} {name:?}; there are: {}", known.join(", ")),
+    };
+    let advice = match nearest {
+        Some(nearest) => format!("did you mean {nearest}?"),
+        None => format!("add [{kind}.{name}]"),
+    };
+    Problem::Refused { reason, advice }
 }
 
 impl Layer {

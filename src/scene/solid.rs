@@ -147,12 +147,9 @@ pub struct SolidRun {
     pub stepping: SolidStepping,
     /// s.
     pub end: f64,
-    /// Time from one row to the next and from one file of fields to the next, s; whether the
-    /// scene gave them, or they follow from the end.
+    /// Time from one row to the next and from one file of fields to the next, s.
     pub output_interval: f64,
-    pub output_given: bool,
     pub fields_interval: f64,
-    pub fields_given: bool,
     /// Energy unaccounted for over energy turned over at which the run is stopped.
     pub energy_limit: f64,
 }

@@ -94,9 +94,9 @@ pub struct StaticSeat<'b> {
 }
 
 impl StaticSeat<'_> {
-    /// " of seat left", for messages; nothing where there is one only.
+    /// " of bearing left", for messages; nothing where there is one only.
     pub fn suffix(&self) -> String {
-        self.name.as_ref().map_or(String::new(), |name| format!(" of {name}"))
+        self.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"))
     }
 }
 

@@ -5,6 +5,7 @@
 //! own eliminated: balls in equilibrium, nodes of a bore in contact or not.
 
 use super::ball::energy_noise;
+use super::dynamics::connection::Connection;
 use super::housing::bore_equilibrium::BoreSearch;
 use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing};
 use super::static_bearing::add_bearing;
@@ -21,6 +22,19 @@ const WITHOUT_BEARING: f64 = 1e-4;
 /// Artificial stiffness of a body in a bore, as a part of its largest: a race that touches nothing, or one row of
 /// nodes, stays where it is in directions in which nothing holds it. Its force is nothing in equilibrium.
 const HINT: f64 = 1e-8;
+
+/// Gradient and stiffness over metres, as [`Search::scaled`] gives them.
+pub(super) struct Scaled {
+    gradient: DVector<f64>,
+    pub(super) stiffness: DMatrix<f64>,
+}
+
+impl Scaled {
+    /// Of the energy, as the quadratic model has it over a step in metres, J.
+    fn change(&self, step: &DVector<f64>) -> f64 {
+        self.gradient.dot(step) + 0.5 * step.dot(&(&self.stiffness * step))
+    }
+}
 
 pub(super) struct Search<'a, 'b> {
     pub(super) model: &'a Model<'a>,
@@ -229,9 +243,10 @@ impl<'a, 'b> Search<'a, 'b> {
                 return self.give_up(here, residual, allowed);
             }
             self.iterations += 1;
-            let step = self.newton_step(here, radius);
+            let scaled = self.scaled(here);
+            let step = self.newton_step(&scaled, radius);
             let there = self.evaluate(&(&here.at + step.component_div(&self.model.scale)))?;
-            let predicted = self.predicted_change(here, &step);
+            let predicted = scaled.change(&step);
             let change = there.energy - here.energy;
             // Near the end the change drowns in rounding, and the unbalanced load decides alone.
             let mut noise = self.noise(here.largest_ball_load.max(there.largest_ball_load));
@@ -265,12 +280,13 @@ impl<'a, 'b> Search<'a, 'b> {
     /// falls as its square.
     fn polish(&mut self, here: &mut Evaluation, residual: f64) -> Result<(), StaticsError> {
         let StaticAssembly { bearings, connections, seats, .. } = self.model.assembly;
-        let one_holds = bearings.len() <= 1 && connections.is_empty() && seats.is_empty();
+        let no_spring = connections.iter().all(Connection::is_void);
+        let one_holds = bearings.len() <= 1 && no_spring && seats.is_empty();
         let strict = self.options.tolerance * self.applied().max(here.largest_ball_load);
         if one_holds || residual <= 1e-2 * strict {
             return Ok(());
         }
-        let step = self.newton_step(here, self.step_scale());
+        let step = self.newton_step(&self.scaled(here), self.step_scale());
         let there = self.evaluate(&(&here.at + step.component_div(&self.model.scale)))?;
         if self.residual(&there) < residual {
             *here = there;
@@ -280,7 +296,7 @@ impl<'a, 'b> Search<'a, 'b> {
 
     /// Gradient and stiffness over metres (tilts times pitch radius), prescribed coordinates
     /// replaced by a unit diagonal so that their step is zero.
-    pub(super) fn scaled(&self, here: &Evaluation) -> (DVector<f64>, DMatrix<f64>) {
+    pub(super) fn scaled(&self, here: &Evaluation) -> Scaled {
         let mut gradient = here.gradient.component_div(&self.model.scale);
         let mut stiffness = here.stiffness.clone();
         let count = self.free.len();
@@ -295,24 +311,24 @@ impl<'a, 'b> Search<'a, 'b> {
                 gradient[i] = 0.0;
             }
         }
-        (gradient, stiffness)
+        Scaled { gradient, stiffness }
     }
 
     /// Step in metres: Newton's where the stiffness is positive, otherwise with as much of the
     /// identity added as makes it so; never longer than `radius`.
-    fn newton_step(&self, here: &Evaluation, radius: f64) -> DVector<f64> {
-        let (gradient, stiffness) = self.scaled(here);
+    fn newton_step(&self, scaled: &Scaled, radius: f64) -> DVector<f64> {
+        let Scaled { gradient, stiffness } = scaled;
         let largest = stiffness.diagonal().amax();
         let floor = if largest > 0.0 { largest } else { gradient.amax() / radius };
-        let hints = self.hints(&stiffness);
+        let hints = self.hints(stiffness);
         let mut shift = 0.0;
         loop {
-            let mut shifted = &stiffness + &hints;
+            let mut shifted = stiffness + &hints;
             for i in 0..self.free.len() {
                 shifted[(i, i)] += if self.free[i] { shift } else { floor };
             }
             if let Some(factor) = shifted.cholesky() {
-                let step = -factor.solve(&gradient);
+                let step = -factor.solve(gradient);
                 let length = step.norm();
                 if length.is_finite() {
                     return if length > radius { step * (radius / length) } else { step };
@@ -333,10 +349,5 @@ impl<'a, 'b> Search<'a, 'b> {
             }
         }
         hints
-    }
-
-    fn predicted_change(&self, here: &Evaluation, step: &DVector<f64>) -> f64 {
-        let (gradient, stiffness) = self.scaled(here);
-        gradient.dot(step) + 0.5 * step.dot(&(stiffness * step))
     }
 }

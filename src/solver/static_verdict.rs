@@ -18,6 +18,9 @@ const NO_STIFFNESS: f64 = 1e-9;
 const LOST: f64 = 1e3;
 pub(super) const FAR: f64 = 1e-2;
 
+/// Eigenvalues (N/m) and eigenvectors of a stiffness.
+pub(super) type Modes = Vec<(f64, DVector<f64>)>;
+
 impl Search<'_, '_> {
     /// Every ball settled, and none past the edge of what a torus can hold.
     pub(super) fn check_balls(&self, here: &Evaluation) -> Result<(), StaticsError> {
@@ -62,9 +65,11 @@ impl Search<'_, '_> {
                 .map(|i| (here.gradient[i] / self.model.scale[i]).abs())
                 .fold(0.0, f64::max)
         };
-        let bodies = self.model.loaded().map(|(_, first, _)| first);
-        let at = bodies.max_by(|a, b| worst(*a).total_cmp(&worst(*b))).unwrap_or(0);
+        let bodies = self.model.loaded().map(|(body, first, _)| (body, first));
+        let (body, at) =
+            bodies.max_by(|a, b| worst(a.1).total_cmp(&worst(b.1))).unwrap_or_default();
         Err(StaticsError::NotConverged {
+            body: self.model.assembly.bodies[body].name.clone(),
             iterations: self.iterations,
             residual,
             allowed,
@@ -181,11 +186,11 @@ impl Search<'_, '_> {
     }
 
     /// Eigenvalues and eigenvectors of the scaled stiffness over these free coordinates.
-    fn free_modes(&self, here: &Evaluation, free: &[bool]) -> Vec<(f64, DVector<f64>)> {
+    fn modes_over(&self, here: &Evaluation, free: &[bool]) -> Modes {
         if free.is_empty() {
             return Vec::new();
         }
-        let (_, mut stiffness) = self.scaled(here);
+        let mut stiffness = self.scaled(here).stiffness;
         let count = free.len();
         for i in (0..count).filter(|&i| !free[i]) {
             stiffness.row_mut(i).fill(0.0);
@@ -198,20 +203,27 @@ impl Search<'_, '_> {
             .collect()
     }
 
+    /// Eigenvalues and eigenvectors of the scaled stiffness over all free coordinates.
+    pub(super) fn modes(&self, here: &Evaluation) -> Modes {
+        self.modes_over(here, &self.free)
+    }
+
     /// A small displacement along the most negative stiffness, if there is one.
-    pub(super) fn falling_direction(&self, here: &Evaluation) -> Option<DVector<f64>> {
-        let modes = self.free_modes(here, &self.free);
+    pub(super) fn falling_direction(&self, modes: &Modes) -> Option<DVector<f64>> {
         let largest = modes.iter().map(|mode| mode.0.abs()).fold(0.0, f64::max);
-        let (value, vector) = modes.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-        if value >= -NO_STIFFNESS * largest {
+        let (value, vector) = modes.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        if *value >= -NO_STIFFNESS * largest {
             return None;
         }
         let length = 0.1 * self.step_scale();
         Some((vector * length).component_div(&self.model.scale))
     }
 
-    pub(super) fn determinacy(&self, here: &Evaluation) -> Determinacy {
-        let modes = self.free_modes(here, &self.free_but_for_seats());
+    /// Whether loads determine where everything is; `modes` are those of `here`.
+    pub(super) fn determinacy(&self, here: &Evaluation, mut modes: Modes) -> Determinacy {
+        if !self.model.assembly.seats.is_empty() {
+            modes = self.modes_over(here, &self.free_but_for_seats());
+        }
         // The scale is that of the whole bearing, so that one lone free coordinate is judged too.
         let scaled_diagonal = here.stiffest;
         // An overlap of some ulps of the radius is no contact, and its stiffness none.

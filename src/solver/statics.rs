@@ -12,7 +12,7 @@ use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing, Stati
 use super::static_model::{Evaluation, Model};
 use super::static_search::Search;
 use super::static_tables::{BearingState, bearing_state};
-use super::static_verdict::FAR;
+use super::static_verdict::{FAR, Modes};
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::kinematics::Pose;
@@ -174,9 +174,10 @@ pub enum StaticsError {
     BallOutside { ball: String, overlap: f64, degrees: f64 },
     #[error(
         "no equilibrium found in {iterations} iterations: unbalanced load {residual:.3e} N against \
-         {allowed:.3e} N allowed; last position x, y, z {position:?} m, tilts {tilts:?} rad"
+         {allowed:.3e} N allowed; farthest from it is {body}, at x, y, z {position:?} m, tilts {tilts:?} rad"
     )]
     NotConverged {
+        body: String,
         iterations: usize,
         residual: f64,
         allowed: f64,
@@ -378,21 +379,27 @@ fn solve_directly<'b>(
     search.descend(&mut here)?;
     // A cold start on a plane of symmetry can end on a saddle, from which a real race would fall;
     // so leave it along the direction of negative stiffness and descend again.
+    let mut modes = search.modes(&here);
     for _ in 0..5 {
-        let Some(direction) = search.falling_direction(&here) else { break };
+        let Some(direction) = search.falling_direction(&modes) else { break };
         let [one, other] = [1.0, -1.0].map(|sign| &here.at + &direction * sign);
         let (one, other) = (search.evaluate(&one)?, search.evaluate(&other)?);
         search.saddles_left += 1;
         // The first of two that are alike.
         here = if other.energy.total_cmp(&one.energy).is_lt() { other } else { one };
         search.descend(&mut here)?;
+        modes = search.modes(&here);
     }
     search.check_seats(&here, FAR)?;
     search.check_balls(&here)?;
-    solution(&mut search, here)
+    solution(&mut search, here, modes)
 }
 
-fn solution(search: &mut Search, here: Evaluation) -> Result<AssemblySolution, StaticsError> {
+fn solution(
+    search: &mut Search,
+    here: Evaluation,
+    modes: Modes,
+) -> Result<AssemblySolution, StaticsError> {
     let model = search.model;
     let bodies = 0..model.assembly.bodies.len();
     let held = &here.gradient + &search.loads;
@@ -405,7 +412,7 @@ fn solution(search: &mut Search, here: Evaluation) -> Result<AssemblySolution, S
         loads: loads.collect(),
         bearings: (0..model.bearings.len()).map(|i| bearing_state(model, &here, i)).collect(),
         seats: search.seat_states(&here)?,
-        determinacy: search.determinacy(&here),
+        determinacy: search.determinacy(&here, modes),
         saddles_left: search.saddles_left,
         iterations: search.iterations,
         contact_evaluations: search.contact_evaluations,

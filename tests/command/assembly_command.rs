@@ -1,42 +1,9 @@
 //! Several bearings, bodies and springs in one scene, as a user meets them.
 
+use crate::assembly_common::{BEARING, ENDS, RUN, SHAFT};
 use crate::command_line_common::{bearing, done, json, read, refused, scene, text, write};
 use serde_json::Value;
 use std::path::Path;
-
-/// A bearing of Table 5.3 for either end.
-const BEARING: &str = r#"
-[bearing]
-kind = "angular-contact"
-balls = 11
-pitch_radius = "30 mm"
-contact_angle = "35 deg"
-inner_race = { groove_radius = "6.6 mm" }
-outer_race = { groove_radius = "6.6 mm" }
-ball = { radius = "5.953 mm" }
-"#;
-
-const ENDS: &str = r#"
-[bearing.left]
-inner_at = "-40 mm"
-[bearing.right]
-inner_at = "40 mm"
-reversed = true
-[outer_race.left]
-x = "-6 um"
-[outer_race.right]
-x = "6 um"
-"#;
-
-const SHAFT: &str = r#"
-[body.shaft]
-speed = "1000 rpm"
-x = { load = "100 N" }
-y = { load = "30 N" }
-z = { load = "-500 N" }
-tilt_y = { moment = "35 N m" }
-inertia = { mass = "0.67 kg", axial = "7.5e-5 kg m^2", transverse = "8.4e-4 kg m^2" }
-"#;
 
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a folder")
@@ -143,15 +110,6 @@ fn columns(folder: &Path) -> Vec<String> {
     let names = columns.as_array().expect("columns");
     names.iter().map(|c| c["name"].as_str().expect("a name").to_string()).collect()
 }
-
-const RUN: &str = r#"
-[numerics]
-end = "2 ms"
-step = "1 us"
-output_interval = "0.1 ms"
-[traction]
-law = "none"
-"#;
 
 #[test]
 fn a_run_settles_nowhere_else_than_statics_and_resumes_with_the_same_bytes() {

@@ -1,6 +1,7 @@
 //! What works for what: every command on small scenes of every kind of body. docs/features.md has the table, and is
 //! held to what the commands did and said here.
 
+use crate::assembly_common::{BEARING, ENDS, SHAFT};
 use crate::command_line_common::{self as files, Run, bearing, changed, json, read, scene, text};
 use crate::housed_command_common::scene_text;
 use crate::solid_command_common::SHORT_RUN;
@@ -45,41 +46,14 @@ const FEATURES: [Feature; 15] = [
 const END: &str = "20 us";
 const HALF: &str = "10 us";
 
-const ANGULAR_CONTACT: &str = r#"
-[traction]
-law = "none"
-[bearing]
-kind = "angular-contact"
-balls = 11
-pitch_radius = "30 mm"
-contact_angle = "35 deg"
-inner_race = { groove_radius = "6.6 mm" }
-outer_race = { groove_radius = "6.6 mm" }
-ball = { radius = "5.953 mm" }
-"#;
+/// Without friction, whose short steps say nothing here.
+const SMOOTH: &str = "[traction]\nlaw = \"none\"\n";
 
 const ALONE: &str = r#"
 [inner_race]
 x = { load = "445 N" }
 z = { load = "-100 N" }
 speed = "1000 rpm"
-"#;
-
-const ON_A_SHAFT: &str = r#"
-[bearing.left]
-inner_at = "-40 mm"
-[bearing.right]
-inner_at = "40 mm"
-reversed = true
-[outer_race.left]
-x = "-6 um"
-[outer_race.right]
-x = "6 um"
-[body.shaft]
-speed = "1000 rpm"
-x = { load = "100 N" }
-z = { load = "-500 N" }
-inertia = { mass = "0.67 kg", axial = "7.5e-5 kg m^2", transverse = "8.4e-4 kg m^2" }
 "#;
 
 const FIT: &str = "housing.fit.radial=0 um, 1 um";
@@ -106,7 +80,7 @@ fn bodies() -> Vec<Body> {
     };
     let body = |name, scene, vary| Body { name, scene, vary };
     vec![
-        body("bearing alone", [ANGULAR_CONTACT, ALONE].concat(), "inner_race.x.load=445 N, 400 N"),
+        body("bearing alone", [SMOOTH, BEARING, ALONE].concat(), "inner_race.x.load=445 N, 400 N"),
         body(
             "solid alone",
             changed(SHORT_RUN, "[numerics]\n", ""),
@@ -117,7 +91,7 @@ fn bodies() -> Vec<Body> {
         body("bearing in a housing, reduced", housed("reduced"), FIT),
         body(
             "several bearings on a shaft",
-            [ANGULAR_CONTACT, ON_A_SHAFT].concat(),
+            [SMOOTH, BEARING, ENDS, SHAFT].concat(),
             "outer_race.left.x=-6 um, -3 um",
         ),
         body("several in housings, quasi-static", several("quasi-static"), FIT),

@@ -223,13 +223,14 @@ fn plan_and_check_say_what_is_chosen_and_offered() {
         let housing = format!("method = \"{method}\"\nfit.radial = \"2 um\"\nwidth = \"10 mm\"");
         scene_text(&housing, "[numerics]\nend = \"1 ms\"\n")
             .replace("z = { load = \"-250 N\" }", blow)
+            .replace("axial = 2 }", "axial = 4 }")
     };
     let said = succeed(command("plan", &place.scene("fast.toml", &fast("quasi-static")), &[]));
     assert!(said.contains("WARNING") && said.contains("method = \"explicit\""), "{said}");
-    // Two of three layers of nodes lie beside a race half as wide as the bore.
-    assert!(said.contains("24 of 72 bore nodes; 48 beside the race"), "{said}");
+    // Two of five layers of nodes lie beside a race half as wide as the bore.
+    assert!(said.contains("72 of 120 bore nodes; 48 beside the race"), "{said}");
     let said = succeed(command("plan", &place.scene("explicit.toml", &fast("explicit")), &[]));
-    let tested = "at the start 24 bore nodes tested, 0 out of reach";
+    let tested = "at the start 72 bore nodes tested, 0 out of reach";
     for part in ["does  explicit housing", "windows of", tested] {
         assert!(said.contains(part), "{part}: {said}");
     }

@@ -261,3 +261,28 @@ fn other_commands_say_what_they_take() {
     assert!(stderr(&output).contains("a run needs `end`"), "{}", stderr(&output));
     succeed(command("statics", &still, &["--dry"]));
 }
+
+/// Equilibria one after the other take no steps: what is said of steps is refused, not passed over.
+#[test]
+fn steps_of_equilibria_are_refused() {
+    let place = Place::new();
+    for (key, given) in [
+        ("numerics.accuracy", "accuracy = 1e-4"),
+        ("numerics.step", "step = \"1 us\""),
+        ("numerics.step_fraction", "step_fraction = 0.4"),
+        ("numerics.integrator", "integrator = \"rk4\""),
+    ] {
+        let numerics = format!("end = \"1 ms\"\n{given}");
+        let scene = place.scene("scene.toml", &changed("end = \"1 ms\"", &numerics));
+        for name in ["check", "plan", "run"] {
+            let output = command(name, &scene, &[]).output().unwrap();
+            let message = stderr(&output);
+            assert_eq!(output.status.code(), Some(2), "{name}, {key}: {message}");
+            for part in
+                [key, "refused: equilibria one after the other take no steps", "scene.toml:"]
+            {
+                assert!(message.contains(part), "{name}, {key}: {part:?} in {message}");
+            }
+        }
+    }
+}

@@ -1,5 +1,7 @@
 //! The command as a user meets it.
 
+#[path = "../assembly_common/mod.rs"]
+mod assembly_common;
 #[path = "../command_line_common/mod.rs"]
 mod command_line_common;
 #[path = "../common/mod.rs"]
@@ -19,6 +21,7 @@ mod solid_command_common;
 
 mod assembly_command;
 mod assembly_housings;
+mod assembly_reading;
 mod command_line;
 mod command_line_check;
 mod command_line_compare;

@@ -510,6 +510,26 @@ fn a_race_that_hangs_in_the_wall_ends_the_run() {
     }
 }
 
+/// Nodes left out as out of reach are not tested; a race may not come to them unseen.
+#[test]
+fn a_race_that_outruns_the_reach_of_its_seat_ends_the_run() {
+    let short = 0.5e-6;
+    let (model, nodes) = housing(true, 77.0);
+    let loose = Seat { radius: Profile::Constant(RADIUS - 20e-6), ..seat(nodes, short) };
+    let mut housed = joined(mounted([0.0; 5]), model, loose, &options()).unwrap();
+    assert!(only(&housed).counts().1 > 0, "no node is out of reach");
+    let layout = housed.simulation.system.sets[0].layout;
+    for at in [layout.inner(), layout.outer()] {
+        housed.simulation.state[at + VELOCITY + 2] = -1.0;
+    }
+    for i in 0..layout.balls {
+        housed.simulation.state[layout.ball(VELOCITY + 2) + i] = -1.0;
+    }
+    let error = (0..20_000).find_map(|_| housed.advance().err()).expect("an error");
+    let ExchangeError::Outrun { moved, reach, .. } = &error else { panic!("{error}") };
+    assert!(*reach == short && *moved > short, "{error}");
+}
+
 #[test]
 fn what_cannot_be_run_is_refused_by_name() {
     let (model, nodes) = housing(true, 0.0);

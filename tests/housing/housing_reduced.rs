@@ -642,6 +642,22 @@ fn a_race_beside_its_seat_and_a_shape_that_is_no_number_end_the_run() {
     let error = Simulation::new(beside, options).err().expect("refused");
     assert!(matches!(error, SimulationError::LeftSeat { way: "along the axis", .. }), "{error}");
     assert!(error.to_string().contains("the outer race has left its bore"), "{error}");
+    let leaning = |tilt: f64| {
+        let mut leaning = assembly.clone();
+        leaning.seats[0].axis = [libm::cos(tilt), libm::sin(tilt), 0.0];
+        Simulation::new(leaning, options)
+    };
+    let error = leaning(0.11).err().expect("refused");
+    let SimulationError::TiltedInSeat { tilt, allowed, time, .. } = error else {
+        panic!("{error}")
+    };
+    // The race itself stands by some 1e-6 rad off.
+    assert!((tilt - 0.11).abs() <= 1e-4 && allowed == 0.1 && time == 0.0, "{error}");
+    assert!(
+        error.to_string().contains("the outer race has tilted by 1.100e-1 rad in its bore"),
+        "{error}"
+    );
+    assert!(leaning(-0.09).is_ok());
     let mut lost = assembly;
     lost.solids[0].start[0] = f64::NAN;
     let error = Simulation::new(lost, options).err().expect("refused");

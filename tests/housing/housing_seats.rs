@@ -352,3 +352,14 @@ fn a_seat_without_contact_is_left_out() {
         assert!(found.seats.iter().all(|seat| seat.load[1].abs() <= 1e-11));
     }
 }
+
+/// A message of one of several names its bearing once.
+#[test]
+fn a_race_that_its_bore_cannot_hold_is_named_by_its_bearing() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    let mut assembly = two_housings(&bore, 1e-6, [0.0; 5], &Pose::identity());
+    let Place::Loaded(race) = &mut assembly.bodies[2].place else { panic!("it is loaded") };
+    race.conditions[2] = Condition::Load(-1e7);
+    let error = solve_assembly(&assembly, None, &StaticOptions::default()).unwrap_err().to_string();
+    assert!(error.starts_with("the outer race of bearing right in its bore: "), "{error}");
+}

@@ -1,5 +1,7 @@
 //! Scenes: reading, errors, keys, documents, hostile input.
 
+#[path = "../assembly_common/mod.rs"]
+mod assembly_common;
 #[path = "../fuzz_common/mod.rs"]
 mod fuzz_common;
 

@@ -1,5 +1,6 @@
 //! Scenes of several bearings: what is written where becomes what sits where.
 
+use crate::assembly_common::BEARING;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{Document, Format, Scene, Subject, resolve, resolve_subject};
@@ -10,17 +11,6 @@ use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::{StaticOptions, solve_assembly};
 use std::f64::consts::{PI, TAU};
-
-const BEARING: &str = r#"
-[bearing]
-kind = "angular-contact"
-balls = 11
-pitch_radius = "30 mm"
-contact_angle = "35 deg"
-inner_race = { groove_radius = "6.6 mm" }
-outer_race = { groove_radius = "6.6 mm" }
-ball = { radius = "5.953 mm" }
-"#;
 
 fn document(text: &str) -> Document {
     Document::read_str(text, Format::Toml, "test.toml").unwrap_or_else(|error| panic!("{error}"))

@@ -212,6 +212,10 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 "balls that orbit off centre pull by mω² times 1 µm each; the rest is 1e-11",
             ),
         );
+        // Interferences that nowhere let go are one linear problem: the first stands for all.
+        if i > 2 {
+            continue;
+        }
         context.check(
             Check::new(
                 &format!("mesh_{id}"),
@@ -219,11 +223,10 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 "N/µm",
                 1e-6 * curves[i].stiffness(),
             )
-            .converged(1e-6 * finer[i].stiffness(), "ten-node elements, 48 × 3 × 3 cells")
+            .consistency(1e-6 * finer[i].stiffness(), "ten-node elements, 48 × 3 × 3 cells")
             .relative(
                 if i == 0 { 0.02 } else { 0.005 },
-                "32 × 3 × 2 cells: 1e-3; with clearance the narrow contact gains and loses rows of nodes, 1.2 %. Interferences that \
-                 nowhere let go are one linear problem: three times the same number",
+                "32 × 3 × 2 cells: 1e-3; with clearance the narrow contact gains and loses rows of nodes, 1.2 %",
             )
             .golden(GoldenTolerance { relative: 1e-6, absolute: 0.0 }),
         );
@@ -293,7 +296,7 @@ fn statements(context: &mut CaseContext, curves: &[Curves]) {
             "a linear housing that the race touches all round has one stiffness, whatever the fit",
         )
         .absolute(
-            1e-6,
+            1e-9,
             "what the curvature of the balls' loads leaves of a secant over the same course",
         ),
     );

@@ -223,7 +223,7 @@ fn halved(context: &mut CaseContext, changes: &[Change]) {
                     "1",
                     *ours,
                 )
-                .converged(0.0, "the mesh with all cells halved")
+                .consistency(0.0, "the mesh with all cells halved")
                 .absolute(0.02, "a pressure by area is not to depend on the mesh by more than 2 %"),
             );
         }

@@ -249,7 +249,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             "1",
             worst.sum,
         )
-        .closed_form(0.0, "equilibrium of forces")
+        .consistency(0.0, "our loads of balls against what was applied")
         .absolute(5e-11, reason),
     );
     context.work("Newton iterations, 50 cold starts", iterations as u64);

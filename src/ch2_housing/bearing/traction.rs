@@ -8,7 +8,7 @@
 //! The pieces are scalar functions without branches: one contact calls them in turn, the fast path
 //! calls them over lanes of contacts, and both get the same bits.
 
-use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
+use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 
 /// How the friction coefficient follows from the sliding.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,11 +51,6 @@ impl ExponentialCurve {
         let decay = exp_of_negative(-self.c * x);
         let linear = self.b * x - self.d;
         (linear * decay + self.d, (self.b - self.c * linear) * decay)
-    }
-
-    /// dκ/dx at x = 0, the slope that limits the time step.
-    pub fn slope_at_rest(&self) -> f64 {
-        self.b + self.c * self.d
     }
 }
 
@@ -393,11 +388,6 @@ pub fn integrate_slope(
         sum = add_slope(&sum, sliding.slip, sliding.relative_spin, y, sagitta, *share, friction);
     }
     sum
-}
-
-/// Speed of the slip at the middle of the contact, m/s.
-pub fn slip_speed(sliding: &Sliding) -> f64 {
-    norm([sliding.slip[0], sliding.slip[1], 0.0])
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use super::echo::{echo, motion, numerics};
 use super::housing::Housing;
 use super::{defaults, housings, lines};
 use crate::commands::echo::through;
+use crate::commands::remarks::of_springs;
 use crate::commands::run::{planned_request, request};
 use crate::commands::{CommandResult, Outcome, echo_run, say};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
@@ -19,7 +20,6 @@ use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{CageInRun, Document, RunSettings, Scene};
 use bearing_dynamics::solver::dynamics::run::Stepping;
 use bearing_dynamics::solver::plan::race_freedom;
-use bearing_dynamics::solver::solid::support::free_motions;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -37,14 +37,6 @@ pub fn run(
         }
     }
     housings::refuse(document, &scene, &housings)?;
-    if scene.housing_method().is_some_and(|method| method != HousingMethod::Explicit) {
-        // What cannot be condensed cannot be run.
-        for housing in &housings {
-            if free_motions(&housing.setup.solid.problem).count > 0 {
-                housing.condensed()?;
-            }
-        }
-    }
     if let Some(settings) = scene.run().cloned() {
         // Bearings that are to move have to make bodies, too.
         let assembly = scene.assembly()?;
@@ -101,6 +93,7 @@ fn text(name: &str, scene: &AssemblyScene, housings: &[Housing]) -> String {
     }
     if scene.one().is_none() {
         lines(scene).into_iter().for_each(|(label, said)| line(&label, said));
+        of_springs(scene).into_iter().for_each(|said| line("note", said));
     }
     for (label, value) in of_run(scene, housings) {
         line(label, value);

@@ -93,18 +93,25 @@ impl Housing {
         Ok(check_constant(&self.scene)?)
     }
 
+    /// One that can move as a whole.
+    pub fn refuse_free(&self) -> Fallible<()> {
+        let free = free_motions(&self.setup.solid.problem);
+        if free.count == 0 {
+            return Ok(());
+        }
+        Err(format!(
+            "{}an equilibrium needs a housing that is held, and this one is free to move {}; add \
+             [[solid.held]]",
+            self.before(),
+            free.names()
+        )
+        .into())
+    }
+
     /// What condensing it onto the nodes of its bore takes, from its structure alone.
     pub fn condensing(&self) -> Fallible<(Unknowns, Sizes, Cost)> {
+        self.refuse_free()?;
         let setup = &self.setup;
-        let free = free_motions(&setup.solid.problem);
-        if free.count > 0 {
-            return Err(format!(
-                "an equilibrium needs a housing that is held, and this one is free to move {}; add \
-                 [[solid.held]]",
-                free.names()
-            )
-            .into());
-        }
         let unknowns = Unknowns::new(&setup.model);
         let sizes = sizes(&setup.model, &unknowns, &setup.nodes, &setup.reach())?;
         let cost = cost(&setup.model, &unknowns, &sizes);
@@ -117,7 +124,9 @@ impl Housing {
         let (unknowns, _, cost) = self.condensing()?;
         let condense =
             || condense_over(&setup.model, unknowns.clone(), &setup.nodes, &setup.reach());
-        Ok(watched(&cost, &unknowns, INSTEAD, condense)??)
+        let named = |error: &dyn std::fmt::Display| format!("{}{error}", self.before());
+        let condensed = watched(&cost, &unknowns, INSTEAD, condense).map_err(|e| named(&e))?;
+        Ok(condensed.map_err(|error| named(&error))?)
     }
 
     /// The race in its condensed bore, of this radius over time.

@@ -2,16 +2,15 @@
 
 use super::Fallible;
 use super::housing::Housing;
-use crate::commands::{echo_run, placed};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::session::HousedParts;
 use bearing_dynamics::scene::about::About;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::housing::HousingMethod;
-use bearing_dynamics::scene::{Document, RunSettings};
+use bearing_dynamics::scene::Document;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
 use bearing_dynamics::solver::dynamics::equilibrium::{conditions, static_assembly};
-use bearing_dynamics::solver::dynamics::run::{RunOptions, Stepping};
+use bearing_dynamics::solver::dynamics::run::RunOptions;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::course::{CourseProblem, CourseSeat, Moment};
 use bearing_dynamics::solver::housing::course_search::CourseSearch;
@@ -28,7 +27,16 @@ pub fn prepare(document: &Document, scene: &AssemblyScene) -> Fallible<Vec<Housi
         let Some(own) = placed.housed() else { continue };
         let name = placed.name.clone();
         let scoped = name.as_ref().map(|name| document.scoped(name));
-        housings.push(Housing::new(scoped.as_ref().unwrap_or(document), bearing, name, own)?);
+        let housing = Housing::new(scoped.as_ref().unwrap_or(document), bearing, name, own);
+        let housing = match &placed.name {
+            Some(name) => housing.map_err(|error| format!("{error} (housing {name})"))?,
+            None => housing?,
+        };
+        if housing.scene.housing.method != HousingMethod::Explicit {
+            // What cannot be condensed cannot be run.
+            housing.refuse_free()?;
+        }
+        housings.push(housing);
     }
     Ok(housings)
 }
@@ -36,29 +44,21 @@ pub fn prepare(document: &Document, scene: &AssemblyScene) -> Fallible<Vec<Housi
 /// What the scene's way of solving cannot have.
 pub fn refuse(document: &Document, scene: &AssemblyScene, housings: &[Housing]) -> Fallible<()> {
     if scene.housing_method() == Some(HousingMethod::QuasiStatic) {
-        refuse_accuracy(document, scene)?;
+        refuse_steps(document)?;
     }
     housings.iter().try_for_each(|housing| housing.refuse(document))
 }
 
-/// Error control where nothing is stepped in time.
-pub fn refuse_accuracy(document: &Document, scene: &AssemblyScene) -> Fallible<()> {
-    const KEY: &str = "numerics.accuracy";
-    let by_accuracy = |run: &RunSettings| matches!(run.options.stepping, Stepping::Accuracy(_));
-    let chosen = || echo_run::defaults(scene.common()).iter().any(|used| used.key == KEY);
-    if !scene.run().is_some_and(by_accuracy) || chosen() {
-        return Ok(());
-    }
+/// What is said of steps where nothing is stepped in time.
+pub fn refuse_steps(document: &Document) -> Fallible<()> {
+    const KEYS: [&str; 4] =
+        ["numerics.accuracy", "numerics.step", "numerics.step_fraction", "numerics.integrator"];
+    let Some(key) = KEYS.into_iter().find(|key| document.is_given(key)) else { return Ok(()) };
+    let place = document.place_of(&About::key(key));
     let reason = "equilibria one after the other take no steps in time";
     let hint = "leave it out, or write method = \"reduced\" in [housing]";
-    let text = format!("{KEY}: refused: {reason}. Hint: {hint}");
-    Err(placed(document, Some(About::key(KEY)), Said(text)))
+    Err(format!("{place}: {key}: refused: {reason}. Hint: {hint}").into())
 }
-
-/// A message as an error.
-#[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-struct Said(String);
 
 /// Each condensed onto its bore.
 pub fn condensed(housings: &[Housing]) -> Fallible<Vec<CondensedBore>> {

@@ -6,6 +6,7 @@ use super::housing::Housing;
 use super::shapes::{Shapes, shapes};
 use super::{Fallible, housings, still};
 use crate::commands::plan_step::{note, refused, step_lines};
+use crate::commands::remarks::of_springs;
 use crate::commands::run::planned_request;
 use crate::commands::solve::{lines, plan_lines};
 use crate::commands::{CommandResult, Outcome, memory, say};
@@ -33,7 +34,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
     let housings = housings::prepare(document, scene)?;
     let method = scene.housing_method();
     match (method, scene.run()) {
-        (Some(HousingMethod::QuasiStatic), Some(_)) => housings::refuse_accuracy(document, scene)?,
+        (Some(HousingMethod::QuasiStatic), Some(_)) => housings::refuse_steps(document)?,
         (Some(HousingMethod::QuasiStatic), None) => {}
         _ => housings::refuse(document, scene, &housings)?,
     }
@@ -45,6 +46,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         Some(settings) => of_steps(scene, &housings, reduced.as_ref(), settings)?,
         None => of_equilibria(scene, &housings, scene.run().is_some())?,
     };
+    planned.extend(of_springs(scene).iter().map(|said| note("spring", said)));
     for housing in &housings {
         planned.extend(housing.notes().iter().map(|said| note("housing mesh", said)));
     }

@@ -69,8 +69,9 @@ pub fn shapes(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Shapes> {
         let radius = housing.setup.radius(&housing.scene);
         let penalty = housing.scene.housing.penalty;
         add_housing(&mut assembly, body, &found.reduction, &found.bore, radius, penalty);
-        if let Some(seat) = assembly.seats.last_mut() {
-            seat.label.clone_from(&housing.name);
+        if let (Some(seat), Some(name)) = (assembly.seats.last_mut(), &housing.name) {
+            seat.label = Some(name.clone());
+            seat.name = format!("the bore of housing {name}");
         }
         seconds = [seconds[0] + found.seconds[0], seconds[1] + found.seconds[1]];
         reductions.push(found.reduction);

@@ -5,12 +5,12 @@ use super::housing::Housing;
 use super::housings::{self, Equilibrium};
 use super::{Fallible, defaults, echo, name_of, plan};
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
-use crate::commands::echo::sections;
+use crate::commands::echo::{frequencies, hertz, sections};
 use crate::commands::{
     CommandResult, Outcome, pictures, record, remarks, results_folder, say, table,
 };
 use bearing_dynamics::kinematics::vec3::Vec3;
-use bearing_dynamics::output::assembly_results::{Solved, write};
+use bearing_dynamics::output::assembly_results::{Solved, readable, write};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::bore::{BoreNodeState, bore_series, condensed_nodes};
 use bearing_dynamics::output::fields::{Stresses, file_name, stresses, write_fields, write_list};
@@ -40,6 +40,7 @@ pub struct Found<'s> {
     /// Of the bearings.
     names: Vec<&'s str>,
     assembly: StaticAssembly<'static>,
+    /// Of several as people read it.
     moment: Moment,
     /// The same as that of a bearing by itself, where there is only one.
     of_one: Option<(StaticProblem, StaticSolution)>,
@@ -89,8 +90,15 @@ pub fn find_equilibrium<'s>(
     let planned = plan::of_equilibria(scene, &housings, false)?;
     let assumptions = &scene.common().assumptions;
     let mut record = record(echo::echo(scene)?, planned, assumptions, &defaults, seconds);
-    if let Some((problem, _)) = &of_one {
-        record.sections = sections(scene.common(), problem)?;
+    match &of_one {
+        Some((problem, _)) => record.sections = sections(scene.common(), problem)?,
+        None => {
+            let contacts = still.bearings.iter();
+            let contacts = contacts.map(|b| hertz([&b.inner_contact, &b.outer_contact]));
+            let speeds = scene.bearings.iter().map(|placed| frequencies(&placed.scene));
+            record.sections.push(("hertz".into(), by_name(scene, contacts)?));
+            record.sections.push(("frequencies".into(), by_name(scene, speeds)?));
+        }
     }
     let (mut settled, mut of_housings) = (Vec::with_capacity(housings.len()), Vec::new());
     for ((housing, bore), state) in housings.into_iter().zip(&bores).zip(&moment.solution.seats) {
@@ -111,12 +119,30 @@ pub fn find_equilibrium<'s>(
         record.sections.push(("inertia".into(), section(scene, estimate, &[])?));
         inertia = verdicts(scene, estimate, &[]);
     }
-    let Equilibrium { still, moment, .. } = found;
+    let Equilibrium { still, mut moment, .. } = found;
+    if of_one.is_none() {
+        moment.solution = readable(&scene.assembly()?, &still, &moment.solution);
+    }
     let StaticAssembly { bodies, bearings, connections, .. } = still;
     // Bores are needed no longer.
     let assembly = StaticAssembly { bodies, bearings, connections, seats: Vec::new() };
     let names = scene.bearings.iter().map(name_of).collect();
     Ok(Found { scene, names, assembly, moment, of_one, remarks, inertia, settled, record })
+}
+
+/// What there is of each bearing under its name; that of the only one by itself.
+fn by_name(
+    scene: &AssemblyScene,
+    each: impl Iterator<Item = Result<Value, ResultsError>>,
+) -> Result<Value, ResultsError> {
+    let mut named = Map::new();
+    for (placed, section) in scene.bearings.iter().zip(each) {
+        match &placed.name {
+            None => return section,
+            Some(name) => named.insert(name.clone(), section?),
+        };
+    }
+    Ok(Value::Object(named))
 }
 
 impl Found<'_> {

@@ -99,6 +99,12 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     for note in prepared.notes() {
         say(&format!("note: {note}\n"))?;
     }
+    let shared = matches!(session.motion, Motion::Solid(_) | Motion::Housed(_));
+    if arguments.threads > 1 && !shared {
+        say(
+            "note: --threads has no effect here: only elements in explicit steps are shared out\n",
+        )?;
+    }
     say(&texts::announcement(&session, &prepared, &request, choice.as_ref(), kept.as_ref()))?;
 
     let start = Instant::now();

@@ -4,7 +4,7 @@ use super::grid::Grid;
 use super::housings::{self, Kept};
 use crate::commands::assembly::housings::{Equilibrium, equilibrium, grown};
 use bearing_dynamics::output::Column;
-use bearing_dynamics::output::assembly_results::key;
+use bearing_dynamics::output::assembly_results::{key, readable};
 use bearing_dynamics::output::results::load_zone_of;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::assembly::AssemblyScene;
@@ -49,7 +49,7 @@ fn solve_scene(
     let of_housings = kept.row(&solution.seats);
     let mut row = match scene.one() {
         Some(_) => of_bearing(&StaticSolution::from(solution)),
-        None => of_assembly(&still, &solution),
+        None => of_assembly(&still, &readable(&scene.assembly()?, &still, &solution)),
     };
     row.extend(of_housings);
     Ok(Solved { row, start_for_neighbour })

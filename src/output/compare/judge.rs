@@ -7,7 +7,7 @@ use crate::output::compare::tolerance::{
 use crate::output::compare::unloaded;
 use crate::output::compare::{
     ChannelResult, CompareError, Comparison, Divergence, DivergenceKind, Options, Worst,
-    is_about_steps, is_ignored_by_name,
+    is_about_steps, is_default_of_key, is_ignored_by_name,
 };
 use crate::output::series::Series;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -307,6 +307,12 @@ impl<'a> Judge<'a> {
             let order = (position + 1, 0);
             let place = || tree_label(&leaf.path);
             let Some(other) = found.get(leaf.path.as_str()) else {
+                if is_default_of_key(channel) {
+                    self.leave_out(&format!(
+                        "{channel}, a default where the candidate's scene says it"
+                    ));
+                    continue;
+                }
                 self.channels[index].differing += 1;
                 let kind = DivergenceKind::MissingChannel;
                 self.diverge(order, channel, &leaf.unit, place(), kind);

@@ -25,6 +25,7 @@ pub mod unloaded;
 
 use crate::output::json::JsonError;
 use crate::output::series::SeriesError;
+use crate::scene::keys;
 use channels::{Content, MOST_NAME_BYTES, name_columns_as};
 use judge::Judge;
 use std::path::{Path, PathBuf};
@@ -292,6 +293,13 @@ pub fn is_ignored_by_name(channel: &str) -> bool {
     parts.clone().any(|part| part.starts_with(IGNORED_PREFIX))
         || channel == PROGRAM_NAME
         || parts.next_back().is_some_and(|last| IGNORED_NAMES.contains(&last))
+}
+
+/// A channel that says that a key of the scene was left to its default: one that writes the same value says nothing of
+/// it, and what comes of the value is compared where it counts.
+pub fn is_default_of_key(channel: &str) -> bool {
+    let key = channel.strip_prefix("assumptions.");
+    key.is_some_and(|key| keys::find_named(key).is_some() || keys::find_table(key).is_some())
 }
 
 /// A channel that says how a run was stepped and not where the bearing went: it differs between runs

@@ -5,7 +5,7 @@ use super::seat::{SeatRow, prefix, seat_columns};
 use crate::ch2_housing::bearing::cage::Guidance;
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::{Motion, Sliding, TractionLaw, sliding};
-use crate::kinematics::vec3::{dot, sub};
+use crate::kinematics::vec3::{dot, scale, sub};
 use crate::output::series::Column;
 use crate::solver::channels::ChannelGroup;
 use crate::solver::dynamics::assembly::{Assembly, BallMeeting, Bearing};
@@ -13,6 +13,7 @@ use crate::solver::dynamics::ball_set::BallSet;
 use crate::solver::dynamics::race::{RaceNow, tilts_of};
 use crate::solver::dynamics::run::{Simulation, Snapshot};
 use crate::solver::dynamics::state::{Ledger, POSITION, SPIN, VELOCITY};
+use crate::solver::mount::Mount;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
@@ -83,7 +84,7 @@ impl Recorder {
             if group == ChannelGroup::Races {
                 for (body, now) in system.assembly.bodies.iter().zip(&system.bodies) {
                     if body.label.is_some() {
-                        self.race(now, 0.0);
+                        self.race(now, 0.0, 1.0);
                     }
                 }
             }
@@ -107,9 +108,10 @@ impl Recorder {
         match group {
             ChannelGroup::Races => {
                 let place = simulation.system.assembly.place_of(bearing);
-                self.race(&set.races[0], place);
+                let [inner, outer] = bearing.mounts.map(|mount| facing(&mount));
+                self.race(&set.races[0], place, inner);
                 if simulation.system.assembly.bodies[bearing.mounts[1].body].moves() {
-                    self.race(&set.races[1], place);
+                    self.race(&set.races[1], place, outer);
                 }
             }
             ChannelGroup::Cage => {
@@ -125,7 +127,7 @@ impl Recorder {
             ChannelGroup::Pockets if bearing.cage.is_some() => {
                 self.values.extend(set.pockets.iter().map(|contact| contact.normal_load));
             }
-            ChannelGroup::Slip => self.slip(simulation, set),
+            ChannelGroup::Slip => self.slip(simulation, set, facing(&bearing.mounts[1])),
             ChannelGroup::Forces => {
                 for loads in &set.on_races {
                     self.values.extend(loads.force);
@@ -135,13 +137,14 @@ impl Recorder {
         }
     }
 
-    /// A race, X from `place` on (m), where its bearing sits.
-    fn race(&mut self, now: &RaceNow, place: f64) {
+    /// A race, X from `place` on (m), where its bearing sits, [`facing`] this way.
+    fn race(&mut self, now: &RaceNow, place: f64, facing: f64) {
         let [x, y, z] = now.state.position;
+        let axis = scale(now.motion.axis, facing);
         self.values.extend([x - place, y, z]);
-        self.values.extend(tilts_of(now.motion.axis).map(f64::to_degrees));
+        self.values.extend(tilts_of(axis).map(f64::to_degrees));
         self.values.extend(now.state.velocity);
-        self.values.push(dot(now.state.spin, now.motion.axis));
+        self.values.push(dot(now.state.spin, axis));
     }
 
     fn cage(
@@ -153,11 +156,13 @@ impl Recorder {
         row: usize,
     ) {
         let (Some(caged), Some(now)) = (&bearing.cage, &set.cage) else { return };
-        let own_y = now.state.orientation * Vector3::y();
-        let speed = dot(now.motion.spin, now.motion.axis);
+        let facing = facing(&bearing.mounts[1]);
+        let own_y = now.state.orientation * Vector3::y() * facing;
+        let axis = scale(now.motion.axis, facing);
+        let speed = dot(now.motion.spin, axis);
         let [x, y, z] = now.motion.position;
         self.values.extend([x - place, y, z]);
-        self.values.extend(tilts_of(now.motion.axis).map(f64::to_degrees));
+        self.values.extend(tilts_of(axis).map(f64::to_degrees));
         self.turned(libm::atan2(own_y.z, own_y.y), speed, before, row);
         self.values.push(speed);
         if caged.contacts.guidance != Guidance::Balls {
@@ -205,7 +210,7 @@ impl Recorder {
         self.values.push(angle.to_degrees());
     }
 
-    fn slip(&mut self, simulation: &Simulation, set: &BallSet) {
+    fn slip(&mut self, simulation: &Simulation, set: &BallSet, facing: f64) {
         let BallSet { layout, table, laws, races, .. } = set;
         for ball in 0..layout.balls {
             for (side, race) in races.iter().enumerate() {
@@ -226,7 +231,7 @@ impl Recorder {
                             velocity: race.motion.velocity,
                             spin: race.motion.spin,
                         },
-                        race.motion.axis,
+                        scale(race.motion.axis, facing),
                         contact.outward,
                         contact.normal,
                         laws.ball_radius - 0.5 * contact.overlap,
@@ -239,8 +244,13 @@ impl Recorder {
     }
 }
 
+/// 1, or −1 for what is put in the other way round: half a turn about Z points its X and Y to the other side.
+fn facing(mount: &Mount) -> f64 {
+    if mount.reversed { -1.0 } else { 1.0 }
+}
+
 /// Mean contact angle on one race, rad, each ball by its load; the nominal one where nothing touches.
-/// Positive where the inner race is pushed towards +X.
+/// Positive where the inner race is pushed towards the bearing's own +X.
 fn contact_angle(set: &BallSet, bearing: &Bearing, side: usize) -> f64 {
     let table = &set.table;
     let sign = if side == 0 { -1.0 } else { 1.0 };

@@ -87,7 +87,7 @@ pub(super) fn step(simulation: &Simulation, report: &RunReport) -> Part {
     Ok(Value::Object(step))
 }
 
-/// Speeds of the ball set over that of the inner race, the outer one at rest, where balls roll without slip at
+/// Speeds of the ball set over that of the inner race, both seen from the outer one, where balls roll without slip at
 /// the middle of both contacts. With one contact angle it is (1 - γ cos α)/2, γ = r/R. With two the ball's own axis
 /// decides: it spins on the inner race only, (1 - γ cos α_i)/(1 + cos(α_i - α_o)), on the outer one only,
 /// (cos(α_i - α_o) - γ cos α_o)/(1 + cos(α_i - α_o)), or on both in between. In this order: outer control, inner control.
@@ -131,8 +131,11 @@ fn kinematics_of(bearing: &Bearing, table: &RunTable) -> Result<Option<Value>, R
         let values = table.windowed(&format!("{prefix}{channel}"))?;
         Some(values.iter().sum::<f64>() / values.len() as f64)
     };
-    let Some(inner) = mean("inner_speed").filter(|speed| *speed != 0.0) else { return Ok(None) };
+    let Some(inner) = mean("inner_speed") else { return Ok(None) };
     let outer = mean("outer_speed").unwrap_or(0.0);
+    if inner == 0.0 && outer == 0.0 {
+        return Ok(None);
+    }
     let nominal = geometry.contact_angle;
     let actual = ["mean_inner_contact_angle", "mean_outer_contact_angle"].map(mean);
     let (angles, named) = match actual {
@@ -156,6 +159,10 @@ fn kinematics_of(bearing: &Bearing, table: &RunTable) -> Result<Option<Value>, R
     let angle = |value: f64| quantity("contact angle", value.to_degrees(), "deg");
     section.insert("inner_race_speed".into(), speed(inner)?);
     section.insert("inner_race_frequency".into(), frequency(inner)?);
+    if outer != 0.0 {
+        section.insert("outer_race_speed".into(), speed(outer)?);
+        section.insert("outer_race_frequency".into(), frequency(outer)?);
+    }
     section.insert("rolling_at".into(), json!(named));
     section.insert("inner_contact_angle".into(), angle(angles[0])?);
     section.insert("outer_contact_angle".into(), angle(angles[1])?);

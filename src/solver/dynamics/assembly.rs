@@ -219,12 +219,18 @@ impl RaceBody {
 }
 
 impl Assembly {
-    /// Where a bearing with a name sits along X, m; one without counts from the origin.
+    /// Where a bearing sits along X, m: where its inner race does. What is said of its parts counts from there.
     pub fn place_of(&self, bearing: &Bearing) -> f64 {
         let [inner, _] = &bearing.mounts;
-        match bearing.name {
-            Some(_) => self.bodies[inner.body].rest[0] + inner.along,
-            None => 0.0,
+        self.bodies[inner.body].rest[0] + inner.along
+    }
+
+    /// From where X of a body counts, m: a race that is a body of its own from its bearing's place, as all of it.
+    pub fn origin_of(&self, body: usize) -> f64 {
+        let sits = |bearing: &&Bearing| bearing.mounts.iter().any(|mount| mount.body == body);
+        match self.bearings.iter().find(sits) {
+            Some(bearing) if self.bodies[body].label.is_none() => self.place_of(bearing),
+            _ => 0.0,
         }
     }
 

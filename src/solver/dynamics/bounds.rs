@@ -52,6 +52,11 @@ pub const FARTHEST: f64 = 1.0;
 /// How far the middle of a race may go across its bore, in its radii.
 const FARTHEST_IN_BORE: f64 = 0.1;
 
+/// How far a race may tilt in its bore, rad. At each end of a seat half as wide as its radius that is a fortieth of the
+/// radius, a hundred times what contact and shapes give way by, and by then a linear shape is wrong by θ²/2, 0.5 % of the
+/// radius: as much. A seat of nodes holds tilts to thousandths.
+const FARTHEST_TILT: f64 = 0.1;
+
 /// How deep a cage may lie in balls or its guide at a start in equilibrium where no contact of a race is deeper, in ball radii.
 const CAGE_AT_START: f64 = 1e-3;
 
@@ -222,7 +227,15 @@ impl Simulation {
                 step,
             });
         }
-        Ok(())
+        let tilt = libm::atan2(norm(cross(seat.axis, race.axis)), dot(seat.axis, race.axis));
+        // NaN is too far.
+        if tilt <= FARTHEST_TILT {
+            return Ok(());
+        }
+        let body = self.system.assembly.bodies[seat.race.body].name.clone();
+        let (seat, time, step) = (seat.name.clone(), self.time, self.steps);
+        let allowed = FARTHEST_TILT;
+        Err(SimulationError::TiltedInSeat { body, seat, tilt, allowed, time, step })
     }
 
     /// The cage's ring against both races.

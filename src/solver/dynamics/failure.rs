@@ -122,6 +122,13 @@ pub enum SimulationError {
         step: u64,
     },
     #[error(
+        "{body} has tilted by {tilt:.3e} rad in {seat} at t = {at} s, step {step}, farther than the {allowed:.3e} rad up to \
+         which a race lies in its seat: nothing there holds it; check the width of the seat, its clearance, and what \
+         turns the race",
+        at = told(*time)
+    )]
+    TiltedInSeat { body: String, seat: String, tilt: f64, allowed: f64, time: f64, step: u64 },
+    #[error(
         "energy is lost or made: {residual:.3e} J of {turned_over:.3e} J are unaccounted for at \
          t = {at} s, step {step} (limit {limit}); take a smaller step or accuracy (numerics.step, \
          numerics.accuracy), or allow more (numerics.energy_limit)",

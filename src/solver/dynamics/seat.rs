@@ -35,6 +35,8 @@ pub struct Seat {
     pub penalty: Penalty,
     /// Centre of the race before anything moves, m.
     pub nominal: Vec3,
+    /// Of the race there, a unit vector.
+    pub axis: Vec3,
 }
 
 impl Seat {

@@ -185,11 +185,6 @@ impl Layout {
         [0, 1, 2].map(|i| state[self.ball(component + i) + ball])
     }
 
-    pub fn ball_orientation(&self, state: &[f64], ball: usize) -> UnitQuaternion<f64> {
-        let part = |i: usize| state[self.ball(ORIENTATION + i) + ball];
-        UnitQuaternion::new_unchecked(Quaternion::new(part(0), part(1), part(2), part(3)))
-    }
-
     pub fn set_ball(&self, state: &mut [f64], ball: usize, body: &BodyState) {
         for (component, value) in body.to_array().into_iter().enumerate() {
             state[self.ball(component) + ball] = value;

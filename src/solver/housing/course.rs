@@ -10,7 +10,7 @@ use super::inertia::MovingBody;
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
-use crate::kinematics::vec3::Vec3;
+use crate::kinematics::vec3::{Vec3, scale};
 use crate::solver::dynamics::assembly::{Assembly, Body};
 use crate::solver::dynamics::equilibrium::{conditions, orbital_angle, static_assembly};
 use crate::solver::dynamics::model::Drive;
@@ -137,7 +137,7 @@ impl<'b> CourseProblem<'b> {
         let mut residual = 0.0f64;
         for (index, seat) in self.seats.iter().enumerate() {
             let part = self.unbalanced(&solution, index, t).map_err(|source| {
-                let of = seat.name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
+                let of = seat.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
                 StaticsError::Seat { of, source }
             })?;
             residual = residual.max(part);
@@ -171,7 +171,9 @@ impl<'b> CourseProblem<'b> {
         let mut at = found.place(&self.assembly, mount.body);
         if !mount.is_direct() {
             let race = mounted(&fixed(&at), mount);
-            let ([x, y, z], [tilt_y, tilt_z]) = (race.state.position, tilts_of(race.motion.axis));
+            // In the scene's axes, whichever way round it is put in.
+            let axis = scale(race.motion.axis, if mount.reversed { -1.0 } else { 1.0 });
+            let ([x, y, z], [tilt_y, tilt_z]) = (race.state.position, tilts_of(axis));
             at = [x, y, z, tilt_y, tilt_z];
         }
         at[0] -= self.assembly.place_of(of);

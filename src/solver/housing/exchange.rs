@@ -9,7 +9,7 @@
 //! neither makes nor loses energy in the long run. Within a window no solid knows of another.
 
 use super::exchange_window::{check, divided, longest_window};
-use super::seat::{Seat, SeatSnapshot, SeatState};
+use super::seat::{Lost, Seat, SeatSnapshot, SeatState};
 use crate::ch2_housing::bore_contact::{ContactNode, Penalty};
 use crate::kinematics::vec3::Vec3;
 use crate::solver::dynamics::assembly::{Assembly, Body, Mobility};
@@ -80,13 +80,18 @@ pub enum ExchangeError {
          {way}, where {allowed:.3e} m are left of its seat"
     )]
     LeftBore { race: String, way: &'static str, distance: f64, allowed: f64, time: f64, step: u64 },
+    #[error(
+        "{race} and its bore have moved by {moved:.3e} m at t = {time} s since nodes farther than {reach:.3e} m from touching \
+         were left out, within {LOOK} windows; take a larger reach"
+    )]
+    Outrun { race: String, moved: f64, reach: f64, time: f64 },
 }
 
 fn of_solid(name: &Option<String>) -> String {
     name.as_ref().map_or(String::new(), |name| format!("solid {name}: "))
 }
 
-/// Steps between two looks at how far things have moved.
+/// Windows between two looks at how far things have moved.
 const LOOK: u64 = 16;
 
 /// A solid in steps of its own, and the seats in its bores.
@@ -135,14 +140,15 @@ pub struct SolidSnapshot {
 
 impl SteppedSolid {
     /// Through a window whose beginning its seats have been told, in which their bodies are as if free.
-    fn advance(&mut self) -> Result<(), SolidError> {
+    fn through_window(&mut self) -> Result<(), SolidError> {
         let step = self.solid.step_size;
         for k in 0..self.steps {
+            // Displacements are half a step ahead of velocities, whose time is that of the bodies.
             let after = (k as f64 + 0.5) * step;
             let seats = &mut self.seats;
             self.solid.step(|t, displacement, forces| {
                 for seat in seats.iter_mut() {
-                    seat.press(t, [after, step], displacement, forces);
+                    seat.push_both(t, [after, step], displacement, forces);
                 }
             })?;
         }
@@ -313,7 +319,7 @@ impl Exchange {
             }
         }
         self.crew.each(&mut self.solids, |part| {
-            let moved = part.advance();
+            let moved = part.through_window();
             moved.map_err(|source| ExchangeError::Solid { name: part.name.clone(), source })
         })?;
         self.hand_over();
@@ -329,11 +335,32 @@ impl Exchange {
         Ok(())
     }
 
+    /// Whether the races are still in their bores, and nodes out of reach still are.
+    fn look(&mut self) -> Result<(), ExchangeError> {
+        let (time, step) = (self.simulation.time, self.exchanges);
+        for part in &mut self.solids {
+            for seat in &mut part.seats {
+                let index = seat.seat.mount.body;
+                let reach = seat.seat.reach;
+                seat.look(&self.simulation.body(index), &part.solid).map_err(|lost| {
+                    let race = self.simulation.system.assembly.bodies[index].name.clone();
+                    match lost {
+                        Lost::Bore(way, distance, allowed) => {
+                            ExchangeError::LeftBore { race, way, distance, allowed, time, step }
+                        }
+                        Lost::Reach(moved) => ExchangeError::Outrun { race, moved, reach, time },
+                    }
+                })?;
+            }
+        }
+        Ok(())
+    }
+
     /// The bodies get what their seats have summed up in the window.
     fn hand_over(&mut self) {
         self.loads.clear();
         for seat in self.solids.iter_mut().flat_map(|part| &mut part.seats) {
-            let (body, load) = (seat.seat.mount.body, seat.mean_load(self.window));
+            let (body, load) = (seat.seat.mount.body, seat.take_mean_load(self.window));
             match self.loads.iter_mut().find(|(other, _)| *other == body) {
                 Some((_, sum)) => sum.add(&load),
                 None => self.loads.push((body, load)),
@@ -354,22 +381,6 @@ impl Exchange {
                 None => seat.book(self.window, &self.simulation.body(seat.seat.mount.body)),
             }
         }
-    }
-
-    /// Whether the races are still in their bores, and nodes out of reach still are.
-    fn look(&mut self) -> Result<(), ExchangeError> {
-        let (time, step) = (self.simulation.time, self.exchanges);
-        for part in &mut self.solids {
-            for seat in &mut part.seats {
-                let index = seat.seat.mount.body;
-                let left = |(way, distance, allowed)| {
-                    let race = self.simulation.system.assembly.bodies[index].name.clone();
-                    ExchangeError::LeftBore { race, way, distance, allowed, time, step }
-                };
-                seat.look(&self.simulation.body(index), &part.solid).map_err(left)?;
-            }
-        }
-        Ok(())
     }
 
     /// Nodes of a solid that touch now, how stiff their contact is, and the force on each, N.

@@ -26,7 +26,7 @@ use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::modes::{Mode, ModeError, ModeOptions, modes_over};
 use crate::solver::solid::tangent::MassMatrix;
 use crate::solver::statics::StaticsError;
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 use std::f64::consts::TAU;
 use thiserror::Error;
 
@@ -164,6 +164,7 @@ impl Reduction {
             rim: rim(bore.nodes.iter().map(|node| node.area), width),
             penalty,
             nominal: bore.reach.nominal.position.into(),
+            axis: (bore.reach.nominal.orientation * Vector3::x()).into(),
         }
     }
 }

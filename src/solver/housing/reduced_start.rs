@@ -62,7 +62,7 @@ pub fn put_in_equilibrium(
         let mut still = static_assembly(assembly, 0.0, &[]);
         still.seats.extend(assembly.seats.iter().zip(&*housings).map(|(seat, housing)| {
             StaticSeat {
-                name: Some(seat.name.clone()),
+                name: seat.label.clone(),
                 mount: seat.race,
                 nominal: housing.bore.reach.nominal,
                 bore: housing.bore,

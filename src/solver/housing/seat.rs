@@ -64,7 +64,7 @@ impl Seat {
     }
 
     /// The race at time `t`, wider by `rim` (m) at each end.
-    pub(super) fn race(&self, t: f64, rim: f64) -> Cylinder {
+    pub(super) fn cylinder(&self, t: f64, rim: f64) -> Cylinder {
         Cylinder { radius: self.radius.value(t), width: self.width + 2.0 * rim }
     }
 
@@ -91,7 +91,7 @@ impl Seat {
     }
 
     /// The body that carries the race, and the race, after `time` s if nothing pushes them.
-    fn after(&self, body: &BodyState, time: f64) -> [RaceNow; 2] {
+    fn carried(&self, body: &BodyState, time: f64) -> [RaceNow; 2] {
         let turn = UnitQuaternion::from_scaled_axis(Vector3::from(body.spin) * time);
         let body = RaceNow::new(BodyState {
             position: add_scaled(body.position, time, body.velocity),
@@ -102,7 +102,7 @@ impl Seat {
     }
 
     fn frame_after(&self, body: &BodyState, time: f64) -> Frame {
-        frame(&self.after(body, time)[1])
+        frame(&self.carried(body, time)[1])
     }
 }
 
@@ -151,15 +151,20 @@ pub struct SeatSnapshot {
     pub growth_work: f64,
 }
 
-/// How far a race has left its bore: which way, how far, and how far it may, m.
-pub(super) type Left = (&'static str, f64, f64);
+/// What ends a seat.
+pub(super) enum Lost {
+    /// The race has left its bore: which way, how far, and how far it may, m.
+    Bore(&'static str, f64, f64),
+    /// All of a reach is used up (m) before it was looked at again: nodes may have touched unseen.
+    Reach(f64),
+}
 
 impl SeatState {
     pub(super) fn new(mut seat: Seat, body: &Body) -> SeatState {
         let rim = seat.keep_under(&body.rest);
         let from = race::fixed(&body.rest).state;
         let first = seat.frame_after(&from, 0.0);
-        let cylinder = seat.race(0.0, rim);
+        let cylinder = seat.cylinder(0.0, rim);
         SeatState {
             rim,
             contact: ContactSum::default(),
@@ -181,12 +186,12 @@ impl SeatState {
     /// The seat and its frame half a step of the solid ahead of `body`, where its displacements are.
     fn ahead(&self, body: &BodyState, solid: &ExplicitSolid) -> (Cylinder, Frame) {
         let frame = self.seat.frame_after(body, 0.5 * solid.step_size);
-        (self.seat.race(solid.time, self.rim), frame)
+        (self.seat.cylinder(solid.time, self.rim), frame)
     }
 
     /// Where the contact is looked at first, it has not grown yet.
     pub(super) fn grow_from(&mut self, solid: &ExplicitSolid) {
-        let radius = self.seat.race(solid.time, self.rim).radius;
+        let radius = self.seat.cylinder(solid.time, self.rim).radius;
         self.growth = Growth { radius, ..Growth::default() };
     }
 
@@ -197,15 +202,15 @@ impl SeatState {
 
     /// The contact in a step of the solid at its time `t` (s), `after` s since the window began: its
     /// forces go to the nodes' (N), its impulse over `step` (s) to the body.
-    pub(super) fn press(
+    pub(super) fn push_both(
         &mut self,
         t: f64,
         [after, step]: [f64; 2],
         displacement: &[Node],
         forces: &mut [Node],
     ) {
-        let [body, race] = self.seat.after(&self.from, after);
-        let cylinder = self.seat.race(t, self.rim);
+        let [body, race] = self.seat.carried(&self.from, after);
+        let cylinder = self.seat.cylinder(t, self.rim);
         let penalty = self.seat.penalty;
         let sum = press(&cylinder, &frame(&race), penalty, &self.near, displacement, forces);
         self.growth = self.growth.to(cylinder.radius, sum.radial_load);
@@ -217,8 +222,8 @@ impl SeatState {
         self.contact = sum;
     }
 
-    /// What the window's impulse comes to as a load on the body over all of it (N, N·m).
-    pub(super) fn mean_load(&mut self, window: f64) -> RaceLoads {
+    /// What the window's impulse comes to as a load on the body over all of it (N, N·m); from here on it counts.
+    pub(super) fn take_mean_load(&mut self, window: f64) -> RaceLoads {
         self.impulse = add(self.impulse, self.handed.force);
         RaceLoads {
             force: scale(self.handed.force, 1.0 / window),
@@ -249,8 +254,8 @@ impl SeatState {
     /// Sorts again once half of the reach is used up.
     ///
     /// # Errors
-    /// A race that is no longer in its bore.
-    pub(super) fn look(&mut self, body: &BodyState, solid: &ExplicitSolid) -> Result<(), Left> {
+    /// A race that is no longer in its bore, or that nodes out of reach may have touched.
+    pub(super) fn look(&mut self, body: &BodyState, solid: &ExplicitSolid) -> Result<(), Lost> {
         let (cylinder, frame) = self.ahead(body, solid);
         let [along, across, up] = frame.centre;
         let start = self.start;
@@ -260,7 +265,7 @@ impl SeatState {
             ("across it", libm::hypot(across - start[1], up - start[2]), 0.1 * cylinder.radius),
         ] {
             if distance.is_nan() || distance > allowed {
-                return Err((way, distance, allowed));
+                return Err(Lost::Bore(way, distance, allowed));
             }
         }
         if self.far.is_empty() {
@@ -276,7 +281,11 @@ impl SeatState {
         let by_race = norm(sub(frame.centre, before.centre))
             + turned * (cylinder.radius + cylinder.width)
             + (cylinder.radius - self.sorted_at.0.radius).max(0.0);
-        if by_nodes + by_race > 0.5 * self.seat.reach {
+        let gone = by_nodes + by_race;
+        if gone.is_nan() || gone > self.seat.reach {
+            return Err(Lost::Reach(gone));
+        }
+        if gone > 0.5 * self.seat.reach {
             self.sort(body, solid);
         }
         Ok(())
@@ -310,7 +319,7 @@ impl SeatState {
         displacement: &[Node],
         forces: &mut [Node],
     ) -> SeatSnapshot {
-        let cylinder = self.seat.race(t, self.rim);
+        let cylinder = self.seat.cylinder(t, self.rim);
         let there = self.seat.frame_after(body, ahead);
         let penalty = self.seat.penalty;
         let contact = press(&cylinder, &there, penalty, &self.near, displacement, forces);
