@@ -137,7 +137,8 @@ impl<'b> CourseProblem<'b> {
         let mut residual = 0.0f64;
         for (index, seat) in self.seats.iter().enumerate() {
             let part = self.unbalanced(&solution, index, t).map_err(|source| {
-                let of = seat.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
+                let of =
+                    seat.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
                 StaticsError::Seat { of, source }
             })?;
             residual = residual.max(part);
