@@ -16,7 +16,6 @@ mod remarks;
 pub mod run;
 pub mod schema;
 pub mod solid;
-pub mod solve;
 pub mod statics;
 pub mod sweep;
 pub mod table;
@@ -25,6 +24,8 @@ use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::visible::visible;
 use bearing_dynamics::scene::about::About;
 use bearing_dynamics::scene::{Assumption, DefaultUsed, Document};
+use bearing_dynamics::solver::plan::Item;
+use bearing_dynamics::solver::plan::tally::Ran;
 use serde_json::Value;
 use std::error::Error;
 use std::io::Write;
@@ -66,7 +67,7 @@ pub fn placed(
 /// What every summary has of a scene: itself, its plan, assumptions and defaults.
 pub fn record(
     scene: Value,
-    plan: Vec<String>,
+    plan: Vec<Item>,
     assumptions: &[Assumption],
     defaults: &[DefaultUsed],
     seconds: Vec<(String, f64)>,
@@ -77,6 +78,7 @@ pub fn record(
     RunRecord {
         scene,
         plan,
+        ran: Ran::default(),
         assumptions: assumptions.chain(defaults.iter().map(default)).collect(),
         threads: 1,
         seconds,

@@ -1,7 +1,9 @@
 //! `bearing plan SCENE`.
 
-use super::{CommandResult, assembly, solid};
+use super::{CommandResult, assembly, say, solid};
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
+use bearing_dynamics::solver::plan::Item;
+use std::error::Error;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -16,4 +18,10 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         Subject::Solid(solid) => solid::plan::run(&document, &solid),
         Subject::Assembly(scene) => assembly::plan::run(&document, &scene),
     }
+}
+
+/// Says items, a line each, and then notes.
+pub fn say_plan(items: &[Item], notes: &[String]) -> Result<(), Box<dyn Error>> {
+    items.iter().try_for_each(|item| say(&format!("{item}\n")))?;
+    notes.iter().try_for_each(|line| say(&format!("{line}\n")))
 }

@@ -170,6 +170,7 @@ pub fn default_tolerances(class: ToleranceClass) -> Tolerances {
     if class != ToleranceClass::F64Exact {
         let reasons = [
             ("plan", "every program words its own plan"),
+            ("stages", "every program counts its own stages"),
             ("solver", "another solver takes other steps and stops at another residual"),
         ];
         for (name, reason) in reasons {

@@ -11,6 +11,8 @@
 
 use crate::output::atomic::{WriteError, write_atomic};
 use crate::output::series::{Column, Series, SeriesError};
+use crate::solver::plan::tally::Ran;
+use crate::solver::plan::{Item, counted};
 use crate::solver::statics::{
     BallState, COORDINATE_NAMES, ContactState, Determinacy, StaticSolution,
 };
@@ -26,7 +28,9 @@ pub struct RunRecord {
     /// The scene as resolved, echoed under `scene`; `null` stands for a part left out.
     pub scene: Value,
     /// What the run consisted of, and what was left out and why.
-    pub plan: Vec<String>,
+    pub plan: Vec<Item>,
+    /// How often each stage ran.
+    pub ran: Ran,
     /// Name and text of each assumption that fills a hole in the source.
     pub assumptions: Vec<(String, String)>,
     pub threads: usize,
@@ -365,7 +369,11 @@ pub fn insert_record(
 /// Assumptions, plan, scene and further sections of a record.
 fn insert_echo(summary: &mut Map<String, Value>, run: &RunRecord) -> Result<(), ResultsError> {
     summary.insert("assumptions".into(), strings(&run.assumptions));
-    summary.insert("plan".into(), json!(run.plan));
+    let plan: Vec<String> = run.plan.iter().map(Item::to_string).collect();
+    summary.insert("plan".into(), json!(plan));
+    let stages = counted(&run.plan, &run.ran).into_iter();
+    let stages = stages.map(|of| json!({ "stage": of.name, "does": of.does, "ran": of.ran }));
+    summary.insert("stages".into(), stages.collect());
     summary.insert("scene".into(), run.scene.clone());
     for (name, section) in &run.sections {
         refuse_null(name, section)?;

@@ -9,9 +9,10 @@
 use super::ball::{BallPlane, settle};
 use super::ball_on_race::add_to_race;
 use super::mount::Mount;
+use super::plan::{Stage, tally::Tally};
 use super::race_position::InnerRacePosition;
 use super::static_assembly::StaticBearing;
-use super::static_model::{Evaluation, Five, Model};
+use super::static_model::{BearingModel, Evaluation, Five, Model};
 use crate::kinematics::Pose;
 use nalgebra::{Matrix3, Matrix3x5, SMatrix, UnitQuaternion, Vector3};
 
@@ -20,9 +21,8 @@ type Block = SMatrix<f64, 5, 5>;
 /// Planes of all balls of a bearing whose outer race is on a body at `outer`, from `origin`.
 pub(super) fn planes(
     bearing: &StaticBearing,
-    azimuths: &[f64],
+    of: &BearingModel,
     outer: &Pose,
-    origin: &Vector3<f64>,
     to: &mut Vec<BallPlane>,
 ) {
     to.clear();
@@ -31,19 +31,19 @@ pub(super) fn planes(
     if mount.along != 0.0 {
         outer.position += outer.orientation * Vector3::x() * mount.along;
     }
-    outer.position -= origin;
+    outer.position -= of.origin;
     if mount.reversed {
         outer.orientation *=
             UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(0.0, 0.0, 0.0, 1.0));
     }
-    let weight_of = &bearing.weight;
+    let weight_of = &of.weight;
     let axial = outer.orientation * Vector3::x();
-    to.extend(azimuths.iter().map(|azimuth| {
+    to.extend(of.azimuths.iter().map(|azimuth| {
         let (sin, cos) = libm::sincos(*azimuth);
         let radial = outer.orientation * Vector3::new(0.0, cos, sin);
         let weight = [weight_of.dot(&axial), weight_of.dot(&radial)];
         let weight_around = weight_of.dot(&axial.cross(&radial));
-        let (origin, centrifugal) = (outer.position, bearing.centrifugal);
+        let (origin, centrifugal) = (outer.position, of.centrifugal);
         BallPlane { origin, axial, radial, weight, weight_around, centrifugal }
     }));
 }
@@ -54,6 +54,7 @@ pub(super) fn add_bearing(
     index: usize,
     here: &mut Evaluation,
     contact_evaluations: &mut usize,
+    ran: &mut Tally,
 ) {
     let bearing = &model.assembly.bearings[index];
     let of = &model.bearings[index];
@@ -62,7 +63,7 @@ pub(super) fn add_bearing(
     let moves = model.first_unknown(outer.body);
     if moves.is_some() {
         let outer = model.pose(outer.body, &here.at);
-        planes(bearing, &of.azimuths, &outer, &of.origin, &mut here.planes[index]);
+        planes(bearing, of, &outer, &mut here.planes[index]);
     }
     // A race that is its body writes into the body's rows itself.
     let plain = inner.is_direct() && moves.is_none() && model.is_plain(inner.body);
@@ -79,6 +80,10 @@ pub(super) fn add_bearing(
     let moved = std::mem::take(&mut here.planes[index]);
     for plane in if moved.is_empty() { &of.planes } else { &moved } {
         let ball = settle(plane, &race, &of.contacts, contact_evaluations);
+        ran.add(Stage::DistanceTest, 1);
+        ran.add(Stage::BallEquilibrium, u64::from(ball.is_some()));
+        ran.add(Stage::BallGravity, u64::from(plane.weight != [0.0; 2]));
+        ran.add(Stage::CentrifugalForce, u64::from(plane.centrifugal != 0.0));
         let mut on_race = Vector3::zeros();
         if let Some(ball) = &ball {
             here.energy += ball.energy;
@@ -91,8 +96,8 @@ pub(super) fn add_bearing(
             // keeps them in their orbit.
             let place = ball.as_ref().map_or([0.0, bearing.geometry.pitch_radius], |b| b.position);
             let flung = plane.radial * (plane.centrifugal * place[1]);
-            let pushed = on_race - bearing.weight - flung;
-            here.energy -= bearing.weight.dot(&plane.origin);
+            let pushed = on_race - of.weight - flung;
+            here.energy -= of.weight.dot(&plane.origin);
             outwards += flung;
             on_outer += pushed;
             about_outer += (plane.axial * place[0] + plane.radial * place[1]).cross(&pushed);

@@ -1,6 +1,7 @@
 //! What a search for an equilibrium looks at: bodies, their coordinates and axes, and what was found at one place.
 
 use super::ball::{BallContacts, BallPlane, SettledBall};
+use super::plan::{self, statics::StaticSteps};
 use super::race_position::InnerRacePosition;
 use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing};
 use super::static_bearing::planes;
@@ -15,6 +16,8 @@ pub(super) type Five = SVector<f64, 5>;
 /// What does not change while bodies move.
 pub(super) struct Model<'a> {
     pub(super) assembly: &'a StaticAssembly<'a>,
+    /// What each evaluation does.
+    pub(super) steps: StaticSteps,
     pub(super) bearings: Vec<BearingModel>,
     /// Axes of each body's coordinates as each seat sees them from where its race's motion is measured.
     seat_axes: Vec<Pose>,
@@ -27,6 +30,9 @@ pub(super) struct Model<'a> {
 pub(super) struct BearingModel {
     pub(super) contacts: BallContacts,
     pub(super) azimuths: Vec<f64>,
+    /// Of each ball, N, and outwards per distance from the axis, N/m: as planned.
+    pub(super) weight: Vector3<f64>,
+    pub(super) centrifugal: f64,
     /// Places of races and balls count from here.
     pub(super) origin: Vector3<f64>,
     /// Where the outer race is held.
@@ -72,18 +78,29 @@ impl<'a> Model<'a> {
                 }
             });
         }
-        let bearings = assembly.bearings.iter().map(|bearing| {
+        let plan = plan::statics::items(assembly, Vec::new(), plan::statics::ASKED_FOR);
+        let steps = StaticSteps::new(&plan, assembly);
+        let bearings = assembly.bearings.iter().zip(&steps.ball_forces);
+        let bearings = bearings.map(|(bearing, [weighed, flung])| {
             let count = bearing.geometry.ball_count;
             let azimuths: Vec<f64> =
                 (0..count).map(|j| bearing.ball_phase + TAU * j as f64 / count as f64).collect();
-            let mut held = Vec::new();
-            let origin = origin(assembly, bearing);
+            let mut of = BearingModel {
+                contacts: bearing.contacts(),
+                azimuths,
+                weight: if *weighed { bearing.weight } else { Vector3::zeros() },
+                centrifugal: if *flung { bearing.centrifugal } else { 0.0 },
+                origin: origin(assembly, bearing),
+                planes: Vec::new(),
+            };
             if let Place::Held(pose) = &assembly.bodies[bearing.mounts[1].body].place {
-                planes(bearing, &azimuths, pose, &origin, &mut held);
+                let mut held = Vec::with_capacity(count);
+                planes(bearing, &of, pose, &mut held);
+                of.planes = held;
             }
-            BearingModel { contacts: bearing.contacts(), azimuths, origin, planes: held }
+            of
         });
-        let bearings = bearings.collect();
+        let bearings: Vec<BearingModel> = bearings.collect();
         let seat_axes = assembly.seats.iter().map(|seat| {
             let axes = match &assembly.bodies[seat.mount.body].place {
                 Place::Loaded(loaded) => loaded.axes(),
@@ -92,7 +109,7 @@ impl<'a> Model<'a> {
             axes.relative_to(&seat.nominal)
         });
         let seat_axes = seat_axes.collect();
-        Model { assembly, bearings, seat_axes, unknowns, scale: DVector::from_vec(scale) }
+        Model { assembly, steps, bearings, seat_axes, unknowns, scale: DVector::from_vec(scale) }
     }
 
     pub(super) fn loaded(&self) -> impl Iterator<Item = (usize, usize, &Loaded)> {

@@ -7,6 +7,7 @@
 use super::ball::energy_noise;
 use super::dynamics::connection::Connection;
 use super::housing::bore_equilibrium::BoreSearch;
+use super::plan::{Stage, tally::Ran};
 use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing};
 use super::static_bearing::add_bearing;
 use super::static_connection::add_connection;
@@ -48,6 +49,8 @@ pub(super) struct Search<'a, 'b> {
     pub(super) saddles_left: usize,
     pub(super) iterations: usize,
     pub(super) contact_evaluations: usize,
+    /// How often each stage has run.
+    pub(super) ran: Ran,
     spare: Option<Evaluation>,
 }
 
@@ -82,6 +85,12 @@ impl<'a, 'b> Search<'a, 'b> {
             saddles_left: 0,
             iterations: 0,
             contact_evaluations: 0,
+            ran: Ran::new(
+                model.assembly.bearings.len(),
+                model.assembly.bodies.len(),
+                model.assembly.seats.len(),
+                model.assembly.seats.len(),
+            ),
             spare: None,
         }
     }
@@ -149,24 +158,33 @@ impl<'a, 'b> Search<'a, 'b> {
         here.largest_ball_load = 0.0;
         here.seat_noise = 0.0;
         here.without_energy = 0.0;
-        for &(i, spring, rest) in &self.springs {
+        let steps = &self.model.steps;
+        let springs: &[_] = if steps.foundation { &self.springs } else { &[] };
+        for &(i, spring, rest) in springs {
             let stretch = at[i] - rest;
             here.energy += 0.5 * spring * stretch * stretch;
             here.gradient[i] += spring * stretch;
             here.stiffness[(i, i)] += spring;
+            self.ran.whole.add(Stage::Foundation, 1);
         }
         for index in 0..bearings {
-            add_bearing(self.model, index, &mut here, &mut self.contact_evaluations);
+            let own = &mut self.ran.bearings[index];
+            add_bearing(self.model, index, &mut here, &mut self.contact_evaluations, own);
         }
-        for connection in &self.model.assembly.connections {
+        let connections: &[_] = if steps.springs { &self.model.assembly.connections } else { &[] };
+        for connection in connections {
             add_connection(self.model, connection, &mut here);
+            self.ran.whole.add(Stage::Springs, 1);
         }
         here.stiffest = (0..count)
             .map(|i| here.stiffness[(i, i)] / self.model.scale[i].powi(2))
             .fold(0.0, f64::max);
-        for (index, bore) in self.bores.iter_mut().enumerate() {
+        for (index, bore) in self.bores.iter_mut().enumerate().filter(|(i, _)| steps.seats[*i]) {
             add_seat(self.model, index, bore, &mut here)?;
+            self.ran.seats[index].add(Stage::Seat, 1);
+            self.ran.solids[index].add(Stage::QuasiStatic, 1);
         }
+        self.ran.whole.add(Stage::Evaluation, 1);
         Ok(here)
     }
 
@@ -233,6 +251,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let mut radius = self.step_scale();
         let begun = self.iterations;
         loop {
+            self.ran.whole.add(Stage::Equilibrium, 1);
             let residual = self.residual(here);
             let allowed = self.allowed(here);
             if residual <= allowed {

@@ -8,6 +8,7 @@
 use super::clock::told;
 use super::housing::bore_equilibrium::{BoreError, BoreSearch, BoreState};
 use super::mount::Mount;
+use super::plan::tally::Ran;
 use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing, StaticBody};
 use super::static_model::{Evaluation, Model};
 use super::static_search::Search;
@@ -138,6 +139,8 @@ pub struct StaticSolution {
     pub iterations: usize,
     /// Evaluations of one ball against one race, distance tests included.
     pub contact_evaluations: usize,
+    /// How often each stage ran.
+    pub ran: Ran,
     /// Largest unbalanced load over the free coordinates (moments divided by the pitch radius), N.
     pub residual: f64,
 }
@@ -206,6 +209,8 @@ pub struct AssemblySolution {
     pub saddles_left: usize,
     pub iterations: usize,
     pub contact_evaluations: usize,
+    /// How often each stage ran.
+    pub ran: Ran,
     pub residual: f64,
 }
 
@@ -283,6 +288,7 @@ impl From<AssemblySolution> for StaticSolution {
             saddles_left: solution.saddles_left,
             iterations: solution.iterations,
             contact_evaluations: solution.contact_evaluations,
+            ran: solution.ran,
             residual: solution.residual,
         }
     }
@@ -334,7 +340,7 @@ fn unload<'b>(
     options: &StaticOptions,
 ) -> Result<AssemblySolution, StaticsError> {
     let mut start: Option<Vec<SVector<f64, 5>>> = None;
-    let mut work = (0, 0);
+    let mut work = (0, 0, Ran::default());
     let patient = StaticOptions { max_iterations: 10 * options.max_iterations, ..*options };
     for halvings in (1..=24).rev() {
         let factor = f64::powi(2.0, halvings);
@@ -351,12 +357,14 @@ fn unload<'b>(
         if let Ok(solution) = solve_directly(&loaded, bores, start.as_deref(), options) {
             work.0 += solution.iterations;
             work.1 += solution.contact_evaluations;
+            work.2.absorb(&solution.ran);
             start = Some(solution.coordinates);
         }
     }
     let mut solution = solve_directly(assembly, bores, start.as_deref(), &patient)?;
     solution.iterations += work.0;
     solution.contact_evaluations += work.1;
+    solution.ran.absorb(&work.2);
     Ok(solution)
 }
 
@@ -376,7 +384,9 @@ fn solve_directly<'b>(
     }
     search.impose(&mut at);
     let mut here = search.evaluate(&at)?;
-    search.descend(&mut here)?;
+    if model.steps.search {
+        search.descend(&mut here)?;
+    }
     // A cold start on a plane of symmetry can end on a saddle, from which a real race would fall;
     // so leave it along the direction of negative stiffness and descend again.
     let mut modes = search.modes(&here);
@@ -416,6 +426,7 @@ fn solution(
         saddles_left: search.saddles_left,
         iterations: search.iterations,
         contact_evaluations: search.contact_evaluations,
+        ran: std::mem::take(&mut search.ran),
         residual: search.residual(&here),
         stiffness: here.stiffness,
     })

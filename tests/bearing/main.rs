@@ -19,6 +19,7 @@ mod dynamics_settling;
 mod dynamics_stability;
 mod free_balls;
 mod geometry_laws;
+mod plan_and_step;
 mod shafts;
 mod statics_laws;
 mod work_counts;

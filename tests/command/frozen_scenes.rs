@@ -11,6 +11,7 @@ use bearing_dynamics::output::npy;
 use serde_json::{Map, Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 /// Ends of runs that are cut so that all scenes take some seconds together.
 const CUT: [(&str, &str, &str); 6] = [
@@ -85,8 +86,26 @@ fn column(values: Vec<f64>, factored: bool) -> Value {
     json!([largest, weighed / (values.len() as f64)])
 }
 
+/// A scene, what it gives now, and its summary.
+struct Given {
+    name: String,
+    now: Value,
+    summary: Value,
+}
+
+/// Every scene, run once for all tests.
+fn all() -> &'static [Given] {
+    static ALL: OnceLock<Vec<Given>> = OnceLock::new();
+    ALL.get_or_init(|| {
+        let scenes = files(&scenes()).into_iter();
+        scenes
+            .filter_map(|file| file.rsplit_once('.').map(|(name, _)| given(name, &file)))
+            .collect()
+    })
+}
+
 /// What a scene gives now.
-fn now(name: &str, file: &str) -> Value {
+fn given(name: &str, file: &str) -> Given {
     let folder = tempfile::tempdir().unwrap();
     let mut content = read(Path::new(&scene(file)));
     let meshes = text(&scenes().join("meshes"));
@@ -135,7 +154,29 @@ fn now(name: &str, file: &str) -> Value {
         assert!(numbers.len() > 100, "{name}: {} numbers of state", numbers.len());
         frozen.insert("state".into(), json!(digest(numbers)));
     }
-    frozen.into()
+    Given { name: name.into(), now: frozen.into(), summary }
+}
+
+/// A plan is what was done: each stage that it does ran, and nothing else did.
+#[test]
+fn every_scene_runs_what_its_plan_does_and_nothing_else() {
+    let mut wrong = Vec::new();
+    for Given { name, summary, .. } in all() {
+        let (plan, stages) = (&summary["plan"], &summary["stages"]);
+        let lines = plan.as_array().expect("lines");
+        let stages = stages.as_array().expect("stages");
+        let does = |line: &&Value| line.as_str().expect("a line").starts_with("does ");
+        let done = stages.iter().filter(|stage| stage["does"] == true).count();
+        assert_eq!(lines.iter().filter(does).count(), done, "{name}");
+        assert!(done >= 2 && stages.len() >= lines.len(), "{name}: {plan}");
+        for stage in stages {
+            let ran = stage["ran"].as_u64().expect("a count");
+            if (ran > 0) != (stage["does"] == true) {
+                wrong.push(format!("{name}: {stage}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 /// What of `now` is not as it was; a column or a count may be new.
@@ -170,10 +211,8 @@ fn differences(before: &Value, now: &Value, at: &str, to: &mut Vec<String>) {
 #[test]
 fn every_scene_gives_what_it_gave() {
     let mut found = Map::new();
-    for file in files(&scenes()) {
-        if let Some((name, _)) = file.rsplit_once('.') {
-            found.insert(name.to_string(), now(name, &file));
-        }
+    for Given { name, now, .. } in all() {
+        found.insert(name.clone(), now.clone());
     }
     assert!(found.len() >= 19, "{} scenes", found.len());
     if let Ok(reason) = std::env::var("FREEZE_REASON") {

@@ -119,7 +119,7 @@ fn plan_and_check_say_what_moves_and_what_is_cut_off() {
     let plan = succeed(command("plan", &scene, &[]));
     for said in [
         "does  reduced housing",
-        "does  shapes of the housing",
+        "notes shapes of the housing",
         "notes cut off",
         "the lowest natural shape left out swings at",
         "of what goes with inner_race.z",

@@ -1,5 +1,6 @@
 //! The plan of a run: what each scene computes, what it leaves out, and why.
 
+use crate::command_line_common::{done, read, scene as scene_file, write};
 use crate::run_common;
 
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
@@ -11,7 +12,7 @@ use bearing_dynamics::solver::clock::given_steps;
 use bearing_dynamics::solver::dynamics::foretell::{WITHIN, choose, foretell};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
-use bearing_dynamics::solver::plan;
+use bearing_dynamics::solver::plan::{self, motion::Planned};
 use bearing_dynamics::solver::profile::Profile;
 use run_common::{frictionless, jolted, pressed, rattling, request, simulation, sliding};
 
@@ -48,14 +49,14 @@ fn planned(text: &str, channels: &[ChannelGroup]) -> String {
         CageInRun::Body(_) => None,
         CageInRun::LeftOut(reason) => Some(reason.as_str()),
     };
-    let stages = plan::dynamics(&problem.assembly(), &settings.options, channels, &[left_out]);
-    stages
-        .iter()
-        .map(|stage| {
-            let mark = if stage.included { "does " } else { "skips" };
-            format!("{mark} {:<28} {}\n", stage.name, stage.reason)
-        })
-        .collect()
+    let planned = Planned {
+        assembly: &problem.assembly(),
+        options: &settings.options,
+        channels,
+        cage_left_out: &[left_out],
+        solids: Vec::new(),
+    };
+    plan::motion::items(planned).iter().map(|item| format!("{item}\n")).collect()
 }
 
 fn guided(by: &str) -> String {
@@ -288,4 +289,44 @@ fn the_plan_chooses_the_method_that_takes_less_work() {
     assert_eq!(choice.integrator, Integrator::Rosenbrock, "{}", choice.reason());
     let choice = choose(&rattling().assembly(), &wanted);
     assert_eq!(choice.integrator, Integrator::DormandPrince, "{}", choice.reason());
+}
+
+/// Lines of a plan that are items: mark, name and reason.
+fn item_lines(text: &str) -> Vec<[String; 3]> {
+    let folder = tempfile::tempdir().unwrap();
+    let said = done(&["plan", &write(folder.path(), "scene.toml", text)]);
+    let items = said.lines().filter(|line| line.starts_with("does ") || line.starts_with("skips"));
+    let parts = |line: &str| [&line[..5], line[6..34].trim(), &line[35..]].map(String::from);
+    items.map(parts).collect()
+}
+
+/// What a bearing and a solid say alone they say of a bearing in its housing.
+#[test]
+fn the_plan_of_a_housed_scene_is_made_of_the_items_of_its_parts() {
+    let text = read(std::path::Path::new(&scene_file("housing_impact.toml")));
+    let (bearing, rest) = text.split_once("[housing]").unwrap();
+    let (housing, numerics) = rest.split_once("[numerics]").unwrap();
+    let (_, solid) = housing.split_once("[solid]").unwrap();
+    let bearing = format!("{bearing}[numerics]\nintegrator = \"rk4\"{numerics}");
+    let solid = format!("[solid]{solid}[numerics]\nend = \"1 ms\"\noutput_interval = \"5 us\"\n");
+    let whole = item_lines(&text);
+    let alone = item_lines(&bearing);
+    // In a housing the outer race is held along its axis.
+    let others = ["flexible bodies", "outer race motion"];
+    let of_bearing = alone.iter().filter(|[_, name, _]| !others.contains(&name.as_str()));
+    let mut found = 0;
+    for item in of_bearing {
+        assert!(whole.contains(item), "{item:?} of {whole:?}");
+        found += 1;
+    }
+    // Its mesh is said in other words, and how it is solved for is another question.
+    for [mark, name, why] in item_lines(&solid) {
+        if ["supports", "loads", "gravity", "damping"].contains(&name.as_str()) {
+            let named = [mark, format!("housing {name}"), why];
+            assert!(whole.contains(&named), "{named:?} of {whole:?}");
+            found += 1;
+        }
+    }
+    // Besides them the outer race, the mesh, explicit steps, the seat and what it hands over.
+    assert_eq!(found + 5, whole.len(), "{whole:?}");
 }

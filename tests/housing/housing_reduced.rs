@@ -34,6 +34,8 @@ use bearing_dynamics::solver::housing::reduce::{
     ReduceError, ReduceOptions, Reduction, pressed, reduce,
 };
 use bearing_dynamics::solver::housing::reduced_start::{self, add_housing, put_in_equilibrium};
+use bearing_dynamics::solver::plan::solid::SolidSteps;
+use bearing_dynamics::solver::plan::tally::Tally;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::{Load, SolidModel};
 use bearing_dynamics::solver::solid::tangent::{Unknowns, pattern, stiffness};
@@ -291,7 +293,9 @@ fn forces_are_the_slopes_of_the_energy() {
     let solid = assembly.solids[0].clone();
     let (at, count) = (system.solids[0], solid.count());
     let mut own = vec![0.0; count];
-    solid.accelerations(0.0, &state[at..at + count], &state[at + count..at + 2 * count], &mut own);
+    let now = [&state[at..at + count], &state[at + count..at + 2 * count]];
+    let all = SolidSteps { supports: true, loads: true, gravity: true, damping: true };
+    solid.accelerations(all, 0.0, now, &mut own, &mut Tally::default());
     let body = system.places.body(OUTER);
     for _ in 0..8 {
         let (shift, turn) = (noise.vector(1.0), noise.vector(1.0 / BORE));

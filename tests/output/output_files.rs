@@ -11,6 +11,7 @@ use bearing_dynamics::output::pack::{PackError, PackInput, verify_pack, write_pa
 use bearing_dynamics::output::results::{ResultsError, static_summary, write_static_results};
 use bearing_dynamics::output::series::{Column, Series, SeriesError};
 use bearing_dynamics::output::visible::{visible, visible_line};
+use bearing_dynamics::solver::plan::{Item, Stage, Subject};
 use bearing_dynamics::solver::statics::{Determinacy, StaticSolution};
 use nalgebra::DVector;
 use ndarray::Array2;
@@ -226,7 +227,8 @@ fn a_pack_accepts_its_own_results_and_notices_any_change_to_its_files() {
         // Another solver: other iterations, another plan.
         let (mut other, mut record) = (solution(), run());
         other.iterations += 3;
-        record.plan = vec!["all at once".into()];
+        let why = "all at once";
+        record.plan = vec![Item::does(Stage::Equilibrium, Subject::Whole, why)];
         write_static_results(&candidate, &other, &record).unwrap();
         let result = compare(&folder, &candidate, &Options::default()).unwrap();
         assert_eq!(result.equal, class != ToleranceClass::F64Exact);

@@ -2,6 +2,7 @@
 //! It obeys no equation; the output does not care.
 
 use bearing_dynamics::output::results::{RunRecord, quantity};
+use bearing_dynamics::solver::plan::{Item, Stage, Subject};
 use bearing_dynamics::solver::statics::{BallState, ContactState, Determinacy, StaticSolution};
 use nalgebra::{SMatrix, SVector, Vector3};
 use serde_json::json;
@@ -52,6 +53,7 @@ pub fn solution() -> StaticSolution {
         iterations: 6,
         saddles_left: 0,
         contact_evaluations: 112,
+        ran: Default::default(),
         residual: 3.1e-10,
     }
 }
@@ -66,7 +68,11 @@ pub fn run() -> RunRecord {
             "cage": null,
             "centrifugal": false,
         }),
-        plan: vec!["statics of 8 balls".into(), "no cage: not part of the scene".into()],
+        plan: vec![
+            Item::does(Stage::BallEquilibrium, Subject::Bearing(0), "of 8 balls"),
+            Item::skips(Stage::Pockets, Subject::Bearing(0), "not part of the scene"),
+        ],
+        ran: Default::default(),
         assumptions: vec![("ball_phase".into(), "0 deg: not stated".into())],
         threads: 1,
         seconds: vec![("read".into(), 1.5e-4), ("solve".into(), 7.3e-5)],

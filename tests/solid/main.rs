@@ -6,6 +6,7 @@ mod solid_common;
 mod bore_contact;
 mod solid_explicit;
 mod solid_factors;
+mod solid_plan;
 mod solid_statics;
 mod solid_step_limit;
 mod solid_stress;

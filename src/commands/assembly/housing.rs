@@ -19,6 +19,8 @@ use bearing_dynamics::solver::housing::condensed::{
 use bearing_dynamics::solver::housing::course::CourseSeat;
 use bearing_dynamics::solver::housing::seat::Seat;
 use bearing_dynamics::solver::mount::Mount;
+use bearing_dynamics::solver::plan::Item;
+use bearing_dynamics::solver::plan::solid::{self, Method};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::support::free_motions;
 use bearing_dynamics::solver::solid::tangent::Unknowns;
@@ -176,6 +178,12 @@ impl Housing {
         let mesh = &self.built.mesh;
         let nodes_each = if mesh.order() == Order::Linear { 4 } else { 10 };
         format!("{} nodes, {} elements of {nodes_each}", mesh.nodes.len(), mesh.elements.len())
+    }
+
+    /// What a plan says of it, solid number `index`, solved this way.
+    pub fn items(&self, index: usize, method: &Method) -> Vec<Item> {
+        let problem = &self.setup.solid.problem;
+        solid::items(problem, index, Some(&self.label()), &self.mesh_text(), method)
     }
 
     /// What a person should know of mesh and bore before results.

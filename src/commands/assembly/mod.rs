@@ -16,7 +16,7 @@ use bearing_dynamics::scene::DefaultUsed;
 use bearing_dynamics::scene::assembly::{AssemblyScene, Carrier, PlacedBearing, PlacedHousing};
 use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::scene::statics::static_problem;
-use bearing_dynamics::solver::plan::race_freedom;
+use bearing_dynamics::solver::plan::{Item, race_freedom};
 use bearing_dynamics::solver::static_assembly::StaticAssembly;
 use std::error::Error;
 
@@ -65,7 +65,7 @@ pub fn still(scene: &AssemblyScene) -> Fallible<StaticAssembly<'static>> {
 /// What results of a run or an equilibrium have of the scene: itself, its plan, assumptions and defaults.
 pub fn record(
     scene: &AssemblyScene,
-    plan: Vec<String>,
+    plan: Vec<Item>,
     seconds: Vec<(String, f64)>,
 ) -> Fallible<RunRecord> {
     let (assumptions, defaults) = (&scene.common().assumptions, defaults(scene));

@@ -75,7 +75,8 @@ pub fn run(
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let seconds = vec![("solve".into(), start.elapsed().as_secs_f64())];
-    let mut record = record(scene, plan::of_equilibria(scene, &housings, false)?, seconds)?;
+    let mut record = record(scene, plan::of_statics(scene, &housings)?, seconds)?;
+    record.ran.clone_from(&moment.solution.ran);
     record.sections.push(("remarks".into(), json!(remarks)));
     let written = write(&folder, &names, &found, &record)?;
     say(&format!("wrote {} files to {}\n", written.len(), folder.display()))?;

@@ -8,8 +8,8 @@ use super::{Fallible, housings, still};
 use crate::commands::plan_step::{note, refused, step_lines};
 use crate::commands::remarks::of_springs;
 use crate::commands::run::planned_request;
-use crate::commands::solve::{lines, plan_lines};
-use crate::commands::{CommandResult, Outcome, memory, say};
+use crate::commands::plan::say_plan;
+use crate::commands::{CommandResult, Outcome, memory};
 use bearing_dynamics::output::session::{HousedParts, RunRequest, table_size};
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
 use bearing_dynamics::scene::housing::HousingMethod;
@@ -21,9 +21,13 @@ use bearing_dynamics::solver::dynamics::foretell::Choice;
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::housing::condensed::Sizes;
 use bearing_dynamics::solver::housing::exchange::SteppedSolid;
-use bearing_dynamics::solver::plan;
+use bearing_dynamics::solver::dynamics::run::Start;
+use bearing_dynamics::solver::plan::motion::{self, Planned};
+use bearing_dynamics::solver::plan::solid::Method;
+use bearing_dynamics::solver::plan::statics::{self, ASKED_FOR};
+use bearing_dynamics::solver::plan::{Item, Stage, Subject};
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
-use bearing_dynamics::solver::statics::{Condition, StaticProblem};
+use bearing_dynamics::solver::statics::StaticProblem;
 use std::error::Error;
 use std::time::{Duration, Instant};
 
@@ -42,99 +46,144 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         Some(HousingMethod::Reduced) => Some(shapes(scene, &housings)?),
         _ => None,
     };
-    let mut planned = match scene.run().filter(|_| method != Some(HousingMethod::QuasiStatic)) {
-        Some(settings) => of_steps(scene, &housings, reduced.as_ref(), settings)?,
-        None => of_equilibria(scene, &housings, scene.run().is_some())?,
+    let (mut items, mut notes) = match (scene.run(), method) {
+        (None, _) => (of_statics(scene, &housings)?, Vec::new()),
+        (Some(settings), Some(HousingMethod::QuasiStatic)) => {
+            (of_course(scene, &housings, settings)?, Vec::new())
+        }
+        (Some(settings), _) => of_steps(scene, &housings, reduced.as_ref(), settings)?,
     };
-    planned.extend(of_springs(scene).iter().map(|said| note("spring", said)));
+    notes.extend(of_springs(scene).iter().map(|said| note("spring", said)));
     for housing in &housings {
-        planned.extend(housing.notes().iter().map(|said| note("housing mesh", said)));
+        notes.extend(housing.notes().iter().map(|said| note("housing mesh", said)));
     }
     if let Some(shapes) = &reduced {
-        let of = shapes.plan(scene, &housings).into_iter();
-        planned.extend(of.map(|(mark, name, said)| line(mark, name, &said)));
+        notes.extend(shapes.notes(scene, &housings));
+    }
+    let undeformed = housings.iter().any(|housing| !housing.scene.housing.from_equilibrium);
+    if method == Some(HousingMethod::Explicit) && undeformed {
+        notes.push(note("start of the housing", UNDEFORMED));
     }
     if !housings.is_empty() {
-        planned.extend(equilibrium_lines(scene, &housings)?);
+        notes.extend(equilibrium_notes(scene, &housings)?);
     }
     if let (Some(settings), false) = (scene.run(), housings.is_empty()) {
-        if method == Some(HousingMethod::QuasiStatic) {
-            planned.push(equilibria_line(settings));
-        }
-        planned.push(explicit_line(scene, &housings, settings));
+        notes.push(explicit_note(scene, &housings, settings));
     }
     if scene.common().rigid_housing {
-        let reason = "housing.method = rigid: the outer race is fixed, no mesh is read";
-        planned.push(line("skips", "housing", reason));
+        let why = "housing.method = rigid: the outer race is fixed, no mesh is read";
+        items.push(Item::skips(Stage::Housing, Subject::Whole, why));
     }
-    say(&planned.iter().map(|line| format!("{line}\n")).collect::<String>())?;
+    say_plan(&items, &notes)?;
     Ok(Outcome::Done)
 }
 
-fn line(mark: &str, name: &str, said: &str) -> String {
-    format!("{mark} {name:<28} {said}")
-}
+/// Where explicit steps start that are not told to start in equilibrium.
+const UNDEFORMED: &str = "undeformed, the outer race in its first place: what the bearing carries from the start \
+    swings in";
 
-/// A run in steps: stages, steps and the size of its table.
+/// A run in steps: items, and what there is to note of steps and of the size of its table.
 fn of_steps(
     scene: &AssemblyScene,
     housings: &[Housing],
     reduced: Option<&Shapes>,
     settings: &RunSettings,
-) -> Fallible<Vec<String>> {
+) -> Fallible<(Vec<Item>, Vec<String>)> {
     let assembly = match reduced {
         Some(shapes) => shapes.assembly.clone(),
         None => scene.assembly()?,
     };
     let (request, choice) = planned_request(scene, settings, &assembly, None);
-    let mut planned = stages(scene, housings, &assembly, &request, choice.as_ref());
+    let items = stages(scene, housings, &assembly, &request, choice.as_ref());
+    let mut notes = Vec::new();
     // Races without their housings would have nothing to hold them.
     if housings.is_empty() || reduced.is_some() {
-        planned.extend(step_lines(&assembly, &request));
+        notes.extend(step_lines(&assembly, &request));
     }
-    planned.push(size_line(&assembly, &request));
-    Ok(planned)
+    notes.push(size_line(&assembly, &request));
+    Ok((items, notes))
 }
 
-/// The stages of a run in steps, one line each.
+/// Items of a run in steps.
 pub fn stages(
     scene: &AssemblyScene,
     housings: &[Housing],
     assembly: &Assembly,
     request: &RunRequest,
     choice: Option<&Choice>,
-) -> Vec<String> {
+) -> Vec<Item> {
     let left_out = |placed: &PlacedBearing| match &placed.scene.dynamics.cage {
         CageInRun::Body(_) => None,
         CageInRun::LeftOut(reason) => Some(reason.clone()),
     };
     let left_out: Vec<Option<String>> = scene.bearings.iter().map(left_out).collect();
     let left_out: Vec<Option<&str>> = left_out.iter().map(Option::as_deref).collect();
-    let mut all = lines(plan::dynamics(assembly, &request.options, &request.channels, &left_out));
+    let mut options = request.options;
+    if !housings.is_empty() {
+        // Bearings roll in equilibrium with races that are held where they sit in their housings.
+        options.start = Start::Equilibrium;
+    }
+    let is_explicit = scene.housing_method() == Some(HousingMethod::Explicit);
+    let way = if is_explicit { Method::Explicit } else { Method::Reduced };
+    let mut solids = Vec::new();
+    for (index, housing) in housings.iter().enumerate() {
+        solids.extend(housing.items(index, &way));
+        if is_explicit {
+            let body = assembly.bearings[housing.bearing].mounts[1].body;
+            let seat = (body, housing.name.as_deref());
+            solids.extend(motion::stepped_seat(assembly, index, seat));
+        }
+    }
+    let mut items = motion::items(Planned {
+        assembly,
+        options: &options,
+        channels: &request.channels,
+        cage_left_out: &left_out,
+        solids,
+    });
     if let Some(choice) = choice {
         let said = format!("{}: {}", choice.integrator.name(), choice.reason());
-        all.push(line("does ", "choice of the integrator", &said));
+        items.push(Item::does(Stage::IntegratorChoice, Subject::Whole, said));
     }
-    with_housings(all, scene.housing_method(), housings)
+    items
 }
 
-/// The stages of one equilibrium, or of one after the other in a run, one line each.
-pub fn of_equilibria(
+/// Items of the equilibrium at t = 0.
+pub fn of_statics(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Vec<Item>> {
+    Ok(of_equilibrium(&still(scene)?, housings, ASKED_FOR))
+}
+
+fn of_equilibrium(still: &StaticAssembly, housings: &[Housing], centrifugal: &str) -> Vec<Item> {
+    let mut solids = Vec::new();
+    for (index, housing) in housings.iter().enumerate() {
+        solids.extend(housing.items(index, &Method::QuasiStatic));
+        let body = still.bearings[housing.bearing].mounts[1].body;
+        solids.push(statics::seat(index, &still.bodies[body].name));
+    }
+    statics::items(still, solids, centrifugal)
+}
+
+/// Items of one equilibrium after the other, of which there are as many as a run solves.
+pub fn of_course(
     scene: &AssemblyScene,
     housings: &[Housing],
-    in_run: bool,
-) -> Fallible<Vec<String>> {
-    let still = still(scene)?;
-    let all = match scene.one() {
-        Some(one) => plan_lines(&of_one(one, &still)?),
-        None => of_several(scene, &still)?,
-    };
-    let rolls = |placed: &PlacedBearing| matches!(&placed.scene.dynamics.inner.rotation, Rotation::Speed(speed) if !speed.is_zero());
-    let all = match in_run && scene.bearings.iter().any(rolls) {
-        true => all.into_iter().map(with_centrifugal).collect(),
-        false => all,
-    };
-    Ok(with_housings(all, Some(HousingMethod::QuasiStatic), housings))
+    run: &RunSettings,
+) -> Fallible<Vec<Item>> {
+    const GO_ROUND: &str =
+        "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
+    let mut still = still(scene)?;
+    for (bearing, placed) in still.bearings.iter_mut().zip(&scene.bearings) {
+        let turning = &placed.scene.dynamics.inner.rotation;
+        let turns = matches!(turning, Rotation::Speed(speed) if !speed.is_zero());
+        // At any speed that it has.
+        bearing.centrifugal = f64::from(u8::from(turns));
+    }
+    let mut items = of_equilibrium(&still, housings, GO_ROUND);
+    let count = whole_number(run.end, run.output_interval) + 1;
+    let last = rounded((count - 1) as f64 * run.output_interval);
+    let why = format!("{count} equilibria to t = {last} s, one a row");
+    items.push(Item::does(Stage::Equilibria, Subject::Whole, why));
+    Ok(items)
 }
 
 /// One bearing under all loads that it has at t = 0.
@@ -146,111 +195,6 @@ pub fn of_one(one: &PlacedBearing, still: &StaticAssembly) -> Fallible<StaticPro
     })
 }
 
-/// What statics of several bearings does: that of each bearing, and one search.
-fn of_several(scene: &AssemblyScene, still: &StaticAssembly) -> Fallible<Vec<String>> {
-    let mut all = Vec::new();
-    for placed in &scene.bearings {
-        // What these say of a bearing alone.
-        let shared = ["race equilibrium", "outer race motion", "flexible bodies"];
-        let own = plan_lines(&static_problem(&placed.scene)?).into_iter();
-        let own = own.filter(|line| !shared.iter().any(|name| line[6..].starts_with(name)));
-        all.extend(own.map(|line| match &placed.name {
-            Some(name) => format!("{}{name}: {}", &line[..6], &line[6..]),
-            None => line,
-        }));
-    }
-    let (free, bodies) = free_coordinates(still);
-    let search = format!("{free} free coordinates of {bodies} bodies in one search");
-    all.push(match free {
-        0 => line("skips", "equilibrium", "all coordinates are given: one evaluation"),
-        _ => line("does ", "equilibrium", &search),
-    });
-    all.push(match still.connections.len() {
-        0 => line("skips", "springs between bodies", "none is given"),
-        some => line("does ", "springs between bodies", &format!("{some} of them")),
-    });
-    if scene.housing_method().is_none() {
-        let said = "the scene has none: no mesh, no element stage";
-        all.push(line("skips", "flexible bodies", said));
-    }
-    Ok(all)
-}
-
-/// Coordinates that loads decide, and bodies that have any.
-fn free_coordinates(still: &StaticAssembly) -> (usize, usize) {
-    let free = still.bodies.iter().map(|body| match &body.place {
-        Place::Held(_) => 0,
-        Place::Loaded(loaded) => {
-            loaded.conditions.iter().filter(|c| matches!(c, Condition::Load(_))).count()
-        }
-    });
-    free.fold((0, 0), |(all, bodies), own| (all + own, bodies + usize::from(own > 0)))
-}
-
-/// The line that says statics leaves centrifugal force out, if this is it, for both commands.
-fn with_centrifugal(of_statics: String) -> String {
-    const NAME: &str = "centrifugal force on balls";
-    match of_statics.strip_prefix("skips ").and_then(|said| said.split_once(NAME)) {
-        Some((of, _)) if of.is_empty() || of.ends_with(": ") => {
-            let said =
-                "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
-            line("does ", &format!("{of}{NAME}"), said)
-        }
-        _ => of_statics,
-    }
-}
-
-/// Stages of bearings, and of the housings that they sit in.
-fn with_housings(
-    of_bearings: Vec<String>,
-    method: Option<HousingMethod>,
-    housings: &[Housing],
-) -> Vec<String> {
-    let Some(method) = method.filter(|_| !housings.is_empty()) else { return of_bearings };
-    // What these say of a bearing alone.
-    const ALONE: [&str; 2] = ["outer race motion", "flexible bodies"];
-    let mut all = of_bearings;
-    all.retain(|line| !ALONE.iter().any(|name| line[6..].starts_with(name)));
-    for housing in housings {
-        let of = housing.before();
-        let problem = &housing.setup.solid.problem;
-        all.push(line("does ", "housing mesh", &format!("{of}{}", housing.mesh_text())));
-        let held = problem.prescribed.len();
-        all.push(line("does ", "housing supports", &format!("{of}{held} components held")));
-        let (mark, said) = match (problem.damping == 0.0, method) {
-            (true, _) => ("skips", "none is given"),
-            (false, HousingMethod::Explicit | HousingMethod::Reduced) => {
-                ("does ", "mass-proportional")
-            }
-            (false, HousingMethod::QuasiStatic) => {
-                ("does ", "in explicit steps; nothing moves in an equilibrium")
-            }
-        };
-        all.push(line(mark, "housing damping", &format!("{of}{said}")));
-    }
-    let undeformed = housings.iter().any(|housing| !housing.scene.housing.from_equilibrium);
-    if method == HousingMethod::Explicit && undeformed {
-        let said = "undeformed, the outer race in its first place: what the bearing carries from the start swings in";
-        all.push(note("start of the housing", said));
-    }
-    let (name, said) = match method {
-        HousingMethod::QuasiStatic => (
-            "quasi-static housing",
-            "condensed onto its bore; bearing and bore in one equilibrium after the other",
-        ),
-        HousingMethod::Explicit => (
-            "explicit housing",
-            "bearing and housing in steps of their own, which exchange impulses",
-        ),
-        HousingMethod::Reduced => (
-            "reduced housing",
-            "some shapes of the housing, which move with the bearing in its steps",
-        ),
-    };
-    all.push(line("does ", name, said));
-    all
-}
-
 /// How much the run is going to write.
 fn size_line(assembly: &Assembly, request: &RunRequest) -> String {
     let said = match table_size(assembly.clone(), request) {
@@ -260,19 +204,11 @@ fn size_line(assembly: &Assembly, request: &RunRequest) -> String {
     note("table", &said)
 }
 
-/// As many as a run solves.
-fn equilibria_line(run: &RunSettings) -> String {
-    let count = whole_number(run.end, run.output_interval) + 1;
-    let last = rounded((count - 1) as f64 * run.output_interval);
-    line("does ", "equilibria", &format!("{count} equilibria to t = {last} s, one a row"))
-}
-
 /// What condensing takes; of the quasi-static method also whether equilibria will do, which needs
 /// the condensed housings. Of other methods nothing is factorised here.
-fn equilibrium_lines(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Vec<String>> {
+fn equilibrium_notes(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Vec<String>> {
     let chosen = scene.housing_method() == Some(HousingMethod::QuasiStatic);
     let name = if chosen { "inertia left out" } else { "quasi-static instead" };
-    let mark = if chosen { "does " } else { "notes" };
     let mut planned = Vec::new();
     for housing in housings {
         let of = housing.before();
@@ -281,7 +217,7 @@ fn equilibrium_lines(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Ve
             Ok((_, sizes, cost)) => (sizes, cost),
             Err(error) => return Ok(vec![note(name, &format!("not possible: {error}"))]),
         };
-        planned.push(line(mark, "condensed bore", &format!("{of}{}", condensed_text(&sizes))));
+        planned.push(note("condensed bore", &format!("{of}{}", condensed_text(&sizes))));
         planned.push(note("condensing takes", &format!("{of}{}", memory::text(&cost))));
     }
     if !chosen {
@@ -314,7 +250,7 @@ fn condensed_text(sizes: &Sizes) -> String {
 }
 
 /// Windows of the explicit way, and about how long they take here.
-fn explicit_line(scene: &AssemblyScene, housings: &[Housing], run: &RunSettings) -> String {
+fn explicit_note(scene: &AssemblyScene, housings: &[Housing], run: &RunSettings) -> String {
     let chosen = scene.housing_method() == Some(HousingMethod::Explicit);
     // Where it starts does not matter here, and finding out takes long.
     let windows = housings::undeformed(scene, housings, 1);

@@ -4,6 +4,7 @@ use super::Fallible;
 use super::course::percent;
 use super::housing::Housing;
 use super::housings::largest_force;
+use crate::commands::plan_step::note;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::session::Motion;
 use bearing_dynamics::scene::assembly::AssemblyScene;
@@ -19,6 +20,7 @@ use bearing_dynamics::solver::housing::reduce::{
 use bearing_dynamics::solver::housing::reduced_start::{
     self, add_housing, ball_frequency, put_in_equilibrium,
 };
+use bearing_dynamics::solver::plan::tally::Tally;
 use std::time::Instant;
 
 /// Housings as shapes, and the assembly with them.
@@ -28,6 +30,8 @@ pub struct Shapes {
     pub reductions: Vec<Reduction>,
     /// Wall time that condensing, and finding shapes and start took, s.
     pub seconds: [f64; 2],
+    /// How often each stage of condensing ran, one for each housing.
+    pub ran: Vec<Tally>,
 }
 
 /// Frequencies of the housing that are kept, over that of a ball between its races.
@@ -90,7 +94,8 @@ pub fn shapes(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Shapes> {
         put_in_equilibrium(&mut assembly, &mut parts)?;
     }
     seconds[1] += start.elapsed().as_secs_f64();
-    Ok(Shapes { assembly, reductions, seconds })
+    let ran = bores.iter().map(|bore| bore.ran).collect();
+    Ok(Shapes { assembly, reductions, seconds, ran })
 }
 
 impl Shapes {
@@ -109,19 +114,15 @@ impl Shapes {
         housings.iter().zip(&self.reductions).map(of).collect()
     }
 
-    /// What a plan says of each housing: a mark, a name and what there is.
-    pub fn plan(
-        &self,
-        scene: &AssemblyScene,
-        housings: &[Housing],
-    ) -> Vec<(&'static str, &'static str, String)> {
+    /// What there is to note of each housing in a plan.
+    pub fn notes(&self, scene: &AssemblyScene, housings: &[Housing]) -> Vec<String> {
         let mut said = Vec::new();
         for (housing, reduction) in housings.iter().zip(&self.reductions) {
             let (of, cut) = (housing.before(), &reduction.cut_off);
-            said.push(("does ", "shapes of the housing", format!("{of}{}", text(cut))));
-            said.push(("notes", "cut off", format!("{of}{}", cut_off(scene, cut))));
+            said.push(note("shapes of the housing", &format!("{of}{}", text(cut))));
+            said.push(note("cut off", &format!("{of}{}", cut_off(scene, cut))));
         }
-        said.push(("notes", "masses of the housing", "lumped, as of explicit steps".into()));
+        said.push(note("masses of the housing", "lumped, as of explicit steps"));
         said
     }
 }

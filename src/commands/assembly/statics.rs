@@ -87,9 +87,13 @@ pub fn find_equilibrium<'s>(
         Some(alone) => alone.defaults_used.clone(),
         None => defaults(scene),
     };
-    let planned = plan::of_equilibria(scene, &housings, false)?;
+    let planned = plan::of_statics(scene, &housings)?;
     let assumptions = &scene.common().assumptions;
     let mut record = record(echo::echo(scene)?, planned, assumptions, &defaults, seconds);
+    record.ran.clone_from(&moment.solution.ran);
+    for (tally, bore) in record.ran.solids.iter_mut().zip(&bores) {
+        tally.absorb(&bore.ran);
+    }
     match &of_one {
         Some((problem, _)) => record.sections = sections(scene.common(), problem)?,
         None => {

@@ -21,6 +21,7 @@ use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::foretell::{Choice, choose};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Start};
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::plan::Stage;
 use bearing_dynamics::solver::solid::model::SolidModel;
 use std::error::Error;
 use std::path::Path;
@@ -270,14 +271,20 @@ impl<'s> Prepared<'s> {
         seconds: Vec<(String, f64)>,
     ) -> Fallible<RunRecord> {
         match self {
-            Prepared::Bearings { scene, assembly, housings, way, .. } => {
+            Prepared::Bearings { scene, settings, assembly, housings, way } => {
+                // With housings a run that is extended has the bytes of an unbroken one.
+                let choice = choice.filter(|_| housings.is_empty());
                 let planned = match way {
-                    Way::Course(..) => plan::of_equilibria(scene, housings, true)?,
-                    // With housings a run that is extended has the bytes of an unbroken one.
-                    Way::Reduced(_) => plan::stages(scene, housings, assembly, request, None),
+                    Way::Course(..) => plan::of_course(scene, housings, settings)?,
                     _ => plan::stages(scene, housings, assembly, request, choice),
                 };
                 let mut record = assembly::record(scene, planned, seconds)?;
+                record.ran.whole.add(Stage::IntegratorChoice, u64::from(choice.is_some()));
+                record.ran.solids = match way {
+                    Way::Course(bores, _) => bores.iter().map(|bore| bore.ran).collect(),
+                    Way::Reduced(shapes) => shapes.ran.clone(),
+                    Way::Rigid | Way::Explicit => Vec::new(),
+                };
                 // Of one in its housing it is part of the scene.
                 if housings.is_empty() || scene.one().is_none() {
                     let motion = assembly::echo::motion(scene)?;
@@ -286,7 +293,8 @@ impl<'s> Prepared<'s> {
                 Ok(record)
             }
             Prepared::Solid { scene, mesh, .. } => {
-                solid::record(scene, solid::plan::lines(scene, mesh), seconds)
+                let plan = solid::plan::items(scene, mesh, solid::plan::Of::Run);
+                solid::record(scene, plan, seconds)
             }
         }
     }

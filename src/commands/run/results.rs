@@ -83,6 +83,7 @@ pub(super) fn write_results(
     stages.extend(prepared.seconds());
     let mut record = prepared.record(request, choice.as_ref(), stages)?;
     record.sections.append(&mut said.sections);
+    record.ran.absorb(&session.ran());
     match &session.motion {
         Motion::Solid(moving) => record.threads = moving.threads,
         Motion::Housed(housed) => record.threads = housed.threads(),

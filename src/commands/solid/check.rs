@@ -8,6 +8,7 @@ use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::summary::solid::mesh_section;
 use bearing_dynamics::output::visible::visible_line;
 use bearing_dynamics::scene::{Document, SolidScene};
+use bearing_dynamics::solver::plan::tally::Tally;
 use bearing_dynamics::solver::solid::model::SolidModel;
 use serde_json::json;
 use std::fmt::Write;
@@ -73,7 +74,7 @@ pub fn run(path: &Path, document: &Document, scene: &SolidScene, json: bool) -> 
         },
     );
     let mut forces = vec![[0.0; 4]; model.mass.len()];
-    model.add_external_forces(0.0, &mut forces);
+    model.add_external_forces(model.acting(), 0.0, &mut forces, &mut Tally::default());
     let forces: Vec<[f64; 3]> = forces.iter().map(|f| [f[0], f[1], f[2]]).collect();
     let all: Vec<u32> = (0..forces.len() as u32).collect();
     let [x, y, z] = sum(&forces, &all);

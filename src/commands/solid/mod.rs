@@ -12,6 +12,7 @@ use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build};
 use bearing_dynamics::scene::solid_problem::{SolidSetup, setup};
 use bearing_dynamics::scene::{Document, SolidScene};
+use bearing_dynamics::solver::plan::Item;
 use bearing_dynamics::solver::solid::support::{FreeMotions, free_motions};
 use std::error::Error;
 use std::time::Instant;
@@ -64,7 +65,7 @@ pub fn title(scene: &SolidScene) -> String {
 /// Scene, assumptions, defaults and plan, as every summary has them.
 pub fn record(
     scene: &SolidScene,
-    plan: Vec<String>,
+    plan: Vec<Item>,
     seconds: Vec<(String, f64)>,
 ) -> Result<RunRecord, Box<dyn Error>> {
     let (assumptions, defaults) = (&scene.assumptions, &scene.defaults_used);

@@ -41,7 +41,8 @@ pub fn run(
         ("mesh".into(), prepared.mesh_seconds),
         ("solve".into(), start.elapsed().as_secs_f64()),
     ];
-    let record = record(scene, plan::lines(scene, &prepared), seconds)?;
+    let mut record = record(scene, plan::items(scene, &prepared, plan::Of::Modes), seconds)?;
+    record.ran.solids = vec![found.ran];
     let (mut summary, series) = summary::modes(&model, built, &found, &record)?;
     let remarks = remarks::of_modes(&model, &found);
     summary["remarks"] = json!(remarks);

@@ -1,36 +1,34 @@
 //! `bearing plan` of a solid: what each of its commands would do.
 
 use super::{Prepared, mesh_notes, prepare};
-use crate::commands::{CommandResult, Outcome, memory, say};
+use crate::commands::plan::say_plan;
+use crate::commands::plan_step::note;
+use crate::commands::{CommandResult, Outcome, memory};
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::scene::solid::{MeshSource, SolidRun};
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::clock::whole_number;
+use bearing_dynamics::solver::plan::solid::{self, Method};
+use bearing_dynamics::solver::plan::{Item, Stage, Subject};
 use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, SolidStepping};
 use bearing_dynamics::solver::solid::foretold;
-use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel};
+use bearing_dynamics::solver::solid::model::SolidModel;
 use bearing_dynamics::solver::solid::step_limit::step_limit;
 use bearing_dynamics::solver::solid::tangent::{MassMatrix, Unknowns};
 use bearing_dynamics::solver::sparse::Cost;
 
 pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
     let prepared = prepare(document, scene)?;
-    let mut lines = lines(scene, &prepared);
-    let notes = mesh_notes(&prepared.built);
-    lines.extend(notes.iter().map(|note| format!("notes {:<28} {note}", "mesh")));
+    let mut lines: Vec<String> =
+        mesh_notes(&prepared.built).iter().map(|said| note("mesh", said)).collect();
     let model =
         SolidModel::labelled(prepared.setup.problem.clone(), prepared.setup.labels.clone())?;
     lines.extend(factor_lines(scene, &prepared, &model));
     if let Some(run) = &scene.run {
         lines.push(step_line(&model, run));
     }
-    say(&lines.iter().map(|line| format!("{line}\n")).collect::<String>())?;
+    say_plan(&all_items(scene, &prepared), &lines)?;
     Ok(Outcome::Done)
-}
-
-fn line(included: bool, name: &str, reason: &str) -> String {
-    let mark = if included { "does " } else { "skips" };
-    format!("{mark} {name:<28} {reason}")
 }
 
 /// The step of a run, what limits it, and how many there are; as the run finds them.
@@ -58,7 +56,7 @@ fn step_line(model: &SolidModel, run: &SolidRun) -> String {
         whole_number(run.end, step),
         run.end
     );
-    format!("notes {name:<28} {said}")
+    note(name, &said)
 }
 
 /// Memory and time of what takes factors of the stiffness, from its structure alone.
@@ -66,14 +64,20 @@ fn factor_lines(scene: &SolidScene, prepared: &Prepared, model: &SolidModel) -> 
     let unknowns = Unknowns::new(model);
     let statics = (prepared.free.count == 0).then(|| foretold::statics(model, &unknowns));
     let modes = foretold::modes(model, &unknowns, scene.mode_count);
-    let line = |cost: Cost| {
-        format!("notes {:<28} {}", format!("{} takes", cost.task.name), memory::text(&cost))
-    };
+    let line = |cost: Cost| note(&format!("{} takes", cost.task.name), &memory::text(&cost));
     statics.into_iter().chain([modes]).map(line).collect()
 }
 
-/// One line a stage.
-pub fn lines(scene: &SolidScene, prepared: &Prepared) -> Vec<String> {
+/// What a command does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Of {
+    Statics,
+    Modes,
+    Run,
+}
+
+/// Items of one command.
+pub fn items(scene: &SolidScene, prepared: &Prepared, of: Of) -> Vec<Item> {
     let (problem, mesh) = (&prepared.setup.problem, &prepared.built.mesh);
     let from = match &scene.mesh.source {
         MeshSource::File { name, .. } => format!("from {name}"),
@@ -83,59 +87,55 @@ pub fn lines(scene: &SolidScene, prepared: &Prepared) -> Vec<String> {
         Order::Linear => "constant-strain tetrahedra",
         Order::Quadratic => "ten-node tetrahedra",
     };
-    let mut lines = vec![
-        line(true, "mesh", &format!("{from}: {} {kind}", mesh.elements.len())),
-        line(
-            !problem.prescribed.is_empty(),
-            "supports",
-            &match problem.prescribed.len() {
-                0 => "nothing is held".to_string(),
-                count => format!("{count} components held or moved"),
-            },
-        ),
-        line(
-            !problem.loads.is_empty(),
-            "loads",
-            &match problem.loads.len() {
-                0 => "none is given".to_string(),
-                1 => "one, dead".to_string(),
-                count => format!("{count}, dead"),
-            },
-        ),
-        line(
-            problem.gravity != [0.0; 3],
-            "gravity",
-            if problem.gravity == [0.0; 3] { "none is given" } else { "on every node's mass" },
-        ),
-        line(
-            problem.damping != 0.0,
-            "damping",
-            match (problem.damping == 0.0, problem.damped_motion) {
-                (true, _) => "none is given",
-                (_, DampedMotion::Absolute) => "in a run, of all motion",
-                (_, DampedMotion::RelativeToRigid) => "in a run, of motion beside the rigid one",
-            },
-        ),
-    ];
-    lines.push(match prepared.free.count {
-        0 => line(true, "statics", "Newton's method, sparse Cholesky factors"),
-        _ => line(false, "statics", &format!("free to move {}", prepared.free.names())),
-    });
+    let method = match (of, &scene.run) {
+        (Of::Run, Some(run)) => {
+            let method = match run.method {
+                ExplicitMethod::CentralDifferences => "central differences",
+                ExplicitMethod::RungeKutta => "Runge-Kutta of order 4",
+            };
+            Method::Steps(format!("{method} to {} s", run.end))
+        }
+        (Of::Modes, _) => Method::Modes,
+        _ => Method::Statics,
+    };
+    let mesh = format!("{from}: {} {kind}", mesh.elements.len());
+    let mut items = solid::items(problem, 0, None, &mesh, &method);
+    if of == Of::Modes {
+        items.push(modes(scene));
+    }
+    items
+}
+
+fn modes(scene: &SolidScene) -> Item {
     let mass = match scene.mode_mass {
         MassMatrix::Consistent => "consistent",
         MassMatrix::Lumped => "lumped",
     };
     let wanted = format!("the lowest {}, {mass} mass", scene.mode_count);
-    lines.push(line(true, "modes", &wanted));
-    lines.push(match &scene.run {
-        None => line(false, "run", "no `numerics.end`"),
-        Some(run) => {
-            let method = match run.method {
-                ExplicitMethod::CentralDifferences => "central differences",
-                ExplicitMethod::RungeKutta => "Runge-Kutta of order 4",
-            };
-            line(true, "run", &format!("{method} to {} s", run.end))
-        }
-    });
-    lines
+    Item::does(Stage::Modes, Subject::Solid(0), wanted)
+}
+
+/// Items of a run, or of statics of what has none, and in a line each what the other commands would do.
+fn all_items(scene: &SolidScene, prepared: &Prepared) -> Vec<Item> {
+    let subject = Subject::Solid(0);
+    let held = prepared.free.count == 0;
+    let of = match (&scene.run, held) {
+        (Some(_), _) => Of::Run,
+        (None, true) => Of::Statics,
+        (None, false) => Of::Modes,
+    };
+    let mut items = items(scene, prepared, of);
+    if of != Of::Statics {
+        let free = format!("free to move {}", prepared.free.names());
+        let why = if held { "Newton's method, sparse Cholesky factors" } else { &free };
+        items.push(Item::new(Stage::SolidStatics, subject, held, why));
+    }
+    if of != Of::Modes {
+        items.push(modes(scene));
+    }
+    if of != Of::Run {
+        let steps = Item::skips(Stage::Explicit, subject, "no `numerics.end`");
+        items.push(steps.named(Some("steps")));
+    }
+    items
 }

@@ -61,7 +61,8 @@ pub fn run(
         ("solve".into(), solve_seconds),
         ("stresses".into(), stress_seconds),
     ];
-    let record = record(scene, plan::lines(scene, &prepared), seconds)?;
+    let mut record = record(scene, plan::items(scene, &prepared, plan::Of::Statics), seconds)?;
+    record.ran.solids = vec![solution.ran];
     let (mut summary, series) =
         summary::statics(&model, setup, built, &solution, &stress, &record)?;
     let remarks = remarks::of_equilibrium(&model, &solution.displacement, &stress);

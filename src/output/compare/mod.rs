@@ -305,7 +305,7 @@ pub fn is_default_of_key(channel: &str) -> bool {
 /// A channel that says how a run was stepped and not where the bearing went: it differs between runs
 /// of different accuracy.
 pub fn is_about_steps(channel: &str) -> bool {
-    const SECTIONS: [&str; 4] = ["step", "work", "plan", "assumptions"];
+    const SECTIONS: [&str; 5] = ["step", "work", "plan", "stages", "assumptions"];
     const LAST: [&str; 3] = ["steps_per_row", "energy_residual", "largest_residual"];
     let mut parts = channel.split('.').map(|part| part.trim_end_matches("[]"));
     let of_residual = parts.clone().any(|part| LAST.contains(&part));

@@ -14,6 +14,8 @@ use crate::solver::dynamics::race::{RaceNow, tilts_of};
 use crate::solver::dynamics::run::{Simulation, Snapshot};
 use crate::solver::dynamics::state::{Ledger, POSITION, SPIN, VELOCITY};
 use crate::solver::mount::Mount;
+use crate::solver::plan::Stage;
+use crate::solver::plan::motion::channel_group;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
@@ -40,19 +42,15 @@ pub(super) struct BearingColumns {
 }
 
 impl BearingColumns {
-    /// The groups that are asked for and that the problem has something for; the energy ledger is always
-    /// among them.
+    /// The groups that the plan records.
     pub fn new(
         assembly: &Assembly,
         asked: &[ChannelGroup],
         columns: &mut Vec<Column>,
     ) -> BearingColumns {
-        let needs_cage =
-            |group: &ChannelGroup| matches!(group, ChannelGroup::Cage | ChannelGroup::Pockets);
         let groups: Vec<ChannelGroup> = ChannelGroup::ALL
             .into_iter()
-            .filter(|group| asked.contains(group) || *group == ChannelGroup::Energy)
-            .filter(|group| has_cage(assembly) || !needs_cage(group))
+            .filter(|group| channel_group(assembly, asked, *group).does)
             .collect();
         let terms = terms(assembly);
         for &group in &groups {
@@ -74,6 +72,7 @@ impl Recorder {
         let Some(BearingColumns { groups, terms }) = self.bearing.take() else { return };
         let system = &simulation.system;
         for &group in &groups {
+            self.ran.add(Stage::recording(group), 1);
             if group == ChannelGroup::Energy {
                 self.values.extend(terms.iter().map(|term| energy_term(*term, snapshot)));
                 continue;

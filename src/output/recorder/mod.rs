@@ -12,6 +12,7 @@ use crate::output::session::{Parts, SessionError};
 use crate::scene::solid_problem::{NamedNodes, Support};
 use crate::solver::channels::ChannelGroup;
 use crate::solver::dynamics::assembly::Assembly;
+use crate::solver::plan::tally::Tally;
 use bearing::BearingColumns;
 use ndarray::Array2;
 
@@ -20,6 +21,8 @@ pub struct Recorder {
     columns: Vec<Column>,
     values: Vec<f64>,
     bearing: Option<BearingColumns>,
+    /// How often each group of channels was recorded.
+    pub ran: Tally,
     pub probes: Vec<NamedNodes>,
     pub supports: Vec<Support>,
 }
@@ -48,7 +51,8 @@ impl Recorder {
                 columns.extend(course::columns(&parts.problem, with_loads));
             }
         }
-        Recorder { columns, values: Vec::new(), bearing, probes, supports }
+        let ran = Tally::default();
+        Recorder { columns, values: Vec::new(), bearing, ran, probes, supports }
     }
 
     /// With room for so many rows.

@@ -20,6 +20,7 @@ use crate::solver::dynamics::run::SimulationError;
 use crate::solver::housing::bore_equilibrium::BoreError;
 use crate::solver::housing::course::CourseError;
 use crate::solver::housing::exchange::ExchangeError;
+use crate::solver::plan::tally::{Ran, Tally};
 use crate::solver::solid::explicit::ExplicitSolid;
 use crate::solver::solid::model::SolidError;
 use thiserror::Error;
@@ -85,6 +86,10 @@ pub struct Session<'p> {
     /// Part of the energy turned over that may go missing where a solid moves.
     pub energy_limit: f64,
     pub status: Status,
+    /// How often each stage ran before the session began.
+    before: Ran,
+    /// Counts of the motion and of the recorder as of `sound`.
+    kept_ran: (Ran, Tally),
     sound: Sound,
     failed: bool,
 }
@@ -96,6 +101,8 @@ pub struct Sound {
     pub watch: LedgerWatch,
     /// Rows that belong to it.
     pub rows: usize,
+    /// How often each stage of the run had run.
+    pub ran: Ran,
 }
 
 impl<'p> Session<'p> {
@@ -114,7 +121,12 @@ impl<'p> Session<'p> {
         size::size_of(&columns, request)?;
         let (motion, clock) = Motion::start(parts, request)?;
         let recorder = columns.with_room(clock.rows_in_all())?;
-        let sound = Sound { checkpoint: motion.room(), watch: LedgerWatch::default(), rows: 0 };
+        let sound = Sound {
+            checkpoint: motion.room(),
+            watch: LedgerWatch::default(),
+            rows: 0,
+            ran: Ran::default(),
+        };
         let mut session = Session::new(motion, clock, recorder, sound, request);
         if let Motion::Solid(moving) = &mut session.motion {
             session.watch.first = moving.solid.ledger().balance();
@@ -144,7 +156,8 @@ impl<'p> Session<'p> {
         check(request)?;
         let parts = parts.into();
         let columns = Recorder::new(&parts, &request.channels);
-        let motion = Motion::resume(parts, request, &sound.checkpoint, &mut clock)?;
+        let mut motion = Motion::resume(parts, request, &sound.checkpoint, &mut clock)?;
+        motion.forget_ran();
         let mut recorder = columns.with_room(clock.rows_in_all())?;
         if !recorder.restore(series, sound.rows) {
             return Ok(None);
@@ -176,6 +189,8 @@ impl<'p> Session<'p> {
             clock,
             recorder,
             watch: sound.watch,
+            before: sound.ran.clone(),
+            kept_ran: Default::default(),
             energy_limit: request.options.energy_limit,
             status: Status::Running,
             sound,
@@ -264,6 +279,20 @@ impl<'p> Session<'p> {
         self.motion.checkpoint_into(&mut self.sound.checkpoint);
         self.sound.watch = self.watch;
         self.sound.rows = self.recorder.rows();
+        self.motion.ran_into(&mut self.kept_ran.0);
+        self.kept_ran.1 = self.recorder.ran;
+    }
+
+    /// How often each stage of the run has run, before it was resumed as well.
+    pub fn ran(&self) -> Ran {
+        self.with_before(&self.motion.ran(), &self.recorder.ran)
+    }
+
+    fn with_before(&self, motion: &Ran, recorder: &Tally) -> Ran {
+        let mut all = self.before.clone();
+        all.absorb(motion);
+        all.whole.absorb(recorder);
+        all
     }
 
     /// What a later run goes on from: the last sound state of a run that is complete or has failed, and of
@@ -271,10 +300,11 @@ impl<'p> Session<'p> {
     pub fn resumable(&mut self) -> Sound {
         let by_rows = matches!(self.motion, Motion::Housed(_) | Motion::Course(_));
         if by_rows || self.failed || self.status == Status::Complete {
-            return self.sound.clone();
+            let ran = self.with_before(&self.kept_ran.0, &self.kept_ran.1);
+            return Sound { ran, ..self.sound.clone() };
         }
         let rows = self.recorder.rows();
-        Sound { checkpoint: self.motion.checkpoint(), watch: self.watch, rows }
+        Sound { checkpoint: self.motion.checkpoint(), watch: self.watch, rows, ran: self.ran() }
     }
 
     /// Rows at equal intervals: all but a last one that the end of the run has put off the grid.

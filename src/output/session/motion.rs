@@ -13,6 +13,7 @@ use crate::solver::housing::checkpoint::{ExchangeCheckpoint, Windows};
 use crate::solver::housing::course::{Course, CourseCheckpoint, CourseProblem};
 use crate::solver::housing::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
 use crate::solver::housing::seat::Seat;
+use crate::solver::plan::tally::{Ran, Tally};
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
 use crate::solver::solid::model::{SolidError, SolidModel};
@@ -80,6 +81,36 @@ pub enum Motion<'p> {
 pub struct MovingSolid {
     pub solid: ExplicitSolid,
     pub threads: usize,
+}
+
+impl Motion<'_> {
+    /// How often each stage has run since this session began.
+    pub fn ran(&self) -> Ran {
+        match self {
+            Motion::Bearing(simulation) => simulation.system.ran.clone(),
+            Motion::Solid(moving) => Ran { solids: vec![moving.solid.ran], ..Ran::default() },
+            Motion::Housed(housed) => housed.ran(),
+            Motion::Course(course) => course.ran.clone(),
+        }
+    }
+
+    /// The same into counts that have room.
+    pub(super) fn ran_into(&self, to: &mut Ran) {
+        match self {
+            Motion::Bearing(simulation) => to.copy_from(&simulation.system.ran),
+            Motion::Solid(_) | Motion::Housed(_) | Motion::Course(_) => *to = self.ran(),
+        }
+    }
+
+    /// Counts anew: what has run before is kept elsewhere.
+    pub(super) fn forget_ran(&mut self) {
+        match self {
+            Motion::Bearing(simulation) => simulation.system.ran.clear(),
+            Motion::Solid(moving) => moving.solid.ran = Tally::default(),
+            Motion::Housed(housed) => housed.forget_ran(),
+            Motion::Course(course) => course.ran.clear(),
+        }
+    }
 }
 
 /// All that a motion goes on from with the same bits.

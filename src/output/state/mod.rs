@@ -24,6 +24,8 @@ use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::run::Stepping;
 use crate::solver::housing::checkpoint::SteppedCheckpoint;
 use crate::solver::housing::course::CourseSeat;
+use crate::solver::plan::tally::Ran;
+use crate::solver::plan::{Stage, Subject};
 use crate::solver::solid::model::SolidProblem;
 use arrays::{remove_arrays, write_arrays};
 use bearing_entry::BearingEntry;
@@ -71,6 +73,9 @@ pub struct StateFile {
     /// At the start, turned over, largest residual, J, and rows on end whose ledger did not close; of
     /// runs with a solid.
     pub ledger: ([f64; 3], u32),
+    /// How often each stage has run: its name, the numbers of its subject, and how often.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub stages: Vec<(String, [usize; 2], u64)>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub bearing: Option<Box<BearingEntry>>,
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
@@ -264,7 +269,8 @@ pub fn resume<'p>(
     }
     let [first, turned_over, largest_residual] = file.ledger.0;
     let watch = LedgerWatch { first, turned_over, largest_residual, rows_open: file.ledger.1 };
-    let sound = Sound { checkpoint, watch, rows: file.rows };
+    let ran = ran(file).ok_or_else(|| damaged("a stage that there is not"))?;
+    let sound = Sound { checkpoint, watch, rows: file.rows, ran };
     let series_path = folder.join(SERIES);
     let series = Series::read_npy(&series_path)?;
     Session::resume(parts, request, clock, sound, &series)?
@@ -296,6 +302,7 @@ fn state_file(sound: &Sound, clock: &Clock, record: &StateRecord) -> StateFile {
         rows_per_fields: clock.rows_per_fields,
         seconds: record.seconds,
         ledger: ([watch.first, watch.turned_over, watch.largest_residual], watch.rows_open),
+        stages: stages(&sound.ran),
         bearing: None,
         solids: Vec::new(),
         exchange: None,
@@ -316,6 +323,27 @@ fn state_file(sound: &Sound, clock: &Clock, record: &StateRecord) -> StateFile {
         Checkpoint::Course(kept) => file.course = Some(CourseEntry::of(kept)),
     }
     file
+}
+
+fn stages(ran: &Ran) -> Vec<(String, [usize; 2], u64)> {
+    let entry = |(stage, subject, count): (Stage, Subject, u64)| {
+        (format!("{stage:?}"), subject.numbers(), count)
+    };
+    ran.list().into_iter().map(entry).collect()
+}
+
+/// More things of a kind than any run has.
+const MOST_SUBJECTS: usize = 100_000;
+
+/// `None` where a stage or a subject of it is none.
+fn ran(file: &StateFile) -> Option<Ran> {
+    let mut ran = Ran::default();
+    for (name, numbers, count) in &file.stages {
+        let stage = Stage::ALL.into_iter().find(|stage| format!("{stage:?}") == *name)?;
+        let subject = Subject::from_numbers(*numbers).filter(|_| numbers[1] < MOST_SUBJECTS)?;
+        ran.add(stage, subject, *count);
+    }
+    Some(ran)
 }
 
 /// JSON has no way to write NaN and infinity.

@@ -11,6 +11,7 @@ use crate::output::series::{Series, SeriesError};
 use crate::output::spectrum::{LEAKAGE, Spectrum, WINDOW, peaks};
 use crate::scene::solid_mesh::BuiltMesh;
 use crate::scene::solid_problem::SolidSetup;
+use crate::solver::plan::tally::Tally;
 use crate::solver::solid::energy::strain_energy;
 use crate::solver::solid::equilibrium::Equilibrium;
 use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
@@ -173,7 +174,7 @@ pub fn statics(
     let mut summary = head("static solution of a solid", model, built, record)?;
     let all: Vec<u32> = (0..model.mass.len() as u32).collect();
     let mut loads = vec![[0.0; 4]; model.mass.len()];
-    model.add_external_forces(0.0, &mut loads);
+    model.add_external_forces(model.acting(), 0.0, &mut loads, &mut Tally::default());
     let loads: Vec<Vec3> = loads.iter().map(|f| [f[0], f[1], f[2]]).collect();
     let [probes, supports] = named(setup, &solution.displacement, &solution.reactions)?;
     summary["solver"] = json!({

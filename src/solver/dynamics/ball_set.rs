@@ -1,7 +1,7 @@
 //! One bearing of an assembly with everything precomputed and room to work in: its balls against both
 //! races, each other and the cage.
 
-use super::assembly::{BallMeeting, Bearing};
+use super::assembly::Bearing;
 use super::contacts::{self, ContactLaws, ContactTable, Driver, Want, Work};
 use super::race::{RaceLoads, RaceNow, mounted};
 use super::state::{
@@ -13,13 +13,18 @@ use crate::ch2_housing::bearing::cage::{CageContact, Guidance, guide_contact, po
 use crate::ch2_housing::bearing::contact::{ContactDamping, RaceLaw, normal_load};
 use crate::ch2_housing::bearing::geometry::Raceway;
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
-use crate::ch2_housing::bearing::traction::{Motion, Slices, TractionLaw};
+use crate::ch2_housing::bearing::traction::{Motion, Slices};
 use crate::kinematics::vec3::{Vec3, add, cross, scale, sub};
 use crate::solver::mount::Mount;
+use crate::solver::plan::Stage;
+use crate::solver::plan::steps::BearingSteps;
+use crate::solver::plan::tally::Tally;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
 pub struct BallSet {
+    /// What each evaluation does.
+    pub steps: BearingSteps,
     pub layout: Layout,
     pub laws: ContactLaws,
     pub table: ContactTable,
@@ -54,14 +59,19 @@ fn race_law(raceway: &Raceway, hertz: &HertzContact, ball_radius: f64, outward: 
 }
 
 impl BallSet {
-    pub fn new(bearing: &Bearing, layout: Layout, bodies: &[RaceNow]) -> BallSet {
+    pub fn new(
+        bearing: &Bearing,
+        steps: BearingSteps,
+        layout: Layout,
+        bodies: &[RaceNow],
+    ) -> BallSet {
         let geometry = &bearing.geometry;
         let radius = geometry.ball_radius;
         // The deformed surface lies between ball and groove: R = 2 r_g r_b/(r_g + r_b).
         let curvature = |groove: f64| {
-            if bearing.heathcote { 0.25 * (groove + radius) / (groove * radius) } else { 0.0 }
+            if steps.curved { 0.25 * (groove + radius) / (groove * radius) } else { 0.0 }
         };
-        let slices = if bearing.traction == TractionLaw::None { 1 } else { bearing.slices };
+        let slices = if steps.traction { bearing.slices } else { 1 };
         let laws = ContactLaws {
             races: [
                 race_law(&geometry.inner, &bearing.inner_contact, radius, -1.0),
@@ -79,11 +89,9 @@ impl BallSet {
             ContactDamping::HuntCrossley { alpha } => 1.5 * alpha,
             ContactDamping::None | ContactDamping::LankaraniNikravesh { .. } => 0.0,
         };
-        let meetings = match bearing.ball_meeting() {
-            BallMeeting::Tested => neighbours(layout.balls),
-            BallMeeting::NoLaw | BallMeeting::KeptApart { .. } => 0,
-        };
+        let meetings = if steps.ball_contact { neighbours(layout.balls) } else { 0 };
         BallSet {
+            steps,
             table: ContactTable::new(&layout),
             damping: vec![alpha; 2 * layout.padded],
             pockets: vec![CageContact::default(); layout.balls],
@@ -111,23 +119,38 @@ impl BallSet {
     pub fn evaluate(
         &mut self,
         bearing: &Bearing,
-        gravity: Vec3,
+        gravity: Option<Vec3>,
         driver: Driver,
         want: Want,
         state: &[f64],
         rates: &mut [f64],
         ledger: &mut [f64; LEDGER],
         work: &mut Work,
+        ran: &mut Tally,
     ) {
-        let BallSet { layout, laws, table, damping, races: [inner, outer], .. } = self;
-        contacts::evaluate(driver, laws, layout, state, [inner, outer], damping, want, table, work);
-        self.ball_force.fill(scale(gravity, bearing.ball.mass));
+        let BallSet { layout, laws, table, damping, races: [inner, outer], steps, .. } = self;
+        let set = contacts::Set { laws, layout, races: [inner, outer], damping, steps: *steps };
+        contacts::evaluate(driver, set, state, want, table, work, ran);
+        match gravity {
+            Some(gravity) => {
+                self.ball_force.fill(scale(gravity, bearing.ball.mass));
+                ran.add(Stage::Gravity, self.ball_force.len() as u64);
+            }
+            None => self.ball_force.fill([0.0; 3]),
+        }
         self.ball_moment.fill([0.0; 3]);
         self.on_races = [RaceLoads::default(); 2];
         self.on_cage = RaceLoads::default();
-        self.add_race_contacts(bearing, state, ledger);
-        self.add_ball_contacts(bearing, state, ledger, work);
-        self.add_cage_contacts(bearing, state, ledger, work);
+        self.add_race_contacts(state, ledger);
+        if self.steps.ball_contact {
+            self.add_ball_contacts(bearing, state, ledger, work, ran);
+        }
+        if self.steps.pockets {
+            self.add_pocket_contacts(bearing, state, ledger, work, ran);
+        }
+        if self.steps.guide {
+            self.add_guide_contacts(bearing, ledger, work, ran);
+        }
         self.ball_rates(bearing, state, rates);
     }
 
@@ -151,11 +174,11 @@ impl BallSet {
     }
 
     /// Normal and tangential contact forces on balls and races, in the order of the pairs.
-    fn add_race_contacts(&mut self, bearing: &Bearing, state: &[f64], ledger: &mut [f64; LEDGER]) {
-        if bearing.damping != ContactDamping::None {
+    fn add_race_contacts(&mut self, state: &[f64], ledger: &mut [f64; LEDGER]) {
+        if self.steps.damping {
             ledger[Ledger::ContactDamping as usize] += self.damping_power();
         }
-        let has_traction = self.laws.traction != TractionLaw::None;
+        let has_traction = self.steps.traction;
         for &pair in &self.table.active {
             let (side, ball) = (pair / self.layout.padded, pair % self.layout.padded);
             let contact = &self.table.contact[pair];
@@ -205,9 +228,11 @@ impl BallSet {
         state: &[f64],
         ledger: &mut [f64; LEDGER],
         work: &mut Work,
+        ran: &mut Tally,
     ) {
         let Some(law) = bearing.ball_contact else { return };
         work.ball_tests += self.meetings.len() as u64;
+        ran.add(Stage::BallContact, self.meetings.len() as u64);
         for one in 0..self.meetings.len() {
             let other = (one + 1) % self.layout.balls;
             let [here, there] = [one, other].map(|ball| Motion {
@@ -233,13 +258,14 @@ impl BallSet {
         }
     }
 
-    /// Pocket and guide contacts of the cage.
-    fn add_cage_contacts(
+    /// Contacts of the cage with each ball.
+    fn add_pocket_contacts(
         &mut self,
         bearing: &Bearing,
         state: &[f64],
         ledger: &mut [f64; LEDGER],
         work: &mut Work,
+        ran: &mut Tally,
     ) {
         let (Some(caged), Some(now)) = (&bearing.cage, &self.cage) else { return };
         let law = &caged.contacts;
@@ -270,9 +296,23 @@ impl BallSet {
             ledger[Ledger::CageFriction as usize] += contact.power;
         }
         work.pocket_tests += self.layout.balls as u64;
+        ran.add(Stage::Pockets, self.layout.balls as u64);
+    }
+
+    /// Contacts of both ends of the cage with the race that guides it.
+    fn add_guide_contacts(
+        &mut self,
+        bearing: &Bearing,
+        ledger: &mut [f64; LEDGER],
+        work: &mut Work,
+        ran: &mut Tally,
+    ) {
+        let (Some(caged), Some(now)) = (&bearing.cage, &self.cage) else { return };
+        let (law, cage) = (&caged.contacts, &now.motion);
         let Some(side) = guiding_side(law.guidance) else { return };
         let race = &self.races[side].motion;
         work.guide_tests += 2;
+        ran.add(Stage::Guide, 2);
         for (contact, end) in self.guides.iter_mut().zip([-1.0, 1.0]) {
             *contact = guide_contact(law, cage, race, end);
             self.on_cage.add_at(cage.position, contact.point, scale(contact.force, -1.0));

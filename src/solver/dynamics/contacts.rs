@@ -7,13 +7,18 @@
 
 use super::race::RaceNow;
 use super::state::{LANES, Layout, POSITION, SPIN, VELOCITY};
-use crate::ch2_housing::bearing::contact::{RaceContact, RaceLaw, damped_load, race_contact};
+use crate::ch2_housing::bearing::contact::{
+    RaceContact, RaceLaw, damped_load, normal_load, race_contact,
+};
 use crate::ch2_housing::bearing::traction::{
     Motion, SliceSum, Slices, Sliding, TractionForce, TractionLaw, TractionSlope, add_slice,
     add_slope, coefficient, coefficient_and_slope, integrate, integrate_slope, per_entrainment,
     regularised, sliding, traction_force,
 };
 use crate::kinematics::vec3::{Vec3, sub};
+use crate::solver::plan::Stage;
+use crate::solver::plan::steps::BearingSteps;
+use crate::solver::plan::tally::Tally;
 
 /// Laws that all contacts share.
 #[derive(Clone, Debug)]
@@ -87,22 +92,34 @@ pub enum Driver {
     Lanes,
 }
 
+/// What the contacts of a bearing are found from.
+#[derive(Clone, Copy)]
+pub struct Set<'s> {
+    pub laws: &'s ContactLaws,
+    pub layout: &'s Layout,
+    /// Inner, outer.
+    pub races: [&'s RaceNow; 2],
+    /// Factor of each pair, s/m.
+    pub damping: &'s [f64],
+    pub steps: BearingSteps,
+}
+
 /// Contacts of all balls with both races.
-#[allow(clippy::too_many_arguments)]
 pub fn evaluate(
     driver: Driver,
-    laws: &ContactLaws,
-    layout: &Layout,
+    set: Set,
     state: &[f64],
-    races: [&RaceNow; 2],
-    damping: &[f64],
     want: Want,
     table: &mut ContactTable,
     work: &mut Work,
+    ran: &mut Tally,
 ) {
-    match driver {
-        Driver::Plain => detect_plain(laws, layout, state, races, damping, table),
-        Driver::Lanes => detect_lanes(laws, layout, state, races, damping, table),
+    let Set { laws, layout, races, .. } = set;
+    match (driver, set.steps.damping) {
+        (Driver::Plain, true) => detect_plain::<true>(&set, state, table, ran),
+        (Driver::Plain, false) => detect_plain::<false>(&set, state, table, ran),
+        (Driver::Lanes, true) => detect_lanes::<true>(&set, state, table, ran),
+        (Driver::Lanes, false) => detect_lanes::<false>(&set, state, table, ran),
     }
     table.active.clear();
     for race in 0..2 {
@@ -115,10 +132,16 @@ pub fn evaluate(
     }
     work.distance_tests += 2 * layout.balls as u64;
     work.loaded_contacts += table.active.len() as u64;
-    if laws.traction == TractionLaw::None {
+    if !set.steps.traction {
         return;
     }
-    work.slices += (table.active.len() * laws.slices.middle.len()) as u64;
+    let slices = (table.active.len() * laws.slices.middle.len()) as u64;
+    work.slices += slices;
+    ran.add(Stage::Traction, slices);
+    // Without a curvature the slices lie in a plane.
+    if laws.curvature != [0.0; 2] {
+        ran.add(Stage::CurvedSurface, slices);
+    }
     match (driver, want) {
         (Driver::Plain, _) => traction_plain(laws, layout, state, races, want, table),
         (Driver::Lanes, Want::Forces) => {
@@ -130,14 +153,33 @@ pub fn evaluate(
     }
 }
 
-fn detect_plain(
-    laws: &ContactLaws,
-    layout: &Layout,
+/// The load of a pair; without damping its factor is not looked at.
+#[inline(always)]
+fn load_of<const DAMPED: bool>(law: &RaceLaw, contact: &RaceContact, factor: f64) -> f64 {
+    if DAMPED {
+        damped_load(law.stiffness, contact.overlap, contact.closing_speed, factor)
+    } else {
+        normal_load(law.stiffness, contact.overlap)
+    }
+}
+
+/// Pairs that have been looked at, and those whose loads were damped.
+fn count_pairs<const DAMPED: bool>(layout: &Layout, ran: &mut Tally) {
+    let pairs = 2 * layout.balls as u64;
+    ran.add(Stage::DistanceTest, pairs);
+    if DAMPED {
+        ran.add(Stage::ContactDamping, pairs);
+    }
+}
+
+fn detect_plain<const DAMPED: bool>(
+    set: &Set,
     state: &[f64],
-    races: [&RaceNow; 2],
-    damping: &[f64],
     table: &mut ContactTable,
+    ran: &mut Tally,
 ) {
+    let Set { laws, layout, races, damping, .. } = *set;
+    count_pairs::<DAMPED>(layout, ran);
     for (race, now) in races.into_iter().enumerate() {
         let motion = &now.motion;
         for ball in 0..layout.balls {
@@ -150,12 +192,7 @@ fn detect_plain(
                 &laws.races[race],
             );
             table.contact[pair] = contact;
-            table.load[pair] = damped_load(
-                laws.races[race].stiffness,
-                contact.overlap,
-                contact.closing_speed,
-                damping[pair],
-            );
+            table.load[pair] = load_of::<DAMPED>(&laws.races[race], &contact, damping[pair]);
         }
     }
 }
@@ -169,14 +206,14 @@ fn lane(layout: &Layout, state: &[f64], component: usize, first: usize) -> [f64;
     values
 }
 
-fn detect_lanes(
-    laws: &ContactLaws,
-    layout: &Layout,
+fn detect_lanes<const DAMPED: bool>(
+    set: &Set,
     state: &[f64],
-    races: [&RaceNow; 2],
-    damping: &[f64],
     table: &mut ContactTable,
+    ran: &mut Tally,
 ) {
+    let Set { laws, layout, races, damping, .. } = *set;
+    count_pairs::<DAMPED>(layout, ran);
     for first in (0..layout.padded).step_by(LANES) {
         let component = |c: usize| lane(layout, state, c, first);
         let position = [0, 1, 2].map(|i| component(POSITION + i));
@@ -198,8 +235,7 @@ fn detect_lanes(
                     law,
                 );
                 contacts[l] = contact;
-                loads[l] =
-                    damped_load(law.stiffness, contact.overlap, contact.closing_speed, factor[l]);
+                loads[l] = load_of::<DAMPED>(law, &contact, factor[l]);
             }
             table.contact[pair..pair + LANES].copy_from_slice(&contacts);
             table.load[pair..pair + LANES].copy_from_slice(&loads);

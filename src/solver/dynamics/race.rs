@@ -9,6 +9,8 @@ use crate::kinematics::Pose;
 use crate::kinematics::euler::about;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 use crate::solver::mount::Mount;
+use crate::solver::plan::Stage;
+use crate::solver::plan::tally::Tally;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// A race at one instant.
@@ -185,13 +187,14 @@ pub struct RaceRates {
     pub foundation_power: f64,
 }
 
-/// Newton and Euler for a body with an axis of symmetry.
+/// Newton and Euler for a body with an axis of symmetry; on a foundation where one has its springs at `rest`.
 pub fn rates(
     body: &RaceBody,
     t: f64,
     race: &RaceNow,
-    start: &[f64; 5],
+    rest: Option<&[f64; 5]>,
     loads: &RaceLoads,
+    ran: &mut Tally,
 ) -> RaceRates {
     let mut force = loads.force;
     let mut moment = loads.moment;
@@ -204,24 +207,19 @@ pub fn rates(
     // ξ turns about Y, λ about e₃: the moments conjugate to them, as in statics. A moment about e₂
     // of Q/cos λ does the work Q dξ.
     let conjugate = [scale(e2, 1.0 / cos_lambda), e3];
-    // Angles are wanted by springs alone.
-    let sprung = body.foundation_stiffness[3] != 0.0 || body.foundation_stiffness[4] != 0.0;
-    let tilts = if sprung { race.tilts() } else { [start[3], start[4]] };
+    let mut of_foundation = [0.0; 5];
+    if let Some(rest) = rest {
+        of_foundation = foundation(body, race, rest, &tilt_rates, &mut rates.foundation_power);
+        ran.add(Stage::Foundation, 1);
+    }
     for i in 0..5 {
-        let (value, rate) = if i < 3 {
-            (state.position[i], state.velocity[i])
-        } else {
-            (tilts[i - 3], tilt_rates[i - 3])
-        };
-        let spring = -body.foundation_stiffness[i] * (value - start[i]);
-        let dashpot = -body.foundation_damping[i] * rate;
+        let rate = if i < 3 { state.velocity[i] } else { tilt_rates[i - 3] };
         let drive = match &body.drives[i] {
             Drive::Load(profile) => profile.value(t),
             Drive::Motion(_) => 0.0,
         };
         rates.drive_power += drive * rate;
-        rates.foundation_power += dashpot * rate;
-        let total = spring + dashpot + drive;
+        let total = of_foundation[i] + drive;
         if i < 3 {
             force[i] += total;
         } else {
@@ -250,6 +248,31 @@ pub fn rates(
     rates.acceleration = scale(force, 1.0 / body.inertia.mass);
     impose(body, t, race, force, transverse, &mut rates);
     rates
+}
+
+/// Loads of springs and dashpots to the ground along the five coordinates, and their loss, W, ≤ 0.
+fn foundation(
+    body: &RaceBody,
+    race: &RaceNow,
+    rest: &[f64; 5],
+    tilt_rates: &[f64; 2],
+    power: &mut f64,
+) -> [f64; 5] {
+    let state = &race.state;
+    // Angles are wanted by springs alone.
+    let sprung = body.foundation_stiffness[3] != 0.0 || body.foundation_stiffness[4] != 0.0;
+    let tilts = if sprung { race.tilts() } else { [rest[3], rest[4]] };
+    std::array::from_fn(|i| {
+        let (value, rate) = if i < 3 {
+            (state.position[i], state.velocity[i])
+        } else {
+            (tilts[i - 3], tilt_rates[i - 3])
+        };
+        let spring = -body.foundation_stiffness[i] * (value - rest[i]);
+        let dashpot = -body.foundation_damping[i] * rate;
+        *power += dashpot * rate;
+        spring + dashpot
+    })
 }
 
 /// M⊥ − (Ia − It)(a·ω) ω × a, which is It dω/dt across the axis.

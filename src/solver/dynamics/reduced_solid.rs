@@ -6,6 +6,9 @@
 //! α the coefficient of (2.7) over the mass. How shapes are found is `solver::housing::reduce`'s.
 
 use crate::kinematics::vec3::Vec3;
+use crate::solver::plan::Stage;
+use crate::solver::plan::solid::SolidSteps;
+use crate::solver::plan::tally::Tally;
 use crate::solver::profile::Profile;
 
 /// Shapes as equations of motion need them; displacements of all nodes are kept apart.
@@ -96,14 +99,35 @@ impl ReducedSolid {
 
     /// Accelerations of the shapes under weight, loads, springs and damping at time `t` where they have gone so
     /// far (m) at these speeds (m/s). Returns the power of damping and that of the loads, W.
-    pub fn accelerations(&self, t: f64, gone: &[f64], speeds: &[f64], to: &mut [f64]) -> [f64; 2] {
+    pub fn accelerations(
+        &self,
+        steps: SolidSteps,
+        t: f64,
+        [gone, speeds]: [&[f64]; 2],
+        to: &mut [f64],
+        ran: &mut Tally,
+    ) -> [f64; 2] {
         let (mut damped, mut driven) = (0.0, 0.0);
-        for (k, to) in to.iter_mut().enumerate() {
-            let (frequency, speed) = (self.frequencies[k], speeds[k]);
-            *to = self.weight[k] - frequency * frequency * gone[k] - self.damping * speed;
-            damped -= self.damping * speed * speed;
+        to.fill(0.0);
+        if steps.gravity {
+            to.copy_from_slice(&self.weight);
+            ran.add(Stage::Gravity, 1);
         }
-        for load in &self.loads {
+        for (k, to) in to.iter_mut().enumerate() {
+            let frequency = self.frequencies[k];
+            *to -= frequency * frequency * gone[k];
+        }
+        ran.add(Stage::Reduced, 1);
+        if steps.damping {
+            for (to, speed) in to.iter_mut().zip(speeds) {
+                *to -= self.damping * speed;
+                damped -= self.damping * speed * speed;
+            }
+            ran.add(Stage::Damping, 1);
+        }
+        let loads: &[ModalLoad] = if steps.loads { &self.loads } else { &[] };
+        ran.add(Stage::Loads, loads.len() as u64);
+        for load in loads {
             let factor = load.profile.value(t);
             for ((to, force), speed) in to.iter_mut().zip(&load.forces).zip(speeds) {
                 *to += factor * force;

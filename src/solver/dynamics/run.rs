@@ -14,6 +14,7 @@ use super::start;
 use super::state::{BodyState, LEDGER, Ledger};
 use super::step_watch::{StepWatch, Stiffness, stiffness};
 use super::system::System;
+use crate::solver::plan::{Stage, motion};
 
 pub use super::failure::SimulationError;
 
@@ -220,11 +221,12 @@ impl Simulation {
         options: RunOptions,
     ) -> Result<Simulation, SimulationError> {
         let assembly = assembly.into();
-        let state = match options.start {
-            Start::Equilibrium => start::at_equilibrium(&assembly)?,
-            Start::Nominal => start::nominal(&assembly),
+        let (state, searches) = match motion::start(options.start).does {
+            true => (start::at_equilibrium(&assembly)?, 1),
+            false => (start::nominal(&assembly), 0),
         };
         let mut simulation = Simulation::from_state(assembly, options, state, 0.0)?;
+        simulation.system.ran.whole.add(Stage::StartEquilibrium, searches);
         simulation.system.tidy(0.0, &mut simulation.state);
         if options.start == Start::Equilibrium {
             simulation.watch_cages_at_start()?;
@@ -266,6 +268,8 @@ impl Simulation {
         }
         let mut rates = vec![0.0; state.len()];
         system.work = Default::default();
+        system.ran.clear();
+        system.ran.whole.add(Stage::StabilityLimit, u64::from(limit.is_some()));
         system.evaluate(time, &state, &mut rates);
         let first_energy = system.energy(&state);
         let mut extremes = vec![Extremes::default(); system.sets.len()];

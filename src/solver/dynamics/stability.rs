@@ -95,6 +95,7 @@ impl Cause {
             // What is left when it is nothing else.
             Cause::Contact => false,
             Cause::Traction => bearings(system, &|set, _| {
+                set.steps.traction = false;
                 std::mem::replace(&mut set.laws.traction, TractionLaw::None) != TractionLaw::None
             }),
             Cause::ContactDamping => bearings(system, &|set, _| {
@@ -321,7 +322,7 @@ fn cause(system: &mut System, t: f64, state: &[f64], step: f64, eigenvalue: Comp
     for &candidate in candidates {
         let assembly = system.assembly.clone();
         let sets: Vec<_> =
-            system.sets.iter().map(|set| (set.laws.clone(), set.damping.clone())).collect();
+            system.sets.iter().map(|s| (s.laws.clone(), s.damping.clone(), s.steps)).collect();
         let longer = if candidate.remove(system) {
             system.renew_seats();
             limiting(system, t, state).map_or(f64::INFINITY, |limit| limit.0)
@@ -330,8 +331,8 @@ fn cause(system: &mut System, t: f64, state: &[f64], step: f64, eigenvalue: Comp
         };
         system.assembly = assembly;
         system.renew_seats();
-        for (set, (laws, damping)) in system.sets.iter_mut().zip(sets) {
-            (set.laws, set.damping) = (laws, damping);
+        for (set, (laws, damping, steps)) in system.sets.iter_mut().zip(sets) {
+            (set.laws, set.damping, set.steps) = (laws, damping, steps);
         }
         if longer > found.0 {
             found = (longer, candidate);

@@ -14,6 +14,7 @@ use super::system::System;
 use crate::ch2_housing::bearing::cage::CageForce;
 use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
 use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient_and_slope};
+use crate::solver::plan::Stage;
 
 /// Steps from one look at the contacts to the next.
 pub const LOOK_EVERY: u64 = 16;
@@ -211,9 +212,10 @@ impl Simulation {
             return Ok(None);
         }
         // The Jacobian's evaluations are not those of the steps: they are counted as judgements.
-        let work = self.system.work;
+        let (work, ran) = (self.system.work, self.system.ran.clone());
         let limit = step_limit(&mut self.system, self.time, &self.state);
-        self.system.work = work;
+        (self.system.work, self.system.ran) = (work, ran);
+        self.system.ran.whole.add(Stage::StabilityLimit, 1);
         let watch = &mut self.step_watch;
         watch.judged += 1;
         watch.stiffest = watch.stiffest.largest(&now);

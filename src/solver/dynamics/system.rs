@@ -2,6 +2,7 @@
 
 use super::assembly::{Assembly, Body, Mobility};
 use super::ball_set::{BallSet, onto_body};
+use super::connection::Connection;
 use super::contacts::{Driver, Want, Work};
 use super::model::Rotation;
 use super::race::{self, RaceLoads, RaceNow, mounted};
@@ -12,6 +13,9 @@ use super::state::{
     quaternion_rate,
 };
 use crate::kinematics::vec3::{Vec3, add, add_scaled, dot};
+use crate::solver::plan::steps::{BodySteps, Steps};
+use crate::solver::plan::tally::{Ran, Tally};
+use crate::solver::plan::{Item, Stage, motion};
 use nalgebra::Vector3;
 
 /// An assembly with everything precomputed and room to work in.
@@ -30,6 +34,11 @@ pub struct System {
     pub outside: Vec<Option<RaceLoads>>,
     pub driver: Driver,
     pub work: Work,
+    /// Items of one evaluation; those that say *does* are what is run.
+    pub plan: Vec<Item>,
+    steps: Steps,
+    /// How often each stage has run.
+    pub ran: Ran,
     /// Profiles are read no later than this, s: in a step that ends at a corner, just before it, so
     /// that no stage sees what comes after. Infinite otherwise.
     pub latest: f64,
@@ -39,6 +48,8 @@ pub struct System {
 impl System {
     pub fn new(assembly: impl Into<Assembly>, driver: Driver) -> System {
         let assembly = assembly.into();
+        let plan = motion::evaluation(&assembly, &[]);
+        let steps = Steps::new(&plan, &assembly);
         // Until the first evaluation all stand where their springs are at rest.
         let bodies: Vec<RaceNow> =
             assembly.bodies.iter().map(|body| race::fixed(&body.rest)).collect();
@@ -46,7 +57,8 @@ impl System {
             .bearings
             .iter()
             .zip(Layout::of(&assembly))
-            .map(|(bearing, layout)| BallSet::new(bearing, layout, &bodies))
+            .zip(&steps.bearings)
+            .map(|((bearing, layout), steps)| BallSet::new(bearing, *steps, layout, &bodies))
             .collect();
         let places = Places::of(&assembly);
         let seats = assembly.seats.iter();
@@ -59,6 +71,14 @@ impl System {
             loads: vec![RaceLoads::default(); bodies.len()],
             bodies,
             work: Work::default(),
+            ran: Ran::new(
+                assembly.bearings.len(),
+                assembly.bodies.len(),
+                assembly.solids.len(),
+                assembly.seats.len(),
+            ),
+            plan,
+            steps,
             latest: f64::INFINITY,
             assembly,
             driver,
@@ -73,11 +93,9 @@ impl System {
     /// Takes all bodies to where they are at time `t`, given motions imposed.
     fn place(&mut self, t: f64, state: &[f64]) {
         let t = t.min(self.latest);
-        for (index, body) in self.assembly.bodies.iter().enumerate() {
-            if body.moves() {
-                let here = self.body_state(state, index);
-                self.bodies[index] = race::body_now(body, t, here);
-            }
+        for &index in &self.steps.moving {
+            let here = self.body_state(state, index);
+            self.bodies[index] = race::body_now(&self.assembly.bodies[index], t, here);
         }
         for (set, bearing) in self.sets.iter_mut().zip(&self.assembly.bearings) {
             set.place(bearing, &self.bodies);
@@ -93,12 +111,15 @@ impl System {
     pub fn evaluate_with(&mut self, want: Want, t: f64, state: &[f64], rates: &mut [f64]) {
         self.work.evaluations += 1;
         self.place(t, state);
-        let Assembly { bearings, gravity, .. } = &self.assembly;
+        let bearings = &self.assembly.bearings;
+        let gravity = self.steps.gravity.then_some(self.assembly.gravity);
         let mut ledger = [0.0; LEDGER];
         self.loads.fill(RaceLoads::default());
-        for (set, bearing) in self.sets.iter_mut().zip(bearings) {
+        for ((set, bearing), own) in self.sets.iter_mut().zip(bearings).zip(&mut self.ran.bearings)
+        {
             let (driver, work) = (self.driver, &mut self.work);
-            set.evaluate(bearing, *gravity, driver, want, state, rates, &mut ledger, work);
+            set.evaluate(bearing, gravity, driver, want, state, rates, &mut ledger, work, own);
+            self.ran.whole.add(Stage::Gravity, own.take(Stage::Gravity));
             for ((mount, race), loads) in bearing.mounts.iter().zip(&set.races).zip(&set.on_races) {
                 let body = &self.bodies[mount.body];
                 self.loads[mount.body].add(&onto_body(mount, race, body, loads));
@@ -107,7 +128,9 @@ impl System {
                 self.loads[cage.body].add(&set.on_cage);
             }
         }
-        for connection in &self.assembly.connections {
+        let connections: &[Connection] =
+            if self.steps.springs { &self.assembly.connections } else { &[] };
+        for connection in connections {
             let ends = connection.ends.map(|mount| mounted(&self.bodies[mount.body], &mount));
             let pull = connection.pull([&ends[0], &ends[1]]);
             ledger[Ledger::Foundation as usize] += pull.loss;
@@ -115,13 +138,15 @@ impl System {
                 let body = &self.bodies[mount.body];
                 self.loads[mount.body].add(&onto_body(mount, end, body, loads));
             }
+            self.ran.whole.add(Stage::Springs, 1);
         }
         self.solid_rates(t, state, rates, &mut ledger);
-        for index in 0..self.assembly.bodies.len() {
-            self.body_rates(index, t, rates, &mut ledger);
+        for moving in 0..self.steps.moving.len() {
+            self.body_rates(self.steps.moving[moving], t, rates, &mut ledger);
         }
         let at = self.places.ledger();
         rates[at..at + LEDGER].copy_from_slice(&ledger);
+        self.ran.whole.add(Stage::Ledger, 1);
     }
 
     /// Rates of the reduced solids; what their seats do to bodies is summed.
@@ -134,15 +159,19 @@ impl System {
     ) {
         let t = t.min(self.latest);
         let Assembly { solids, seats, .. } = &self.assembly;
-        for (solid, &at) in solids.iter().zip(&self.solids) {
+        for &(index, steps) in &self.steps.solids {
+            let (solid, at) = (&solids[index], self.solids[index]);
             let (gone, speeds) = state[at..at + 2 * solid.count()].split_at(solid.count());
             let (to, accelerations) = rates[at..at + 2 * solid.count()].split_at_mut(solid.count());
             to.copy_from_slice(speeds);
-            let [damped, driven] = solid.accelerations(t, gone, speeds, accelerations);
+            let own = &mut self.ran.solids[index];
+            let [damped, driven] =
+                solid.accelerations(steps, t, [gone, speeds], accelerations, own);
             ledger[Ledger::Foundation as usize] += damped;
             ledger[Ledger::Drives as usize] += driven;
         }
-        for (seat, now) in seats.iter().zip(&mut self.seats) {
+        for &index in &self.steps.seats {
+            let (seat, now) = (&seats[index], &mut self.seats[index]);
             let (solid, at) = (&solids[seat.solid], self.solids[seat.solid]);
             let body = &self.bodies[seat.race.body];
             let race = mounted(body, &seat.race);
@@ -152,6 +181,7 @@ impl System {
             self.loads[seat.race.body].add(&onto_body(&seat.race, &race, body, &loads));
             // What lets the race grow works against the contact.
             ledger[Ledger::Drives as usize] += now.contact.radial_load * seat.radius.rate(t);
+            self.ran.seats[index].add(Stage::Seat, 1);
         }
     }
 
@@ -175,22 +205,26 @@ impl System {
     }
 
     /// Rates of one body under the loads that have been summed.
-    fn body_rates(&self, index: usize, t: f64, rates: &mut [f64], ledger: &mut [f64; LEDGER]) {
+    fn body_rates(&mut self, index: usize, t: f64, rates: &mut [f64], ledger: &mut [f64; LEDGER]) {
         let body = &self.assembly.bodies[index];
         let now = &self.bodies[index];
+        let steps = self.steps.bodies[index];
+        let own = &mut self.ran.bodies[index];
         let mut loads = self.loads[index];
+        if let (true, Some(inertia)) = (self.steps.gravity, body.inertia()) {
+            loads.force = add_scaled(loads.force, inertia.mass, self.assembly.gravity);
+            self.ran.whole.add(Stage::Gravity, 1);
+        }
         let (acceleration, spin_rate) = match &body.mobility {
             Mobility::Fixed => return,
             Mobility::Free(inertia) => {
-                let force = add_scaled(loads.force, inertia.mass, self.assembly.gravity);
                 let (axis, spin) = (now.motion.axis, now.motion.spin);
-                race::free_rates(inertia, axis, spin, force, loads.moment)
+                race::free_rates(inertia, axis, spin, loads.force, loads.moment)
             }
             Mobility::Driven(driven) => {
                 let t = t.min(self.latest);
-                loads.force = add_scaled(loads.force, driven.inertia.mass, self.assembly.gravity);
                 let BodyState { velocity, spin, .. } = now.state;
-                if let Some(turning) = turning_force(body, now, t) {
+                if let Some(turning) = turning_force(body, now, t, steps, own) {
                     loads.force = add(loads.force, turning);
                     ledger[Ledger::Drives as usize] += dot(turning, velocity);
                 }
@@ -198,23 +232,24 @@ impl System {
                     loads.add(outside);
                     ledger[Ledger::Foundation as usize] +=
                         dot(outside.force, velocity) + dot(outside.moment, spin);
+                    own.add(Stage::Impulses, 1);
                 }
-                let result = race::rates(driven, t, now, &body.rest, &loads);
+                let rest = steps.foundation.then_some(&body.rest);
+                let result = race::rates(driven, t, now, rest, &loads, own);
                 ledger[Ledger::Drives as usize] += result.drive_power;
                 ledger[Ledger::Foundation as usize] += result.foundation_power;
                 (result.acceleration, result.spin_rate)
             }
         };
         write_body(rates, self.places.body(index), &now.state, acceleration, spin_rate);
+        own.add(Stage::Motion, 1);
     }
 
     /// Writes prescribed positions and rates into the state, and makes quaternions unit again.
     pub fn tidy(&self, t: f64, state: &mut [f64]) {
         let t = t.min(self.latest);
-        for (index, body) in self.assembly.bodies.iter().enumerate() {
-            if !body.moves() {
-                continue;
-            }
+        for &index in &self.steps.moving {
+            let body = &self.assembly.bodies[index];
             let mut now = race::body_now(body, t, self.body_state(state, index)).state;
             now.orientation.renormalize();
             let at = self.places.body(index);
@@ -252,13 +287,24 @@ impl System {
     }
 }
 
-/// Rotating load and unbalance of a body, N; `None` where it has neither.
-fn turning_force(body: &Body, now: &RaceNow, t: f64) -> Option<Vec3> {
-    if body.rotating_load.is_none() && body.unbalance == 0.0 {
+/// Rotating load and unbalance of a body, N; `None` where neither is planned.
+fn turning_force(
+    body: &Body,
+    now: &RaceNow,
+    t: f64,
+    steps: BodySteps,
+    ran: &mut Tally,
+) -> Option<Vec3> {
+    if !(steps.rotating_load || steps.unbalance) {
         return None;
     }
-    let mut turning = body.rotating_load.as_ref().map_or([0.0; 3], |load| load.force(t));
-    if body.unbalance != 0.0 {
+    let mut turning = [0.0; 3];
+    if let (true, Some(load)) = (steps.rotating_load, &body.rotating_load) {
+        turning = load.force(t);
+        ran.add(Stage::RotatingLoad, 1);
+    }
+    if steps.unbalance {
+        ran.add(Stage::Unbalance, 1);
         // m e Ω² along the body's own Y, which turns with it, and m e dΩ/dt against its Z.
         let state = &now.state;
         let direction = |of: Vector3<f64>| -> Vec3 { (state.orientation * of).into() };

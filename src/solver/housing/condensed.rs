@@ -9,6 +9,7 @@ use crate::kinematics::Pose;
 use crate::kinematics::euler::{angles, quaternion};
 use crate::kinematics::vec3::{Vec3, add, dot, scale};
 use crate::solver::dense::DenseSymmetric;
+use crate::solver::plan::{Stage, tally::Tally};
 use crate::solver::solid::equilibrium_error::{Pivot, free_text};
 use crate::solver::solid::foretold;
 use crate::solver::solid::model::SolidModel;
@@ -117,6 +118,8 @@ pub struct CondensedBore {
     factor: Factor,
     unknowns: Unknowns,
     own_displacement: Vec<Vec3>,
+    /// How often each stage of the condensation ran.
+    pub ran: Tally,
 }
 
 impl fmt::Debug for CondensedBore {
@@ -241,7 +244,10 @@ pub fn condense_over(
     let (compliance, asymmetry) = DenseSymmetric::new(count, compliance);
 
     let mut forces = vec![[0.0; 4]; model.mass.len()];
-    model.add_static_forces(0.0, &mut forces);
+    let mut ran = Tally::default();
+    ran.add(Stage::Elements, model.problem.elements.len() as u64);
+    ran.add(Stage::Supports, unknowns.held() as u64);
+    model.add_static_forces(0.0, &mut forces, &mut ran);
     let loaded = forces.iter().any(|force| *force != [0.0; 4]);
     let own_displacement = if loaded {
         let mut right = vec![0.0; unknowns.count];
@@ -270,6 +276,7 @@ pub fn condense_over(
         factor,
         unknowns,
         own_displacement,
+        ran,
     })
 }
 

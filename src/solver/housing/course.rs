@@ -16,6 +16,8 @@ use crate::solver::dynamics::equilibrium::{conditions, orbital_angle, static_ass
 use crate::solver::dynamics::model::Drive;
 use crate::solver::dynamics::race::{fixed, mounted, tilts_of};
 use crate::solver::mount::Mount;
+use crate::solver::plan::Stage;
+use crate::solver::plan::tally::Ran;
 use crate::solver::profile::Profile;
 use crate::solver::static_assembly::{Place, StaticAssembly, StaticBody, StaticSeat};
 use crate::solver::statics::{AssemblySolution, Condition, StaticsError};
@@ -223,6 +225,8 @@ pub struct Course<'b> {
     /// The latest one.
     pub latest: Option<Moment>,
     pub effort: Effort,
+    /// How often each stage ran.
+    pub ran: Ran,
 }
 
 /// What equilibria took.
@@ -252,7 +256,7 @@ impl<'b> Course<'b> {
     pub fn new(problem: CourseProblem<'b>, interval: f64) -> Course<'b> {
         let search = CourseSearch::of(&problem.seats);
         let effort = Effort::default();
-        Course { problem, search, interval, found: 0, latest: None, effort }
+        Course { problem, search, interval, found: 0, latest: None, effort, ran: Ran::default() }
     }
 
     /// Of the latest equilibrium, s.
@@ -271,6 +275,8 @@ impl<'b> Course<'b> {
         effort.largest_residual = effort.largest_residual.max(moment.residual);
         effort.iterations += moment.solution.iterations;
         effort.contact_changes += moment.contact_changes;
+        self.ran.absorb(&moment.solution.ran);
+        self.ran.whole.add(Stage::Equilibria, 1);
         self.latest = Some(moment);
         self.found += 1;
         Ok(())

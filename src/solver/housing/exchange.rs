@@ -17,6 +17,8 @@ use crate::solver::dynamics::race::{self, RaceLoads};
 use crate::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Snapshot};
 use crate::solver::dynamics::start;
 use crate::solver::dynamics::state::{BODY, BodyState, Ledger, Places};
+use crate::solver::plan::Stage;
+use crate::solver::plan::tally::{Ran, Tally};
 use crate::solver::solid::contact::closed_limit;
 use crate::solver::solid::energy::SolidLedger;
 use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, padded};
@@ -232,6 +234,7 @@ impl Exchange {
             part.steps = steps;
         }
         let mut exchange = Exchange::of(simulation, solids, window);
+        exchange.simulation.system.ran.whole.add(Stage::StartEquilibrium, 1);
         exchange.begin()?;
         Ok(exchange)
     }
@@ -299,6 +302,26 @@ impl Exchange {
     /// Present time: that of the bodies and of the solids' velocities, s.
     pub fn time(&self) -> f64 {
         self.simulation.time
+    }
+
+    /// How often each stage has run in all.
+    pub fn ran(&self) -> Ran {
+        let mut ran = self.simulation.system.ran.clone();
+        ran.solids = self.solids.iter().map(|part| part.solid.ran).collect();
+        ran.seats = self.seats().map(|_| Tally::default()).collect();
+        for (tally, seat) in ran.seats.iter_mut().zip(self.seats()) {
+            tally.add(Stage::Seat, seat.presses);
+        }
+        ran
+    }
+
+    /// Counts anew.
+    pub fn forget_ran(&mut self) {
+        self.simulation.system.ran.clear();
+        for part in &mut self.solids {
+            part.solid.ran = Tally::default();
+            part.seats.iter_mut().for_each(|seat| seat.presses = 0);
+        }
     }
 
     pub fn seats(&self) -> impl Iterator<Item = &SeatState> {

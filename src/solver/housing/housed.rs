@@ -9,6 +9,7 @@ use crate::ch2_housing::bore_contact::Penalty;
 use crate::kinematics::Pose;
 use crate::kinematics::vec3::{Vec3, add};
 use crate::solver::mount::Mount;
+use crate::solver::plan::tally::Ran;
 use crate::solver::static_assembly::{Loaded, Place, StaticAssembly, StaticBody, StaticSeat};
 use crate::solver::statics::{
     AssemblySolution, Condition, StaticOptions, StaticProblem, StaticSolution, StaticsError,
@@ -32,6 +33,8 @@ pub struct HousedState {
     pub iterations: usize,
     pub contact_changes: usize,
     pub contact_evaluations: usize,
+    /// How often each stage ran.
+    pub ran: Ran,
 }
 
 /// A search that starts from what it found last.
@@ -100,6 +103,7 @@ impl<'b> HousedSearch<'b> {
             iterations: found.iterations,
             contact_changes: 0,
             contact_evaluations: found.contact_evaluations,
+            ran: found.ran.clone(),
             bearing: found,
             bore,
             stiffness,

@@ -21,6 +21,7 @@ use crate::solver::dense::DenseSymmetric;
 use crate::solver::dynamics::reduced_solid::{ModalLoad, ReducedSolid, Surface, SurfaceNode};
 use crate::solver::dynamics::seat::Seat;
 use crate::solver::mount::Mount;
+use crate::solver::plan::tally::Tally;
 use crate::solver::profile::Profile;
 use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::modes::{Mode, ModeError, ModeOptions, modes_over};
@@ -363,7 +364,7 @@ fn own_loads(model: &SolidModel) -> Vec<(NodalForces, Option<Profile>)> {
     let mut own = Vec::new();
     if problem.gravity != [0.0; 3] {
         let mut weight = vec![[0.0; 4]; model.mass.len()];
-        model.add_weight(&mut weight);
+        model.add_weight(&mut weight, &mut Tally::default());
         let forces = (0u32..).zip(weight).map(|(node, [x, y, z, _])| (node, [x, y, z]));
         own.push((forces.collect(), None));
     }

@@ -128,6 +128,8 @@ pub struct SeatState {
     /// Nodes tested so far, and how often they were sorted by reach.
     pub tested: u64,
     pub sorts: u64,
+    /// Evaluations of the contact.
+    pub presses: u64,
     near: Vec<ContactNode>,
     far: Vec<(ContactNode, Vec3)>,
     sorted_at: (Cylinder, Frame),
@@ -173,6 +175,7 @@ impl SeatState {
             growth: Growth { radius: cylinder.radius, ..Growth::default() },
             tested: 0,
             sorts: 0,
+            presses: 0,
             near: Vec::new(),
             far: Vec::new(),
             sorted_at: (cylinder, first),
@@ -215,6 +218,7 @@ impl SeatState {
         let sum = press(&cylinder, &frame(&race), penalty, &self.near, displacement, forces);
         self.growth = self.growth.to(cylinder.radius, sum.radial_load);
         self.tested += sum.tested as u64;
+        self.presses += 1;
         let on_race = RaceLoads { force: sum.force, moment: sum.moment };
         let on_body = onto_body(&self.seat.mount, &race, &body, &on_race);
         self.handed.force = add_scaled(self.handed.force, step, on_body.force);

@@ -10,6 +10,7 @@ use super::trust::{Placed, farthest, size};
 use crate::ch2_housing::bore_contact::{ContactNode, ContactSum, contact};
 use crate::kinematics::strain::Mat3;
 use crate::kinematics::vec3::{Vec3, norm};
+use crate::solver::plan::{Stage, tally::Tally};
 use crate::solver::sparse::{Factor, FactorError, SymmetricMatrix};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +53,8 @@ pub struct Equilibrium {
     pub residual: f64,
     pub iterations: usize,
     pub factorisations: usize,
+    /// How often each stage ran.
+    pub ran: Tally,
 }
 
 /// Equilibrium under the loads and prescribed displacements at time `t`.
@@ -167,6 +170,7 @@ struct Newton<'a> {
     residual: f64,
     iterations: usize,
     factorisations: usize,
+    ran: Tally,
 }
 
 impl<'a> Newton<'a> {
@@ -177,9 +181,12 @@ impl<'a> Newton<'a> {
         options: &'a EquilibriumOptions,
     ) -> Self {
         let mut external = vec![[0.0; 4]; model.mass.len()];
+        let mut ran = Tally::default();
         match options.gravity {
-            MassMatrix::Consistent => model.add_static_forces(t, &mut external),
-            MassMatrix::Lumped => model.add_external_forces(t, &mut external),
+            MassMatrix::Consistent => model.add_static_forces(t, &mut external, &mut ran),
+            MassMatrix::Lumped => {
+                model.add_external_forces(model.acting(), t, &mut external, &mut ran);
+            }
         }
         Newton {
             matrix: pattern(&model.problem, &unknowns),
@@ -196,6 +203,7 @@ impl<'a> Newton<'a> {
             residual: f64::NAN,
             iterations: 0,
             factorisations: 0,
+            ran,
             model,
             options,
             t,
@@ -216,7 +224,8 @@ impl<'a> Newton<'a> {
     }
 
     /// Internal forces at the present displacements, N.
-    fn internal(&self) -> Vec<[f64; 4]> {
+    fn internal(&mut self) -> Vec<[f64; 4]> {
+        self.ran.add(Stage::Elements, self.model.problem.elements.len() as u64);
         let padded: Vec<_> = self.displacement.iter().map(|u| [u[0], u[1], u[2], 0.0]).collect();
         let mut forces = vec![[0.0; 4]; padded.len()];
         self.model.add_internal_forces(&padded, &mut forces);
@@ -378,7 +387,7 @@ impl<'a> Newton<'a> {
         }
     }
 
-    fn finish(self) -> Equilibrium {
+    fn finish(mut self) -> Equilibrium {
         let mut internal = self.internal();
         for Touching { node, force, .. } in &self.touching {
             for i in 0..3 {
@@ -393,7 +402,10 @@ impl<'a> Newton<'a> {
                 })
             })
             .collect();
+        self.ran.add(Stage::Supports, self.unknowns.held() as u64);
+        self.ran.add(Stage::SolidStatics, self.factorisations as u64);
         Equilibrium {
+            ran: self.ran,
             reactions,
             displacement: self.displacement,
             residual: self.residual,

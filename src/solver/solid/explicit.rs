@@ -8,6 +8,7 @@ use super::team::Team;
 use super::tet4_blocks::Node;
 use crate::kinematics::vec3::Vec3;
 use crate::solver::clock::whole_steps;
+use crate::solver::plan::{Stage, solid::SolidSteps, tally::Tally};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExplicitMethod {
@@ -65,6 +66,10 @@ pub struct ExplicitSolid {
     pub(super) external_work: Vec<f64>,
     pub(super) damping_work: Vec<f64>,
     pub work: SolidWork,
+    /// How often each stage has run.
+    pub ran: Tally,
+    /// What acts on it, as planned.
+    acting: SolidSteps,
     stages: Option<Box<Stages>>,
     /// Where several threads share its elements.
     pub(super) team: Option<Team>,
@@ -170,6 +175,8 @@ impl ExplicitSolid {
             external_work: vec![0.0; count],
             damping_work: vec![0.0; count],
             work: SolidWork::default(),
+            ran: Tally::default(),
+            acting: model.acting(),
             stages,
             team: None,
             model,
@@ -188,6 +195,7 @@ impl ExplicitSolid {
 
     /// Writes prescribed displacements and their rates into the state.
     fn impose(&mut self) {
+        self.ran.add(Stage::Supports, self.model.problem.prescribed.len() as u64);
         for Prescribed { node, axis, profile } in &self.model.problem.prescribed {
             self.displacement[*node as usize][*axis] = profile.value(self.time);
             self.rate[*node as usize][*axis] = profile.rate(self.time);
@@ -219,9 +227,10 @@ impl ExplicitSolid {
             Some(team) => team.add_internal_forces(&self.displacement, &mut self.force),
             None => self.model.add_internal_forces(&self.displacement, &mut self.force),
         }
-        self.model.add_external_forces(self.time, &mut self.force);
+        self.model.add_external_forces(self.acting, self.time, &mut self.force, &mut self.ran);
         self.work.evaluations += 1;
         self.work.elements += self.elements_a_step() as u64;
+        self.ran.add(Stage::Elements, self.elements_a_step() as u64);
     }
 
     /// One step. `contacts` adds further forces on the nodes, given time and displacements; their
@@ -238,6 +247,7 @@ impl ExplicitSolid {
             ExplicitMethod::RungeKutta => self.runge_kutta_step(contacts),
         }
         self.steps += 1;
+        self.ran.add(Stage::Explicit, 1);
         self.watch()
     }
 
@@ -246,9 +256,9 @@ impl ExplicitSolid {
         self.evaluate();
         contacts(self.time, &self.displacement, &mut self.force);
         let h = self.step_size;
-        let half_damping = 0.5 * h * self.model.problem.damping;
         self.add_load_work(0.5 * h);
         let next = self.time + h;
+        self.ran.add(Stage::Supports, self.model.problem.prescribed.len() as u64);
         for Prescribed { node, axis, profile } in &self.model.problem.prescribed {
             let (n, i) = (*node as usize, *axis);
             let rate = (profile.value(next) - self.displacement[n][i]) / h;
@@ -258,7 +268,7 @@ impl ExplicitSolid {
             self.external_work[n] += 0.5 * h * drive * (rate + before);
             self.rate[n][i] = rate;
         }
-        if half_damping == 0.0 {
+        if !self.acting.damping {
             let nodes = self.rate.iter_mut().zip(&mut self.displacement);
             let pulls = self.force.iter().zip(&self.model.per_mass);
             for ((rate, displacement), (force, per_mass)) in nodes.zip(pulls) {
@@ -277,6 +287,7 @@ impl ExplicitSolid {
     /// Kick and drift with damping. What is left of the body's rigid motion is damped with the mean of
     /// the velocities before and after the kick; the rigid motion itself takes the whole kick.
     fn damped_kick(&mut self, h: f64) {
+        self.ran.add(Stage::Damping, 1);
         let SolidModel { per_mass, problem, mass, .. } = &self.model;
         let half_damping = 0.5 * h * problem.damping;
         let per_sum = 1.0 / (1.0 + half_damping);
@@ -322,7 +333,7 @@ impl ExplicitSolid {
             }
         }
         let gravity = problem.gravity;
-        if gravity != [0.0; 3] {
+        if self.acting.gravity {
             for (n, rate) in self.rate.iter().enumerate() {
                 self.external_work[n] += seconds
                     * mass[n]
@@ -345,11 +356,11 @@ impl ExplicitSolid {
             let share = h * weight / 6.0;
             self.add_load_work(share);
             let SolidModel { per_mass, problem, mass, .. } = &self.model;
-            let rigid = if problem.damping == 0.0 {
-                RigidMotion::default()
-            } else {
-                rigid_motion(problem, mass, &self.displacement, &self.rate)
-            };
+            let mut rigid = RigidMotion::default();
+            if self.acting.damping {
+                rigid = rigid_motion(problem, mass, &self.displacement, &self.rate);
+                self.ran.add(Stage::Damping, 1);
+            }
             for n in 0..mass.len() {
                 let rest = rigid.velocity(problem.nodes[n], self.displacement[n]);
                 for i in 0..3 {
@@ -449,7 +460,7 @@ impl ExplicitSolid {
             ExplicitMethod::RungeKutta => 0.0,
         };
         let mut loads = vec![[0.0; 4]; self.force.len()];
-        self.model.add_external_forces(self.time, &mut loads);
+        self.model.add_external_forces(self.acting, self.time, &mut loads, &mut self.ran);
         let SolidModel { mass, per_mass, .. } = &self.model;
         let (mut kinetic, mut external, mut damping) = (0.0, 0.0, 0.0);
         for (n, acceleration) in self.acceleration().into_iter().enumerate() {

@@ -10,6 +10,9 @@ use crate::elements::tet10::{self, Tet10};
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::tet_mesh::Elements;
 use crate::solver::clock::rounded;
+use crate::solver::plan::Stage;
+use crate::solver::plan::solid::{Method, SolidSteps};
+use crate::solver::plan::tally::Tally;
 use crate::solver::profile::Profile;
 use thiserror::Error;
 
@@ -240,41 +243,60 @@ impl SolidModel {
 
     /// Adds loads and gravity at time `t`, N, gravity by the lumped masses: all nodes of a free
     /// body then fall alike.
-    pub fn add_external_forces(&self, t: f64, forces: &mut [Node]) {
-        self.add_loads(t, forces);
-        self.add_gravity(forces, self.mass.iter().copied().enumerate());
+    pub fn add_external_forces(
+        &self,
+        steps: SolidSteps,
+        t: f64,
+        forces: &mut [Node],
+        ran: &mut Tally,
+    ) {
+        self.add_loads(steps, t, forces, ran);
+        if steps.gravity {
+            self.add_gravity(forces, self.mass.iter().copied().enumerate(), ran);
+        }
     }
 
     /// Adds loads and gravity at time `t`, N, gravity as ∫Nρg dV: what equilibrium needs. For
     /// four-node elements this is the same as by lumped masses. For ten-node elements lumped
     /// masses are positive everywhere, as explicit steps need them, but as a load they would cost an
     /// order of convergence; the consistent load pulls corners upwards.
-    pub fn add_static_forces(&self, t: f64, forces: &mut [Node]) {
-        self.add_loads(t, forces);
-        self.add_weight(forces);
+    pub fn add_static_forces(&self, t: f64, forces: &mut [Node], ran: &mut Tally) {
+        let steps = self.acting();
+        self.add_loads(steps, t, forces, ran);
+        if steps.gravity {
+            self.add_weight(forces, ran);
+        }
     }
 
     /// Of [`SolidModel::add_static_forces`] what gravity does, N.
-    pub fn add_weight(&self, forces: &mut [Node]) {
+    pub fn add_weight(&self, forces: &mut [Node], ran: &mut Tally) {
         match &self.problem.elements {
             Elements::Linear(_) => {
-                self.add_gravity(forces, self.mass.iter().copied().enumerate());
+                self.add_gravity(forces, self.mass.iter().copied().enumerate(), ran);
             }
-            Elements::Quadratic(list) if self.problem.gravity != [0.0; 3] => {
+            Elements::Quadratic(list) => {
                 for element in list {
                     let shares = tet10::consistent_mass(
                         &corners(&self.problem.nodes, element),
                         self.problem.density,
                     );
                     let sums = shares.map(|row| row.iter().sum());
-                    self.add_gravity(forces, element.iter().map(|n| *n as usize).zip(sums));
+                    self.add_gravity(forces, element.iter().map(|n| *n as usize).zip(sums), ran);
                 }
             }
-            Elements::Quadratic(_) => {}
         }
     }
 
-    fn add_loads(&self, t: f64, forces: &mut [Node]) {
+    /// What its plan lets act on it.
+    pub fn acting(&self) -> SolidSteps {
+        SolidSteps::new(&self.problem, &Method::Explicit)
+    }
+
+    fn add_loads(&self, steps: SolidSteps, t: f64, forces: &mut [Node], ran: &mut Tally) {
+        if !steps.loads {
+            return;
+        }
+        ran.add(Stage::Loads, self.problem.loads.len() as u64);
         for load in &self.problem.loads {
             let factor = load.profile.value(t);
             for (node, force) in &load.forces {
@@ -286,12 +308,15 @@ impl SolidModel {
         }
     }
 
-    /// Weight of masses at nodes; nothing without gravity.
-    fn add_gravity(&self, forces: &mut [Node], masses: impl Iterator<Item = (usize, f64)>) {
+    /// Weight of masses at nodes.
+    fn add_gravity(
+        &self,
+        forces: &mut [Node],
+        masses: impl Iterator<Item = (usize, f64)>,
+        ran: &mut Tally,
+    ) {
+        ran.add(Stage::Gravity, 1);
         let gravity = self.problem.gravity;
-        if gravity == [0.0; 3] {
-            return;
-        }
         for (node, mass) in masses {
             for i in 0..3 {
                 forces[node][i] += mass * gravity[i];

@@ -4,6 +4,7 @@
 use super::model::SolidModel;
 use super::tangent::{MassMatrix, PRESCRIBED, Unknowns, mass, mass_pattern, pattern, stiffness};
 use crate::kinematics::vec3::Vec3;
+use crate::solver::plan::{Stage, tally::Tally};
 use crate::solver::sparse::{Factor, FactorError, SymmetricMatrix};
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::TAU;
@@ -55,6 +56,8 @@ pub struct Modes {
     pub unknowns: usize,
     /// Solves with the factorised stiffness.
     pub solves: usize,
+    /// How often each stage ran.
+    pub ran: Tally,
 }
 
 /// Vectors that are carried on at once: pairs of equal frequencies and the six rigid motions are
@@ -143,7 +146,11 @@ pub fn modes_over(
                 })
                 .collect();
             modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
-            return Ok(Modes { modes, unknowns: size, solves });
+            let mut ran = Tally::default();
+            ran.add(Stage::Elements, model.problem.elements.len() as u64);
+            ran.add(Stage::Supports, unknowns.held() as u64);
+            ran.add(Stage::Modes, modes.len() as u64);
+            return Ok(Modes { modes, unknowns: size, solves, ran });
         }
         if krylov.basis.len() >= most || !krylov.grow(most) {
             return Err(ModeError::NotConverged {

@@ -33,6 +33,11 @@ pub struct Unknowns {
 }
 
 impl Unknowns {
+    /// Components that supports hold or move.
+    pub fn held(&self) -> usize {
+        self.of.iter().flatten().filter(|index| **index == PRESCRIBED).count()
+    }
+
     pub fn new(model: &SolidModel) -> Unknowns {
         Unknowns::ordered(model, Ordering::Cheapest)
     }

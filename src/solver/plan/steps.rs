@@ -1,0 +1,86 @@
+//! What each evaluation of a motion does, read once from the items of its plan.
+
+use super::solid::SolidSteps;
+use super::{Item, Stage, Subject, does};
+use crate::solver::dynamics::assembly::Assembly;
+
+/// Of one bearing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BearingSteps {
+    pub traction: bool,
+    pub curved: bool,
+    pub damping: bool,
+    pub pockets: bool,
+    pub guide: bool,
+    pub ball_contact: bool,
+}
+
+/// Of one body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BodySteps {
+    pub foundation: bool,
+    pub rotating_load: bool,
+    pub unbalance: bool,
+}
+
+/// Of a whole assembly.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Steps {
+    pub gravity: bool,
+    pub springs: bool,
+    pub bearings: Vec<BearingSteps>,
+    /// Of each body.
+    pub bodies: Vec<BodySteps>,
+    /// Bodies that have equations, in their order.
+    pub moving: Vec<usize>,
+    /// Reduced solids and the seats in them.
+    pub solids: Vec<(usize, SolidSteps)>,
+    pub seats: Vec<usize>,
+}
+
+impl Steps {
+    pub fn new(items: &[Item], assembly: &Assembly) -> Steps {
+        let of = |stage: Stage, subject: Subject| does(items, stage, subject);
+        let bearing = |index| {
+            let of = |stage| of(stage, Subject::Bearing(index));
+            BearingSteps {
+                traction: of(Stage::Traction),
+                curved: of(Stage::CurvedSurface),
+                damping: of(Stage::ContactDamping),
+                pockets: of(Stage::Pockets),
+                guide: of(Stage::Guide),
+                ball_contact: of(Stage::BallContact),
+            }
+        };
+        let body = |index| {
+            let of = |stage| of(stage, Subject::Body(index));
+            BodySteps {
+                foundation: of(Stage::Foundation),
+                rotating_load: of(Stage::RotatingLoad),
+                unbalance: of(Stage::Unbalance),
+            }
+        };
+        let bodies = 0..assembly.bodies.len();
+        let solid = |index| {
+            let of = |stage| of(stage, Subject::Solid(index));
+            let acting = SolidSteps {
+                supports: false,
+                loads: of(Stage::Loads),
+                gravity: of(Stage::Gravity),
+                damping: of(Stage::Damping),
+            };
+            of(Stage::Reduced).then_some((index, acting))
+        };
+        let solids = 0..assembly.solids.len();
+        let seats = 0..assembly.seats.len();
+        Steps {
+            gravity: of(Stage::Gravity, Subject::Whole),
+            springs: of(Stage::Springs, Subject::Whole),
+            bearings: (0..assembly.bearings.len()).map(bearing).collect(),
+            bodies: bodies.clone().map(body).collect(),
+            moving: bodies.filter(|index| of(Stage::Motion, Subject::Body(*index))).collect(),
+            solids: solids.filter_map(solid).collect(),
+            seats: seats.filter(|index| of(Stage::Seat, Subject::Seat(*index))).collect(),
+        }
+    }
+}
