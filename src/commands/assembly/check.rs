@@ -19,7 +19,7 @@ use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{CageInRun, Document, RunSettings, Scene};
 use bearing_dynamics::solver::dynamics::run::Stepping;
-use bearing_dynamics::solver::plan::race_freedom;
+use bearing_dynamics::solver::plan::motion::race_freedom;
 use std::fmt::Write;
 use std::path::Path;
 

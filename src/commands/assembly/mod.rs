@@ -16,7 +16,8 @@ use bearing_dynamics::scene::DefaultUsed;
 use bearing_dynamics::scene::assembly::{AssemblyScene, Carrier, PlacedBearing, PlacedHousing};
 use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::scene::statics::static_problem;
-use bearing_dynamics::solver::plan::{Item, race_freedom};
+use bearing_dynamics::solver::plan::Item;
+use bearing_dynamics::solver::plan::motion::race_freedom;
 use bearing_dynamics::solver::static_assembly::StaticAssembly;
 use std::error::Error;
 
