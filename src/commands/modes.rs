@@ -1,12 +1,12 @@
 //! `bearing modes SCENE`.
 
-use super::CommandResult;
+use super::{CommandResult, assembly, solid};
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Scene file (.toml or .json) with a [solid] table
+    /// Scene file (.toml or .json)
     scene: PathBuf,
     /// Results folder [default: results/<name of the scene>-modes]
     #[arg(long)]
@@ -17,27 +17,10 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
-    let Arguments { scene, out, dry } = arguments;
-    let document = Document::read_file(scene)?;
-    let subject = resolve_subject(&document)?;
-    let housed = match &subject {
-        Subject::Assembly(assembly) => assembly.housing_method().is_some(),
-        other => matches!(other, Subject::Housed(_)),
-    };
-    match subject {
-        Subject::Solid(solid) => super::solid::modes::run(scene, &document, &solid, out, *dry),
-        _ if housed => Err(format!(
-            "{}: modes takes a solid by itself, and the scene holds a bearing in a housing; write the \
-             [solid] tables alone into a scene of their own for the housing's modes, or look at \
-             `bearing plan` for the lowest frequency of bearing and housing",
-            scene.display()
-        )
-        .into()),
-        _ => Err(format!(
-            "{}: modes takes a solid by itself, and the scene holds a bearing; `bearing statics` \
-             gives a bearing's stiffness",
-            scene.display()
-        )
-        .into()),
+    let Arguments { scene: path, out, dry } = arguments;
+    let document = Document::read_file(path)?;
+    match resolve_subject(&document)? {
+        Subject::Solid(solid) => solid::modes::run(path, &document, &solid, out, *dry),
+        Subject::Assembly(scene) => assembly::modes::run(path, &document, &scene, out, *dry),
     }
 }

@@ -1,13 +1,10 @@
 //! `bearing pack CASE`.
 
-use super::assembly::statics::{Found, find_equilibrium};
+use super::assembly::statics::find_equilibrium;
 use super::earlier::{Writes, claimed};
-use super::solve::solve_scene;
 use super::{CommandResult, Outcome, say};
-use bearing_dynamics::output::assembly_results::{self, Solved};
 use bearing_dynamics::output::compare::tolerance::ToleranceClass;
 use bearing_dynamics::output::pack::{PackInput, refuse_foreign_files, write_pack};
-use bearing_dynamics::output::results::write_static_results;
 use bearing_dynamics::scene::{Document, Subject, resolve, resolve_subject};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -26,10 +23,11 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
     let document = Document::read_file(&path)?;
     let subject = resolve_subject(&document)?;
-    if !matches!(subject, Subject::Assembly(_)) {
-        // What is more than a bearing is refused, with the reason, before anything is written.
+    let Subject::Assembly(scene) = subject else {
+        // Refused, with the reason, before anything is written.
         resolve(&document)?;
-    }
+        return Err("a pack takes bearings".into());
+    };
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("toml");
     let name = format!("scene.{extension}");
     let stem = path.file_stem().unwrap_or(path.as_os_str());
@@ -37,29 +35,20 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let folder = claimed(&folder, Writes::Pack)?;
     refuse_foreign_files(&folder, &name)?;
     let read = start.elapsed().as_secs_f64();
-    let input = |resolved| PackInput {
+    let found = find_equilibrium(&document, &scene, read)?;
+    let record = &found.record;
+    let input = PackInput {
         scene_name: &name,
         scene_text: document.text(),
-        resolved,
+        resolved: &record.scene,
         class: ToleranceClass::F64Reordered,
     };
-    let (manifest, runs) = match &subject {
-        Subject::Assembly(scene) => {
-            let Found { names, assembly, solution, record, .. } =
-                find_equilibrium(&document, scene, read)?;
-            let solved = Solved { assembly: &assembly, names: &names, solution: &solution };
-            let results = |folder: &Path| assembly_results::write(folder, &solved, &record);
-            (write_pack(&folder, &input(&record.scene), &record, results)?, scene.run().is_some())
-        }
-        _ => {
-            let scene = resolve(&document)?;
-            let super::solve::Solved { solution, record, .. } = solve_scene(&scene, read)?;
-            let results = |folder: &Path| write_static_results(folder, &solution, &record);
-            let manifest = write_pack(&folder, &input(&record.scene), &record, results)?;
-            (manifest, scene.dynamics.run.is_some())
-        }
+    let manifest = write_pack(&folder, &input, record, |folder| found.write(folder, record))?;
+    let of_run = if scene.run().is_some() {
+        ": the statics of this scene; its run is not packed"
+    } else {
+        ""
     };
-    let of_run = if runs { ": the statics of this scene; its run is not packed" } else { "" };
     let files = manifest.sha256.len() + 1;
     say(&format!("wrote {files} files to {}{of_run}\n", folder.display()))?;
     Ok(Outcome::Done)

@@ -7,8 +7,8 @@ use bearing_dynamics::solver::statics::{
 };
 use std::fmt::Write;
 
-/// Position, reactions, stiffness, balls and what to beware of.
-pub fn render(solution: &StaticSolution, remarks: &[String]) -> String {
+/// Position, reactions, stiffness, balls, `housing` in lines of its own, and what to beware of.
+pub fn render(solution: &StaticSolution, housing: &str, remarks: &[String]) -> String {
     let mut text = String::new();
     race(&mut text, solution);
     stiffness(&mut text, |i, j| solution.stiffness[(i, j)]);
@@ -25,6 +25,7 @@ pub fn render(solution: &StaticSolution, remarks: &[String]) -> String {
         "{} iterations, {} ball-race evaluations, unbalanced load {:.1e} N",
         solution.iterations, solution.contact_evaluations, solution.residual
     );
+    text += housing;
     for remark in remarks {
         let _ = writeln!(text, "note: {remark}");
     }

@@ -4,7 +4,6 @@
 //! - [`results`], [`assembly_results`]: the results folder of one static solution
 //! - [`session`]: a run of whatever moves; [`recorder`] keeps its rows, [`mod@state`] is what it resumes from,
 //!   [`table`] and [`summary`] say what came of it
-//! - [`course`]: a bearing in a condensed housing, one equilibrium a row
 //! - [`fields`], [`remarks`]: a solid as ParaView opens it, and what to know before using it
 //! - [`pictures`]: plots of a run; [`plots`]: SVG pictures from plain data
 //! - [`folder`]: who may write into a results folder, and over what
@@ -31,11 +30,11 @@
 pub mod assembly_results;
 pub mod atomic;
 pub mod compare;
-pub mod course;
 pub mod fields;
 pub mod folder;
 pub mod journal;
 pub mod json;
+pub mod natural_motions;
 pub mod npy;
 pub mod pack;
 pub mod pictures;

@@ -61,7 +61,7 @@ impl RunTable {
         let from = window_start - 1e-6 * interval;
         let times = series.data().column(0);
         let start = times.iter().position(|time| *time >= from).map_or(end, |row| row.min(end));
-        let assembly = session.motion.bearing().map(|simulation| &simulation.system.assembly);
+        let assembly = session.motion.assembly();
         let bearings: Vec<String> = match assembly {
             Some(assembly) => assembly.bearings.iter().map(|bearing| bearing.prefix()).collect(),
             None => vec![String::new()],

@@ -4,7 +4,7 @@ use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::scene::dynamics::{DynamicsError, dynamic_problem};
 use crate::scene::housing::{HousedScene, HousingMethod, HousingSettings};
 use crate::scene::resolved::{DefaultUsed, RunSettings, Scene};
-use crate::scene::solid::{SolidScene, Subject};
+use crate::scene::solid::SolidScene;
 use crate::scene::statics::{ball_mass, orbital_speed};
 use crate::solver::dynamics::assembly::{Assembly, Body, CAGE, GROUND, INNER, Mobility, OUTER};
 use crate::solver::dynamics::connection::{Connection, Law, SpringDashpot};
@@ -115,32 +115,27 @@ impl AssemblyScene {
         }
     }
 
-    /// The scene of a bearing alone; `None` where there is more.
-    pub fn only(&self) -> Option<&Scene> {
+    /// One bearing and what its outer race sits in, if that is flexible.
+    pub(crate) fn of_one(scene: Scene, housing: Option<PlacedHousing>) -> AssemblyScene {
+        let mut alone = AssemblyScene::alone(scene);
+        alone.bearings[0].housing = housing;
+        alone
+    }
+
+    /// The bearing of a scene of one without a name where a bearing alone stands, with or without a housing; `None`
+    /// where there is more.
+    pub fn one(&self) -> Option<&PlacedBearing> {
         match &self.bearings[..] {
-            [one] if self.is_of_one() && one.housing.is_none() => Some(&one.scene),
+            [one] if one.is_alone() && self.bodies.is_empty() && self.springs.is_empty() => {
+                Some(one)
+            }
             _ => None,
         }
     }
 
-    /// Whether one bearing is all there is, besides its housing.
-    fn is_of_one(&self) -> bool {
-        let alone = matches!(&self.bearings[..], [one] if one.is_alone());
-        alone && self.bodies.is_empty() && self.springs.is_empty()
-    }
-
-    /// As a bearing alone, or with its housing, where there is no more.
-    pub fn into_subject(mut self) -> Subject {
-        if !self.is_of_one() {
-            return Subject::Assembly(Box::new(self));
-        }
-        let PlacedBearing { scene: bearing, housing, .. } = self.bearings.remove(0);
-        match housing {
-            None => Subject::Bearing(Box::new(bearing)),
-            Some(PlacedHousing { settings: housing, solid }) => {
-                Subject::Housed(Box::new(HousedScene { bearing, housing, solid }))
-            }
-        }
+    /// The scene of a bearing alone; `None` where there is more.
+    pub fn only(&self) -> Option<&Scene> {
+        self.one().filter(|one| one.housing.is_none()).map(|one| &one.scene)
     }
 
     /// What all bearings share.

@@ -11,15 +11,12 @@ use crate::scene::housing::{FitSize, HousedScene};
 use crate::scene::solid::{LoadKind, SetLoad};
 use crate::scene::solid_mesh::BuiltMesh;
 use crate::scene::solid_problem::{SolidSetup, SolidSetupError, setup as solid_setup};
-use crate::scene::statics::kinematic_ratios;
-use crate::solver::dynamics::model::{Drive, Rotation};
 use crate::solver::housing::bore_equilibrium::Fit;
 use crate::solver::housing::condensed::{Reach, is_under};
 use crate::solver::profile::Profile;
 use crate::solver::solid::model::{SolidError, SolidModel};
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
-use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 use thiserror::Error;
 
@@ -449,77 +446,4 @@ pub fn check_supports(scene: &HousedScene) -> Result<(), HousingSetupError> {
         }
     }
     Ok(())
-}
-
-/// Cause of the ripple of a load that goes from ball to ball.
-pub const BALLS_PASSING: &str = "balls passing the load";
-
-/// Something that drives bearing and housing, and its frequency.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Excitation {
-    pub what: String,
-    /// Hz.
-    pub frequency: f64,
-}
-
-/// All that drives a scene at a frequency of its own: what a quasi-static course must be slow against.
-pub fn excitations(scene: &HousedScene) -> Vec<Excitation> {
-    let bearing = &scene.bearing;
-    let mut found = Vec::new();
-    let mut add = |what: String, frequency: f64| {
-        if frequency > 0.0 {
-            found.push(Excitation { what, frequency });
-        }
-    };
-    let names = ["x", "y", "z", "tilt_y", "tilt_z"];
-    for (name, drive) in names.iter().zip(&bearing.dynamics.inner.drives) {
-        let (Drive::Load(profile) | Drive::Motion(profile)) = drive;
-        add(format!("inner_race.{name}"), frequency(profile));
-    }
-    let end = bearing.dynamics.run.as_ref().map_or(0.0, |run| run.end);
-    let balls = bearing.geometry.ball_count as f64;
-    let cage = kinematic_ratios(bearing).cage;
-    let mut against_balls = 0.0f64;
-    if let Some(load) = &bearing.dynamics.rotating_load {
-        add("inner_race.rotating_load.force".into(), frequency(&load.force));
-        let turning = largest(&load.speed, end) / TAU;
-        add("the load's turns".into(), turning);
-        against_balls = turning;
-    }
-    if let Rotation::Speed(speed) = &bearing.dynamics.inner.rotation {
-        let shaft = largest(speed, end) / TAU;
-        against_balls += cage * shaft;
-    }
-    add(BALLS_PASSING.into(), balls * against_balls);
-    if let Some(ramp) = scene.housing.fit_ramp {
-        add("the fit that grows in".into(), 0.5 / ramp);
-    }
-    found
-}
-
-fn largest(profile: &Profile, end: f64) -> f64 {
-    // Speeds are ramps and tables; a hundred looks find what counts here.
-    let at = |i: u32| profile.value(end * f64::from(i) / 100.0).abs();
-    (0..=100).map(at).fold(0.0, f64::max)
-}
-
-/// Of a swing that rises and falls as fast as the profile does, Hz; 0 for a constant one.
-fn frequency(profile: &Profile) -> f64 {
-    match profile {
-        Profile::Constant(_) => 0.0,
-        Profile::Ramp { from, to, duration, .. }
-        | Profile::SmoothRamp { from, to, duration, .. } => {
-            if from == to {
-                0.0
-            } else {
-                0.5 / duration
-            }
-        }
-        Profile::HalfSine { duration, .. } => 0.5 / duration,
-        Profile::Harmonic { frequency, .. } => *frequency,
-        Profile::Table { points } => {
-            let steps = points.windows(2).filter(|pair| pair[0][1] != pair[1][1]);
-            steps.map(|pair| 0.5 / (pair[1][0] - pair[0][0])).fold(0.0, f64::max)
-        }
-    }
 }

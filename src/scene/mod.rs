@@ -23,6 +23,7 @@ pub mod bore_shape;
 pub mod document;
 pub mod dynamics;
 pub mod error;
+pub mod excitations;
 pub mod housing;
 pub mod housing_problem;
 pub mod input_file;
@@ -72,7 +73,7 @@ pub use sweep::{SweepAxis, SweepValues};
 
 use std::path::Path;
 
-/// Reads a scene file of any kind: a bearing, a solid by itself, or a bearing in a housing.
+/// Reads a scene file of any kind: bearings on their bodies and in their housings, or a solid by itself.
 ///
 /// # Errors
 /// The first thing wrong with the file or its contents, with its place. The solid's mesh is not

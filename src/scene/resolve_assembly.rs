@@ -6,6 +6,7 @@ use crate::scene::assembly::{
 };
 use crate::scene::document::Document;
 use crate::scene::error::{Problem, SceneError};
+use crate::scene::housing::HousingMethod;
 use crate::scene::key_table_assembly::{GROUND, OWN_RACES};
 use crate::scene::keys;
 use crate::scene::resolve::{Reader, resolve, text};
@@ -60,7 +61,27 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
         .collect::<Result<Vec<_>, _>>()?;
     let scene = AssemblyScene { bearings, bodies: resolved, springs, defaults_used };
     refuse_free_bodies(document, &scene)?;
+    if scene.housing_method() == Some(HousingMethod::QuasiStatic) {
+        refuse_inertia(document, &scene)?;
+    }
     Ok(scene)
+}
+
+/// What bodies cannot have where equilibria follow one another.
+fn refuse_inertia(document: &Document, scene: &AssemblyScene) -> Result<(), SceneError> {
+    const WHAT: [(&str, &str); 2] = [
+        ("body.torque", "without inertia no speed follows from a torque"),
+        ("body.unbalance", "an unbalance is inertia"),
+    ];
+    for body in &scene.bodies {
+        let scoped = document.scoped(&body.name);
+        if let Some((key, reason)) = WHAT.iter().find(|(key, _)| scoped.value(key).is_some()) {
+            let reason = (*reason).to_string();
+            let advice = "leave it out, or write method = \"explicit\" in [housing]".into();
+            return Err(scoped.error(key, Problem::Refused { reason, advice }));
+        }
+    }
+    Ok(())
 }
 
 /// Names that nothing goes by, that two things go by, and tables that need one.
@@ -150,7 +171,7 @@ fn bearing(
             scoped.take_over(&document.scoped(bodies[body]), "body.speed", "inner_race.speed");
         }
     }
-    let (mut scene, housing) = match scoped.first_below("housing") {
+    let (mut scene, mut housing) = match scoped.first_below("housing") {
         Some(_) => in_housing(&scoped)?,
         None => (resolve(&scoped)?, None),
     };
@@ -159,7 +180,6 @@ fn bearing(
         let advice = "leave out outer_on, or the housing".into();
         return Err(scoped.error("bearing.outer_on", Problem::Refused { reason, advice }));
     }
-    let mut housing = housing.map(|(settings, solid)| PlacedHousing { settings, solid });
     if let Some(PlacedHousing { settings, solid }) = housing.as_mut().filter(|_| name.is_some()) {
         for used in settings.defaults_used.iter_mut().chain(&mut solid.defaults_used) {
             used.key = scoped.shown(&used.key, true);

@@ -1,13 +1,13 @@
 //! From the given keys to a bearing in a housing: defaults, and what must hold between keys.
 
 use crate::ch2_housing::bore_contact::Penalty;
+use crate::scene::assembly::PlacedHousing;
 use crate::scene::document::{Assumption, Document};
 use crate::scene::error::{Problem, SceneError};
-use crate::scene::housing::{FitSize, HousedScene, HousingMethod, HousingSettings};
+use crate::scene::housing::{FitSize, HousingMethod, HousingSettings};
 use crate::scene::resolve::{Reader, resolve_bearing, text};
 use crate::scene::resolve_solid::housing_solid;
 use crate::scene::resolved::{Plot, RunPlot, Scene};
-use crate::scene::solid::{SolidScene, Subject};
 use crate::scene::units::plain;
 use crate::scene::value::Checked;
 use crate::solver::channels::ChannelGroup;
@@ -20,26 +20,13 @@ use crate::solver::statics::COORDINATE_NAMES;
 /// Part of the outer race's radius that a fit may have: ten times what is ever pressed in.
 const LARGEST_FIT: f64 = 0.01;
 
-/// A scene with `[housing]`.
-///
-/// # Errors
-/// The first key, in a fixed order, that is missing or contradicts others.
-pub(crate) fn housed(document: &Document) -> Result<Subject, SceneError> {
-    Ok(match in_housing(document)? {
-        (bearing, None) => Subject::Bearing(Box::new(bearing)),
-        (bearing, Some((housing, solid))) => {
-            Subject::Housed(Box::new(HousedScene { bearing, housing, solid }))
-        }
-    })
-}
-
 /// A bearing and its housing; none that is rigid.
 ///
 /// # Errors
-/// As [`housed`].
+/// The first key, in a fixed order, that is missing or contradicts others.
 pub(crate) fn in_housing(
     document: &Document,
-) -> Result<(Scene, Option<(HousingSettings, SolidScene)>), SceneError> {
+) -> Result<(Scene, Option<PlacedHousing>), SceneError> {
     let mut bearing = resolve_bearing(document)?;
     let mut reader = Reader::new(document);
     let method = reader.choice("housing.method").unwrap_or("quasi-static");
@@ -79,9 +66,9 @@ pub(crate) fn in_housing(
     }
     rest(document, &mut bearing, &housing)?;
     output(document, &reader, &mut bearing, method)?;
-    let mut housing = housing;
-    housing.defaults_used = reader.into_defaults_used();
-    Ok((bearing, Some((housing, solid))))
+    let defaults_used = reader.into_defaults_used();
+    let settings = HousingSettings { defaults_used, ..housing };
+    Ok((bearing, Some(PlacedHousing { settings, solid })))
 }
 
 fn not_applicable<T>(

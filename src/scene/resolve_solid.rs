@@ -1,11 +1,12 @@
 //! From the given keys to a solid: defaults, and what must hold between keys.
 
 use crate::mesh::{Order, Surface};
+use crate::scene::assembly::AssemblyScene;
 use crate::scene::document::{Document, ItemRef};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_assembly::{assembly, is_assembly};
-use crate::scene::resolve_housing;
+use crate::scene::resolve_housing::in_housing;
 use crate::scene::resolve_solid_mesh::source;
 use crate::scene::solid::{
     Held, LoadKind, MeshPlace, MeshRequest, MeshSource, Probe, ProbeOf, SetLoad, SetPlace,
@@ -22,21 +23,22 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// Steps of an explicit method end a little before its limit, which falls as a body stiffens.
 const STEP_FRACTION: f64 = 0.8;
 
-/// A scene about a bearing, about a solid, or about a bearing in a housing.
+/// A scene about bearings, alone or with what they sit on and in, or about a solid.
 ///
 /// # Errors
 /// The first key, in a fixed order, that is missing or contradicts others; a bearing and a solid
 /// without `[housing]`.
 pub fn resolve_subject(document: &Document) -> Result<Subject, SceneError> {
     if is_assembly(document) {
-        return Ok(assembly(document)?.into_subject());
+        return Ok(Subject::Assembly(Box::new(assembly(document)?)));
     }
     document.refuse_names()?;
     if document.first_below("housing").is_some() {
-        return resolve_housing::housed(document);
+        let (bearing, housing) = in_housing(document)?;
+        return Ok(Subject::Assembly(Box::new(AssemblyScene::of_one(bearing, housing))));
     }
     let Some(solid) = document.first_below("solid") else {
-        return Ok(Subject::Bearing(Box::new(resolve(document)?)));
+        return Ok(Subject::Assembly(Box::new(AssemblyScene::alone(resolve(document)?))));
     };
     const OF_A_BEARING: [&str; 7] = [
         "bearing",

@@ -4,8 +4,7 @@ use crate::mesh::generate::{Cage, CageMesh, ContactBlock, Housing, HousingMesh, 
 use crate::mesh::read::LengthUnit;
 use crate::mesh::{Order, Surface};
 use crate::scene::assembly::AssemblyScene;
-use crate::scene::housing::HousedScene;
-use crate::scene::resolved::{Assumption, DefaultUsed, Scene};
+use crate::scene::resolved::{Assumption, DefaultUsed};
 use crate::solver::profile::Profile;
 use crate::solver::solid::explicit::{ExplicitMethod, SolidStepping};
 use crate::solver::solid::model::DampedMotion;
@@ -15,11 +14,10 @@ use std::path::PathBuf;
 /// What a scene is about.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
-    Bearing(Box<Scene>),
-    /// Several bearings, or one on bodies of the scene.
+    /// Bearings, alone or with what they sit on and in.
     Assembly(Box<AssemblyScene>),
+    /// A solid by itself.
     Solid(Box<SolidScene>),
-    Housed(Box<HousedScene>),
 }
 
 /// Where the mesh comes from.

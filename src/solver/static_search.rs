@@ -15,7 +15,7 @@ use super::static_model::{Evaluation, Five, Model};
 use super::static_seat::add_seat;
 use super::static_start;
 use super::statics::{StaticOptions, StaticsError};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Vector3};
 
 /// First trust radius where nothing but springs holds, m: it grows by itself.
 const WITHOUT_BEARING: f64 = 1e-4;
@@ -128,7 +128,11 @@ impl<'a, 'b> Search<'a, 'b> {
         let outer = &self.model.assembly.bodies[bearing.mounts[1].body].place;
         let origin = match outer {
             Place::Held(pose) => loaded.axes().point_to_body(&pose.position),
-            Place::Loaded(under) => loaded.axes().point_to_body(&under.axes().position),
+            Place::Loaded(under) => {
+                let [x, y, z, ..] = under.start.unwrap_or([0.0; 5]);
+                let there = under.axes().point_to_parent(&Vector3::new(x, y, z));
+                loaded.axes().point_to_body(&there)
+            }
         };
         let loads = [0, 1, 2, 3, 4].map(|i| loaded.load(i));
         static_start::guess(&bearing.geometry, &bearing.contacts(), &loads, &origin)

@@ -316,3 +316,34 @@ fn bad_assemblies_are_refused() {
         }
     }
 }
+
+/// The squares of all natural frequencies of a shaft sum to stiffness over mass of its coordinates, as `statics` has them.
+#[test]
+fn modes_of_a_shaft_are_those_of_its_stiffness_and_mass() {
+    let folder = folder();
+    let words = format!("{BEARING}{ENDS}{SHAFT}");
+    let path = write(folder.path(), "scene.toml", &words);
+    let out = folder.path().join("modes");
+    let said = done(&["modes", &path, "--out", &text(&out)]);
+    assert!(said.contains("springs without mass"), "{said}");
+    let summary = json(&out.join("summary.json"));
+    let modes = summary["modes"].as_array().expect("a list");
+    assert_eq!(modes.len(), 5);
+    let square = |mode: &Value| (std::f64::consts::TAU * value(&mode["frequency"])).powi(2);
+    let sum: f64 = modes.iter().map(square).sum();
+    let stiffness = &statics(&words)["stiffness"]["matrix"];
+    let own = |i: usize| stiffness[i][i].as_f64().expect("a number");
+    let mass = |i: usize| if i < 3 { 0.67 } else { 8.4e-4 };
+    let should: f64 = (0..5).map(|i| own(i) / mass(i)).sum();
+    // Rounding of the eigenvalues.
+    assert!((sum / should - 1.0).abs() <= 1e-9, "{sum:e} {should:e}");
+    let rows = read(&out.join("series.csv"));
+    assert!(rows.starts_with("mode") && rows.contains("shaft_tilt_y"), "{rows}");
+    let held = SHAFT.replace("load", "displacement").replace("moment", "tilt");
+    let held = held.replace("100 N", "0 um").replace("30 N", "0 um").replace("-500 N", "0 um");
+    let held = held.replace("35 N m", "0 deg") + "tilt_z = { tilt = \"0 deg\" }\n";
+    let held = held.replace("inertia =", "# inertia =");
+    let path = write(folder.path(), "held.toml", &format!("{BEARING}{ENDS}{held}"));
+    let said = refused(&["modes", &path]);
+    assert!(said.contains("nothing is left to swing"), "{said}");
+}

@@ -117,6 +117,52 @@ fn value(of: &Value) -> f64 {
     of["value"].as_f64().unwrap_or_else(|| panic!("no value in {of}"))
 }
 
+const EQUILIBRIA: (&str, &str) = ("method = \"reduced\"", "method = \"quasi-static\"");
+const BLOW: &str = "z = { load = { half_sine = \"-2000 N\", base = \"-300 N\", start = \"0.2 ms\", duration = \"0.5 ms\" } }";
+
+/// Equilibria one after the other: each is that of statics under its load, races in both housings found together.
+#[test]
+fn a_course_in_two_housings_is_statics_row_by_row() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let still = [EQUILIBRIA, ("speed = \"1000 rpm\"\n", ""), ("5 us", "0.5 ms")];
+    let loads = ["-300 N", "-900 N", "-500 N"];
+    let [a, b, c] = loads;
+    let slow = format!(
+        "z = {{ load = {{ table = [[\"0 s\", \"{a}\"], [\"0.5 ms\", \"{b}\"], [\"1 ms\", \"{c}\"]] }} }}"
+    );
+    let course = run(folder.path(), "course", &[&still[..], &[(BLOW, &slow)]].concat(), &[]);
+    for (row, load) in loads.iter().enumerate() {
+        let load = format!("z = {{ load = \"{load}\" }}");
+        let path = variant(folder.path(), "one", &[&still[..], &[(BLOW, &load)]].concat());
+        let out = folder.path().join(format!("one-{row}"));
+        done(&["statics", &path, "--out", &text(&out)]);
+        let summary = json(&out.join("summary.json"));
+        for (name, body) in [
+            ("left_outer_z", "outer_race_of_bearing_left"),
+            ("right_outer_z", "outer_race_of_bearing_right"),
+            ("shaft_z", "shaft"),
+        ] {
+            let at = value(&summary["bodies"][body]["position"]["z"]);
+            let here = column(&course, name)[row];
+            // Both end at 1e-11 of the load.
+            assert!((here - at).abs() <= 1e-9 * at.abs(), "{body} in row {row}: {here:e} {at:e}");
+        }
+        let held = value(&summary["housings"]["left"]["housing_force_on_outer_z"]);
+        let here = column(&course, "left_housing_force_on_outer_z")[row];
+        assert!((here - held).abs() <= 1e-8 * held.abs(), "{here} {held}");
+    }
+    let summary = json(&course.join("summary.json"));
+    assert_eq!(summary["housing_method"], "quasi-static");
+    // What was left out is told of each body.
+    let along = &summary["inertia"]["along_the_course"];
+    for body in ["shaft", "outer_race_of_bearing_left", "outer_race_of_bearing_right"] {
+        assert!(value(&along[body]["expected"]) > 0.0, "{along}");
+    }
+    for file in ["fields.pvd", "bore_left.csv", "bore_right.csv", "series_left_outer_race.svg"] {
+        assert!(course.join(file).is_file(), "{file}");
+    }
+}
+
 #[test]
 fn threads_and_a_break_change_no_bit() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -130,21 +176,30 @@ fn threads_and_a_break_change_no_bit() {
         let [a, b] = [&one, &two].map(|folder| read(&folder.join(file)));
         assert!(a == b, "{file} differs");
     }
-    let whole = run(folder.path(), "whole", &[("end = \"1 ms\"", "end = \"60 us\"")], &[]);
-    let part = run(folder.path(), "part", &[("end = \"1 ms\"", "end = \"30 us\"")], &[]);
-    let path = variant(folder.path(), "part", &[("end = \"1 ms\"", "end = \"60 us\"")]);
-    done(&["run", &path, "--out", &text(&part), "--resume"]);
-    assert!(read(&whole.join("series.csv")) == read(&part.join("series.csv")), "shapes differ");
+    for way in [&[][..], &[EQUILIBRIA][..]] {
+        let to = |end| [way, &[("end = \"1 ms\"", end)]].concat();
+        let whole = run(folder.path(), "whole", &to("end = \"60 us\""), &["--fresh"]);
+        let part = run(folder.path(), "part", &to("end = \"30 us\""), &["--fresh"]);
+        let path = variant(folder.path(), "part", &to("end = \"60 us\""));
+        done(&["run", &path, "--out", &text(&part), "--resume"]);
+        for file in ["series.csv", "bore_left.csv", "bore_right.csv"] {
+            let [a, b] = [&whole, &part].map(|folder| read(&folder.join(file)));
+            assert!(a == b, "{way:?}: {file} differs");
+        }
+    }
 }
 
 #[test]
 fn what_several_housings_cannot_do_is_refused_before_anything_is_solved() {
     let folder = tempfile::tempdir().expect("a folder");
-    let out = text(&folder.path().join("out"));
-    let still =
-        variant(folder.path(), "still", &[("method = \"reduced\"", "method = \"quasi-static\"")]);
-    let said = refused(&["run", &still, "--out", &out]);
-    assert!(said.contains("equilibria one after the other") && said.contains("reduced"), "{said}");
+    for (words, part) in [
+        ("torque = \"1 N m\"", "no speed follows from a torque"),
+        ("speed = \"1000 rpm\"\nunbalance = \"1e-5 kg m\"", "an unbalance is inertia"),
+    ] {
+        let changes = [EQUILIBRIA, ("speed = \"1000 rpm\"", words)];
+        let said = refused(&["check", &variant(folder.path(), "inert", &changes)]);
+        assert!(said.contains("body.shaft") && said.contains(part), "{said}");
+    }
     let mixed = variant(
         folder.path(),
         "mixed",

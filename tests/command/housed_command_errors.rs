@@ -251,15 +251,10 @@ fn errors_name_what_is_wrong() {
 fn other_commands_say_what_they_take() {
     let place = Place::new();
     let scene = place.scene("scene.toml", &good());
-    for (name, further, part) in [
-        ("modes", &[][..], "[solid] tables alone into a scene of their own"),
-        ("pack", &[][..], "`statics`, `sweep` and `run` take a bearing in a housing"),
-        ("sweep", &["--vary", "housing.method=rigid,explicit"][..], "sweep the two by themselves"),
-    ] {
-        let output = command(name, &scene, further).output().unwrap();
-        assert_eq!(output.status.code(), Some(2));
-        assert!(stderr(&output).contains(part), "{name}: {}", stderr(&output));
-    }
+    let output = command("sweep", &scene, &["--vary", "housing.method=rigid,explicit"]).output();
+    let output = output.unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("sweep the two by themselves"), "{}", stderr(&output));
     // Without an end there is nothing to run, but an equilibrium.
     let still = place.scene("still.toml", &scene_text("", ""));
     let output = command("run", &still, &[]).output().unwrap();

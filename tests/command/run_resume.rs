@@ -242,7 +242,7 @@ fn a_state_of_something_else_is_refused() {
     assert!(matches!(try_with(&more_rows, problem.clone(), &wanted), StateError::Rows { .. }));
     // The file itself.
     let text = fs::read_to_string(folder.join(state::STATE)).unwrap();
-    fs::write(folder.join(state::STATE), text.replace("\"form\": 3", "\"form\": 2")).unwrap();
+    fs::write(folder.join(state::STATE), text.replace("\"form\": 4", "\"form\": 3")).unwrap();
     assert!(matches!(read(folder), Err(StateError::Journal(JournalError::Form { .. }))));
     fs::write(folder.join(state::STATE), &text[..text.len() / 2]).unwrap();
     assert!(matches!(read(folder), Err(StateError::Journal(JournalError::Json { .. }))));

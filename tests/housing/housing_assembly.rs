@@ -2,23 +2,22 @@
 
 use crate::housing_common;
 
-use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
+use bearing_dynamics::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::output::course::outer_place;
 use bearing_dynamics::output::recorder::seat::SeatRow;
 use bearing_dynamics::solver::dynamics::model::RotatingLoad;
-use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreError, BoreSearch, Fit};
+use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreError, Fit};
 use bearing_dynamics::solver::housing::condensed::{
     CondensedBore, Reach, condense, geometry_error,
 };
 use bearing_dynamics::solver::housing::course_inertia::{
-    CourseInertia, CourseLooks, course_inertia,
+    CourseInertia, CourseLooks, SeatLooks, course_inertia,
 };
-use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState};
-use bearing_dynamics::solver::housing::inertia::{Masses, estimate};
+use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState, OUTER, lists, moving};
+use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate, housing_mass};
 use bearing_dynamics::solver::housing::quasi_static::{Course, history};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::{Load, SolidModel};
@@ -32,7 +31,7 @@ fn fit(interference: f64) -> Fit {
 }
 
 fn search(bore: &CondensedBore) -> HousedSearch<'_> {
-    HousedSearch::new(BoreSearch::new(bore, Penalty::default()))
+    HousedSearch::new(bore, Penalty::default())
 }
 
 fn solve(bore: &CondensedBore, fit: &Fit, problem: &StaticProblem) -> HousedState {
@@ -171,7 +170,9 @@ fn turning_the_whole_scene_turns_what_the_world_sees() {
         [&here, &there].map(|(bore, state)| SeatRow::of_equilibrium(bore, &state.bore));
     near(&seat_there.force, &turned(seat.force), "force on the race");
     near(&seat_there.moment, &turned(seat.moment), "moment on the race");
-    let place = |bore, state, from: usize| outer_place(bore, state)[from..from + 3].to_vec();
+    let place = |bore: &CondensedBore, state: &HousedState, from: usize| {
+        bore.race(&state.bore.pose)[from..from + 3].to_vec()
+    };
     let should = turn.point_to_parent(&Vector3::from_row_slice(&place(bore, state, 0)));
     near(&place(bore_there, state_there, 0), should.as_slice(), "place of the outer race");
     let error = geometry_error(bore, &field, &state.bore.pose);
@@ -209,10 +210,9 @@ fn a_small_load_beside_a_large_one_is_not_lost() {
 fn rigid_housing_is_a_fixed_race() {
     let bore = condensed(&RING, &COARSE, Order::Linear, 1e7 * YOUNG);
     let fit = fit(0.0);
-    let seat = BoreSearch::new(&bore, Penalty::PerArea(1e22));
     let problem = bearing(loads([0.0, 100.0, -250.0, 0.0, 0.0]));
     let fixed = statics::solve(&problem).unwrap();
-    let mut search = HousedSearch::new(seat);
+    let mut search = HousedSearch::new(&bore, Penalty::PerArea(1e22));
     let held = search.solve(&problem, &fit, [0.0; 3]).unwrap();
     let size = fixed.coordinates[2].abs();
     for i in 0..3 {
@@ -357,6 +357,12 @@ fn balls_roll_with_the_cage() {
     assert!(sums.clone().all(|(outer, inner)| outer > inner), "{sums:?}");
 }
 
+/// With both races of these masses, the inner one free.
+fn estimate_of(search: &HousedSearch, state: &HousedState, races: [Inertia; 2]) -> InertiaEstimate {
+    let housing = housing_mass(search.bore(), OUTER);
+    estimate(&state.stiffness, &moving(races, [true; 5]), &[housing])
+}
+
 /// Heavy bodies swing slowly: on one spring with the square root of stiffness over mass. The housing
 /// is soft, so that the slowest swing is that of both races in it.
 #[test]
@@ -368,10 +374,10 @@ fn inertia_of_races_that_outweigh_the_housing() {
     let state = search.solve(&problem, &fit, [0.0; 3]).unwrap();
     let steel = hollow_cylinder(32e-3, 35.5e-3, 20e-3, 7850.0);
     let of = |factor: f64| {
-        let mut masses = Masses { inner: steel, outer: steel };
-        masses.inner.mass *= factor;
-        masses.inner.transverse *= factor;
-        estimate(&problem, &search, &state, &masses)
+        let mut inner = steel;
+        inner.mass *= factor;
+        inner.transverse *= factor;
+        estimate_of(&search, &state, [inner, steel])
     };
     let (one, hundred) = (of(1.0), of(1e4));
     assert!(one.lowest > 50.0 && one.lowest < 1e4, "{one:?}");
@@ -401,15 +407,15 @@ fn circle(turn: f64, damping: f64, corners: Vec<f64>) -> CourseInertia {
     let bore = condensed(&RING, &COARSE, Order::Linear, 1e-2 * YOUNG);
     let fit = fit(5e-6);
     let steel = hollow_cylinder(32e-3, 35.5e-3, 20e-3, 7850.0);
-    let masses = Masses { inner: steel, outer: steel };
-    let free = [false, true, true, true, true];
-    let looks = CourseLooks { start: 0.0, end: turn, count: 360, corners, masses, free, damping };
-    course_inertia(&looks, &mut search(&bore), |search, time| {
+    let bodies = moving([steel; 2], [false, true, true, true, true]);
+    let seats = vec![SeatLooks { race: OUTER, damping }];
+    let looks = CourseLooks { start: 0.0, end: turn, count: 360, corners, bodies, seats };
+    let found = course_inertia(&looks, &mut search(&bore).search, |search, time| {
         let angle = TAU * time / turn;
         let problem = bearing(loads([0.0, 2.5 * angle.cos(), 2.5 * angle.sin(), 0.0, 0.0]));
-        search.solve(&problem, &fit, [0.0; 3])
-    })
-    .unwrap()
+        search.solve(&lists(&problem, &bore, Penalty::default(), &fit, [0.0; 3]))
+    });
+    found.unwrap()[OUTER]
 }
 
 #[test]
@@ -467,10 +473,10 @@ fn inertia_about_the_axis_is_no_inertia_of_tilts() {
     let state = search.solve(&problem, &fit(5e-6), [0.0; 3]).unwrap();
     let steel = hollow_cylinder(32e-3, 35.5e-3, 20e-3, 7850.0);
     let of = |axial: f64, transverse: f64| {
-        let mut masses = Masses { inner: steel, outer: steel };
-        masses.outer.axial *= axial;
-        masses.outer.transverse *= transverse;
-        estimate(&problem, &search, &state, &masses)
+        let mut outer = steel;
+        outer.axial *= axial;
+        outer.transverse *= transverse;
+        estimate_of(&search, &state, [steel, outer])
     };
     assert_eq!(of(1e6, 1.0), of(1.0, 1.0));
     // So heavy that it tilts by itself: a quarter of the frequency for sixteen times the inertia.

@@ -52,16 +52,17 @@ fn every_shipped_scene_makes_a_problem_of_usable_numbers() {
         if path.is_dir() {
             continue;
         }
-        let Subject::Bearing(scene) = scene::read_subject(&path).unwrap() else { continue };
-        static_problem(&scene).unwrap();
-        let problem = dynamic_problem(&scene).unwrap();
+        let Subject::Assembly(scene) = scene::read_subject(&path).unwrap() else { continue };
+        let Some(scene) = scene.only() else { continue };
+        static_problem(scene).unwrap();
+        let problem = dynamic_problem(scene).unwrap();
         let parts = [Some(&problem.inner), problem.outer.as_ref()];
         for inertia in parts.into_iter().flatten().map(|race| race.inertia) {
             // Steel rings of a palm-sized bearing.
             assert!(inertia.mass > 0.05 && inertia.mass < 0.5, "{inertia:?}");
             assert!(inertia.axial > inertia.transverse && inertia.axial < 2.0 * inertia.transverse);
         }
-        match run_options(&scene) {
+        match run_options(scene) {
             Ok(run) => {
                 assert!(run.window_start < run.end && run.output_interval < run.end);
                 runs += 1;
@@ -465,7 +466,6 @@ fn understood(text: &str, name: &str) -> Result<Subject, String> {
         scene.dynamics.defaults_used.clear();
     };
     match &mut subject {
-        Subject::Bearing(scene) => forget(scene),
         Subject::Assembly(scene) => {
             scene.defaults_used.clear();
             for placed in &mut scene.bearings {
@@ -477,11 +477,6 @@ fn understood(text: &str, name: &str) -> Result<Subject, String> {
             }
         }
         Subject::Solid(scene) => scene.defaults_used.clear(),
-        Subject::Housed(scene) => {
-            forget(&mut scene.bearing);
-            scene.solid.defaults_used.clear();
-            scene.housing.defaults_used.clear();
-        }
     }
     Ok(subject)
 }

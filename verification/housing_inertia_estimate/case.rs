@@ -5,12 +5,14 @@ use std::f64::consts::TAU;
 
 use bearing_dynamics::ch2_housing::bearing::geometry::Material;
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
+use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::solver::housing::course_inertia::{
-    CourseInertia, CourseLooks, course_inertia,
+    CourseInertia, CourseLooks, SeatLooks, course_inertia,
 };
-use bearing_dynamics::solver::housing::inertia::Masses;
+use bearing_dynamics::solver::housing::housed::{OUTER, lists, moving};
+use bearing_dynamics::solver::statics::{Condition, StaticProblem};
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
@@ -88,18 +90,24 @@ fn find(mesh: &TetMesh, variant: &Variant) -> Result<Found, CaseError> {
         end,
         count: POINTS,
         corners: Vec::new(),
-        masses: Masses {
-            inner: hollow_cylinder(15e-3, 22e-3, 12e-3, Material::STEEL.density),
-            outer: hollow_cylinder(31.953e-3, BORE_RADIUS, WIDTH, Material::STEEL.density),
-        },
-        free: [false, true, true, true, true],
-        damping: variant.damping,
+        bodies: moving(
+            [
+                hollow_cylinder(15e-3, 22e-3, 12e-3, Material::STEEL.density),
+                hollow_cylinder(31.953e-3, BORE_RADIUS, WIDTH, Material::STEEL.density),
+            ],
+            [false, true, true, true, true],
+        ),
+        seats: vec![SeatLooks { race: OUTER, damping: variant.damping }],
     };
     let mut search = housings::search(&bore);
-    let estimate = course_inertia(&looks, &mut search, |search, time| {
-        let mut moments = equilibria(search, &turning, &[time], |_, _| {})?;
-        moments.pop().map(|moment| moment.state).ok_or_else(|| CaseError::message("no equilibrium"))
-    })?;
+    let (bearing, fit) = (housings::bearing()?, housings::fit(turning.interference));
+    let found = course_inertia(&looks, &mut search.search, |search, time| {
+        let [_, y, z] = turning.load.force(time);
+        let conditions = [0.0, y, z, 0.0, 0.0].map(Condition::Load);
+        let problem = StaticProblem { conditions, ..bearing.clone() };
+        search.solve(&lists(&problem, &bore, Penalty::default(), &fit, [0.0; 3]))
+    });
+    let estimate = found?[OUTER];
     let moments = equilibria(&mut search, &turning, &turning.times, |_, _| {})?;
     let start = &moments[0].state;
     let displacement = bore.displacement(&start.bore.loads);

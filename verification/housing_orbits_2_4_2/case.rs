@@ -11,7 +11,8 @@ use bearing_dynamics::output::plots::{Curve, OrbitPlot, orbit};
 use bearing_dynamics::solver::dynamics::model::RotatingLoad;
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreState;
 use bearing_dynamics::solver::housing::condensed::geometry_error;
-use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, Masses, estimate};
+use bearing_dynamics::solver::housing::housed::{OUTER, moving};
+use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate, housing_mass};
 use bearing_dynamics::solver::housing::quasi_static::{Course, history};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::stress::nodal_stresses;
@@ -125,8 +126,9 @@ fn turn(
     let outer_race = hollow_cylinder(31.953e-3, BORE_RADIUS, WIDTH, Material::STEEL.density);
     let inner_race = hollow_cylinder(15e-3, 22e-3, 12e-3, Material::STEEL.density);
     let last = &moments[POINTS - 1].state;
+    let housing = housing_mass(search.bore(), OUTER);
     let inertia =
-        estimate(&bearing, &search, last, &Masses { inner: inner_race, outer: outer_race });
+        estimate(&last.stiffness, &moving([inner_race, outer_race], [true; 5]), &[housing]);
     let drawn = pictures.map(|magnification| {
         let names = ["+Y", "+Z", "−Y", "−Z"];
         let panels: Vec<_> = (0..4)

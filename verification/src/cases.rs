@@ -48,6 +48,8 @@ mod rod_wave;
 mod rotating_load_orbit;
 #[path = "../settling_and_turning/case.rs"]
 mod settling_and_turning;
+#[path = "../shaft_in_two_housings/case.rs"]
+mod shaft_in_two_housings;
 #[path = "../shaft_on_two_bearings/case.rs"]
 mod shaft_on_two_bearings;
 #[path = "../solid_elements/case.rs"]
@@ -97,6 +99,7 @@ pub const CASES: &[Case] = &[
     housing_orbits_2_4_2::CASE,
     housing_inertia_estimate::CASE,
     reduced_housing::CASE,
+    shaft_in_two_housings::CASE,
     steel_load_rates_2_4_3::CASE,
     steel_impact_2_4_3::CASE,
 ];

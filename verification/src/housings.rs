@@ -9,7 +9,7 @@ use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::mesh::generate::{Housing, HousingMesh, PillowBlock};
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::solver::dynamics::model::{DynamicProblem, RaceBody, Rotation};
-use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreSearch, BoreState, Fit};
+use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreState, Fit};
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, Reach, condense};
 use bearing_dynamics::solver::housing::housed::HousedSearch;
 use bearing_dynamics::solver::profile::Profile;
@@ -106,7 +106,7 @@ pub fn fit(interference: f64) -> Fit {
 }
 
 pub fn search(bore: &CondensedBore) -> HousedSearch<'_> {
-    HousedSearch::new(BoreSearch::new(bore, Penalty::default()))
+    HousedSearch::new(bore, Penalty::default())
 }
 
 /// The bearing with all coordinates of its inner race driven by loads, zero until a course sets them.

@@ -1,180 +1,115 @@
-//! Flexible housings of several bearings: meshes, bores, shapes, and what they add to the lists.
+//! The flexible housings of a scene: meshes, and what they add to the lists of each way of solving.
 
 use super::Fallible;
-use crate::commands::housed::{self, reduced::reduction};
+use super::housing::Housing;
 use bearing_dynamics::kinematics::vec3::Vec3;
-use bearing_dynamics::output::session::{HousedParts, Motion};
+use bearing_dynamics::output::session::HousedParts;
 use bearing_dynamics::scene::Document;
+use bearing_dynamics::scene::about::About;
 use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
+use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
-use bearing_dynamics::solver::dynamics::model::Drive;
-use bearing_dynamics::solver::dynamics::run::Start;
-use bearing_dynamics::solver::housing::bore_equilibrium::Fit;
+use bearing_dynamics::solver::dynamics::equilibrium::{conditions, static_assembly};
+use bearing_dynamics::solver::dynamics::run::RunOptions;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::exchange::SolidPart;
-use bearing_dynamics::solver::housing::reduce::Reduction;
-use bearing_dynamics::solver::housing::reduced_start::{self, add_housing, put_in_equilibrium};
-use bearing_dynamics::solver::plan::tally::Tally;
-use bearing_dynamics::solver::plan::{Item, motion};
+use bearing_dynamics::solver::housing::course::{CourseProblem, CourseSeat, Moment};
+use bearing_dynamics::solver::housing::course_search::CourseSearch;
+use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, SolidPart};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::static_assembly::StaticAssembly;
-use std::error::Error;
-use std::time::Instant;
-
-/// A housing and the bearing that it holds.
-pub struct Housing {
-    /// Index of the bearing.
-    pub bearing: usize,
-    /// Of the bearing; `None` for the only one.
-    pub name: Option<String>,
-    /// Both alone, where they stand.
-    pub scene: HousedScene,
-    pub mesh: housed::Prepared,
-}
-
-impl Housing {
-    /// An error of this housing, under its name.
-    fn named(&self, error: &dyn std::fmt::Display) -> Box<dyn Error> {
-        match &self.name {
-            Some(name) => format!("housing {name}: {error}").into(),
-            None => error.to_string().into(),
-        }
-    }
-
-    /// "housing left".
-    pub fn of(&self) -> String {
-        let of = self.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
-        format!("housing{of}")
-    }
-
-    /// Mesh and seat, a line.
-    pub fn text(&self) -> String {
-        format!(
-            "  {:<22} {}; {}; bore {}\n",
-            self.of(),
-            housed::mesh_text(&self.mesh.built),
-            housed::echo::method(&self.scene),
-            housed::shape_text(&self.mesh.setup)
-        )
-    }
-}
+use bearing_dynamics::solver::statics::{Condition, StaticOptions, solve_assembly};
+use nalgebra::SVector;
 
 /// Reads or makes the meshes.
 pub fn prepare(document: &Document, scene: &AssemblyScene) -> Fallible<Vec<Housing>> {
     let mut housings = Vec::new();
     for (bearing, placed) in scene.bearings.iter().enumerate() {
         let Some(own) = placed.housed() else { continue };
-        let mesh = match &placed.name {
-            Some(name) => housed::prepare(&document.scoped(name), &own)
-                .map_err(|error| format!("{error} (housing {name})"))?,
-            None => housed::prepare(document, &own)?,
+        let name = placed.name.clone();
+        let scoped = name.as_ref().map(|name| document.scoped(name));
+        let housing = Housing::new(scoped.as_ref().unwrap_or(document), bearing, name, own);
+        let housing = match &placed.name {
+            Some(name) => housing.map_err(|error| format!("{error} (housing {name})"))?,
+            None => housing?,
         };
-        if own.housing.method != HousingMethod::Explicit {
-            housed::refuse_moved_supports(document, &own)?;
-        }
-        let housing = Housing { bearing, name: placed.name.clone(), scene: own, mesh };
         if housing.scene.housing.method != HousingMethod::Explicit {
-            housed::refuse_free(&housing.mesh).map_err(|error| housing.named(&error))?;
+            // What cannot be condensed cannot be run.
+            housing.refuse_free()?;
         }
         housings.push(housing);
     }
     Ok(housings)
 }
 
-/// Items of the housings of a run: what acts on them, how they move, and the races in explicit ones.
-pub fn items(scene: &AssemblyScene, housings: &[Housing], assembly: &Assembly) -> Vec<Item> {
-    let mut items = Vec::new();
-    for (index, housing) in housings.iter().enumerate() {
-        let bearing = &assembly.bearings[housing.bearing];
-        let seat = (bearing.mounts[1].body, housing.name.as_deref());
-        items.extend(housed::plan::solid_items(
-            &housing.scene,
-            &housing.mesh,
-            index,
-            &housing.of(),
-        ));
-        if scene.housing_method() == Some(HousingMethod::Explicit) {
-            items.extend(motion::stepped_seat(assembly, index, seat));
-        }
+/// What the scene's way of solving cannot have.
+pub fn refuse(document: &Document, scene: &AssemblyScene, housings: &[Housing]) -> Fallible<()> {
+    if scene.housing_method() == Some(HousingMethod::QuasiStatic) {
+        refuse_steps(document)?;
     }
-    items
+    housings.iter().try_for_each(|housing| housing.refuse(document))
+}
+
+/// What is said of steps where nothing is stepped in time.
+pub fn refuse_steps(document: &Document) -> Fallible<()> {
+    const KEYS: [&str; 4] =
+        ["numerics.accuracy", "numerics.step", "numerics.step_fraction", "numerics.integrator"];
+    let Some(key) = KEYS.into_iter().find(|key| document.is_given(key)) else { return Ok(()) };
+    let place = document.place_of(&About::key(key));
+    let reason = "equilibria one after the other take no steps in time";
+    let hint = "leave it out, or write method = \"reduced\" in [housing]";
+    Err(format!("{place}: {key}: refused: {reason}. Hint: {hint}").into())
 }
 
 /// Each condensed onto its bore.
 pub fn condensed(housings: &[Housing]) -> Fallible<Vec<CondensedBore>> {
-    let each = housings.iter();
-    each.map(|h| housed::condensed(&h.mesh).map_err(|error| h.named(&error))).collect()
+    housings.iter().map(Housing::condensed).collect()
 }
 
-/// What is in equilibrium at t = 0, races in their bores and grown into their fits.
-pub fn statics<'b>(
+/// All with their races in their bores, to go through equilibria.
+pub fn course<'b>(
     scene: &AssemblyScene,
     housings: &[Housing],
     bores: &'b [CondensedBore],
-) -> Fallible<StaticAssembly<'b>> {
-    let mut still: StaticAssembly<'b> = scene.statics()?;
-    for (housing, bore) in housings.iter().zip(bores) {
-        housed::add_seat(&mut still, housing.bearing, &housing.scene, &housing.mesh, bore);
-    }
-    Ok(still)
+) -> Fallible<CourseProblem<'b>> {
+    let seats = housings.iter().zip(bores);
+    let seats = seats.map(|(of, bore)| of.course_seat(bore, of.setup.radius(&of.scene)));
+    Ok(CourseProblem { assembly: scene.assembly()?, seats: seats.collect() })
 }
 
-/// Housings reduced to shapes, and the assembly that they are part of.
-pub struct Reduced {
-    pub assembly: Assembly,
-    /// One for each housing.
-    pub reductions: Vec<Reduction>,
-    /// Wall time that condensing, and finding shapes and start took, s.
-    pub seconds: [f64; 2],
-    /// How often each stage of condensing ran, one for each housing.
-    pub ran: Vec<Tally>,
+/// The same with races as fully grown into their fits.
+pub fn grown<'b>(housings: &[Housing], bores: &'b [CondensedBore]) -> Vec<CourseSeat<'b>> {
+    let seat = |(of, bore): (&Housing, &'b CondensedBore)| {
+        of.course_seat(bore, Profile::Constant(of.setup.fit(&of.scene).radius))
+    };
+    housings.iter().zip(bores).map(seat).collect()
 }
 
-/// Condenses and reduces the housings, and finds the equilibrium that a run starts from.
-pub fn reduced(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Reduced> {
-    let mut assembly = scene.assembly()?;
-    let force = largest_force(&assembly);
-    let (mut reductions, mut bores) = (Vec::new(), Vec::new());
-    let mut seconds = [0.0; 2];
-    for housing in housings {
-        let bearing = &assembly.bearings[housing.bearing];
-        let found = reduction(&housing.scene, &housing.mesh, bearing, force)?;
-        let body = bearing.mounts[1].body;
-        let (setup, own) = (&housing.mesh.setup, &housing.scene);
-        let penalty = own.housing.penalty;
-        let of = &found.reduction;
-        add_housing(&mut assembly, body, of, &found.bore, setup.radius(own), penalty);
-        if let (Some(seat), Some(name)) = (assembly.seats.last_mut(), &housing.name) {
-            seat.label = Some(name.clone());
-            seat.name = format!("the bore of housing {name}");
-        }
-        seconds = [seconds[0] + found.seconds[0], seconds[1] + found.seconds[1]];
-        reductions.push(found.reduction);
-        bores.push(found.bore);
-    }
-    let start = Instant::now();
-    if scene.run().is_none_or(|run| run.options.start != Start::Nominal) {
-        let of = |((housing, reduction), bore): ((&Housing, _), _)| {
-            let (setup, own) = (&housing.mesh.setup, &housing.scene);
-            let radius = setup.radius(own).value(0.0);
-            let fit = Fit { radius, ..setup.fit(own) };
-            reduced_start::Housing { reduction, bore, fit, penalty: own.housing.penalty }
-        };
-        let mut parts: Vec<_> =
-            housings.iter().zip(&reductions).zip(bores.iter_mut()).map(of).collect();
-        put_in_equilibrium(&mut assembly, &mut parts)?;
-    }
-    seconds[1] += start.elapsed().as_secs_f64();
-    let ran = bores.iter().map(|bore| bore.ran).collect();
-    Ok(Reduced { assembly, reductions, seconds, ran })
+/// What is in equilibrium at t = 0, and where.
+pub struct Equilibrium<'b> {
+    pub still: StaticAssembly<'b>,
+    pub moment: Moment,
+    /// Of races in bores, with the contact there.
+    pub in_bores: Option<(CourseProblem<'b>, CourseSearch<'b>)>,
 }
 
-/// Displacements (m) and velocities (m/s) of all nodes of a reduced housing now.
-pub fn fields(reduced: &Reduced, motion: &Motion, index: usize) -> Option<[Vec<Vec3>; 2]> {
-    let Motion::Bearing(simulation) = motion else { return None };
-    let (gone, speeds) = simulation.system.shapes_of(&simulation.state, index);
-    Some([gone, speeds].map(|of| reduced.reductions[index].displacement(of)))
+/// The equilibrium at t = 0, races grown into their fits; looked for `near` places that are known.
+pub fn equilibrium<'b>(
+    scene: &AssemblyScene,
+    seats: Vec<CourseSeat<'b>>,
+    near: Option<&[SVector<f64, 5>]>,
+) -> Fallible<Equilibrium<'b>> {
+    let mut still: StaticAssembly<'b> = super::still(scene)?;
+    if seats.is_empty() {
+        let solution = solve_assembly(&still, near, &StaticOptions::default())?;
+        let moment = Moment { time: 0.0, residual: 0.0, contact_changes: 0, solution };
+        return Ok(Equilibrium { still, moment, in_bores: None });
+    }
+    seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
+    let course = CourseProblem { assembly: scene.assembly()?, seats };
+    let mut search = CourseSearch::of(&course.seats);
+    search.look_near(near);
+    let moment = course.solve(&mut search, &still, 0.0)?;
+    Ok(Equilibrium { still, moment, in_bores: Some((course, search)) })
 }
 
 /// Bodies, bearings, solids and seats for explicit steps.
@@ -184,53 +119,91 @@ pub fn explicit(
     threads: usize,
 ) -> Fallible<HousedParts> {
     let mut assembly = scene.assembly()?;
-    let run = scene.run().ok_or("a run needs `end` in [numerics]")?;
-    let in_bores: Vec<_> = housings.iter().map(|h| (h.bearing, &h.scene, &h.mesh)).collect();
-    let mut start = housed::start_of_steps(&mut assembly, &in_bores)?.into_iter();
+    let start = start_of_steps(&mut assembly, housings)?;
+    parts(scene, assembly, housings, start, threads)
+}
+
+/// The same from undeformed housings, whatever the scene says.
+pub fn undeformed(
+    scene: &AssemblyScene,
+    housings: &[Housing],
+    threads: usize,
+) -> Fallible<HousedParts> {
+    parts(scene, scene.assembly()?, housings, Vec::new(), threads)
+}
+
+fn parts(
+    scene: &AssemblyScene,
+    assembly: Assembly,
+    housings: &[Housing],
+    start: Vec<Vec<Vec3>>,
+    threads: usize,
+) -> Fallible<HousedParts> {
     let first = housings.first().ok_or("no housing")?;
-    let mut seats = Vec::with_capacity(housings.len());
-    let mut solids = Vec::with_capacity(housings.len());
+    let run = scene.run().ok_or("a run needs `end` in [numerics]")?;
+    let mut start = start.into_iter();
+    let (mut seats, mut solids) = (Vec::new(), Vec::new());
     for (index, housing) in housings.iter().enumerate() {
-        let body = assembly.bearings[housing.bearing].mounts[1].body;
-        let seat = housed::seat(&housing.scene, &housing.mesh.setup, body, index);
-        seats.push(bearing_dynamics::solver::housing::seat::Seat {
-            name: housing.name.clone(),
-            ..seat
-        });
-        let model = housing.mesh.setup.model.clone();
-        let name = housing.name.clone();
+        seats.push(housing.seat(assembly.bearings[housing.bearing].mounts[1].body, index));
+        let (name, model) = (housing.name.clone(), housing.setup.model.clone());
         solids.push(match start.next() {
             Some(displacement) => SolidPart { name, model, displacement },
             None => SolidPart::undeformed(name, model),
         });
     }
-    let options = housed::exchange_options(&first.scene, run);
+    let options = ExchangeOptions {
+        solid_fraction: first.scene.housing.step_fraction,
+        seat_phase: first.scene.housing.window_phase,
+        // All together are balanced, not the bearings alone.
+        bearing: RunOptions { energy_limit: f64::INFINITY, ..run.options },
+    };
     Ok(HousedParts { assembly, solids, seats, options, threads })
 }
 
-/// Sum of what acts on all bodies across their axes, each at its largest, N.
-fn largest_force(assembly: &Assembly) -> f64 {
-    let of = |body: &Body| {
-        let Some(race) = body.driven() else { return 0.0 };
-        let load = |i: usize| match &race.drives[i] {
-            Drive::Load(load) => largest(load),
-            Drive::Motion(_) => 0.0,
-        };
-        let turning = body.rotating_load.as_ref().map_or(0.0, |load| largest(&load.force));
-        let [_, g_y, g_z] = assembly.gravity;
-        load(1).hypot(load(2)) + turning + race.inertia.mass * g_y.hypot(g_z)
-    };
-    assembly.bodies.iter().map(of).sum()
+/// Puts races that explicit steps start from where all is in equilibrium; how far the nodes of their housings have
+/// gone there, m. Nothing where they start undeformed.
+fn start_of_steps(assembly: &mut Assembly, housings: &[Housing]) -> Fallible<Vec<Vec<Vec3>>> {
+    if !housings.iter().all(|housing| housing.scene.housing.from_equilibrium) {
+        return Ok(Vec::new());
+    }
+    let bores = condensed(housings)?;
+    let mut still = static_assembly(assembly, 0.0, &[]);
+    let seats = grown(housings, &bores);
+    seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
+    let found = solve_assembly(&still, None, &StaticOptions::default())?;
+    let mut displacements = Vec::with_capacity(housings.len());
+    for (seat, state) in seats.iter().zip(&found.seats) {
+        let body = seat.body(assembly);
+        assembly.bodies[body].rest = found.coordinates[body].into();
+        displacements.push(seat.bore.displacement(&state.loads));
+    }
+    Ok(displacements)
 }
 
-/// Largest size over all times.
-fn largest(profile: &Profile) -> f64 {
-    let corners = profile.corners();
-    let times = corners.iter().copied().chain([0.0]);
-    let most = times.map(|time| profile.value(time).abs()).fold(0.0, f64::max);
-    match profile {
-        Profile::Harmonic { mean, amplitude, .. } => mean.abs() + amplitude.abs(),
-        Profile::HalfSine { base, peak, .. } => most.max((base + peak).abs()),
-        _ => most,
+/// Looks at loads between two of their corners, and how long after the last one, s.
+const LOOKS: usize = 64;
+const AFTER: f64 = 1.0;
+
+/// Across their axes on all bodies but races in bores, N, at any time: a run that is extended keeps its housings.
+pub fn largest_force(assembly: &Assembly, housings: &[Housing]) -> f64 {
+    let in_bores: Vec<usize> =
+        housings.iter().map(|of| assembly.bearings[of.bearing].mounts[1].body).collect();
+    let of = |(index, body): (usize, &Body), t: f64| {
+        let race = body.driven().filter(|_| !in_bores.contains(&index))?;
+        let [_, y, z, ..] = conditions(assembly, body, race, t).map(|condition| match condition {
+            Condition::Load(load) => load,
+            Condition::Displacement(_) => 0.0,
+        });
+        Some(y.hypot(z))
+    };
+    let at = |t: f64| assembly.bodies.iter().enumerate().filter_map(|body| of(body, t)).sum();
+    let corners = assembly.corners();
+    let mut largest: f64 = at(0.0);
+    let mut from = 0.0;
+    for to in corners.iter().copied().chain([corners.last().unwrap_or(&0.0) + AFTER]) {
+        let times = (1..=LOOKS).map(|i| from + (to - from) * i as f64 / LOOKS as f64);
+        largest = times.map(at).fold(largest, f64::max);
+        from = to;
     }
+    largest
 }

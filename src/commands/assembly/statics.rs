@@ -1,10 +1,14 @@
-//! `bearing statics` of several bearings: one equilibrium of all bodies.
+//! `bearing statics` of bearings and what they sit on and in: one equilibrium of all at t = 0.
 
-use super::housings::{self, Housing};
-use super::{defaults, echo, name_of, statics_items};
+use super::course::{estimate_at, section, verdicts};
+use super::housing::Housing;
+use super::housings::{self, Equilibrium};
+use super::{Fallible, defaults, echo, name_of, plan};
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
-use crate::commands::echo::{frequencies, hertz};
-use crate::commands::{CommandResult, Outcome, record, remarks, results_folder, say, table};
+use crate::commands::echo::{frequencies, hertz, sections};
+use crate::commands::{
+    CommandResult, Outcome, pictures, record, remarks, results_folder, say, table,
+};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::assembly_results::{Solved, readable, write};
 use bearing_dynamics::output::atomic::write_atomic;
@@ -13,29 +17,38 @@ use bearing_dynamics::output::fields::{Stresses, file_name, stresses, write_fiel
 use bearing_dynamics::output::plots::{LoadZone, load_zone};
 use bearing_dynamics::output::recorder::seat::{SeatRow, seat_columns};
 use bearing_dynamics::output::remarks as of_solid;
-use bearing_dynamics::output::results::{ResultsError, RunRecord, quantity};
+use bearing_dynamics::output::results::{ResultsError, RunRecord, quantity, write_static_results};
+use bearing_dynamics::output::summary::housing::{
+    PEAK_PRESSURE, equilibrium_section, solver_section,
+};
 use bearing_dynamics::output::summary::solid::field_sections;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::{Document, Plot};
-use bearing_dynamics::solver::housing::bore_equilibrium::BoreState;
+use bearing_dynamics::solver::housing::bore_equilibrium::{BoreState, POSE_NAMES};
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::course::Moment;
 use bearing_dynamics::solver::static_assembly::StaticAssembly;
-use bearing_dynamics::solver::statics::{AssemblySolution, StaticOptions, solve_assembly};
+use bearing_dynamics::solver::statics::{StaticProblem, StaticSolution};
 use serde_json::{Map, Value, json};
-use std::error::Error;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// An equilibrium and everything its results folder records.
 pub struct Found<'s> {
+    scene: &'s AssemblyScene,
     /// Of the bearings.
-    pub names: Vec<&'s str>,
-    pub assembly: StaticAssembly<'static>,
-    /// As people read it.
-    pub solution: AssemblySolution,
-    pub remarks: Vec<String>,
+    names: Vec<&'s str>,
+    assembly: StaticAssembly<'static>,
+    /// Of several as people read it.
+    moment: Moment,
+    /// The same as that of a bearing by itself, where there is only one.
+    of_one: Option<(StaticProblem, StaticSolution)>,
+    remarks: Vec<String>,
+    /// What leaving out inertia costs.
+    inertia: Vec<String>,
+    settled: Vec<Settled>,
     pub record: RunRecord,
-    pub settled: Vec<Settled>,
 }
 
 /// Finds the equilibrium of a scene that took `read` s to read.
@@ -43,51 +56,82 @@ pub fn find_equilibrium<'s>(
     document: &Document,
     scene: &'s AssemblyScene,
     read: f64,
-) -> Result<Found<'s>, Box<dyn Error>> {
-    let start = Instant::now();
+) -> Fallible<Found<'s>> {
     let housings = housings::prepare(document, scene)?;
+    let start = Instant::now();
     let bores = housings::condensed(&housings)?;
     let condense = start.elapsed().as_secs_f64();
-    let assembly = housings::statics(scene, &housings, &bores)?;
     let start = Instant::now();
-    let solution = solve_assembly(&assembly, None, &StaticOptions::default())?;
+    let found = housings::equilibrium(scene, housings::grown(&housings, &bores), None)?;
+    let Equilibrium { still, moment, in_bores } = &found;
+    let estimate =
+        in_bores.as_ref().and_then(|(course, search)| estimate_at(course, search, moment));
     let mut seconds = vec![("read".into(), read), ("solve".into(), start.elapsed().as_secs_f64())];
     if !housings.is_empty() {
-        seconds.insert(1, ("condense".into(), condense));
+        let mesh = housings.iter().map(|housing| housing.mesh_seconds).sum();
+        seconds.extend([("mesh".into(), mesh), ("condense".into(), condense)]);
     }
-    let mut remarks = remarks::of_assembly(scene, &assembly, &solution);
-    let names: Vec<&str> = scene.bearings.iter().map(name_of).collect();
+    let of_one = match scene.one() {
+        Some(one) => {
+            let mut problem = plan::of_one(one, still)?;
+            problem.outer_pose.position = moment.solution.bearings[0].centres[1];
+            Some((problem, StaticSolution::from(moment.solution.clone())))
+        }
+        None => None,
+    };
+    let mut remarks = match &of_one {
+        Some((problem, solution)) => remarks::of_statics(scene.common(), problem, solution),
+        None => remarks::of_assembly(scene, still, &moment.solution),
+    };
+    let defaults = match scene.only() {
+        Some(alone) => alone.defaults_used.clone(),
+        None => defaults(scene),
+    };
+    let planned = plan::of_statics(scene, &housings)?;
     let assumptions = &scene.common().assumptions;
-    let plan = statics_items(scene, &housings)?;
-    let mut record = record(echo(scene)?, plan, assumptions, &defaults(scene), seconds);
-    record.ran.clone_from(&solution.ran);
+    let mut record = record(echo::echo(scene)?, planned, assumptions, &defaults, seconds);
+    record.ran.clone_from(&moment.solution.ran);
     for (tally, bore) in record.ran.solids.iter_mut().zip(&bores) {
         tally.absorb(&bore.ran);
     }
-    let mut settled = Vec::with_capacity(housings.len());
-    let mut sections = Map::new();
-    for ((housing, bore), state) in housings.into_iter().zip(&bores).zip(&solution.seats) {
-        let name = names[housing.bearing];
-        let of = Settled::new(name, housing, bore, state);
-        let model = &of.housing.mesh.setup.model;
-        let said = of_solid::of_equilibrium(model, &of.displacement, &of.stress);
-        remarks.extend(said.into_iter().map(|remark| format!("housing {name}: {remark}")));
-        sections.insert(name.into(), of.section()?);
-        settled.push(of);
+    match &of_one {
+        Some((problem, _)) => record.sections = sections(scene.common(), problem)?,
+        None => {
+            let contacts = still.bearings.iter();
+            let contacts = contacts.map(|b| hertz([&b.inner_contact, &b.outer_contact]));
+            let speeds = scene.bearings.iter().map(|placed| frequencies(&placed.scene));
+            record.sections.push(("hertz".into(), by_name(scene, contacts)?));
+            record.sections.push(("frequencies".into(), by_name(scene, speeds)?));
+        }
+    }
+    let (mut settled, mut of_housings) = (Vec::with_capacity(housings.len()), Vec::new());
+    for ((housing, bore), state) in housings.into_iter().zip(&bores).zip(&moment.solution.seats) {
+        let own = Settled::new(housing, bore, state);
+        let model = &own.housing.setup.model;
+        let said = of_solid::of_equilibrium(model, &own.displacement, &own.stress);
+        of_housings.extend(said.iter().map(|said| format!("{}{said}", own.housing.before())));
+        own.record(bore, moment, &mut record)?;
+        settled.push(own);
     }
     if !settled.is_empty() {
-        record.sections.push(("housings".into(), Value::Object(sections)));
+        record.sections.push(("housing_remarks".into(), json!(of_housings)));
     }
+    remarks.append(&mut of_housings);
     record.sections.push(("remarks".into(), json!(remarks)));
-    let contacts = assembly.bearings.iter().map(|b| hertz([&b.inner_contact, &b.outer_contact]));
-    let speeds = scene.bearings.iter().map(|placed| frequencies(&placed.scene));
-    record.sections.push(("hertz".into(), by_name(scene, contacts)?));
-    record.sections.push(("frequencies".into(), by_name(scene, speeds)?));
-    let solution = readable(&scene.assembly()?, &assembly, &solution);
-    let StaticAssembly { bodies, bearings, connections, .. } = assembly;
+    let mut inertia = Vec::new();
+    if let Some(estimate) = &estimate {
+        record.sections.push(("inertia".into(), section(scene, estimate, &[])?));
+        inertia = verdicts(scene, estimate, &[]);
+    }
+    let Equilibrium { still, mut moment, .. } = found;
+    if of_one.is_none() {
+        moment.solution = readable(&scene.assembly()?, &still, &moment.solution);
+    }
+    let StaticAssembly { bodies, bearings, connections, .. } = still;
     // Bores are needed no longer.
     let assembly = StaticAssembly { bodies, bearings, connections, seats: Vec::new() };
-    Ok(Found { names, assembly, solution, remarks, record, settled })
+    let names = scene.bearings.iter().map(name_of).collect();
+    Ok(Found { scene, names, assembly, moment, of_one, remarks, inertia, settled, record })
 }
 
 /// What there is of each bearing under its name; that of the only one by itself.
@@ -105,68 +149,174 @@ fn by_name(
     Ok(Value::Object(named))
 }
 
+impl Found<'_> {
+    /// As a person reads it.
+    fn text(&self) -> String {
+        let of_housings: String = self.settled.iter().map(Settled::text).collect();
+        let solution = &self.moment.solution;
+        let mut text = String::new();
+        for note in self.settled.iter().flat_map(|settled| settled.housing.notes()) {
+            text += &format!("note: {note}\n");
+        }
+        text += &match &self.of_one {
+            Some((_, solution)) => table::render(solution, &of_housings, &self.remarks),
+            None => {
+                let names = &self.names;
+                table::render_assembly(&self.assembly, names, solution, &of_housings, &self.remarks)
+            }
+        };
+        if !self.settled.is_empty() {
+            let Moment { contact_changes, residual, .. } = self.moment;
+            text += &format!(
+                "{} iterations, {contact_changes} changes of contact, unbalanced part of the load {residual:.1e}\n",
+                solution.iterations
+            );
+        }
+        self.inertia.iter().for_each(|said| text += &format!("note: {said}\n"));
+        text
+    }
+
+    /// Plots of the bearings.
+    fn draw(&self, folder: &Path) -> Fallible<Vec<PathBuf>> {
+        let common = self.scene.common();
+        if let Some((problem, solution)) = &self.of_one {
+            let mut drawn = common.clone();
+            // The other plots move the bearing on, which would move the outer race.
+            drawn.plots.retain(|plot| self.settled.is_empty() || *plot == Plot::LoadZone);
+            return pictures::write(folder, &drawn, problem, solution);
+        }
+        let mut written = Vec::new();
+        if common.plots.contains(&Plot::LoadZone) {
+            let title = common.title.clone().unwrap_or_else(|| "Bearings".into());
+            let bearings = self.scene.bearings.iter().zip(&self.names);
+            for ((placed, name), state) in bearings.zip(&self.moment.solution.bearings) {
+                let path = folder.join(format!("load_zone_{name}.svg"));
+                let (heading, geometry) = (format!("{title}: {name}"), &placed.scene.geometry);
+                let zone = LoadZone::new(heading, geometry, &state.balls);
+                write_atomic(&path, load_zone(&zone)?.as_bytes())?;
+                written.push(path);
+            }
+        }
+        Ok(written)
+    }
+
+    /// Summary and tables.
+    ///
+    /// # Errors
+    /// A value that is not finite, a file that cannot be written.
+    pub fn write(&self, folder: &Path, record: &RunRecord) -> Result<Vec<PathBuf>, ResultsError> {
+        match &self.of_one {
+            Some((_, solution)) => write_static_results(folder, solution, record),
+            None => {
+                let Found { names, assembly, moment, .. } = self;
+                write(folder, &Solved { assembly, names, solution: &moment.solution }, record)
+            }
+        }
+    }
+}
+
 /// A housing in equilibrium.
-pub struct Settled {
-    name: String,
+struct Settled {
     housing: Housing,
     seat: SeatRow,
     nodes: Vec<BoreNodeState>,
     displacement: Vec<Vec3>,
     stress: Stresses,
-    /// y, z (m), tilts (rad) of the race from its place.
-    pose: [f64; 4],
+    state: BoreState,
+    /// Of the race in the world, m and rad.
+    place: [f64; 5],
 }
 
 impl Settled {
-    fn new(name: &str, housing: Housing, bore: &CondensedBore, state: &BoreState) -> Settled {
-        let model = &housing.mesh.setup.model;
+    fn new(housing: Housing, bore: &CondensedBore, state: &BoreState) -> Settled {
+        let model = &housing.setup.model;
         let displacement = bore.displacement(&state.loads);
         Settled {
-            name: name.into(),
             seat: SeatRow::of_equilibrium(bore, state),
             nodes: condensed_nodes(model, bore, state),
             stress: stresses(model, &displacement),
-            pose: state.pose,
+            state: state.clone(),
+            place: bore.race(&state.pose),
             displacement,
             housing,
         }
     }
 
-    fn section(&self) -> Result<Value, Box<dyn Error>> {
+    /// Its sections: of the only one beside those of the bearing, of several under their names.
+    fn record(
+        &self,
+        bore: &CondensedBore,
+        moment: &Moment,
+        record: &mut RunRecord,
+    ) -> Fallible<()> {
+        let Settled { housing, displacement, .. } = self;
+        let mut equilibrium = equilibrium_section(&housing.setup, bore, &self.state, displacement)?;
+        let fields = field_sections(&housing.built, displacement, &self.stress)?;
+        let Some(name) = &housing.name else {
+            equilibrium["solver"] = solver_section(moment)?;
+            record.sections.push(("housing".into(), equilibrium));
+            record.sections.extend(fields);
+            return Ok(());
+        };
         let mut section = Map::new();
-        let columns = seat_columns("");
-        for (column, value) in columns.iter().zip(self.seat.values()) {
+        for (column, value) in seat_columns("").iter().zip(self.seat.values()) {
             section.insert(column.name.clone(), quantity(&column.name, value, &column.unit)?);
         }
-        let built = &self.housing.mesh.built;
-        section.extend(field_sections(built, &self.displacement, &self.stress)?);
-        Ok(Value::Object(section))
+        section.insert("housing".into(), equilibrium);
+        section.extend(fields);
+        match record.sections.iter_mut().find(|(name, _)| name == "housings") {
+            Some((_, of_all)) => of_all[name] = Value::Object(section),
+            None => record.sections.push(("housings".into(), json!({ name: section }))),
+        }
+        Ok(())
     }
 
-    /// As a person reads it.
+    /// The outer race in its bore, as a person reads it.
     fn text(&self) -> String {
-        let [y, z, ..] = self.pose;
+        let Settled { housing, seat, place, state, .. } = self;
         let von_mises = self.stress.cell_von_mises.iter().copied().fold(0.0, f64::max);
-        format!(
-            "housing {}: outer race {:.6} um along y, {:.6} um along z, {} bore nodes touch, pressure up to \
-             {:.4} MPa, von Mises stress up to {:.4} MPa\n",
-            self.name,
-            1e6 * y,
-            1e6 * z,
-            self.seat.touching,
-            1e-6 * self.seat.peak_pressure,
+        let of = housing.before();
+        let mut text = format!("\n{of}outer race      displacement, tilt      of the housing\n");
+        let loads = [seat.force[1], seat.force[2], seat.moment[1], seat.moment[2]];
+        for (i, name) in POSE_NAMES.iter().enumerate() {
+            let (value, unit, load_unit) = if i < 2 {
+                (1e6 * place[1 + i], "um ", "N")
+            } else {
+                (place[1 + i].to_degrees(), "deg", "N m")
+            };
+            let _ =
+                writeln!(text, "  {name:<10} {value:>16.6} {unit} {:>18.6} {load_unit}", loads[i]);
+        }
+        let stiffness = |i: usize| 1e-6 * state.stiffness[(i, i)];
+        let _ = writeln!(
+            text,
+            "housing stiffness {:.4} N/um along y, {:.4} N/um along z\n\
+             {} of {} bore nodes touch, penetration up to {:.6} um, pressure up to {:.4} MPa, von Mises \
+             stress up to {:.4} MPa\n\
+             this pressure is {PEAK_PRESSURE}",
+            stiffness(0),
+            stiffness(1),
+            seat.touching,
+            state.loads.len(),
+            1e6 * seat.deepest,
+            1e-6 * seat.peak_pressure,
             1e-6 * von_mises
-        )
+        );
+        text
     }
 
     /// Fields and the table of the bore's nodes; the files written.
-    fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
-        let fields = folder.join(file_name(&self.name, 0));
-        let mesh = &self.housing.mesh.built.mesh;
+    fn write(&self, folder: &Path) -> Fallible<Vec<PathBuf>> {
+        let fields = folder.join(self.fields_file());
+        let mesh = &self.housing.built.mesh;
         write_fields(&fields, mesh, &self.displacement, None, &self.stress, Some(&self.nodes))?;
-        let table = folder.join(format!("bore_{}.csv", self.name));
+        let table = folder.join(self.housing.bore_file());
         bore_series(&self.nodes)?.write_csv(&table)?;
         Ok(vec![fields, table])
+    }
+
+    fn fields_file(&self) -> String {
+        file_name(self.housing.name.as_deref().unwrap_or("fields"), 0)
     }
 }
 
@@ -177,37 +327,29 @@ pub fn run(
     scene: &AssemblyScene,
     out: &Option<PathBuf>,
     dry: bool,
+    read: f64,
 ) -> CommandResult {
-    let start = Instant::now();
     let folder = match dry {
         true => None,
         false => Some(claimed(&results_folder(path, out), Writes::Statics)?),
     };
-    let found = find_equilibrium(document, scene, start.elapsed().as_secs_f64())?;
-    let Found { names, assembly, solution, remarks, record, settled } = &found;
-    let of_housings: String = settled.iter().map(Settled::text).collect();
-    say(&table::render_assembly(assembly, names, solution, &of_housings, remarks))?;
+    let found = find_equilibrium(document, scene, read)?;
+    // Nothing computed is lost if a file cannot be written.
+    say(&found.text())?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
-    let mut written = Vec::new();
-    if scene.common().plots.contains(&Plot::LoadZone) {
-        let title = scene.common().title.clone().unwrap_or_else(|| "Bearings".into());
-        for ((placed, name), state) in scene.bearings.iter().zip(names).zip(&solution.bearings) {
-            let path = folder.join(format!("load_zone_{name}.svg"));
-            let (heading, geometry) = (format!("{title}: {name}"), &placed.scene.geometry);
-            let zone = LoadZone::new(heading, geometry, &state.balls);
-            write_atomic(&path, load_zone(&zone)?.as_bytes())?;
-            written.push(path);
-        }
-    }
-    for housing in settled {
+    let start = Instant::now();
+    let mut written = found.draw(&folder)?;
+    for housing in &found.settled {
         written.extend(housing.write(&folder)?);
     }
-    if !settled.is_empty() {
-        let files: Vec<_> = settled.iter().map(|of| (0.0, file_name(&of.name, 0))).collect();
+    if !found.settled.is_empty() {
+        let files: Vec<_> = found.settled.iter().map(|of| (0.0, of.fields_file())).collect();
         written.push(write_list(&folder, &files)?);
     }
-    written.extend(write(&folder, &Solved { assembly, names, solution }, record)?);
+    let mut record = found.record.clone();
+    record.seconds.push(("plots".into(), start.elapsed().as_secs_f64()));
+    written.extend(found.write(&folder, &record)?);
     say(&format!("wrote {} files to {}\n", written.len(), folder.display()))?;
     Ok(Outcome::Done)
 }

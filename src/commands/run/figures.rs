@@ -1,12 +1,12 @@
 //! The few numbers of a run that `bearing run` ends with.
 
-use bearing_dynamics::output::course::Course;
 use bearing_dynamics::output::recorder::seat::prefix;
 use bearing_dynamics::output::session::{Motion, Session};
 use bearing_dynamics::output::summary::housing::PEAK_PRESSURE;
 use bearing_dynamics::output::table::RunTable;
 use bearing_dynamics::solver::clock::told;
 use bearing_dynamics::solver::dynamics::run::Simulation;
+use bearing_dynamics::solver::housing::course::Course;
 
 type Lines = Vec<(String, String)>;
 
@@ -27,7 +27,10 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
                 lines.push((format!("{}outer race, farthest", of.replace('_', " ")), said));
             }
         }
-        Motion::Course(_) => races_apart(table, &mut lines),
+        Motion::Course(course) => {
+            let bearings = &course.problem.assembly.bearings;
+            bearings.iter().for_each(|of| races_apart(table, &of.prefix(), &mut lines));
+        }
     }
     match &session.motion {
         Motion::Housed(housed) => {
@@ -37,7 +40,9 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
             let seats = &simulation.system.assembly.seats;
             lines.extend(seats.iter().map(|seat| of_bore(table, &seat.label)));
         }
-        Motion::Course(_) => lines.push(of_bore(table, &None)),
+        Motion::Course(course) => {
+            lines.extend(course.problem.seats.iter().map(|seat| of_bore(table, &seat.name)));
+        }
         Motion::Solid(_) => {}
     }
     if !session.motion.solids().is_empty() {
@@ -91,13 +96,13 @@ fn effort(course: &Course, seconds: f64) -> String {
     )
 }
 
-fn races_apart(table: &RunTable, lines: &mut Lines) {
+fn races_apart(table: &RunTable, of: &str, lines: &mut Lines) {
     for race in ["inner", "outer"] {
-        let [y, z] = ["y", "z"].map(|axis| table.all(&format!("{race}_{axis}")));
+        let [y, z] = ["y", "z"].map(|axis| table.all(&format!("{of}{race}_{axis}")));
         let (Some(y), Some(z)) = (y, z) else { continue };
         let most = y.iter().zip(&z).map(|(y, z)| libm::hypot(*y, *z)).fold(0.0, f64::max);
         let said = format!("{:.6} um across the axis", 1e6 * most);
-        lines.push((format!("{race} race, farthest"), said));
+        lines.push((format!("{}{race} race, farthest", of.replace('_', " ")), said));
     }
 }
 

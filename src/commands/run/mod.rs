@@ -5,7 +5,7 @@ mod prepared;
 mod results;
 mod texts;
 
-pub use prepared::{ONE_AFTER_THE_OTHER, planned_request, request};
+pub use prepared::{planned_request, request};
 
 use super::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
 use super::{CommandResult, Outcome, results_folder, say};

@@ -1,20 +1,20 @@
 //! From a scene to what moves in its run: the one place that asks what the scene is of.
 
-use crate::commands::assembly::housings::{self, Housing, Reduced as Reductions};
-use crate::commands::housed::reduced::Reduced;
-use crate::commands::plan::dynamic_items;
-use crate::commands::{self, housed, solid};
+use crate::commands::assembly::housing::Housing;
+use crate::commands::assembly::shapes::{Shapes, shapes};
+use crate::commands::assembly::{self, housings, plan};
+use crate::commands::solid;
 use bearing_dynamics::kinematics::vec3::Vec3;
-use bearing_dynamics::output::course::CourseParts;
 use bearing_dynamics::output::results::RunRecord;
-use bearing_dynamics::output::session::{Motion, Parts, RunRequest, Session, SolidParts};
+use bearing_dynamics::output::session::{
+    CourseParts, Motion, Parts, RunRequest, Session, SolidParts,
+};
 use bearing_dynamics::output::state::{self, StateFile};
 use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::dynamics::{DynamicsError, run_options};
-use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
+use bearing_dynamics::scene::dynamics::DynamicsError;
+use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::scene::solid::SolidRun;
 use bearing_dynamics::scene::solid_mesh::BuiltMesh;
-use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{Document, RunPlot, RunSettings, Scene, SolidScene, Subject};
 use bearing_dynamics::solver::channels::ChannelGroup;
 use bearing_dynamics::solver::dynamics::assembly::Assembly;
@@ -32,27 +32,29 @@ type Fallible<T> = Result<T, Box<dyn Error>>;
 /// A scene ready to run.
 pub(super) enum Prepared<'s> {
     Bearings {
-        scene: Box<AssemblyScene>,
+        scene: &'s AssemblyScene,
         settings: RunSettings,
         /// With the housings that are reduced.
         assembly: Box<Assembly>,
         housings: Vec<Housing>,
-        reduced: Option<Box<Reductions>>,
+        way: Way,
     },
     Solid {
         scene: &'s SolidScene,
         settings: SolidRun,
         mesh: Box<solid::Prepared>,
     },
-    Housed {
-        scene: &'s HousedScene,
-        settings: RunSettings,
-        mesh: Box<housed::Prepared>,
-        /// Of equilibria, and the wall time that condensing took, s.
-        bore: Option<(Box<CondensedBore>, f64)>,
-        /// Of a housing in shapes.
-        reduced: Option<Box<Reduced>>,
-    },
+}
+
+/// How bearings and their housings are solved.
+pub(super) enum Way {
+    /// In steps, all housings rigid.
+    Rigid,
+    /// Bearings and housings in steps of their own.
+    Explicit,
+    Reduced(Box<Shapes>),
+    /// Through equilibria; and the wall time that condensing took, s.
+    Course(Vec<CondensedBore>, f64),
 }
 
 /// A solid of a scene and its mesh.
@@ -71,84 +73,62 @@ pub(super) struct Fields {
     pub velocity: Option<Vec<Vec3>>,
 }
 
-pub const ONE_AFTER_THE_OTHER: &str = "several bearings do not run through equilibria one after the other; \
-    `bearing statics` and `sweep` give their equilibria, and they run with method = \"reduced\" or \"explicit\" in [housing]";
-
 /// Refuses a scene that gives no end.
 pub(super) fn check_end(path: &Path, subject: &Subject) -> Fallible<()> {
-    let ends = match subject {
-        Subject::Bearing(scene) => run_options(scene).map(|_| ()).map_err(|e| e.to_string()),
-        Subject::Assembly(scene) => {
-            scene.run().map(|_| ()).ok_or_else(|| DynamicsError::NoEnd.to_string())
-        }
-        Subject::Solid(scene) => {
-            scene.run.map(|_| ()).ok_or("a run needs `end` in [numerics]".into())
-        }
-        Subject::Housed(scene) => {
-            let run = scene.bearing.dynamics.run.as_ref();
-            run.map(|_| ()).ok_or("a run needs `end` in [numerics]".into())
-        }
+    let (ends, bearing_alone) = match subject {
+        Subject::Assembly(scene) => (scene.run().is_some(), scene.housing_method().is_none()),
+        Subject::Solid(scene) => (scene.run.is_some(), false),
     };
-    Ok(ends.map_err(|error| format!("{}: {error}", path.display()))?)
+    match (ends, bearing_alone) {
+        (true, _) => Ok(()),
+        (false, true) => Err(format!("{}: {}", path.display(), DynamicsError::NoEnd).into()),
+        (false, false) => Err(format!("{}: {NO_END}", path.display()).into()),
+    }
 }
 
-impl<'s> Prepared<'s> {
-    /// Reads meshes, and condenses a housing that equilibria are to be found in.
-    pub fn new(document: &Document, subject: &'s Subject) -> Fallible<Prepared<'s>> {
-        const NO_END: &str = "a run needs `end` in [numerics]";
-        Ok(match subject {
-            Subject::Bearing(scene) => {
-                Prepared::bearings(AssemblyScene::alone((**scene).clone()), Vec::new())?
-            }
-            Subject::Assembly(scene) => {
-                Prepared::bearings((**scene).clone(), housings::prepare(document, scene)?)?
-            }
-            Subject::Solid(scene) => Prepared::Solid {
-                settings: scene.run.ok_or(NO_END)?,
-                mesh: Box::new(solid::prepare(document, scene)?),
-                scene,
-            },
-            Subject::Housed(scene) => {
-                let settings = scene.bearing.dynamics.run.clone().ok_or(NO_END)?;
-                let mesh = housed::prepare(document, scene)?;
-                let (mut bore, mut reduced) = (None, None);
-                match scene.housing.method {
-                    HousingMethod::Explicit => {}
-                    HousingMethod::QuasiStatic => {
-                        housed::refuse_moving(document, scene)?;
-                        let start = Instant::now();
-                        let condensed = Box::new(housed::condensed(&mesh)?);
-                        bore = Some((condensed, start.elapsed().as_secs_f64()));
-                    }
-                    HousingMethod::Reduced => {
-                        housed::refuse_moved_supports(document, scene)?;
-                        reduced = Some(Box::new(housed::reduced::reduced(scene, &mesh)?));
-                    }
-                }
-                Prepared::Housed { settings, mesh: Box::new(mesh), bore, reduced, scene }
-            }
-        })
-    }
+const NO_END: &str = "a run needs `end` in [numerics]";
 
-    fn bearings(scene: AssemblyScene, housings: Vec<Housing>) -> Fallible<Prepared<'s>> {
-        let settings = scene.run().cloned().ok_or(DynamicsError::NoEnd)?;
-        let (assembly, reduced) = match scene.housing_method() {
-            None | Some(HousingMethod::Explicit) => (scene.assembly()?, None),
-            Some(HousingMethod::Reduced) => {
-                let reduced = housings::reduced(&scene, &housings)?;
-                (reduced.assembly.clone(), Some(Box::new(reduced)))
+impl<'s> Prepared<'s> {
+    /// Reads meshes, and condenses or reduces housings.
+    pub fn new(document: &Document, subject: &'s Subject) -> Fallible<Prepared<'s>> {
+        let scene = match subject {
+            Subject::Assembly(scene) => scene,
+            Subject::Solid(scene) => {
+                let settings = scene.run.ok_or(NO_END)?;
+                let mesh = Box::new(solid::prepare(document, scene)?);
+                return Ok(Prepared::Solid { settings, mesh, scene });
             }
-            Some(HousingMethod::QuasiStatic) => return Err(ONE_AFTER_THE_OTHER.into()),
         };
-        let (scene, assembly) = (Box::new(scene), Box::new(assembly));
-        Ok(Prepared::Bearings { scene, settings, assembly, housings, reduced })
+        let settings = scene.run().cloned().ok_or(NO_END)?;
+        let housings = housings::prepare(document, scene)?;
+        housings::refuse(document, scene, &housings)?;
+        let way = match scene.housing_method() {
+            None => Way::Rigid,
+            Some(HousingMethod::Explicit) => Way::Explicit,
+            Some(HousingMethod::Reduced) => Way::Reduced(Box::new(shapes(scene, &housings)?)),
+            Some(HousingMethod::QuasiStatic) => {
+                let start = Instant::now();
+                let bores = housings::condensed(&housings)?;
+                Way::Course(bores, start.elapsed().as_secs_f64())
+            }
+        };
+        let assembly = Box::new(match &way {
+            Way::Reduced(shapes) => shapes.assembly.clone(),
+            _ => scene.assembly()?,
+        });
+        Ok(Prepared::Bearings { scene, settings, assembly, housings, way })
     }
 
     /// What moves.
     pub fn parts(&self, threads: usize) -> Fallible<Parts<'_>> {
         Ok(match self {
-            Prepared::Bearings { scene, housings, reduced: None, .. } if !housings.is_empty() => {
+            Prepared::Bearings { scene, housings, way: Way::Explicit, .. } => {
                 Parts::Housed(Box::new(housings::explicit(scene, housings, threads)?))
+            }
+            Prepared::Bearings { scene, housings, way: Way::Course(bores, _), .. } => {
+                let problem = housings::course(scene, housings, bores)?;
+                let models = housings.iter().map(|housing| &housing.setup.model).collect();
+                Parts::Course(Box::new(CourseParts { problem, models }))
             }
             Prepared::Bearings { assembly, .. } => Parts::from((**assembly).clone()),
             Prepared::Solid { settings, mesh, .. } => Parts::Solid(SolidParts {
@@ -157,41 +137,26 @@ impl<'s> Prepared<'s> {
                 stepping: settings.stepping,
                 threads,
             }),
-            Prepared::Housed { scene, mesh, bore: Some((bore, _)), .. } => {
-                let problem = static_problem(&scene.bearing)?;
-                Parts::Course(Box::new(CourseParts { scene, setup: &mesh.setup, bore, problem }))
-            }
-            Prepared::Housed { reduced: Some(reduced), .. } => {
-                Parts::Bearing(Box::new(reduced.assembly.clone()))
-            }
-            Prepared::Housed { scene, settings, mesh, .. } => {
-                Parts::Housed(Box::new(housed::parts(scene, mesh, settings, threads)?))
-            }
         })
     }
 
     /// What the scene asks of the run, with the integrator that the plan chooses for a bearing.
     pub fn request(&self, kept: Option<&StateFile>) -> Fallible<(RunRequest, Option<Choice>)> {
         Ok(match self {
-            Prepared::Bearings { scene, settings, housings, reduced: None, .. }
-                if !housings.is_empty() =>
-            {
+            Prepared::Bearings { scene, settings, assembly, housings, way } => {
                 let mut request = request(scene.common(), settings);
-                request.fields_interval = housings[0].scene.housing.fields_interval;
-                (request, None)
-            }
-            Prepared::Bearings { scene, settings, assembly, housings, .. } => {
-                let (mut request, choice) = planned_request(scene, settings, assembly, kept);
                 if let Some(first) = housings.first() {
                     request.fields_interval = first.scene.housing.fields_interval;
-                    // Where races and housings start is in the assembly.
-                    request.options.start = Start::Equilibrium;
                 }
-                (request, choice)
-            }
-            Prepared::Housed { scene, settings, reduced: Some(reduced), .. } => {
-                let request = housed::request(scene, settings);
-                planned(request, settings, &reduced.assembly, kept)
+                match way {
+                    Way::Rigid => planned(request, settings, assembly, kept),
+                    Way::Reduced(_) => {
+                        // Where races and housings start is in the assembly.
+                        request.options.start = Start::Equilibrium;
+                        planned(request, settings, assembly, kept)
+                    }
+                    Way::Explicit | Way::Course(..) => (request, None),
+                }
             }
             Prepared::Solid { settings, .. } => {
                 let request = RunRequest {
@@ -206,7 +171,6 @@ impl<'s> Prepared<'s> {
                 };
                 (request, None)
             }
-            Prepared::Housed { scene, settings, .. } => (housed::request(scene, settings), None),
         })
     }
 
@@ -214,16 +178,9 @@ impl<'s> Prepared<'s> {
     pub fn notes(&self) -> Vec<String> {
         match self {
             Prepared::Bearings { housings, .. } => {
-                let said = |housing: &Housing| {
-                    let name =
-                        housing.name.clone().map_or(String::new(), |name| format!("{name}: "));
-                    let notes = housed::notes(&housing.mesh).into_iter();
-                    notes.map(|note| format!("{name}{note}")).collect::<Vec<_>>()
-                };
-                housings.iter().flat_map(said).collect()
+                housings.iter().flat_map(Housing::notes).collect()
             }
             Prepared::Solid { mesh, .. } => solid::mesh_notes(&mesh.built),
-            Prepared::Housed { mesh, .. } => housed::notes(mesh),
         }
     }
 
@@ -233,9 +190,6 @@ impl<'s> Prepared<'s> {
                 scene.common().title.clone().unwrap_or_else(|| "Bearing".into())
             }
             Prepared::Solid { scene, .. } => solid::title(scene),
-            Prepared::Housed { scene, .. } => {
-                scene.bearing.title.clone().unwrap_or_else(|| "Bearing".into())
-            }
         }
     }
 
@@ -243,21 +197,15 @@ impl<'s> Prepared<'s> {
     pub fn bearing(&self) -> Option<&Scene> {
         match self {
             Prepared::Bearings { scene, .. } => Some(scene.common()),
-            Prepared::Housed { scene, .. } => Some(&scene.bearing),
             Prepared::Solid { .. } => None,
         }
     }
 
     /// Displacements (m) and velocities (m/s) of a solid; `None` where there is nothing yet.
     pub fn fields(&self, session: &mut Session, solid: usize) -> Option<Fields> {
-        let by_shapes = match self {
-            Prepared::Housed { reduced: Some(reduced), .. } => reduced.fields(&session.motion),
-            Prepared::Bearings { reduced: Some(reduced), .. } => {
-                housings::fields(reduced, &session.motion, solid)
-            }
-            _ => None,
-        };
-        if let Some([displacement, velocity]) = by_shapes {
+        if let Prepared::Bearings { way: Way::Reduced(shapes), .. } = self
+            && let Some([displacement, velocity]) = shapes.fields(&session.motion, solid)
+        {
             return Some(Fields { displacement, velocity: Some(velocity) });
         }
         let displacement = session.displacement(solid);
@@ -274,21 +222,13 @@ impl<'s> Prepared<'s> {
 
     /// The solids of the scene: by themselves, or housings.
     pub fn solids(&self) -> Vec<SolidOf<'_>> {
+        fn of_housing(Housing { name, built, setup, .. }: &Housing) -> SolidOf<'_> {
+            SolidOf { name: name.as_deref(), built, model: Some(&setup.model) }
+        }
         match self {
-            Prepared::Bearings { housings, .. } => housings
-                .iter()
-                .map(|Housing { name, mesh, .. }| SolidOf {
-                    name: name.as_deref(),
-                    built: &mesh.built,
-                    model: Some(&mesh.setup.model),
-                })
-                .collect(),
+            Prepared::Bearings { housings, .. } => housings.iter().map(of_housing).collect(),
             Prepared::Solid { mesh, .. } => {
                 vec![SolidOf { name: None, built: &mesh.built, model: None }]
-            }
-            Prepared::Housed { mesh, .. } => {
-                let model = Some(&mesh.setup.model);
-                vec![SolidOf { name: None, built: &mesh.built, model }]
             }
         }
     }
@@ -296,9 +236,7 @@ impl<'s> Prepared<'s> {
     /// From when on means are taken, s.
     pub fn window_start(&self) -> f64 {
         match self {
-            Prepared::Bearings { settings, .. } | Prepared::Housed { settings, .. } => {
-                settings.window_start
-            }
+            Prepared::Bearings { settings, .. } => settings.window_start,
             Prepared::Solid { .. } => 0.0,
         }
     }
@@ -311,6 +249,20 @@ impl<'s> Prepared<'s> {
         }
     }
 
+    /// Wall times of what was done before the steps, s.
+    pub fn seconds(&self) -> Vec<(String, f64)> {
+        match self {
+            Prepared::Bearings { way: Way::Course(_, condense), .. } => {
+                vec![("condense".into(), *condense)]
+            }
+            Prepared::Bearings { way: Way::Reduced(shapes), .. } => {
+                let [condense, reduce] = shapes.seconds;
+                vec![("condense".into(), condense), ("reduce".into(), reduce)]
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// Scene, plan, assumptions and defaults, as every summary has them.
     pub fn record(
         &self,
@@ -319,30 +271,30 @@ impl<'s> Prepared<'s> {
         seconds: Vec<(String, f64)>,
     ) -> Fallible<RunRecord> {
         match self {
-            Prepared::Bearings { scene, assembly, housings, reduced, .. } => {
-                let defaults = commands::assembly::defaults(scene);
-                let solids = housings::items(scene, housings, assembly);
-                let plan = dynamic_items(scene, assembly, request, choice, solids);
-                let assumptions = &scene.common().assumptions;
-                let echo = commands::assembly::echo(scene)?;
-                let mut record = commands::record(echo, plan, assumptions, &defaults, seconds);
-                record.sections.push(("motion".into(), commands::assembly::motion(scene)?));
+            Prepared::Bearings { scene, settings, assembly, housings, way } => {
+                // With housings a run that is extended has the bytes of an unbroken one.
+                let choice = choice.filter(|_| housings.is_empty());
+                let planned = match way {
+                    Way::Course(..) => plan::of_course(scene, housings, settings)?,
+                    _ => plan::stages(scene, housings, assembly, request, choice),
+                };
+                let mut record = assembly::record(scene, planned, seconds)?;
                 record.ran.whole.add(Stage::IntegratorChoice, u64::from(choice.is_some()));
-                record.ran.solids = reduced.as_ref().map_or(Vec::new(), |of| of.ran.clone());
+                record.ran.solids = match way {
+                    Way::Course(bores, _) => bores.iter().map(|bore| bore.ran).collect(),
+                    Way::Reduced(shapes) => shapes.ran.clone(),
+                    Way::Rigid | Way::Explicit => Vec::new(),
+                };
+                // Of one in its housing it is part of the scene.
+                if housings.is_empty() || scene.one().is_none() {
+                    let motion = assembly::echo::motion(scene)?;
+                    record.sections.push(("motion".into(), motion));
+                }
                 Ok(record)
             }
             Prepared::Solid { scene, mesh, .. } => {
                 let plan = solid::plan::items(scene, mesh, solid::plan::Of::Run);
                 solid::record(scene, plan, seconds)
-            }
-            Prepared::Housed { scene, mesh, bore, reduced, .. } => {
-                let assembly = reduced.as_ref().map(|reduced| &reduced.assembly);
-                let plan = housed::plan::items(scene, mesh, assembly)?;
-                let mut record = housed::record(scene, plan, seconds)?;
-                let condensing = bore.as_ref().map(|(bore, _)| bore.ran);
-                let reducing = reduced.as_ref().map(|reduced| reduced.ran);
-                record.ran.solids = condensing.or(reducing).into_iter().collect();
-                Ok(record)
             }
         }
     }

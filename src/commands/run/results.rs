@@ -1,8 +1,9 @@
 //! What a run leaves in its folder: fields on the way; tables, plots and the summary at its end.
 
 use super::figures::key_figures;
-use super::prepared::{Fields, Prepared, SolidOf};
-use crate::commands::housed::{along_course, inertia_estimate, plan::verdict, write_bore};
+use super::prepared::{Fields, Prepared, SolidOf, Way};
+use crate::commands::assembly::course::{along_course, inertia_estimate, section, verdicts};
+use crate::commands::assembly::housing::Housing;
 use crate::commands::{remarks, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::bore::{bore_nodes, bore_series};
@@ -13,14 +14,17 @@ use bearing_dynamics::output::remarks as of_solid;
 use bearing_dynamics::output::session::{Motion, RunRequest, Session, Status};
 use bearing_dynamics::output::spectrum::Spectrum;
 use bearing_dynamics::output::summary::housing::{
-    equilibrium_section, inertia_section, reduced_section, seat_section,
+    equilibrium_section, reduced_section, seat_section, solver_section,
 };
 use bearing_dynamics::output::summary::solid::{field_sections, mass_section};
 use bearing_dynamics::output::summary::{RunReport, write_run_results};
 use bearing_dynamics::output::table::RunTable;
-use bearing_dynamics::scene::housing_problem::excitations;
+use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::scene::excitations::excitations;
 use bearing_dynamics::scene::{Plot, RunPlot, Scene};
 use bearing_dynamics::solver::dynamics::foretell::Choice;
+use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::course::CourseProblem;
 use serde_json::{Map, Value, json};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -58,17 +62,14 @@ pub(super) fn write_results(
     let start = Instant::now();
     let mut said = Said::default();
     match prepared {
-        Prepared::Bearings { scene, housings, .. } => {
+        Prepared::Bearings { scene, .. } => {
             if let Some(simulation) = session.motion.bearing() {
                 said.remarks = remarks::of_run(scene, simulation);
-                said.sections.push(("remarks".into(), json!(said.remarks)));
             }
-            if !housings.is_empty() {
-                housings_results(folder, prepared, session, &mut said)?;
-            }
+            housing_results(folder, prepared, session, &mut said)?;
+            said.sections.push(("remarks".into(), json!(said.remarks)));
         }
         Prepared::Solid { .. } => solid_results(prepared, session, &mut said)?,
-        Prepared::Housed { .. } => housing_results(folder, prepared, session, &mut said)?,
     }
     let table = RunTable::new(session, prepared.window_start())?;
     let spectra = spectra(prepared, session, &table);
@@ -79,17 +80,7 @@ pub(super) fn write_results(
         ("simulate".into(), seconds.simulate),
         ("plots".into(), start.elapsed().as_secs_f64()),
     ];
-    if let Prepared::Housed { bore: Some((_, seconds)), .. } = prepared {
-        stages.push(("condense".into(), *seconds));
-    }
-    let of_shapes = match prepared {
-        Prepared::Housed { reduced: Some(reduced), .. } => Some(reduced.seconds),
-        Prepared::Bearings { reduced: Some(reduced), .. } => Some(reduced.seconds),
-        _ => None,
-    };
-    if let Some([condense, reduce]) = of_shapes {
-        stages.extend([("condense".into(), condense), ("reduce".into(), reduce)]);
-    }
+    stages.extend(prepared.seconds());
     let mut record = prepared.record(request, choice.as_ref(), stages)?;
     record.sections.append(&mut said.sections);
     record.ran.absorb(&session.ran());
@@ -106,7 +97,7 @@ pub(super) fn write_results(
         integrator: Some(integrator),
         solid_stepping: match prepared {
             Prepared::Solid { settings, .. } => Some(settings.stepping),
-            Prepared::Bearings { .. } | Prepared::Housed { .. } => None,
+            Prepared::Bearings { .. } => None,
         },
     };
     let written = write_run_results(folder, session, &table, &spectra, &report)?;
@@ -137,103 +128,103 @@ fn solid_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fal
     Ok(())
 }
 
-/// Fields of the last state and the nodes of the bores of several housings.
-fn housings_results(
-    folder: &Path,
-    prepared: &Prepared,
-    session: &mut Session,
-    said: &mut Said,
-) -> Fallible<()> {
-    let Prepared::Bearings { housings, reduced, .. } = prepared else { return Ok(()) };
-    // Of explicit steps that stopped on the way the state at the last row is not at hand.
-    let is_sound = reduced.is_some() || session.status == Status::Complete;
-    let mut sections = Map::new();
-    let mut remarks = Vec::new();
-    if is_sound && session.recorder.rows() > 0 {
-        if session.clock.fields_due().is_none() {
-            let row = session.recorder.rows() as u64 - 1;
-            let index = session.clock.rows_per_fields.map_or(0, |every| row / every + 1);
-            write_fields_file(folder, prepared, session, index)?;
-        }
-        for (number, housing) in housings.iter().enumerate() {
-            let Some(Fields { displacement, .. }) = prepared.fields(session, number) else { break };
-            let (model, name) = (&housing.mesh.setup.model, housing.name.as_deref());
-            let stress = stresses(model, &displacement);
-            let mut section = Map::new();
-            section.insert("seat".into(), seat_section(&housing.mesh.setup)?);
-            if let Some(reduced) = reduced {
-                let cut = &reduced.reductions[number].cut_off;
-                section.insert("shapes".into(), reduced_section(cut, &[])?);
-            }
-            section.extend(field_sections(&housing.mesh.built, &displacement, &stress)?);
-            sections.insert(name.unwrap_or("housing").into(), Value::Object(section));
-            let own = of_solid::of_motion(model, &displacement, &stress).into_iter();
-            let of = name.map_or(String::new(), |name| format!("housing {name}: "));
-            remarks.extend(own.map(|remark| format!("{of}{remark}")));
-            let series = bore_series(&bore_nodes(&session.motion, number, model))?;
-            let file = name.map_or("bore.csv".into(), |name| format!("bore_{name}.csv"));
-            series.write_csv(&folder.join(file))?;
-            said.files += 1;
-        }
-    }
-    said.sections.push(("housings".into(), Value::Object(sections)));
-    said.sections.push(("housing_remarks".into(), json!(remarks)));
-    said.remarks.append(&mut remarks);
-    Ok(())
-}
-
-/// Fields of the last state, the nodes of the bore, and what leaving out inertia costs.
+/// Fields of the last state, the nodes of the bores, and what leaving out inertia costs.
 fn housing_results(
     folder: &Path,
     prepared: &Prepared,
     session: &mut Session,
     said: &mut Said,
 ) -> Fallible<()> {
-    let Prepared::Housed { scene, mesh, bore, reduced, .. } = prepared else { return Ok(()) };
-    let setup = &mesh.setup;
+    let Prepared::Bearings { scene, housings, way, .. } = prepared else { return Ok(()) };
+    if housings.is_empty() {
+        return Ok(());
+    }
     // Of explicit steps that stopped on the way the state at the last row is not at hand.
-    let is_sound = bore.is_some() || reduced.is_some() || session.status == Status::Complete;
-    if is_sound && session.recorder.rows() > 0 {
-        if session.clock.fields_due().is_none() {
-            let row = session.recorder.rows() as u64 - 1;
-            let index = session.clock.rows_per_fields.map_or(0, |every| row / every + 1);
-            write_fields_file(folder, prepared, session, index)?;
-        }
-        if let Some(Fields { displacement, .. }) = prepared.fields(session, 0) {
-            let stress = stresses(&setup.model, &displacement);
-            said.remarks = match &session.motion {
-                Motion::Course(_) => of_solid::of_equilibrium(&setup.model, &displacement, &stress),
-                _ => of_solid::of_motion(&setup.model, &displacement, &stress),
-            };
-            if let Motion::Course(course) = &session.motion
-                && let Some(moment) = &course.latest
-            {
-                let section =
-                    equilibrium_section(setup, course.bore(), &moment.state, &displacement)?;
-                said.sections.push(("housing".into(), section));
+    let is_sound = !matches!(way, Way::Explicit) || session.status == Status::Complete;
+    let is_sound = is_sound && session.recorder.rows() > 0;
+    if is_sound && session.clock.fields_due().is_none() {
+        let row = session.recorder.rows() as u64 - 1;
+        let index = session.clock.rows_per_fields.map_or(0, |every| row / every + 1);
+        write_fields_file(folder, prepared, session, index)?;
+    }
+    let mut of_all = Map::new();
+    let mut remarks = Vec::new();
+    for (number, housing) in housings.iter().enumerate() {
+        let mut sections = Vec::new();
+        match way {
+            Way::Course(bores, _) => {
+                sections.extend(equilibrium(&bores[number], housing, session, number)?);
             }
-            said.sections.extend(field_sections(&mesh.built, &displacement, &stress)?);
-            said.sections.push(("housing_remarks".into(), json!(said.remarks)));
-            write_bore(folder, &bore_nodes(&session.motion, 0, &setup.model))?;
+            Way::Reduced(shapes) => {
+                let cut = &shapes.reductions[number].cut_off;
+                sections.push(("seat".into(), seat_section(&housing.setup)?));
+                let name = if housing.name.is_some() { "shapes" } else { "reduced_housing" };
+                sections.push((name.into(), reduced_section(cut, &excitations(scene))?));
+            }
+            Way::Explicit | Way::Rigid => {
+                sections.push(("seat".into(), seat_section(&housing.setup)?));
+            }
+        }
+        let fields = prepared.fields(session, number).filter(|_| is_sound);
+        if let Some(Fields { displacement, .. }) = fields {
+            let model = &housing.setup.model;
+            let stress = stresses(model, &displacement);
+            sections.extend(field_sections(&housing.built, &displacement, &stress)?);
+            let own = match way {
+                Way::Course(..) => of_solid::of_equilibrium(model, &displacement, &stress),
+                _ => of_solid::of_motion(model, &displacement, &stress),
+            };
+            remarks.extend(own.iter().map(|said| format!("{}{said}", housing.before())));
+            let nodes = bore_nodes(&session.motion, number, model);
+            bore_series(&nodes)?.write_csv(&folder.join(housing.bore_file()))?;
             said.files += 1;
         }
-    }
-    let Some((bore, _)) = bore else {
-        said.sections.push(("seat".into(), seat_section(setup)?));
-        if let Some(reduced) = reduced {
-            let section = reduced_section(&reduced.reduction.cut_off, &excitations(scene))?;
-            said.sections.push(("reduced_housing".into(), section));
+        match &housing.name {
+            Some(name) => {
+                of_all.insert(name.clone(), Value::Object(sections.into_iter().collect()));
+            }
+            None => said.sections.extend(sections),
         }
-        return Ok(());
-    };
-    // A course that was found is kept, whatever becomes of the estimate.
-    let inertia = inertia_estimate(scene, setup, bore);
-    let along = along_course(scene, setup, bore);
-    let course = along.as_ref().ok().and_then(Option::as_ref);
+    }
+    if !of_all.is_empty() {
+        said.sections.push(("housings".into(), Value::Object(of_all)));
+    }
+    if is_sound {
+        said.sections.push(("housing_remarks".into(), json!(remarks)));
+    }
+    said.remarks.append(&mut remarks);
+    if let Motion::Course(course) = &session.motion {
+        inertia_results(scene, &course.problem, said)?;
+    }
+    Ok(())
+}
+
+/// The latest equilibrium of a housing.
+fn equilibrium(
+    bore: &CondensedBore,
+    housing: &Housing,
+    session: &Session,
+    number: usize,
+) -> Fallible<Option<(String, Value)>> {
+    let Motion::Course(course) = &session.motion else { return Ok(None) };
+    let Some(moment) = &course.latest else { return Ok(None) };
+    let (state, displacement) = (&moment.solution.seats[number], course.displacement(number));
+    let mut section = equilibrium_section(&housing.setup, bore, state, &displacement)?;
+    section["solver"] = solver_section(moment)?;
+    Ok(Some(("housing".into(), section)))
+}
+
+/// What leaving out inertia costs. A course that was found is kept, whatever becomes of the estimate.
+fn inertia_results(scene: &AssemblyScene, course: &CourseProblem, said: &mut Said) -> Fallible<()> {
+    let inertia = inertia_estimate(scene, course);
+    let along = along_course(scene, course);
+    let none = Vec::new();
+    let bodies = along.as_ref().unwrap_or(&none);
     if let Ok(Some(estimate)) = &inertia {
-        let section = inertia_section(estimate, &excitations(scene), course)?;
-        said.sections.push(("inertia".into(), section));
-        said.lines.push(format!("inertia left out       {}", verdict(scene, estimate, course)));
+        said.sections.push(("inertia".into(), section(scene, estimate, bodies)?));
+        for verdict in verdicts(scene, estimate, bodies) {
+            said.lines.push(format!("inertia left out       {verdict}"));
+        }
     }
     let failed = inertia.as_ref().err().into_iter().chain(along.as_ref().err());
     said.lines.extend(failed.map(|why| format!("inertia left out       no estimate: {why}")));

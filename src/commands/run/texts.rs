@@ -1,6 +1,6 @@
 //! What a run says of its steps: before, on the way, and where it stopped.
 
-use super::prepared::Prepared;
+use super::prepared::{Prepared, Way};
 use bearing_dynamics::output::session::{Motion, RunRequest, Session};
 use bearing_dynamics::output::state::StateFile;
 use bearing_dynamics::solver::clock::{Clock, given_steps, rounded};
@@ -22,16 +22,17 @@ pub(super) fn announcement(
         (Motion::Bearing(simulation), prepared) => {
             let steps = of_bearing(simulation, clock, request, choice);
             match prepared {
-                Prepared::Housed { reduced: Some(reduced), .. } => {
-                    format!("{}\n{steps}", reduced.text())
+                Prepared::Bearings { housings, way: Way::Reduced(shapes), .. } => {
+                    shapes.text(housings) + &steps
                 }
                 _ => steps,
             }
         }
         (Motion::Solid(moving), _) => of_solid(&moving.solid, clock),
         (Motion::Housed(housed), _) => of_housed(housed, clock, request),
-        (Motion::Course(_), Prepared::Housed { bore: Some((bore, seconds)), .. }) => {
-            let (unknowns, kept) = (bore.sizes.unknowns, bore.sizes.kept);
+        (Motion::Course(_), Prepared::Bearings { way: Way::Course(bores, seconds), .. }) => {
+            let unknowns: usize = bores.iter().map(|bore| bore.sizes.unknowns).sum();
+            let kept: usize = bores.iter().map(|bore| bore.sizes.kept).sum();
             let count = clock.last.unwrap_or(0);
             format!(
                 "{unknowns} unknowns condensed onto {kept} bore nodes in {seconds:.2} s\n\

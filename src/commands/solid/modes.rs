@@ -76,7 +76,7 @@ pub fn run(
 }
 
 /// Apart from the folder of statics and of runs, so that each holds one kind of results.
-fn modes_folder(scene: &Path, out: &Option<PathBuf>) -> PathBuf {
+pub fn modes_folder(scene: &Path, out: &Option<PathBuf>) -> PathBuf {
     let folder = results_folder(scene, out);
     if out.is_some() {
         return folder;

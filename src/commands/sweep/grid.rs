@@ -1,6 +1,7 @@
 //! The points of a sweep: a grid over the varied keys, the last one fastest.
 
-use bearing_dynamics::scene::statics::static_problem;
+use crate::commands::assembly::still;
+use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::{
     Document, SceneError, Subject, SweepAxis, keys, resolve, resolve_subject,
 };
@@ -89,8 +90,8 @@ impl Grid {
         indices
     }
 
-    /// The scene of a point: bearings alone, or one in its housing.
-    pub fn scene(&self, document: &Document, point: usize) -> Result<Subject, SceneError> {
+    /// The scene of a point.
+    pub fn scene(&self, document: &Document, point: usize) -> Result<AssemblyScene, SceneError> {
         let mut document = document.clone();
         for (axis, index) in self.axes.iter().zip(self.indices(point)) {
             if let Some(value) = axis.value(index) {
@@ -98,9 +99,9 @@ impl Grid {
             }
         }
         match resolve_subject(&document)? {
+            Subject::Assembly(scene) => Ok(*scene),
             // Refused, with the reason.
-            Subject::Solid(_) => Ok(Subject::Bearing(Box::new(resolve(&document)?))),
-            other => Ok(other),
+            Subject::Solid(_) => Ok(AssemblyScene::alone(resolve(&document)?)),
         }
     }
 
@@ -109,13 +110,7 @@ impl Grid {
     pub fn check(&self, document: &Document) -> Result<(), Box<dyn Error>> {
         const LOOKS: usize = 1000;
         let problem = |point| -> Result<(), Box<dyn Error>> {
-            match self.scene(document, point)? {
-                Subject::Housed(scene) => static_problem(&scene.bearing).map(|_| ())?,
-                Subject::Bearing(scene) => static_problem(&scene).map(|_| ())?,
-                Subject::Assembly(scene) => scene.statics().map(|_| ())?,
-                Subject::Solid(_) => {}
-            }
-            Ok(())
+            still(&self.scene(document, point)?).map(|_| ())
         };
         if self.axes.iter().any(|axis| axis.key == "housing.method") {
             let text = "housing.method: statics of a flexible housing is one for all methods, and a \

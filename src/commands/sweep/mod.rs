@@ -6,7 +6,7 @@
 //! journal, from which the same command resumes.
 
 mod grid;
-mod housed;
+mod housings;
 mod journal;
 mod point;
 mod report;
@@ -15,6 +15,7 @@ use super::earlier::{Writes, claimed};
 use super::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use grid::Grid;
+use housings::Kept;
 use indicatif::{ProgressBar, ProgressStyle};
 use journal::{Chunk, Journal};
 use rayon::prelude::*;
@@ -59,10 +60,14 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     grid.check(&document)?;
     let folder = claimed(&sweep_folder(arguments), Writes::Sweep)?;
     let first = grid.scene(&document, 0);
-    let mesh = first.as_ref().map_or(Ok(Vec::new()), housed::mesh_file)?;
+    let mesh = first.as_ref().map_or(Ok(Vec::new()), housings::mesh_files)?;
     // All points agree on what the scene is of.
-    let subject = first.as_ref().ok().cloned().or_else(|| resolve_subject(&document).ok());
-    let housed = matches!(subject, Some(Subject::Housed(_)));
+    let whole = || match resolve_subject(&document) {
+        Ok(Subject::Assembly(scene)) => Some(*scene),
+        _ => None,
+    };
+    let subject = first.as_ref().ok().cloned().or_else(whole);
+    let housed = subject.as_ref().is_some_and(|scene| scene.housing_method().is_some());
     let size = if housed { HOUSED_CHUNK } else { CHUNK };
     let fingerprint = grid.fingerprint(&document, &mesh, arguments.cold);
     let points = |index| grid.chunk_range(index, size).len();
@@ -119,13 +124,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         if record.threads == 1 { "" } else { "s" },
         folder.join("sweep.csv").display()
     ))?;
-    let runs = first.is_ok_and(|first| match first {
-        Subject::Bearing(scene) => scene.dynamics.run.is_some(),
-        Subject::Assembly(scene) => scene.run().is_some(),
-        Subject::Housed(scene) => scene.bearing.dynamics.run.is_some(),
-        Subject::Solid(_) => false,
-    });
-    if runs {
+    if first.is_ok_and(|first| first.run().is_some()) {
         say("the statics of this scene at each point, at t = 0; its run is not swept\n")?;
     }
     let failures: Vec<_> = chunks.iter().flat_map(|chunk| &chunk.failures).collect();
@@ -166,9 +165,9 @@ fn progress_bar(grid: &Grid, resumed: usize) -> ProgressBar {
 
 fn solve_chunk(document: &Document, grid: &Grid, index: usize, size: usize, cold: bool) -> Chunk {
     let mut chunk = Chunk { index, rows: Vec::new(), failures: Vec::new() };
-    let (mut neighbour, mut housing) = (None, None);
+    let (mut neighbour, mut kept) = (None, Kept::default());
     for point in grid.chunk_range(index, size) {
-        match point::solve(document, grid, point, neighbour.as_deref(), &mut housing) {
+        match point::solve(document, grid, point, neighbour.as_deref(), &mut kept) {
             Ok(solved) => {
                 chunk.rows.push(solved.row);
                 neighbour = if cold { None } else { solved.start_for_neighbour };

@@ -1,20 +1,19 @@
 //! One point of a sweep and its row of the table.
 
 use super::grid::Grid;
-use super::housed::{self, Kept};
-use crate::commands::assembly::housings;
+use super::housings::{self, Kept};
+use crate::commands::assembly::housings::{Equilibrium, equilibrium, grown};
 use bearing_dynamics::output::Column;
 use bearing_dynamics::output::assembly_results::{key, readable};
 use bearing_dynamics::output::results::load_zone_of;
+use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::statics::static_problem;
-use bearing_dynamics::scene::{Document, Subject};
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
 use bearing_dynamics::solver::statics::{
-    AssemblySolution, BallState, COORDINATE_NAMES, Determinacy, StaticOptions, StaticSolution,
-    solve_assembly, solve_from,
+    AssemblySolution, BallState, COORDINATE_NAMES, Determinacy, StaticSolution,
 };
 use nalgebra::SVector;
+use std::error::Error;
 
 pub struct Solved {
     pub row: Vec<f64>,
@@ -22,47 +21,38 @@ pub struct Solved {
     pub start_for_neighbour: Option<Vec<SVector<f64, 5>>>,
 }
 
-/// A point's scene solved, from a neighbour's solution or, in a housing, with a neighbour's housing.
+/// A point's scene solved, from a neighbour's solution or, in housings, with a neighbour's housings.
 pub fn solve(
     document: &Document,
     grid: &Grid,
     point: usize,
     neighbour: Option<&[SVector<f64, 5>]>,
-    housing: &mut Option<Kept>,
+    kept: &mut Kept,
 ) -> Result<Solved, String> {
-    let text = |error: &dyn std::fmt::Display| error.to_string();
-    let scene = match grid.scene(document, point).map_err(|error| text(&error))? {
-        Subject::Housed(scene) => {
-            let row = housed::row(&scene, housing).map_err(|error| text(&error))?;
-            let row = [start_of_row(grid, point), row].concat();
-            return Ok(Solved { row, start_for_neighbour: None });
-        }
-        Subject::Bearing(scene) => *scene,
-        Subject::Assembly(scene) => {
-            let housings = housings::prepare(document, &scene).map_err(|error| text(&error))?;
-            let bores = housings::condensed(&housings).map_err(|error| text(&error))?;
-            let still = housings::statics(&scene, &housings, &bores).map_err(|e| text(&e))?;
-            let solution = solve_assembly(&still, neighbour, &StaticOptions::default())
-                .map_err(|error| text(&error))?;
-            let determinate = solution.determinacy == Determinacy::Determinate;
-            let moving = scene.assembly().map_err(|error| text(&error))?;
-            let read = readable(&moving, &still, &solution);
-            return Ok(Solved {
-                row: [start_of_row(grid, point), of_assembly(&still, &read)].concat(),
-                start_for_neighbour: determinate.then_some(solution.coordinates),
-            });
-        }
-        Subject::Solid(_) => return Err("a solid by itself is not swept".into()),
-    };
-    let problem = static_problem(&scene).map_err(|error| text(&error))?;
-    let near = neighbour.and_then(|near| near.first());
-    let solution =
-        solve_from(&problem, near, &StaticOptions::default()).map_err(|error| text(&error))?;
+    solve_scene(&grid.scene(document, point).map_err(|error| error.to_string())?, neighbour, kept)
+        .map(|solved| Solved { row: [start_of_row(grid, point), solved.row].concat(), ..solved })
+        .map_err(|error| error.to_string())
+}
+
+fn solve_scene(
+    scene: &AssemblyScene,
+    neighbour: Option<&[SVector<f64, 5>]>,
+    kept: &mut Kept,
+) -> Result<Solved, Box<dyn Error>> {
+    *kept = std::mem::take(kept).take(scene)?;
+    let (housings, bores) = kept.parts();
+    let Equilibrium { still, moment, .. } = equilibrium(scene, grown(housings, bores), neighbour)?;
+    let solution = moment.solution;
     let determinate = solution.determinacy == Determinacy::Determinate;
-    Ok(Solved {
-        row: [start_of_row(grid, point), of_bearing(&solution)].concat(),
-        start_for_neighbour: determinate.then(|| vec![solution.coordinates]),
-    })
+    let start_for_neighbour =
+        (determinate && housings.is_empty()).then(|| solution.coordinates.clone());
+    let of_housings = kept.row(&solution.seats);
+    let mut row = match scene.one() {
+        Some(_) => of_bearing(&StaticSolution::from(solution)),
+        None => of_assembly(&still, &readable(&scene.assembly()?, &still, &solution)),
+    };
+    row.extend(of_housings);
+    Ok(Solved { row, start_for_neighbour })
 }
 
 /// Columns that follow those of the varied keys.
@@ -86,23 +76,22 @@ const RESULTS: [(&str, &str); 17] = [
     ("free_directions", "1"),
 ];
 
-/// Header of the table: point, varied keys, position, results, and what a housing adds.
-pub fn columns(grid: &Grid, subject: Option<&Subject>) -> Vec<Column> {
+/// Header of the table: point, varied keys, positions and results.
+pub fn columns(grid: &Grid, scene: Option<&AssemblyScene>) -> Vec<Column> {
     let mut columns = vec![Column::new("point", "1")];
     for axis in &grid.axes {
         columns.push(Column::new(axis.key.clone(), super::report::unit_of(axis)));
     }
-    if let Some(Subject::Assembly(scene)) = subject {
-        columns.extend(assembly_columns(scene));
-        return columns;
+    match scene.filter(|scene| scene.one().is_none()) {
+        Some(scene) => columns.extend(assembly_columns(scene)),
+        None => {
+            for (i, name) in COORDINATE_NAMES.iter().enumerate() {
+                columns.push(Column::new(*name, if i < 3 { "um" } else { "deg" }));
+            }
+            columns.extend(RESULTS.map(|(name, unit)| Column::new(name, unit)));
+        }
     }
-    for (i, name) in COORDINATE_NAMES.iter().enumerate() {
-        columns.push(Column::new(*name, if i < 3 { "um" } else { "deg" }));
-    }
-    let housed = matches!(subject, Some(Subject::Housed(_)));
-    let further: &[(&str, &str)] = if housed { &housed::RESULTS } else { &[] };
-    let results = RESULTS.iter().chain(further);
-    columns.extend(results.map(|(name, unit)| Column::new(*name, *unit)));
+    columns.extend(scene.map_or_else(Vec::new, housings::columns));
     columns
 }
 
@@ -152,7 +141,7 @@ fn start_of_row(grid: &Grid, point: usize) -> Vec<f64> {
 }
 
 /// Position and results of a bearing.
-pub fn of_bearing(solution: &StaticSolution) -> Vec<f64> {
+fn of_bearing(solution: &StaticSolution) -> Vec<f64> {
     let mut row = position(&solution.coordinates).to_vec();
     row.extend(solution.loads.iter());
     row.extend((0..5).map(|i| solution.stiffness[(i, i)]));

@@ -5,9 +5,10 @@ use super::journal::Chunk;
 use super::point::columns;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::{Series, write_atomic};
+use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::keys::{self, Kind};
 use bearing_dynamics::scene::units::{parse_number, parse_quantity};
-use bearing_dynamics::scene::{Document, Subject, SweepAxis};
+use bearing_dynamics::scene::{Document, SweepAxis};
 use ndarray::Array2;
 use serde_json::json;
 use std::error::Error;
@@ -18,7 +19,7 @@ pub struct Record {
     pub seconds: f64,
     pub complete: bool,
     /// What the scene is of, for the columns.
-    pub subject: Option<Subject>,
+    pub subject: Option<AssemblyScene>,
 }
 
 /// The unit in which an axis is written: that of its first value, or `choice` for words.

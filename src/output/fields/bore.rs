@@ -8,7 +8,6 @@ use crate::solver::dynamics::seat::TouchingNode;
 use crate::solver::dynamics::system::System;
 use crate::solver::housing::bore_equilibrium::BoreState;
 use crate::solver::housing::condensed::CondensedBore;
-use crate::solver::housing::housed::HousedState;
 use crate::solver::solid::model::SolidModel;
 use ndarray::Array2;
 
@@ -32,10 +31,12 @@ pub fn bore_nodes(motion: &Motion, solid: usize, model: &SolidModel) -> Vec<Bore
     match motion {
         Motion::Solid(_) => Vec::new(),
         Motion::Bearing(simulation) => seat_nodes(&simulation.system, solid),
-        Motion::Course(course) => {
-            let of = |state: &HousedState| condensed_nodes(model, course.bore(), &state.bore);
-            course.latest.as_ref().map_or_else(Vec::new, |moment| of(&moment.state))
-        }
+        Motion::Course(course) => match (&course.latest, course.problem.seats.get(solid)) {
+            (Some(moment), Some(seat)) => {
+                condensed_nodes(model, seat.bore, &moment.solution.seats[solid])
+            }
+            _ => Vec::new(),
+        },
         Motion::Housed(housed) => {
             let state = |(node, penalty, force): (ContactNode, Penalty, Vec3)| {
                 let load = dot(force, force).sqrt();

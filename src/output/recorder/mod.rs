@@ -1,6 +1,7 @@
 //! The time series of a run: the columns of what moves in it, side by side, and one row of them at a time.
 
 mod bearing;
+mod course;
 pub mod seat;
 mod solid;
 
@@ -46,9 +47,8 @@ impl Recorder {
                 columns.extend(seat::explicit_columns(&parts.solids, &parts.seats));
             }
             Parts::Course(parts) => {
-                let balls = parts.problem.geometry.ball_count;
-                let loads = asked.contains(&ChannelGroup::Loads);
-                columns.extend(seat::equilibrium_columns(if loads { balls } else { 0 }));
+                let with_loads = asked.contains(&ChannelGroup::Loads);
+                columns.extend(course::columns(&parts.problem, with_loads));
             }
         }
         let ran = Tally::default();

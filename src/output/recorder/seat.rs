@@ -1,10 +1,8 @@
-//! Columns of a seat in a housing, the same whichever way it is solved, and of what stands beside it:
-//! housings in explicit steps, or the races in equilibrium.
+//! Columns of a seat in a housing, the same whichever way it is solved, and of housings in explicit steps.
 
 use super::{Recorder, solid::check_finite};
 use crate::ch2_housing::bore_contact::ContactSum;
 use crate::kinematics::vec3::Vec3;
-use crate::output::course::{Course, outer_place};
 use crate::output::series::Column;
 use crate::output::session::{LedgerWatch, SessionError};
 use crate::solver::housing::bore_equilibrium::BoreState;
@@ -100,30 +98,6 @@ pub(super) fn explicit_columns(solids: &[SolidPart], seats: &[Seat]) -> Vec<Colu
     columns
 }
 
-/// Of equilibria, with the loads of so many balls.
-pub(super) fn equilibrium_columns(balls: usize) -> Vec<Column> {
-    let mut columns = Vec::new();
-    for race in ["inner", "outer"] {
-        for (name, unit) in
-            [("x", "m"), ("y", "m"), ("z", "m"), ("tilt_y", "deg"), ("tilt_z", "deg")]
-        {
-            columns.push(Column::new(format!("{race}_{name}"), unit));
-        }
-    }
-    for race in ["inner", "outer"] {
-        let axes = ["x", "y", "z"];
-        columns.extend(axes.map(|a| Column::new(format!("contact_force_on_{race}_{a}"), "N")));
-    }
-    columns.extend(seat_columns(""));
-    columns.push(Column::new("energy_housing_strain", "J"));
-    columns.push(Column::new("energy_seat", "J"));
-    for ball in 1..=balls {
-        columns.push(Column::new(format!("ball_{ball}_inner_load"), "N"));
-        columns.push(Column::new(format!("ball_{ball}_outer_load"), "N"));
-    }
-    columns
-}
-
 impl Recorder {
     /// Adds a row of bearings and housings in explicit steps.
     ///
@@ -161,27 +135,6 @@ impl Recorder {
         values.push(residual);
         values.extend(housed.seats().flat_map(|seat| seat.impulse));
         Ok(())
-    }
-
-    /// Adds a row of the latest equilibrium.
-    pub(in crate::output) fn record_equilibrium(&mut self, course: &Course) {
-        let Some(moment) = &course.latest else { return };
-        let (bore, state) = (course.bore(), &moment.state);
-        let inner = &state.bearing.coordinates;
-        let [x, y, z, tilt_y, tilt_z] = outer_place(bore, state);
-        let degrees = f64::to_degrees;
-        let full = self.values.len() + self.columns.len();
-        self.values.push(moment.time);
-        self.values.extend([inner[0], inner[1], inner[2], degrees(inner[3]), degrees(inner[4])]);
-        self.values.extend([x, y, z, degrees(tilt_y), degrees(tilt_z)]);
-        self.values.extend(state.bearing.force_on_inner.iter());
-        self.values.extend(state.bearing.force_on_outer.iter());
-        self.values.extend(SeatRow::of_equilibrium(bore, &state.bore).values());
-        self.values.extend([state.bore.elastic_energy, state.bore.contact_energy]);
-        // As far as the loads of balls are recorded.
-        let loads = state.bearing.balls.iter();
-        let loads = loads.flat_map(|ball| [ball.inner.normal_load, ball.outer.normal_load]);
-        self.values.extend(loads.take(full - self.values.len()));
     }
 }
 

@@ -6,7 +6,7 @@ pub mod size;
 pub mod watch;
 
 pub use crate::solver::dynamics::clocked::RunRequest;
-pub use motion::{Checkpoint, HousedParts, Motion, Parts, SolidParts};
+pub use motion::{Checkpoint, CourseParts, HousedParts, Motion, Parts, SolidParts};
 pub use size::{TableSize, table_size};
 pub use watch::LedgerWatch;
 
@@ -18,8 +18,8 @@ use crate::solver::clock::{Clock, rounded};
 use crate::solver::dynamics::clocked;
 use crate::solver::dynamics::run::SimulationError;
 use crate::solver::housing::bore_equilibrium::BoreError;
+use crate::solver::housing::course::CourseError;
 use crate::solver::housing::exchange::ExchangeError;
-use crate::solver::housing::quasi_static::CourseError;
 use crate::solver::plan::tally::{Ran, Tally};
 use crate::solver::solid::explicit::ExplicitSolid;
 use crate::solver::solid::model::SolidError;
@@ -339,7 +339,7 @@ impl<'p> Session<'p> {
             solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect()
         };
         match &self.motion {
-            Motion::Course(course) => course.displacement(),
+            Motion::Course(course) => course.displacement(solid),
             motion => motion.solids().get(solid).map_or_else(Vec::new, of),
         }
     }

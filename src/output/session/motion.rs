@@ -2,7 +2,6 @@
 //! the other.
 
 use super::SessionError;
-use crate::output::course::{Course, CourseCheckpoint, CourseParts};
 use crate::scene::solid_problem::SolidSetup;
 use crate::solver::clock::{Clock, whole_number};
 use crate::solver::dynamics::assembly::Assembly;
@@ -11,6 +10,7 @@ use crate::solver::dynamics::clocked::{self, Arrival, RunRequest};
 use crate::solver::dynamics::model::DynamicProblem;
 use crate::solver::dynamics::run::Simulation;
 use crate::solver::housing::checkpoint::{ExchangeCheckpoint, Windows};
+use crate::solver::housing::course::{Course, CourseCheckpoint, CourseProblem};
 use crate::solver::housing::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
 use crate::solver::housing::seat::Seat;
 use crate::solver::plan::tally::{Ran, Tally};
@@ -59,6 +59,14 @@ pub struct HousedParts {
     pub options: ExchangeOptions,
     /// Threads that step the solids, with the same bits.
     pub threads: usize,
+}
+
+/// Bodies, bearings and condensed housings that go through equilibria, and the solids of these.
+#[derive(Clone)]
+pub struct CourseParts<'p> {
+    pub problem: CourseProblem<'p>,
+    /// One for each seat.
+    pub models: Vec<&'p SolidModel>,
 }
 
 /// What moves.
@@ -141,7 +149,7 @@ impl<'p> Motion<'p> {
                 (Motion::Housed(Box::new(housed)), clock)
             }
             Parts::Course(parts) => {
-                let course = Course::new(*parts, interval);
+                let course = Course::new(parts.problem, interval);
                 let clock = Clock { step: interval, steps_per_row: 1, ..Clock::default() };
                 (Motion::Course(Box::new(course)), clock)
             }
@@ -182,7 +190,7 @@ impl<'p> Motion<'p> {
                 Motion::Housed(Box::new(housed))
             }
             (Parts::Course(parts), Checkpoint::Course(kept)) => {
-                let mut course = Course::new(*parts, clock.interval);
+                let mut course = Course::new(parts.problem, clock.interval);
                 course.restore(kept)?;
                 Motion::Course(Box::new(course))
             }
@@ -201,6 +209,14 @@ impl<'p> Motion<'p> {
                 Some(whole_number(clock.end, clock.interval) * clock.steps_per_row)
             }
             Motion::Course(_) => Some(whole_number(clock.end, clock.interval) + 1),
+        }
+    }
+
+    /// What moves or stands besides solids by themselves.
+    pub fn assembly(&self) -> Option<&Assembly> {
+        match self {
+            Motion::Course(course) => Some(&course.problem.assembly),
+            motion => motion.bearing().map(|simulation| &simulation.system.assembly),
         }
     }
 

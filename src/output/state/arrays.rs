@@ -19,7 +19,7 @@ pub(super) fn arrays_name(steps: u64) -> String {
 }
 
 /// Writes the arrays of a checkpoint after so many steps: of the nodes of one solid behind the other, or of
-/// those of a condensed bore. Returns the name of the file, if there is something to write.
+/// those of condensed bores. Returns the name of the file, if there is something to write.
 pub(super) fn write_arrays(
     folder: &Path,
     checkpoint: &Checkpoint,
@@ -32,8 +32,12 @@ pub(super) fn write_arrays(
             (WIDTH, kept.solids.iter().flat_map(|part| of_nodes(&part.solid)).collect())
         }
         Checkpoint::Course(kept) => {
-            let mut touches = vec![0.0; kept.nodes];
-            kept.memory.touching.iter().for_each(|&node| touches[node] = 1.0);
+            let mut touches = vec![0.0; kept.nodes.iter().sum()];
+            let mut first = 0;
+            for (nodes, touching) in kept.nodes.iter().zip(&kept.memory.touching) {
+                touching.iter().for_each(|&node| touches[first + node] = 1.0);
+                first += nodes;
+            }
             (1, touches)
         }
     };
@@ -97,14 +101,21 @@ pub(super) fn read_arrays(
     })
 }
 
-/// The nodes of a condensed bore that touched, of so many.
+/// The nodes of each condensed bore that touched, of so many.
 pub(super) fn read_touching(
     folder: &Path,
     file: &str,
-    nodes: usize,
-) -> Result<Vec<usize>, Refused> {
-    let arrays = table(folder, file, (nodes, 1))?;
-    Ok((0..nodes).filter(|&node| arrays.data()[(node, 0)] != 0.0).collect())
+    nodes: &[usize],
+) -> Result<Vec<Vec<usize>>, Refused> {
+    let arrays = table(folder, file, (nodes.iter().sum(), 1))?;
+    let mut first = 0;
+    let of_bore = |&count: &usize| {
+        let touches = |&node: &usize| arrays.data()[(first + node, 0)] != 0.0;
+        let touching = (0..count).filter(touches).collect();
+        first += count;
+        touching
+    };
+    Ok(nodes.iter().map(of_bore).collect())
 }
 
 /// Removes arrays of states that are not `kept`. What cannot be removed stays: it harms nothing.

@@ -4,14 +4,14 @@ use super::{
     StateFile,
     arrays::{arrays_name, read_arrays, read_touching},
 };
-use crate::output::course::{CourseCheckpoint, Effort};
 use crate::output::series::SeriesError;
 use crate::output::session::{Checkpoint, HousedParts, Parts};
 use crate::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
 use crate::solver::housing::checkpoint::{
     ExchangeCheckpoint, SeatCheckpoint, SteppedCheckpoint, Windows,
 };
-use crate::solver::housing::housed::HousedMemory;
+use crate::solver::housing::course::{CourseCheckpoint, Effort};
+use crate::solver::housing::course_search::CourseMemory;
 use crate::solver::housing::seat::Growth;
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::SolidWork;
@@ -115,15 +115,14 @@ pub struct SeatEntry {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CourseEntry {
-    /// File with one row a node of the bore: 1 where it touched.
+    /// File with one row a node of all bores, one after the other: 1 where it touched.
     pub arrays: String,
     pub largest_residual: f64,
     pub iterations: usize,
     pub contact_changes: usize,
-    /// Where the search found the inner race and the outer one (m, rad).
+    /// Where the search found the bodies (m, rad).
     #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub inner: Option<[f64; 5]>,
-    pub outer: [f64; 4],
+    pub places: Option<Vec<[f64; 5]>>,
 }
 
 impl SolidEntry {
@@ -199,8 +198,7 @@ impl CourseEntry {
             largest_residual: kept.effort.largest_residual,
             iterations: kept.effort.iterations,
             contact_changes: kept.effort.contact_changes,
-            inner: kept.memory.inner,
-            outer: kept.memory.outer,
+            places: kept.memory.places.clone(),
         }
     }
 }
@@ -241,7 +239,13 @@ pub(super) fn checkpoint(
         }
         Parts::Course(parts) => {
             let course = file.course.as_ref().ok_or(LACKS)?;
-            let touching = read_touching(folder, &course.arrays, parts.bore.nodes.len())?;
+            let problem = &parts.problem;
+            let nodes: Vec<usize> = problem.seats.iter().map(|s| s.bore.nodes.len()).collect();
+            let touching = read_touching(folder, &course.arrays, &nodes)?;
+            let places = course.places.clone();
+            if places.as_ref().is_some_and(|at| at.len() != problem.assembly.bodies.len()) {
+                return Err(LACKS);
+            }
             Checkpoint::Course(CourseCheckpoint {
                 time: file.time,
                 found: file.steps,
@@ -250,8 +254,8 @@ pub(super) fn checkpoint(
                     iterations: course.iterations,
                     contact_changes: course.contact_changes,
                 },
-                memory: HousedMemory { inner: course.inner, outer: course.outer, touching },
-                nodes: parts.bore.nodes.len(),
+                memory: CourseMemory { places, touching },
+                nodes,
             })
         }
     })

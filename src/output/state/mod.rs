@@ -23,6 +23,7 @@ use crate::solver::clock::{Clock, rounded};
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::run::Stepping;
 use crate::solver::housing::checkpoint::SteppedCheckpoint;
+use crate::solver::housing::course::CourseSeat;
 use crate::solver::plan::tally::Ran;
 use crate::solver::plan::{Stage, Subject};
 use crate::solver::solid::model::SolidProblem;
@@ -35,8 +36,8 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// Of `state.json`; the first one had a form of its own for each kind of run, and no number, the second room
-/// for one solid, and two places of the outer race in a course.
-pub const FORM: u32 = 3;
+/// for one solid, and two places of the outer race in a course, the third room for the two races of one bearing in one.
+pub const FORM: u32 = 4;
 
 /// Content of `state.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -147,13 +148,14 @@ pub fn fingerprint(parts: &Parts, request: &RunRequest) -> String {
             hash.update(format!("{:?} {:?}", parts.seats, parts.options));
         }
         Parts::Course(parts) => {
-            hash_solid(&mut hash, &parts.setup.model.problem);
-            let dynamics = &parts.scene.bearing.dynamics;
-            let moving = (&dynamics.inner, &dynamics.outer, &dynamics.rotating_load);
-            hash.update(format!("{:?} {moving:?}", parts.problem));
-            let housing = (parts.setup.fit(parts.scene), parts.setup.radius(parts.scene));
-            hash.update(format!("{housing:?} {:?}", parts.scene.housing.penalty));
-            hash.update(format!("{:?} {:?}", parts.setup.reach(), parts.scene.bearing.gravity));
+            parts.models.iter().for_each(|model| hash_solid(&mut hash, &model.problem));
+            hash.update(format!("{:?}", parts.problem.assembly));
+            for CourseSeat { name, bearing, bore, penalty, axial, radius, damping: _ } in
+                &parts.problem.seats
+            {
+                hash.update(format!("{name:?} {bearing} {penalty:?} {axial:?} {radius:?}"));
+                hash.update(format!("{:?}", bore.reach));
+            }
         }
     }
     journal::hexadecimal(hash)

@@ -2,16 +2,16 @@
 
 use super::{Part, solid::limit_section};
 use crate::kinematics::vec3::Vec3;
-use crate::output::course::outer_place;
 use crate::output::recorder::seat::{SeatRow, prefix};
 use crate::output::results::{ResultsError, quantity};
 use crate::output::session::Motion;
-use crate::scene::housing_problem::{Excitation, HousingSetup};
-use crate::solver::housing::bore_equilibrium::POSE_NAMES;
+use crate::scene::excitations::Excitation;
+use crate::scene::housing_problem::HousingSetup;
+use crate::solver::housing::bore_equilibrium::{BoreState, POSE_NAMES};
 use crate::solver::housing::condensed::{CondensedBore, geometry_error};
+use crate::solver::housing::course::Moment;
 use crate::solver::housing::course_inertia::CourseInertia;
 use crate::solver::housing::exchange::Exchange;
-use crate::solver::housing::housed::HousedState;
 use crate::solver::housing::inertia::InertiaEstimate;
 use crate::solver::housing::reduce::CutOff;
 use serde_json::{Map, Value, json};
@@ -140,14 +140,14 @@ pub fn largest_error<'e>(
 pub fn equilibrium_section(
     setup: &HousingSetup,
     bore: &CondensedBore,
-    state: &HousedState,
+    state: &BoreState,
     displacement: &[Vec3],
 ) -> Part {
     let sizes = bore.sizes;
-    let seat = SeatRow::of_equilibrium(bore, &state.bore);
+    let seat = SeatRow::of_equilibrium(bore, state);
     let names = ["x", "y", "z", "tilt_y", "tilt_z"];
     let mut outer = Map::new();
-    for (i, (name, value)) in names.iter().zip(outer_place(bore, state)).enumerate() {
+    for (i, (name, value)) in names.iter().zip(bore.race(&state.pose)).enumerate() {
         let (value, unit) = if i < 3 { (value, "m") } else { (value.to_degrees(), "deg") };
         outer.insert((*name).into(), quantity(name, value, unit)?);
     }
@@ -161,7 +161,7 @@ pub fn equilibrium_section(
                 (false, true) => "N m/m",
                 (false, false) => "N m/rad",
             };
-            let value = state.bore.stiffness[(i, j)];
+            let value = state.stiffness[(i, j)];
             entries.insert((*column).into(), quantity("stiffness", value, unit)?);
         }
         stiffness.insert((*row).into(), Value::Object(entries));
@@ -170,7 +170,7 @@ pub fn equilibrium_section(
         let part = |i: usize| quantity("component", of[i], unit);
         Ok(json!({ "x": part(0)?, "y": part(1)?, "z": part(2)? }))
     };
-    let geometry = geometry_error(bore, displacement, &state.bore.pose);
+    let geometry = geometry_error(bore, displacement, &state.pose);
     Ok(json!({
         "seat": seat_section(setup)?,
         "outer_race": outer,
@@ -181,8 +181,8 @@ pub fn equilibrium_section(
         "deepest_penetration": quantity("penetration", seat.deepest, "m")?,
         "peak_pressure": quantity("pressure", seat.peak_pressure, "Pa")?,
         "energy": {
-            "housing": quantity("energy", state.bore.elastic_energy, "J")?,
-            "seat": quantity("energy", state.bore.contact_energy, "J")?,
+            "housing": quantity("energy", state.elastic_energy, "J")?,
+            "seat": quantity("energy", state.contact_energy, "J")?,
         },
         "condensed": {
             "unknowns": sizes.unknowns,
@@ -193,11 +193,18 @@ pub fn equilibrium_section(
             "asymmetry": quantity("asymmetry", bore.asymmetry, "1")?,
             "error_of_fixed_normals": quantity("geometry error", geometry, "m")?,
         },
-        "solver": {
-            "iterations": state.iterations,
-            "contact_changes": state.contact_changes,
-            "residual": quantity("residual", state.residual, "1")?,
-        },
+    }))
+}
+
+/// What an equilibrium took.
+///
+/// # Errors
+/// A value that is not finite.
+pub fn solver_section(moment: &Moment) -> Part {
+    Ok(json!({
+        "iterations": moment.solution.iterations,
+        "contact_changes": moment.contact_changes,
+        "residual": quantity("residual", moment.residual, "1")?,
     }))
 }
 

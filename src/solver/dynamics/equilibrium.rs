@@ -182,12 +182,7 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
 }
 
 /// What is given of a body's coordinates or acts along them at time `t`: its drives, weight, rotating load.
-pub(super) fn conditions(
-    assembly: &Assembly,
-    body: &Body,
-    race: &RaceBody,
-    t: f64,
-) -> [Condition; 5] {
+pub fn conditions(assembly: &Assembly, body: &Body, race: &RaceBody, t: f64) -> [Condition; 5] {
     let mut others = [0.0; 5];
     for (other, gravity) in others.iter_mut().zip(assembly.gravity) {
         *other = race.inertia.mass * gravity;
@@ -243,17 +238,31 @@ pub(super) fn given_angle(body: &Body, t: f64) -> f64 {
 
 /// Given speeds of both races of a bearing about the bearing's axis, rad/s.
 pub(super) fn race_speeds(assembly: &Assembly, bearing: &Bearing, t: f64) -> [f64; 2] {
+    of_races(assembly, bearing, |body| given_speed(body, t))
+}
+
+/// What both races of a bearing have about the bearing's axis.
+fn of_races(assembly: &Assembly, bearing: &Bearing, of: impl Fn(&Body) -> f64) -> [f64; 2] {
     bearing.mounts.map(|mount| {
-        let speed = given_speed(&assembly.bodies[mount.body], t);
-        if mount.reversed { -speed } else { speed }
+        let own = of(&assembly.bodies[mount.body]);
+        if mount.reversed { -own } else { own }
     })
 }
 
 /// Speed of the ball set by pure rolling about the bearing's axis, rad/s.
 pub(super) fn orbital_speed(assembly: &Assembly, bearing: &Bearing, t: f64) -> f64 {
+    rolled(bearing, race_speeds(assembly, bearing, t))
+}
+
+/// Angle by which pure rolling has taken the ball set about the bearing's axis since t = 0, rad.
+pub fn orbital_angle(assembly: &Assembly, bearing: &Bearing, t: f64) -> f64 {
+    rolled(bearing, of_races(assembly, bearing, |body| given_angle(body, t)))
+}
+
+/// What is left to balls of turns of the inner and of the outer race.
+fn rolled(bearing: &Bearing, [inner, outer]: [f64; 2]) -> f64 {
     let g = &bearing.geometry;
     let ratio = ratios(g.ball_count, g.ball_radius, g.pitch_radius, g.contact_angle).cage;
-    let [inner, outer] = race_speeds(assembly, bearing, t);
     // Both races' surfaces move past the balls: the outer one's share is the rest.
     if outer == 0.0 { ratio * inner } else { ratio * inner + (1.0 - ratio) * outer }
 }

@@ -6,7 +6,7 @@
 
 use crate::ch2_housing::bore_contact::{ContactNode, Frame};
 use crate::kinematics::Pose;
-use crate::kinematics::euler::quaternion;
+use crate::kinematics::euler::{angles, quaternion};
 use crate::kinematics::vec3::{Vec3, add, dot, scale};
 use crate::solver::dense::DenseSymmetric;
 use crate::solver::plan::{Stage, tally::Tally};
@@ -319,6 +319,14 @@ impl CondensedBore {
     /// World components of a vector in the race's nominal axes.
     pub fn to_world(&self, vector: Vec3) -> Vec3 {
         self.reach.nominal.orientation.transform_vector(&Vector3::from(vector)).into()
+    }
+
+    /// Position (m) and tilts (rad) in the world of a race at a pose from its nominal one.
+    pub fn race(&self, pose: &[f64; 4]) -> [f64; 5] {
+        let race = placed(&self.reach.nominal, pose);
+        let (_, tilt_y, tilt_z) = angles(&race.orientation);
+        let at = race.position;
+        [at.x, at.y, at.z, tilt_y, tilt_z]
     }
 
     /// Components in the race's nominal axes of a world vector.

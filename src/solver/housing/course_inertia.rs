@@ -15,8 +15,9 @@
 //! with the size that it has where it arises. Left out: the balls' mass, modes of the housing that its
 //! static shapes do not hold, what loads do that jump themselves, and how balls without a cage stray.
 
-use super::housed::{HousedSearch, HousedState};
-use super::inertia::{Coordinates, Masses, Mode, housing_mass, modes};
+use super::course_search::CourseSearch;
+use super::inertia::{Coordinates, HousingMass, Mode, MovingBody, housing_mass, modes};
+use crate::solver::statics::AssemblySolution;
 use std::f64::consts::TAU;
 
 /// When to look at a course, and what moves.
@@ -30,20 +31,26 @@ pub struct CourseLooks {
     pub count: usize,
     /// When loads and motions change their rates at once, s.
     pub corners: Vec<f64>,
-    pub masses: Masses,
-    /// Coordinates of the inner race that loads drive.
-    pub free: [bool; 5],
+    pub bodies: Vec<MovingBody>,
+    pub seats: Vec<SeatLooks>,
+}
+
+/// A race in a housing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeatLooks {
+    /// Place of its body in the list of those that take part.
+    pub race: usize,
     /// Damping of the housing per mass and velocity, 1/s. No other is counted.
     pub damping: f64,
 }
 
-/// How far a course of equilibria is from the same with inertia, for the place of the outer race
+/// How far a course of equilibria is from the same with inertia, for the place of one body
 /// across its axis; m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CourseInertia {
-    /// The race's largest distance from the middle of its course.
+    /// The body's largest distance from the middle of its course.
     pub swing: f64,
-    /// The race's largest distance from its nominal place: what its displacement is read as.
+    /// The body's largest distance from its nominal place: what its displacement is read as.
     pub displacement: f64,
     /// Largest |ẍ|/ω², the acceleration a mean over one period of what it drives.
     pub steady: f64,
@@ -84,7 +91,8 @@ const SAME_MASS: usize = 30;
 struct Look {
     place: Coordinates,
     velocity: Coordinates,
-    touching: Vec<bool>,
+    /// In each bore.
+    touching: Vec<Vec<bool>>,
     modes: Vec<Mode>,
     /// Corners of the loads that lie behind.
     corners: usize,
@@ -95,48 +103,69 @@ fn jumps(pair: &[Look]) -> bool {
     pair[0].touching != pair[1].touching || pair[0].corners != pair[1].corners
 }
 
-/// Looks along a course; `at` solves for the equilibrium of a time.
+/// Looks along a course, what it comes to for each body that takes part; `at` solves for the equilibrium of a time.
 ///
 /// # Errors
 /// Those of `at`.
-pub fn course_inertia<E>(
+pub fn course_inertia<'b, E>(
     looks: &CourseLooks,
-    search: &mut HousedSearch,
-    mut at: impl FnMut(&mut HousedSearch, f64) -> Result<HousedState, E>,
-) -> Result<CourseInertia, E> {
+    search: &mut CourseSearch<'b>,
+    mut at: impl FnMut(&mut CourseSearch<'b>, f64) -> Result<AssemblySolution, E>,
+) -> Result<Vec<CourseInertia>, E> {
     let interval = (looks.end - looks.start) / looks.count as f64;
     let mut found = Vec::with_capacity(looks.count + 1);
-    let mut housing = nalgebra::Matrix4::zeros();
+    let mut housings: Vec<HousingMass> = Vec::new();
+    let places = |found: &AssemblySolution| {
+        let places = looks.bodies.iter().flat_map(|of| found.coordinates[of.body].iter().copied());
+        Coordinates::from_iterator(5 * looks.bodies.len(), places)
+    };
     for i in 0..=looks.count {
         let time = looks.start + interval * i as f64;
-        let state = at(search, time)?;
+        let now = at(search, time)?;
         if i % SAME_MASS == 0 {
-            housing = housing_mass(search);
+            let seats = search.bores().iter().zip(&looks.seats);
+            housings = seats.map(|(bore, seat)| housing_mass(bore, seat.race)).collect();
         }
         let later = at(search, time + AHEAD * interval)?;
-        let place = coordinates(&state);
+        let place = places(&now);
+        let touching = |loads: &[f64]| loads.iter().map(|load| *load > 0.0).collect();
         found.push(Look {
+            velocity: (places(&later) - &place) / (AHEAD * interval),
             place,
-            velocity: (coordinates(&later) - place) / (AHEAD * interval),
-            touching: state.bore.loads.iter().map(|load| *load > 0.0).collect(),
-            modes: modes(&looks.free, &state, &looks.masses, &housing),
+            touching: now.seats.iter().map(|seat| touching(&seat.loads)).collect(),
+            modes: modes(&now.stiffness, &looks.bodies, &housings),
             corners: looks.corners.iter().filter(|corner| **corner <= time).count(),
         });
     }
-    Ok(judge(&found, interval, looks.damping))
+    let damping: Vec<f64> = looks.seats.iter().map(|seat| seat.damping).collect();
+    let bodies = 0..looks.bodies.len();
+    Ok(bodies.map(|body| judge(&found, interval, &Of { body, damping: &damping })).collect())
 }
 
-fn coordinates(state: &HousedState) -> Coordinates {
-    let (outer, inner) = (&state.bore.pose, &state.bearing.coordinates);
-    Coordinates::from_fn(|i, _| if i < 4 { outer[i] } else { inner[i - 4] })
+/// Whose place is judged, and the damping of each housing.
+struct Of<'d> {
+    body: usize,
+    damping: &'d [f64],
 }
 
-fn judge(looks: &[Look], interval: f64, damping: f64) -> CourseInertia {
-    let first = ring(&looks[0], &looks[0].velocity, damping);
+impl Of<'_> {
+    /// y and z of the body.
+    fn across(&self, of: &Coordinates) -> [f64; 2] {
+        [of[5 * self.body + 1], of[5 * self.body + 2]]
+    }
+
+    fn decay(&self, mode: &Mode) -> f64 {
+        let parts = self.damping.iter().zip(&mode.housings);
+        0.5 * parts.map(|(damping, part)| damping * part).sum::<f64>()
+    }
+}
+
+fn judge(looks: &[Look], interval: f64, of: &Of) -> CourseInertia {
+    let first = ring(&looks[0], &looks[0].velocity, of);
     let (mut sum, mut squares) = (first.size, first.size * first.size);
     let (mut most, mut together, mut largest) = (sum, squares, first);
     let after = |pair: &[Look]| {
-        jumps(pair).then(|| ring(&pair[1], &(pair[1].velocity - pair[0].velocity), damping))
+        jumps(pair).then(|| ring(&pair[1], &(&pair[1].velocity - &pair[0].velocity), of))
     };
     let rings: Vec<Option<Ring>> = looks.windows(2).map(after).collect();
     let (mut kinks, mut largest_kink) = (0, 0.0f64);
@@ -156,13 +185,10 @@ fn judge(looks: &[Look], interval: f64, damping: f64) -> CourseInertia {
         }
         (most, together) = (most.max(sum), together.max(squares));
     }
-    let steady = steady(looks, interval, largest.square);
+    let steady = steady(looks, interval, largest.square, of);
     CourseInertia {
-        swing: swing(looks),
-        displacement: looks
-            .iter()
-            .map(|look| libm::hypot(look.place[0], look.place[1]))
-            .fold(0.0, f64::max),
+        swing: swing(looks, of),
+        displacement: looks.iter().map(|look| length(of.across(&look.place))).fold(0.0, f64::max),
         steady,
         start: first.size,
         kinks,
@@ -176,7 +202,7 @@ fn judge(looks: &[Look], interval: f64, damping: f64) -> CourseInertia {
 /// What a jump of velocity leaves.
 #[derive(Clone, Copy)]
 struct Ring {
-    /// Of the outer race across its axis, m.
+    /// Of the body across its axis, m.
     size: f64,
     /// ω² and decay (1/s) of the motion that rings most.
     square: f64,
@@ -184,50 +210,54 @@ struct Ring {
 }
 
 /// The natural motions after a jump of velocity, all at their largest at once.
-fn ring(look: &Look, jump: &Coordinates, damping: f64) -> Ring {
+fn ring(look: &Look, jump: &Coordinates, of: &Of) -> Ring {
     let (mut size, mut most) = (0.0, -1.0);
     let (mut square, mut decay) = (f64::NAN, 0.0);
     for mode in &look.modes {
-        let part = across(mode) * mode.momentum.dot(jump).abs();
+        let part = length(of.across(&mode.shape)) * mode.momentum.dot(jump).abs();
         // Nothing holds it: what moves does not come back.
         let amplitude = if part == 0.0 { 0.0 } else { part / mode.square.max(0.0).sqrt() };
         size += amplitude;
         if amplitude > most {
-            (most, square, decay) = (amplitude, mode.square, 0.5 * damping * mode.housing);
+            (most, square, decay) = (amplitude, mode.square, of.decay(mode));
         }
     }
     Ring { size: if look.modes.is_empty() { f64::NAN } else { size }, square, decay }
 }
 
 /// Largest displacement under the acceleration between looks one period apart.
-fn steady(looks: &[Look], interval: f64, square: f64) -> f64 {
+fn steady(looks: &[Look], interval: f64, square: f64, of: &Of) -> f64 {
     let period = TAU / square.sqrt() / interval;
     let apart = if period > 1.0 { period.round() as usize } else { 1 };
     let apart = apart.min(looks.len() - 1);
     let time = apart as f64 * interval;
     (0..looks.len() - apart).fold(0.0, |largest: f64, i| {
-        let acceleration = (looks[i + apart].velocity - looks[i].velocity) / time;
+        let acceleration = (&looks[i + apart].velocity - &looks[i].velocity) / time;
         let modes = &looks[i + apart / 2].modes;
-        let [y, z] = modes.iter().fold([0.0; 2], |[y, z], mode| {
+        let moved = modes.iter().fold([0.0; 2], |[y, z], mode| {
             let part = mode.momentum.dot(&acceleration) / mode.square;
-            [y + part * mode.shape[0], z + part * mode.shape[1]]
+            let [shape_y, shape_z] = of.across(&mode.shape);
+            [y + part * shape_y, z + part * shape_z]
         });
-        largest.max(libm::hypot(y, z))
+        largest.max(length(moved))
     })
 }
 
-fn across(mode: &Mode) -> f64 {
-    libm::hypot(mode.shape[0], mode.shape[1])
+fn length([y, z]: [f64; 2]) -> f64 {
+    libm::hypot(y, z)
 }
 
-fn swing(looks: &[Look]) -> f64 {
+fn swing(looks: &[Look], of: &Of) -> f64 {
     let ends = |i: usize| {
-        let places = looks.iter().map(|look| look.place[i]);
+        let places = looks.iter().map(|look| of.across(&look.place)[i]);
         let [low, high] = places
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
         0.5 * (low + high)
     };
     let middle = [ends(0), ends(1)];
-    let away = |look: &Look| libm::hypot(look.place[0] - middle[0], look.place[1] - middle[1]);
+    let away = |look: &Look| {
+        let [y, z] = of.across(&look.place);
+        length([y - middle[0], z - middle[1]])
+    };
     looks.iter().map(away).fold(0.0, f64::max)
 }

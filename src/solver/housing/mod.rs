@@ -14,7 +14,9 @@
 pub mod bore_equilibrium;
 pub mod checkpoint;
 pub mod condensed;
+pub mod course;
 pub mod course_inertia;
+pub mod course_search;
 pub mod exchange;
 mod exchange_window;
 pub mod housed;

@@ -1,0 +1,221 @@
+//! `bearing check` of bearings and what they sit on and in.
+
+use super::echo::{echo, motion, numerics};
+use super::housing::Housing;
+use super::{defaults, housings, lines};
+use crate::commands::echo::through;
+use crate::commands::remarks::of_springs;
+use crate::commands::run::{planned_request, request};
+use crate::commands::{CommandResult, Outcome, echo_run, say};
+use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
+use bearing_dynamics::output::results::pretty;
+use bearing_dynamics::output::session::table_size;
+use bearing_dynamics::output::summary::housing::seat_section;
+use bearing_dynamics::output::summary::solid::mesh_section;
+use bearing_dynamics::output::visible::visible_line;
+use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::scene::dynamics::dynamic_problem;
+use bearing_dynamics::scene::housing::HousingMethod;
+use bearing_dynamics::scene::statics::static_problem;
+use bearing_dynamics::scene::{CageInRun, Document, RunSettings, Scene};
+use bearing_dynamics::solver::dynamics::run::Stepping;
+use bearing_dynamics::solver::plan::motion::race_freedom;
+use std::fmt::Write;
+use std::path::Path;
+
+pub fn run(
+    path: &Path,
+    document: &Document,
+    mut scene: AssemblyScene,
+    json: bool,
+) -> CommandResult {
+    let housings = housings::prepare(document, &scene)?;
+    for placed in &scene.bearings {
+        static_problem(&placed.scene)?;
+        if placed.housing.is_some() {
+            dynamic_problem(&placed.scene)?;
+        }
+    }
+    housings::refuse(document, &scene, &housings)?;
+    if let Some(settings) = scene.run().cloned() {
+        // Bearings that are to move have to make bodies, too.
+        let assembly = scene.assembly()?;
+        let mut request = request(scene.common(), &settings);
+        if housings.is_empty() {
+            (request, _) = planned_request(&scene, &settings, &assembly, None);
+            table_size(assembly, &request)?;
+        }
+        let run = RunSettings { options: request.options, ..settings };
+        scene.bearings[0].scene.dynamics.run = Some(run);
+    }
+    let scene = &scene;
+    if !json {
+        say(&text(&path.display().to_string(), scene, &housings))?;
+        return Ok(Outcome::Done);
+    }
+    let mut understood = echo(scene)?;
+    if let (Some(run), None) = (scene.run(), scene.one().filter(|one| one.housing.is_some())) {
+        understood["motion"] = motion(scene)?;
+        understood["numerics"] = numerics(run, housings.first().map(|of| &of.scene.housing))?;
+    }
+    for housing in &housings {
+        let of = match &housing.name {
+            Some(name) => &mut understood["bearings"][name],
+            None => &mut understood,
+        };
+        of["seat"] = seat_section(&housing.setup)?;
+        of["mesh"] = mesh_section(&housing.built)?;
+    }
+    understood["output"] = echo_run::output(scene.common())?;
+    for (name, notes) in echo_run::notes(&scene.common().assumptions, &defaults(scene)) {
+        understood[name] = notes;
+    }
+    say(&pretty(&understood))?;
+    Ok(Outcome::Done)
+}
+
+fn text(name: &str, scene: &AssemblyScene, housings: &[Housing]) -> String {
+    let mut text = format!("{}: a valid scene\n", visible_line(name));
+    let mut line = |label: &str, value: String| {
+        let _ = writeln!(text, "  {label:<22} {}", visible_line(&value));
+    };
+    if let Some(title) = &scene.common().title {
+        line("title", title.clone());
+    }
+    for (index, placed) in scene.bearings.iter().enumerate() {
+        if let Some(name) = &placed.name {
+            line("bearing", format!("\"{name}\""));
+        }
+        bearing_lines(&placed.scene, &mut line);
+        for housing in housings.iter().filter(|housing| housing.bearing == index) {
+            housing.lines().into_iter().for_each(|(label, said)| line(&label, said));
+        }
+    }
+    if scene.one().is_none() {
+        lines(scene).into_iter().for_each(|(label, said)| line(&label, said));
+        of_springs(scene).into_iter().for_each(|said| line("note", said));
+    }
+    for (label, value) in of_run(scene, housings) {
+        line(label, value);
+    }
+    for used in defaults(scene) {
+        line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
+    }
+    for assumption in &scene.common().assumptions {
+        line("assumption", format!("{}: {}", assumption.name, assumption.text));
+    }
+    text
+}
+
+/// Kind and geometry, a line each.
+fn bearing_lines(scene: &Scene, line: &mut impl FnMut(&str, String)) {
+    let (geometry, sizes) = (&scene.geometry, &scene.dimensions);
+    let kind = match geometry.kind {
+        BearingKind::DeepGroove => "deep-groove",
+        BearingKind::AngularContact => "angular-contact",
+    };
+    line("bearing", format!("{kind}, {} balls", geometry.ball_count));
+    line(
+        "ball radius",
+        format!(
+            "{:.6} mm in use, {:.6} mm nominal",
+            1e3 * geometry.ball_radius,
+            1e3 * sizes.nominal_ball_radius
+        ),
+    );
+    line(
+        "clearance",
+        format!(
+            "{:+.4} um radial = {:+.4} um diametral, made through the {}",
+            1e6 * sizes.radial_clearance,
+            1e6 * sizes.diametral_clearance,
+            through(sizes.clearance_through).replace('-', " ")
+        ),
+    );
+    for (label, race) in [("inner race", &sizes.inner_race), ("outer race", &sizes.outer_race)] {
+        line(
+            label,
+            format!(
+                "radius {:.4} mm, groove {:.4} mm = {:.5} of the ball diameter = osculation {:.5}",
+                1e3 * race.radius,
+                1e3 * race.groove_radius,
+                race.conformity,
+                race.osculation
+            ),
+        );
+    }
+    line("pitch radius", format!("{:.4} mm", 1e3 * geometry.pitch_radius));
+    line("contact angle", format!("{:.4} deg (nominal)", geometry.contact_angle.to_degrees()));
+}
+
+/// What a run computes, and how.
+fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, String)> {
+    let Some(run) = scene.run() else { return Vec::new() };
+    let (end, interval) = (run.end, run.output_interval);
+    let rows = format!("to t = {end} s, a row every {interval} s");
+    let mut said = Vec::new();
+    match (scene.housing_method(), housings.first().map(|of| &of.scene.housing)) {
+        (Some(HousingMethod::QuasiStatic), _) => {
+            said.push(("run", format!("to t = {end} s, an equilibrium every {interval} s")));
+            said.push(("motion", "none but along the equilibria: inertia is left out".into()));
+        }
+        (Some(HousingMethod::Reduced), _) => {
+            said.push(("run", rows));
+            said.push(("steps", format!("{}, of bearing and housing together", stepping(run))));
+        }
+        (Some(HousingMethod::Explicit), Some(housing)) => {
+            let windows = format!(
+                "windows of {} of the seat's phase; the housing by central differences, {} of the \
+                 largest stable step; the bearing by {}",
+                housing.window_phase,
+                housing.step_fraction,
+                stepping(run)
+            );
+            said.extend([("run", rows), ("steps", windows)]);
+        }
+        _ => said.push(("run", format!("to t = {end} s by {}", stepping(run)))),
+    }
+    if scene.housing_method() != Some(HousingMethod::QuasiStatic)
+        && let Some(one) = scene.one()
+    {
+        said.extend(bodies(&one.scene));
+    }
+    if let Some(housing) = housings.first() {
+        let fields = match housing.scene.housing.fields_interval {
+            Some(interval) => format!("every {interval} s"),
+            None => "at the end".into(),
+        };
+        said.push(("fields", fields));
+    }
+    said
+}
+
+/// Integrator of the bearing and its steps.
+fn stepping(run: &RunSettings) -> String {
+    let steps = match run.options.stepping {
+        Stepping::Fixed(step) => format!("a step of {step:e} s"),
+        Stepping::FractionOfLimit(part) => format!("{part} of the largest stable step"),
+        Stepping::Accuracy(accuracy) => format!("steps for an accuracy of {accuracy}"),
+    };
+    format!("{}, {steps}", run.options.integrator.name())
+}
+
+/// How each body of a bearing moves in steps.
+fn bodies(scene: &Scene) -> Vec<(&'static str, String)> {
+    let dynamics = &scene.dynamics;
+    let outer = match &dynamics.outer {
+        Some(body) => race_freedom(body),
+        None => "fixed in space".into(),
+    };
+    let cage = match &dynamics.cage {
+        CageInRun::Body(_) => "a rigid body with six coordinates".into(),
+        CageInRun::LeftOut(reason) => format!("left out: {reason}"),
+    };
+    let balls = "six coordinates each; gyroscopic and centrifugal effects by themselves";
+    vec![
+        ("inner race motion", race_freedom(&dynamics.inner)),
+        ("outer race motion", outer),
+        ("ball motion", balls.into()),
+        ("cage motion", cage),
+    ]
+}

@@ -1,0 +1,176 @@
+//! What was understood of a scene of bearings, as JSON with units.
+
+use super::housing::method;
+use super::{Fallible, name_of};
+use crate::commands::{echo as bearing_echo, echo_run, solid};
+use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::output::results::{ResultsError, quantity};
+use bearing_dynamics::scene::RunSettings;
+use bearing_dynamics::scene::assembly::{
+    AssemblyScene, Carrier, PlacedBearing, PlacedHousing, Spring,
+};
+use bearing_dynamics::scene::dynamics::dynamic_problem;
+use bearing_dynamics::scene::housing::{FitSize, HousingMethod, HousingSettings};
+use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
+use serde_json::{Map, Value, json};
+
+/// The scene as understood, every dimensional value with its unit.
+pub fn echo(scene: &AssemblyScene) -> Fallible<Value> {
+    if let Some(one) = scene.one() {
+        return of_one(one);
+    }
+    let mut echo = Map::new();
+    let common = scene.common();
+    for (name, text) in [("title", &common.title), ("source", &common.source)] {
+        if let Some(text) = text {
+            echo.insert(name.into(), json!(text));
+        }
+    }
+    let mut bearings = Map::new();
+    for placed in &scene.bearings {
+        let mut own = bearing_echo::scene(&placed.scene)?;
+        if let Value::Object(map) = &mut own {
+            map.remove("title");
+            map.remove("source");
+            for ((race, side), carrier) in
+                [("inner_race", "inner"), ("outer_race", "outer")].into_iter().zip(placed.carriers)
+            {
+                let at = quantity("place", 1e3 * carrier.at(), "mm")?;
+                let on = match carrier {
+                    Carrier::Own { .. } => json!(race),
+                    Carrier::Body { index, .. } => {
+                        map.remove(race);
+                        json!(scene.bodies[index].name)
+                    }
+                };
+                map.insert(format!("{side}_on"), on);
+                map.insert(format!("{side}_at"), at);
+            }
+            map.insert("reversed".into(), json!(placed.reversed));
+            if let Some(housed) = &placed.housing {
+                map.insert("housing".into(), housing(&housed.settings)?);
+                let solid = placed.housed().map(|housed| solid::echo::scene(&housed.solid));
+                map.insert("solid".into(), solid.transpose()?.unwrap_or_default()["solid"].take());
+            }
+        }
+        bearings.insert(name_of(placed).into(), own);
+    }
+    echo.insert("bearings".into(), Value::Object(bearings));
+    let bodies = scene.bodies.iter().map(|body| Ok((body.name.clone(), echo_run::body(body)?)));
+    echo.insert("bodies".into(), Value::Object(bodies.collect::<Result<_, ResultsError>>()?));
+    let springs = scene.springs.iter().map(|s| Ok((s.name.clone(), spring(scene, s)?)));
+    echo.insert("springs".into(), Value::Object(springs.collect::<Result<_, ResultsError>>()?));
+    Ok(Value::Object(echo))
+}
+
+fn spring(scene: &AssemblyScene, spring: &Spring) -> Result<Value, ResultsError> {
+    let end = |(body, at): (Option<usize>, f64)| -> Result<Value, ResultsError> {
+        let name = body.map_or("ground", |index| scene.bodies[index].name.as_str());
+        Ok(json!({ "body": name, "at": quantity("place", 1e3 * at, "mm")? }))
+    };
+    let six = |values: &[f64; 6], units: [&str; 2]| -> Result<Value, ResultsError> {
+        let names = ["x", "y", "z", "turn_x", "turn_y", "turn_z"];
+        let entry = |(i, name): (usize, &&str)| {
+            Ok((name.to_string(), quantity(name, values[i], units[usize::from(i > 2)])?))
+        };
+        Ok(Value::Object(names.iter().enumerate().map(entry).collect::<Result<_, ResultsError>>()?))
+    };
+    Ok(json!({
+        "from": end(spring.ends[0])?,
+        "to": end(spring.ends[1])?,
+        "stiffness": six(&spring.stiffness, ["N/m", "N m/rad"])?,
+        "damping": six(&spring.damping, ["N s/m", "N m s/rad"])?,
+    }))
+}
+
+/// Of one bearing and what it sits in; with the housing how a run is computed.
+fn of_one(one: &PlacedBearing) -> Fallible<Value> {
+    let mut echo = bearing_echo::scene(&one.scene)?;
+    let Some(PlacedHousing { settings, solid }) = &one.housing else { return Ok(echo) };
+    echo["housing"] = housing(settings)?;
+    echo["solid"] = solid::echo::scene(solid)?["solid"].take();
+    if let Some(run) = &one.scene.dynamics.run {
+        echo["motion"] = echo_run::motion(&dynamic_problem(&one.scene)?)?;
+        echo["numerics"] = numerics(run, Some(settings))?;
+    }
+    Ok(echo)
+}
+
+/// How a run is computed; of a course of equilibria what has a meaning without steps.
+pub fn numerics(
+    run: &RunSettings,
+    housing: Option<&HousingSettings>,
+) -> Result<Value, ResultsError> {
+    let mut echo = match housing.map(|housing| housing.method) {
+        Some(HousingMethod::QuasiStatic) => json!({
+            "end": quantity("end", run.end, "s")?,
+            "output_interval": quantity("output_interval", run.output_interval, "s")?,
+        }),
+        _ => echo_run::numerics(run)?,
+    };
+    if let Some(interval) = housing.and_then(|housing| housing.fields_interval) {
+        echo["fields_interval"] = quantity("fields_interval", interval, "s")?;
+    }
+    Ok(echo)
+}
+
+/// Bodies, loads and laws of a motion.
+pub fn motion(scene: &AssemblyScene) -> Fallible<Value> {
+    if let Some(alone) = scene.only() {
+        return Ok(echo_run::motion(&dynamic_problem(alone)?)?);
+    }
+    let mut bearings = Map::new();
+    for placed in &scene.bearings {
+        let mut own = echo_run::motion(&dynamic_problem(&placed.scene)?)?;
+        for (race, carrier) in ["inner_race", "outer_race"].into_iter().zip(placed.carriers) {
+            if let (Value::Object(map), Carrier::Body { .. }) = (&mut own, carrier) {
+                map.remove(race);
+            }
+        }
+        bearings.insert(name_of(placed).into(), own);
+    }
+    Ok(Value::Object(bearings))
+}
+
+/// What `[housing]` says.
+fn housing(housing: &HousingSettings) -> Result<Value, ResultsError> {
+    let mut echo = Map::new();
+    echo.insert("method".into(), json!(method(housing.method)));
+    echo.insert("bore".into(), json!(housing.bore));
+    match housing.fit {
+        FitSize::Interference(fit) => {
+            let fit = json!({
+                "radial": quantity("fit", 1e6 * fit, "um")?,
+                "diametral": quantity("fit", 2e6 * fit, "um")?,
+            });
+            echo.insert("fit".into(), fit);
+        }
+        FitSize::OuterRadius(radius) => {
+            echo.insert("outer_radius".into(), quantity("outer radius", 1e3 * radius, "mm")?);
+        }
+    }
+    for (name, value, unit) in [("fit_ramp", housing.fit_ramp, "s"), ("width", housing.width, "m")]
+    {
+        if let Some(value) = value {
+            echo.insert(name.into(), quantity(name, value, unit)?);
+        }
+    }
+    let axial = if housing.axial == Axial::Held { "held" } else { "free" };
+    echo.insert("axial".into(), json!(axial));
+    let stiffness = match housing.penalty {
+        Penalty::PerArea(stiffness) => quantity("stiffness", stiffness, "N/m^3")?,
+        Penalty::PerNode(stiffness) => quantity("stiffness", stiffness, "N/m")?,
+    };
+    echo.insert("contact".into(), json!({ "stiffness": stiffness }));
+    if housing.method == HousingMethod::Explicit {
+        for (name, value) in
+            [("step_fraction", housing.step_fraction), ("window_phase", housing.window_phase)]
+        {
+            echo.insert(name.into(), quantity(name, value, "1")?);
+        }
+    }
+    if let Some(modes_to) = housing.modes_to {
+        echo.insert("modes_to".into(), quantity("modes_to", modes_to, "Hz")?);
+    }
+    Ok(Value::Object(echo))
+}

@@ -1,0 +1,247 @@
+//! One flexible housing and the bearing in it: mesh, bore, seat, and what a person should know of them.
+
+use super::Fallible;
+use crate::commands::memory::watched;
+use crate::commands::placed;
+use crate::commands::solid::mesh_notes;
+use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::mesh::Order;
+use bearing_dynamics::scene::Document;
+use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
+use bearing_dynamics::scene::housing_problem::{
+    HousingSetup, check_constant, check_supports, setup,
+};
+use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
+use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
+use bearing_dynamics::solver::housing::condensed::{
+    CondensedBore, Sizes, condense_over, cost, sizes,
+};
+use bearing_dynamics::solver::housing::course::CourseSeat;
+use bearing_dynamics::solver::housing::seat::Seat;
+use bearing_dynamics::solver::mount::Mount;
+use bearing_dynamics::solver::plan::Item;
+use bearing_dynamics::solver::plan::solid::{self, Method};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::support::free_motions;
+use bearing_dynamics::solver::solid::tangent::Unknowns;
+use bearing_dynamics::solver::sparse::Cost;
+use std::time::Instant;
+
+/// Part of the race's radius beyond which nodes of the bore count as out of reach until something
+/// has moved: many times what races move in their seats.
+const REACH: f64 = 2e-3;
+
+/// What needs no factors.
+const INSTEAD: &str = ", explicit steps (method = \"explicit\" in [housing])";
+
+/// A housing and the bearing that it holds.
+pub struct Housing {
+    /// Index of the bearing.
+    pub bearing: usize,
+    /// Of the bearing; `None` for the only one.
+    pub name: Option<String>,
+    /// Both alone, where they stand.
+    pub scene: HousedScene,
+    pub built: BuiltMesh,
+    pub setup: HousingSetup,
+    pub mesh_seconds: f64,
+}
+
+/// How a housing is solved, as the scene has it.
+pub fn method(method: HousingMethod) -> &'static str {
+    match method {
+        HousingMethod::QuasiStatic => "quasi-static",
+        HousingMethod::Explicit => "explicit",
+        HousingMethod::Reduced => "reduced",
+    }
+}
+
+impl Housing {
+    /// Reads or makes the mesh; the document says where in the scene an error stands.
+    pub fn new(
+        document: &Document,
+        bearing: usize,
+        name: Option<String>,
+        scene: HousedScene,
+    ) -> Fallible<Housing> {
+        let start = Instant::now();
+        let mut built =
+            build_housing(&scene).map_err(|error| placed(document, error.about(), error))?;
+        let setup =
+            setup(&scene, &built).map_err(|error| placed(document, error.about(), error))?;
+        built.notes.extend(setup.solid.notes.iter().chain(&setup.notes).cloned());
+        let mesh_seconds = start.elapsed().as_secs_f64();
+        Ok(Housing { bearing, name, scene, built, setup, mesh_seconds })
+    }
+
+    /// The document that it is written in.
+    fn document(&self, whole: &Document) -> Document {
+        self.name.as_ref().map_or_else(|| whole.clone(), |name| whole.scoped(name))
+    }
+
+    /// What its way of being solved cannot have: loads that change, supports that move.
+    pub fn refuse(&self, whole: &Document) -> Fallible<()> {
+        let scene = &self.scene;
+        let checked = match scene.housing.method {
+            HousingMethod::Explicit => Ok(()),
+            HousingMethod::QuasiStatic => check_constant(scene),
+            HousingMethod::Reduced => check_supports(scene),
+        };
+        checked.map_err(|error| placed(&self.document(whole), error.about(), error))
+    }
+
+    /// What equilibria one after the other cannot have.
+    pub fn constant(&self) -> Fallible<()> {
+        Ok(check_constant(&self.scene)?)
+    }
+
+    /// One that can move as a whole.
+    pub fn refuse_free(&self) -> Fallible<()> {
+        let free = free_motions(&self.setup.solid.problem);
+        if free.count == 0 {
+            return Ok(());
+        }
+        Err(format!(
+            "{}an equilibrium needs a housing that is held, and this one is free to move {}; add \
+             [[solid.held]]",
+            self.before(),
+            free.names()
+        )
+        .into())
+    }
+
+    /// What condensing it onto the nodes of its bore takes, from its structure alone.
+    pub fn condensing(&self) -> Fallible<(Unknowns, Sizes, Cost)> {
+        self.refuse_free()?;
+        let setup = &self.setup;
+        let unknowns = Unknowns::new(&setup.model);
+        let sizes = sizes(&setup.model, &unknowns, &setup.nodes, &setup.reach())?;
+        let cost = cost(&setup.model, &unknowns, &sizes);
+        Ok((unknowns, sizes, cost))
+    }
+
+    /// Condensed onto the nodes of its bore under the race.
+    pub fn condensed(&self) -> Fallible<CondensedBore> {
+        let setup = &self.setup;
+        let (unknowns, _, cost) = self.condensing()?;
+        let condense =
+            || condense_over(&setup.model, unknowns.clone(), &setup.nodes, &setup.reach());
+        let named = |error: &dyn std::fmt::Display| format!("{}{error}", self.before());
+        let condensed = watched(&cost, &unknowns, INSTEAD, condense).map_err(|e| named(&e))?;
+        Ok(condensed.map_err(|error| named(&error))?)
+    }
+
+    /// The race in its condensed bore, of this radius over time.
+    pub fn course_seat<'b>(&self, bore: &'b CondensedBore, radius: Profile) -> CourseSeat<'b> {
+        CourseSeat {
+            name: self.name.clone(),
+            bearing: self.bearing,
+            bore,
+            penalty: self.scene.housing.penalty,
+            axial: self.scene.housing.axial,
+            radius,
+            damping: self.setup.solid.problem.damping,
+        }
+    }
+
+    /// The race as a body in the bore of explicit solid `solid`.
+    pub fn seat(&self, body: usize, solid: usize) -> Seat {
+        Seat {
+            name: self.name.clone(),
+            mount: Mount::at_centre(body),
+            solid,
+            radius: self.setup.radius(&self.scene),
+            width: self.setup.width,
+            penalty: self.scene.housing.penalty,
+            nodes: self.setup.nodes.clone(),
+            reach: REACH * self.setup.bore_radius,
+        }
+    }
+
+    /// "housing left".
+    pub fn label(&self) -> String {
+        self.name.as_ref().map_or("housing".into(), |name| format!("housing {name}"))
+    }
+
+    /// "housing left: ", before what is said of it; nothing for the only one.
+    pub fn before(&self) -> String {
+        self.name.as_ref().map_or(String::new(), |name| format!("housing {name}: "))
+    }
+
+    /// The file of the table of its bore.
+    pub fn bore_file(&self) -> String {
+        self.name.as_ref().map_or("bore.csv".into(), |name| format!("bore_{name}.csv"))
+    }
+
+    /// Nodes and elements as a person counts them.
+    pub fn mesh_text(&self) -> String {
+        let mesh = &self.built.mesh;
+        let nodes_each = if mesh.order() == Order::Linear { 4 } else { 10 };
+        format!("{} nodes, {} elements of {nodes_each}", mesh.nodes.len(), mesh.elements.len())
+    }
+
+    /// What a plan says of it, solid number `index`, solved this way.
+    pub fn items(&self, index: usize, method: &Method) -> Vec<Item> {
+        let problem = &self.setup.solid.problem;
+        solid::items(problem, index, Some(&self.label()), &self.mesh_text(), method)
+    }
+
+    /// What a person should know of mesh and bore before results.
+    pub fn notes(&self) -> Vec<String> {
+        let caution = self.setup.caution.iter().map(|caution| format!("caution: {caution}"));
+        let notes = mesh_notes(&self.built).into_iter().chain(caution);
+        notes.map(|note| format!("{}{note}", self.before())).collect()
+    }
+
+    /// Mesh, mass and seat, a line each.
+    pub fn lines(&self) -> Vec<(String, String)> {
+        let Housing { scene: HousedScene { housing, .. }, setup, .. } = self;
+        let said = format!("{}; {}", self.mesh_text(), method(housing.method));
+        let mut lines = vec![(self.label(), said)];
+        let mut line = |label: &str, said: String| lines.push((label.into(), said));
+        for note in mesh_notes(&self.built) {
+            line("note", note);
+        }
+        let mass: f64 = setup.model.mass.iter().sum();
+        let held = setup.solid.problem.prescribed.len();
+        line("housing mass", format!("{mass:.6} kg; {held} components held"));
+        let um = 1e6 * setup.interference;
+        let kind = match um {
+            um if um > 0.0 => "interference",
+            um if um < 0.0 => "clearance",
+            _ => "transition",
+        };
+        line(
+            "seat",
+            format!(
+                "bore radius {:.4} mm, {} nodes, {:.4} mm wide; {kind} {um:+.4} um radial = {:+.4} um diametral",
+                1e3 * setup.bore_radius,
+                setup.nodes.len(),
+                1e3 * setup.width,
+                2.0 * um
+            ),
+        );
+        line(
+            "bore shape",
+            format!(
+                "{:.4} um out of round, axis {:.4} um from the race's centre",
+                1e6 * setup.out_of_round,
+                1e6 * setup.off_centre
+            ),
+        );
+        if let Some(caution) = &setup.caution {
+            line("caution", caution.clone());
+        }
+        let stiffness = match housing.penalty {
+            Penalty::PerArea(stiffness) => format!("{stiffness:e} N/m^3, by area"),
+            Penalty::PerNode(stiffness) => format!("{stiffness:e} N/m for each node"),
+        };
+        line("seat stiffness", stiffness);
+        let axial = match housing.axial {
+            Axial::Held => "held beside the bore",
+            Axial::Free => "free",
+        };
+        line("outer race, axially", axial.into());
+        lines
+    }
+}

@@ -1,0 +1,94 @@
+//! `bearing modes` of bearings and what they sit on and in: natural motions of the bodies about their equilibrium.
+//!
+//! Balls are springs without mass of their own. A housing takes part with the shapes that it has under its race
+//! (Rayleigh), so that frequencies are upper bounds, near the truth while its own modes are higher.
+
+use super::housings::{self, Equilibrium};
+use super::{plan, record};
+use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::solid::modes::modes_folder;
+use crate::commands::{CommandResult, Outcome, say};
+use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
+use bearing_dynamics::scene::Document;
+use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
+use bearing_dynamics::solver::housing::inertia::{MovingBody, housing_mass, modes};
+use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly, StaticBody};
+use serde_json::json;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+pub fn run(
+    path: &Path,
+    document: &Document,
+    scene: &AssemblyScene,
+    out: &Option<PathBuf>,
+    dry: bool,
+) -> CommandResult {
+    let folder = match dry {
+        true => None,
+        false => Some(claimed(&modes_folder(path, out), Writes::Modes)?),
+    };
+    let housings = housings::prepare(document, scene)?;
+    let start = Instant::now();
+    let bores = housings::condensed(&housings)?;
+    let found = housings::equilibrium(scene, housings::grown(&housings, &bores), None)?;
+    let Equilibrium { still, moment, in_bores } = &found;
+    let assembly = scene.assembly()?;
+    let bodies = taking_part(&assembly, still);
+    if !bodies.iter().any(|body| body.free.contains(&true)) {
+        let place = path.display();
+        return Err(format!("{place}: all coordinates are given: nothing is left to swing").into());
+    }
+    let mut masses = Vec::new();
+    if let Some((course, search)) = in_bores {
+        for (seat, bore) in course.seats.iter().zip(search.bores()) {
+            let race = bodies.iter().position(|of| of.body == seat.body(&assembly));
+            masses.extend(race.map(|race| housing_mass(bore, race)));
+        }
+    }
+    let found = modes(&moment.solution.stiffness, &bodies, &masses);
+    if found.is_empty() {
+        let hint = "give it: body.NAME.inertia";
+        return Err(format!("{}: a body has no mass. Hint: {hint}", path.display()).into());
+    }
+    let names = names(still, &bodies);
+    let mut text = "mode        frequency, Hz  moves most\n".to_string();
+    for (index, mode) in found.iter().enumerate() {
+        let most = &names[moves_most(mode)];
+        let _ = writeln!(text, "{:>4} {:>20.6}  {most}", index + 1, frequency(mode));
+    }
+    say(&text)?;
+    let mut remarks: Vec<&str> = Vec::new();
+    if found.iter().any(|mode| frequency(mode) == 0.0) {
+        remarks
+            .push("a frequency of zero is of a motion that no contact and no spring brings back");
+    }
+    remarks.push("about the equilibrium at t = 0, nothing turning; balls are springs without mass");
+    if !housings.is_empty() {
+        remarks.push(
+            "housings take part with their static shapes: an upper bound, near the truth below their own modes",
+        );
+    }
+    remarks.iter().try_for_each(|remark| say(&format!("note: {remark}\n")))?;
+    let Some(folder) = folder else { return Ok(Outcome::Done) };
+    remove_earlier(&folder)?;
+    let seconds = vec![("solve".into(), start.elapsed().as_secs_f64())];
+    let mut record = record(scene, plan::of_statics(scene, &housings)?, seconds)?;
+    record.ran.clone_from(&moment.solution.ran);
+    record.sections.push(("remarks".into(), json!(remarks)));
+    let written = write(&folder, &names, &found, &record)?;
+    say(&format!("wrote {} files to {}\n", written.len(), folder.display()))?;
+    Ok(Outcome::Done)
+}
+
+/// The bodies that loads move.
+fn taking_part(assembly: &Assembly, still: &StaticAssembly) -> Vec<MovingBody> {
+    let of = |(index, (still, body)): (usize, (&StaticBody, &Body))| {
+        let Place::Loaded(loaded) = &still.place else { return None };
+        let free = [0, 1, 2, 3, 4].map(|i| loaded.given(i).is_none());
+        Some(MovingBody { body: index, inertia: *body.inertia()?, free })
+    };
+    still.bodies.iter().zip(&assembly.bodies).enumerate().filter_map(of).collect()
+}

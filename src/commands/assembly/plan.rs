@@ -1,0 +1,318 @@
+//! `bearing plan` of bearings and what they sit on and in: what the scene's way of solving does, and what another one
+//! of the housings would cost.
+
+use super::course::{along_course, inertia_estimate, verdicts};
+use super::housing::Housing;
+use super::shapes::{Shapes, shapes};
+use super::{Fallible, housings, still};
+use crate::commands::plan::say_plan;
+use crate::commands::plan_step::{note, refused, step_lines};
+use crate::commands::remarks::of_springs;
+use crate::commands::run::planned_request;
+use crate::commands::{CommandResult, Outcome, memory};
+use bearing_dynamics::output::session::{HousedParts, RunRequest, table_size};
+use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
+use bearing_dynamics::scene::housing::HousingMethod;
+use bearing_dynamics::scene::statics::static_problem;
+use bearing_dynamics::scene::{CageInRun, Document, RunSettings};
+use bearing_dynamics::solver::clock::{rounded, to_digits, whole_number};
+use bearing_dynamics::solver::dynamics::assembly::Assembly;
+use bearing_dynamics::solver::dynamics::foretell::Choice;
+use bearing_dynamics::solver::dynamics::model::Rotation;
+use bearing_dynamics::solver::dynamics::run::Start;
+use bearing_dynamics::solver::housing::condensed::Sizes;
+use bearing_dynamics::solver::housing::exchange::SteppedSolid;
+use bearing_dynamics::solver::plan::motion::{self, Planned};
+use bearing_dynamics::solver::plan::solid::Method;
+use bearing_dynamics::solver::plan::statics::{self, ASKED_FOR};
+use bearing_dynamics::solver::plan::{Item, Stage, Subject};
+use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
+use bearing_dynamics::solver::statics::StaticProblem;
+use std::error::Error;
+use std::time::{Duration, Instant};
+
+/// How long windows are timed for an estimate of the wall time.
+const TIMED: Duration = Duration::from_millis(300);
+
+pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
+    let housings = housings::prepare(document, scene)?;
+    let method = scene.housing_method();
+    match (method, scene.run()) {
+        (Some(HousingMethod::QuasiStatic), Some(_)) => housings::refuse_steps(document)?,
+        (Some(HousingMethod::QuasiStatic), None) => {}
+        _ => housings::refuse(document, scene, &housings)?,
+    }
+    let reduced = match method {
+        Some(HousingMethod::Reduced) => Some(shapes(scene, &housings)?),
+        _ => None,
+    };
+    let (mut items, mut notes) = match (scene.run(), method) {
+        (None, _) => (of_statics(scene, &housings)?, Vec::new()),
+        (Some(settings), Some(HousingMethod::QuasiStatic)) => {
+            (of_course(scene, &housings, settings)?, Vec::new())
+        }
+        (Some(settings), _) => of_steps(scene, &housings, reduced.as_ref(), settings)?,
+    };
+    notes.extend(of_springs(scene).iter().map(|said| note("spring", said)));
+    for housing in &housings {
+        notes.extend(housing.notes().iter().map(|said| note("housing mesh", said)));
+    }
+    if let Some(shapes) = &reduced {
+        notes.extend(shapes.notes(scene, &housings));
+    }
+    let undeformed = housings.iter().any(|housing| !housing.scene.housing.from_equilibrium);
+    if method == Some(HousingMethod::Explicit) && undeformed {
+        notes.push(note("start of the housing", UNDEFORMED));
+    }
+    if !housings.is_empty() {
+        notes.extend(equilibrium_notes(scene, &housings)?);
+    }
+    if let (Some(settings), false) = (scene.run(), housings.is_empty()) {
+        notes.push(explicit_note(scene, &housings, settings));
+    }
+    if scene.common().rigid_housing {
+        let why = "housing.method = rigid: the outer race is fixed, no mesh is read";
+        items.push(Item::skips(Stage::Housing, Subject::Whole, why));
+    }
+    say_plan(&items, &notes)?;
+    Ok(Outcome::Done)
+}
+
+/// Where explicit steps start that are not told to start in equilibrium.
+const UNDEFORMED: &str = "undeformed, the outer race in its first place: what the bearing carries from the start \
+    swings in";
+
+/// A run in steps: items, and what there is to note of steps and of the size of its table.
+fn of_steps(
+    scene: &AssemblyScene,
+    housings: &[Housing],
+    reduced: Option<&Shapes>,
+    settings: &RunSettings,
+) -> Fallible<(Vec<Item>, Vec<String>)> {
+    let assembly = match reduced {
+        Some(shapes) => shapes.assembly.clone(),
+        None => scene.assembly()?,
+    };
+    let (request, choice) = planned_request(scene, settings, &assembly, None);
+    let items = stages(scene, housings, &assembly, &request, choice.as_ref());
+    let mut notes = Vec::new();
+    // Races without their housings would have nothing to hold them.
+    if housings.is_empty() || reduced.is_some() {
+        notes.extend(step_lines(&assembly, &request));
+    }
+    notes.push(size_line(&assembly, &request));
+    Ok((items, notes))
+}
+
+/// Items of a run in steps.
+pub fn stages(
+    scene: &AssemblyScene,
+    housings: &[Housing],
+    assembly: &Assembly,
+    request: &RunRequest,
+    choice: Option<&Choice>,
+) -> Vec<Item> {
+    let left_out = |placed: &PlacedBearing| match &placed.scene.dynamics.cage {
+        CageInRun::Body(_) => None,
+        CageInRun::LeftOut(reason) => Some(reason.clone()),
+    };
+    let left_out: Vec<Option<String>> = scene.bearings.iter().map(left_out).collect();
+    let left_out: Vec<Option<&str>> = left_out.iter().map(Option::as_deref).collect();
+    let mut options = request.options;
+    if !housings.is_empty() {
+        // Bearings roll in equilibrium with races that are held where they sit in their housings.
+        options.start = Start::Equilibrium;
+    }
+    let is_explicit = scene.housing_method() == Some(HousingMethod::Explicit);
+    let way = if is_explicit { Method::Explicit } else { Method::Reduced };
+    let mut solids = Vec::new();
+    for (index, housing) in housings.iter().enumerate() {
+        solids.extend(housing.items(index, &way));
+        if is_explicit {
+            let body = assembly.bearings[housing.bearing].mounts[1].body;
+            let seat = (body, housing.name.as_deref());
+            solids.extend(motion::stepped_seat(assembly, index, seat));
+        }
+    }
+    let mut items = motion::items(Planned {
+        assembly,
+        options: &options,
+        channels: &request.channels,
+        cage_left_out: &left_out,
+        solids,
+    });
+    if let Some(choice) = choice {
+        let said = format!("{}: {}", choice.integrator.name(), choice.reason());
+        items.push(Item::does(Stage::IntegratorChoice, Subject::Whole, said));
+    }
+    items
+}
+
+/// Items of the equilibrium at t = 0.
+pub fn of_statics(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Vec<Item>> {
+    Ok(of_equilibrium(&still(scene)?, housings, ASKED_FOR))
+}
+
+fn of_equilibrium(still: &StaticAssembly, housings: &[Housing], centrifugal: &str) -> Vec<Item> {
+    let mut solids = Vec::new();
+    for (index, housing) in housings.iter().enumerate() {
+        solids.extend(housing.items(index, &Method::QuasiStatic));
+        let body = still.bearings[housing.bearing].mounts[1].body;
+        solids.push(statics::seat(index, &still.bodies[body].name));
+    }
+    statics::items(still, solids, centrifugal)
+}
+
+/// Items of one equilibrium after the other, of which there are as many as a run solves.
+pub fn of_course(
+    scene: &AssemblyScene,
+    housings: &[Housing],
+    run: &RunSettings,
+) -> Fallible<Vec<Item>> {
+    const GO_ROUND: &str =
+        "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
+    let mut still = still(scene)?;
+    for (bearing, placed) in still.bearings.iter_mut().zip(&scene.bearings) {
+        let turning = &placed.scene.dynamics.inner.rotation;
+        let turns = matches!(turning, Rotation::Speed(speed) if !speed.is_zero());
+        // At any speed that it has.
+        bearing.centrifugal = f64::from(u8::from(turns));
+    }
+    let mut items = of_equilibrium(&still, housings, GO_ROUND);
+    let count = whole_number(run.end, run.output_interval) + 1;
+    let last = rounded((count - 1) as f64 * run.output_interval);
+    let why = format!("{count} equilibria to t = {last} s, one a row");
+    items.push(Item::does(Stage::Equilibria, Subject::Whole, why));
+    Ok(items)
+}
+
+/// One bearing under all loads that it has at t = 0.
+pub fn of_one(one: &PlacedBearing, still: &StaticAssembly) -> Fallible<StaticProblem> {
+    let problem = static_problem(&one.scene)?;
+    Ok(match &still.bodies[0].place {
+        Place::Loaded(inner) => StaticProblem { conditions: inner.conditions, ..problem },
+        Place::Held(_) => problem,
+    })
+}
+
+/// How much the run is going to write.
+fn size_line(assembly: &Assembly, request: &RunRequest) -> String {
+    let said = match table_size(assembly.clone(), request) {
+        Ok(size) => size.to_string(),
+        Err(error) => refused(&error),
+    };
+    note("table", &said)
+}
+
+/// What condensing takes; of the quasi-static method also whether equilibria will do, which needs
+/// the condensed housings. Of other methods nothing is factorised here.
+fn equilibrium_notes(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Vec<String>> {
+    let chosen = scene.housing_method() == Some(HousingMethod::QuasiStatic);
+    let name = if chosen { "inertia left out" } else { "quasi-static instead" };
+    let mut planned = Vec::new();
+    for housing in housings {
+        let of = housing.before();
+        let foretold = housing.constant().and_then(|()| housing.condensing());
+        let (sizes, cost) = match foretold {
+            Ok((_, sizes, cost)) => (sizes, cost),
+            Err(error) => return Ok(vec![note(name, &format!("not possible: {error}"))]),
+        };
+        planned.push(note("condensed bore", &format!("{of}{}", condensed_text(&sizes))));
+        planned.push(note("condensing takes", &format!("{of}{}", memory::text(&cost))));
+    }
+    if !chosen {
+        let said = "what leaving out inertia would change is found with the condensed housing: \
+                    `plan` says it with method = \"quasi-static\" in [housing]";
+        planned.push(note(name, said));
+        return Ok(planned);
+    }
+    let bores = housings::condensed(housings)?;
+    let course = housings::course(scene, housings, &bores)?;
+    let Some(estimate) = inertia_estimate(scene, &course)? else {
+        planned.push(note(name, "nothing holds the outer race under the largest load"));
+        return Ok(planned);
+    };
+    let (along, missing) = match along_course(scene, &course) {
+        Ok(along) => (along, String::new()),
+        Err(error) => (Vec::new(), format!("; no estimate along the course: {error}")),
+    };
+    let said = verdicts(scene, &estimate, &along).into_iter();
+    planned.extend(said.map(|said| note(name, &(said + &missing))));
+    Ok(planned)
+}
+
+fn condensed_text(sizes: &Sizes) -> String {
+    format!(
+        "{} unknowns onto {} of {} bore nodes; {} beside the race and {} out of reach are left \
+         out",
+        sizes.unknowns, sizes.kept, sizes.bore, sizes.beside, sizes.out_of_reach
+    )
+}
+
+/// Windows of the explicit way, and about how long they take here.
+fn explicit_note(scene: &AssemblyScene, housings: &[Housing], run: &RunSettings) -> String {
+    let chosen = scene.housing_method() == Some(HousingMethod::Explicit);
+    // Where it starts does not matter here, and finding out takes long.
+    let windows = housings::undeformed(scene, housings, 1);
+    match (windows.and_then(|parts| windows_text(parts, run)), chosen) {
+        (Ok(said), true) => note("step", &said),
+        (Ok(said), false) => note("explicit instead", &said),
+        (Err(error), true) => note("step", &refused(&*error)),
+        (Err(error), false) => note("explicit instead", &format!("not possible: {error}")),
+    }
+}
+
+/// Windows of explicit steps from here, and about how long they take.
+fn windows_text(parts: HousedParts, run: &RunSettings) -> Result<String, Box<dyn Error>> {
+    let (mut housed, windows) = parts.started(run.output_interval)?;
+    let all = whole_number(run.end, run.output_interval) * windows;
+    let mut nodes = String::new();
+    for seat in housed.seats() {
+        let (tested, out_of_reach) = seat.counts();
+        let of = seat.seat.suffix();
+        nodes +=
+            &format!("at the start {tested} bore nodes{of} tested, {out_of_reach} out of reach");
+        if out_of_reach > 0 {
+            let moved = to_digits(0.5e6 * seat.seat.reach, 3);
+            nodes +=
+                &format!(", sorted anew each time that race and bore have moved by {moved} um");
+        }
+        nodes += "; ";
+    }
+    let steps = |part: &SteppedSolid| {
+        let of = part.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
+        let limit = part.solid.limit.step;
+        format!("{} of the housing{of} (limit {limit:.3e} s)", steps(part.steps))
+    };
+    let solids: Vec<String> = housed.solids.iter().map(steps).collect();
+    let start = Instant::now();
+    let mut done = 0u64;
+    while start.elapsed() < TIMED && done < all {
+        for _ in 0..10 {
+            housed.advance()?;
+        }
+        done += 10;
+    }
+    let seconds = start.elapsed().as_secs_f64() / done as f64 * all as f64;
+    Ok(format!(
+        "{all} windows of {:.3e} s to t = {} s, each {} and steps of the bearing up to {:.3e} s; {nodes}about \
+         {} of wall time here",
+        housed.window,
+        run.end,
+        solids.join(" and "),
+        housed.simulation.step_size,
+        duration(seconds)
+    ))
+}
+
+fn steps(count: usize) -> String {
+    if count == 1 { "one step".into() } else { format!("{count} steps") }
+}
+
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{} s", to_digits(s, 2)),
+        s if s < 7200.0 => format!("{} min", to_digits(s / 60.0, 2)),
+        s => format!("{} h", to_digits(s / 3600.0, 2)),
+    }
+}

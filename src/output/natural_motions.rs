@@ -1,0 +1,74 @@
+//! The results folder of natural motions of bodies: `summary.json`, and `series.csv` with a row for each.
+
+use crate::output::assembly_results::key;
+use crate::output::atomic::write_atomic;
+use crate::output::results::{ResultsError, RunRecord, insert_record, pretty, quantity};
+use crate::output::series::{Column, Series, columns_path};
+use crate::solver::housing::inertia::{Mode, MovingBody};
+use crate::solver::static_assembly::StaticAssembly;
+use crate::solver::statics::COORDINATE_NAMES;
+use ndarray::Array2;
+use serde_json::{Map, Value, json};
+use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
+
+/// Hz; 0 where nothing brings the bodies back.
+pub fn frequency(mode: &Mode) -> f64 {
+    mode.square.max(0.0).sqrt() / TAU
+}
+
+/// Names of the coordinates of what takes part: `shaft_z`.
+pub fn names(still: &StaticAssembly, bodies: &[MovingBody]) -> Vec<String> {
+    let of = |of: &MovingBody| {
+        let body = key(&still.bodies[of.body].name);
+        COORDINATE_NAMES.map(|name| format!("{body}_{name}"))
+    };
+    bodies.iter().flat_map(of).collect()
+}
+
+/// Writes summary and table and returns the files. Shapes are of unit modal mass: m and rad over √kg.
+///
+/// # Errors
+/// A value that is not finite, a file that cannot be written.
+pub fn write(
+    folder: &Path,
+    names: &[String],
+    modes: &[Mode],
+    record: &RunRecord,
+) -> Result<Vec<PathBuf>, ResultsError> {
+    let mut columns = vec![Column::new("mode", "1"), Column::new("frequency", "Hz")];
+    columns.extend(names.iter().map(|name| Column::new(name.clone(), "1/kg^0.5")));
+    let data = Array2::from_shape_fn((modes.len(), columns.len()), |(row, column)| match column {
+        0 => (row + 1) as f64,
+        1 => frequency(&modes[row]),
+        _ => modes[row].shape[column - 2],
+    });
+    let series = Series::new(columns, data)?;
+    series.check_finite()?;
+    let entry = |(index, mode): (usize, &Mode)| -> Result<Value, ResultsError> {
+        let housings: f64 = mode.housings.iter().sum();
+        Ok(json!({
+            "mode": index + 1,
+            "frequency": quantity("frequency", frequency(mode), "Hz")?,
+            "moves_most": names[moves_most(mode)],
+            "housings_share": quantity("share", housings, "1")?,
+        }))
+    };
+    let list: Result<Vec<Value>, _> = modes.iter().enumerate().map(entry).collect();
+    let mut summary = Map::new();
+    summary.insert("kind".into(), json!("natural modes of bodies"));
+    summary.insert("modes".into(), json!(list?));
+    insert_record(&mut summary, record)?;
+    let [csv, npy, json] = ["series.csv", "series.npy", "summary.json"].map(|n| folder.join(n));
+    series.write_csv(&csv)?;
+    series.write_npy(&npy)?;
+    write_atomic(&json, pretty(&Value::Object(summary)).as_bytes())?;
+    Ok(vec![csv, columns_path(&npy), npy, json])
+}
+
+/// The coordinate that has most of the kinetic energy.
+pub fn moves_most(mode: &Mode) -> usize {
+    let energy = |i: &usize| mode.shape[*i] * mode.momentum[*i];
+    let all = 0..mode.shape.len();
+    all.max_by(|a, b| energy(a).total_cmp(&energy(b))).unwrap_or(0)
+}

@@ -1,0 +1,90 @@
+//! Columns of equilibria one after the other: races, bodies, loads and seats.
+
+use super::Recorder;
+use super::seat::{SeatRow, prefix, seat_columns};
+use crate::output::series::Column;
+use crate::solver::housing::course::{Course, CourseProblem};
+
+/// Of the bearings, the bodies besides them, and the housings; with the loads of balls or without.
+pub(super) fn columns(problem: &CourseProblem, with_loads: bool) -> Vec<Column> {
+    let bearings = &problem.assembly.bearings;
+    let mut columns = Vec::new();
+    let mut place = |of: String| {
+        for (name, unit) in
+            [("x", "m"), ("y", "m"), ("z", "m"), ("tilt_y", "deg"), ("tilt_z", "deg")]
+        {
+            columns.push(Column::new(format!("{of}_{name}"), unit));
+        }
+    };
+    for (bearing, side) in moving_races(problem) {
+        place(format!("{}{}", bearings[bearing].prefix(), RACES[side]));
+    }
+    problem.assembly.bodies.iter().filter_map(|body| body.label.clone()).for_each(place);
+    for bearing in bearings {
+        for race in RACES {
+            let name = |axis| format!("{}contact_force_on_{race}_{axis}", bearing.prefix());
+            columns.extend(["x", "y", "z"].map(|axis| Column::new(name(axis), "N")));
+        }
+    }
+    for seat in &problem.seats {
+        columns.extend(seat_columns(&prefix(&seat.name)));
+    }
+    for seat in &problem.seats {
+        for name in ["energy_housing_strain", "energy_seat"] {
+            columns.push(Column::new(format!("{}{name}", prefix(&seat.name)), "J"));
+        }
+    }
+    for bearing in bearings.iter().filter(|_| with_loads) {
+        for ball in 1..=bearing.geometry.ball_count {
+            for race in RACES {
+                columns
+                    .push(Column::new(format!("{}ball_{ball}_{race}_load", bearing.prefix()), "N"));
+            }
+        }
+    }
+    columns
+}
+
+const RACES: [&str; 2] = ["inner", "outer"];
+
+/// Bearings and sides of the races that may move.
+fn moving_races(problem: &CourseProblem) -> Vec<(usize, usize)> {
+    let all = (0..problem.assembly.bearings.len()).flat_map(|bearing| [(bearing, 0), (bearing, 1)]);
+    all.filter(|(bearing, side)| problem.moves(*bearing, *side)).collect()
+}
+
+/// Tilts in degrees.
+fn place([x, y, z, tilt_y, tilt_z]: [f64; 5]) -> [f64; 5] {
+    [x, y, z, tilt_y.to_degrees(), tilt_z.to_degrees()]
+}
+
+impl Recorder {
+    /// Adds a row of the latest equilibrium, in the order of [`columns`].
+    pub(in crate::output) fn record_equilibrium(&mut self, course: &Course) {
+        let (Some(moment), problem) = (&course.latest, &course.problem) else { return };
+        let found = &moment.solution;
+        let full = self.values.len() + self.columns.len();
+        self.values.push(moment.time);
+        for (bearing, side) in moving_races(problem) {
+            self.values.extend(place(problem.race(found, bearing, side)));
+        }
+        for (index, body) in problem.assembly.bodies.iter().enumerate() {
+            if body.label.is_some() {
+                self.values.extend(place(found.place(&problem.assembly, index)));
+            }
+        }
+        for force in found.bearings.iter().flat_map(|bearing| &bearing.forces) {
+            self.values.extend(force.iter());
+        }
+        for (seat, state) in problem.seats.iter().zip(&found.seats) {
+            self.values.extend(SeatRow::of_equilibrium(seat.bore, state).values());
+        }
+        for state in &found.seats {
+            self.values.extend([state.elastic_energy, state.contact_energy]);
+        }
+        // As far as the loads of balls are recorded.
+        let loads = found.bearings.iter().flat_map(|bearing| &bearing.balls);
+        let loads = loads.flat_map(|ball| [ball.inner.normal_load, ball.outer.normal_load]);
+        self.values.extend(loads.take(full - self.values.len()));
+    }
+}

@@ -1,0 +1,128 @@
+//! What drives bearings, bodies and housings, and how fast: what equilibria must be slow against.
+
+use crate::scene::assembly::{AssemblyScene, Carrier, PlacedBearing};
+use crate::scene::statics::kinematic_ratios;
+use crate::solver::dynamics::model::{Drive, RaceBody, RotatingLoad, Rotation};
+use crate::solver::profile::Profile;
+use std::f64::consts::TAU;
+
+/// Something that drives bodies and housings, and its frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Excitation {
+    pub what: String,
+    /// Hz.
+    pub frequency: f64,
+    /// Whether it is the ripple of a load that goes from ball to ball: how much that displaces shows only along a
+    /// course.
+    pub is_ripple: bool,
+}
+
+/// All that drives a scene at a frequency of its own: what a quasi-static course must be slow against.
+pub fn excitations(scene: &AssemblyScene) -> Vec<Excitation> {
+    let mut found = Vec::new();
+    let end = scene.run().map_or(0.0, |run| run.end);
+    for body in &scene.bodies {
+        let key = format!("body.{}", body.name);
+        add_drives(&mut found, &key, &body.race);
+        add_turning(
+            &mut found,
+            &key,
+            &format!("the load's turns on {key}"),
+            &body.rotating_load,
+            end,
+        );
+    }
+    for placed in &scene.bearings {
+        of_bearing(&mut found, scene, placed, end);
+    }
+    found
+}
+
+fn of_bearing(
+    found: &mut Vec<Excitation>,
+    scene: &AssemblyScene,
+    placed: &PlacedBearing,
+    end: f64,
+) {
+    let dynamics = &placed.scene.dynamics;
+    let load = match placed.carriers[0] {
+        Carrier::Own { .. } => {
+            let key = match &placed.name {
+                Some(name) => format!("inner_race.{name}"),
+                None => "inner_race".into(),
+            };
+            let turns = match &placed.name {
+                Some(name) => format!("the load's turns on {name}"),
+                None => "the load's turns".into(),
+            };
+            add_drives(found, &key, &dynamics.inner);
+            add_turning(found, &key, &turns, &dynamics.rotating_load, end);
+            &dynamics.rotating_load
+        }
+        Carrier::Body { index, .. } => &scene.bodies[index].rotating_load,
+    };
+    let mut against_balls = load.as_ref().map_or(0.0, |load| largest(&load.speed, end) / TAU);
+    if let Rotation::Speed(speed) = &dynamics.inner.rotation {
+        against_balls += kinematic_ratios(&placed.scene).cage * largest(speed, end) / TAU;
+    }
+    let balls = placed.scene.geometry.ball_count as f64;
+    let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
+    let passing = format!("balls{of} passing the load");
+    add(found, passing, balls * against_balls, true);
+    if let Some(ramp) = placed.housing.as_ref().and_then(|housing| housing.settings.fit_ramp) {
+        add(found, format!("the fit{of} that grows in"), 0.5 / ramp, false);
+    }
+}
+
+fn add(found: &mut Vec<Excitation>, what: String, frequency: f64, is_ripple: bool) {
+    if frequency > 0.0 {
+        found.push(Excitation { what, frequency, is_ripple });
+    }
+}
+
+fn add_drives(found: &mut Vec<Excitation>, key: &str, body: &RaceBody) {
+    let names = ["x", "y", "z", "tilt_y", "tilt_z"];
+    for (name, drive) in names.iter().zip(&body.drives) {
+        let (Drive::Load(profile) | Drive::Motion(profile)) = drive;
+        add(found, format!("{key}.{name}"), frequency(profile), false);
+    }
+}
+
+fn add_turning(
+    found: &mut Vec<Excitation>,
+    key: &str,
+    turns: &str,
+    load: &Option<RotatingLoad>,
+    end: f64,
+) {
+    let Some(load) = load else { return };
+    add(found, format!("{key}.rotating_load.force"), frequency(&load.force), false);
+    add(found, turns.into(), largest(&load.speed, end) / TAU, false);
+}
+
+fn largest(profile: &Profile, end: f64) -> f64 {
+    // Speeds are ramps and tables; a hundred looks find what counts here.
+    let at = |i: u32| profile.value(end * f64::from(i) / 100.0).abs();
+    (0..=100).map(at).fold(0.0, f64::max)
+}
+
+/// Of a swing that rises and falls as fast as the profile does, Hz; 0 for a constant one.
+fn frequency(profile: &Profile) -> f64 {
+    match profile {
+        Profile::Constant(_) => 0.0,
+        Profile::Ramp { from, to, duration, .. }
+        | Profile::SmoothRamp { from, to, duration, .. } => {
+            if from == to {
+                0.0
+            } else {
+                0.5 / duration
+            }
+        }
+        Profile::HalfSine { duration, .. } => 0.5 / duration,
+        Profile::Harmonic { frequency, .. } => *frequency,
+        Profile::Table { points } => {
+            let steps = points.windows(2).filter(|pair| pair[0][1] != pair[1][1]);
+            steps.map(|pair| 0.5 / (pair[1][0] - pair[0][0])).fold(0.0, f64::max)
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! From the shipped scene, with words changed, to what a session moves in each of three ways.
+
+use bearing_dynamics::output::series::Series;
+use bearing_dynamics::output::session::{
+    CourseParts, HousedParts, Parts, RunRequest, Session, Status,
+};
+use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::scene::housing::HousedScene;
+use bearing_dynamics::scene::housing_problem::{HousingSetup, setup};
+use bearing_dynamics::scene::solid_mesh::build_housing;
+use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
+use bearing_dynamics::solver::dynamics::assembly::Assembly;
+use bearing_dynamics::solver::dynamics::equilibrium::static_assembly;
+use bearing_dynamics::solver::dynamics::run::{RunOptions, Start};
+use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
+use bearing_dynamics::solver::housing::course::{CourseProblem, CourseSeat};
+use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, SolidPart};
+use bearing_dynamics::solver::housing::reduce::{LEFT_OUT, ReduceOptions, pressed, reduce};
+use bearing_dynamics::solver::housing::reduced_start::{
+    Housing as Start0, add_housing, put_in_equilibrium,
+};
+use bearing_dynamics::solver::housing::seat::Seat;
+use bearing_dynamics::solver::mount::Mount;
+use bearing_dynamics::solver::statics::{StaticOptions, solve_assembly};
+
+use crate::case::CaseError;
+
+const SCENE: &str = include_str!("../../scenes/shaft_in_two_housings.toml");
+
+/// Natural shapes of the housings up to this, Hz, and the force that shapes are made for, N.
+const MODES_TO: f64 = 70e3;
+const FORCE: f64 = 1300.0;
+
+/// A housing, meshed.
+pub struct Housing {
+    pub scene: HousedScene,
+    pub setup: HousingSetup,
+}
+
+pub struct Shaft {
+    pub scene: AssemblyScene,
+    pub housings: Vec<Housing>,
+}
+
+impl Shaft {
+    /// The shipped scene with these words changed.
+    pub fn new(changes: &[(&str, &str)]) -> Result<Shaft, CaseError> {
+        let mut text = SCENE.to_string();
+        for (from, to) in changes {
+            if !text.contains(from) {
+                return Err(CaseError::message(format!("no {from:?} in the scene")));
+            }
+            text = text.replace(from, to);
+        }
+        let document = Document::read_str(&text, Format::Toml, "shaft_in_two_housings.toml")?;
+        let Subject::Assembly(scene) = resolve_subject(&document)? else {
+            return Err(CaseError::message("no bearings in the scene"));
+        };
+        let mut housings = Vec::new();
+        for scene in scene.bearings.iter().filter_map(|placed| placed.housed()) {
+            let built = build_housing(&scene)?;
+            housings.push(Housing { setup: setup(&scene, &built)?, scene });
+        }
+        Ok(Shaft { scene: *scene, housings })
+    }
+
+    pub fn bores(&self) -> Result<Vec<CondensedBore>, CaseError> {
+        let condensed = |Housing { setup, .. }: &Housing| {
+            Ok(condense(&setup.model, &setup.nodes, &setup.reach())?)
+        };
+        self.housings.iter().map(condensed).collect()
+    }
+
+    fn name(&self, bearing: usize) -> Option<String> {
+        self.scene.bearings[bearing].name.clone()
+    }
+
+    pub fn course<'b>(&self, bores: &'b [CondensedBore]) -> Result<CourseProblem<'b>, CaseError> {
+        let seat = |(bearing, (of, bore)): (usize, (&Housing, &'b CondensedBore))| CourseSeat {
+            name: self.name(bearing),
+            bearing,
+            bore,
+            penalty: of.scene.housing.penalty,
+            axial: of.scene.housing.axial,
+            radius: of.setup.radius(&of.scene),
+            damping: of.setup.solid.problem.damping,
+        };
+        let seats = self.housings.iter().zip(bores).enumerate().map(seat).collect();
+        Ok(CourseProblem { assembly: self.scene.assembly()?, seats })
+    }
+
+    pub fn quasi_static<'b>(&'b self, bores: &'b [CondensedBore]) -> Result<Parts<'b>, CaseError> {
+        let models = self.housings.iter().map(|housing| &housing.setup.model).collect();
+        Ok(Parts::Course(Box::new(CourseParts { problem: self.course(bores)?, models })))
+    }
+
+    pub fn reduced(&self) -> Result<Parts<'static>, CaseError> {
+        let mut assembly = self.scene.assembly()?;
+        let mut bores = self.bores()?;
+        let mut reductions = Vec::new();
+        for (bearing, (Housing { scene, setup }, bore)) in
+            self.housings.iter().zip(&bores).enumerate()
+        {
+            let penalty = scene.housing.penalty;
+            let loads = pressed(bore, penalty, &setup.fit(scene), FORCE)?;
+            let options = ReduceOptions { modes_to: MODES_TO, left_out: LEFT_OUT };
+            let reduction = reduce(&setup.model, bore, penalty, &loads, &options)?;
+            let body = assembly.bearings[bearing].mounts[1].body;
+            add_housing(&mut assembly, body, &reduction, bore, setup.radius(scene), penalty);
+            if let Some(seat) = assembly.seats.last_mut() {
+                seat.label = self.name(bearing);
+            }
+            reductions.push(reduction);
+        }
+        let parts = self.housings.iter().zip(&reductions).zip(bores.iter_mut());
+        let start = |((of, reduction), bore): ((&Housing, _), _)| Start0 {
+            reduction,
+            bore,
+            fit: of.setup.fit(&of.scene),
+            penalty: of.scene.housing.penalty,
+        };
+        put_in_equilibrium(&mut assembly, &mut parts.map(start).collect::<Vec<_>>())?;
+        Ok(Parts::Bearing(Box::new(assembly)))
+    }
+
+    /// From the equilibrium of all.
+    pub fn explicit(&self, threads: usize) -> Result<HousedParts, CaseError> {
+        let mut assembly: Assembly = self.scene.assembly()?;
+        let bores = self.bores()?;
+        let course = self.course(&bores)?;
+        let mut still = static_assembly(&assembly, 0.0, &[]);
+        course.seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
+        let found = solve_assembly(&still, None, &StaticOptions::default())?;
+        let (mut solids, mut seats) = (Vec::new(), Vec::new());
+        for (index, of) in course.seats.iter().enumerate() {
+            let Housing { scene, setup } = &self.housings[index];
+            let body = of.body(&assembly);
+            assembly.bodies[body].rest = found.coordinates[body].into();
+            solids.push(SolidPart {
+                name: of.name.clone(),
+                model: setup.model.clone(),
+                displacement: of.bore.displacement(&found.seats[index].loads),
+            });
+            seats.push(Seat {
+                name: of.name.clone(),
+                mount: Mount::at_centre(body),
+                solid: index,
+                radius: setup.radius(scene),
+                width: setup.width,
+                penalty: scene.housing.penalty,
+                nodes: setup.nodes.clone(),
+                reach: f64::INFINITY,
+            });
+        }
+        let run = self.scene.run().ok_or_else(|| CaseError::message("no end"))?;
+        let options = ExchangeOptions {
+            solid_fraction: 0.8,
+            seat_phase: 0.25,
+            bearing: RunOptions { energy_limit: f64::INFINITY, ..run.options },
+        };
+        Ok(HousedParts { assembly, solids, seats, options, threads })
+    }
+
+    pub fn request(&self) -> Result<RunRequest, CaseError> {
+        let run = self.scene.run().ok_or_else(|| CaseError::message("no end"))?;
+        Ok(RunRequest {
+            options: RunOptions { start: Start::Equilibrium, ..run.options },
+            end: run.end,
+            output_interval: run.output_interval,
+            fields_interval: None,
+            channels: run.channels.clone(),
+        })
+    }
+}
+
+/// A session to its end.
+pub fn done<'p>(
+    parts: impl Into<Parts<'p>>,
+    request: &RunRequest,
+) -> Result<Session<'p>, CaseError> {
+    let mut session = Session::start(parts, request)?;
+    while session.advance(1000)? != Status::Complete {}
+    Ok(session)
+}
+
+/// A column of a table.
+pub fn column(series: &Series, name: &str) -> Result<Vec<f64>, CaseError> {
+    let column = series.column(name);
+    Ok(column.ok_or_else(|| CaseError::message(format!("no column {name}")))?.to_vec())
+}
