@@ -24,8 +24,7 @@ use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::statics::{StaticOptions, solve_assembly};
 
 use crate::case::CaseError;
-
-const SCENE: &str = include_str!("../../scenes/shaft_in_two_housings.toml");
+use crate::housings::SHAFT_IN_TWO_HOUSINGS;
 
 /// Natural shapes of the housings up to this, Hz, and the force that shapes are made for, N.
 const MODES_TO: f64 = 70e3;
@@ -45,7 +44,7 @@ pub struct Shaft {
 impl Shaft {
     /// The shipped scene with these words changed.
     pub fn new(changes: &[(&str, &str)]) -> Result<Shaft, CaseError> {
-        let mut text = SCENE.to_string();
+        let mut text = SHAFT_IN_TWO_HOUSINGS.to_string();
         for (from, to) in changes {
             if !text.contains(from) {
                 return Err(CaseError::message(format!("no {from:?} in the scene")));

@@ -23,6 +23,9 @@ use crate::context::CaseContext;
 use crate::motion;
 use crate::solids::{STEEL, Vec3, free_body, mesh_of};
 
+/// The scene of a shaft on two bearings, each in a housing of its own.
+pub const SHAFT_IN_TWO_HOUSINGS: &str = include_str!("../../scenes/shaft_in_two_housings.toml");
+
 /// Table 2.2: outer race of 31.953 mm and a thickness of 3.574 mm. The bore has the same radius.
 pub const BORE_RADIUS: f64 = 31.953e-3 + 3.574e-3;
 /// Table 2.2, the bearing's depth; the housings are taken as deep.
