@@ -87,7 +87,7 @@ pub fn green_lagrange_change(h: &Mat3, change: &Mat3) -> Sym3 {
     ]
 }
 
-/// J − 1 with J = det F, every digit kept at small H.
+/// J − 1 with J = det F (3.5), every digit kept at small H.
 #[inline(always)]
 pub fn volume_change(h: &Mat3) -> f64 {
     let minor = |i: usize, j: usize| h[i][i] * h[j][j] - h[i][j] * h[j][i];

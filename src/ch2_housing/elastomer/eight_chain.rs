@@ -1,4 +1,4 @@
-//! The eight-chain network of Arruda and Boyce in its compressible form (2.8)–(2.12), (3.1)–(3.7).
+//! The eight-chain network of Arruda and Boyce in its compressible form (2.8–2.12), (3.1–3.7).
 //!
 //! The energy is a function of Ī₁ plus one of J, so that stress and tangent are a deviatoric part
 //! (DEV S, which drives the Maxwell elements) and a volume part. With dev E = E − tr(E)/3 the factor

@@ -11,6 +11,8 @@ use super::error::{RubberError, at_rest};
 use super::model::RubberModel;
 use super::newton::{StepLaw, Stop, Tangent};
 use crate::ch2_housing::elastomer::maxwell::complex_factor;
+use crate::elements::tet10::POINTS;
+use crate::elements::tet10_nodal;
 use crate::kinematics::strain::green_lagrange_change;
 use crate::kinematics::vec3::{Vec3, add_scaled, dot};
 use crate::solver::solid::model::corners;
@@ -215,31 +217,44 @@ fn forces_at_rest(model: &RubberModel, displacement: &[Vec3]) -> (Vec<Vec3>, Vec
     let double = 2.0 * network.shear_modulus();
     let mut shear = vec![[0.0; 3]; displacement.len()];
     let mut volume = shear.clone();
-    for (tet, nodes) in model.tets.iter().zip(&model.problem.elements) {
+    let still = [[0.0; 3]; 10];
+    let mut means = vec![0.0; model.patches.len()];
+    for ((tet, nodes), patches) in
+        model.tets.iter().zip(&model.problem.elements).zip(&model.patches_of)
+    {
         let moved = corners(displacement, nodes);
         let mut of_shear = [[0.0; 3]; 10];
-        let mut of_volume = [[0.0; 3]; 10];
-        let (mut sum, mut whole) = (0.0, 0.0);
-        for point in &tet.points {
+        let mut traces = [0.0; POINTS];
+        for (point, trace) in tet.points.iter().zip(&mut traces) {
             let h = point.displacement_gradient(&moved);
             let e = green_lagrange_change(&[[0.0; 3]; 3], &h);
-            let trace = e[0] + e[1] + e[2];
-            sum += point.volume * trace;
-            whole += point.volume;
+            *trace = e[0] + e[1] + e[2];
             let factor = double * point.volume;
-            let d = [e[0] - trace / 3.0, e[1] - trace / 3.0, e[2] - trace / 3.0];
+            let third = *trace / 3.0;
+            let d = [e[0] - third, e[1] - third, e[2] - third];
             for (n, g) in point.gradients.iter().enumerate() {
                 let row = |a: f64, b: f64, c: f64| factor * (a * g[0] + b * g[1] + c * g[2]);
                 let force = [row(d[0], e[3], e[5]), row(e[3], d[1], e[4]), row(e[5], e[4], d[2])];
                 of_shear[n] = add_scaled(of_shear[n], 1.0, force);
-                of_volume[n] = add_scaled(of_volume[n], point.volume, *g);
             }
         }
-        let pressure = network.bulk * sum / whole;
-        for (n, node) in nodes.iter().enumerate() {
-            let node = *node as usize;
-            shear[node] = add_scaled(shear[node], 1.0, of_shear[n]);
-            volume[node] = add_scaled(volume[node], pressure, of_volume[n]);
+        for (patch, sum) in patches.iter().zip(tet10_nodal::at_corners(tet, &traces)) {
+            means[*patch as usize] += sum;
+        }
+        for (node, force) in nodes.iter().zip(of_shear) {
+            shear[*node as usize] = add_scaled(shear[*node as usize], 1.0, force);
+        }
+    }
+    for (mean, patch) in means.iter_mut().zip(&model.patches) {
+        *mean = network.mean_stress(*mean / patch.volume);
+    }
+    for ((tet, nodes), patches) in
+        model.tets.iter().zip(&model.problem.elements).zip(&model.patches_of)
+    {
+        let stresses = tet10_nodal::at_points(&patches.map(|patch| means[patch as usize]));
+        let of = tet10_nodal::nodal_forces(tet, &still, &[[0.0; 6]; POINTS], &stresses);
+        for (node, force) in nodes.iter().zip(of) {
+            volume[*node as usize] = add_scaled(volume[*node as usize], -1.0, force);
         }
     }
     (shear, volume)

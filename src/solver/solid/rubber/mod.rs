@@ -1,4 +1,4 @@
-//! Solids of rubber without inertia: implicit steps of ten-node elements with mean dilatation, the
+//! Solids of rubber without inertia: implicit steps of ten-node elements with a continuous mean stress, the
 //! response to small vibrations, and a homogeneous bar.
 pub mod bar;
 pub mod error;

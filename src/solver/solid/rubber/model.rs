@@ -2,7 +2,8 @@
 
 use super::error::RubberError;
 use crate::ch2_housing::elastomer::Elastomer;
-use crate::elements::tet10::Tet10;
+use crate::elements::tet10::{POINTS, Tet10};
+use crate::elements::tet10_nodal;
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::TetMesh;
 use crate::solver::profile::Profile;
@@ -27,7 +28,22 @@ pub struct RubberProblem {
 pub struct RubberModel {
     pub problem: RubberProblem,
     pub tets: Vec<Tet10>,
+    /// Where volume is averaged: around each corner node.
+    pub patches: Vec<Patch>,
+    /// The patches at the corners of each element.
+    pub patches_of: Vec<[u32; 4]>,
     pub unknowns: Unknowns,
+}
+
+/// The elements around a corner node.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Patch {
+    /// Element and which of its corners it is.
+    pub elements: Vec<(u32, u8)>,
+    /// Their nodes, ascending.
+    pub nodes: Vec<u32>,
+    /// Undeformed, m³.
+    pub volume: f64,
 }
 
 impl RubberModel {
@@ -63,14 +79,14 @@ impl RubberModel {
                 return Err(SolidError::NoSuchNode { node: *node, count }.into());
             }
         }
-        let unknowns =
-            Unknowns::over(&problem.nodes, lists(&problem.elements), &free, Ordering::Cheapest);
-        Ok(RubberModel { problem, tets, unknowns })
+        let (patches, patches_of) = patches(&problem, &tets);
+        let unknowns = Unknowns::over(&problem.nodes, lists(&patches), &free, Ordering::Cheapest);
+        Ok(RubberModel { problem, tets, patches, patches_of, unknowns })
     }
 
     /// An empty stiffness over the unknowns.
     pub fn pattern(&self) -> SymmetricMatrix {
-        pattern_over(self.problem.nodes.len(), lists(&self.problem.elements), &self.unknowns)
+        pattern_over(self.problem.nodes.len(), lists(&self.patches), &self.unknowns)
     }
 
     /// Whether a load or a prescribed displacement jumps at time `t`.
@@ -135,8 +151,39 @@ pub fn supports(mesh: &TetMesh, sets: &[(&str, [Option<Profile>; 3])]) -> Vec<Pr
     prescribed
 }
 
-fn lists(elements: &[[u32; 10]]) -> impl Iterator<Item = &[u32]> + Clone {
-    elements.iter().map(|element| element.as_slice())
+/// A patch for each corner node, in the order of the nodes.
+fn patches(problem: &RubberProblem, tets: &[Tet10]) -> (Vec<Patch>, Vec<[u32; 4]>) {
+    let mut index = vec![u32::MAX; problem.nodes.len()];
+    for node in problem.elements.iter().flat_map(|element| &element[..4]) {
+        index[*node as usize] = 0;
+    }
+    let mut count = 0;
+    for of in index.iter_mut().filter(|of| **of == 0) {
+        *of = count;
+        count += 1;
+    }
+    let mut patches = vec![Patch::default(); count as usize];
+    let mut patches_of = Vec::with_capacity(tets.len());
+    for (element, (nodes, tet)) in (0u32..).zip(problem.elements.iter().zip(tets)) {
+        let volumes = tet10_nodal::at_corners(tet, &[1.0; POINTS]);
+        let of = [0, 1, 2, 3].map(|corner: usize| index[nodes[corner] as usize]);
+        for (corner, (patch, volume)) in (0u8..).zip(of.into_iter().zip(volumes)) {
+            let patch = &mut patches[patch as usize];
+            patch.elements.push((element, corner));
+            patch.nodes.extend_from_slice(nodes);
+            patch.volume += volume;
+        }
+        patches_of.push(of);
+    }
+    for patch in &mut patches {
+        patch.nodes.sort_unstable();
+        patch.nodes.dedup();
+    }
+    (patches, patches_of)
+}
+
+fn lists(patches: &[Patch]) -> impl Iterator<Item = &[u32]> + Clone {
+    patches.iter().map(|patch| patch.nodes.as_slice())
 }
 
 /// The mean of an element's undeformed corners, m.

@@ -2,11 +2,12 @@
 //! equilibrium there.
 
 use super::error::{RubberError, StepFailure, at_rest};
-use super::model::{RubberModel, centre};
+use super::model::{Patch, RubberModel, centre};
+use crate::ch2_housing::elastomer::ElastomerError;
 use crate::elements::tet10::POINTS;
-use crate::elements::tet10_mean::{self, Response, Stiffness};
+use crate::elements::tet10_nodal::{self, Response, Stiffness};
 use crate::kinematics::strain::Sym3;
-use crate::kinematics::vec3::Vec3;
+use crate::kinematics::vec3::{Vec3, add_scaled};
 use crate::solver::solid::model::corners;
 use crate::solver::solid::tangent::PRESCRIBED;
 use crate::solver::sparse::{Entry, Factor, FactorError, SymmetricMatrix};
@@ -30,8 +31,35 @@ impl StepLaw<'_> {
     }
 }
 
+/// Mean stress at every corner node from the volume around it, Pa, in the order of the patches.
+///
+/// # Errors
+/// An element turned inside out.
+pub fn mean_stresses(
+    model: &RubberModel,
+    displacement: &[Vec3],
+    stresses: &mut [f64],
+) -> Result<(), StepFailure> {
+    stresses.fill(0.0);
+    for (index, (tet, nodes)) in model.tets.iter().zip(&model.problem.elements).enumerate() {
+        let (_, changes, inverted) = tet10_nodal::strains(tet, &corners(displacement, nodes));
+        if let Some(ratio) = inverted {
+            let at = centre(&model.problem, index);
+            return Err(StepFailure::Inverted { element: index + 1, at, ratio });
+        }
+        let sums = tet10_nodal::at_corners(tet, &changes);
+        for (patch, sum) in model.patches_of[index].iter().zip(sums) {
+            stresses[*patch as usize] += sum;
+        }
+    }
+    for (stress, patch) in stresses.iter_mut().zip(&model.patches) {
+        *stress = model.problem.material.network.mean_stress(*stress / patch.volume);
+    }
+    Ok(())
+}
+
 /// Adds the forces of all elements on the nodes, N, and notes DEV S of the network at every
-/// quadrature point, Pa.
+/// quadrature point and the [`mean_stresses`], Pa.
 ///
 /// # Errors
 /// An element turned inside out, or beyond what its material can bear.
@@ -41,11 +69,13 @@ pub fn add_forces(
     displacement: &[Vec3],
     forces: &mut [Vec3],
     deviatoric: &mut [Sym3],
+    means: &mut [f64],
 ) -> Result<(), StepFailure> {
+    mean_stresses(model, displacement, means)?;
     let network = &model.problem.material.network;
     for (index, (tet, nodes)) in model.tets.iter().zip(&model.problem.elements).enumerate() {
         let moved = corners(displacement, nodes);
-        let (strains, change) = sound_strains(model, index, &moved)?;
+        let (strains, ..) = tet10_nodal::strains(tet, &moved);
         let mut stresses = [[0.0; 6]; POINTS];
         for point in 0..POINTS {
             let at = POINTS * index + point;
@@ -54,8 +84,7 @@ pub fn add_forces(
             deviatoric[at] = own;
             stresses[point] = law.total(at, &own);
         }
-        let mean = network.mean_stress(change);
-        let of = tet10_mean::nodal_forces(tet, &moved, &stresses, mean);
+        let of = tet10_nodal::nodal_forces(tet, &moved, &stresses, &at_points(model, index, means));
         for (node, of) in nodes.iter().zip(of) {
             for i in 0..3 {
                 forces[*node as usize][i] += of[i];
@@ -65,49 +94,35 @@ pub fn add_forces(
     Ok(())
 }
 
-fn sound_strains(
-    model: &RubberModel,
-    element: usize,
-    moved: &[Vec3; 10],
-) -> Result<([Sym3; POINTS], f64), StepFailure> {
-    match tet10_mean::strains(&model.tets[element], moved) {
-        (strains, change, None) => Ok((strains, change)),
-        (_, _, Some(ratio)) => {
-            let at = centre(&model.problem, element);
-            Err(StepFailure::Inverted { element: element + 1, at, ratio })
-        }
-    }
+/// Mean stress at the quadrature points of an element, Pa.
+fn at_points(model: &RubberModel, element: usize, means: &[f64]) -> [f64; POINTS] {
+    tet10_nodal::at_points(&model.patches_of[element].map(|patch| means[patch as usize]))
 }
 
-fn in_element(
-    model: &RubberModel,
-    element: usize,
-) -> impl Fn(crate::ch2_housing::elastomer::ElastomerError) -> StepFailure {
+fn in_element(model: &RubberModel, element: usize) -> impl Fn(ElastomerError) -> StepFailure {
     let at = centre(&model.problem, element);
     move |source| StepFailure::Material { element: element + 1, at, source }
 }
 
-/// Stiffness of one element in a state, N/m.
-///
-/// # Errors
-/// As [`add_forces`].
-pub fn element_stiffness(
+/// Stiffness of one element in a state at given mean stresses, N/m.
+fn element_stiffness(
     model: &RubberModel,
     law: &StepLaw,
     displacement: &[Vec3],
+    means: &[f64],
     index: usize,
 ) -> Result<Stiffness, StepFailure> {
     let network = &model.problem.material.network;
+    let tet = &model.tets[index];
     let moved = corners(displacement, &model.problem.elements[index]);
-    let (strains, change) = sound_strains(model, index, &moved)?;
+    let (strains, ..) = tet10_nodal::strains(tet, &moved);
     let mut responses = [Response { stress: [0.0; 6], tangent: [[0.0; 6]; 6] }; POINTS];
     for (point, response) in responses.iter_mut().enumerate() {
         let of = network.isochoric_tangent(&strains[point]).map_err(in_element(model, index))?;
         response.stress = law.total(POINTS * index + point, &of.0);
         response.tangent = of.1.map(|row| row.map(|x| (1.0 + law.gain) * x));
     }
-    let mean = network.mean_stress(change);
-    Ok(tet10_mean::stiffness(&model.tets[index], &moved, &responses, mean, network.bulk))
+    Ok(tet10_nodal::stiffness(tet, &moved, &responses, &at_points(model, index, means)))
 }
 
 /// The tangent's factors, and how many were made.
@@ -117,11 +132,28 @@ pub struct Tangent {
     /// Gain of the step that the factors are of.
     gain: f64,
     pub factorisations: usize,
+    /// Of the patch at work: how its volume follows the nodes, and its unknowns with that, ascending.
+    slopes: Vec<Vec3>,
+    along: Vec<(usize, f64)>,
+    means: Vec<f64>,
 }
 
 impl Tangent {
     pub fn new(model: &RubberModel) -> Tangent {
-        Tangent { matrix: model.pattern(), factor: None, gain: f64::NAN, factorisations: 0 }
+        Tangent {
+            matrix: model.pattern(),
+            factor: None,
+            gain: f64::NAN,
+            factorisations: 0,
+            slopes: vec![[0.0; 3]; model.problem.nodes.len()],
+            along: Vec::new(),
+            means: vec![0.0; model.patches.len()],
+        }
+    }
+
+    /// The stiffness that was last factorised, N/m.
+    pub fn stiffness(&self) -> &SymmetricMatrix {
+        &self.matrix
     }
 
     /// Whether factors of a step with this gain are near enough to begin with.
@@ -142,8 +174,9 @@ impl Tangent {
         mut moves: Option<(&[Vec3], &mut [f64])>,
     ) -> Result<Result<(), FactorError>, StepFailure> {
         self.matrix.clear();
+        mean_stresses(model, displacement, &mut self.means)?;
         for (index, nodes) in model.problem.elements.iter().enumerate() {
-            let k = element_stiffness(model, law, displacement, index)?;
+            let k = element_stiffness(model, law, displacement, &self.means, index)?;
             let unknown = |at: usize| model.unknowns.of[nodes[at / 3] as usize][at % 3];
             for row in 0..k.len() {
                 for column in 0..=row {
@@ -163,12 +196,58 @@ impl Tangent {
                 }
             }
         }
+        for patch in &model.patches {
+            self.add_volume(model, displacement, patch, &mut moves);
+        }
         self.gain = law.gain;
         self.factorisations += 1;
         Ok(match &mut self.factor {
             Some(factor) => factor.refactor(&self.matrix),
             None => model.unknowns.factor(&self.matrix).map(|factor| self.factor = Some(factor)),
         })
+    }
+
+    /// Adds what the mean stress at one corner node changes: a product of one vector with itself.
+    fn add_volume(
+        &mut self,
+        model: &RubberModel,
+        displacement: &[Vec3],
+        patch: &Patch,
+        moves: &mut Option<(&[Vec3], &mut [f64])>,
+    ) {
+        for node in &patch.nodes {
+            self.slopes[*node as usize] = [0.0; 3];
+        }
+        for (element, corner) in &patch.elements {
+            let nodes = &model.problem.elements[*element as usize];
+            let tet = &model.tets[*element as usize];
+            let of =
+                tet10_nodal::volume_slopes(tet, &corners(displacement, nodes), *corner as usize);
+            for (node, slope) in nodes.iter().zip(of) {
+                let sum = &mut self.slopes[*node as usize];
+                *sum = add_scaled(*sum, 1.0, slope);
+            }
+        }
+        let factor = model.problem.material.network.bulk / patch.volume;
+        self.along.clear();
+        let mut given = 0.0;
+        for node in &patch.nodes {
+            let (slope, of) = (self.slopes[*node as usize], model.unknowns.of[*node as usize]);
+            for i in 0..3 {
+                if of[i] != PRESCRIBED {
+                    self.along.push((of[i], slope[i]));
+                } else if let Some((moves, _)) = moves {
+                    given += slope[i] * moves[*node as usize][i];
+                }
+            }
+        }
+        self.along.sort_unstable_by_key(|(unknown, _)| *unknown);
+        self.matrix.add_square(factor, &self.along);
+        if let Some((_, right)) = moves {
+            for (unknown, slope) in &self.along {
+                right[*unknown] -= factor * given * slope;
+            }
+        }
     }
 
     pub fn solve(&self, right: &mut [f64]) {
@@ -194,6 +273,8 @@ pub struct Search<'a> {
     pub displacement: Vec<Vec3>,
     /// DEV S of the network at the present displacements, Pa.
     pub deviatoric: Vec<Sym3>,
+    /// Mean stress at the corner nodes, Pa.
+    pub means: Vec<f64>,
     /// Forces of the elements on the nodes, and loads, N.
     pub internal: Vec<Vec3>,
     pub loads: Vec<Vec3>,
@@ -227,6 +308,7 @@ impl<'a> Search<'a> {
             tangent: Tangent::new(model),
             displacement: vec![[0.0; 3]; count],
             deviatoric: vec![[0.0; 6]; POINTS * model.tets.len()],
+            means: vec![0.0; model.patches.len()],
             internal: vec![[0.0; 3]; count],
             loads: vec![[0.0; 3]; count],
             right: vec![0.0; model.unknowns.count],
@@ -275,7 +357,14 @@ impl<'a> Search<'a> {
     fn balance(&mut self, t: f64, law: &StepLaw) -> Result<Unbalanced, StepFailure> {
         self.internal.fill([0.0; 3]);
         self.loads.fill([0.0; 3]);
-        add_forces(self.model, law, &self.displacement, &mut self.internal, &mut self.deviatoric)?;
+        add_forces(
+            self.model,
+            law,
+            &self.displacement,
+            &mut self.internal,
+            &mut self.deviatoric,
+            &mut self.means,
+        )?;
         self.model.add_loads(t, &mut self.loads);
         let mut found = Unbalanced::default();
         let mut finite = true;

@@ -1,11 +1,16 @@
-//! The ten-node tetrahedron with one change of volume for the whole element: mean dilatation
-//! (Nagtegaal, Parks and Rice 1974), for solids that hardly change their volume.
+//! The ten-node tetrahedron with a continuous mean stress, for solids that hardly change their volume.
 //!
-//! Shear and stretch are taken at each quadrature point, volume by its mean J̄. An element has one
-//! constraint of volume then, where a pointwise J would have four, more than its share of unknowns: that
-//! locks. The energy is Σ V W(E) + V U(J̄), whose derivatives forces and stiffness are.
+//! Shear and stretch are taken at each quadrature point; volume is averaged around each corner node, over all
+//! elements that meet there, weighted by the corner's linear shape function, and the mean stress that
+//! follows is linear within an element and the same on both sides of a face. That is the mixed element of
+//! Taylor and Hood with its masses of pressure lumped, so that no pressure is an unknown and the stiffness stays
+//! positive definite. A pointwise volume locks; one for each element (mean dilatation) does not, but its
+//! mean stress jumps from element to element and costs an order of convergence.
+//!
+//! The energy is Σ V W(E) over points plus Σ V U(J̄) over corner nodes, whose derivatives forces and
+//! stiffness are.
 
-use super::tet10::{POINTS, Tet10};
+use super::tet10::{POINTS, Tet10, stiffness_rule};
 use crate::kinematics::strain::{
     Mat3, Sym3, Tangent, cofactor, deformation_gradient, double_dot, first_piola_kirchhoff, full,
     green_lagrange, times, volume_change,
@@ -18,35 +23,56 @@ pub const COMPONENTS: usize = 30;
 /// Lower triangle and diagonal are filled; rows and columns are 3 · node + axis.
 pub type Stiffness = [[f64; COMPONENTS]; COMPONENTS];
 
-/// Strain at every quadrature point, and J̄ − 1. `None` where a point is turned inside out: then its
-/// volume ratio.
-pub fn strains(tet: &Tet10, displacement: &[Vec3; 10]) -> ([Sym3; POINTS], f64, Option<f64>) {
+/// Strain and J − 1 at every quadrature point; the volume ratio of one that is turned inside out.
+pub fn strains(
+    tet: &Tet10,
+    displacement: &[Vec3; 10],
+) -> ([Sym3; POINTS], [f64; POINTS], Option<f64>) {
     let mut strains = [[0.0; 6]; POINTS];
-    let (mut sum, mut volume, mut inverted) = (0.0, 0.0, None);
-    for (strain, point) in strains.iter_mut().zip(&tet.points) {
+    let mut changes = [0.0; POINTS];
+    let mut inverted = None;
+    for (p, point) in tet.points.iter().enumerate() {
         let h = point.displacement_gradient(displacement);
-        *strain = green_lagrange(&h);
-        let change = volume_change(&h);
-        sum += point.volume * change;
-        volume += point.volume;
-        let sound = 1.0 + change > 0.0;
+        strains[p] = green_lagrange(&h);
+        changes[p] = volume_change(&h);
+        let sound = 1.0 + changes[p] > 0.0;
         if !sound {
-            inverted = Some(1.0 + change);
+            inverted = Some(1.0 + changes[p]);
         }
     }
-    (strains, sum / volume, inverted)
+    (strains, changes, inverted)
 }
 
-/// Forces on the nodes, N, from the second Piola–Kirchhoff stress without the part of volume at each
-/// point and the mean stress U′(J̄), Pa.
+/// Integrals over the element of values at its quadrature points times each corner's shape function; of
+/// 1 they are the corners' shares of the volume, m³.
+pub fn at_corners(tet: &Tet10, values: &[f64; POINTS]) -> [f64; 4] {
+    let mut sums = [0.0; 4];
+    for (p, point) in tet.points.iter().enumerate() {
+        let shares = stiffness_rule(p);
+        for (sum, share) in sums.iter_mut().zip(shares) {
+            *sum += point.volume * share * values[p];
+        }
+    }
+    sums
+}
+
+/// The linear field through values at the corners, at the quadrature points.
+pub fn at_points(corners: &[f64; 4]) -> [f64; POINTS] {
+    std::array::from_fn(|p| {
+        stiffness_rule(p).iter().zip(corners).map(|(share, value)| share * value).sum()
+    })
+}
+
+/// Forces on the nodes, N, from the second Piola–Kirchhoff stress without the part of volume and the mean
+/// stress at each point, Pa.
 pub fn nodal_forces(
     tet: &Tet10,
     displacement: &[Vec3; 10],
     stresses: &[Sym3; POINTS],
-    mean_stress: f64,
+    mean_stresses: &[f64; POINTS],
 ) -> [Vec3; 10] {
     let mut forces = [[0.0; 3]; 10];
-    for (point, stress) in tet.points.iter().zip(stresses) {
+    for ((point, stress), mean_stress) in tet.points.iter().zip(stresses).zip(mean_stresses) {
         let h = point.displacement_gradient(displacement);
         let mut p = first_piola_kirchhoff(&h, stress);
         let volume = cofactor(&deformation_gradient(&h));
@@ -70,27 +96,33 @@ pub struct Response {
     pub tangent: Tangent,
 }
 
-/// Derivative of minus the nodal forces by the displacements, N/m; `mean_stress` is U′(J̄) and `bulk`
-/// U″(J̄), Pa.
+/// Derivative by the displacements of ∫ J times one corner's shape function, m².
+pub fn volume_slopes(tet: &Tet10, displacement: &[Vec3; 10], corner: usize) -> [Vec3; 10] {
+    let mut slopes = [[0.0; 3]; 10];
+    for (p, point) in tet.points.iter().enumerate() {
+        let f = deformation_gradient(&point.displacement_gradient(displacement));
+        let cofactors = cofactor(&f);
+        let share = point.volume * stiffness_rule(p)[corner];
+        for (slope, gradient) in slopes.iter_mut().zip(&point.gradients) {
+            *slope = add_scaled(*slope, share, times(&cofactors, *gradient));
+        }
+    }
+    slopes
+}
+
+/// Derivative of minus the nodal forces by the displacements at given mean stresses (Pa), N/m: all but
+/// what the mean stresses change, U″(J̄)/V times the product of [`volume_slopes`] summed over the
+/// elements around a corner.
 pub fn stiffness(
     tet: &Tet10,
     displacement: &[Vec3; 10],
     responses: &[Response; POINTS],
-    mean_stress: f64,
-    bulk: f64,
+    mean_stresses: &[f64; POINTS],
 ) -> Stiffness {
     let mut k = [[0.0; COMPONENTS]; COMPONENTS];
-    // Derivative of V J̄ by the displacements.
-    let mut of_volume = [[0.0; 3]; 10];
-    let mut volume = 0.0;
-    for (point, response) in tet.points.iter().zip(responses) {
+    for ((point, response), mean_stress) in tet.points.iter().zip(responses).zip(mean_stresses) {
         let f = deformation_gradient(&point.displacement_gradient(displacement));
-        let cofactors = cofactor(&f);
         let stress = full(&response.stress);
-        volume += point.volume;
-        for (of, gradient) in of_volume.iter_mut().zip(&point.gradients) {
-            *of = add_scaled(*of, point.volume, times(&cofactors, *gradient));
-        }
         let strain_rows = point.gradients.map(|gradient| strains_by_node(&f, gradient));
         for b in 0..10 {
             let gradient = point.gradients[b];
@@ -125,13 +157,6 @@ pub fn stiffness(
                 rows[2][3 * b] += turned[1];
                 rows[0][3 * b + 2] -= turned[1];
             }
-        }
-    }
-    let flat = of_volume.as_flattened();
-    for row in 0..COMPONENTS {
-        let factor = bulk / volume * flat[row];
-        for column in 0..=row {
-            k[row][column] += factor * flat[column];
         }
     }
     k
