@@ -50,8 +50,9 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 thickness: THICKNESS,
                 length: l * THICKNESS,
             };
-            let axial = [3, 4, 4, 5, 6, 7][j];
-            let mesh = quarter(&body, [12, 6, axial], 1.8)?;
+            // Cells about as long around as across the wall, and longer along longer ones.
+            let (around, axial) = ([12, 12, 20, 24, 28, 32][i], [3, 4, 4, 5, 6, 7][j]);
+            let mesh = quarter(&body, [around, 6, axial], 1.8)?;
             let (model, _) = bonded(&mesh, material.clone(), Profile::Constant(1.0))?;
             let answers = complex_stiffness(&model, 0.0, &[0.0, TAU * FREQUENCY], 1e-6)?;
             let [still, moving] = [0, 1].map(|k: usize| {
