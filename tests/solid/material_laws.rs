@@ -8,14 +8,14 @@ use bearing_dynamics::kinematics::strain::{
     Mat3, Sym3, Tangent, applied, cauchy, double_dot, full, green_lagrange,
 };
 
-type Stress = Box<dyn Fn(&Sym3) -> Sym3>;
+type Of<T> = Box<dyn Fn(&Sym3) -> T>;
 
 struct Law {
     name: &'static str,
     /// Of laws without a history, J/m³.
-    energy: Option<Box<dyn Fn(&Sym3) -> f64>>,
-    stress: Stress,
-    tangent: Box<dyn Fn(&Sym3) -> Tangent>,
+    energy: Option<Of<f64>>,
+    stress: Of<Sym3>,
+    tangent: Of<Tangent>,
     /// Its stresses are measured by it, Pa.
     modulus: f64,
     /// Components of displacement gradients are taken up to this.
@@ -190,9 +190,9 @@ fn tangents_are_symmetric() {
     for law in laws() {
         for _ in 0..TRIES {
             let tangent = (law.tangent)(&green_lagrange(&gradient(&mut seed, law.strains)));
-            for a in 0..6 {
-                for b in 0..a {
-                    let gap = (tangent[a][b] - tangent[b][a]).abs();
+            for (a, row) in tangent.iter().enumerate() {
+                for (b, entry) in row.iter().enumerate() {
+                    let gap = (entry - tangent[b][a]).abs();
                     assert!(gap <= 1e-13 * law.modulus, "{}: {gap:e}", law.name);
                 }
             }

@@ -91,7 +91,8 @@ impl Band {
                 for (to, from) in to.iter_mut().zip(&column[i..reach]) {
                     *to -= factor * from;
                 }
-                right[k + i] = right[k + i] - factor * right[k];
+                let known = right[k];
+                right[k + i] -= factor * known;
             }
         }
         for k in (0..count).rev() {
