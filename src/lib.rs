@@ -9,6 +9,7 @@
 #![allow(clippy::needless_range_loop)]
 
 pub mod ch2_housing;
+pub mod ch3_bushing;
 pub mod elements;
 pub mod kinematics;
 pub mod mesh;

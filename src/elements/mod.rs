@@ -3,6 +3,7 @@
 //! Everything refers to the undeformed state (total Lagrangian): gradients of the shape functions
 //! are taken once.
 pub mod tet10;
+pub mod tet10_nodal;
 pub mod tet4;
 
 use thiserror::Error;

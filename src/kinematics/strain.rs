@@ -4,13 +4,33 @@
 //! FᵀF − 1 has lost ten. Plain inlined arithmetic without branches, so that a loop over lanes of
 //! elements becomes vector code with the same bits as the single call.
 
-use crate::kinematics::vec3::Vec3;
+use crate::kinematics::vec3::{Vec3, cross};
 
 /// Rows of a 3 × 3 matrix.
 pub type Mat3 = [[f64; 3]; 3];
 
 /// A symmetric tensor: xx, yy, zz, xy, yz, zx.
 pub type Sym3 = [f64; 6];
+
+/// A fourth-order tensor that is symmetric in its first and in its last two indices, between pairs
+/// in the order of [`Sym3`]: what takes a change of strain to a change of stress.
+pub type Tangent = [[f64; 6]; 6];
+
+/// The tangent applied to a change of strain; components beside the diagonal count twice.
+#[inline(always)]
+pub fn applied(tangent: &Tangent, change: &Sym3) -> Sym3 {
+    let mut sum = [0.0; 6];
+    for (sum, row) in sum.iter_mut().zip(tangent) {
+        *sum = double_dot(row, change);
+    }
+    sum
+}
+
+/// A : B.
+#[inline(always)]
+pub fn double_dot(a: &Sym3, b: &Sym3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
+}
 
 /// The full matrix of a symmetric tensor.
 #[inline(always)]
@@ -67,11 +87,17 @@ pub fn green_lagrange_change(h: &Mat3, change: &Mat3) -> Sym3 {
     ]
 }
 
-/// J − 1 with J = det F, every digit kept at small H.
+/// J − 1 with J = det F (3.5), every digit kept at small H.
 #[inline(always)]
 pub fn volume_change(h: &Mat3) -> f64 {
     let minor = |i: usize, j: usize| h[i][i] * h[j][j] - h[i][j] * h[j][i];
     h[0][0] + h[1][1] + h[2][2] + minor(0, 1) + minor(1, 2) + minor(2, 0) + determinant(h)
+}
+
+/// Cofactors of F, the derivative of J by F: J F⁻ᵀ.
+#[inline(always)]
+pub fn cofactor(f: &Mat3) -> Mat3 {
+    [cross(f[1], f[2]), cross(f[2], f[0]), cross(f[0], f[1])]
 }
 
 #[inline(always)]

@@ -4,6 +4,9 @@
 mod solid_common;
 
 mod bore_contact;
+mod elastomer;
+mod material_laws;
+mod rubber;
 mod solid_explicit;
 mod solid_factors;
 mod solid_plan;

@@ -10,6 +10,12 @@ mod assembly_fits_2_4_1;
 mod axial_load_closed_form;
 #[path = "../bearing_conservation/case.rs"]
 mod bearing_conservation;
+#[path = "../bushing_geometries_3_4_2/case.rs"]
+mod bushing_geometries_3_4_2;
+#[path = "../bushing_materials_3_4_1/case.rs"]
+mod bushing_materials_3_4_1;
+#[path = "../bushing_relaxation_3_3_1/case.rs"]
+mod bushing_relaxation_3_3_1;
 #[path = "../cage_modes_table_5_3/case.rs"]
 mod cage_modes_table_5_3;
 #[path = "../cage_slip/case.rs"]
@@ -46,6 +52,8 @@ mod reduced_housing;
 mod rod_wave;
 #[path = "../rotating_load_orbit/case.rs"]
 mod rotating_load_orbit;
+#[path = "../rubber_cube_2_3_1/case.rs"]
+mod rubber_cube_2_3_1;
 #[path = "../settling_and_turning/case.rs"]
 mod settling_and_turning;
 #[path = "../shaft_in_two_housings/case.rs"]
@@ -102,6 +110,10 @@ pub const CASES: &[Case] = &[
     shaft_in_two_housings::CASE,
     steel_load_rates_2_4_3::CASE,
     steel_impact_2_4_3::CASE,
+    rubber_cube_2_3_1::CASE,
+    bushing_relaxation_3_3_1::CASE,
+    bushing_materials_3_4_1::CASE,
+    bushing_geometries_3_4_2::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).

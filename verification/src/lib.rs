@@ -10,6 +10,7 @@
 #![allow(clippy::needless_range_loop)]
 
 pub mod bearings;
+pub mod bushings;
 pub mod cache;
 pub mod cage_bearing;
 pub mod case;

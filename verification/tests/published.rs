@@ -307,11 +307,24 @@ fn each_published_value_stands_on_one_line_of_the_index() {
 
 /// Published numbers that stand in code, and why they may: case or helper, number, reason. An entry that
 /// nothing needs is an error.
-const TYPED: &[(&str, f64, &str)] = &[(
-    "cylinder_on_block_table_2_1/case.rs",
-    0.134,
-    "another program's -27.8 and 13.4 %, not a tilt of Table 3.7",
-)];
+const TYPED: &[(&str, f64, &str)] = &[
+    (
+        "cylinder_on_block_table_2_1/case.rs",
+        0.134,
+        "another program's -27.8 and 13.4 %, not a tilt of Table 3.7",
+    ),
+    (
+        "kinematic_frequencies/case.rs",
+        0.217,
+        "217 of 255: a colour, not a damping ratio of Table 3.3",
+    ),
+    ("src/surface_picture.rs", 0.132, "132 of 255: a colour, not a damping ratio of Table 3.3"),
+    (
+        "src/bushings.rs",
+        2.42e6,
+        "2.42 s, a relaxation time of Table 3.1, not a stiffness of Table 3.3",
+    ),
+];
 
 /// Number literals of code, without comments, text and unit tests, with their lines.
 fn literals(code: &str) -> Vec<(usize, f64)> {

@@ -3,6 +3,7 @@
 //! Every generator gives a [`Solid`]: a four-node mesh with named surface sets, and the curved
 //! surfaces it approximates, so that [`Solid::quadratic`] can put mid-side nodes on them.
 //! Dimensions are inputs, in m; where the source states none, the default says so.
+mod bushing;
 mod cage;
 mod grading;
 mod hexahedra;
@@ -10,6 +11,7 @@ mod housing;
 mod outline;
 mod solids;
 
+pub use bushing::{Bushing, BushingMesh, Part, bushing};
 pub use cage::{Cage, CageMesh, RailRelief};
 pub use grading::{graded, uniform};
 pub use housing::{Housing, HousingMesh, PillowBlock};

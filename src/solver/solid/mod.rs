@@ -11,6 +11,7 @@ pub mod labels;
 pub mod model;
 pub mod modes;
 pub mod rigid_motion;
+pub mod rubber;
 pub mod step_limit;
 pub mod stress;
 pub mod support;

@@ -1,7 +1,6 @@
 //! Tangent stiffness and consistent mass of a solid as sparse matrices over its free components.
 
 use super::model::{SolidModel, SolidProblem, corners};
-use super::tet4_blocks::Node;
 use crate::elements::tet4::{Tet4, relative};
 use crate::elements::tet10::{self, Tet10};
 use crate::kinematics::strain::Mat3;
@@ -53,17 +52,28 @@ impl Unknowns {
     /// In an order of a given kind.
     pub fn ordered(model: &SolidModel, ordering: Ordering) -> Unknowns {
         let problem = &model.problem;
-        let per_mass = &model.per_mass;
-        let free = |node: u32| (0..3).filter(|i| per_mass[node as usize][*i] != 0.0).count();
-        let graph = graph(problem, |node| free(node) > 0);
-        let (order, elimination) = sparse::ordered(&graph, &problem.nodes, free, ordering);
-        let (stored, mass_stored) = stored(&graph, per_mass);
+        let elements = (0..problem.elements.len()).map(|element| problem.elements.nodes(element));
+        let free: Vec<_> = model.per_mass.iter().map(|m| [0, 1, 2].map(|i| m[i] != 0.0)).collect();
+        Unknowns::over(&problem.nodes, elements, &free, ordering)
+    }
+
+    /// Of any elements over `nodes`, from which components of each node are free.
+    pub fn over<'a>(
+        nodes: &[Vec3],
+        elements: impl Iterator<Item = &'a [u32]> + Clone,
+        is_free: &[[bool; 3]],
+        ordering: Ordering,
+    ) -> Unknowns {
+        let free = |node: u32| is_free[node as usize].iter().filter(|free| **free).count();
+        let graph = Graph::of_elements(nodes.len(), elements, |node| free(node) > 0);
+        let (order, elimination) = sparse::ordered(&graph, nodes, free, ordering);
+        let (stored, mass_stored) = stored(&graph, is_free);
         drop(graph);
         let mut count = 0;
-        let mut of = vec![[PRESCRIBED; 3]; per_mass.len()];
+        let mut of = vec![[PRESCRIBED; 3]; nodes.len()];
         for node in order {
             for i in 0..3 {
-                if per_mass[node as usize][i] != 0.0 {
+                if is_free[node as usize][i] {
                     of[node as usize][i] = count;
                     count += 1;
                 }
@@ -75,8 +85,8 @@ impl Unknowns {
 }
 
 /// Values of the lower triangle of a stiffness and of a mass matrix.
-fn stored(graph: &Graph, per_mass: &[Node]) -> (usize, usize) {
-    let free = |node: u32| [0, 1, 2].map(|i: usize| usize::from(per_mass[node as usize][i] != 0.0));
+fn stored(graph: &Graph, is_free: &[[bool; 3]]) -> (usize, usize) {
+    let free = |node: u32| is_free[node as usize].map(usize::from);
     let (mut stiffness, mut mass) = (0, 0);
     for node in 0..graph.nodes() as u32 {
         let own = free(node);
@@ -91,27 +101,35 @@ fn stored(graph: &Graph, per_mass: &[Node]) -> (usize, usize) {
     (stiffness, mass)
 }
 
-fn graph(problem: &SolidProblem, kept: impl Fn(u32) -> bool) -> Graph {
+fn graph(problem: &SolidProblem) -> Graph {
     let elements = (0..problem.elements.len()).map(|element| problem.elements.nodes(element));
-    Graph::of_elements(problem.nodes.len(), elements, kept)
+    Graph::of_elements(problem.nodes.len(), elements, |_| true)
 }
 
 /// An empty matrix with room for every pair of components that share an element.
 pub fn pattern(problem: &SolidProblem, unknowns: &Unknowns) -> SymmetricMatrix {
-    places(problem, unknowns, |_, _| true)
+    places(&graph(problem), unknowns, |_, _| true)
+}
+
+/// The same of any elements over `count` nodes.
+pub fn pattern_over<'a>(
+    count: usize,
+    elements: impl Iterator<Item = &'a [u32]> + Clone,
+    unknowns: &Unknowns,
+) -> SymmetricMatrix {
+    places(&Graph::of_elements(count, elements, |_| true), unknowns, |_, _| true)
 }
 
 /// An empty matrix with room for every pair of like components that share an element: masses.
 pub fn mass_pattern(problem: &SolidProblem, unknowns: &Unknowns) -> SymmetricMatrix {
-    places(problem, unknowns, |i, j| i == j)
+    places(&graph(problem), unknowns, |i, j| i == j)
 }
 
 fn places(
-    problem: &SolidProblem,
+    graph: &Graph,
     unknowns: &Unknowns,
     together: impl Fn(usize, usize) -> bool,
 ) -> SymmetricMatrix {
-    let graph = graph(problem, |_| true);
     let mut places = vec![(0, 0); unknowns.count];
     for (node, of) in (0u32..).zip(&unknowns.of) {
         for axis in 0..3 {

@@ -61,6 +61,25 @@ impl SymmetricMatrix {
         self.values[start + at] += value;
     }
 
+    /// Adds `factor` times the product of a sparse vector with itself: unknowns, ascending, and values.
+    ///
+    /// # Panics
+    /// If there is no room at one of the places.
+    pub fn add_square(&mut self, factor: f64, vector: &[(usize, f64)]) {
+        for (at, &(column, value)) in vector.iter().enumerate() {
+            let start = self.pattern.starts[column];
+            let rows = &self.pattern.rows[start..self.pattern.starts[column + 1]];
+            let mut place = 0;
+            for &(row, other) in &vector[at..] {
+                // Both lists ascend.
+                while rows[place] as usize != row {
+                    place += 1;
+                }
+                self.values[start + place] += factor * value * other;
+            }
+        }
+    }
+
     /// Adds `factor` times a matrix whose places are all among this one's.
     ///
     /// # Panics

@@ -4,6 +4,7 @@
 //! derivatives and its own linear solver. Where there is a choice the formulation differs from the
 //! usual one on purpose, so that an error would have to be made twice in different ways.
 
+pub mod bonded_bushing;
 pub mod dense;
 pub mod elastic;
 pub mod elliptic;
@@ -13,6 +14,7 @@ pub mod lame;
 pub mod misalignment;
 pub mod ring;
 pub mod rolling;
+pub mod rubber_point;
 pub mod seated;
 pub mod seated_shaft;
 pub mod shaft;

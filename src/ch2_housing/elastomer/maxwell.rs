@@ -1,0 +1,155 @@
+//! Maxwell elements (2.13), (3.8): each is a spring of γ times the network's deviatoric stiffness in
+//! series with a dashpot that lets it relax over τ.
+//!
+//! The recursion is exact where DEV S changes along a straight line within the step, hence of second
+//! order in the step otherwise. A history is changed by [`commit`] and by nothing else, once per
+//! accepted step; all that a search for the next state needs of it is [`carried`].
+
+use super::ElastomerError;
+use crate::kinematics::strain::{Sym3, double_dot};
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Maxwell {
+    /// Stiffness over the network's.
+    pub gamma: f64,
+    /// Relaxation time, s.
+    pub tau: f64,
+}
+
+impl Maxwell {
+    /// # Errors
+    /// A constant that is not positive and finite.
+    pub fn new(gamma: f64, tau: f64) -> Result<Maxwell, ElastomerError> {
+        if !(gamma > 0.0 && gamma.is_finite()) {
+            return Err(ElastomerError::Gamma(gamma));
+        }
+        if !(tau > 0.0 && tau.is_finite()) {
+            return Err(ElastomerError::Tau(tau));
+        }
+        Ok(Maxwell { gamma, tau })
+    }
+}
+
+/// What the elements do in one step, the same at every point of a body.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepFactors {
+    /// exp(−Δt/τ) of each element.
+    pub decay: Vec<f64>,
+    /// γ (1 − exp(−Δt/τ))/(Δt/τ) of each: how much of a change of DEV S it takes up.
+    pub gain: Vec<f64>,
+    /// Sum of the gains: the tangent's deviatoric part is 1 + this times the network's.
+    pub total_gain: f64,
+}
+
+impl StepFactors {
+    /// For a step of `dt` s; zero is a sudden change.
+    pub fn set(&mut self, elements: &[Maxwell], dt: f64) {
+        self.decay.clear();
+        self.gain.clear();
+        self.total_gain = 0.0;
+        for Maxwell { gamma, tau } in elements {
+            let ratio = dt / tau;
+            let gain = if ratio > 0.0 { gamma * -libm::expm1(-ratio) / ratio } else { *gamma };
+            self.decay.push(libm::exp(-ratio));
+            self.gain.push(gain);
+            self.total_gain += gain;
+        }
+    }
+
+    pub fn of(elements: &[Maxwell], dt: f64) -> StepFactors {
+        let mut factors = StepFactors::default();
+        factors.set(elements, dt);
+        factors
+    }
+}
+
+/// What the stress after a step owes to the state before it, Pa: the total deviatoric stress (2.14)
+/// is (1 + [`StepFactors::total_gain`]) DEV Sⁿ⁺¹ plus this. `history` has Hⱼⁿ, `before` is DEV Sⁿ.
+#[inline]
+pub fn carried(history: &[Sym3], before: &Sym3, factors: &StepFactors) -> Sym3 {
+    let mut sum = before.map(|s| -factors.total_gain * s);
+    for (h, decay) in history.iter().zip(&factors.decay) {
+        for (sum, h) in sum.iter_mut().zip(h) {
+            *sum += decay * h;
+        }
+    }
+    sum
+}
+
+/// Hⱼⁿ⁺¹ in the place of Hⱼⁿ (2.13), `change` being DEV Sⁿ⁺¹ − DEV Sⁿ, Pa.
+#[inline]
+pub fn commit(history: &mut [Sym3], change: &Sym3, factors: &StepFactors) {
+    for ((h, decay), gain) in history.iter_mut().zip(&factors.decay).zip(&factors.gain) {
+        for (h, change) in h.iter_mut().zip(change) {
+            *h = decay * *h + gain * change;
+        }
+    }
+}
+
+/// How far the recursion strays in a step of `dt` s from a DEV S with the curvature 1 (Pa/s²), s²:
+/// Σ γ ∫ exp(−(Δt − s)/τ) (s − Δt/2) ds. What a step's error is estimated with.
+pub fn curvature_error(elements: &[Maxwell], dt: f64) -> f64 {
+    let part = |Maxwell { gamma, tau }: &Maxwell| {
+        let ratio = dt / tau;
+        // Of the closed form the first two orders cancel.
+        let integral = if ratio < 1e-2 {
+            ratio * (1.0 / 12.0 - ratio * (1.0 / 24.0 - ratio / 80.0))
+        } else {
+            let rest = -libm::expm1(-ratio) / ratio;
+            // In Δt²: (1 − e)(1/2)/x − 1/x² + e (1/x² + 1/x), x the ratio.
+            0.5 * rest + (libm::exp(-ratio) - rest) / ratio
+        };
+        gamma * dt * dt * integral
+    };
+    elements.iter().map(part).sum()
+}
+
+/// Energy in the springs at small strain, J/m³: Σ H:H/(4 μ₀ γ), μ₀ of the network.
+pub fn spring_energy(elements: &[Maxwell], history: &[Sym3], shear_modulus: f64) -> f64 {
+    let of = |(element, h): (&Maxwell, &Sym3)| double_dot(h, h) / element.gamma;
+    elements.iter().zip(history).map(of).sum::<f64>() / (4.0 * shear_modulus)
+}
+
+/// What the dashpots take at small strain during a step from `before`, `change` (Pa) being that of
+/// DEV S over `dt` s, J/m³: ∫ Σ H:H/(2 μ₀ γ τ) dt, exact for a straight change.
+pub fn dissipated(
+    elements: &[Maxwell],
+    before: &[Sym3],
+    change: &Sym3,
+    dt: f64,
+    shear_modulus: f64,
+) -> f64 {
+    let mut sum = 0.0;
+    for (Maxwell { gamma, tau }, h) in elements.iter().zip(before) {
+        let ratio = dt / tau;
+        // H(s) = rest + (h − rest) exp(−s/τ), where it would stay at this rate.
+        let rest = change.map(|c| gamma * c / ratio);
+        let away: Sym3 = std::array::from_fn(|i| h[i] - rest[i]);
+        let squares = if ratio < 1e-4 {
+            // H is as good as straight; the parts below would cancel.
+            let after: Sym3 = std::array::from_fn(|i| h[i] + gamma * change[i] - ratio * h[i]);
+            ratio * (double_dot(h, h) + double_dot(h, &after) + double_dot(&after, &after)) / 3.0
+        } else {
+            let [once, twice] = [1.0, 2.0].map(|k| -libm::expm1(-k * ratio) / k);
+            double_dot(&away, &away) * twice
+                + 2.0 * double_dot(&away, &rest) * once
+                + double_dot(&rest, &rest) * ratio
+        };
+        sum += squares / gamma;
+    }
+    sum / (2.0 * shear_modulus)
+}
+
+/// Storage and loss of the deviatoric stiffness over the network's, at `pulsation` rad/s:
+/// 1 + Σ γ iωτ/(1 + iωτ).
+pub fn complex_factor(elements: &[Maxwell], pulsation: f64) -> [f64; 2] {
+    let mut sum = [1.0, 0.0];
+    for Maxwell { gamma, tau } in elements {
+        let x = pulsation * tau;
+        // Both parts are finite however fast or slow the element is.
+        let per = 1.0 / (x + 1.0 / x);
+        sum[0] += if x > 0.0 { gamma * x * per } else { 0.0 };
+        sum[1] += if x > 0.0 { gamma * per } else { 0.0 };
+    }
+    sum
+}

@@ -1,0 +1,66 @@
+//! Rubber (2.2.3, 3.2.1): an eight-chain network in parallel with Maxwell elements.
+//!
+//! The network ([`eight_chain`]) is hyperelastic and compressible; each Maxwell element
+//! ([`maxwell`]) is driven by the deviatoric part of the network's stress and forgets it over its
+//! relaxation time. Every function takes the Green–Lagrange strain, which elements make of the
+//! displacement gradient, and keeps its digits at small strain.
+pub mod eight_chain;
+pub mod langevin;
+pub mod maxwell;
+pub mod merge;
+pub mod named;
+
+use eight_chain::EightChain;
+use maxwell::Maxwell;
+use thiserror::Error;
+
+/// A rubber.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Elastomer {
+    pub network: EightChain,
+    /// Any number, none too; equal relaxation times are allowed.
+    pub maxwell: Vec<Maxwell>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum ElastomerError {
+    #[error("the rubber modulus is {0} Pa; it must be positive and finite")]
+    Modulus(f64),
+    #[error("the network locking number is {0}; it must be positive and finite")]
+    Locking(f64),
+    #[error(
+        "the network locking number is {0}; with the exact inverse Langevin function it must lie above 1: at 1 the \
+         chains are straight in the undeformed rubber"
+    )]
+    LockedAtRest(f64),
+    #[error("the bulk modulus is {0} Pa; it must be positive and finite")]
+    Bulk(f64),
+    #[error("the constant of a Maxwell element is {0}; it must be positive and finite")]
+    Gamma(f64),
+    #[error("the relaxation time of a Maxwell element is {0} s; it must be positive and finite")]
+    Tau(f64),
+    #[error(
+        "the chains are stretched to {stretch:.4} of their length at rest; they are straight at {limit:.4}"
+    )]
+    Locked { stretch: f64, limit: f64 },
+    #[error(
+        "a strain whose right Cauchy-Green tensor has the determinant {0:.3e} is that of no deformation"
+    )]
+    NoDeformation(f64),
+}
+
+impl Elastomer {
+    /// μ (Pa) that a strain meets which is faster than every Maxwell element: what explicit steps have
+    /// to be sized with.
+    pub fn instantaneous_shear_modulus(&self) -> f64 {
+        let sum: f64 = self.maxwell.iter().map(|element| element.gamma).sum();
+        (1.0 + sum) * self.network.shear_modulus()
+    }
+
+    /// Speed of a plane pressure wave at rest, faster than every Maxwell element, in a body of density ρ
+    /// (kg/m³), m/s.
+    pub fn pressure_wave_speed(&self, density: f64) -> f64 {
+        let stiffness = self.network.bulk + 4.0 / 3.0 * self.instantaneous_shear_modulus();
+        (stiffness / density).sqrt()
+    }
+}

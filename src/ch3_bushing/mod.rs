@@ -1,0 +1,3 @@
+//! Chapter 3: elastomeric bushings.
+pub mod hysteresis;
+pub mod similitude;

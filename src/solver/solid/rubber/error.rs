@@ -1,0 +1,55 @@
+//! What goes wrong with a solid of rubber.
+
+use crate::ch2_housing::elastomer::ElastomerError;
+use crate::kinematics::vec3::Vec3;
+use crate::solver::clock::rounded;
+use crate::solver::solid::model::{SolidError, place};
+use crate::solver::sparse::FactorError;
+use thiserror::Error;
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RubberError {
+    #[error(transparent)]
+    Problem(#[from] SolidError),
+    #[error(transparent)]
+    Material(#[from] ElastomerError),
+    #[error("the {what} is {value}; it must be positive and finite")]
+    Option { what: &'static str, value: f64 },
+    #[error("no memory for the factors of the stiffness, {:.2} GB", 1e-9 * bytes)]
+    NoMemory { bytes: f64 },
+    #[error("the body or a part of it is free to move; hold it")]
+    Free,
+    /// Steps were halved until nothing was left to halve.
+    #[error(
+        "no equilibrium was found after t = {} s: a step of {step:.3e} s ended where {failure}",
+        rounded(*time)
+    )]
+    NoEquilibrium { time: f64, step: f64, failure: StepFailure },
+}
+
+/// Why a step could not be taken.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum StepFailure {
+    #[error(
+        "{iterations} iterations left {residual:.3e} N unbalanced beside forces of up to {scale:.3e} N"
+    )]
+    NotConverged { residual: f64, scale: f64, iterations: usize },
+    #[error("element {element} at {} is turned inside out (volume ratio {ratio:.3})", place(at))]
+    Inverted { element: usize, at: Vec3, ratio: f64 },
+    #[error("in element {element} at {} {source}", place(at))]
+    Material { element: usize, at: Vec3, source: ElastomerError },
+    #[error("the stiffness is no longer positive definite: equilibrium is lost or not stable")]
+    Unstable,
+    #[error("forces are not finite")]
+    NotFinite,
+    #[error("the estimated error stays above what is allowed")]
+    Inaccurate,
+}
+
+/// Of a factorisation at rest.
+pub fn at_rest(error: FactorError) -> RubberError {
+    match error {
+        FactorError::NotPositiveDefinite { .. } => RubberError::Free,
+        FactorError::NoMemory { bytes } => RubberError::NoMemory { bytes },
+    }
+}

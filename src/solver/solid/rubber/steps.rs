@@ -1,0 +1,386 @@
+//! Steps of a solid of rubber in time, without inertia: each ends in equilibrium.
+//!
+//! What makes a step inexact is that DEV S does not go straight within it. From its second difference
+//! follows the error of the Maxwell stresses, and from that the length of the next step. Steps end at
+//! the corners of loads and prescribed displacements; behind a corner there is no second difference, so
+//! that a pair of steps is taken and judged together.
+
+use super::error::{RubberError, StepFailure};
+use super::model::RubberModel;
+use super::newton::{Convergence, Search, StepLaw, Stop};
+use crate::ch2_housing::elastomer::maxwell::{StepFactors, carried, commit, curvature_error};
+use crate::elements::tet10::POINTS;
+use crate::kinematics::strain::{Sym3, double_dot};
+use crate::kinematics::vec3::Vec3;
+
+/// How long steps are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stepping {
+    /// s; halved where no equilibrium is found otherwise.
+    Fixed(f64),
+    /// The estimated error of a step's Maxwell stresses stays below this part of the largest total
+    /// stress so far, in the mean square over the body.
+    Accuracy(f64),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepOptions {
+    pub stepping: Stepping,
+    /// Steps are cut down to this part of the way to the next corner before giving up.
+    pub smallest: f64,
+    pub convergence: Convergence,
+}
+
+impl Default for StepOptions {
+    fn default() -> Self {
+        let convergence = Convergence::default();
+        StepOptions { stepping: Stepping::Accuracy(1e-4), smallest: 1e-9, convergence }
+    }
+}
+
+/// Steps done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StepCounts {
+    pub accepted: u64,
+    /// Undone because no equilibrium was found or the error was too large.
+    pub undone: u64,
+}
+
+/// The state after an accepted step: nothing else is kept from step to step.
+#[derive(Clone, Debug, PartialEq)]
+struct State {
+    time: f64,
+    displacement: Vec<Vec3>,
+    /// DEV S of the network at the quadrature points, Pa.
+    deviatoric: Vec<Sym3>,
+    /// Stresses of the Maxwell elements, one point after the other, Pa.
+    history: Vec<Sym3>,
+    /// The last step (s) and the rates of displacement (m/s) and DEV S (Pa/s) in it; a step of zero behind
+    /// a corner.
+    last: f64,
+    velocity: Vec<Vec3>,
+    rate: Vec<Sym3>,
+}
+
+/// A solid of rubber on its way.
+pub struct RubberSolid<'a> {
+    search: Search<'a>,
+    options: StepOptions,
+    state: State,
+    factors: StepFactors,
+    carried: Vec<Sym3>,
+    corners: Vec<f64>,
+    /// What the next step should be, s; zero if unknown.
+    next: f64,
+    /// Largest total deviatoric stress so far, mean square over the body, Pa.
+    scale: f64,
+    volume: f64,
+    pub counts: StepCounts,
+}
+
+impl<'a> RubberSolid<'a> {
+    /// At rest at t = 0.
+    ///
+    /// # Errors
+    /// Steps or an accuracy that are not positive.
+    pub fn new(
+        model: &'a RubberModel,
+        options: StepOptions,
+    ) -> Result<RubberSolid<'a>, RubberError> {
+        let (what, value) = match options.stepping {
+            Stepping::Fixed(step) => ("step", step),
+            Stepping::Accuracy(accuracy) => ("accuracy", accuracy),
+        };
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(RubberError::Option { what, value });
+        }
+        let (points, nodes) = (POINTS * model.tets.len(), model.problem.nodes.len());
+        let terms = model.problem.material.maxwell.len();
+        let state = State {
+            time: 0.0,
+            displacement: vec![[0.0; 3]; nodes],
+            deviatoric: vec![[0.0; 6]; points],
+            history: vec![[0.0; 6]; points * terms],
+            last: 0.0,
+            velocity: vec![[0.0; 3]; nodes],
+            rate: vec![[0.0; 6]; points],
+        };
+        Ok(RubberSolid {
+            search: Search::new(model),
+            options,
+            state,
+            factors: StepFactors::default(),
+            carried: vec![[0.0; 6]; points],
+            corners: model.corners(),
+            next: 0.0,
+            scale: 0.0,
+            volume: model.tets.iter().map(|tet| tet.volume()).sum(),
+            counts: StepCounts::default(),
+        })
+    }
+
+    /// s.
+    pub fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    /// m, one for each node.
+    pub fn displacement(&self) -> &[Vec3] {
+        &self.state.displacement
+    }
+
+    /// Sum of the forces of the supports on some nodes, N.
+    pub fn support_force(&self, nodes: &[u32]) -> Vec3 {
+        self.search.support_force(nodes)
+    }
+
+    /// Iterations and factorisations so far.
+    pub fn work(&self) -> (usize, usize) {
+        (self.search.iterations, self.search.tangent.factorisations)
+    }
+
+    /// Goes on to the time `until` (s), and shows every state that stands; of the pair of steps
+    /// behind a corner the second. At a jump there are two: before it and after it.
+    ///
+    /// # Errors
+    /// [`RubberError::NoEquilibrium`] where no step however small ends in equilibrium. The state is then that
+    /// of the last step that did.
+    pub fn advance(
+        &mut self,
+        until: f64,
+        mut watch: impl FnMut(&RubberSolid),
+    ) -> Result<(), RubberError> {
+        if self.counts == StepCounts::default() {
+            self.sudden_change(&mut watch)?;
+        }
+        while self.state.time < until {
+            let corner = self.corners.iter().copied().find(|corner| *corner > self.state.time);
+            let end = corner.map_or(until, |corner| corner.min(until));
+            self.advance_smoothly(end, &mut watch)?;
+            if corner == Some(end) {
+                (self.state.last, self.next) = (0.0, 0.0);
+                self.sudden_change(&mut watch)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Where a load or a prescribed displacement jumps, the body follows with its instantaneous
+    /// stiffness, in no time.
+    fn sudden_change(&mut self, watch: &mut impl FnMut(&RubberSolid)) -> Result<(), RubberError> {
+        let time = self.state.time;
+        if !self.search.model.jumps(time) {
+            return Ok(());
+        }
+        match self.equilibrium(0.0, time) {
+            Ok(()) => {
+                self.accept(0.0, time);
+                watch(self);
+                Ok(())
+            }
+            Err(Stop::All(error)) => Err(error),
+            Err(Stop::Step(failure)) => {
+                self.restore_forces();
+                Err(RubberError::NoEquilibrium { time, step: 0.0, failure })
+            }
+        }
+    }
+
+    /// Goes on to a time before which nothing changes its slope.
+    fn advance_smoothly(
+        &mut self,
+        end: f64,
+        watch: &mut impl FnMut(&RubberSolid),
+    ) -> Result<(), RubberError> {
+        let smallest = self.options.smallest * (end - self.state.time);
+        while self.state.time < end {
+            let rest = end - self.state.time;
+            let wanted = match self.options.stepping {
+                Stepping::Fixed(step) if self.next == 0.0 => step,
+                // A fiftieth: should it be too long, it will be halved.
+                Stepping::Accuracy(_) if self.next == 0.0 => rest / 50.0,
+                _ => self.next,
+            };
+            // Two even steps rather than a long one and a sliver.
+            let step = if wanted > rest * (1.0 - 1e-9) {
+                rest
+            } else if 2.0 * wanted > rest && self.judges() {
+                0.5 * rest
+            } else {
+                wanted
+            };
+            let last = step == rest;
+            match self.attempt(step, if last { end } else { self.state.time + step }) {
+                Ok(longer) => {
+                    self.next = match self.options.stepping {
+                        Stepping::Fixed(fixed) => fixed.min(2.0 * step),
+                        Stepping::Accuracy(_) => longer * step,
+                    };
+                    watch(self);
+                }
+                Err(Stop::All(error)) => return Err(error),
+                Err(Stop::Step(failure)) => {
+                    self.counts.undone += 1;
+                    self.next = 0.5 * step;
+                    let gone = self.next >= smallest;
+                    if !gone {
+                        self.restore_forces();
+                        let time = self.state.time;
+                        return Err(RubberError::NoEquilibrium { time, step, failure });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn judges(&self) -> bool {
+        matches!(self.options.stepping, Stepping::Accuracy(_))
+    }
+
+    /// One step that can be judged, or a pair behind a corner. Gives how many times longer the next one may
+    /// be; leaves the state alone if it fails.
+    fn attempt(&mut self, step: f64, end: f64) -> Result<f64, Stop> {
+        let viscous = !self.search.model.problem.material.maxwell.is_empty();
+        if !(self.judges() && viscous) {
+            self.equilibrium(step, end)?;
+            self.accept(step, end);
+            return Ok(3.0);
+        }
+        if self.state.last > 0.0 {
+            self.equilibrium(step, end)?;
+            let longer = self.judged(step)?;
+            self.accept(step, end);
+            return Ok(longer);
+        }
+        let anchor = (self.state.clone(), self.scale);
+        let half = 0.5 * step;
+        let pair = self.pair(half, end);
+        if pair.is_err() {
+            (self.state, self.scale) = anchor;
+        }
+        // Of a half; the next one is a whole.
+        pair.map(|longer| (0.5 * longer).max(0.5))
+    }
+
+    fn pair(&mut self, half: f64, end: f64) -> Result<f64, Stop> {
+        let middle = self.state.time + half;
+        self.equilibrium(half, middle)?;
+        self.accept(half, middle);
+        let second = self.equilibrium(half, end).and_then(|()| self.judged(half));
+        match second {
+            Ok(longer) => {
+                self.accept(half, end);
+                Ok(longer)
+            }
+            Err(stop) => {
+                self.counts.accepted -= 1;
+                Err(stop)
+            }
+        }
+    }
+
+    /// Finds the equilibrium at the end of a step and changes nothing else. A step that ends at a jump
+    /// ends before it.
+    fn equilibrium(&mut self, step: f64, end: f64) -> Result<(), Stop> {
+        let end = if step > 0.0 { end.next_down() } else { end };
+        let model = self.search.model;
+        let maxwell = &model.problem.material.maxwell;
+        self.factors.set(maxwell, step);
+        if !maxwell.is_empty() {
+            let terms = self.state.history.chunks_exact(maxwell.len());
+            for ((to, history), before) in
+                self.carried.iter_mut().zip(terms).zip(&self.state.deviatoric)
+            {
+                *to = carried(history, before, &self.factors);
+            }
+        }
+        let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried };
+        let state = &self.state;
+        self.search.displacement.copy_from_slice(&state.displacement);
+        if state.last > 0.0 {
+            for (u, v) in self.search.displacement.iter_mut().zip(&state.velocity) {
+                *u = std::array::from_fn(|i| u[i] + step * v[i]);
+            }
+        } else {
+            self.search.predict(end, &law)?;
+        }
+        self.search.converge(end, &law, &self.options.convergence)
+    }
+
+    /// Estimated error of the step just solved: how many times longer the next may be.
+    fn judged(&mut self, step: f64) -> Result<f64, Stop> {
+        let Stepping::Accuracy(accuracy) = self.options.stepping else { return Ok(3.0) };
+        let model = self.search.model;
+        let maxwell = &model.problem.material.maxwell;
+        let (mut bend, mut largest) = (0.0, 0.0);
+        for (index, tet) in model.tets.iter().enumerate() {
+            for (point, of) in tet.points.iter().enumerate() {
+                let at = POINTS * index + point;
+                let (new, old) = (&self.search.deviatoric[at], &self.state.deviatoric[at]);
+                let rate = &self.state.rate[at];
+                let second: Sym3 = std::array::from_fn(|i| {
+                    ((new[i] - old[i]) / step - rate[i]) / (0.5 * (step + self.state.last))
+                });
+                let total: Sym3 = std::array::from_fn(|i| {
+                    (1.0 + self.factors.total_gain) * new[i] + self.carried[at][i]
+                });
+                bend += of.volume * double_dot(&second, &second);
+                largest += of.volume * double_dot(&total, &total);
+            }
+        }
+        let scale = self.scale.max((largest / self.volume).sqrt());
+        let error = curvature_error(maxwell, step) * (bend / self.volume).sqrt();
+        let allowed = accuracy * scale;
+        let within = error <= allowed;
+        if !within {
+            return Err(StepFailure::Inaccurate.into());
+        }
+        self.scale = scale;
+        let room = if error > 0.0 { 0.9 * (allowed / error).sqrt() } else { 3.0 };
+        Ok(room.clamp(0.3, 3.0))
+    }
+
+    /// Takes what [`RubberSolid::equilibrium`] found as the state.
+    fn accept(&mut self, step: f64, end: f64) {
+        let terms = self.search.model.problem.material.maxwell.len();
+        let state = &mut self.state;
+        // Behind a sudden change nothing is known of the rates to come.
+        let per = if step > 0.0 { 1.0 / step } else { 0.0 };
+        for (at, (new, old)) in self.search.deviatoric.iter().zip(&mut state.deviatoric).enumerate()
+        {
+            let change: Sym3 = std::array::from_fn(|i| new[i] - old[i]);
+            commit(&mut state.history[terms * at..terms * (at + 1)], &change, &self.factors);
+            state.rate[at] = change.map(|c| per * c);
+            *old = *new;
+        }
+        for ((u, v), new) in
+            state.displacement.iter_mut().zip(&mut state.velocity).zip(&self.search.displacement)
+        {
+            *v = std::array::from_fn(|i| per * (new[i] - u[i]));
+            *u = *new;
+        }
+        state.last = step;
+        state.time = end;
+        self.counts.accepted += 1;
+    }
+
+    /// Forces of the state that stands, after a search that failed.
+    fn restore_forces(&mut self) {
+        self.search.displacement.copy_from_slice(&self.state.displacement);
+        let terms = self.search.model.problem.material.maxwell.len();
+        self.factors.set(&self.search.model.problem.material.maxwell, 0.0);
+        if terms > 0 {
+            for ((to, history), before) in self
+                .carried
+                .iter_mut()
+                .zip(self.state.history.chunks_exact(terms))
+                .zip(&self.state.deviatoric)
+            {
+                *to = carried(history, before, &self.factors);
+            }
+        }
+        let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried };
+        self.search.return_to(self.state.time, &law);
+    }
+}

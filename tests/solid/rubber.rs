@@ -1,0 +1,618 @@
+//! Solids of rubber: elements with a continuous mean stress, equilibrium step by step, small vibrations.
+
+use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
+use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
+use bearing_dynamics::ch2_housing::elastomer::{Elastomer, ElastomerError, named};
+use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
+use bearing_dynamics::elements::tet10::POINTS;
+use bearing_dynamics::elements::tet10_nodal::{at_corners, strains};
+use bearing_dynamics::kinematics::vec3::{Vec3, cross};
+use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bar, bushing};
+use bearing_dynamics::mesh::{Elements, TetMesh};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel, SolidProblem};
+use bearing_dynamics::solver::solid::rubber::bar::Bar;
+use bearing_dynamics::solver::solid::rubber::error::{RubberError, StepFailure};
+use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solver::solid::rubber::newton::{StepLaw, Tangent, add_forces};
+use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use bearing_dynamics::solver::solid::tangent::PRESCRIBED;
+use std::f64::consts::TAU;
+
+const HELD: Option<Profile> = Some(Profile::ZERO);
+
+/// Numbers without pattern in (−1, 1).
+fn scatter(seed: &mut u64) -> f64 {
+    *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+fn network(bulk: f64) -> EightChain {
+    EightChain::new(0.647e6, 8.0, bulk, ChainPull::FiveTerms).unwrap()
+}
+
+/// A free cube of shaken elements, and displacements without pattern, small against a cell.
+fn shaken(cells: usize) -> (RubberModel, Vec<Vec3>) {
+    let mesh = cube(cells);
+    let (elements, nodes) = (quadratic(&mesh), mesh.nodes);
+    let material = rubber_of(network(64.7e6), &[]);
+    let mut seed = 2;
+    let moved = nodes.iter().map(|_| [0.0; 3].map(|_: f64| 3e-4 * scatter(&mut seed))).collect();
+    let problem =
+        RubberProblem { nodes, elements, material, prescribed: Vec::new(), loads: Vec::new() };
+    (RubberModel::new(problem).unwrap(), moved)
+}
+
+fn energy(model: &RubberModel, moved: &[Vec3]) -> f64 {
+    let network = &model.problem.material.network;
+    let (mut chains, mut volumes) = (0.0, vec![0.0; model.patches.len()]);
+    for (index, (tet, nodes)) in model.tets.iter().zip(&model.problem.elements).enumerate() {
+        let (strains, changes, inverted) = strains(tet, &nodes.map(|n| moved[n as usize]));
+        assert_eq!(inverted, None);
+        for (point, strain) in tet.points.iter().zip(&strains) {
+            chains += point.volume * network.isochoric_energy(strain).unwrap();
+        }
+        for (patch, sum) in model.patches_of[index].iter().zip(at_corners(tet, &changes)) {
+            volumes[*patch as usize] += sum;
+        }
+    }
+    let pairs = volumes.iter().zip(&model.patches);
+    chains + pairs.map(|(v, p)| p.volume * network.volume_energy(v / p.volume)).sum::<f64>()
+}
+
+fn forces(model: &RubberModel, moved: &[Vec3]) -> Vec<Vec3> {
+    let mut forces = vec![[0.0; 3]; moved.len()];
+    let mut deviatoric = vec![[0.0; 6]; POINTS * model.tets.len()];
+    let mut means = vec![0.0; model.patches.len()];
+    add_forces(model, &StepLaw::RELAXED, moved, &mut forces, &mut deviatoric, &mut means).unwrap();
+    forces
+}
+
+/// A change of one component.
+fn changed(moved: &[Vec3], component: usize, by: f64) -> Vec<Vec3> {
+    let mut moved = moved.to_vec();
+    moved.as_flattened_mut()[component] += by;
+    moved
+}
+
+#[test]
+fn forces_are_the_derivative_of_the_energy_and_stiffness_that_of_forces() {
+    let (model, moved) = shaken(2);
+    let of = forces(&model, &moved);
+    let scale = of.as_flattened().iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+    let mut tangent = Tangent::new(&model);
+    // So shaken a cube is not stable, but its stiffness is what it is.
+    let _ = tangent.refresh(&model, &StepLaw::RELAXED, &moved, None).unwrap();
+    let matrix = tangent.stiffness();
+    let stiffest = (0..matrix.size())
+        .flat_map(|column| matrix.column(column))
+        .fold(0.0, |m: f64, (_, k)| m.max(k.abs()));
+    let step = 1e-8;
+    for component in (0..3 * moved.len()).step_by(7) {
+        let at = |by: f64| changed(&moved, component, by);
+        let slope = -(energy(&model, &at(step)) - energy(&model, &at(-step))) / (2.0 * step);
+        let gap = (slope - of.as_flattened()[component]).abs();
+        // Third derivatives times step² (1e-6 of a cell's)², and rounding of energies over 1e-6.
+        assert!(gap <= 1e-6 * scale, "{component}: {gap:e} of {scale:e}");
+        let [before, after] = [-step, step].map(|by| forces(&model, &at(by)));
+        let unknown = |component: usize| model.unknowns.of[component / 3][component % 3];
+        let mut exact = vec![0.0; model.unknowns.count];
+        for row in 0..3 * moved.len() {
+            let change = after.as_flattened()[row] - before.as_flattened()[row];
+            exact[unknown(row)] = -change / (2.0 * step);
+        }
+        let mut unit = vec![0.0; exact.len()];
+        unit[unknown(component)] = 1.0;
+        let mut ours = unit.clone();
+        matrix.multiply(&unit, &mut ours);
+        for (row, (ours, exact)) in ours.iter().zip(&exact).enumerate() {
+            let gap = (ours - exact).abs();
+            assert!(gap <= 1e-7 * stiffest, "{row} {component}: {gap:e} of {stiffest:e}");
+        }
+    }
+}
+
+#[test]
+fn a_body_neither_pushes_nor_turns_itself() {
+    let (model, moved) = shaken(2);
+    let of = forces(&model, &moved);
+    let (mut sum, mut moment, mut scale) = ([0.0; 3], [0.0; 3], 0.0f64);
+    for (n, force) in of.iter().enumerate() {
+        let place = std::array::from_fn(|i| model.problem.nodes[n][i] + moved[n][i]);
+        let turn = cross(place, *force);
+        for i in 0..3 {
+            sum[i] += force[i];
+            moment[i] += turn[i];
+            scale = scale.max(force[i].abs());
+        }
+    }
+    for i in 0..3 {
+        // Rounding of some hundred forces, at places up to 12 mm.
+        assert!(
+            sum[i].abs() <= 1e-12 * scale && moment[i].abs() <= 1e-14 * scale,
+            "{sum:?} {moment:?}"
+        );
+    }
+    // Turned as a whole and shifted, the rest stays without force.
+    let turn = nalgebra::Rotation3::from_euler_angles(0.7, -1.1, 2.3);
+    let rigid: Vec<Vec3> = model
+        .problem
+        .nodes
+        .iter()
+        .map(|x| {
+            let turned = turn * nalgebra::Vector3::from(*x);
+            std::array::from_fn(|i| turned[i] - x[i] + 0.003)
+        })
+        .collect();
+    let left = forces(&model, &rigid);
+    let worst = left.as_flattened().iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+    // Rounding of gradients of up to 2, over faces of 6 mm.
+    assert!(worst <= 1e-12 * 64.7e6 * 0.006 * 0.006, "{worst:e}");
+}
+
+fn quadratic(mesh: &TetMesh) -> Vec<[u32; 10]> {
+    let Elements::Quadratic(list) = &mesh.elements else { panic!("of ten nodes") };
+    list.clone()
+}
+
+/// A cube of 12 mm with corners inside shaken.
+fn cube(cells: usize) -> TetMesh {
+    let side = 0.012;
+    let mut solid = bar([side; 3], [cells; 3]).unwrap();
+    let mut seed = 9;
+    for place in &mut solid.mesh.nodes {
+        place[1] += 0.5 * side;
+        place[2] += 0.5 * side;
+        let inside = place.iter().all(|x| *x > 1e-9 && *x < side - 1e-9);
+        for x in place.iter_mut() {
+            let by = 0.2 * side / cells as f64 * scatter(&mut seed);
+            *x += if inside { by } else { 0.0 };
+        }
+    }
+    // Sets were named on the planes as they were; shifted, they are still right.
+    solid.quadratic().unwrap().mesh
+}
+
+fn rubber_of(network: EightChain, maxwell: &[Maxwell]) -> Elastomer {
+    Elastomer { network, maxwell: maxwell.to_vec() }
+}
+
+/// Stretched along X by a profile, free at the sides, an eighth of a body.
+fn pulled_cube(material: Elastomer, profile: Profile, cells: usize) -> RubberModel {
+    let mesh = cube(cells);
+    let prescribed = supports(
+        &mesh,
+        &[
+            ("x_low", [HELD, None, None]),
+            ("y_low", [None, HELD, None]),
+            ("z_low", [None, None, HELD]),
+            ("x_high", [Some(profile), None, None]),
+        ],
+    );
+    let (elements, nodes) = (quadratic(&mesh), mesh.nodes);
+    let loads = Vec::new();
+    RubberModel::new(RubberProblem { nodes, elements, material, prescribed, loads }).unwrap()
+}
+
+fn fixed(step: f64) -> StepOptions {
+    StepOptions { stepping: Stepping::Fixed(step), ..Default::default() }
+}
+
+/// Uniform large strain on the outside of a shaken mesh is uniform inside.
+#[test]
+fn patch_of_large_strain() {
+    const GRADIENT: [Vec3; 3] = [[0.2, 0.1, -0.05], [0.15, -0.2, 0.05], [0.0, 0.1, 0.1]];
+    let field = |x: Vec3| GRADIENT.map(|row| row[0] * x[0] + row[1] * x[1] + row[2] * x[2]);
+    let mut mesh = cube(3);
+    let outside = (0..mesh.nodes.len() as u32)
+        .filter(|n| mesh.nodes[*n as usize].iter().any(|x| *x < 1e-9 || *x > 0.012 - 1e-9));
+    let outside: Vec<u32> = outside.collect();
+    let mut prescribed = Vec::new();
+    for node in outside {
+        mesh.node_sets.insert("one".into(), vec![node]);
+        let moved = field(mesh.nodes[node as usize]);
+        let ramp = |to| Some(Profile::Ramp { from: 0.0, to, start: 0.0, duration: 1.0 });
+        prescribed.extend(supports(&mesh, &[("one", moved.map(ramp))]));
+    }
+    let elements = quadratic(&mesh);
+    let material = rubber_of(network(64.7e6), &[Maxwell { gamma: 1.0, tau: 0.5 }]);
+    let nodes = mesh.nodes.clone();
+    let model =
+        RubberModel::new(RubberProblem { nodes, elements, material, prescribed, loads: vec![] })
+            .unwrap();
+    let mut solid = RubberSolid::new(&model, fixed(0.25)).unwrap();
+    solid.advance(1.0, |_| {}).unwrap();
+    for (u, x) in solid.displacement().iter().zip(&mesh.nodes) {
+        for (u, exact) in u.iter().zip(field(*x)) {
+            // What the tolerance of equilibrium, 1e-9, leaves of 12 mm.
+            assert!((u - exact).abs() <= 1e-9 * 0.012, "{u} {exact}");
+        }
+    }
+}
+
+/// Load and unload at a constant true strain rate: the cube does what one point does.
+#[test]
+fn a_cube_is_a_bar() {
+    let material = Elastomer { maxwell: named::table_3_1().maxwell, ..named::table_2_3() };
+    let (rate, steps, dt) = (0.01, 10, 3.0);
+    let strain = |n: usize| {
+        let up = n.min(2 * steps - n.min(2 * steps)) as f64;
+        -rate * dt * up
+    };
+    let points = (0..=2 * steps).map(|n| [dt * n as f64, 0.012 * strain(n).exp_m1()]).collect();
+    let model = pulled_cube(material.clone(), Profile::Table { points }, 2);
+    let end: Vec<u32> = (0..model.problem.nodes.len() as u32)
+        .filter(|n| model.problem.nodes[*n as usize][0] > 0.012 - 1e-9)
+        .collect();
+    let mut solid = RubberSolid::new(&model, fixed(dt)).unwrap();
+    let mut bar = Bar::new(&material);
+    for n in 1..=2 * steps {
+        solid.advance(dt * n as f64, |_| {}).unwrap();
+        bar.step(dt, strain(n)).unwrap();
+        let side = 0.012 * (1.0 + bar.lateral);
+        let stress = solid.support_force(&end)[0] / (side * side);
+        // Equilibrium of the cube is good to 1e-9 of its forces.
+        assert!((stress - bar.stress).abs() <= 1e-6 * 0.36e6, "{n}: {stress} {}", bar.stress);
+    }
+    assert!(bar.stress > 1e4 && (bar.time - 60.0).abs() <= 1e-9);
+}
+
+#[test]
+fn bars_under_great_strain() {
+    // 80 % of compression and 300 % of stretch, also nearly without change of volume.
+    for bulk in [1e2, 1e5] {
+        let network = EightChain::new(1e6, 8.0, bulk * 1e6, ChainPull::FiveTerms).unwrap();
+        let rubber = rubber_of(network, &[Maxwell { gamma: 1.0, tau: 1.0 }; 2]);
+        for to in [0.2f64, 4.0] {
+            let mut bar = Bar::new(&rubber);
+            for n in 1..=40 {
+                bar.step(0.1, to.ln() * f64::from(n) / 40.0).unwrap();
+            }
+            let relaxed = rubber_of(network, &[]);
+            let mut alone = Bar::new(&relaxed);
+            for n in 1..=40 {
+                alone.step(0.1, to.ln() * f64::from(n) / 40.0).unwrap();
+            }
+            assert!(bar.stress.abs() > alone.stress.abs(), "{bulk} {to}");
+            for _ in 0..40 {
+                bar.step(1.0, to.ln()).unwrap();
+            }
+            // e⁻⁴⁰, and the search for the side.
+            assert!((bar.stress / alone.stress - 1.0).abs() <= 1e-9, "{bulk} {to}");
+        }
+    }
+    // Beyond the locking stretch there is a clear end, and the bar stays as it was.
+    let exact = EightChain::new(1e6, 8.0, 1e8, ChainPull::Exact).unwrap();
+    let rubber = rubber_of(exact, &[]);
+    let mut bar = Bar::new(&rubber);
+    for n in 1..=60 {
+        bar.step(0.1, 4.84f64.ln() * f64::from(n) / 60.0).unwrap();
+    }
+    let before = (bar.stress, bar.lateral);
+    // At eight times the length even the volume would have to grow much.
+    let refused = bar.step(0.1, 8.0f64.ln());
+    assert!(
+        matches!(refused, Err(RubberError::Material(ElastomerError::Locked { .. }))),
+        "{refused:?}"
+    );
+    assert_eq!((bar.stress, bar.lateral), before);
+}
+
+#[test]
+fn steps_far_shorter_and_longer_than_relaxation() {
+    for tau in [1e6, 1.0, 1e-6] {
+        let rubber = rubber_of(network(64.7e6), &[Maxwell { gamma: 2.0, tau }]);
+        let mut bar = Bar::new(&rubber);
+        for n in 1..=10 {
+            bar.step(1.0, 1e-6 * f64::from(n)).unwrap();
+        }
+        // μ is a third of E but for the bulk modulus; H over the network's stress, at a constant rate.
+        let ratio = 2.0 * tau / 10.0 * -(-10.0 / tau).exp_m1();
+        let mu = rubber.network.shear_modulus() * (1.0 + ratio);
+        let young = 9.0 * 64.7e6 * mu / (3.0 * 64.7e6 + mu);
+        // The side's own rate follows the modulus as that relaxes: some 1 % of 1 − 2ν's 1 %.
+        assert!((bar.stress / (1e-5 * young) - 1.0).abs() <= 1e-3, "{tau}: {}", bar.stress / 1e-5);
+    }
+}
+
+const BUSHING: Bushing = Bushing { inner_diameter: 0.04, thickness: 0.02, length: 0.04 };
+
+fn quarter(cells: [usize; 3]) -> BushingMesh {
+    let [around, radial, axial] = cells;
+    BushingMesh { around, radial, axial, grading: 1.4, part: Part::Quarter }
+}
+
+fn bushing_mesh(cells: [usize; 3]) -> TetMesh {
+    bushing(&BUSHING, &quarter(cells)).unwrap().quadratic().unwrap().mesh
+}
+
+/// A quarter whose inner sleeve moves along Z.
+fn bonded(material: Elastomer, cells: [usize; 3], profile: Profile) -> (RubberModel, Vec<u32>) {
+    let mesh = bushing_mesh(cells);
+    let prescribed = supports(
+        &mesh,
+        &[
+            ("outer", [HELD; 3]),
+            ("inner", [HELD, HELD, Some(profile)]),
+            ("x_low", [HELD, None, None]),
+            ("y_low", [None, HELD, None]),
+        ],
+    );
+    let (elements, inner, nodes) =
+        (quadratic(&mesh), mesh.node_sets["inner"].clone(), mesh.nodes.clone());
+    let loads = Vec::new();
+    let problem = RubberProblem { nodes, elements, material, prescribed, loads };
+    (RubberModel::new(problem).unwrap(), inner)
+}
+
+fn with_bulk(ratio: f64) -> Elastomer {
+    let network = EightChain::new(0.647e6, 8.0, ratio * 0.647e6, ChainPull::FiveTerms).unwrap();
+    rubber_of(network, &[])
+}
+
+fn static_stiffness(material: Elastomer, cells: [usize; 3]) -> f64 {
+    let (model, _) = bonded(material, cells, Profile::Constant(1.0));
+    4.0 * complex_stiffness(&model, 0.0, &[0.0], 1e-6).unwrap()[0].storage
+}
+
+#[test]
+fn a_quarter_is_a_quarter_of_the_whole() {
+    let mesh = BushingMesh { around: 16, radial: 4, axial: 4, grading: 1.4, part: Part::Whole };
+    let mesh = bushing(&BUSHING, &mesh).unwrap().quadratic().unwrap().mesh;
+    let held = [HELD; 3];
+    let moved = [HELD, HELD, Some(Profile::Constant(1.0))];
+    let prescribed = supports(&mesh, &[("outer", held), ("inner", moved)]);
+    let (elements, nodes) = (quadratic(&mesh), mesh.nodes);
+    let material = with_bulk(100.0);
+    let problem = RubberProblem { nodes, elements, material, prescribed, loads: vec![] };
+    let model = RubberModel::new(problem).unwrap();
+    let whole = complex_stiffness(&model, 0.0, &[0.0], 1e-6).unwrap()[0].storage;
+    let quarter = static_stiffness(with_bulk(100.0), [8, 4, 2]);
+    // Cells are cut along other diagonals on both sides of a plane: a tenth of what the mesh misses.
+    assert!((whole / quarter - 1.0).abs() <= 5e-3, "{whole} {quarter}");
+}
+
+/// As volume is held ever harder, the bushing tends to the incompressible one, 4 % stiffer; four-node elements do
+/// not.
+#[test]
+fn a_continuous_mean_stress_does_not_lock() {
+    let cells = [12, 4, 3];
+    let stiffness: Vec<f64> =
+        [10.0, 1e2, 1e3, 1e4, 1e5].map(|bulk| static_stiffness(with_bulk(bulk), cells)).to_vec();
+    assert!(stiffness.windows(2).all(|w| w[1] > w[0]), "{stiffness:?}");
+    let [hundred, most] = [stiffness[1], stiffness[4]];
+    assert!(most / hundred <= 1.06 && most / stiffness[3] <= 1.001, "{stiffness:?}");
+    let mut locked = Vec::new();
+    for bulk in [1e2, 1e4] {
+        let network = with_bulk(bulk).network;
+        let (mu, b) = (network.shear_modulus(), network.bulk);
+        let steel = LinearElastic { lambda: b - 2.0 / 3.0 * mu, shear_modulus: mu };
+        let mesh = bushing(&BUSHING, &quarter(cells)).unwrap().mesh;
+        let by = 1e-6;
+        let prescribed = supports(
+            &mesh,
+            &[
+                ("outer", [HELD; 3]),
+                ("inner", [HELD, HELD, Some(Profile::Constant(by))]),
+                ("x_low", [HELD, None, None]),
+                ("y_low", [None, HELD, None]),
+            ],
+        );
+        let problem = SolidProblem {
+            nodes: mesh.nodes.clone(),
+            elements: mesh.elements.clone(),
+            material: steel,
+            density: 1100.0,
+            damping: 0.0,
+            damped_motion: DampedMotion::Absolute,
+            prescribed,
+            loads: Vec::new(),
+            gravity: [0.0; 3],
+        };
+        let model = SolidModel::new(problem).unwrap();
+        let found = equilibrium(&model, 0.0, &EquilibriumOptions::default()).unwrap();
+        let inner = &mesh.node_sets["inner"];
+        let force: f64 = inner.iter().map(|n| found.reactions[*n as usize][2]).sum();
+        locked.push(4.0 * force / by);
+    }
+    // Nearly twice as stiff at the bulk modulus of the source on a mesh this fine, and without a bound.
+    assert!(locked[0] > 1.8 * hundred && locked[1] > 20.0 * locked[0], "{locked:?} {hundred}");
+}
+
+#[test]
+fn stiffness_is_proportional_to_the_modulus() {
+    let of = |c: f64| {
+        let mut rubber = named::table_3_1();
+        rubber.network = EightChain::new(c, 8.0, 100.0 * c, ChainPull::FiveTerms).unwrap();
+        let (model, _) = bonded(rubber, [6, 2, 2], Profile::Constant(1.0));
+        complex_stiffness(&model, 0.0, &[TAU], 1e-9).unwrap()[0]
+    };
+    let [half, one, two] = [0.3235e6, 0.647e6, 1.294e6].map(of);
+    for (a, b) in [(half, one), (one, two)] {
+        // Rounding of solves.
+        assert!((b.storage / a.storage - 2.0).abs() <= 1e-11, "{a:?} {b:?}");
+        assert!((b.loss / a.loss - 2.0).abs() <= 1e-11, "{a:?} {b:?}");
+    }
+}
+
+/// Against the complex system itself, from differences of forces, solved as a dense one.
+#[test]
+fn one_factorisation_serves_all_frequencies() {
+    let rubber = named::table_3_1();
+    let (model, _) = bonded(rubber.clone(), [4, 2, 1], Profile::Constant(1.0));
+    let count = model.unknowns.count;
+    let nodes = model.problem.nodes.len();
+    let mut sleeve = vec![[0.0; 3]; nodes];
+    model.prescribe(0.0, &mut sleeve);
+    // Unknowns first, then one for the sleeve.
+    let mut motions = vec![vec![[0.0; 3]; nodes]; count];
+    for (node, of) in model.unknowns.of.iter().enumerate() {
+        for axis in (0..3).filter(|axis| of[*axis] != PRESCRIBED) {
+            motions[of[axis]][node][axis] = 1.0;
+        }
+    }
+    motions.push(sleeve);
+    let dense = |gain: f64| {
+        let law = StepLaw { gain, carried: &[] };
+        let mut deviatoric = vec![[0.0; 6]; POINTS * model.tets.len()];
+        let mut means = vec![0.0; model.patches.len()];
+        let mut forces = |motion: &[Vec3], by: f64| {
+            let moved: Vec<Vec3> = motion.iter().map(|u| u.map(|x| by * x)).collect();
+            let mut forces = vec![[0.0; 3]; nodes];
+            add_forces(&model, &law, &moved, &mut forces, &mut deviatoric, &mut means).unwrap();
+            forces
+        };
+        let mut whole = nalgebra::DMatrix::<f64>::zeros(count + 1, count + 1);
+        for column in 0..=count {
+            // Central differences of forces that keep their digits: (1e-9 of 10 mm)².
+            let [before, after] = [-1e-9, 1e-9].map(|by| forces(&motions[column], by));
+            for row in 0..=count {
+                let sum: f64 = motions[row]
+                    .as_flattened()
+                    .iter()
+                    .zip(after.as_flattened().iter().zip(before.as_flattened()))
+                    .map(|(u, (a, b))| u * (a - b))
+                    .sum();
+                whole[(row, column)] = -sum / 2e-9;
+            }
+        }
+        whole
+    };
+    let (one, two) = (dense(0.0), dense(1.0));
+    let pulsations = [0.0, TAU * 0.1, TAU * 10.0, TAU * 1e4, 1e12];
+    let answers = complex_stiffness(&model, 0.0, &pulsations, 1e-9).unwrap();
+    for (pulsation, answer) in pulsations.iter().zip(answers) {
+        let g = rubber.maxwell.iter().fold(nalgebra::Complex::new(1.0, 0.0), |sum, m| {
+            let x = nalgebra::Complex::new(0.0, pulsation * m.tau);
+            sum + m.gamma * (x / (1.0 + x))
+        });
+        // V + g D, of 1 · D + V and 2 · D + V.
+        let whole = nalgebra::DMatrix::from_fn(count + 1, count + 1, |i, j| {
+            let shear = two[(i, j)] - one[(i, j)];
+            g * shear + (one[(i, j)] - shear)
+        });
+        let inner = whole.view((0, 0), (count, count)).into_owned();
+        let coupled = whole.view((0, count), (count, 1)).into_owned();
+        let along = inner.lu().solve(&coupled).unwrap();
+        let relieved: nalgebra::Complex<f64> =
+            coupled.iter().zip(along.iter()).map(|(a, b)| a * b).sum();
+        let exact = whole[(count, count)] - relieved;
+        let gap =
+            (exact - nalgebra::Complex::new(answer.storage, answer.loss)).norm() / exact.norm();
+        assert!(gap <= 1e-8, "{pulsation}: {gap:e} {exact} {answer:?}");
+    }
+}
+
+/// A cycle in steps tends with second order to what the complex stiffness says.
+#[test]
+fn cycles_in_steps_are_the_complex_stiffness() {
+    let rubber = rubber_of(network(64.7e6), &[Maxwell { gamma: 2.0, tau: 0.02 }]);
+    let amplitude = 1e-7;
+    let wave = Profile::Harmonic { mean: 0.0, amplitude, frequency: 10.0, phase: 0.0 };
+    let unit = bonded(rubber.clone(), [4, 2, 1], Profile::Constant(1.0)).0;
+    let exact = complex_stiffness(&unit, 0.0, &[TAU * 10.0], 1e-10).unwrap()[0];
+    let (model, inner) = bonded(rubber, [4, 2, 1], wave);
+    let read = |per: usize| {
+        let mut solid = RubberSolid::new(&model, fixed(0.1 / per as f64)).unwrap();
+        // Seven cycles are thirty-five relaxation times.
+        solid.advance(0.7, |_| {}).unwrap();
+        let (mut sine, mut cosine) = (0.0, 0.0);
+        solid
+            .advance(0.8, |solid| {
+                let force = solid.support_force(&inner)[2];
+                let phase = TAU * 10.0 * solid.time();
+                sine += 2.0 / per as f64 * force * phase.sin();
+                cosine += 2.0 / per as f64 * force * phase.cos();
+            })
+            .unwrap();
+        assert_eq!(solid.counts.undone, 0);
+        [sine / amplitude / exact.storage - 1.0, cosine / amplitude / exact.loss - 1.0]
+    };
+    let (coarse, fine) = (read(24), read(48));
+    for (coarse, fine) in coarse.iter().zip(fine) {
+        let order = (coarse / fine).log2();
+        assert!((order - 2.0).abs() <= 0.1, "{coarse:e} {fine:e}");
+        assert!(fine.abs() <= 2e-2, "{fine:e}");
+    }
+}
+
+/// The error of adaptive steps follows what is asked for, and holding still costs little.
+#[test]
+fn adaptive_steps_keep_their_accuracy() {
+    let rubber = named::table_3_1();
+    let table = Profile::Ramp { from: 0.0, to: 2e-3, start: 0.0, duration: 1.0 };
+    let (model, inner) = bonded(rubber, [4, 2, 1], table);
+    let run = |options: StepOptions| {
+        let mut solid = RubberSolid::new(&model, options).unwrap();
+        let mut read = Vec::new();
+        for until in [0.3, 1.0, 2.0, 15.0] {
+            solid.advance(until, |_| {}).unwrap();
+            read.push(solid.support_force(&inner)[2]);
+        }
+        (read, solid.counts)
+    };
+    let accuracy = |a| StepOptions { stepping: Stepping::Accuracy(a), ..Default::default() };
+    let (exact, _) = run(accuracy(1e-7));
+    let mut counts = Vec::new();
+    for asked in [1e-3, 1e-5] {
+        let (found, count) = run(accuracy(asked));
+        for (found, exact) in found.iter().zip(&exact) {
+            // Errors of some ten steps may add up.
+            assert!((found / exact - 1.0).abs() <= 10.0 * asked, "{asked}: {found} {exact}");
+        }
+        counts.push(count.accepted);
+    }
+    assert!(counts[1] > counts[0] && counts[0] <= 60, "{counts:?}");
+}
+
+/// A jump is answered with the instantaneous stiffness, and what follows is exact relaxation.
+#[test]
+fn a_sudden_motion_meets_the_instantaneous_stiffness() {
+    let rubber = rubber_of(network(64.7e6), &[Maxwell { gamma: 2.0, tau: 0.5 }]);
+    let jump = Profile::Ramp { from: 0.0, to: 1e-6, start: 0.2, duration: 0.0 };
+    let (model, inner) = bonded(rubber.clone(), [4, 2, 1], jump);
+    let mut solid = RubberSolid::new(&model, StepOptions::default()).unwrap();
+    let mut forces = Vec::new();
+    solid
+        .advance(10.0, |solid| forces.push((solid.time(), solid.support_force(&inner)[2])))
+        .unwrap();
+    let unit = bonded(rubber, [4, 2, 1], Profile::Constant(1.0)).0;
+    let stiffness = complex_stiffness(&unit, 0.0, &[0.0, 1e9], 1e-10).unwrap();
+    let first = forces.iter().position(|(_, force)| *force > 0.0).unwrap();
+    assert!((forces[first].0 - 0.2).abs() <= 1e-15);
+    assert!((forces[first].1 / (1e-6 * stiffness[1].storage) - 1.0).abs() <= 1e-4);
+    let last = forces.last().unwrap().1;
+    assert!((last / (1e-6 * stiffness[0].storage) - 1.0).abs() <= 1e-4);
+}
+
+#[test]
+fn ends_without_equilibrium_are_told() {
+    let ramp = |to| Profile::Ramp { from: 0.0, to, start: 0.0, duration: 1.0 };
+    // Pressed through itself.
+    let model = pulled_cube(with_bulk(100.0), ramp(-0.02), 1);
+    let mut solid = RubberSolid::new(&model, fixed(0.05)).unwrap();
+    let ended = solid.advance(1.0, |_| {});
+    let Err(RubberError::NoEquilibrium { time, failure, .. }) = ended else { panic!("{ended:?}") };
+    // 12 mm of 20 mm are gone at 0.6 s.
+    assert!(time > 0.3 && time < 0.6 && solid.time() == time, "{time} {failure}");
+    assert!(!matches!(failure, StepFailure::Inaccurate));
+    // The state that stands is that of the last step: it relaxes no further, rubber without Maxwell elements.
+    let count = solid.counts.accepted;
+    assert!(count >= 6 && solid.counts.undone > 10, "{:?}", solid.counts);
+    // Free to move.
+    let mesh = cube(1);
+    let (elements, nodes) = (quadratic(&mesh), mesh.nodes);
+    let material = with_bulk(100.0);
+    let problem = RubberProblem { nodes, elements, material, prescribed: vec![], loads: vec![] };
+    let free = RubberModel::new(problem).unwrap();
+    let ended = complex_stiffness(&free, 0.0, &[0.0], 1e-6);
+    assert_eq!(ended, Err(RubberError::Free));
+    for bad in [0.0, -1.0, f64::NAN] {
+        for stepping in [Stepping::Fixed(bad), Stepping::Accuracy(bad)] {
+            let refused = RubberSolid::new(&free, StepOptions { stepping, ..Default::default() });
+            assert!(matches!(refused.map(|_| ()), Err(RubberError::Option { .. })));
+        }
+    }
+}

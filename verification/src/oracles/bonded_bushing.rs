@@ -1,0 +1,296 @@
+//! The radial stiffness of a bonded bushing at small displacements, by one Fourier component and polynomials
+//! of high degree: displacements are U cos φ, V sin φ, W cos φ with U, V, W over the half section, in
+//! rectangles that shrink towards the corners where sleeve and free end meet. Pointwise volume, no
+//! tetrahedra, complex moduli from the start.
+
+use nalgebra::Complex;
+
+type C = Complex<f64>;
+
+/// Lengths in m.
+#[derive(Clone, Copy)]
+pub struct Section {
+    pub inner: f64,
+    pub outer: f64,
+    pub length: f64,
+}
+
+/// Gauss–Lobatto points and weights of degree p on (−1, 1), and derivatives of the Lagrange polynomials
+/// through them.
+struct Rule {
+    points: Vec<f64>,
+    weights: Vec<f64>,
+    slopes: Vec<Vec<f64>>,
+}
+
+/// Legendre's polynomial of degree n and the one before.
+fn legendre(n: usize, x: f64) -> [f64; 2] {
+    let (mut before, mut now) = (1.0, x);
+    for k in 1..n {
+        let k = k as f64;
+        (before, now) = (now, ((2.0 * k + 1.0) * x * now - k * before) / (k + 1.0));
+    }
+    [now, before]
+}
+
+fn lobatto(p: usize) -> Rule {
+    let n = p as f64;
+    let points: Vec<f64> = (0..=p)
+        .map(|i| {
+            let mut x = -(std::f64::consts::PI * i as f64 / n).cos();
+            for _ in 0..60 {
+                let [l, before] = legendre(p, x);
+                // Newton on (1 − x²) P′ = n (P₋ − x P), whose derivative is −n (n + 1) P.
+                x += (before - x * l) / ((n + 1.0) * l);
+            }
+            x
+        })
+        .collect();
+    let weights =
+        points.iter().map(|x| 2.0 / (n * (n + 1.0) * legendre(p, *x)[0].powi(2))).collect();
+    let slopes = (0..=p)
+        .map(|i| {
+            (0..=p)
+                .map(|j| {
+                    let [li, lj] = [points[i], points[j]].map(|x| legendre(p, x)[0]);
+                    match (i, j) {
+                        _ if i != j => li / (lj * (points[i] - points[j])),
+                        (0, _) => -n * (n + 1.0) / 4.0,
+                        _ if i == p => n * (n + 1.0) / 4.0,
+                        _ => 0.0,
+                    }
+                })
+                .collect()
+        })
+        .collect();
+    Rule { points, weights, slopes }
+}
+
+/// Symmetric band matrix, lower part by columns, factorised without pivots.
+struct Band {
+    width: usize,
+    columns: Vec<C>,
+}
+
+impl Band {
+    fn at(&mut self, row: usize, column: usize) -> &mut C {
+        &mut self.columns[column * self.width + row - column]
+    }
+
+    /// L D Lᵀ in place, then the solution.
+    fn solve(&mut self, right: &mut [C]) {
+        let (count, width) = (right.len(), self.width);
+        for k in 0..count {
+            let reach = width.min(count - k);
+            let (head, tail) = self.columns.split_at_mut((k + 1) * width);
+            let column = &mut head[k * width..];
+            let pivot = column[0];
+            for i in 1..reach {
+                let factor = column[i] / pivot;
+                let to = &mut tail[(i - 1) * width..(i - 1) * width + reach - i];
+                for (to, from) in to.iter_mut().zip(&column[i..reach]) {
+                    *to -= factor * from;
+                }
+                let known = right[k];
+                right[k + i] -= factor * known;
+            }
+        }
+        for k in (0..count).rev() {
+            let reach = width.min(count - k);
+            let column = &self.columns[k * width..k * width + reach];
+            let sum: C = (1..reach).map(|i| column[i] * right[k + i]).sum();
+            right[k] = (right[k] - sum) / column[0];
+        }
+    }
+}
+
+/// Stations over a length of 1 that shrink fivefold towards the given ends.
+fn stations(layers: i32, low: bool, high: bool) -> Vec<f64> {
+    let inner = |k: i32| 0.5 * 0.2f64.powi(k);
+    let mut all = vec![0.0];
+    if low {
+        all.extend((1..=layers).rev().map(inner));
+    }
+    all.push(0.5);
+    if high {
+        all.extend((1..=layers).map(|k| 1.0 - inner(k)));
+    }
+    all.push(1.0);
+    all
+}
+
+/// Force over displacement, N/m, of a rubber with the shear modulus μ (complex, Pa) and the bulk modulus B
+/// (Pa), by polynomials of degree `p` in `layers` shrinking rectangles at each corner.
+pub fn radial_stiffness(section: Section, shear: C, bulk: f64, p: usize, layers: i32) -> C {
+    let rule = lobatto(p);
+    let r = stations(layers, true, true);
+    let x = stations(layers, false, true);
+    let (nr, nx) = (p * (r.len() - 1) + 1, p * (x.len() - 1) + 1);
+    let unknown = |i: usize, j: usize, c: usize| 3 * (i * nx + j) + c;
+    let count = 3 * nr * nx;
+    let mut band = Band { width: 3 * (p * nx + p + 1), columns: Vec::new() };
+    band.columns = vec![C::new(0.0, 0.0); count * band.width];
+    let lambda = shear * (-2.0 / 3.0) + bulk;
+    let thickness = section.outer - section.inner;
+    let half = 0.5 * section.length;
+    let nodes = (p + 1) * (p + 1);
+    for er in 0..r.len() - 1 {
+        for ex in 0..x.len() - 1 {
+            let (hr, hx) =
+                (0.5 * thickness * (r[er + 1] - r[er]), 0.5 * half * (x[ex + 1] - x[ex]));
+            let mut k = vec![C::new(0.0, 0.0); 9 * nodes * nodes];
+            for a in 0..=p {
+                for b in 0..=p {
+                    let radius = section.inner + thickness * r[er] + hr * (1.0 + rule.points[a]);
+                    let weight =
+                        std::f64::consts::PI * rule.weights[a] * rule.weights[b] * hr * hx * radius;
+                    // Nodes whose polynomials or slopes do not vanish here: a cross.
+                    let mut rows: Vec<(usize, [[f64; 3]; 6])> = Vec::new();
+                    for m in 0..=p {
+                        for n in 0..=p {
+                            if m != a && n != b {
+                                continue;
+                            }
+                            let here = if m == a && n == b { 1.0 } else { 0.0 };
+                            let dr = if n == b { rule.slopes[a][m] / hr } else { 0.0 };
+                            let dx = if m == a { rule.slopes[b][n] / hx } else { 0.0 };
+                            let by = here / radius;
+                            // Strains rr, φφ, xx and shears rφ, φx, rx by U, V, W.
+                            let strains = [
+                                [dr, 0.0, 0.0],
+                                [by, by, 0.0],
+                                [0.0, 0.0, dx],
+                                [-by, dr - by, 0.0],
+                                [0.0, dx, -by],
+                                [dx, 0.0, dr],
+                            ];
+                            rows.push((m * (p + 1) + n, strains));
+                        }
+                    }
+                    for (at, e) in &rows {
+                        for (to, f) in &rows {
+                            for c in 0..3 {
+                                for d in 0..3 {
+                                    let trace =
+                                        |e: &[[f64; 3]; 6], c: usize| e[0][c] + e[1][c] + e[2][c];
+                                    let normal: f64 = (0..3).map(|s| e[s][c] * f[s][d]).sum();
+                                    let sheared: f64 = (3..6).map(|s| e[s][c] * f[s][d]).sum();
+                                    let value = lambda * (trace(e, c) * trace(f, d))
+                                        + shear * (2.0 * normal + sheared);
+                                    k[(3 * at + c) * 3 * nodes + 3 * to + d] += value * weight;
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+            for row in 0..3 * nodes {
+                for column in 0..3 * nodes {
+                    let place = |at: usize| {
+                        let (node, c) = (at / 3, at % 3);
+                        unknown(er * p + node / (p + 1), ex * p + node % (p + 1), c)
+                    };
+                    let (row_at, column_at) = (place(row), place(column));
+                    if row_at >= column_at {
+                        *band.at(row_at, column_at) += k[row * 3 * nodes + column];
+                    }
+                }
+            }
+        }
+    }
+    // Sleeves and the plane of symmetry: the inner one moves by one, U = 1 and V = −1.
+    let whole = Band { width: band.width, columns: band.columns.clone() };
+    let mut given: Vec<Option<f64>> = vec![None; count];
+    for j in 0..nx {
+        for (c, value) in [1.0, -1.0, 0.0].into_iter().enumerate() {
+            given[unknown(0, j, c)] = Some(value);
+            given[unknown(nr - 1, j, c)] = Some(0.0);
+        }
+    }
+    for i in 0..nr {
+        given[unknown(i, 0, 2)].get_or_insert(0.0);
+    }
+    let zero = C::new(0.0, 0.0);
+    let mut right = vec![zero; count];
+    for column in 0..count {
+        for row in column..count.min(column + band.width) {
+            let value = whole.columns[column * band.width + row - column];
+            match (given[row], given[column]) {
+                (None, None) => {}
+                (None, Some(u)) => right[row] -= value * u,
+                (Some(u), None) => right[column] -= value * u,
+                _ => {}
+            }
+            if given[row].is_some() || given[column].is_some() {
+                *band.at(row, column) = if row == column { C::new(1.0, 0.0) } else { zero };
+            }
+        }
+    }
+    for (right, given) in right.iter_mut().zip(&given) {
+        if let Some(u) = given {
+            *right = C::new(*u, 0.0);
+        }
+    }
+    band.solve(&mut right);
+    // Twice the energy of the half length, twice.
+    let mut sum = zero;
+    for column in 0..count {
+        for row in column..count.min(column + whole.width) {
+            let value = whole.columns[column * whole.width + row - column];
+            let twice = if row == column { 1.0 } else { 2.0 };
+            sum += value * right[row] * right[column] * twice;
+        }
+    }
+    sum * 2.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BODY: Section = Section { inner: 0.02, outer: 0.04, length: 0.04 };
+
+    fn stiffness(shear: C, p: usize, layers: i32) -> C {
+        radial_stiffness(BODY, shear, 64.7e6, p, layers)
+    }
+
+    #[test]
+    fn the_rule_integrates_and_differentiates_polynomials() {
+        let rule = lobatto(6);
+        for degree in 0..=11i32 {
+            let sum: f64 =
+                rule.points.iter().zip(&rule.weights).map(|(x, w)| w * x.powi(degree)).sum();
+            let exact = if degree % 2 == 0 { 2.0 / f64::from(degree + 1) } else { 0.0 };
+            assert!((sum - exact).abs() <= 1e-14, "{degree}");
+        }
+        for i in 0..=6 {
+            let slope: f64 = (0..=6).map(|j| rule.slopes[i][j] * rule.points[j].powi(5)).sum();
+            assert!((slope - 5.0 * rule.points[i].powi(4)).abs() <= 1e-12);
+        }
+    }
+
+    /// A long bushing, held against plane strain: Adkins and Gent for rubber that keeps its volume.
+    #[test]
+    fn a_long_bushing_is_in_plane_strain() {
+        let (a, b) = (0.02f64, 0.04f64);
+        let squares = a * a + b * b;
+        let exact =
+            4.0 * std::f64::consts::PI * squares / (squares * (b / a).ln() - (b * b - a * a));
+        let per_length = |length: f64| {
+            let body = Section { length, ..BODY };
+            radial_stiffness(body, C::new(1.0, 0.0), 1e5, 5, 2).re
+        };
+        // Two lengths, so that the ends drop out.
+        let middle = (per_length(1.2) - per_length(0.8)) / 0.4;
+        // μ/B, and slender rectangles.
+        assert!((middle / exact - 1.0).abs() <= 2e-3, "{middle} {exact}");
+    }
+
+    #[test]
+    fn it_is_converged() {
+        let mu = C::new(0.7e6, 0.2e6);
+        let (coarse, fine) = (stiffness(mu, 5, 2), stiffness(mu, 7, 3));
+        assert!((coarse - fine).norm() <= 3e-4 * fine.norm(), "{coarse} {fine}");
+        assert!(coarse.re > fine.re);
+    }
+}
