@@ -64,7 +64,7 @@ pub(super) struct ContactEnergy {
     pub(super) curvature: [f64; 3],
 }
 
-pub(super) fn contact_energy(
+fn contact_energy(
     axial: f64,
     radial: f64,
     raceway: &Raceway,
@@ -91,6 +91,19 @@ pub(super) fn contact_energy(
             along * nr * nr + across * na * na,
         ],
     }
+}
+
+/// Of a ball at a position in its plane against the outer race.
+pub(super) fn outer_energy(contacts: &BallContacts, position: [f64; 2]) -> ContactEnergy {
+    let [axial, radial] = position;
+    let BallContacts { outer, ball_radius, outer_stiffness, .. } = contacts;
+    contact_energy(axial, radial, outer, *ball_radius, *outer_stiffness)
+}
+
+/// Of a ball against the inner race that sees it so.
+pub(super) fn inner_energy(contacts: &BallContacts, seen: &Sighting) -> ContactEnergy {
+    let BallContacts { inner, ball_radius, inner_stiffness, .. } = contacts;
+    contact_energy(seen.axial, seen.radial, inner, *ball_radius, *inner_stiffness)
 }
 
 /// Where the inner race sees a ball.
@@ -140,21 +153,9 @@ pub(super) fn plane_energy(
     contacts: &BallContacts,
     position: [f64; 2],
 ) -> PlaneEnergy {
-    let outer = contact_energy(
-        position[0],
-        position[1],
-        &contacts.outer,
-        contacts.ball_radius,
-        contacts.outer_stiffness,
-    );
+    let outer = outer_energy(contacts, position);
     let seen = sight(plane, race, position);
-    let inner = contact_energy(
-        seen.axial,
-        seen.radial,
-        &contacts.inner,
-        contacts.ball_radius,
-        contacts.inner_stiffness,
-    );
+    let inner = inner_energy(contacts, &seen);
     let force = plane.body_force(position[1]);
     let mut slope = [outer.slope[0] - force[0], outer.slope[1] - force[1]];
     let mut curvature = outer.curvature;

@@ -1,6 +1,6 @@
 //! What a race feels of a ball in equilibrium, the ball's own coordinates eliminated.
 
-use super::ball::{BallContacts, BallPlane, SettledBall, contact_energy, sight};
+use super::ball::{BallContacts, BallPlane, SettledBall, inner_energy, outer_energy, sight};
 use super::race_position::InnerRacePosition;
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -19,13 +19,7 @@ pub fn add_to_race(
         return Vector3::zeros();
     }
     let (slope, curvature) = race_and_ball_derivatives(plane, race, contacts, ball.position);
-    let outer = contact_energy(
-        ball.position[0],
-        ball.position[1],
-        &contacts.outer,
-        contacts.ball_radius,
-        contacts.outer_stiffness,
-    );
+    let outer = outer_energy(contacts, ball.position);
     let (uu, uv, vv) = (
         curvature[(5, 5)] + outer.curvature[0],
         curvature[(5, 6)] + outer.curvature[1],
@@ -57,13 +51,7 @@ fn race_and_ball_derivatives(
     position: [f64; 2],
 ) -> (SVector<f64, 7>, SMatrix<f64, 7, 7>) {
     let seen = sight(plane, race, position);
-    let inner = contact_energy(
-        seen.axial,
-        seen.radial,
-        &contacts.inner,
-        contacts.ball_radius,
-        contacts.inner_stiffness,
-    );
+    let inner = inner_energy(contacts, &seen);
     let (a, w) = (&race.axis, &seen.arm);
     let (h, rho) = (seen.axial, seen.radial);
     // h = a·w, and ρ² = w·w − h²; `half` is the gradient of w·w/2.
