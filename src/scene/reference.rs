@@ -196,8 +196,8 @@ Races sit on bodies (`inner_on`, `outer_on`) at places along their axes (`inner_
 X of races, balls and cage counts from where the bearing sits (`inner_at`) in all results, of equilibria and runs; that of a body from the origin. A
 `reversed` bearing is read in the scene's axes as well: azimuths, tilts, speeds and slip; only contact angles are its own.
 
-Several bearings in `quasi-static` housings have equilibria: `statics`, `sweep`, `pack`, and `check` and `plan` of these. A `run` takes them by
-`reduced` or `explicit`; equilibria one after the other are for one bearing in its housing.
+Several bearings run in `quasi-static` housings too, one equilibrium after the other; an outer race with `axial = \"free\"` has one only where nothing pushes it
+along its axis, though a `reduced` run slides it.
 
 ";
 

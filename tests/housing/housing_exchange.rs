@@ -13,7 +13,7 @@ use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
 use bearing_dynamics::solver::dynamics::assembly::OUTER;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
-use bearing_dynamics::solver::dynamics::state::{SPIN, VELOCITY};
+use bearing_dynamics::solver::dynamics::state::{POSITION, SPIN, VELOCITY};
 use bearing_dynamics::solver::housing::exchange::{
     Exchange, ExchangeError, ExchangeOptions, SolidPart,
 };
@@ -507,6 +507,27 @@ fn a_race_that_hangs_in_the_wall_ends_the_run() {
         assert!((allowed / (0.1 * RADIUS) - 1.0).abs() <= 1e-12, "{error}");
         // Looked at every 16 windows.
         assert!(*distance > *allowed && *distance <= 1.1 * allowed, "{error}");
+    }
+}
+
+/// Where both races turn alike, all turns as one.
+#[test]
+fn balls_start_rolling_with_a_race_that_turns_in_its_bore() {
+    let speed = 100.0;
+    let mut problem = mounted([0.0; 5]);
+    let outer = problem.outer.as_mut().expect("the outer race moves");
+    for race in [&mut problem.inner, outer] {
+        race.rotation = Rotation::Speed(Profile::Constant(speed));
+    }
+    let housed = start(problem, true, 0.0, f64::INFINITY);
+    let layout = housed.simulation.system.sets[0].layout;
+    let state = &housed.simulation.state;
+    for ball in 0..layout.balls {
+        let [_, y, z] = layout.ball_vector(state, POSITION, ball);
+        let [_, v_y, v_z] = layout.ball_vector(state, VELOCITY, ball);
+        let orbital = (y * v_z - z * v_y) / (y * y + z * z);
+        // Places of the balls in an equilibrium without loads: 1e-9 of their radius.
+        assert!((orbital / speed - 1.0).abs() <= 1e-8, "ball {ball}: {orbital}");
     }
 }
 

@@ -158,10 +158,7 @@ fn checks(
         context.check(
             Check::new(&own, &text, unit, ours)
                 .independent(exact, "one Fourier component, polynomials of degree 6")
-                .relative(
-                    tolerance,
-                    "corners and one pressure an element; of the ratio they nearly cancel",
-                )
+                .relative(tolerance, "what this mesh leaves: 0.4 % of K_d, 0.5 % of η_d")
                 .golden(GoldenTolerance::MIXED),
         );
         let because = "The stated inputs do not give Table 3.3. Its numbers follow a body of which a part of the stiffness neither stiffens with the \

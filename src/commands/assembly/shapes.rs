@@ -52,7 +52,9 @@ fn reduction(housing: &Housing, bearing: &Bearing, force: f64) -> Fallible<Found
     let condensing = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let fit = housing.setup.fit(&housing.scene);
-    let loads = pressed(&bore, settings.penalty, &fit, force.max(1.0))?;
+    // A bearing may be loaded by its places alone.
+    let force = force.max(1.0);
+    let loads = pressed(&bore, settings.penalty, &fit, force)?;
     let by_default = || BEYOND_BALLS * ball_frequency(bearing, force);
     let modes_to = settings.modes_to.unwrap_or_else(by_default);
     let options = ReduceOptions { modes_to, left_out: LEFT_OUT };

@@ -6,6 +6,7 @@
 
 use super::bounds::{HERTZ_SCALE, cage_room};
 use super::connection::Connection;
+use super::equilibrium::given_speed;
 use super::model::{CageBody, Drive, DynamicProblem, RaceBody, RotatingLoad, Rotation};
 use super::reduced_solid::ReducedSolid;
 use super::seat::Seat;
@@ -90,6 +91,18 @@ impl Body {
 
     pub fn moves(&self) -> bool {
         self.mobility != Mobility::Fixed
+    }
+
+    /// Holds it where it rests. One that turns at a given speed goes on turning, since balls roll with it.
+    pub fn hold(&mut self) {
+        let turns = given_speed(self, 0.0) != 0.0;
+        match &mut self.mobility {
+            Mobility::Driven(race) if turns => {
+                race.drives = self.rest.map(|at| Drive::Motion(Profile::Constant(at)));
+                (race.foundation_stiffness, race.foundation_damping) = ([0.0; 5], [0.0; 5]);
+            }
+            mobility => *mobility = Mobility::Fixed,
+        }
     }
 }
 
@@ -285,12 +298,12 @@ impl Assembly {
         later
     }
 
-    /// The same with every body that sits in a solid fixed where it rests, and no solid: what is left to find an
+    /// The same with every body that sits in a solid held where it rests, and no solid: what is left to find an
     /// equilibrium of.
     pub fn with_seats_held(&self) -> Assembly {
         let mut held = self.clone();
         for seat in held.seats.drain(..) {
-            held.bodies[seat.race.body].mobility = Mobility::Fixed;
+            held.bodies[seat.race.body].hold();
         }
         held.solids.clear();
         held

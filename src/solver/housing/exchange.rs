@@ -12,7 +12,7 @@ use super::exchange_window::{check, divided, longest_window};
 use super::seat::{Lost, Seat, SeatSnapshot, SeatState};
 use crate::ch2_housing::bore_contact::{ContactNode, Penalty};
 use crate::kinematics::vec3::Vec3;
-use crate::solver::dynamics::assembly::{Assembly, Body, Mobility};
+use crate::solver::dynamics::assembly::{Assembly, Body};
 use crate::solver::dynamics::race::{self, RaceLoads};
 use crate::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Snapshot};
 use crate::solver::dynamics::start;
@@ -485,11 +485,15 @@ pub(super) fn seated(
 fn held_start(assembly: &Assembly, seats: &[Seat]) -> Result<Vec<f64>, StaticsError> {
     let mut held = assembly.clone();
     for seat in seats {
-        held.bodies[seat.mount.body].mobility = Mobility::Fixed;
+        held.bodies[seat.mount.body].hold();
     }
     let mut state = start::at_equilibrium(&held)?;
     for seat in seats {
         let body = seat.mount.body;
+        if held.bodies[body].driven().is_some() {
+            // It turns, and balls roll with it.
+            continue;
+        }
         let still: BodyState = race::fixed(&assembly.bodies[body].rest).state;
         let at = Places::of(&held).body(body);
         state[at..at + BODY].copy_from_slice(&still.to_array());
