@@ -223,7 +223,6 @@ fn interrupted_by_a_signal_and_resumed() {
     let scene = place.scene("scene.toml", &scene(numerics, ALL_PLOTS));
     let whole = place.path("whole");
     let parts = place.path("parts");
-    let begun = Instant::now();
     let mut child = start(command(&scene, &parts, &[]));
     std::thread::sleep(Duration::from_millis(60));
     signal(&child, "-TERM");
@@ -253,7 +252,6 @@ fn interrupted_by_a_signal_and_resumed() {
     assert!(!String::from_utf8_lossy(&output.stdout).contains("no trial could start"));
     assert_eq!(code(&run(&scene, &whole, &[])), 0);
     assert_same_results(&whole, &parts);
-    assert!(begun.elapsed() < Duration::from_secs(60));
 }
 
 #[test]

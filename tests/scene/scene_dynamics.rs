@@ -364,21 +364,6 @@ fn a_scene_without_an_end_says_so_when_it_is_to_run() {
     assert!(error.contains("numerics.end") && error.contains("Hint: add"), "{error}");
 }
 
-/// The best of many readings: the mean would measure what else the machine does.
-#[test]
-fn reading_a_scene_takes_no_time() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cage_600rpm.toml");
-    let text = std::fs::read_to_string(path).unwrap();
-    let time = || {
-        let start = std::time::Instant::now();
-        scene::read_str(&text, Format::Toml, "a.toml").unwrap();
-        start.elapsed()
-    };
-    let best = (0..200).map(|_| time()).min().unwrap();
-    println!("best of 200 readings: {best:?}");
-    assert!(best.as_micros() <= 200, "{best:?}");
-}
-
 #[test]
 fn an_accuracy_takes_the_place_of_a_step() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");

@@ -722,15 +722,10 @@ fn braces(folder: &Path) -> PathBuf {
 fn a_huge_file_is_refused_unread() {
     let folder = tempfile::tempdir().unwrap();
     let path = braces(folder.path());
-    let time = || {
-        let start = std::time::Instant::now();
-        assert!(scene::read_file(&path).is_err());
-        start.elapsed()
-    };
-    // Reading 100 MB takes tens of milliseconds, its size microseconds; the best of ten tries does
-    // not depend on what else the machine does.
-    let best = (0..10).map(|_| time()).min();
-    assert!(best.is_some_and(|best| best.as_millis() <= 5), "{best:?}");
+    // Only who asks the file system knows the size: read as text, the file would be refused for
+    // its first 64 braces.
+    let message = scene::read_file(&path).unwrap_err().to_string();
+    assert!(message.contains(&format!("{} bytes", 100 << 20)), "{message}");
 }
 
 #[test]
