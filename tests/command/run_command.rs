@@ -606,6 +606,30 @@ fn a_cage_that_overlaps_a_race_is_refused() {
     refused("pocket_radius = \"6.1 mm\"", "pocket_radius = \"5.9 mm\"", &pocket);
 }
 
+/// A single bearing with an axial load and nothing else free, and what follows its races.
+fn one_angular_contact(load: &str, speed: &str, rest: &str) -> String {
+    format!(
+        r#"
+[bearing]
+kind = "angular-contact"
+balls = 11
+pitch_radius = "30 mm"
+contact_angle = "35 deg"
+clearance = {{ radial = "0 um" }}
+inner_race = {{ groove_radius = "6.6 mm" }}
+outer_race = {{ groove_radius = "6.6 mm" }}
+ball = {{ radius = "5.953 mm" }}
+[inner_race]
+x = {{ load = "{load}" }}
+y = {{ displacement = "0 um" }}
+z = {{ displacement = "0 um" }}
+tilt_y = {{ tilt = "0 deg" }}
+tilt_z = {{ tilt = "0 deg" }}
+speed = "{speed}"
+{rest}"#
+    )
+}
+
 /// What statics says of an equilibrium a run says of its steps, on the terminal and in its summary.
 #[test]
 fn a_run_has_the_remarks_of_statics() {
@@ -641,31 +665,12 @@ fn a_run_has_the_remarks_of_statics() {
     has(&low, "past the shoulder, which ends at");
     has(&low, "as given");
     // Nothing but the sixth coordinate holds an angular-contact bearing pushed the wrong way.
-    let single = r#"
-[bearing]
-kind = "angular-contact"
-balls = 11
-pitch_radius = "30 mm"
-contact_angle = "35 deg"
-clearance = { radial = "0 um" }
-inner_race = { groove_radius = "6.6 mm" }
-outer_race = { groove_radius = "6.6 mm" }
-ball = { radius = "5.953 mm" }
-[inner_race]
-x = { load = "-445 N" }
-y = { displacement = "0 um" }
-z = { displacement = "0 um" }
-tilt_y = { tilt = "0 deg" }
-tilt_z = { tilt = "0 deg" }
-speed = "600 rpm"
-[numerics]
-end = "0.5 ms"
-"#;
+    let single = &one_angular_contact("-445 N", "600 rpm", "[numerics]\nend = \"0.5 ms\"\n");
     has(single, "loaded at a negative contact angle");
     has(single, "the centres of the races are 1.49");
     // Equilibrium alone leaves out what the balls' own spin asks for.
-    let fast = single.replace("-445 N", "200 N").replace("600 rpm", "15000 rpm");
-    let fast = format!("{fast}[ball_forces]\ncentrifugal = true\n");
+    let fast = format!("{single}[ball_forces]\ncentrifugal = true\n");
+    let fast = fast.replace("-445 N", "200 N").replace("600 rpm", "15000 rpm");
     let [of_run, of_statics] = remarks(&fast);
     let gyroscopic =
         |notes: &[String]| notes.iter().any(|note| note.contains("no gyroscopic moment"));
@@ -771,26 +776,7 @@ fn remarks_tell_numbers_of_the_results() {
         assert!((told - exact).abs() <= 0.0501, "{said} {exact}");
     }
     // All balls alike under an axial load: J Ω² (R/r) sin α against μ r (Q_i + Q_o).
-    let fast = r#"
-[bearing]
-kind = "angular-contact"
-balls = 11
-pitch_radius = "30 mm"
-contact_angle = "35 deg"
-clearance = { radial = "0 um" }
-inner_race = { groove_radius = "6.6 mm" }
-outer_race = { groove_radius = "6.6 mm" }
-ball = { radius = "5.953 mm" }
-[inner_race]
-x = { load = "200 N" }
-y = { displacement = "0 um" }
-z = { displacement = "0 um" }
-tilt_y = { tilt = "0 deg" }
-tilt_z = { tilt = "0 deg" }
-speed = "15000 rpm"
-[ball_forces]
-centrifugal = true
-"#;
+    let fast = one_angular_contact("200 N", "15000 rpm", "[ball_forces]\ncentrifugal = true\n");
     let (radius, pitch, rpm) = (5.953e-3f64, 30e-3, std::f64::consts::PI / 30.0);
     let mass = 7850.0 * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
     let orbit = |speed: f64| 0.5 * (1.0 - radius / pitch * 35f64.to_radians().cos()) * speed * rpm;

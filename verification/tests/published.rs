@@ -30,27 +30,32 @@ fn each_case_has_its_folder_and_reads_its_published_numbers_nowhere_else() {
 /// field of the case, and code that computes reads no file at all.
 #[test]
 fn our_numbers_do_not_depend_on_the_published_ones() {
+    let sources = sources_of_cases();
+    for (name, code) in &sources {
+        assert_eq!(reaches_for_published(code, name.ends_with("/case.rs")), None, "{name}");
+    }
+    let seen = sources.len();
+    assert!(seen > 2 * cases::CASES.len(), "only {seen} files seen");
+}
+
+/// Name and text of every file that computes.
+fn sources_of_cases() -> Vec<(String, String)> {
     let mut pending = vec![folder()];
-    let mut seen = 0;
+    let mut found = Vec::new();
     while let Some(place) = pending.pop() {
         for entry in fs::read_dir(&place).unwrap() {
             let path = entry.unwrap().path();
+            let name = path.strip_prefix(folder()).unwrap().to_string_lossy().replace('\\', "/");
             if path.is_dir() {
                 if !path.ends_with("tests") {
                     pending.push(path);
                 }
-                continue;
+            } else if name.ends_with(".rs") && !FRAMEWORK.iter().any(|of| name.starts_with(of)) {
+                found.push((name, fs::read_to_string(&path).unwrap()));
             }
-            let name = path.strip_prefix(folder()).unwrap().to_string_lossy().replace('\\', "/");
-            if !name.ends_with(".rs") || FRAMEWORK.iter().any(|part| name.starts_with(part)) {
-                continue;
-            }
-            seen += 1;
-            let code = fs::read_to_string(&path).unwrap();
-            assert_eq!(reaches_for_published(&code, name.ends_with("/case.rs")), None, "{name}");
         }
     }
-    assert!(seen > 2 * cases::CASES.len(), "only {seen} files seen");
+    found
 }
 
 /// What reads, judges and reports published numbers; none of it computes.
@@ -425,25 +430,11 @@ fn no_published_number_is_typed_into_a_case() {
     let values = published_values();
     let mut used = BTreeSet::new();
     let mut problems = Vec::new();
-    let mut pending = vec![folder()];
-    while let Some(place) = pending.pop() {
-        for entry in fs::read_dir(&place).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                if !path.ends_with("tests") {
-                    pending.push(path);
-                }
-                continue;
-            }
-            let name = path.strip_prefix(folder()).unwrap().to_string_lossy().replace('\\', "/");
-            if !name.ends_with(".rs") || FRAMEWORK.iter().any(|part| name.starts_with(part)) {
-                continue;
-            }
-            for (line, value, claim) in typed(&name, &fs::read_to_string(&path).unwrap(), &values) {
-                match TYPED.iter().position(|entry| entry.0 == name && entry.1 == value) {
-                    Some(entry) => drop(used.insert(entry)),
-                    None => problems.push(format!("{name}:{line}: {value} is `{claim}`")),
-                }
+    for (name, code) in sources_of_cases() {
+        for (line, value, claim) in typed(&name, &code, &values) {
+            match TYPED.iter().position(|entry| entry.0 == name && entry.1 == value) {
+                Some(entry) => drop(used.insert(entry)),
+                None => problems.push(format!("{name}:{line}: {value} is `{claim}`")),
             }
         }
     }

@@ -21,7 +21,7 @@ use bearing_dynamics::solver::dynamics::foretell::Choice;
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::dynamics::run::Start;
 use bearing_dynamics::solver::housing::condensed::Sizes;
-use bearing_dynamics::solver::housing::exchange::SteppedSolid;
+use bearing_dynamics::solver::housing::stepped::SteppedSolid;
 use bearing_dynamics::solver::plan::motion::{self, Planned};
 use bearing_dynamics::solver::plan::solid::Method;
 use bearing_dynamics::solver::plan::statics::{self, ASKED_FOR};

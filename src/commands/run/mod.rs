@@ -12,7 +12,7 @@ use super::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::session::{Motion, Session, SessionError, Status};
 use bearing_dynamics::output::state::{self, StateFile, StateRecord, Stopped};
 use bearing_dynamics::scene::{Document, resolve_subject};
-use bearing_dynamics::solver::housing::exchange::SteppedSolid;
+use bearing_dynamics::solver::housing::stepped::SteppedSolid;
 use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
 use indicatif::{ProgressBar, ProgressStyle};
 use prepared::{Prepared, check_end};

@@ -6,7 +6,8 @@ use bearing_dynamics::output::state::StateFile;
 use bearing_dynamics::solver::clock::{Clock, given_steps, rounded};
 use bearing_dynamics::solver::dynamics::foretell::Choice;
 use bearing_dynamics::solver::dynamics::run::{Integrator, Simulation, Stepping};
-use bearing_dynamics::solver::housing::exchange::{Exchange, SteppedSolid};
+use bearing_dynamics::solver::housing::exchange::Exchange;
+use bearing_dynamics::solver::housing::stepped::SteppedSolid;
 use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
 
 /// Step, its reason, how many there will be, and where it goes on from.

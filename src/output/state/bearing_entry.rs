@@ -81,7 +81,6 @@ pub struct ShortenedEntry {
 impl BearingEntry {
     pub(super) fn of(checkpoint: &BearingCheckpoint) -> BearingEntry {
         let energy = &checkpoint.first_energy;
-        let work = &checkpoint.work;
         let watch = &checkpoint.step_watch;
         BearingEntry {
             steps: checkpoint.steps,
@@ -118,17 +117,7 @@ impl BearingEntry {
                 .filter(|of| *of != [0.0; 3]),
             largest_contact_energy: checkpoint.largest_contact_energy,
             contact_turnover: [checkpoint.contact_turnover.sum, checkpoint.contact_turnover.last],
-            work: [
-                work.evaluations,
-                work.distance_tests,
-                work.loaded_contacts,
-                work.slices,
-                work.pocket_tests,
-                work.guide_tests,
-                work.ball_tests,
-                work.factorisations,
-                work.rejected_steps,
-            ],
+            work: checkpoint.work.clone().counts().map(|count| *count),
             control: checkpoint.control.map(|memory| {
                 [memory.displacement, memory.previous_error, memory.smallest, memory.largest]
             }),
@@ -184,17 +173,10 @@ impl BearingEntry {
         let [oscillation, decay] = self.step_watch.stiffest;
         let [kinetic, contact, cage_contact, gravity, foundation, ball_contact] = self.first_energy;
         let [solid_kinetic, solid_strain, seat] = self.first_energy_of_solids.unwrap_or_default();
-        let [
-            evaluations,
-            distance_tests,
-            loaded_contacts,
-            slices,
-            pocket_tests,
-            guide_tests,
-            ball_tests,
-            factorisations,
-            rejected_steps,
-        ] = self.work;
+        let mut work = Work::default();
+        for (count, kept) in work.counts().into_iter().zip(self.work) {
+            *count = kept;
+        }
         BearingCheckpoint {
             time,
             steps: self.steps,
@@ -236,17 +218,7 @@ impl BearingEntry {
                 sum: self.contact_turnover[0],
                 last: self.contact_turnover[1],
             },
-            work: Work {
-                evaluations,
-                distance_tests,
-                loaded_contacts,
-                slices,
-                pocket_tests,
-                guide_tests,
-                ball_tests,
-                factorisations,
-                rejected_steps,
-            },
+            work,
             control: self.control.map(|[displacement, previous_error, smallest, largest]| Memory {
                 displacement,
                 previous_error,

@@ -78,6 +78,23 @@ pub struct Work {
     pub rejected_steps: u64,
 }
 
+impl Work {
+    /// Every count in one order, as files keep them.
+    pub fn counts(&mut self) -> [&mut u64; 9] {
+        [
+            &mut self.evaluations,
+            &mut self.distance_tests,
+            &mut self.loaded_contacts,
+            &mut self.slices,
+            &mut self.pocket_tests,
+            &mut self.guide_tests,
+            &mut self.ball_tests,
+            &mut self.factorisations,
+            &mut self.rejected_steps,
+        ]
+    }
+}
+
 /// Whether the slopes of traction are wanted beside the forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Want {

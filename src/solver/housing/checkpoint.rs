@@ -1,8 +1,9 @@
 //! Everything that bodies and solids in explicit steps, with seats between them, need to go on with the
 //! same bits.
 
-use super::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart, SteppedSolid, seated};
+use super::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
 use super::seat::{Growth, Seat};
+use super::stepped::{SteppedSolid, seated};
 use crate::kinematics::vec3::Vec3;
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::checkpoint::Checkpoint;

@@ -10,6 +10,7 @@
 
 use super::exchange_window::{check, divided, longest_window};
 use super::seat::{Lost, Seat, SeatSnapshot, SeatState};
+use super::stepped::{SolidSnapshot, SteppedSolid, seated};
 use crate::ch2_housing::bore_contact::{ContactNode, Penalty};
 use crate::kinematics::vec3::Vec3;
 use crate::solver::dynamics::assembly::{Assembly, Body};
@@ -96,15 +97,6 @@ fn of_solid(name: &Option<String>) -> String {
 /// Windows between two looks at how far things have moved.
 const LOOK: u64 = 16;
 
-/// A solid in steps of its own, and the seats in its bores.
-pub struct SteppedSolid {
-    pub name: Option<String>,
-    pub solid: ExplicitSolid,
-    /// In a window.
-    pub steps: usize,
-    pub seats: Vec<SeatState>,
-}
-
 /// An assembly of bodies and bearings with its races in the bores of solids.
 pub struct Exchange {
     pub simulation: Simulation,
@@ -131,57 +123,6 @@ pub struct ExchangeSnapshot {
     pub residual: f64,
     /// Energy held in all and all work and losses, J: what the residual is a part of.
     pub turned_over: f64,
-}
-
-/// A solid with its seats at the present time.
-#[derive(Clone, Debug)]
-pub struct SolidSnapshot {
-    pub ledger: SolidLedger,
-    pub seats: Vec<SeatSnapshot>,
-}
-
-impl SteppedSolid {
-    /// Through a window whose beginning its seats have been told, in which their bodies are as if free.
-    fn through_window(&mut self) -> Result<(), SolidError> {
-        let step = self.solid.step_size;
-        for k in 0..self.steps {
-            // Displacements are half a step ahead of velocities, whose time is that of the bodies.
-            let after = (k as f64 + 0.5) * step;
-            let seats = &mut self.seats;
-            self.solid.step(|t, displacement, forces| {
-                for seat in seats.iter_mut() {
-                    seat.push_both(t, [after, step], displacement, forces);
-                }
-            })?;
-        }
-        Ok(())
-    }
-
-    /// In windows of so many s, before the first one.
-    fn step_in(&mut self, window: f64) {
-        self.solid.step_size = window / self.steps as f64;
-        self.solid.time = 0.5 * self.solid.step_size;
-    }
-
-    /// Energies of solid and seats, their bodies where `simulation` has them.
-    fn snapshot(&mut self, simulation: &Simulation) -> SolidSnapshot {
-        let SteppedSolid { solid, seats, .. } = self;
-        let ahead = 0.5 * solid.step_size;
-        let mut found = Vec::with_capacity(seats.len());
-        let ledger = solid.ledger_with(|t, displacement, forces| {
-            for seat in seats.iter() {
-                let body = simulation.body(seat.seat.mount.body);
-                found.push(seat.snapshot(&body, [t, ahead], displacement, forces));
-            }
-        });
-        SolidSnapshot { ledger, seats: found }
-    }
-
-    pub(super) fn sort(&mut self, simulation: &Simulation) {
-        for seat in &mut self.seats {
-            seat.sort(&simulation.body(seat.seat.mount.body), &self.solid);
-        }
-    }
 }
 
 impl Exchange {
@@ -466,19 +407,6 @@ fn is_alone(assembly: &Assembly, solids: &[SteppedSolid]) -> bool {
         assembly.bodies.iter().filter_map(Body::driven).flat_map(|b| b.foundation_damping);
     let seats: usize = solids.iter().map(|part| part.seats.len()).sum();
     seats == 1 && assembly.connections.is_empty() && brakes.all(|damping| damping == 0.0)
-}
-
-/// Puts the seats into their solids, with the nodes under the races alone; returns them in that order.
-pub(super) fn seated(
-    assembly: &Assembly,
-    solids: &mut [SteppedSolid],
-    seats: Vec<Seat>,
-) -> Vec<Seat> {
-    for seat in seats {
-        let body = &assembly.bodies[seat.mount.body];
-        solids[seat.solid].seats.push(SeatState::new(seat, body));
-    }
-    solids.iter().flat_map(|part| &part.seats).map(|state| state.seat.clone()).collect()
 }
 
 /// State of an assembly in equilibrium whose bodies in solids are held where they rest.

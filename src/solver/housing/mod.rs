@@ -25,3 +25,4 @@ pub mod quasi_static;
 pub mod reduce;
 pub mod reduced_start;
 pub mod seat;
+pub mod stepped;
