@@ -271,6 +271,8 @@ fn steps_of_equilibria_are_refused() {
         ("numerics.step", "step = \"1 us\""),
         ("numerics.step_fraction", "step_fraction = 0.4"),
         ("numerics.integrator", "integrator = \"rk4\""),
+        ("numerics.start", "start = \"nominal\""),
+        ("numerics.energy_limit", "energy_limit = 0.5"),
     ] {
         let numerics = format!("end = \"1 ms\"\n{given}");
         let scene = place.scene("scene.toml", &changed("end = \"1 ms\"", &numerics));

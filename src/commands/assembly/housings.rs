@@ -51,8 +51,14 @@ pub fn refuse(document: &Document, scene: &AssemblyScene, housings: &[Housing]) 
 
 /// What is said of steps where nothing is stepped in time.
 pub fn refuse_steps(document: &Document) -> Fallible<()> {
-    const KEYS: [&str; 4] =
-        ["numerics.accuracy", "numerics.step", "numerics.step_fraction", "numerics.integrator"];
+    const KEYS: [&str; 6] = [
+        "numerics.accuracy",
+        "numerics.step",
+        "numerics.step_fraction",
+        "numerics.integrator",
+        "numerics.start",
+        "numerics.energy_limit",
+    ];
     let Some(key) = KEYS.into_iter().find(|key| document.is_given(key)) else { return Ok(()) };
     let place = document.place_of(&About::key(key));
     let reason = "equilibria one after the other take no steps in time";
