@@ -90,6 +90,7 @@ pub fn of_assembly(
     solution: &AssemblySolution,
 ) -> Vec<String> {
     let mut remarks = of_springs(scene);
+    remarks.extend(at_rest(scene));
     if let Determinacy::Indeterminate { free_directions } = &solution.determinacy {
         remarks.push(format!(
             "indeterminate: {} directions of the bodies meet no stiffness, the position shown is one of many; \
@@ -174,7 +175,8 @@ pub fn of_springs(scene: &AssemblyScene) -> Vec<String> {
     let said = |spring: &Spring| {
         let [(from, _), (to, _)] = spring.ends;
         let from = from.filter(|body| turns(*body))?;
-        if !uneven(&spring.stiffness) && !uneven(&spring.damping) {
+        let uneven_element = spring.maxwell.iter().any(|element| uneven(&element.stiffness));
+        if !uneven(&spring.stiffness) && !uneven(&spring.damping) && !uneven_element {
             return None;
         }
         let body = &scene.bodies[from].name;
@@ -192,6 +194,21 @@ pub fn of_springs(scene: &AssemblyScene) -> Vec<String> {
         ))
     };
     scene.springs.iter().filter_map(said).collect()
+}
+
+/// Springs of which an equilibrium knows a part only.
+fn at_rest(scene: &AssemblyScene) -> impl Iterator<Item = String> {
+    scene.springs.iter().filter_map(|Spring { name, damping, maxwell, .. }| {
+        let slowest = maxwell.iter().map(|element| element.relaxation_time).fold(0.0, f64::max);
+        match (*damping != [0.0; 6], slowest > 0.0) {
+            (_, true) => Some(format!(
+                "spring {name}: its Maxwell elements have relaxed, as they have some {slowest} s after the last change; \
+                 dashpots push nothing at rest"
+            )),
+            (true, false) => Some(format!("spring {name}: its dashpots push nothing at rest")),
+            (false, false) => None,
+        }
+    })
 }
 
 /// With the name of the bearing that they are about.

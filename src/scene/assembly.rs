@@ -7,7 +7,7 @@ use crate::scene::resolved::{DefaultUsed, RunSettings, Scene};
 use crate::scene::solid::SolidScene;
 use crate::scene::statics::{ball_mass, orbital_speed};
 use crate::solver::dynamics::assembly::{Assembly, Body, CAGE, GROUND, INNER, Mobility, OUTER};
-use crate::solver::dynamics::connection::{Connection, Law, SpringDashpot};
+use crate::solver::dynamics::connection::{Connection, Law, MaxwellElement, SpringDashpot};
 use crate::solver::dynamics::equilibrium::static_assembly;
 use crate::solver::dynamics::model::{Drive, RaceBody, RotatingLoad};
 use crate::solver::mount::Mount;
@@ -92,6 +92,9 @@ pub struct SceneBody {
     pub unbalance: f64,
 }
 
+/// Displacements and turns along and about the axes of a spring's first body.
+pub const SIX: [&str; 6] = ["x", "y", "z", "turn_x", "turn_y", "turn_z"];
+
 /// Springs and dashpots between two bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spring {
@@ -100,6 +103,7 @@ pub struct Spring {
     pub ends: [(Option<usize>, f64); 2],
     pub stiffness: [f64; 6],
     pub damping: [f64; 6],
+    pub maxwell: Vec<MaxwellElement>,
 }
 
 impl AssemblyScene {
@@ -192,8 +196,9 @@ impl AssemblyScene {
                 reversed: false,
             });
             let rest = [spring.ends[1].1 - spring.ends[0].1, 0.0, 0.0];
-            let (stiffness, damping) = (spring.stiffness, spring.damping);
-            let law = Law::SpringDashpot(SpringDashpot { stiffness, damping, rest });
+            let Spring { stiffness, damping, .. } = *spring;
+            let maxwell = spring.maxwell.clone();
+            let law = Law::SpringDashpot(SpringDashpot { stiffness, damping, maxwell, rest });
             Connection { name: format!("the spring {}", spring.name), ends, law }
         }));
         Ok(all)

@@ -5,8 +5,8 @@ use crate::scene::key_table_dynamics::{
     DASHPOT, FOUNDATION, FOUNDATION_HINT, INERTIA, INERTIA_HINT, MASS, MASS_HINT, TILT_DASHPOT,
     TILT_FOUNDATION,
 };
-use crate::scene::keys::{Key, Kind, Need, Table, closed, table};
-use crate::scene::units::Dimension::{Angle, Length, Unbalance};
+use crate::scene::keys::{Key, Kind, Need, Table, above, closed, list_table, table};
+use crate::scene::units::Dimension::{Angle, Length, Time, Unbalance};
 use Need::{Default, Depends, Optional, Required};
 
 /// The word for a race that is a body of its own, and for what does not move.
@@ -75,6 +75,13 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("spring.damping.turn_x", TILT_DASHPOT, NO_TURN_DASHPOT, "Dashpot against turns about X of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.turn_y", TILT_DASHPOT, NO_TURN_DASHPOT, "Dashpot against turns about Y of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.turn_z", TILT_DASHPOT, NO_TURN_DASHPOT, "Dashpot against turns about Z of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.maxwell.relaxation_time", Kind::Quantity(Time, above(0.0, 1e9, "s")), Required, "Time in which the element's force falls to 1/e at rest.").hint("of rubber 1 us to 100 s; check the unit").example_of("10 ms"),
+    Key::new("spring.maxwell.x", FOUNDATION, NONE, "Stiffness along X of the first body before it relaxes.").hint(FOUNDATION_HINT).example_of("2e6 N/m"),
+    Key::new("spring.maxwell.y", FOUNDATION, NONE, "The same along Y.").hint(FOUNDATION_HINT),
+    Key::new("spring.maxwell.z", FOUNDATION, NONE, "The same along Z.").hint(FOUNDATION_HINT),
+    Key::new("spring.maxwell.turn_x", TILT_FOUNDATION, NO_TURN, "The same against turns about X.").hint(FOUNDATION_HINT),
+    Key::new("spring.maxwell.turn_y", TILT_FOUNDATION, NO_TURN, "The same against turns about Y.").hint(FOUNDATION_HINT),
+    Key::new("spring.maxwell.turn_z", TILT_FOUNDATION, NO_TURN, "The same against turns about Z.").hint(FOUNDATION_HINT),
 ];
 
 const CONDITION: &str = "x = { load = \"250 N\" } or { displacement = \"3 um\" }";
@@ -98,4 +105,6 @@ pub(super) const TABLES: &[Table] = &[
         "[spring.coupling]\nfrom = \"ground\"\nto = \"shaft\"\nstiffness = { turn_x = \"100 N m/rad\" }"),
     table("spring.stiffness", "Springs along and about the axes of the first body.", "stiffness = { x = \"1e8 N/m\", turn_y = \"1e4 N m/rad\" }"),
     table("spring.damping", "Dashpots along and about the same axes.", "damping = { x = \"1000 N s/m\", turn_y = \"1 N m s/rad\" }"),
+    list_table("spring.maxwell", "Springs in series with dashpots beside those of `stiffness`, which then is what is left at rest: rubber, by its Prony series. As many as wanted. In motion each has a state of its own; in an equilibrium all have relaxed.",
+        "[[spring.bushing.maxwell]]\nrelaxation_time = \"10 ms\"\ny = \"2e6 N/m\"\nz = \"2e6 N/m\""),
 ];

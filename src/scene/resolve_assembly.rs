@@ -2,9 +2,9 @@
 
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::scene::assembly::{
-    AssemblyScene, Carrier, NO_INERTIA, PlacedBearing, PlacedHousing, SceneBody, Spring,
+    AssemblyScene, Carrier, NO_INERTIA, PlacedBearing, PlacedHousing, SIX, SceneBody, Spring,
 };
-use crate::scene::document::Document;
+use crate::scene::document::{Document, ItemRef};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::housing::HousingMethod;
 use crate::scene::key_table_assembly::{GROUND, OWN_RACES};
@@ -12,9 +12,11 @@ use crate::scene::keys;
 use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_dynamics::{check_inertia, foundation, rotating_load, rotation};
 use crate::scene::resolve_housing::in_housing;
+use crate::scene::resolve_solid::{item_number, missing};
 use crate::scene::resolved::{DefaultUsed, Scene};
 use crate::scene::scopes::no_such;
 use crate::scene::value::Checked;
+use crate::solver::dynamics::connection::MaxwellElement;
 use crate::solver::dynamics::model::RaceBody;
 
 /// Whether a scene is more than a bearing alone, a solid alone, or one bearing in its housing.
@@ -397,15 +399,26 @@ fn spring(
     let at = reader.number("spring.from_at").unwrap_or(0.0);
     let to_at = reader.given_number("spring.to_at").unwrap_or(at);
     let six = |what: &str| {
-        ["x", "y", "z", "turn_x", "turn_y", "turn_z"]
-            .map(|name| reader.given_number(&format!("spring.{what}.{name}")).unwrap_or(0.0))
+        SIX.map(|name| reader.given_number(&format!("spring.{what}.{name}")).unwrap_or(0.0))
     };
     let (stiffness, damping) = (six("stiffness"), six("damping"));
-    if stiffness == [0.0; 6] && damping == [0.0; 6] {
+    let maxwell = scoped.items("spring.maxwell").map(maxwell).collect::<Result<Vec<_>, _>>()?;
+    if stiffness == [0.0; 6] && damping == [0.0; 6] && maxwell.is_empty() {
         return Err(reader.missing("spring.stiffness.x", " or another spring or dashpot"));
     }
     note_named(reader, &scoped, defaults);
-    Ok(Spring { name: name.into(), ends: [(from, at), (to, to_at)], stiffness, damping })
+    Ok(Spring { name: name.into(), ends: [(from, at), (to, to_at)], stiffness, damping, maxwell })
+}
+
+fn maxwell(item: ItemRef) -> Result<MaxwellElement, SceneError> {
+    let Some(relaxation_time) = item_number(item, "relaxation_time") else {
+        return Err(missing(item, "relaxation_time", "", "relaxation_time = \"10 ms\""));
+    };
+    let stiffness = SIX.map(|name| item_number(item, name).unwrap_or(0.0));
+    if stiffness == [0.0; 6] {
+        return Err(missing(item, "z", ", nothing relaxes", "z = \"2e6 N/m\""));
+    }
+    Ok(MaxwellElement { stiffness, relaxation_time })
 }
 
 /// Defaults of a named thing, under its name.

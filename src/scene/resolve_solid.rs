@@ -306,7 +306,7 @@ fn set(item: ItemRef) -> Result<SetRequest, SceneError> {
     Ok(SetRequest { name, place, tolerance: item_number(item, "tolerance") })
 }
 
-fn missing(item: ItemRef, name: &str, because: &str, example: &str) -> SceneError {
+pub(super) fn missing(item: ItemRef, name: &str, because: &str, example: &str) -> SceneError {
     let (because, example) = (because.to_string(), format!("`{example}`"));
     item.error(name, Problem::Missing { because, example })
 }
@@ -323,7 +323,7 @@ fn item_text(item: ItemRef, name: &str, example: &str) -> Result<String, SceneEr
     }
 }
 
-fn item_number(item: ItemRef, name: &str) -> Option<f64> {
+pub(super) fn item_number(item: ItemRef, name: &str) -> Option<f64> {
     match item.value(name)? {
         Checked::Number(value) => Some(*value),
         _ => None,

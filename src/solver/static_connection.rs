@@ -1,4 +1,4 @@
-//! Springs and dashpots between bodies in an equilibrium.
+//! Springs between bodies in an equilibrium: dashpots push nothing, Maxwell elements have relaxed.
 
 use super::dynamics::connection::Connection;
 use super::dynamics::race;
@@ -17,7 +17,7 @@ pub(super) fn add_connection(model: &Model, connection: &Connection, here: &mut 
     });
     let ends = [0, 1].map(|end| race::mounted(&bodies[end].0, &connection.ends[end]));
     let ends = [&ends[0], &ends[1]];
-    let pull = connection.pull(ends);
+    let pull = connection.pull(ends, &[]);
     here.energy += pull.energy;
     // Of a force at a section along its body's coordinates.
     let conjugate = |end: usize, force: Vec3, moment: Vec3| {

@@ -25,6 +25,7 @@ mod free_balls;
 mod geometry_laws;
 mod plan_and_step;
 mod profile_laws;
+mod relaxing;
 mod shafts;
 mod statics_laws;
 mod work_counts;

@@ -75,7 +75,7 @@ fn everything() -> DynamicProblem {
 /// The same with a spring between the races and with a reduced ring round the outer one.
 fn with_ring() -> Assembly {
     let mut assembly = everything().assembly();
-    let law = SpringDashpot { stiffness: [1e6; 6], damping: [1.0; 6], rest: [0.0; 3] };
+    let law = SpringDashpot { stiffness: [1e6; 6], damping: [1.0; 6], ..SpringDashpot::default() };
     assembly.connections.push(Connection {
         name: "a spring".into(),
         ends: [INNER, OUTER].map(Mount::at_centre),
@@ -253,7 +253,7 @@ fn statics_does_what_is_planned_and_nothing_else() {
         task.orbital_speed = speed;
         let mut assembly = task.assembly();
         if sprung {
-            let law = SpringDashpot { stiffness: [1e6; 6], damping: [0.0; 6], rest: [0.0; 3] };
+            let law = SpringDashpot { stiffness: [1e6; 6], ..SpringDashpot::default() };
             assembly.connections.push(Connection {
                 name: "a spring".into(),
                 ends: [INNER, OUTER].map(Mount::at_centre),

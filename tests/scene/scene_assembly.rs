@@ -5,7 +5,7 @@ use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{Document, Format, Scene, Subject, resolve, resolve_subject};
 use bearing_dynamics::solver::dynamics::assembly::Assembly;
-use bearing_dynamics::solver::dynamics::connection::Law;
+use bearing_dynamics::solver::dynamics::connection::{Law, MaxwellElement};
 use bearing_dynamics::solver::dynamics::model::{Drive, Rotation};
 use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
@@ -83,6 +83,13 @@ to = "hub"
 from_at = "10 mm"
 to_at = "45 mm"
 damping = { z = "3 N s/m" }
+[[spring.other.maxwell]]
+relaxation_time = "20 ms"
+x = "13 N/m"
+turn_z = "14 N m/rad"
+[[spring.other.maxwell]]
+relaxation_time = "3 s"
+y = "15 N/mm"
 "#;
 
 #[test]
@@ -182,6 +189,13 @@ fn bodies_and_springs_are_what_their_tables_say() {
     assert_eq!(law.stiffness, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
     assert_eq!(law.damping, [7.0, 8.0, 9.0, 10.0, 11.0, 12.0]);
     assert_eq!((second.stiffness, second.damping), ([0.0; 6], [0.0, 0.0, 3.0, 0.0, 0.0, 0.0]));
+    assert_eq!(law.maxwell, []);
+    let element = |stiffness, relaxation_time| MaxwellElement { stiffness, relaxation_time };
+    let elements = [
+        element([13.0, 0.0, 0.0, 0.0, 0.0, 14.0], 0.02),
+        element([0.0, 15e3, 0.0, 0.0, 0.0, 0.0], 3.0),
+    ];
+    assert_eq!(second.maxwell, elements);
     assert_eq!(law.rest, [0.0; 3]);
     assert!((second.rest[0] - 35e-3).abs() <= 1e-15 && second.rest[1..] == [0.0; 2], "{second:?}");
 }
@@ -371,4 +385,30 @@ fn outer_races_do_not_share_a_place_either() {
         Ok(_) => panic!("balls run in each other"),
     };
     assert!(error.contains("5.0000 mm apart") && error.contains("outer_at"), "{error}");
+}
+
+/// What relaxes at no time or has no stiffness is refused at its place; an element alone is a spring.
+#[test]
+fn maxwell_elements_are_whole() {
+    let with = |item: &str| {
+        let text = format!(
+            "{BEARING}\n[body.shaft]\n[spring.rubber]\nfrom = \"ground\"\nto = \"shaft\"\n[[spring.rubber.maxwell]]\n{item}\n"
+        );
+        let document = Document::read_str(&text, Format::Toml, "a.toml");
+        let scene = document.and_then(|document| resolve_subject(&document).map(drop));
+        scene.map_err(|error| error.to_string())
+    };
+    for (item, part) in [
+        ("x = \"1 N/m\"", "relaxation_time"),
+        ("relaxation_time = \"1 s\"", "nothing relaxes"),
+        ("relaxation_time = \"0 s\"\nx = \"1 N/m\"", "outside"),
+        ("relaxation_time = \"-1 s\"\nx = \"1 N/m\"", "outside"),
+        ("relaxation_time = \"nan s\"\nx = \"1 N/m\"", "NaN"),
+        ("relaxation_time = \"1 s\"\nx = \"-1 N/m\"", "outside"),
+        ("relaxation_time = \"1 s\"\nturn_x = \"1 N/m\"", "unit"),
+    ] {
+        let message = with(item).unwrap_err();
+        assert!(message.contains(part) && message.starts_with("a.toml:"), "{item}: {message}");
+    }
+    assert_eq!(with("relaxation_time = \"1 s\"\nx = \"1 N/m\""), Ok(()));
 }

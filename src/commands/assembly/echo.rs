@@ -7,10 +7,11 @@ use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::RunSettings;
 use bearing_dynamics::scene::assembly::{
-    AssemblyScene, Carrier, PlacedBearing, PlacedHousing, Spring,
+    AssemblyScene, Carrier, PlacedBearing, PlacedHousing, SIX, Spring,
 };
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{FitSize, HousingMethod, HousingSettings};
+use bearing_dynamics::solver::dynamics::connection::MaxwellElement;
 use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
 use serde_json::{Map, Value, json};
 
@@ -69,18 +70,27 @@ fn spring(scene: &AssemblyScene, spring: &Spring) -> Result<Value, ResultsError>
         Ok(json!({ "body": name, "at": quantity("place", 1e3 * at, "mm")? }))
     };
     let six = |values: &[f64; 6], units: [&str; 2]| -> Result<Value, ResultsError> {
-        let names = ["x", "y", "z", "turn_x", "turn_y", "turn_z"];
         let entry = |(i, name): (usize, &&str)| {
             Ok((name.to_string(), quantity(name, values[i], units[usize::from(i > 2)])?))
         };
-        Ok(Value::Object(names.iter().enumerate().map(entry).collect::<Result<_, ResultsError>>()?))
+        Ok(Value::Object(SIX.iter().enumerate().map(entry).collect::<Result<_, ResultsError>>()?))
     };
-    Ok(json!({
+    let mut echo = json!({
         "from": end(spring.ends[0])?,
         "to": end(spring.ends[1])?,
         "stiffness": six(&spring.stiffness, ["N/m", "N m/rad"])?,
         "damping": six(&spring.damping, ["N s/m", "N m s/rad"])?,
-    }))
+    });
+    let element = |of: &MaxwellElement| -> Result<Value, ResultsError> {
+        let relaxation_time = quantity("relaxation_time", of.relaxation_time, "s")?;
+        let stiffness = six(&of.stiffness, ["N/m", "N m/rad"])?;
+        Ok(json!({ "relaxation_time": relaxation_time, "stiffness": stiffness }))
+    };
+    if !spring.maxwell.is_empty() {
+        let elements = spring.maxwell.iter().map(element);
+        echo["maxwell"] = Value::Array(elements.collect::<Result<_, ResultsError>>()?);
+    }
+    Ok(echo)
 }
 
 /// Of one bearing and what it sits in; with the housing how a run is computed.

@@ -110,7 +110,12 @@ pub fn lines(scene: &AssemblyScene) -> Vec<(String, String)> {
             })
         };
         let [from, to] = spring.ends.map(end);
-        said.push((format!("spring {}", spring.name), format!("from {from} to {to}")));
+        let relaxing = match spring.maxwell.len() {
+            0 => String::new(),
+            1 => ", 1 Maxwell element".into(),
+            count => format!(", {count} Maxwell elements"),
+        };
+        said.push((format!("spring {}", spring.name), format!("from {from} to {to}{relaxing}")));
     }
     said
 }

@@ -5,7 +5,8 @@
 //! Balls are eliminated a block of [`LANES`] at a time, with every driver.
 
 use super::arrow_terms::{
-    add_joints, add_solids, drive_power, joint_forces, solid_forces, spring_back, weigh,
+    add_joints, add_solids, drive_power, elongate, joint_forces, relaxing_forces, solid_forces,
+    spring_back, weigh,
 };
 use super::assembly::Assembly;
 use super::ball_set::BallSet;
@@ -193,6 +194,7 @@ impl Arrow {
             }
         }
         joint_forces(linearised, scale, moved, hubs);
+        relaxing_forces(linearised, scale, r, hubs);
         solid_forces(linearised, scale, seats, r, moved, hubs);
         for (index, block) in linearised.blocks.iter().enumerate() {
             let right = &mut balls[index];
@@ -237,6 +239,7 @@ impl Arrow {
                 moved[i] += scale * rate[i];
             }
         }
+        elongate(linearised, scale, rates, r, w);
         let (_, shapes) = hubs.split_at(6 * linearised.hubs.len());
         for solid in &linearised.solids {
             let (at, count) = (solid.at, solid.stiffness.len());

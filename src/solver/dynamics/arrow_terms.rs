@@ -2,8 +2,9 @@
 //! sides.
 
 use super::arrow::SeatShapes;
+use super::connection::MaxwellElement;
 use super::elimination::{Dense, ZERO, add_product, subtract_product, total};
-use super::linearised::{Lane, LaneContact, Linearised};
+use super::linearised::{JointRow, Lane, LaneContact, Linearised};
 use super::state::LANES;
 
 /// Weights times levers: (h²γ² k + hγ c) along the normal, hγ · slope for the others.
@@ -174,19 +175,34 @@ pub(super) fn add_joints(linearised: &Linearised, scale: f64, schur: &mut Dense)
         for row in &joint.rows[..joint.count] {
             let spring = scale * scale * row.stiffness;
             let weight = if row.damping == 0.0 { spring } else { spring + scale * row.damping };
-            for (a, rows) in joint.hubs.into_iter().enumerate() {
-                for (b, columns) in joint.hubs.into_iter().enumerate() {
-                    let (Some(rows), Some(columns)) = (rows, columns) else { continue };
-                    // The upper triangle alone is kept.
-                    if rows > columns {
-                        continue;
-                    }
-                    for i in 0..6 {
-                        for j in 0..6 {
-                            *schur.at(6 * rows + i, 6 * columns + j) +=
-                                row.levers[a][i] * weight * row.levers[b][j];
-                        }
-                    }
+            add_joint(joint.hubs, row, weight, schur);
+        }
+    }
+    // de/dt = L v − e/τ, whose elongations are eliminated.
+    for of in &linearised.relaxing {
+        let joint = &linearised.joints[of.joint];
+        for (i, row) in joint.rows.iter().enumerate() {
+            let follows = |element: &MaxwellElement| {
+                element.stiffness[i] / (1.0 + scale / element.relaxation_time)
+            };
+            let stiffness: f64 = of.elements.iter().map(follows).sum();
+            add_joint(joint.hubs, row, scale * scale * stiffness, schur);
+        }
+    }
+}
+
+fn add_joint(hubs: [Option<usize>; 2], row: &JointRow, weight: f64, schur: &mut Dense) {
+    for (a, rows) in hubs.into_iter().enumerate() {
+        for (b, columns) in hubs.into_iter().enumerate() {
+            let (Some(rows), Some(columns)) = (rows, columns) else { continue };
+            // The upper triangle alone is kept.
+            if rows > columns {
+                continue;
+            }
+            for i in 0..6 {
+                for j in 0..6 {
+                    *schur.at(6 * rows + i, 6 * columns + j) +=
+                        row.levers[a][i] * weight * row.levers[b][j];
                 }
             }
         }
@@ -212,6 +228,49 @@ pub(super) fn joint_forces(
                 for j in 0..6 {
                     hubs[6 * hub + j] -= lever[j] * push;
                 }
+            }
+        }
+    }
+}
+
+/// What the elongations of Maxwell elements in `r` push back.
+pub(super) fn relaxing_forces(linearised: &Linearised, scale: f64, r: &[f64], hubs: &mut [f64]) {
+    for of in &linearised.relaxing {
+        let joint = &linearised.joints[of.joint];
+        for (k, element) in of.elements.iter().enumerate() {
+            let decay = 1.0 / (1.0 + scale / element.relaxation_time);
+            for (i, row) in joint.rows.iter().enumerate() {
+                let push = scale * element.stiffness[i] * decay * r[of.at + 6 * k + i];
+                for (lever, hub) in row.levers.iter().zip(joint.hubs) {
+                    let Some(hub) = hub else { continue };
+                    for j in 0..6 {
+                        hubs[6 * hub + j] -= lever[j] * push;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Elongations in `w` from those in `r` and the rates of the hubs.
+pub(super) fn elongate(
+    linearised: &Linearised,
+    scale: f64,
+    rates: &[[f64; 6]],
+    r: &[f64],
+    w: &mut [f64],
+) {
+    for of in &linearised.relaxing {
+        let joint = &linearised.joints[of.joint];
+        for (i, row) in joint.rows.iter().enumerate() {
+            let mut rate = 0.0;
+            for (lever, hub) in row.levers.iter().zip(joint.hubs) {
+                let Some(hub) = hub else { continue };
+                rate += (0..6).map(|j| lever[j] * rates[hub][j]).sum::<f64>();
+            }
+            for (k, element) in of.elements.iter().enumerate() {
+                let e = of.at + 6 * k + i;
+                w[e] = (r[e] + scale * rate) / (1.0 + scale / element.relaxation_time);
             }
         }
     }

@@ -28,15 +28,27 @@ pub enum Law {
     Torsion(Torsion),
 }
 
-/// Six springs and dashpots along and about the axes X, Y, Z of the first end.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Six springs and dashpots along and about the axes X, Y, Z of the first end, and beside them any number of
+/// springs that relax, as rubber does.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SpringDashpot {
-    /// N/m, N·m/rad.
+    /// N/m, N·m/rad; with Maxwell elements what is left when all have relaxed.
     pub stiffness: [f64; 6],
     /// N·s/m, N·m·s/rad.
     pub damping: [f64; 6],
+    pub maxwell: Vec<MaxwellElement>,
     /// Place of the second end in the first one's axes where no spring pulls, m.
     pub rest: Vec3,
+}
+
+/// Six springs, each in series with a dashpot: K e, where the elongation e (m, rad) of the spring follows the
+/// displacement q by de/dt = dq/dt − e/τ. What (2.13) does to a stress, of a whole bushing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MaxwellElement {
+    /// N/m, N·m/rad.
+    pub stiffness: [f64; 6],
+    /// τ, s.
+    pub relaxation_time: f64,
 }
 
 /// A spring and a dashpot against the twist of the second end about the first one's X axis; bending and all
@@ -59,6 +71,8 @@ pub struct Pull {
     pub energy: f64,
     /// Power of its dashpots, W, ≤ 0.
     pub loss: f64,
+    /// Rates of the six displacements, m/s and rad/s, where there are Maxwell elements that follow them.
+    pub rates: [f64; 6],
 }
 
 /// One direction in which a connection pushes back.
@@ -75,10 +89,11 @@ pub struct Row {
 pub const ROWS: usize = 6;
 
 impl Connection {
-    /// Loads on both ends where they are.
-    pub fn pull(&self, ends: [&RaceNow; 2]) -> Pull {
+    /// Loads on both ends where they are, the springs of its Maxwell elements `elongated` by so much (m, rad; six
+    /// for each element), or relaxed where nothing is given.
+    pub fn pull(&self, ends: [&RaceNow; 2], elongated: &[f64]) -> Pull {
         match &self.law {
-            Law::SpringDashpot(law) => spring_dashpot(law, ends),
+            Law::SpringDashpot(law) => spring_dashpot(law, ends, elongated),
             Law::Torsion(law) => torsion(law, ends),
         }
     }
@@ -92,12 +107,22 @@ impl Connection {
         }
     }
 
-    /// Takes its springs or its dashpots out; whether there were any.
+    /// Those that it has.
+    pub fn maxwell(&self) -> &[MaxwellElement] {
+        match &self.law {
+            Law::SpringDashpot(law) => &law.maxwell,
+            Law::Torsion(_) => &[],
+        }
+    }
+
+    /// Takes its springs or its dashpots out, and with either its Maxwell elements, which are both; whether there
+    /// were any.
     pub fn take_out(&mut self, springs: bool) -> bool {
         match &mut self.law {
             Law::SpringDashpot(law) => {
+                let relaxed = std::mem::take(&mut law.maxwell).is_empty();
                 let part = if springs { &mut law.stiffness } else { &mut law.damping };
-                std::mem::take(part) != [0.0; 6]
+                std::mem::take(part) != [0.0; 6] || !relaxed
             }
             Law::Torsion(law) => {
                 let part = if springs { &mut law.stiffness } else { &mut law.damping };
@@ -117,7 +142,10 @@ impl Connection {
     /// Whether nothing of it pushes or brakes, so that it may be left out.
     pub fn is_void(&self) -> bool {
         match &self.law {
-            Law::SpringDashpot(law) => law.stiffness == [0.0; 6] && law.damping == [0.0; 6],
+            Law::SpringDashpot(law) => {
+                let pushes = law.maxwell.iter().any(|element| element.stiffness != [0.0; 6]);
+                law.stiffness == [0.0; 6] && law.damping == [0.0; 6] && !pushes
+            }
             Law::Torsion(law) => law.stiffness == 0.0 && law.damping == 0.0,
         }
     }
@@ -165,7 +193,7 @@ fn rates(ends: [&RaceNow; 2], axes: &[Vec3; 3]) -> (Vec3, Vector3<f64>) {
     (along(sub(second.velocity, carried)), along(sub(second.spin, first.spin)).into())
 }
 
-fn spring_dashpot(law: &SpringDashpot, ends: [&RaceNow; 2]) -> Pull {
+fn spring_dashpot(law: &SpringDashpot, ends: [&RaceNow; 2], elongated: &[f64]) -> Pull {
     let axes = axes(ends);
     let arm = sub(ends[1].motion.position, ends[0].motion.position);
     let (speed, turning) = rates(ends, &axes);
@@ -181,6 +209,17 @@ fn spring_dashpot(law: &SpringDashpot, ends: [&RaceNow; 2]) -> Pull {
         moment[i] = -(law.stiffness[3 + i] * turn[i] + law.damping[3 + i] * turned[i]);
         pull.energy += 0.5 * spring * stretch + 0.5 * law.stiffness[3 + i] * turn[i] * turn[i];
         pull.loss -= dashpot * speed[i] + law.damping[3 + i] * turned[i] * turned[i];
+        (pull.rates[i], pull.rates[3 + i]) = (speed[i], turned[i]);
+    }
+    for (element, by) in law.maxwell.iter().zip(elongated.as_chunks::<6>().0) {
+        for i in 0..3 {
+            let tension = [i, 3 + i].map(|k| element.stiffness[k] * by[k]);
+            force[i] -= tension[0];
+            moment[i] -= tension[1];
+            let stored = tension[0] * by[i] + tension[1] * by[3 + i];
+            pull.energy += 0.5 * stored;
+            pull.loss -= stored / element.relaxation_time;
+        }
     }
     let moment = turn_rate.transpose() * moment;
     let world = |parts: [f64; 3]| -> Vec3 {
@@ -229,6 +268,7 @@ fn torsion(law: &Torsion, ends: [&RaceNow; 2]) -> Pull {
         on: [on(moment.map(|part| -part)), on(moment)],
         energy: 0.5 * law.stiffness * angle * angle,
         loss: -law.damping * rate * rate,
+        ..Pull::default()
     }
 }
 

@@ -60,6 +60,8 @@ pub struct Controller {
     bodies: Vec<(usize, Scale)>,
     /// Shapes of reduced solids.
     shapes: Vec<ShapeScale>,
+    /// First of six elongations of each Maxwell element, with what turns its angles into displacements, m.
+    elongations: Vec<(usize, f64)>,
 }
 
 /// What makes a shape of a reduced solid comparable.
@@ -101,6 +103,17 @@ fn shapes(assembly: &Assembly, places: &Places) -> Vec<ShapeScale> {
             frequency: solid.frequencies[k],
             race,
         }));
+    }
+    all
+}
+
+/// Maxwell elements of all connections, with the longer arm of the two bodies that they join.
+fn elongations(assembly: &Assembly, places: &Places) -> Vec<(usize, f64)> {
+    let mut all = Vec::new();
+    for (connection, at) in assembly.connections.iter().zip(places.connections(assembly)) {
+        let [first, second] = connection.ends.map(|mount| arm(assembly, mount.body));
+        let elements = 0..connection.maxwell().len();
+        all.extend(elements.map(|k| (at + 6 * k, first.max(second))));
     }
     all
 }
@@ -151,6 +164,7 @@ impl Controller {
             balls: balls.collect(),
             bodies: bodies.collect(),
             shapes: shapes(assembly, &places),
+            elongations: elongations(assembly, &places),
         }
     }
 
@@ -215,6 +229,10 @@ impl Controller {
             let [gone, speed] = shape.at;
             take(per * shape.reach * error[gone].abs());
             take(per * shape.reach * error[speed].abs() / frequency);
+        }
+        for &(at, arm) in &self.elongations {
+            take(per * largest(at, 3));
+            take(per * arm * largest(at + 3, 3));
         }
         norm
     }

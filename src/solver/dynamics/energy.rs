@@ -93,9 +93,10 @@ impl System {
                 energy.foundation += 0.5 * driven.foundation_stiffness[i] * stretch * stretch;
             }
         }
-        for connection in &assembly.connections {
+        for (connection, &at) in assembly.connections.iter().zip(&self.connections) {
+            let elongated = &state[at..at + 6 * connection.maxwell().len()];
             let ends = connection.ends.map(|mount| mounted(&self.bodies[mount.body], &mount));
-            energy.foundation += connection.pull([&ends[0], &ends[1]]).energy;
+            energy.foundation += connection.pull([&ends[0], &ends[1]], elongated).energy;
         }
         for solid in 0..assembly.solids.len() {
             let of = self.energy_of_solid(state, solid);

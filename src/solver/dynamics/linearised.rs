@@ -14,7 +14,7 @@
 
 use super::assembly::{Bearing, Mobility};
 use super::ball_set::{BallSet, guiding_side};
-use super::connection::{self, Connection};
+use super::connection::{self, Connection, MaxwellElement};
 use super::linearised_contacts::{friction, pockets, race_contacts};
 use super::model::{Drive, RaceBody, Rotation};
 use super::race::{RaceNow, directions, mounted};
@@ -77,6 +77,16 @@ pub struct JointRow {
     pub stiffness: f64,
     /// N·s/m, N·m·s/rad; of friction the slope by sliding.
     pub damping: f64,
+}
+
+/// Maxwell elements along the rows of a joint.
+#[derive(Clone, Debug, Default)]
+pub struct Relaxing {
+    /// In [`Linearised::joints`].
+    pub joint: usize,
+    /// First of their entries in the state.
+    pub at: usize,
+    pub elements: Vec<MaxwellElement>,
 }
 
 /// Shapes of a reduced solid, one equation each with a mass of 1 kg.
@@ -147,6 +157,7 @@ pub struct Linearised {
     pub blocks: Vec<BallBlock>,
     /// Both ends of the cage of each bearing on its guiding race, two a bearing; then connections.
     pub joints: Vec<Joint>,
+    pub relaxing: Vec<Relaxing>,
     /// Bodies that move, in their order.
     pub hubs: Vec<Hub>,
     /// Of each body of the assembly.
@@ -192,6 +203,14 @@ impl Linearised {
             let hubs = connection.ends.map(|mount| hub_of[mount.body]);
             Joint { hubs, count: connection::ROWS, ..Joint::default() }
         }));
+        let relaxing = assembly.connections.iter().zip(&system.connections).enumerate();
+        let relaxing = relaxing.filter(|(_, (connection, _))| !connection.maxwell().is_empty());
+        let relaxing = relaxing.map(|(index, (connection, &at))| Relaxing {
+            joint: 2 * system.sets.len() + index,
+            at,
+            elements: connection.maxwell().to_vec(),
+        });
+        let relaxing = relaxing.collect();
         let mut first = 0;
         let solids = assembly.solids.iter().zip(&system.solids).map(|(solid, &at)| {
             let stiffness: Vec<f64> = solid.frequencies.iter().map(|w| w * w).collect();
@@ -205,7 +224,7 @@ impl Linearised {
             nodes: Vec::with_capacity(now.outward.len()),
         });
         let (solids, seats) = (solids.collect(), seats.collect());
-        Linearised { blocks, joints, hubs, hub_of, solids, seats }
+        Linearised { blocks, joints, relaxing, hubs, hub_of, solids, seats }
     }
 
     /// Equations of all reduced solids.

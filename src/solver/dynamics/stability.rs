@@ -286,6 +286,9 @@ fn directions(system: &System) -> Vec<Direction> {
             directions.push(Direction::Rate(at + solid.count() + shape));
         }
     }
+    for (connection, at) in system.assembly.connections.iter().zip(&system.connections) {
+        directions.extend((0..6 * connection.maxwell().len()).map(|k| Direction::Position(at + k)));
+    }
     directions
 }
 

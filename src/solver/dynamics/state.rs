@@ -2,10 +2,11 @@
 //! plain numbers.
 //!
 //! The balls of each bearing lie component by component (all x, all y, …), padded to whole lanes; bodies
-//! (races, cages, shafts) follow one by one; then the shapes of each reduced solid, how far and how fast; the
-//! energy ledger comes last.
+//! (races, cages, shafts) follow one by one; then the shapes of each reduced solid, how far and how fast; then how
+//! far the springs of Maxwell elements are stretched; the energy ledger comes last.
 
 use super::assembly::Assembly;
+use super::connection::Connection;
 use super::reduced_solid::ReducedSolid;
 use crate::kinematics::vec3::Vec3;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -17,6 +18,13 @@ pub struct Places {
     bodies: usize,
     /// Entries of all reduced solids.
     of_solids: usize,
+    /// Entries of all Maxwell elements of connections.
+    of_connections: usize,
+}
+
+/// Entries that a connection has in the state: six for each Maxwell element.
+fn connection_entries(connection: &Connection) -> usize {
+    6 * connection.maxwell().len()
 }
 
 impl Places {
@@ -26,6 +34,7 @@ impl Places {
             first_body: balls.map(ball_entries).sum(),
             bodies: assembly.bodies.len(),
             of_solids: assembly.solids.iter().map(|solid| 2 * solid.count()).sum(),
+            of_connections: assembly.connections.iter().map(connection_entries).sum(),
         }
     }
 
@@ -40,13 +49,24 @@ impl Places {
         assembly.solids.iter().map(&mut first).collect()
     }
 
+    /// First entries of each connection's Maxwell elements: six elongations (m, rad) of each.
+    pub fn connections(&self, assembly: &Assembly) -> Vec<usize> {
+        let mut next = self.body(self.bodies) + self.of_solids;
+        let mut first = |connection: &Connection| {
+            let at = next;
+            next += connection_entries(connection);
+            at
+        };
+        assembly.connections.iter().map(&mut first).collect()
+    }
+
     /// First of the 13 entries of a body.
     pub fn body(&self, body: usize) -> usize {
         self.first_body + BODY * body
     }
 
     pub fn ledger(&self) -> usize {
-        self.body(self.bodies) + self.of_solids
+        self.body(self.bodies) + self.of_solids + self.of_connections
     }
 
     pub fn ledger_entry(&self, entry: Ledger) -> usize {

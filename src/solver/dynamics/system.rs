@@ -28,6 +28,8 @@ pub struct System {
     pub seats: Vec<SeatNow>,
     /// First entry of each reduced solid in the state.
     pub solids: Vec<usize>,
+    /// First entry of each connection's Maxwell elements in the state.
+    pub connections: Vec<usize>,
     /// Every body as last evaluated.
     pub bodies: Vec<RaceNow>,
     /// What something outside does to a body, about its centre; stays as it is within a step.
@@ -65,6 +67,7 @@ impl System {
         System {
             seats: seats.map(|seat| SeatNow::new(seat, &assembly.solids[seat.solid])).collect(),
             solids: places.solids(&assembly),
+            connections: places.connections(&assembly),
             places,
             sets,
             outside: vec![None; bodies.len()],
@@ -130,9 +133,17 @@ impl System {
         }
         let connections: &[Connection] =
             if self.steps.springs { &self.assembly.connections } else { &[] };
-        for connection in connections {
+        for (connection, &at) in connections.iter().zip(&self.connections) {
             let ends = connection.ends.map(|mount| mounted(&self.bodies[mount.body], &mount));
-            let pull = connection.pull([&ends[0], &ends[1]]);
+            let elements = connection.maxwell();
+            let elongated = &state[at..at + 6 * elements.len()];
+            let pull = connection.pull([&ends[0], &ends[1]], elongated);
+            for (k, element) in elements.iter().enumerate() {
+                for i in 0..6 {
+                    let e = at + 6 * k + i;
+                    rates[e] = pull.rates[i] - state[e] / element.relaxation_time;
+                }
+            }
             ledger[Ledger::Foundation as usize] += pull.loss;
             for ((mount, end), loads) in connection.ends.iter().zip(&ends).zip(&pull.on) {
                 let body = &self.bodies[mount.body];
