@@ -7,6 +7,8 @@ mod bore_contact;
 mod elastomer;
 mod material_laws;
 mod rubber;
+mod rubber_bodies;
+mod rubber_limits;
 mod solid_explicit;
 mod solid_factors;
 mod solid_plan;

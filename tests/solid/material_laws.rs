@@ -41,7 +41,7 @@ fn network(name: &'static str, network: EightChain, strains: f64) -> Law {
 fn with_history() -> Law {
     let network = chain(8.0, 1e8, ChainPull::FiveTerms);
     let elements = [Maxwell { gamma: 3.0, tau: 0.1 }, Maxwell { gamma: 0.7, tau: 2.0 }];
-    let factors = StepFactors::of(&elements, 0.05);
+    let factors = StepFactors::of(&elements, 0.05).unwrap();
     let history = [[2e4, -1e4, 5e3, 1e4, -2e4, 3e3], [1e4, 2e4, 5e4, -1e4, 2e4, 1e3]];
     let past = carried(&history, &[3e4, 1e4, -4e4, 2e3, 8e3, -1e3], &factors);
     let gain = factors.total_gain;

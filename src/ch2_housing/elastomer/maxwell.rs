@@ -42,8 +42,15 @@ pub struct StepFactors {
 }
 
 impl StepFactors {
-    /// For a step of `dt` s; zero is a sudden change.
-    pub fn set(&mut self, elements: &[Maxwell], dt: f64) {
+    /// For a step of `dt` s; zero is a sudden change, infinity leaves nothing of the elements.
+    ///
+    /// # Errors
+    /// A step that is negative or not a number.
+    pub fn set(&mut self, elements: &[Maxwell], dt: f64) -> Result<(), ElastomerError> {
+        let forward = dt >= 0.0;
+        if !forward {
+            return Err(ElastomerError::Step(dt));
+        }
         self.decay.clear();
         self.gain.clear();
         self.total_gain = 0.0;
@@ -54,12 +61,15 @@ impl StepFactors {
             self.gain.push(gain);
             self.total_gain += gain;
         }
+        Ok(())
     }
 
-    pub fn of(elements: &[Maxwell], dt: f64) -> StepFactors {
+    /// # Errors
+    /// As [`StepFactors::set`].
+    pub fn of(elements: &[Maxwell], dt: f64) -> Result<StepFactors, ElastomerError> {
         let mut factors = StepFactors::default();
-        factors.set(elements, dt);
-        factors
+        factors.set(elements, dt)?;
+        Ok(factors)
     }
 }
 
@@ -140,16 +150,16 @@ pub fn dissipated(
     sum / (2.0 * shear_modulus)
 }
 
-/// Storage and loss of the deviatoric stiffness over the network's, at `pulsation` rad/s:
-/// 1 + Σ γ iωτ/(1 + iωτ).
+/// Storage and loss of the deviatoric stiffness over the network's, at `pulsation` rad/s, infinity being a
+/// sudden change: 1 + Σ γ iωτ/(1 + iωτ).
 pub fn complex_factor(elements: &[Maxwell], pulsation: f64) -> [f64; 2] {
     let mut sum = [1.0, 0.0];
     for Maxwell { gamma, tau } in elements {
         let x = pulsation * tau;
-        // Both parts are finite however fast or slow the element is.
-        let per = 1.0 / (x + 1.0 / x);
-        sum[0] += if x > 0.0 { gamma * x * per } else { 0.0 };
-        sum[1] += if x > 0.0 { gamma * per } else { 0.0 };
+        let inverse = 1.0 / x;
+        // Both parts are finite however fast or slow the element is, at 0 and at infinity too.
+        sum[0] += gamma / (1.0 + inverse * inverse);
+        sum[1] += gamma / (x + inverse);
     }
     sum
 }

@@ -4,17 +4,29 @@
 //! An element with τ ≫ T, the run's duration, gives γ(S − S₀) − (γ/τ)∫(S − S₀)dt and then terms of
 //! (T/τ)²: elements with the same Σγ and Σγ/τ are the same to that order. One with τ ≪ Δt gives
 //! γτ dS/dt: the same Σγτ and Σγτ² are the same but for what survives a step, exp(−Δt/τ).
+//!
+//! Bounds. What elements and their merger differ by is ∫ k(t − s) dS(s), k the difference of their
+//! relaxations Σ γ exp(−u/τ). Of slow ones |k| stays below the bound for all of the run, so that it
+//! holds for any course. Of fast ones ∫ k du vanishes: where DEV S has gone straight for a while h, that while
+//! leaves ∫ |k| beyond h, and each while of h before it exp(−h/τ) less. Until h after a jump or a corner there is
+//! no such bound but |k| ≤ Σγ.
 
 use super::maxwell::Maxwell;
 
+/// With V the total variation of DEV S in the run and v the largest within `shortest_step` of it, the sum of
+/// the stresses strays by at most
+/// - `slow_bound` V + `fast_bound` v where DEV S has gone straight for `shortest_step` or longer, hence at
+///   the end of every step as long as that;
+/// - `slow_bound` V + (`fast_bound` + `sudden_bound`) v at all other times: at a jump, and at the end of a
+///   shorter step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Merged {
     /// Slowest first.
     pub elements: Vec<Maxwell>,
-    /// How far the sum of their stresses may stray, over the total variation of DEV S in the run.
     pub slow_bound: f64,
-    /// The same over the largest change of DEV S in a step.
     pub fast_bound: f64,
+    /// Σγ of the fast elements that became one.
+    pub sudden_bound: f64,
 }
 
 /// Error of one element taken as slow, over the variation of DEV S, at most.
@@ -23,15 +35,15 @@ fn slow_error(element: &Maxwell, duration: f64) -> f64 {
     0.5 * element.gamma * ratio * ratio
 }
 
-/// Error of one element taken as fast, over a step's change of DEV S: what is left of it after the
-/// step, and of the step before.
+/// Error of one element taken as fast, over the variation of DEV S within a step: of the step itself, and
+/// of all before it.
 fn fast_error(element: &Maxwell, step: f64) -> f64 {
     let ratio = step / element.tau;
-    2.0 * element.gamma / ratio * libm::exp(-ratio)
+    element.gamma * libm::exp(-ratio) * (1.0 / ratio - 1.0 / libm::expm1(-ratio))
 }
 
-/// As few elements as keep both bounds within `tolerance`, for a run of `duration` s in steps of
-/// `shortest_step` s or more.
+/// As few elements as keep the bounds of steps of `shortest_step` s or more in a run of `duration` s within
+/// `tolerance`.
 pub fn merged(elements: &[Maxwell], duration: f64, shortest_step: f64, tolerance: f64) -> Merged {
     let mut sorted = elements.to_vec();
     sorted.sort_by(|a, b| b.tau.total_cmp(&a.tau));
@@ -64,10 +76,13 @@ pub fn merged(elements: &[Maxwell], duration: f64, shortest_step: f64, tolerance
         kept.push(one_fast(&sorted[fast..]));
     }
     // One element in the place of one is that element.
+    let some_fast = sorted.len() - fast > 1;
+    let of_all = sums(&sorted[fast..], |e| [e.gamma, 0.0])[0];
     Merged {
         elements: kept,
         slow_bound: if slow > 1 { slow_bound } else { 0.0 },
-        fast_bound: if sorted.len() - fast > 1 { fast_bound } else { 0.0 },
+        fast_bound: if some_fast { fast_bound } else { 0.0 },
+        sudden_bound: if some_fast { of_all } else { 0.0 },
     }
 }
 

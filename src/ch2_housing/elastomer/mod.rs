@@ -39,6 +39,8 @@ pub enum ElastomerError {
     Gamma(f64),
     #[error("the relaxation time of a Maxwell element is {0} s; it must be positive and finite")]
     Tau(f64),
+    #[error("a step of {0} s; it must not be negative")]
+    Step(f64),
     #[error(
         "the chains are stretched to {stretch:.4} of their length at rest; they are straight at {limit:.4}"
     )]
@@ -50,6 +52,17 @@ pub enum ElastomerError {
 }
 
 impl Elastomer {
+    /// Whether its constants, which anyone may write, are those of a rubber.
+    ///
+    /// # Errors
+    /// Those of [`EightChain::new`] and [`Maxwell::new`].
+    pub fn check(&self) -> Result<(), ElastomerError> {
+        let EightChain { modulus, locking, bulk, pull } = self.network;
+        EightChain::new(modulus, locking, bulk, pull)?;
+        let elements = self.maxwell.iter();
+        elements.map(|Maxwell { gamma, tau }| Maxwell::new(*gamma, *tau).map(|_| ())).collect()
+    }
+
     /// μ (Pa) that a strain meets which is faster than every Maxwell element: what explicit steps have
     /// to be sized with.
     pub fn instantaneous_shear_modulus(&self) -> f64 {

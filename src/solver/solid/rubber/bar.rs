@@ -25,8 +25,12 @@ const MOST_ITERATIONS: usize = 60;
 
 impl<'a> Bar<'a> {
     /// At rest at t = 0.
-    pub fn new(material: &'a Elastomer) -> Bar<'a> {
-        Bar {
+    ///
+    /// # Errors
+    /// Constants that are no rubber's.
+    pub fn new(material: &'a Elastomer) -> Result<Bar<'a>, RubberError> {
+        material.check()?;
+        Ok(Bar {
             material,
             time: 0.0,
             axial: 0.0,
@@ -35,17 +39,17 @@ impl<'a> Bar<'a> {
             deviatoric: [0.0; 6],
             history: vec![[0.0; 6]; material.maxwell.len()],
             factors: StepFactors::default(),
-        }
+        })
     }
 
     /// A step of `dt` s (zero: sudden) to the axial true strain `strain`; the side that frees the bar of
     /// lateral stress is found by Newton's method.
     ///
     /// # Errors
-    /// A strain that the material cannot bear, or that leaves no side free of stress; the bar then
-    /// stays as it was.
+    /// A negative step; a strain that the material cannot bear, or that leaves no side free of stress; the
+    /// bar then stays as it was.
     pub fn step(&mut self, dt: f64, strain: f64) -> Result<(), RubberError> {
-        self.factors.set(&self.material.maxwell, dt);
+        self.factors.set(&self.material.maxwell, dt)?;
         let axial = libm::expm1(strain);
         // From the sides that keep the deviator of the step before: the volume as it was.
         let kept = (1.0 + self.axial) / (1.0 + axial);

@@ -15,6 +15,15 @@ pub enum RubberError {
     Material(#[from] ElastomerError),
     #[error("the {what} is {value}; it must be positive and finite")]
     Option { what: &'static str, value: f64 },
+    #[error("the pulsation is {0} rad/s; it must not be negative")]
+    Pulsation(f64),
+    #[error(
+        "{vectors} vectors leave a change of {change:.1e} in the complex stiffness where {tolerance:.1e} is \
+         allowed"
+    )]
+    NotSettled { vectors: usize, change: f64, tolerance: f64 },
+    #[error("elements of four nodes; rubber needs those of ten")]
+    FourNodes,
     #[error("no memory for the factors of the stiffness, {:.2} GB", 1e-9 * bytes)]
     NoMemory { bytes: f64 },
     #[error("the body or a part of it is free to move; hold it")]

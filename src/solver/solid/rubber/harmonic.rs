@@ -8,7 +8,7 @@
 //! ratio with each vector.
 
 use super::error::{RubberError, at_rest};
-use super::model::RubberModel;
+use super::model::{Moment, RubberModel};
 use super::newton::{StepLaw, Stop, Tangent};
 use crate::ch2_housing::elastomer::maxwell::complex_factor;
 use crate::elements::tet10::POINTS;
@@ -26,7 +26,8 @@ pub struct ComplexStiffness {
     pub storage: f64,
     /// A quarter of a cycle ahead of it.
     pub loss: f64,
-    /// How much the last vector changed it, over its magnitude: what the next would change less.
+    /// How much the last vector changed it, over its magnitude: what the next would change less. Zero where
+    /// the first one said all.
     pub change: f64,
 }
 
@@ -34,10 +35,11 @@ pub struct ComplexStiffness {
 const MOST_VECTORS: usize = 40;
 
 /// Answers to the motion that the prescribed components make at time `t`, at each of `pulsations` rad/s; zero
-/// is the relaxed network. Vectors are added until none of the answers changes by more than `tolerance`.
+/// is the relaxed network, infinity a sudden motion. Vectors are added until none of the answers changes by
+/// more than `tolerance` of itself, or until there is no further vector.
 ///
 /// # Errors
-/// A body that is free to move; no memory.
+/// A body that is free to move; no memory; a negative pulsation; answers that do not settle.
 pub fn complex_stiffness(
     model: &RubberModel,
     t: f64,
@@ -45,6 +47,9 @@ pub fn complex_stiffness(
     tolerance: f64,
 ) -> Result<Vec<ComplexStiffness>, RubberError> {
     let maxwell = &model.problem.material.maxwell;
+    if let Some(bad) = pulsations.iter().find(|pulsation| !matches!(**pulsation, 0.0..)) {
+        return Err(RubberError::Pulsation(*bad));
+    }
     let factors: Vec<Complex<f64>> = pulsations
         .iter()
         .map(|pulsation| {
@@ -59,22 +64,23 @@ pub fn complex_stiffness(
     let mut answers = space.answers(&factors);
     for _ in 0..MOST_VECTORS {
         if !space.grow() {
-            break;
+            return Ok(answers);
         }
         let better = space.answers(&factors);
-        let mut largest = 0.0f64;
+        let mut settled = true;
         for (old, new) in answers.iter_mut().zip(better) {
             let size = (new.storage * new.storage + new.loss * new.loss).sqrt();
             let (a, b) = (new.storage - old.storage, new.loss - old.loss);
             let change = (a * a + b * b).sqrt() / size;
+            settled &= change <= tolerance;
             *old = ComplexStiffness { change, ..new };
-            largest = largest.max(change);
         }
-        if largest <= tolerance {
-            break;
+        if settled {
+            return Ok(answers);
         }
     }
-    Ok(answers)
+    let change = answers.iter().map(|answer| answer.change).fold(0.0, f64::max);
+    Err(RubberError::NotSettled { vectors: MOST_VECTORS, change, tolerance })
 }
 
 /// The motion and its derivatives by g, and what both parts of the stiffness make of them.
@@ -94,7 +100,7 @@ impl<'a> Space<'a> {
         let law = StepLaw { gain: middle - 1.0, carried: &[] };
         let rest = vec![[0.0; 3]; model.problem.nodes.len()];
         let mut moved = rest.clone();
-        model.prescribe(t, &mut moved);
+        model.prescribe(Moment::at(t), &mut moved);
         let mut right = vec![0.0; model.unknowns.count];
         match tangent.refresh(model, &law, &rest, Some((&moved, &mut right))) {
             Ok(outcome) => outcome.map_err(at_rest)?,
@@ -159,12 +165,13 @@ impl<'a> Space<'a> {
             }
         }
         let after = norm(&vector);
-        let new = after > 1e-12 * before;
-        if new {
-            vector.iter_mut().for_each(|v| *v = v.map(|x| x / after));
-            self.take(vector);
+        let nothing_new = after <= 1e-12 * before;
+        if nothing_new {
+            return false;
         }
-        new
+        vector.iter_mut().for_each(|v| *v = v.map(|x| x / after));
+        self.take(vector);
+        true
     }
 
     /// Stationary energies over the space.
@@ -190,7 +197,7 @@ impl<'a> Space<'a> {
             let relieved: Complex<f64> = coupled.iter().zip(along.iter()).map(|(a, b)| a * b).sum();
             entry(0, 0) - relieved
         };
-        let of = |k: Complex<f64>| ComplexStiffness { storage: k.re, loss: k.im, change: f64::NAN };
+        let of = |k: Complex<f64>| ComplexStiffness { storage: k.re, loss: k.im, change: 0.0 };
         factors.iter().map(|g| of(answer(g))).collect()
     }
 }

@@ -5,4 +5,5 @@ pub mod error;
 pub mod harmonic;
 pub mod model;
 pub mod newton;
+pub mod sleeve;
 pub mod steps;

@@ -35,6 +35,36 @@ pub struct RubberModel {
     pub unknowns: Unknowns,
 }
 
+/// When loads and prescribed displacements are taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// s.
+    pub time: f64,
+    /// How much of the jumps at that time is done: 1 is all.
+    pub share: f64,
+}
+
+impl Moment {
+    /// With all that happens at that time.
+    pub fn at(time: f64) -> Moment {
+        Moment { time, share: 1.0 }
+    }
+
+    fn value(&self, profile: &Profile) -> f64 {
+        let after = profile.value(self.time);
+        if self.share == 1.0 {
+            return after;
+        }
+        let before = before(profile, self.time);
+        before + self.share * (after - before)
+    }
+}
+
+/// What a profile was just before a time; before t = 0 there was nothing.
+fn before(profile: &Profile, t: f64) -> f64 {
+    if t > 0.0 { profile.value(t.next_down()) } else { 0.0 }
+}
+
 /// The elements around a corner node.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Patch {
@@ -48,8 +78,10 @@ pub struct Patch {
 
 impl RubberModel {
     /// # Errors
-    /// A folded element, a node or axis out of range, a component prescribed twice.
+    /// Constants that are no rubber's, a folded element, a node or axis out of range, a component prescribed
+    /// twice.
     pub fn new(problem: RubberProblem) -> Result<RubberModel, RubberError> {
+        problem.material.check()?;
         let count = problem.nodes.len();
         let mut tets = Vec::with_capacity(problem.elements.len());
         for (index, element) in problem.elements.iter().enumerate() {
@@ -92,8 +124,7 @@ impl RubberModel {
     /// Whether a load or a prescribed displacement jumps at time `t`.
     pub fn jumps(&self, t: f64) -> bool {
         self.profiles().any(|profile| {
-            let before = if t > 0.0 { profile.value(t.next_down()) } else { 0.0 };
-            let after = profile.value(t);
+            let (before, after) = (before(profile, t), profile.value(t));
             // What is continuous differs by rounding of its argument.
             (after - before).abs() > 1e-9 * (after.abs() + before.abs())
         })
@@ -104,17 +135,17 @@ impl RubberModel {
         moved.chain(self.problem.loads.iter().map(|load| &load.profile))
     }
 
-    /// Sets the prescribed components of a displacement to what they are at time `t`.
-    pub fn prescribe(&self, t: f64, displacement: &mut [Vec3]) {
+    /// Sets the prescribed components of a displacement to what they are at a moment.
+    pub fn prescribe(&self, at: Moment, displacement: &mut [Vec3]) {
         for Prescribed { node, axis, profile } in &self.problem.prescribed {
-            displacement[*node as usize][*axis] = profile.value(t);
+            displacement[*node as usize][*axis] = at.value(profile);
         }
     }
 
-    /// Adds the loads at time `t`, N.
-    pub fn add_loads(&self, t: f64, forces: &mut [Vec3]) {
+    /// Adds the loads at a moment, N.
+    pub fn add_loads(&self, at: Moment, forces: &mut [Vec3]) {
         for load in &self.problem.loads {
-            let factor = load.profile.value(t);
+            let factor = at.value(&load.profile);
             for (node, force) in &load.forces {
                 for i in 0..3 {
                     forces[*node as usize][i] += factor * force[i];

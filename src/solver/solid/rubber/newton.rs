@@ -2,7 +2,7 @@
 //! equilibrium there.
 
 use super::error::{RubberError, StepFailure, at_rest};
-use super::model::{Patch, RubberModel, centre};
+use super::model::{Moment, Patch, RubberModel, centre};
 use crate::ch2_housing::elastomer::ElastomerError;
 use crate::elements::tet10::POINTS;
 use crate::elements::tet10_nodal::{self, Response, Stiffness};
@@ -329,16 +329,16 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Moves the prescribed components to where they are at time `t`, and the others along as the
+    /// Moves the prescribed components to where they are at a moment, and the others along as the
     /// tangent in the present state has it.
     ///
     /// # Errors
     /// As [`Search::converge`].
-    pub fn predict(&mut self, t: f64, law: &StepLaw) -> Result<(), Stop> {
-        let unbalanced = self.balance(t, law)?;
+    pub fn predict(&mut self, at: Moment, law: &StepLaw) -> Result<(), Stop> {
+        let unbalanced = self.balance(at, law)?;
         let before = std::mem::take(&mut self.displacement);
         self.moves.copy_from_slice(&before);
-        self.model.prescribe(t, &mut self.moves);
+        self.model.prescribe(at, &mut self.moves);
         for (moved, before) in self.moves.iter_mut().zip(&before) {
             *moved = std::array::from_fn(|i| moved[i] - before[i]);
         }
@@ -346,7 +346,7 @@ impl<'a> Search<'a> {
             self.tangent.refresh(self.model, law, &before, Some((&self.moves, &mut self.right)));
         self.displacement = before;
         self.check_factor(outcome?, unbalanced.scale == 0.0)?;
-        self.model.prescribe(t, &mut self.displacement);
+        self.model.prescribe(at, &mut self.displacement);
         self.tangent.solve(&mut self.right);
         self.advance();
         self.iterations += 1;
@@ -354,7 +354,7 @@ impl<'a> Search<'a> {
     }
 
     /// Forces in the present state, and the right-hand side.
-    fn balance(&mut self, t: f64, law: &StepLaw) -> Result<Unbalanced, StepFailure> {
+    fn balance(&mut self, at: Moment, law: &StepLaw) -> Result<Unbalanced, StepFailure> {
         self.internal.fill([0.0; 3]);
         self.loads.fill([0.0; 3]);
         add_forces(
@@ -365,7 +365,7 @@ impl<'a> Search<'a> {
             &mut self.deviatoric,
             &mut self.means,
         )?;
-        self.model.add_loads(t, &mut self.loads);
+        self.model.add_loads(at, &mut self.loads);
         let mut found = Unbalanced::default();
         let mut finite = true;
         for (n, of) in self.model.unknowns.of.iter().enumerate() {
@@ -392,17 +392,22 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Newton's iterations at time `t` from the present displacements, with the factors of an earlier
+    /// Newton's iterations at a moment from the present displacements, with the factors of an earlier
     /// state as long as they bring the residual down tenfold a step.
     ///
     /// # Errors
     /// No convergence, an element turned inside out or beyond its material, an unstable state.
-    pub fn converge(&mut self, t: f64, law: &StepLaw, options: &Convergence) -> Result<(), Stop> {
-        self.model.prescribe(t, &mut self.displacement);
+    pub fn converge(
+        &mut self,
+        at: Moment,
+        law: &StepLaw,
+        options: &Convergence,
+    ) -> Result<(), Stop> {
+        self.model.prescribe(at, &mut self.displacement);
         let mut last = f64::INFINITY;
         let mut fresh = false;
         for iteration in 0..=options.most_iterations {
-            let Unbalanced { largest, scale } = self.balance(t, law)?;
+            let Unbalanced { largest, scale } = self.balance(at, law)?;
             let stagnates = fresh && largest > 0.5 * last && largest <= options.rounding * scale;
             if largest <= options.tolerance * scale || stagnates {
                 return Ok(());
@@ -427,10 +432,10 @@ impl<'a> Search<'a> {
         unreachable!("the loop returns at its last iteration")
     }
 
-    /// Forces in a state that was in equilibrium at time `t`, after a search for another one.
-    pub fn return_to(&mut self, t: f64, law: &StepLaw) {
+    /// Forces in a state that was in equilibrium at a moment, after a search for another one.
+    pub fn return_to(&mut self, at: Moment, law: &StepLaw) {
         // It was found before, so that nothing can be wrong with it.
-        let _ = self.balance(t, law);
+        let _ = self.balance(at, law);
     }
 
     /// Sum of the forces of the supports on some nodes as of the last [`Search::converge`], N.
@@ -451,6 +456,12 @@ impl<'a> Search<'a> {
 pub enum Stop {
     Step(StepFailure),
     All(RubberError),
+}
+
+impl From<RubberError> for Stop {
+    fn from(error: RubberError) -> Stop {
+        Stop::All(error)
+    }
 }
 
 impl From<StepFailure> for Stop {

@@ -6,7 +6,7 @@
 //! that a pair of steps is taken and judged together.
 
 use super::error::{RubberError, StepFailure};
-use super::model::RubberModel;
+use super::model::{Moment, RubberModel};
 use super::newton::{Convergence, Search, StepLaw, Stop};
 use crate::ch2_housing::elastomer::maxwell::{StepFactors, carried, commit, curvature_error};
 use crate::elements::tet10::POINTS;
@@ -144,12 +144,15 @@ impl<'a> RubberSolid<'a> {
     ///
     /// # Errors
     /// [`RubberError::NoEquilibrium`] where no step however small ends in equilibrium. The state is then that
-    /// of the last step that did.
+    /// of the last step that did. An end that is not finite.
     pub fn advance(
         &mut self,
         until: f64,
         mut watch: impl FnMut(&RubberSolid),
     ) -> Result<(), RubberError> {
+        if !until.is_finite() {
+            return Err(RubberError::Option { what: "end of the run", value: until });
+        }
         if self.counts == StepCounts::default() {
             self.sudden_change(&mut watch)?;
         }
@@ -166,24 +169,47 @@ impl<'a> RubberSolid<'a> {
     }
 
     /// Where a load or a prescribed displacement jumps, the body follows with its instantaneous
-    /// stiffness, in no time.
+    /// stiffness, in no time: at once, or in parts where the search for the whole fails.
     fn sudden_change(&mut self, watch: &mut impl FnMut(&RubberSolid)) -> Result<(), RubberError> {
         let time = self.state.time;
         if !self.search.model.jumps(time) {
             return Ok(());
         }
-        match self.equilibrium(0.0, time) {
-            Ok(()) => {
-                self.accept(0.0, time);
-                watch(self);
-                Ok(())
-            }
-            Err(Stop::All(error)) => Err(error),
-            Err(Stop::Step(failure)) => {
-                self.restore_forces();
-                Err(RubberError::NoEquilibrium { time, step: 0.0, failure })
+        let (mut done, mut part) = (0.0, 1.0);
+        let mut reached = self.state.displacement.clone();
+        while done < 1.0 {
+            let share = if done + part > 1.0 - 1e-9 { 1.0 } else { done + part };
+            match self.sudden_part(Moment { time, share }, &reached) {
+                Ok(()) => {
+                    done = share;
+                    part *= 2.0;
+                    reached.copy_from_slice(&self.search.displacement);
+                }
+                Err(Stop::All(error)) => return Err(error),
+                Err(Stop::Step(failure)) => {
+                    self.counts.undone += 1;
+                    part *= 0.5;
+                    let gone = part >= self.options.smallest;
+                    if !gone {
+                        self.restore_forces();
+                        return Err(RubberError::NoEquilibrium { time, step: 0.0, failure });
+                    }
+                }
             }
         }
+        self.accept(0.0, time);
+        watch(self);
+        Ok(())
+    }
+
+    /// Equilibrium when a part of a jump is done, from the one before. Nothing relaxes meanwhile, so that the
+    /// way does not matter.
+    fn sudden_part(&mut self, at: Moment, from: &[Vec3]) -> Result<(), Stop> {
+        self.carry(0.0)?;
+        let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried };
+        self.search.displacement.copy_from_slice(from);
+        self.search.predict(at, &law)?;
+        self.search.converge(at, &law, &self.options.convergence)
     }
 
     /// Goes on to a time before which nothing changes its slope.
@@ -193,6 +219,8 @@ impl<'a> RubberSolid<'a> {
         watch: &mut impl FnMut(&RubberSolid),
     ) -> Result<(), RubberError> {
         let smallest = self.options.smallest * (end - self.state.time);
+        // What stopped a step, and where that step was to end.
+        let mut stopped: Option<(f64, StepFailure)> = None;
         while self.state.time < end {
             let rest = end - self.state.time;
             let wanted = match self.options.stepping {
@@ -209,9 +237,10 @@ impl<'a> RubberSolid<'a> {
             } else {
                 wanted
             };
-            let last = step == rest;
-            match self.attempt(step, if last { end } else { self.state.time + step }) {
+            let to = if step == rest { end } else { self.state.time + step };
+            match self.attempt(step, to) {
                 Ok(longer) => {
+                    stopped = stopped.filter(|(at, _)| self.state.time < *at);
                     self.next = match self.options.stepping {
                         Stepping::Fixed(fixed) => fixed.min(2.0 * step),
                         Stepping::Accuracy(_) => longer * step,
@@ -222,10 +251,15 @@ impl<'a> RubberSolid<'a> {
                 Err(Stop::Step(failure)) => {
                     self.counts.undone += 1;
                     self.next = 0.5 * step;
+                    // What the material cannot bear says more than iterations that find nothing just short of it.
+                    if !matches!(stopped, Some((_, StepFailure::Material { .. }))) {
+                        stopped = Some((to, failure.clone()));
+                    }
                     let gone = self.next >= smallest;
                     if !gone {
                         self.restore_forces();
                         let time = self.state.time;
+                        let failure = stopped.map_or(failure, |(_, failure)| failure);
                         return Err(RubberError::NoEquilibrium { time, step, failure });
                     }
                 }
@@ -284,17 +318,8 @@ impl<'a> RubberSolid<'a> {
     /// ends before it.
     fn equilibrium(&mut self, step: f64, end: f64) -> Result<(), Stop> {
         let end = if step > 0.0 { end.next_down() } else { end };
-        let model = self.search.model;
-        let maxwell = &model.problem.material.maxwell;
-        self.factors.set(maxwell, step);
-        if !maxwell.is_empty() {
-            let terms = self.state.history.chunks_exact(maxwell.len());
-            for ((to, history), before) in
-                self.carried.iter_mut().zip(terms).zip(&self.state.deviatoric)
-            {
-                *to = carried(history, before, &self.factors);
-            }
-        }
+        self.carry(step)?;
+        let at = Moment::at(end);
         let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried };
         let state = &self.state;
         self.search.displacement.copy_from_slice(&state.displacement);
@@ -303,9 +328,24 @@ impl<'a> RubberSolid<'a> {
                 *u = std::array::from_fn(|i| u[i] + step * v[i]);
             }
         } else {
-            self.search.predict(end, &law)?;
+            self.search.predict(at, &law)?;
         }
-        self.search.converge(end, &law, &self.options.convergence)
+        self.search.converge(at, &law, &self.options.convergence)
+    }
+
+    /// What a step of `step` s owes to the state before it.
+    fn carry(&mut self, step: f64) -> Result<(), RubberError> {
+        let maxwell = &self.search.model.problem.material.maxwell;
+        self.factors.set(maxwell, step)?;
+        if !maxwell.is_empty() {
+            let terms = self.state.history.chunks_exact(maxwell.len());
+            for ((to, history), before) in
+                self.carried.iter_mut().zip(terms).zip(&self.state.deviatoric)
+            {
+                *to = carried(history, before, &self.factors);
+            }
+        }
+        Ok(())
     }
 
     /// Estimated error of the step just solved: how many times longer the next may be.
@@ -337,8 +377,9 @@ impl<'a> RubberSolid<'a> {
             return Err(StepFailure::Inaccurate.into());
         }
         self.scale = scale;
-        let room = if error > 0.0 { 0.9 * (allowed / error).sqrt() } else { 3.0 };
-        Ok(room.clamp(0.3, 3.0))
+        // Nine tenths of the room that a second-order error leaves; not more than threefold.
+        let little = error <= 0.09 * allowed;
+        Ok(if little { 3.0 } else { 0.9 * (allowed / error).sqrt() })
     }
 
     /// Takes what [`RubberSolid::equilibrium`] found as the state.
@@ -368,19 +409,9 @@ impl<'a> RubberSolid<'a> {
     /// Forces of the state that stands, after a search that failed.
     fn restore_forces(&mut self) {
         self.search.displacement.copy_from_slice(&self.state.displacement);
-        let terms = self.search.model.problem.material.maxwell.len();
-        self.factors.set(&self.search.model.problem.material.maxwell, 0.0);
-        if terms > 0 {
-            for ((to, history), before) in self
-                .carried
-                .iter_mut()
-                .zip(self.state.history.chunks_exact(terms))
-                .zip(&self.state.deviatoric)
-            {
-                *to = carried(history, before, &self.factors);
-            }
-        }
+        // A step of nothing is never refused.
+        let _ = self.carry(0.0);
         let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried };
-        self.search.return_to(self.state.time, &law);
+        self.search.return_to(Moment::at(self.state.time), &law);
     }
 }
