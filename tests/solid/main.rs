@@ -9,6 +9,7 @@ mod material_laws;
 mod rubber;
 mod rubber_bodies;
 mod rubber_limits;
+mod rubber_prony;
 mod solid_explicit;
 mod solid_factors;
 mod solid_plan;

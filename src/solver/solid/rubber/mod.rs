@@ -5,5 +5,6 @@ pub mod error;
 pub mod harmonic;
 pub mod model;
 pub mod newton;
+pub mod prony;
 pub mod sleeve;
 pub mod steps;
