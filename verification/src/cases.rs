@@ -46,6 +46,8 @@ mod kinematic_frequencies;
 mod line_contact_plane_strain;
 #[path = "../misalignment_moment/case.rs"]
 mod misalignment_moment;
+#[path = "../misalignment_on_bushing_3_4_5/case.rs"]
+mod misalignment_on_bushing_3_4_5;
 #[path = "../reduced_housing/case.rs"]
 mod reduced_housing;
 #[path = "../rod_wave/case.rs"]
@@ -83,6 +85,7 @@ pub const CASES: &[Case] = &[
     statics_independent::CASE,
     shaft_on_two_bearings::CASE,
     misalignment_moment::CASE,
+    misalignment_on_bushing_3_4_5::CASE,
     settling_and_turning::CASE,
     varying_compliance_statics::CASE,
     varying_compliance_dynamics::CASE,
