@@ -85,7 +85,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             .stated(0.0, "3.3.1", "responses relax to the same equilibrium state")
             .absolute(
                 tolerance,
-                "the slowest element takes 10 s; of linear rubber 0.47 % would be left at 40 s, 0.06 % at 60 s",
+                "the slowest element takes 10 s: 0.47 and 0.06 % would be left were stiffness proportional to the shear modulus; what volume holds relaxes later",
             ),
         );
     }
