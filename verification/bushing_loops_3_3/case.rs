@@ -300,20 +300,31 @@ fn staircase(
         &["mm", "held, N", "relaxed, N", "ratio", "linear estimate"],
         rows.collect(),
     );
-    for n in [0, STAIRS - 1] {
-        context.check(
-            Check::new(
-                &format!("held_{}mm", n + 1),
-                &format!("force after 14 s at {} mm over the relaxed one", n + 1),
-                "1",
-                held[n] / ends[n],
-            )
-            .closed_form(left(n + 1), "what the elements of Table 3.1 have left of equal steps, at small strain")
-            .under("rubber")
-            .absolute(0.02, "stiffness falls short of proportion to the shear modulus, volume being held alike; equal steps weigh more the later at large strain")
-            .golden(GoldenTolerance::MIXED),
-        );
-    }
+    context.check(
+        Check::new(
+            "held_1mm",
+            "force after 14 s at 1 mm over the relaxed one",
+            "1",
+            held[0] / ends[0],
+        )
+        .closed_form(left(1), "what the elements of Table 3.1 have left of a step, at small strain")
+        .under("rubber")
+        .absolute(
+            0.01,
+            "stiffness falls short of proportion to the shear modulus, volume being held alike",
+        )
+        .golden(GoldenTolerance::MIXED),
+    );
+    context.golden("held_5mm", held[STAIRS - 1] / ends[STAIRS - 1], "1", GoldenTolerance::MIXED);
+    let most = held.iter().zip(&ends).map(|(held, end)| held / end - 1.0).fold(0.0, f64::max);
+    context.finding(
+        "not_relaxed",
+        format!(
+            "3.3.2 takes the force after 14 s of rest for the relaxed one. With the rubber of Table 3.1 up to {:.0} % are still to go: the slowest element takes \
+             10 s, and at large strain the last step weighs more than the linear estimate has it.",
+            100.0 * most
+        ),
+    );
     context.finding(
         "free_edges",
         "On meshes of six cells across the wall or crowded at the free edges the relaxed network loses stability at 3.0 to 3.8 mm (the stiffness is no longer \
