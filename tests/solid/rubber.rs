@@ -21,6 +21,7 @@ use bearing_dynamics::solver::solid::rubber::model::{
     Moment, RubberModel, RubberProblem, supports,
 };
 use bearing_dynamics::solver::solid::rubber::newton::{StepLaw, Tangent, add_forces};
+use bearing_dynamics::solver::solid::rubber::sleeve::{SleeveMotion, sleeve_stiffness};
 use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
 use bearing_dynamics::solver::solid::tangent::PRESCRIBED;
 use std::f64::consts::TAU;
@@ -411,4 +412,29 @@ fn adaptive_steps_keep_their_accuracy() {
         counts.push(count.accepted);
     }
     assert!(counts[1] > counts[0] && counts[0] <= 60, "{counts:?}");
+}
+
+/// Torsion is 4πμL/(1/a² − 1/b²) at any length; a quarter with mirrored or reversed planes is a quarter of the
+/// whole for every motion.
+#[test]
+fn four_motions_of_a_sleeve() {
+    let rubber = with_bulk(100.0);
+    let of = |part, cells: [usize; 3], motion| {
+        let [around, radial, axial] = cells;
+        let mesh = BushingMesh { around, radial, axial, grading: 1.4, part };
+        let mesh = bushing(&BUSHING, &mesh).unwrap().quadratic().unwrap().mesh;
+        sleeve_stiffness(&mesh, part, rubber.clone(), motion, &[0.0], 1e-6).unwrap()[0].storage
+    };
+    for motion in SleeveMotion::ALL {
+        let quarter = of(Part::Quarter, [8, 4, 2], motion);
+        let whole = of(Part::Whole, [16, 4, 4], motion);
+        // Cells are cut along other diagonals on both sides of a plane.
+        assert!((quarter / whole - 1.0).abs() <= 0.01, "{motion:?}: {quarter} {whole}");
+    }
+    let (a, b) = (0.02f64, 0.04f64);
+    let mu = rubber.network.shear_modulus();
+    let exact = 4.0 * std::f64::consts::PI * mu * 0.04 / (1.0 / (a * a) - 1.0 / (b * b));
+    let ours = of(Part::Quarter, [16, 4, 2], SleeveMotion::Torsional);
+    // Of a shear that falls with r² over four cells.
+    assert!((ours / exact - 1.0).abs() <= 0.01, "{ours} {exact}");
 }

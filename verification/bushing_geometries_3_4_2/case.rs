@@ -3,19 +3,17 @@
 use std::f64::consts::TAU;
 
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
-use bearing_dynamics::ch3_bushing::hysteresis::of_complex_stiffness;
 use bearing_dynamics::ch3_bushing::similitude::Scale;
 use bearing_dynamics::mesh::generate::Bushing;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
 
-use crate::bushings::{BULK_RATIO, bonded, complex_factor, quarter, rubber, shear_over_modulus};
+use crate::bushings::{MODULUS, bonded, exact, of_quarter, order, quarter, rubber};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::oracles::bonded_bushing::{Section, radial_stiffness};
 use crate::solids::largest;
 
 pub const CASE: Case = Case {
@@ -30,17 +28,12 @@ pub const CASE: Case = Case {
 const THICKNESS: f64 = 0.02;
 /// D̄ and L̄ of Table 3.4.
 const RATIOS: [f64; 6] = [1.0, 2.0, 4.0, 6.0, 8.0, 10.0];
-/// C_R of Table 3.1, Pa.
-const MODULUS: f64 = 0.647e6;
 const FREQUENCY: f64 = 10.0;
+const ORIGIN: &str = "one Fourier component, polynomials of degree 5";
 
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     let material = rubber(MODULUS, 1.0, ChainPull::FiveTerms)?;
-    let shear = complex_factor(1.0, FREQUENCY) * (shear_over_modulus() * MODULUS);
-    // By diameter, then by length.
-    let mut stiffness = [[0.0; 6]; 6];
-    let mut relaxed = [[0.0; 6]; 6];
-    let mut damping = [[0.0; 6]; 6];
+    let mut studied = Studied::default();
     let (mut gaps, mut losses) = (Vec::new(), Vec::new());
     let mut rows = Vec::new();
     for (i, d) in RATIOS.into_iter().enumerate() {
@@ -55,30 +48,28 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             let mesh = quarter(&body, [around, 6, axial], 1.8)?;
             let (model, _) = bonded(&mesh, material.clone(), Profile::Constant(1.0))?;
             let answers = complex_stiffness(&model, 0.0, &[0.0, TAU * FREQUENCY], 1e-6)?;
-            let [still, moving] = [0, 1].map(|k: usize| {
-                of_complex_stiffness(4.0 * answers[k].storage, 4.0 * answers[k].loss)
-            });
-            let inner = 0.5 * d * THICKNESS;
-            let section = Section { inner, outer: inner + THICKNESS, length: l * THICKNESS };
-            let exact = radial_stiffness(section, shear, BULK_RATIO * MODULUS, 5, 3);
-            gaps.push((moving.dynamic_stiffness / exact.norm() - 1.0).abs());
-            losses.push((moving.damping_ratio - exact.im / exact.norm()).abs());
+            let [still, moving] = [0, 1].map(|k: usize| of_quarter(&answers[k]));
+            let exact = exact(&body, 1.0, FREQUENCY, 5);
+            let gap = moving.dynamic_stiffness / exact.dynamic_stiffness - 1.0;
+            gaps.push(gap.abs());
+            losses.push((moving.damping_ratio - exact.damping_ratio).abs());
             let scale = Scale {
                 modulus: MODULUS,
                 diameter: body.inner_diameter,
                 length: body.length,
                 thickness: THICKNESS,
             };
-            stiffness[i][j] = scale.dynamic_stiffness(&moving);
-            relaxed[i][j] = scale.dynamic_stiffness(&still);
-            damping[i][j] = moving.damping_ratio;
+            studied.stiffness[i][j] = scale.dynamic_stiffness(&moving);
+            studied.exact[i][j] = scale.dynamic_stiffness(&exact);
+            studied.relaxed[i][j] = scale.dynamic_stiffness(&still);
+            studied.damping[i][j] = moving.damping_ratio;
             rows.push(vec![
                 scale.diameter_ratio().to_string(),
                 scale.length_ratio().to_string(),
-                format!("{:.3}", stiffness[i][j]),
-                format!("{:+.2}", 100.0 * (moving.dynamic_stiffness / exact.norm() - 1.0)),
-                format!("{:.4}", damping[i][j]),
-                format!("{:.4}", exact.im / exact.norm()),
+                format!("{:.3}", studied.stiffness[i][j]),
+                format!("{:+.2}", 100.0 * gap),
+                format!("{:.4}", moving.damping_ratio),
+                format!("{:.4}", exact.damping_ratio),
             ]);
         }
     }
@@ -95,84 +86,110 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             "1",
             largest(gaps),
         )
-        .independent(0.0, "one Fourier component, polynomials of degree 5")
-        .absolute(0.01, "singular corners")
+        .independent(0.0, ORIGIN)
+        .absolute(
+            7e-3,
+            "what these meshes leave, 0.6 % too soft of long bushings of six cells across the wall",
+        )
         .golden(GoldenTolerance::MIXED),
     );
     context.check(
         Check::new("damping", "largest difference of a damping ratio", "1", largest(losses))
-            .independent(0.0, "one Fourier component, polynomials of degree 5")
-            .absolute(2e-3, "as of the stiffness, of which it is a part")
+            .independent(0.0, ORIGIN)
+            .absolute(1.5e-3, "what these meshes leave, 1.1e-3")
             .golden(GoldenTolerance::MIXED),
     );
-    trends(context, &stiffness, &relaxed, &damping);
-    figures(context, &stiffness, &damping)?;
+    trends(context, &studied);
+    figures(context, &studied.stiffness, &studied.damping)?;
     Ok(())
+}
+
+/// By diameter, then by length: K̄_d at 10 Hz, by the oracle, relaxed; η_d.
+#[derive(Default)]
+struct Studied {
+    stiffness: [[f64; 6]; 6],
+    exact: [[f64; 6]; 6],
+    relaxed: [[f64; 6]; 6],
+    damping: [[f64; 6]; 6],
 }
 
 fn smallest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-fn trends(
-    context: &mut CaseContext,
-    stiffness: &[[f64; 6]; 6],
-    relaxed: &[[f64; 6]; 6],
-    damping: &[[f64; 6]; 6],
-) {
+fn trends(context: &mut CaseContext, of: &Studied) {
+    let Studied { stiffness, relaxed, damping, .. } = of;
     let steps = || (0..6).flat_map(|i| (0..5).map(move |j| (i, j)));
     let longer = smallest(steps().map(|(i, j)| stiffness[i][j + 1] / stiffness[i][j] - 1.0));
-    context.check(
-        Check::new("longer", "least rise of K̄_d from one length to the next", "1", longer)
-            .stated(0.0, "3.4.2", "a longer bushing is stiffer")
-            .at_least(0.0, "an order"),
-    );
     let slope =
         |i: usize, j: usize| (stiffness[i][j + 1] - stiffness[i][j]) / (RATIOS[j + 1] - RATIOS[j]);
     let levelling = smallest((0..6).map(|i| slope(i, 1) - slope(i, 4)));
-    context.check(
-        Check::new(
-            "levelling",
-            "slope of K̄_d over L̄ from 2 to 4 less that from 8 to 10, at least",
-            "1",
-            levelling,
-        )
-        .stated(0.0, "3.4.2", "the stiffening falls off as the length grows")
-        .at_least(0.0, "an order"),
+    let wider = |of: &[[f64; 6]; 6], j: usize| of[5][j] / of[0][j] - 1.0;
+    let by_length = smallest(steps().map(|(i, j)| damping[i][j] - damping[i][j + 1]));
+    let by_diameter = smallest(steps().map(|(j, i)| damping[i][j] - damping[i + 1][j]));
+    let stiffer = "a longer bushing is stiffer, the less so the longer it is";
+    order(
+        context,
+        "3.4.2",
+        stiffer,
+        &[
+            ("longer", "least rise of K̄_d from one length to the next", longer),
+            (
+                "levelling",
+                "slope of K̄_d over L̄ from 2 to 4 less that from 8 to 10, at least",
+                levelling,
+            ),
+        ],
     );
-    let softer = relaxed[5][0] / relaxed[0][0];
-    context.check(
-        Check::new(
-            "short",
-            "relaxed K̄_d of the shortest bushing, widest over narrowest",
-            "1",
-            softer,
-        )
-        .stated(1.0, "3.4.2", "diameter softens short bushings")
-        .at_most(0.0, "an order"),
+    let softens = "diameter softens short bushings";
+    order(
+        context,
+        "3.4.2",
+        softens,
+        &[
+            (
+                "short",
+                "K̄_d of the shortest bushing, fall from the narrowest to the widest",
+                -wider(stiffness, 0),
+            ),
+            ("short_relaxed", "the same, relaxed", -wider(relaxed, 0)),
+        ],
     );
-    let stiffer = relaxed[5][5] / relaxed[0][5];
+    order(
+        context,
+        "3.4.2",
+        "diameter stiffens long bushings",
+        &[(
+            "long_relaxed",
+            "relaxed K̄_d of the longest bushing, rise from the narrowest to the widest",
+            wider(relaxed, 5),
+        )],
+    );
+    // At 10 Hz it does not: what ours and the oracle say of it.
     context.check(
         Check::new(
             "long",
-            "relaxed K̄_d of the longest bushing, widest over narrowest",
+            "K̄_d of the longest bushing at 10 Hz, widest over narrowest",
             "1",
-            stiffer,
+            1.0 + wider(stiffness, 5),
         )
-        .stated(1.0, "3.4.2", "diameter stiffens long bushings")
-        .at_least(0.0, "an order"),
+        .independent(1.0 + wider(&of.exact, 5), ORIGIN)
+        .absolute(5e-3, "what the meshes of both leave, 0.4 and 0.27 %"),
     );
-    let by_length = smallest(steps().map(|(i, j)| damping[i][j] - damping[i][j + 1]));
-    let by_diameter = smallest(steps().map(|(j, i)| damping[i][j] - damping[i + 1][j]));
-    for (id, text, least) in
-        [("damping_length", "length", by_length), ("damping_diameter", "diameter", by_diameter)]
-    {
-        context.check(
-            Check::new(id, &format!("least fall of η_d from one {text} to the next"), "1", least)
-                .stated(0.0, "3.4.2", "damping falls as diameter and length grow")
-                .at_least(0.0, "an order"),
-        );
-    }
+    context.finding(
+        "long_at_10_hz",
+        "The text has diameter stiffen long bushings at 10 Hz. Relaxed ones it does; at 10 Hz the rubber of Table 3.1 is so stiff beside its bulk modulus that the \
+         longest bushing gains 2 % up to a diameter of four thicknesses and loses them again.",
+    );
+    order(
+        context,
+        "3.4.2",
+        "damping falls as diameter and length grow",
+        &[
+            ("damping_length", "least fall of η_d from one length to the next", by_length),
+            ("damping_diameter", "least fall of η_d from one diameter to the next", by_diameter),
+        ],
+    );
 }
 
 fn figures(

@@ -11,7 +11,7 @@ use bearing_dynamics::solver::solid::rubber::bar::Bar;
 use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
 use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
 
-use crate::bushings::{BULK_RATIO, LOCKING, MAXWELL, rubber};
+use crate::bushings::{BULK_RATIO, LOCKING, MAXWELL, rubber, shear_over_modulus};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
@@ -36,6 +36,9 @@ const RATE: f64 = 0.01;
 /// Final strains and rates (1/s) beside the source's.
 const STRAINS: [f64; 3] = [0.3, 0.6, 0.9];
 const RATES: [f64; 3] = [0.001, 0.01, 0.1];
+/// Of Ī₁⁵/N⁵ in ∂W/∂Ī₁ over C_R: the first that (2.8) leaves out, from 43733439/21896875 x¹¹ of the inverse
+/// Langevin function's series.
+const SIXTH_TERM: f64 = 59_991.0 / 43_793_750.0;
 /// Steps up, and as many down; the oracle takes ten times as many.
 const STEPS: usize = 1500;
 
@@ -73,20 +76,28 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 format!("{:.5}", 1e-6 * should[1]),
             ]);
             let key = format!("{strain}_{rate}").replace('.', "p");
-            let what = ["stress at the end of loading", "area of the loop"];
-            for (i, id) in ["stress", "loop"].into_iter().enumerate() {
+            let of_loop = "chords of the loop behind its turn, where fast elements relax within a step: most at the slowest rate";
+            for (i, (id, what, tolerance, reason)) in [
+                (
+                    "stress",
+                    "stress at the end of loading",
+                    2e-6,
+                    "second order of both in their steps",
+                ),
+                ("loop", "area of the loop", 5e-5, of_loop),
+            ]
+            .into_iter()
+            .enumerate()
+            {
                 context.check(
                     Check::new(
                         &format!("{id}_{key}"),
-                        &format!("{}, strain −{strain} at −{rate} 1/s", what[i]),
+                        &format!("{what}, strain −{strain} at −{rate} 1/s"),
                         "Pa",
                         found[i],
                     )
                     .independent(should[i], "one point by other equations, ten times the steps")
-                    .relative(
-                        1e-4,
-                        "chords of the loop behind its turn, where fast elements relax within a step; the stress is 1e-5 or less",
-                    )
+                    .relative(tolerance, reason)
                     .under("maxwell_constants")
                     .golden(GoldenTolerance::MIXED),
                 );
@@ -135,7 +146,7 @@ fn named_materials(context: &mut CaseContext) -> Result<(), CaseError> {
     }
     context.check(
         Check::new("named", "named rubbers that differ from their tables", "1", differences)
-            .independent(0.0, "the tables typed once more")
+            .consistency(0.0, "the tables typed twice")
             .absolute(0.0, "facts"),
     );
     Ok(())
@@ -154,7 +165,7 @@ fn cycle(
     rate: f64,
     steps: usize,
 ) -> Result<Vec<[f64; 2]>, CaseError> {
-    let mut bar = Bar::new(material);
+    let mut bar = Bar::new(material)?;
     let dt = strain / rate / steps as f64;
     let mut course = vec![[0.0, 0.0]];
     for n in 1..=2 * steps {
@@ -219,7 +230,7 @@ fn relaxed(context: &mut CaseContext) -> Result<(), CaseError> {
                 ours,
             )
             .independent(theirs, "exact derivatives of the energy in principal stretches")
-            .relative(1e-10, "both searches for the free side stop at rounding over B/μ")
+            .relative(1e-12, "both searches for the free side stop at rounding, times B/μ")
             .golden(GoldenTolerance::MIXED),
         );
     }
@@ -231,16 +242,20 @@ fn exact_pull(context: &mut CaseContext) -> Result<(), CaseError> {
         let material = rubber(MODULUS, 0.0, pull)?;
         Ok::<f64, CaseError>(cycle(&material, STRAINS[0], RATE, 10)?[10][1])
     });
-    let gap = (exact? / five? - 1.0).abs();
+    let gap = exact? / five? - 1.0;
+    // Ī₁/N at that strain and constant volume.
+    let stretch = (-STRAINS[0]).exp();
+    let x = (stretch * stretch + 2.0 / stretch) / LOCKING;
+    let sixth = SIXTH_TERM * x.powi(5) / (0.5 * shear_over_modulus());
     context.check(
         Check::new(
             "exact_pull",
-            "exact inverse Langevin function against five terms at a strain of −0.3",
+            "exact inverse Langevin function over five terms at a strain of −0.3, less one",
             "1",
             gap,
         )
-        .consistency(0.0, "both forms of the chains' pull")
-        .absolute(4e-4, "what five terms leave at N = 8"),
+        .closed_form(sixth, "the sixth term of the series, over all of them")
+        .relative(0.2, "the terms behind it, each a seventh of the one before"),
     );
     Ok(())
 }
@@ -274,7 +289,7 @@ fn elements(context: &mut CaseContext, material: &Elastomer) -> Result<(), CaseE
     let model = RubberModel::new(problem)?;
     let stepping = Stepping::Fixed(dt);
     let mut cube = RubberSolid::new(&model, StepOptions { stepping, ..Default::default() })?;
-    let mut point = Bar::new(&material);
+    let mut point = Bar::new(&material)?;
     let mut gaps = Vec::new();
     for n in 1..=2 * FEW {
         cube.advance(dt * n as f64, |_| {})?;
@@ -291,7 +306,7 @@ fn elements(context: &mut CaseContext, material: &Elastomer) -> Result<(), CaseE
             largest(gaps),
         )
         .consistency(0.0, "ten-node elements in implicit steps against one point")
-        .absolute(1e-6, "equilibrium to 1e-9 of the forces"),
+        .absolute(1e-9, "equilibrium to 1e-9 of the forces"),
     );
     let (iterations, factors) = cube.work();
     context.work("iterations of the cube", iterations as u64);
@@ -302,7 +317,6 @@ fn elements(context: &mut CaseContext, material: &Elastomer) -> Result<(), CaseE
 fn measured_curve(context: &mut CaseContext, curves: &mut Vec<Curve>) -> Result<(), CaseError> {
     let mut rows = Vec::new();
     let mut worst = Vec::new();
-    let mut halves = Vec::new();
     let courses = [MODULUS_3, MODULUS]
         .map(|modulus| cycle(&rubber(modulus, 1.0, ChainPull::FiveTerms)?, STRAINS[2], RATE, 90));
     let [full, printed] = courses;
@@ -311,7 +325,6 @@ fn measured_curve(context: &mut CaseContext, curves: &mut Vec<Curve>) -> Result<
         let at = 10 * (k + 1);
         let [a, b] = [&full, &printed].map(|course| -1e-6 * course[at][1]);
         worst.push((a / measured - 1.0).abs());
-        halves.push(b / measured);
         rows.push(vec![
             format!("{:.1}", -full[at][0]),
             format!("{measured:.3}"),
@@ -335,20 +348,9 @@ fn measured_curve(context: &mut CaseContext, curves: &mut Vec<Curve>) -> Result<
         .independent(0.0, "Bergström and Boyce's model with their constants")
         .under("maxwell_constants")
         .absolute(
-            0.06,
+            0.0594,
             "two models fitted to the same measurements: 5.2 % up to a strain of 0.8, 5.9 % at 0.9",
         ),
-    );
-    context.check(
-        Check::new(
-            "loading_2",
-            "C_R of Chapter 2: part of that curve that it reaches, at most",
-            "1",
-            largest(halves),
-        )
-        .independent(0.5, "Bergström and Boyce's model: half of it, 0.324 being half of 0.647")
-        .under("maxwell_constants")
-        .absolute(0.031, "6 % of a half, and 0.324 is 0.5008 of 0.647"),
     );
     context.finding(
         "modulus_of_chapter_2",

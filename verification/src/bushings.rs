@@ -1,14 +1,25 @@
-//! Rubber and bonded bushings for cases: inputs as the source states them, and quarter models.
+//! Rubber and bonded bushings for cases: inputs as the source states them, quarter models, their oracle, loops.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
 use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
 use bearing_dynamics::ch2_housing::elastomer::{Elastomer, ElastomerError};
+use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
+use bearing_dynamics::ch3_bushing::hysteresis::{Hysteresis, of_complex_stiffness};
 use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
 use bearing_dynamics::mesh::{Elements, TetMesh};
 use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel, SolidProblem};
+use bearing_dynamics::solver::solid::rubber::harmonic::ComplexStiffness;
 use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
 
 use crate::case::CaseError;
+use crate::check::Check;
+use crate::context::CaseContext;
+use crate::oracles::bonded_bushing::{Section, radial_stiffness};
 
 /// γ and τ (s) of Table 3.1.
 pub const MAXWELL: [[f64; 2]; 14] = [
@@ -28,6 +39,14 @@ pub const MAXWELL: [[f64; 2]; 14] = [
     [8.226, 1e-7],
 ];
 
+/// C_R of Table 3.1, Pa.
+pub const MODULUS: f64 = 0.647e6;
+/// The bushing of 3.4.1.
+pub const BUSHING: Bushing = Bushing { inner_diameter: 0.04, thickness: 0.02, length: 0.04 };
+/// The bushing of 3.3.
+pub const BUSHING_3_3: Bushing =
+    Bushing { inner_diameter: 0.0197, thickness: 0.00835, length: 0.06 };
+
 /// N and B/C_R of Tables 2.3 and 3.1.
 pub const LOCKING: f64 = 8.0;
 pub const BULK_RATIO: f64 = 100.0;
@@ -45,7 +64,7 @@ pub fn rubber(modulus: f64, gammas: f64, pull: ChainPull) -> Result<Elastomer, E
 pub fn complex_factor(gammas: f64, frequency: f64) -> nalgebra::Complex<f64> {
     let one = nalgebra::Complex::new(1.0, 0.0);
     MAXWELL.iter().fold(one, |sum, [gamma, tau]| {
-        let x = nalgebra::Complex::new(0.0, std::f64::consts::TAU * frequency * tau);
+        let x = nalgebra::Complex::new(0.0, TAU * frequency * tau);
         sum + x / (one + x) * (gammas * gamma)
     })
 }
@@ -91,4 +110,135 @@ pub fn bonded(
     let nodes = mesh.nodes.clone();
     let problem = RubberProblem { nodes, elements, material, prescribed, loads: Vec::new() };
     Ok((RubberModel::new(problem)?, mesh.node_sets["inner"].clone()))
+}
+
+/// What the stiffness of a quarter says of the whole.
+pub fn of_quarter(answer: &ComplexStiffness) -> Hysteresis {
+    of_complex_stiffness(4.0 * answer.storage, 4.0 * answer.loss)
+}
+
+/// μ of the rubber of Table 3.1 with every γ times a factor, Pa.
+pub fn complex_shear(gammas: f64, frequency: f64) -> nalgebra::Complex<f64> {
+    complex_factor(gammas, frequency) * (shear_over_modulus() * MODULUS)
+}
+
+pub fn section(body: &Bushing) -> Section {
+    let inner = 0.5 * body.inner_diameter;
+    Section { inner, outer: inner + body.thickness, length: body.length }
+}
+
+/// Steady cycles of small amplitude by the oracle, of the rubber of Table 3.1 with every γ times a factor, by
+/// polynomials of this degree.
+pub fn exact(body: &Bushing, gammas: f64, frequency: f64, degree: usize) -> Hysteresis {
+    let shear = complex_shear(gammas, frequency);
+    let k = radial_stiffness(section(body), shear, BULK_RATIO * MODULUS, degree, 3);
+    Hysteresis { dynamic_stiffness: k.norm(), damping_ratio: k.im / k.norm() }
+}
+
+/// A quarter in motion, and the force on the whole sleeve, N.
+pub struct Moved<'a> {
+    pub solid: RubberSolid<'a>,
+    inner: &'a [u32],
+}
+
+impl<'a> Moved<'a> {
+    pub fn new(
+        model: &'a RubberModel,
+        inner: &'a [u32],
+        stepping: Stepping,
+    ) -> Result<Moved<'a>, CaseError> {
+        let options = StepOptions { stepping, ..Default::default() };
+        Ok(Moved { solid: RubberSolid::new(model, options)?, inner })
+    }
+
+    pub fn force(&self) -> f64 {
+        4.0 * self.solid.support_force(self.inner)[2]
+    }
+
+    /// Goes on and notes time (s) and force (N) of every step.
+    pub fn advance(&mut self, until: f64, course: &mut Vec<[f64; 2]>) -> Result<f64, CaseError> {
+        let inner = self.inner;
+        self.solid.advance(until, |solid| {
+            course.push([solid.time(), 4.0 * solid.support_force(inner)[2]]);
+        })?;
+        Ok(self.force())
+    }
+}
+
+/// A steady loop of displacement (m) and force (N), and how many steps it took.
+pub struct SteadyLoop {
+    pub points: Vec<[f64; 2]>,
+    pub steps: u64,
+}
+
+/// A sleeve that swings by `amplitude` (m) at `frequency` (Hz) in steps of which `per` make a cycle; the second
+/// cycle is read. It begins with a jump to the amplitude: what an element then lacks of its steady cycle is
+/// γ/(1 + ω²τ²), little of slow ones, and quick ones forget it.
+pub fn steady_loop(
+    mesh: &TetMesh,
+    material: Elastomer,
+    amplitude: f64,
+    frequency: f64,
+    per: usize,
+) -> Result<SteadyLoop, CaseError> {
+    let wave = Profile::Harmonic { mean: 0.0, amplitude, frequency, phase: FRAC_PI_2 };
+    let (model, inner) = bonded(mesh, material, wave)?;
+    let mut moved = Moved::new(&model, &inner, Stepping::Fixed(1.0 / (frequency * per as f64)))?;
+    moved.advance(1.0 / frequency, &mut Vec::new())?;
+    let mut course = Vec::new();
+    moved.advance(2.0 / frequency, &mut course)?;
+    let at = |t: f64| amplitude * (TAU * frequency * t).cos();
+    let points = course.iter().map(|[t, force]| [at(*t), *force]).collect();
+    Ok(SteadyLoop { points, steps: moved.solid.counts.accepted })
+}
+
+/// Radial stiffness of elements of four nodes at a shear modulus (Pa) and the bulk modulus of Table 3.1, N/m.
+pub fn four_nodes(body: &Bushing, cells: [usize; 3], shear: f64) -> Result<f64, CaseError> {
+    const HELD: Option<Profile> = Some(Profile::ZERO);
+    const BY: f64 = 1e-6;
+    let [around, radial, axial] = cells;
+    let mesh = BushingMesh { around, radial, axial, grading: 1.0, part: Part::Quarter };
+    let mesh = bushing(body, &mesh)?.mesh;
+    let moved = [HELD, HELD, Some(Profile::Constant(BY))];
+    let prescribed = supports(
+        &mesh,
+        &[
+            ("outer", [HELD; 3]),
+            ("inner", moved),
+            ("x_low", [HELD, None, None]),
+            ("y_low", [None, HELD, None]),
+        ],
+    );
+    let lambda = BULK_RATIO * MODULUS - 2.0 / 3.0 * shear;
+    let problem = SolidProblem {
+        nodes: mesh.nodes.clone(),
+        elements: mesh.elements.clone(),
+        material: LinearElastic { lambda, shear_modulus: shear },
+        density: 1100.0,
+        damping: 0.0,
+        damped_motion: DampedMotion::Absolute,
+        prescribed,
+        loads: Vec::new(),
+        gravity: [0.0; 3],
+    };
+    let model = SolidModel::new(problem)?;
+    let found = equilibrium(&model, 0.0, &EquilibriumOptions::default())?;
+    let inner = &mesh.node_sets["inner"];
+    Ok(4.0 / BY * inner.iter().map(|n| found.reactions[*n as usize][2]).sum::<f64>())
+}
+
+/// Checks of an order that a sentence of the source states: `value` is at least zero.
+pub fn order(
+    context: &mut CaseContext,
+    section: &str,
+    sentence: &str,
+    checks: &[(&str, &str, f64)],
+) {
+    for (id, text, value) in checks {
+        context.check(
+            Check::new(id, text, "1", *value)
+                .stated(0.0, section, sentence)
+                .at_least(0.0, "an order"),
+        );
+    }
 }

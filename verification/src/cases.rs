@@ -10,12 +10,18 @@ mod assembly_fits_2_4_1;
 mod axial_load_closed_form;
 #[path = "../bearing_conservation/case.rs"]
 mod bearing_conservation;
+#[path = "../bushing_bulging_3_4_2/case.rs"]
+mod bushing_bulging_3_4_2;
 #[path = "../bushing_geometries_3_4_2/case.rs"]
 mod bushing_geometries_3_4_2;
+#[path = "../bushing_loops_3_3/case.rs"]
+mod bushing_loops_3_3;
 #[path = "../bushing_materials_3_4_1/case.rs"]
 mod bushing_materials_3_4_1;
 #[path = "../bushing_relaxation_3_3_1/case.rs"]
 mod bushing_relaxation_3_3_1;
+#[path = "../bushing_sleeve_motions/case.rs"]
+mod bushing_sleeve_motions;
 #[path = "../cage_modes_table_5_3/case.rs"]
 mod cage_modes_table_5_3;
 #[path = "../cage_slip/case.rs"]
@@ -115,8 +121,11 @@ pub const CASES: &[Case] = &[
     steel_impact_2_4_3::CASE,
     rubber_cube_2_3_1::CASE,
     bushing_relaxation_3_3_1::CASE,
+    bushing_loops_3_3::CASE,
     bushing_materials_3_4_1::CASE,
     bushing_geometries_3_4_2::CASE,
+    bushing_bulging_3_4_2::CASE,
+    bushing_sleeve_motions::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).

@@ -59,8 +59,7 @@ impl Elastomer {
     pub fn check(&self) -> Result<(), ElastomerError> {
         let EightChain { modulus, locking, bulk, pull } = self.network;
         EightChain::new(modulus, locking, bulk, pull)?;
-        let elements = self.maxwell.iter();
-        elements.map(|Maxwell { gamma, tau }| Maxwell::new(*gamma, *tau).map(|_| ())).collect()
+        self.maxwell.iter().try_for_each(|m| Maxwell::new(m.gamma, m.tau).map(|_| ()))
     }
 
     /// μ (Pa) that a strain meets which is faster than every Maxwell element: what explicit steps have

@@ -1,6 +1,6 @@
-//! The radial stiffness of a bonded bushing at small displacements, by one Fourier component and polynomials
-//! of high degree: displacements are U cos φ, V sin φ, W cos φ with U, V, W over the half section, in
-//! rectangles that shrink towards the corners where sleeve and free end meet. Pointwise volume, no
+//! Stiffnesses of a bonded bushing at small displacements, by one Fourier component n around and polynomials
+//! of high degree: displacements are U cos nφ, V sin nφ, W cos nφ with U, V, W over the half section (n = 0: U, V,
+//! W alike all around), in rectangles that shrink towards the corners where sleeve and free end meet. Pointwise volume, no
 //! tetrahedra, complex moduli from the start.
 
 use nalgebra::Complex;
@@ -119,9 +119,65 @@ fn stations(layers: i32, low: bool, high: bool) -> Vec<f64> {
     all
 }
 
-/// Force over displacement, N/m, of a rubber with the shear modulus μ (complex, Pa) and the bulk modulus B
-/// (Pa), by polynomials of degree `p` in `layers` shrinking rectangles at each corner.
+/// A small motion of the inner sleeve, the outer one held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// Across the axis, N/m.
+    Radial,
+    /// Along it, N/m.
+    Axial,
+    /// About it, N·m/rad.
+    Torsional,
+    /// About a line across it through the middle, N·m/rad.
+    Conical,
+}
+
+impl Motion {
+    fn component(self) -> f64 {
+        match self {
+            Motion::Radial | Motion::Conical => 1.0,
+            Motion::Axial | Motion::Torsional => 0.0,
+        }
+    }
+
+    /// U, V, W of the inner sleeve of radius a at a distance x from the middle.
+    fn sleeve(self, a: f64, x: f64) -> [f64; 3] {
+        match self {
+            Motion::Radial => [1.0, -1.0, 0.0],
+            Motion::Axial => [0.0, 0.0, 1.0],
+            Motion::Torsional => [0.0, a, 0.0],
+            // e × r about the line: a cos φ along the axis, −x across it.
+            Motion::Conical => [-x, x, a],
+        }
+    }
+
+    /// Components that vanish in the middle of the length.
+    fn middle(self) -> &'static [usize] {
+        match self {
+            Motion::Radial | Motion::Torsional => &[2],
+            Motion::Axial | Motion::Conical => &[0, 1],
+        }
+    }
+}
+
+/// Force over displacement, N/m, across the axis.
 pub fn radial_stiffness(section: Section, shear: C, bulk: f64, p: usize, layers: i32) -> C {
+    stiffness(section, Motion::Radial, shear, bulk, p, layers)
+}
+
+/// Force or moment over a small motion, of a rubber with the shear modulus μ (complex, Pa) and the bulk
+/// modulus B (Pa), by polynomials of degree `p` in `layers` shrinking rectangles at each corner.
+pub fn stiffness(
+    section: Section,
+    motion: Motion,
+    shear: C,
+    bulk: f64,
+    p: usize,
+    layers: i32,
+) -> C {
+    let component = motion.component();
+    // ∫ cos² nφ dφ over π.
+    let around = if component == 0.0 { 2.0 } else { 1.0 };
     let rule = lobatto(p);
     let r = stations(layers, true, true);
     let x = stations(layers, false, true);
@@ -142,8 +198,13 @@ pub fn radial_stiffness(section: Section, shear: C, bulk: f64, p: usize, layers:
             for a in 0..=p {
                 for b in 0..=p {
                     let radius = section.inner + thickness * r[er] + hr * (1.0 + rule.points[a]);
-                    let weight =
-                        std::f64::consts::PI * rule.weights[a] * rule.weights[b] * hr * hx * radius;
+                    let weight = around
+                        * std::f64::consts::PI
+                        * rule.weights[a]
+                        * rule.weights[b]
+                        * hr
+                        * hx
+                        * radius;
                     // Nodes whose polynomials or slopes do not vanish here: a cross.
                     let mut rows: Vec<(usize, [[f64; 3]; 6])> = Vec::new();
                     for m in 0..=p {
@@ -158,10 +219,10 @@ pub fn radial_stiffness(section: Section, shear: C, bulk: f64, p: usize, layers:
                             // Strains rr, φφ, xx and shears rφ, φx, rx by U, V, W.
                             let strains = [
                                 [dr, 0.0, 0.0],
-                                [by, by, 0.0],
+                                [by, component * by, 0.0],
                                 [0.0, 0.0, dx],
-                                [-by, dr - by, 0.0],
-                                [0.0, dx, -by],
+                                [-component * by, dr - by, 0.0],
+                                [0.0, dx, -component * by],
                                 [dx, 0.0, dr],
                             ];
                             rows.push((m * (p + 1) + n, strains));
@@ -198,17 +259,22 @@ pub fn radial_stiffness(section: Section, shear: C, bulk: f64, p: usize, layers:
             }
         }
     }
-    // Sleeves and the plane of symmetry: the inner one moves by one, U = 1 and V = −1.
+    // Sleeves and the middle.
     let whole = Band { width: band.width, columns: band.columns.clone() };
     let mut given: Vec<Option<f64>> = vec![None; count];
     for j in 0..nx {
-        for (c, value) in [1.0, -1.0, 0.0].into_iter().enumerate() {
+        let (layer, point) = if j == nx - 1 { (x.len() - 2, p) } else { (j / p, j % p) };
+        let part = x[layer] + 0.5 * (x[layer + 1] - x[layer]) * (1.0 + rule.points[point]);
+        let moved = motion.sleeve(section.inner, half * part);
+        for (c, value) in moved.into_iter().enumerate() {
             given[unknown(0, j, c)] = Some(value);
             given[unknown(nr - 1, j, c)] = Some(0.0);
         }
     }
     for i in 0..nr {
-        given[unknown(i, 0, 2)].get_or_insert(0.0);
+        for c in motion.middle() {
+            given[unknown(i, 0, *c)].get_or_insert(0.0);
+        }
     }
     let zero = C::new(0.0, 0.0);
     let mut right = vec![zero; count];
@@ -250,7 +316,7 @@ mod tests {
 
     const BODY: Section = Section { inner: 0.02, outer: 0.04, length: 0.04 };
 
-    fn stiffness(shear: C, p: usize, layers: i32) -> C {
+    fn radial(shear: C, p: usize, layers: i32) -> C {
         radial_stiffness(BODY, shear, 64.7e6, p, layers)
     }
 
@@ -286,10 +352,41 @@ mod tests {
         assert!((middle / exact - 1.0).abs() <= 2e-3, "{middle} {exact}");
     }
 
+    /// Torsion is exact at any length, 4πμL/(1/a² − 1/b²); long bushings shear by 2πμL/ln(b/a) along the axis.
+    #[test]
+    fn torsion_and_axial_shear_are_the_closed_forms() {
+        let (a, b, mu) = (0.02f64, 0.04f64, C::new(0.7e6, 0.2e6));
+        let twist = stiffness(BODY, Motion::Torsional, mu, 64.7e6, 6, 3);
+        let exact = mu * (4.0 * std::f64::consts::PI * 0.04 / (1.0 / (a * a) - 1.0 / (b * b)));
+        // Polynomials for r and 1/r over two thirds of the wall.
+        assert!((twist - exact).norm() <= 1e-6 * exact.norm(), "{twist} {exact}");
+        let of = |length: f64| {
+            stiffness(Section { length, ..BODY }, Motion::Axial, C::new(1.0, 0.0), 1e3, 5, 2).re
+        };
+        let middle = (of(0.8) - of(0.4)) / 0.4;
+        let exact = 2.0 * std::f64::consts::PI / (b / a).ln();
+        // Two lengths, so that the ends drop out.
+        assert!((middle / exact - 1.0).abs() <= 1e-4, "{middle} {exact}");
+    }
+
+    /// A long bushing that tilts is a row of slices that move across: K L²/12 but for shear and ends.
+    #[test]
+    fn a_long_bushing_tilts_as_a_row_of_slices() {
+        let of = |motion, length: f64| {
+            stiffness(Section { length, ..BODY }, motion, C::new(1.0, 0.0), 1e3, 5, 2).re
+        };
+        let per_length = (of(Motion::Radial, 1.2) - of(Motion::Radial, 0.8)) / 0.4;
+        let length = 2.0f64;
+        let slices = per_length * length.powi(3) / 12.0;
+        let tilt = of(Motion::Conical, length);
+        // Ends lack a few of fifty wall thicknesses on each side, which count threefold.
+        assert!((tilt / slices - 1.0).abs() <= 0.1, "{tilt} {slices}");
+    }
+
     #[test]
     fn it_is_converged() {
         let mu = C::new(0.7e6, 0.2e6);
-        let (coarse, fine) = (stiffness(mu, 5, 2), stiffness(mu, 7, 3));
+        let (coarse, fine) = (radial(mu, 5, 2), radial(mu, 7, 3));
         assert!((coarse - fine).norm() <= 3e-4 * fine.norm(), "{coarse} {fine}");
         assert!(coarse.re > fine.re);
     }

@@ -5,6 +5,7 @@
 //! usual one on purpose, so that an error would have to be made twice in different ways.
 
 pub mod bonded_bushing;
+pub mod bonded_disc;
 pub mod dense;
 pub mod elastic;
 pub mod elliptic;

@@ -5,6 +5,7 @@ mod housing;
 mod motion;
 mod motion_sweeps;
 mod regimes;
+mod rubber;
 mod solids;
 mod statics;
 mod varying_compliance;
@@ -33,4 +34,7 @@ pub const STUDIES: &[Study] = &[
     solids::cage::FREQUENCY,
     housing::ORBIT,
     housing::STIFFNESS,
+    rubber::RELAXED,
+    rubber::SLOW,
+    rubber::FAST,
 ];

@@ -161,6 +161,11 @@ impl Tangent {
         self.factor.is_some() && (gain - self.gain).abs() <= 0.05 * (1.0 + self.gain)
     }
 
+    /// Factors made on the way to where no equilibrium was found serve nobody.
+    pub fn forget(&mut self) {
+        self.gain = f64::NAN;
+    }
+
     /// Factors in a state. If `moves` are changes of the prescribed components, `right` loses the
     /// forces that they make on the unknowns.
     ///

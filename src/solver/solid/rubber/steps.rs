@@ -188,6 +188,7 @@ impl<'a> RubberSolid<'a> {
                 Err(Stop::All(error)) => return Err(error),
                 Err(Stop::Step(failure)) => {
                     self.counts.undone += 1;
+                    self.search.tangent.forget();
                     part *= 0.5;
                     let gone = part >= self.options.smallest;
                     if !gone {
@@ -250,6 +251,7 @@ impl<'a> RubberSolid<'a> {
                 Err(Stop::All(error)) => return Err(error),
                 Err(Stop::Step(failure)) => {
                     self.counts.undone += 1;
+                    self.search.tangent.forget();
                     self.next = 0.5 * step;
                     // What the material cannot bear says more than iterations that find nothing just short of it.
                     if !matches!(stopped, Some((_, StepFailure::Material { .. }))) {
