@@ -70,7 +70,7 @@ impl Tet4 {
     }
 
     #[inline(always)]
-    fn along_gradients(&self, p: &Mat3) -> [Vec3; 3] {
+    pub(super) fn along_gradients(&self, p: &Mat3) -> [Vec3; 3] {
         let g = &self.gradients;
         [times(p, g[0]), times(p, g[1]), times(p, g[2])]
     }

@@ -35,7 +35,8 @@ pub struct EightChain {
 }
 
 /// Coefficients of (2.8): of Ī₁ᵏ/Nᵏ⁻¹, from k = 1 on.
-const SERIES: [f64; 5] = [1.0 / 2.0, 1.0 / 20.0, 11.0 / 1050.0, 19.0 / 7000.0, 519.0 / 673_750.0];
+pub(super) const SERIES: [f64; 5] =
+    [1.0 / 2.0, 1.0 / 20.0, 11.0 / 1050.0, 19.0 / 7000.0, 519.0 / 673_750.0];
 
 /// What stress and tangent need of a strain.
 struct Strained {

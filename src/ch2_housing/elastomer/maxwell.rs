@@ -153,3 +153,15 @@ pub fn complex_factor(elements: &[Maxwell], pulsation: f64) -> [f64; 2] {
     }
     sum
 }
+
+/// Deviatoric stiffness over the network's that the recursion shows in steps of `dt` s to a strain that changes its
+/// sign with every step: 1 + Σ γ tanh(x/2)/(x/2), x = Δt/τ. Explicit steps turn unstable with that motion and
+/// with no other (on the unit circle the recursion's answer is real there alone), so that they are limited by
+/// this and not by 1 + Σ γ, which it is for steps shorter than every τ.
+pub fn alternating_factor(elements: &[Maxwell], dt: f64) -> f64 {
+    let part = |Maxwell { gamma, tau }: &Maxwell| {
+        let half = 0.5 * dt / tau;
+        if half > 0.0 { gamma * libm::tanh(half) / half } else { *gamma }
+    };
+    1.0 + elements.iter().map(part).sum::<f64>()
+}

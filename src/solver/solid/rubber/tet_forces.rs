@@ -1,0 +1,398 @@
+//! Forces of many four-node elements of rubber in explicit steps, a lane an element.
+//!
+//! The laws of one element are scalar functions ([`FiveTerms`], [`tet4_nodal`]), called for every lane of a block,
+//! which the compiler turns into vector code. Of each block the stresses it remembers lie together, in the order
+//! in which they are read: DEV S of the last step, then Hⱼ of every Maxwell element. They are most of what a step
+//! reads and writes, so their recursion (2.13) is written in vectors.
+
+use crate::ch2_housing::elastomer::Elastomer;
+use crate::ch2_housing::elastomer::eight_chain::EightChain;
+use crate::ch2_housing::elastomer::five_terms::FiveTerms;
+use crate::ch2_housing::elastomer::maxwell::StepFactors;
+use crate::elements::tet4::{Tet4, relative};
+use crate::elements::tet4_nodal;
+use crate::kinematics::strain::{Sym3, green_lagrange, volume_change};
+use crate::kinematics::vec3::Vec3;
+use crate::solver::solid::model::{SolidError, SolidModel, centre};
+use crate::solver::solid::tet4_blocks::{Block, Node, blocks, in_lane};
+
+/// Elements a block: as many as the processor's vectors hold.
+#[cfg(target_feature = "avx512f")]
+pub const LANES: usize = 8;
+#[cfg(not(target_feature = "avx512f"))]
+pub const LANES: usize = 4;
+
+#[cfg(target_feature = "avx512f")]
+type Lanes = wide::f64x8;
+#[cfg(not(target_feature = "avx512f"))]
+type Lanes = wide::f64x4;
+
+/// Where the mean stress of an element comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MeanStress {
+    /// Its own volume, as in the source: locks where rubber hardly changes its volume.
+    OfElement,
+    /// Volumes averaged around its nodes.
+    #[default]
+    AroundNodes,
+}
+
+/// What an evaluation does with the stresses of the Maxwell elements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum History {
+    /// Steps them on to the present state and keeps that: once in an accepted step.
+    Commit,
+    /// Steps them on and forgets it.
+    Look,
+    /// Leaves them out; the deviatoric stress is that of the network times a factor.
+    Scaled(f64),
+}
+
+/// Elements as the force loop reads them, and what they remember.
+#[derive(Clone, Debug)]
+pub struct RubberForces {
+    pub material: Elastomer,
+    pub mean_stress: MeanStress,
+    chain: Option<FiveTerms>,
+    blocks: Vec<Block<LANES>>,
+    /// s.
+    step: f64,
+    factors: StepFactors,
+    /// Of each block DEV S, then Hⱼ, Pa.
+    memory: Vec<[Lanes; 6]>,
+    /// Undeformed volume around each node, a quarter of each element there, m³.
+    volumes: Vec<f64>,
+    /// Mean stress at each node, Pa.
+    means: Vec<f64>,
+    /// Smallest J − 1 of the last evaluation.
+    lowest: f64,
+}
+
+impl RubberForces {
+    /// At rest, relaxed; elements must be sound.
+    pub fn new(
+        material: Elastomer,
+        mean_stress: MeanStress,
+        nodes: usize,
+        elements: impl ExactSizeIterator<Item = (Tet4, [u32; 4])>,
+    ) -> RubberForces {
+        let blocks: Vec<Block<LANES>> = blocks(elements);
+        let mut volumes = vec![0.0; nodes];
+        for block in &blocks {
+            for (lane, nodes) in block.nodes.iter().enumerate() {
+                let share = 0.25 * block.element(lane).volume;
+                nodes.iter().for_each(|node| volumes[*node as usize] += share);
+            }
+        }
+        let zero = [Lanes::splat(0.0); 6];
+        RubberForces {
+            memory: vec![zero; blocks.len() * (material.maxwell.len() + 1)],
+            chain: FiveTerms::of(&material.network),
+            factors: StepFactors::of(&material.maxwell, 0.0),
+            means: vec![0.0; nodes],
+            step: 0.0,
+            lowest: 0.0,
+            volumes,
+            blocks,
+            mean_stress,
+            material,
+        }
+    }
+
+    /// From now on in steps of `dt` s.
+    pub fn set_step(&mut self, dt: f64) {
+        if dt != self.step {
+            self.step = dt;
+            self.factors.set(&self.material.maxwell, dt);
+        }
+    }
+
+    /// About the side of the smallest element, m.
+    pub fn shortest(&self) -> f64 {
+        let volumes = self.elements().map(|(_, tet)| tet.volume);
+        libm::cbrt(volumes.fold(f64::INFINITY, f64::min))
+    }
+
+    /// Every element with its nodes.
+    fn elements(&self) -> impl Iterator<Item = (&[u32; 4], Tet4)> {
+        let lanes = |block: &Block<LANES>, lane: usize| block.element(lane);
+        let all = self.blocks.iter().flat_map(move |block| {
+            block.nodes.iter().enumerate().map(move |(lane, nodes)| (nodes, lanes(block, lane)))
+        });
+        // What fills up the last block has no volume.
+        all.filter(|(_, tet)| tet.volume > 0.0)
+    }
+
+    /// Energy of the network, J: what the Maxwell elements hold is not in it.
+    pub fn network_energy(&self, displacement: &[Node]) -> f64 {
+        let network = &self.material.network;
+        let (mut energy, mut around) = (0.0, vec![0.0; self.volumes.len()]);
+        for (nodes, tet) in self.elements() {
+            let h = tet.displacement_gradient(&apart(nodes, displacement));
+            let chains = network.isochoric_energy(&green_lagrange(&h)).unwrap_or(f64::NAN);
+            energy += tet.volume * chains;
+            match self.mean_stress {
+                MeanStress::OfElement => {
+                    energy += tet.volume * network.volume_energy(volume_change(&h));
+                }
+                MeanStress::AroundNodes => {
+                    let share = tet4_nodal::volume_change_at_nodes(&tet, &h);
+                    nodes.iter().for_each(|node| around[*node as usize] += share);
+                }
+            }
+        }
+        let pairs = around.iter().zip(&self.volumes);
+        energy + pairs.map(|(v, of)| of * network.volume_energy(v / of)).sum::<f64>()
+    }
+
+    /// What is wrong with a state that is not sound.
+    pub fn failure(
+        &self,
+        model: &SolidModel,
+        displacement: &[Node],
+        time: f64,
+        step: u64,
+    ) -> SolidError {
+        for (index, (nodes, tet)) in self.elements().enumerate() {
+            let h = tet.displacement_gradient(&apart(nodes, displacement));
+            let ratio = 1.0 + volume_change(&h);
+            if ratio <= 0.0 {
+                return model.inverted(index, ratio, time, step);
+            }
+            if let Err(source) = self.material.network.isochoric_stress(&green_lagrange(&h)) {
+                let at = centre(&model.problem, index);
+                let element = model.labels.element(index);
+                return SolidError::Material { element, at, source, time, step };
+            }
+        }
+        let bad = |u: &Node| !(u[0] + u[1] + u[2]).is_finite();
+        model.not_finite(displacement.iter().position(bad).unwrap_or(0), time, step)
+    }
+
+    /// Takes the present state for one in which the rubber has rested: no stress in the Maxwell elements.
+    pub fn relax(&mut self, displacement: &[Node]) {
+        let zero = [Lanes::splat(0.0); 6];
+        self.memory.fill(zero);
+        let terms = self.material.maxwell.len() + 1;
+        let chain = self.chain;
+        let law = |network: &EightChain, e: &Sym3| isochoric_stress(chain, network, e);
+        for (block, memory) in self.blocks.iter().zip(self.memory.chunks_exact_mut(terms)) {
+            let apart = block.relative(displacement);
+            for lane in 0..LANES {
+                let s =
+                    law(&self.material.network, &green_lagrange(&gradient(block, &apart, lane).1));
+                for (to, s) in memory[0].iter_mut().zip(s) {
+                    to.as_mut_array()[lane] = s;
+                }
+            }
+        }
+    }
+
+    /// Adds the forces of all elements on the nodes, N, in the order of the elements.
+    pub fn add_forces(&mut self, displacement: &[Node], forces: &mut [Node], history: History) {
+        self.lowest = f64::INFINITY;
+        if self.mean_stress == MeanStress::AroundNodes {
+            self.average(displacement);
+        }
+        match self.chain {
+            Some(chain) => {
+                self.pass(displacement, forces, history, |e| chain.isochoric_stress(e));
+            }
+            None => {
+                let network = self.material.network;
+                self.pass(displacement, forces, history, |e| isochoric_stress(None, &network, e));
+            }
+        }
+    }
+
+    /// Mean stresses at the nodes.
+    #[inline(never)]
+    fn average(&mut self, displacement: &[Node]) {
+        self.means.fill(0.0);
+        let mut lowest = [f64::INFINITY; LANES];
+        let displacement = &displacement[..self.means.len()];
+        for block in &self.blocks {
+            let apart = block.relative(displacement);
+            let mut shares = [0.0; LANES];
+            for lane in 0..LANES {
+                let (tet, h) = gradient(block, &apart, lane);
+                shares[lane] = tet4_nodal::volume_change_at_nodes(&tet, &h);
+                let change = volume_change(&h);
+                lowest[lane] = if change < lowest[lane] { change } else { lowest[lane] };
+            }
+            for (nodes, share) in block.nodes.iter().zip(shares) {
+                nodes.iter().for_each(|node| self.means[*node as usize] += share);
+            }
+        }
+        for (mean, volume) in self.means.iter_mut().zip(&self.volumes) {
+            *mean = self.material.network.mean_stress(*mean / volume);
+        }
+        self.lowest = lowest.into_iter().fold(self.lowest, f64::min);
+    }
+
+    #[inline(never)]
+    fn pass(
+        &mut self,
+        displacement: &[Node],
+        forces: &mut [Node],
+        history: History,
+        law: impl Fn(&Sym3) -> Sym3,
+    ) {
+        let terms = self.material.maxwell.len() + 1;
+        let network = self.material.network;
+        let around = self.mean_stress == MeanStress::AroundNodes;
+        let mut lowest = [f64::INFINITY; LANES];
+        // One bound for all, so that it is checked once.
+        let displacement = &displacement[..forces.len()];
+        let means = &self.means[..forces.len()];
+        for (block, memory) in self.blocks.iter().zip(self.memory.chunks_exact_mut(terms)) {
+            let apart = block.relative(displacement);
+            let mut gradients = [[[0.0; LANES]; 3]; 3];
+            let mut own = [[0.0; LANES]; 6];
+            for lane in 0..LANES {
+                let (_, h) = gradient(block, &apart, lane);
+                let s = law(&green_lagrange(&h));
+                for i in 0..3 {
+                    for j in 0..3 {
+                        gradients[i][j][lane] = h[i][j];
+                    }
+                }
+                for i in 0..6 {
+                    own[i][lane] = s[i];
+                }
+            }
+            let mut mean = [0.0; LANES];
+            if around {
+                for (mean, nodes) in mean.iter_mut().zip(&block.nodes) {
+                    let [a, b, c, d] = nodes.map(|node| means[node as usize]);
+                    *mean = 0.25 * ((a + b) + (c + d));
+                }
+            } else {
+                for lane in 0..LANES {
+                    let [a, b, c] = &gradients;
+                    let change =
+                        volume_change(&[in_lane(a, lane), in_lane(b, lane), in_lane(c, lane)]);
+                    mean[lane] = network.mean_stress(change);
+                    lowest[lane] = if change < lowest[lane] { change } else { lowest[lane] };
+                }
+            }
+            let total = match history {
+                History::Commit => remember(memory, own, &self.factors),
+                History::Look => foresee(memory, own, &self.factors),
+                History::Scaled(factor) => own.map(|s| s.map(|s| factor * s)),
+            };
+            let mut force = [[[0.0; LANES]; 3]; 3];
+            for lane in 0..LANES {
+                let [a, b, c] = &gradients;
+                let h = [in_lane(a, lane), in_lane(b, lane), in_lane(c, lane)];
+                let of = tet4_nodal::nodal_forces(
+                    &block.element(lane),
+                    &h,
+                    &in_lane(&total, lane),
+                    mean[lane],
+                );
+                for n in 0..3 {
+                    for i in 0..3 {
+                        force[n][i][lane] = of[n][i];
+                    }
+                }
+            }
+            block.add(force, forces);
+        }
+        self.lowest = lowest.into_iter().fold(self.lowest, f64::min);
+    }
+
+    /// Whether at the last evaluation no element was turned inside out or stretched beyond its material.
+    pub fn is_sound(&self) -> bool {
+        self.lowest > -1.0
+    }
+
+    /// DEV S and Hⱼ of every element, one after the other, Pa: what a run needs to go on.
+    pub fn memory(&self) -> Vec<f64> {
+        self.memory.iter().flatten().flat_map(|lanes| lanes.to_array()).collect()
+    }
+
+    /// Puts back what [`RubberForces::memory`] gave.
+    ///
+    /// # Panics
+    /// If it has another length.
+    pub fn remember(&mut self, values: &[f64]) {
+        assert_eq!(values.len(), 6 * LANES * self.memory.len(), "of another body");
+        for (to, from) in self.memory.iter_mut().flatten().zip(values.chunks_exact(LANES)) {
+            to.as_mut_array().copy_from_slice(from);
+        }
+    }
+}
+
+/// DEV S of the network, Pa; not a number where it bears none.
+#[inline(always)]
+fn isochoric_stress(chain: Option<FiveTerms>, network: &EightChain, e: &Sym3) -> Sym3 {
+    match chain {
+        Some(chain) => chain.isochoric_stress(e),
+        None => network.isochoric_stress(e).unwrap_or([f64::NAN; 6]),
+    }
+}
+
+/// Displacements of an element's first three nodes relative to the fourth.
+fn apart(nodes: &[u32; 4], displacement: &[Node]) -> [Vec3; 3] {
+    relative(&nodes.map(|node| {
+        let u = displacement[node as usize];
+        [u[0], u[1], u[2]]
+    }))
+}
+
+/// The element in a lane and its displacement gradient.
+#[inline(always)]
+fn gradient(
+    block: &Block<LANES>,
+    apart: &[[[f64; LANES]; 3]; 3],
+    lane: usize,
+) -> (Tet4, [Vec3; 3]) {
+    let [a, b, c] = apart;
+    let tet = block.element(lane);
+    let h = tet.displacement_gradient(&[in_lane(a, lane), in_lane(b, lane), in_lane(c, lane)]);
+    (tet, h)
+}
+
+/// (2.13) and (2.14): Hⱼ stepped on in their places, and the total deviatoric stress.
+#[inline(always)]
+fn remember(
+    memory: &mut [[Lanes; 6]],
+    own: [[f64; LANES]; 6],
+    factors: &StepFactors,
+) -> [[f64; LANES]; 6] {
+    let Some((before, terms)) = memory.split_first_mut() else { return own };
+    let own = own.map(Lanes::new);
+    let mut change = own;
+    for i in 0..6 {
+        change[i] = own[i] - before[i];
+    }
+    *before = own;
+    let mut total = own;
+    for ((h, decay), gain) in terms.iter_mut().zip(&factors.decay).zip(&factors.gain) {
+        let (decay, gain) = (Lanes::splat(*decay), Lanes::splat(*gain));
+        for i in 0..6 {
+            h[i] = decay * h[i] + gain * change[i];
+            total[i] += h[i];
+        }
+    }
+    total.map(|lanes| lanes.to_array())
+}
+
+/// As [`remember`], the memory left as it is.
+fn foresee(
+    memory: &[[Lanes; 6]],
+    own: [[f64; LANES]; 6],
+    factors: &StepFactors,
+) -> [[f64; LANES]; 6] {
+    let Some((before, terms)) = memory.split_first() else { return own };
+    let own = own.map(Lanes::new);
+    let mut total = own;
+    for ((h, decay), gain) in terms.iter().zip(&factors.decay).zip(&factors.gain) {
+        let (decay, gain) = (Lanes::splat(*decay), Lanes::splat(*gain));
+        for i in 0..6 {
+            total[i] += decay * h[i] + gain * (own[i] - before[i]);
+        }
+    }
+    total.map(|lanes| lanes.to_array())
+}
