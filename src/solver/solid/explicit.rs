@@ -245,7 +245,7 @@ impl ExplicitSolid {
         contacts: impl FnMut(f64, &[Node], &mut [Node]),
     ) -> Result<(), SolidError> {
         match self.method {
-            ExplicitMethod::CentralDifferences => self.central_step(contacts),
+            ExplicitMethod::CentralDifferences => self.central_step(contacts)?,
             ExplicitMethod::RungeKutta => self.runge_kutta_step(contacts),
         }
         self.steps += 1;
@@ -254,8 +254,14 @@ impl ExplicitSolid {
     }
 
     /// v(t+h/2) = [(1 − αh/2) v(t−h/2) + h f/m] / (1 + αh/2), then u(t+h) = u(t) + h v(t+h/2).
-    fn central_step(&mut self, mut contacts: impl FnMut(f64, &[Node], &mut [Node])) {
+    fn central_step(
+        &mut self,
+        mut contacts: impl FnMut(f64, &[Node], &mut [Node]),
+    ) -> Result<(), SolidError> {
         self.evaluate(History::Commit);
+        if let Some(rubber) = self.rubber.as_ref().filter(|rubber| !rubber.is_sound()) {
+            return Err(rubber.failure(&self.model, &self.displacement, self.time, self.steps));
+        }
         contacts(self.time, &self.displacement, &mut self.force);
         let h = self.step_size;
         self.add_load_work(0.5 * h);
@@ -284,6 +290,7 @@ impl ExplicitSolid {
         }
         self.add_load_work(0.5 * h);
         self.time = next;
+        Ok(())
     }
 
     /// Kick and drift with damping. What is left of the body's rigid motion is damped with the mean of
@@ -346,9 +353,6 @@ impl ExplicitSolid {
 
     /// A value that is not finite spreads to the whole body; a look at every node finds it.
     fn watch(&self) -> Result<(), SolidError> {
-        if let Some(rubber) = self.rubber.as_ref().filter(|rubber| !rubber.is_sound()) {
-            return Err(rubber.failure(&self.model, &self.displacement, self.time, self.steps));
-        }
         // Every few steps: the look costs as much as moving the nodes.
         if !self.steps.is_multiple_of(16) {
             return Ok(());

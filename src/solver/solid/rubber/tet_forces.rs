@@ -6,7 +6,6 @@
 //! reads and writes, so their recursion (2.13) is written in vectors.
 
 use crate::ch2_housing::elastomer::Elastomer;
-use crate::ch2_housing::elastomer::eight_chain::EightChain;
 use crate::ch2_housing::elastomer::five_terms::FiveTerms;
 use crate::ch2_housing::elastomer::maxwell::StepFactors;
 use crate::elements::tet4::{Tet4, relative};
@@ -15,6 +14,7 @@ use crate::kinematics::strain::{Sym3, green_lagrange, volume_change};
 use crate::kinematics::vec3::Vec3;
 use crate::solver::solid::model::{SolidError, SolidModel, centre};
 use crate::solver::solid::tet4_blocks::{Block, Node, blocks, in_lane};
+use std::cell::Cell;
 
 /// Elements a block: as many as the processor's vectors hold.
 #[cfg(target_feature = "avx512f")]
@@ -173,14 +173,16 @@ impl RubberForces {
     pub fn relax(&mut self, displacement: &[Node]) {
         let zero = [Lanes::splat(0.0); 6];
         self.memory.fill(zero);
+        let network = &self.material.network;
         let terms = self.material.maxwell.len() + 1;
-        let chain = self.chain;
-        let law = |network: &EightChain, e: &Sym3| isochoric_stress(chain, network, e);
         for (block, memory) in self.blocks.iter().zip(self.memory.chunks_exact_mut(terms)) {
             let apart = block.relative(displacement);
             for lane in 0..LANES {
-                let s =
-                    law(&self.material.network, &green_lagrange(&gradient(block, &apart, lane).1));
+                let e = green_lagrange(&gradient(block, &apart, lane).1);
+                let s = match self.chain {
+                    Some(chain) => chain.isochoric_stress(&e),
+                    None => network.isochoric_stress(&e).unwrap_or([f64::NAN; 6]),
+                };
                 for (to, s) in memory[0].iter_mut().zip(s) {
                     to.as_mut_array()[lane] = s;
                 }
@@ -199,8 +201,16 @@ impl RubberForces {
                 self.pass(displacement, forces, history, |e| chain.isochoric_stress(e));
             }
             None => {
-                let network = self.material.network;
-                self.pass(displacement, forces, history, |e| isochoric_stress(None, &network, e));
+                let (network, beyond) = (self.material.network, Cell::new(false));
+                self.pass(displacement, forces, history, |e| {
+                    network.isochoric_stress(e).unwrap_or_else(|_| {
+                        beyond.set(true);
+                        [f64::NAN; 6]
+                    })
+                });
+                if beyond.get() {
+                    self.lowest = f64::NEG_INFINITY;
+                }
             }
         }
     }
@@ -321,15 +331,6 @@ impl RubberForces {
         for (to, from) in self.memory.iter_mut().flatten().zip(values.chunks_exact(LANES)) {
             to.as_mut_array().copy_from_slice(from);
         }
-    }
-}
-
-/// DEV S of the network, Pa; not a number where it bears none.
-#[inline(always)]
-fn isochoric_stress(chain: Option<FiveTerms>, network: &EightChain, e: &Sym3) -> Sym3 {
-    match chain {
-        Some(chain) => chain.isochoric_stress(e),
-        None => network.isochoric_stress(e).unwrap_or([f64::NAN; 6]),
     }
 }
 
