@@ -11,7 +11,8 @@ use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::tet_mesh::Elements;
 use bearing_dynamics::solver::solid::explicit::{ExplicitSolid, SolidStepping};
 use bearing_dynamics::solver::solid::rubber::explicit::RubberBody;
-use bearing_dynamics::solver::solid::rubber::tet_forces::{LANES, MeanStress};
+use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
+use bearing_dynamics::solver::solid::tet4_blocks::LANES;
 use common::{cube, least};
 use nalgebra::{Matrix3, Matrix3x4, Vector3};
 

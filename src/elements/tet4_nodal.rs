@@ -8,22 +8,27 @@
 //! volume ([`crate::elements::tet4`]). One more pass over the elements is all that it costs.
 
 use super::tet4::Tet4;
+use crate::kinematics::number::Number;
 use crate::kinematics::strain::{
     Mat3, Sym3, cofactor, deformation_gradient, first_piola_kirchhoff, volume_change,
 };
-use crate::kinematics::vec3::Vec3;
 
 /// What an element adds to the change of volume around each of its nodes: V(J − 1)/4, m³. Summed over the
 /// elements of a node and divided by the sum of their V/4 it is J̄ − 1.
 #[inline(always)]
-pub fn volume_change_at_nodes(tet: &Tet4, h: &Mat3) -> f64 {
-    0.25 * tet.volume * volume_change(h)
+pub fn volume_change_at_nodes<T: Number>(tet: &Tet4<T>, h: &Mat3<T>) -> T {
+    T::of(0.25) * tet.volume * volume_change(h)
 }
 
 /// Forces on the first three nodes, N, from the second Piola–Kirchhoff stress without the part of volume and the
 /// mean Cauchy stress, Pa: −V P ∂N/∂X with P = F S + p cof F. The fourth takes minus their sum.
 #[inline(always)]
-pub fn nodal_forces(tet: &Tet4, h: &Mat3, stress: &Sym3, mean_stress: f64) -> [Vec3; 3] {
+pub fn nodal_forces<T: Number>(
+    tet: &Tet4<T>,
+    h: &Mat3<T>,
+    stress: &Sym3<T>,
+    mean_stress: T,
+) -> [[T; 3]; 3] {
     let mut p = first_piola_kirchhoff(h, stress);
     let volume = cofactor(&deformation_gradient(h));
     for i in 0..3 {

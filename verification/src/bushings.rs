@@ -6,7 +6,10 @@ use bearing_dynamics::ch2_housing::elastomer::{Elastomer, ElastomerError};
 use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
 use bearing_dynamics::mesh::{Elements, TetMesh};
 use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::model::Prescribed;
+use bearing_dynamics::solver::solid::rubber::explicit::RubberBody;
 use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
 
 use crate::case::CaseError;
 
@@ -31,6 +34,9 @@ pub const MAXWELL: [[f64; 2]; 14] = [
 /// N and B/C_R of Tables 2.3 and 3.1.
 pub const LOCKING: f64 = 8.0;
 pub const BULK_RATIO: f64 = 100.0;
+
+/// kg/m³: the source states none.
+pub const DENSITY: f64 = 1100.0;
 
 /// With C_R in Pa, and every γ times a factor; 0 is the network alone.
 pub fn rubber(modulus: f64, gammas: f64, pull: ChainPull) -> Result<Elastomer, ElastomerError> {
@@ -75,8 +81,47 @@ pub fn bonded(
     material: Elastomer,
     moved: Profile,
 ) -> Result<(RubberModel, Vec<u32>), CaseError> {
+    let prescribed = held(mesh, moved);
+    let Elements::Quadratic(elements) = mesh.elements.clone() else {
+        return Err(CaseError::message("elements of ten nodes are needed"));
+    };
+    let nodes = mesh.nodes.clone();
+    let problem = RubberProblem { nodes, elements, material, prescribed, loads: Vec::new() };
+    Ok((RubberModel::new(problem)?, mesh.node_sets["inner"].clone()))
+}
+
+/// The same quarter in four-node elements, for explicit steps of rubber of 1100 kg/m³; and the nodes that move.
+pub fn bonded_tets(
+    body: &Bushing,
+    cells: [usize; 3],
+    grading: f64,
+    material: Elastomer,
+    mean_stress: MeanStress,
+    moved: Profile,
+) -> Result<(RubberBody, Vec<u32>), CaseError> {
+    let [around, radial, axial] = cells;
+    let mesh = BushingMesh { around, radial, axial, grading, part: Part::Quarter };
+    let mesh = bushing(body, &mesh)?.mesh;
+    let Elements::Linear(elements) = mesh.elements.clone() else {
+        return Err(CaseError::message("elements of four nodes are needed"));
+    };
+    let rubber = RubberBody {
+        nodes: mesh.nodes.clone(),
+        elements,
+        material,
+        density: DENSITY,
+        mean_stress,
+        mass_scale: 1.0,
+        prescribed: held(&mesh, moved),
+        loads: Vec::new(),
+        gravity: [0.0; 3],
+    };
+    Ok((rubber, mesh.node_sets["inner"].clone()))
+}
+
+fn held(mesh: &TetMesh, moved: Profile) -> Vec<Prescribed> {
     const HELD: Option<Profile> = Some(Profile::ZERO);
-    let prescribed = supports(
+    supports(
         mesh,
         &[
             ("outer", [HELD; 3]),
@@ -84,11 +129,5 @@ pub fn bonded(
             ("x_low", [HELD, None, None]),
             ("y_low", [None, HELD, None]),
         ],
-    );
-    let Elements::Quadratic(elements) = mesh.elements.clone() else {
-        return Err(CaseError::message("elements of ten nodes are needed"));
-    };
-    let nodes = mesh.nodes.clone();
-    let problem = RubberProblem { nodes, elements, material, prescribed, loads: Vec::new() };
-    Ok((RubberModel::new(problem)?, mesh.node_sets["inner"].clone()))
+    )
 }

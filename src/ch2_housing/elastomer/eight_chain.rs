@@ -7,6 +7,7 @@
 
 use super::ElastomerError;
 use super::langevin;
+use crate::kinematics::number::Number;
 use crate::kinematics::strain::{
     Mat3, Sym3, Tangent, determinant, double_dot, full, volume_change,
 };
@@ -229,8 +230,9 @@ impl EightChain {
     }
 
     /// Mean Cauchy stress at the change of volume J − 1, Pa.
-    pub fn mean_stress(&self, change: f64) -> f64 {
-        self.bulk * change
+    #[inline(always)]
+    pub fn mean_stress<T: Number>(&self, change: T) -> T {
+        T::of(self.bulk) * change
     }
 
     /// Strain energy per undeformed volume (2.8), J/m³.

@@ -111,7 +111,7 @@ pub(super) fn place(at: &Vec3) -> String {
 /// Elements as the force loop reads them.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Blocks {
-    Linear(Vec<tet4_blocks::Block<{ tet4_blocks::LANES }>>),
+    Linear(Vec<tet4_blocks::Block>),
     Quadratic(Vec<tet10_blocks::Block>),
 }
 

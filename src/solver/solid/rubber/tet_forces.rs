@@ -1,31 +1,20 @@
 //! Forces of many four-node elements of rubber in explicit steps, a lane an element.
 //!
-//! The laws of one element are scalar functions ([`FiveTerms`], [`tet4_nodal`]), called for every lane of a block,
-//! which the compiler turns into vector code. Of each block the stresses it remembers lie together, in the order
-//! in which they are read: DEV S of the last step, then Hⱼ of every Maxwell element. They are most of what a step
-//! reads and writes, so their recursion (2.13) is written in vectors.
+//! The laws are those of one element ([`FiveTerms`], [`tet4_nodal`]), for all lanes of a block at once. Of each block
+//! the stresses it remembers lie together, in the order in which they are read: DEV S of the last step, then Hⱼ of
+//! every Maxwell element. They are most of what a step reads and writes.
 
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::ch2_housing::elastomer::five_terms::FiveTerms;
 use crate::ch2_housing::elastomer::maxwell::StepFactors;
 use crate::elements::tet4::{Tet4, relative};
 use crate::elements::tet4_nodal;
+use crate::kinematics::number::Number;
 use crate::kinematics::strain::{Sym3, green_lagrange, volume_change};
 use crate::kinematics::vec3::Vec3;
 use crate::solver::solid::model::{SolidError, SolidModel, centre};
-use crate::solver::solid::tet4_blocks::{Block, Node, blocks, in_lane};
+use crate::solver::solid::tet4_blocks::{Block, LANES, Lanes, Node, blocks};
 use std::cell::Cell;
-
-/// Elements a block: as many as the processor's vectors hold.
-#[cfg(target_feature = "avx512f")]
-pub const LANES: usize = 8;
-#[cfg(not(target_feature = "avx512f"))]
-pub const LANES: usize = 4;
-
-#[cfg(target_feature = "avx512f")]
-type Lanes = wide::f64x8;
-#[cfg(not(target_feature = "avx512f"))]
-type Lanes = wide::f64x4;
 
 /// Where the mean stress of an element comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,7 +43,7 @@ pub struct RubberForces {
     pub material: Elastomer,
     pub mean_stress: MeanStress,
     chain: Option<FiveTerms>,
-    blocks: Vec<Block<LANES>>,
+    blocks: Vec<Block>,
     /// s.
     step: f64,
     factors: StepFactors,
@@ -76,15 +65,15 @@ impl RubberForces {
         nodes: usize,
         elements: impl ExactSizeIterator<Item = (Tet4, [u32; 4])>,
     ) -> RubberForces {
-        let blocks: Vec<Block<LANES>> = blocks(elements);
+        let blocks: Vec<Block> = blocks(elements);
         let mut volumes = vec![0.0; nodes];
         for block in &blocks {
             for (lane, nodes) in block.nodes.iter().enumerate() {
-                let share = 0.25 * block.element(lane).volume;
+                let share = 0.25 * block.element_of(lane).volume;
                 nodes.iter().for_each(|node| volumes[*node as usize] += share);
             }
         }
-        let zero = [Lanes::splat(0.0); 6];
+        let zero = [Lanes::of(0.0); 6];
         RubberForces {
             memory: vec![zero; blocks.len() * (material.maxwell.len() + 1)],
             chain: FiveTerms::of(&material.network),
@@ -115,7 +104,7 @@ impl RubberForces {
 
     /// Every element with its nodes.
     fn elements(&self) -> impl Iterator<Item = (&[u32; 4], Tet4)> {
-        let lanes = |block: &Block<LANES>, lane: usize| block.element(lane);
+        let lanes = |block: &Block, lane: usize| block.element_of(lane);
         let all = self.blocks.iter().flat_map(move |block| {
             block.nodes.iter().enumerate().map(move |(lane, nodes)| (nodes, lanes(block, lane)))
         });
@@ -171,14 +160,14 @@ impl RubberForces {
 
     /// Takes the present state for one in which the rubber has rested: no stress in the Maxwell elements.
     pub fn relax(&mut self, displacement: &[Node]) {
-        let zero = [Lanes::splat(0.0); 6];
+        let zero = [Lanes::of(0.0); 6];
         self.memory.fill(zero);
         let network = &self.material.network;
         let terms = self.material.maxwell.len() + 1;
         for (block, memory) in self.blocks.iter().zip(self.memory.chunks_exact_mut(terms)) {
-            let apart = block.relative(displacement);
-            for lane in 0..LANES {
-                let e = green_lagrange(&gradient(block, &apart, lane).1);
+            for (lane, nodes) in block.nodes.iter().enumerate() {
+                let h = block.element_of(lane).displacement_gradient(&apart(nodes, displacement));
+                let e = green_lagrange(&h);
                 let s = match self.chain {
                     Some(chain) => chain.isochoric_stress(&e),
                     None => network.isochoric_stress(&e).unwrap_or([f64::NAN; 6]),
@@ -202,11 +191,21 @@ impl RubberForces {
             }
             None => {
                 let (network, beyond) = (self.material.network, Cell::new(false));
-                self.pass(displacement, forces, history, |e| {
+                let law = |e: &Sym3| {
                     network.isochoric_stress(e).unwrap_or_else(|_| {
                         beyond.set(true);
                         [f64::NAN; 6]
                     })
+                };
+                self.pass(displacement, forces, history, |e| {
+                    let mut lanes = *e;
+                    for lane in 0..LANES {
+                        let one = law(&e.map(|e| e.as_array()[lane]));
+                        for (to, s) in lanes.iter_mut().zip(one) {
+                            to.as_mut_array()[lane] = s;
+                        }
+                    }
+                    lanes
                 });
                 if beyond.get() {
                     self.lowest = f64::NEG_INFINITY;
@@ -219,17 +218,12 @@ impl RubberForces {
     #[inline(never)]
     fn average(&mut self, displacement: &[Node]) {
         self.means.fill(0.0);
-        let mut lowest = [f64::INFINITY; LANES];
+        let mut lowest = Lanes::of(f64::INFINITY);
         let displacement = &displacement[..self.means.len()];
         for block in &self.blocks {
-            let apart = block.relative(displacement);
-            let mut shares = [0.0; LANES];
-            for lane in 0..LANES {
-                let (tet, h) = gradient(block, &apart, lane);
-                shares[lane] = tet4_nodal::volume_change_at_nodes(&tet, &h);
-                let change = volume_change(&h);
-                lowest[lane] = if change < lowest[lane] { change } else { lowest[lane] };
-            }
+            let h = block.element.displacement_gradient(&block.relative(displacement));
+            lowest = lowest.min(volume_change(&h));
+            let shares = tet4_nodal::volume_change_at_nodes(&block.element, &h).to_array();
             for (nodes, share) in block.nodes.iter().zip(shares) {
                 nodes.iter().for_each(|node| self.means[*node as usize] += share);
             }
@@ -237,7 +231,7 @@ impl RubberForces {
         for (mean, volume) in self.means.iter_mut().zip(&self.volumes) {
             *mean = self.material.network.mean_stress(*mean / volume);
         }
-        self.lowest = lowest.into_iter().fold(self.lowest, f64::min);
+        self.lowest = lowest.to_array().into_iter().fold(self.lowest, f64::min);
     }
 
     #[inline(never)]
@@ -246,70 +240,39 @@ impl RubberForces {
         displacement: &[Node],
         forces: &mut [Node],
         history: History,
-        law: impl Fn(&Sym3) -> Sym3,
+        law: impl Fn(&Sym3<Lanes>) -> Sym3<Lanes>,
     ) {
         let terms = self.material.maxwell.len() + 1;
         let network = self.material.network;
         let around = self.mean_stress == MeanStress::AroundNodes;
-        let mut lowest = [f64::INFINITY; LANES];
+        let mut lowest = Lanes::of(f64::INFINITY);
         // One bound for all, so that it is checked once.
         let displacement = &displacement[..forces.len()];
         let means = &self.means[..forces.len()];
         for (block, memory) in self.blocks.iter().zip(self.memory.chunks_exact_mut(terms)) {
-            let apart = block.relative(displacement);
-            let mut gradients = [[[0.0; LANES]; 3]; 3];
-            let mut own = [[0.0; LANES]; 6];
-            for lane in 0..LANES {
-                let (_, h) = gradient(block, &apart, lane);
-                let s = law(&green_lagrange(&h));
-                for i in 0..3 {
-                    for j in 0..3 {
-                        gradients[i][j][lane] = h[i][j];
-                    }
-                }
-                for i in 0..6 {
-                    own[i][lane] = s[i];
-                }
-            }
-            let mut mean = [0.0; LANES];
-            if around {
+            let h = block.element.displacement_gradient(&block.relative(displacement));
+            let own = law(&green_lagrange(&h));
+            let total = match history {
+                History::Commit => remember(memory, own, &self.factors),
+                History::Look => foresee(memory, own, &self.factors),
+                History::Scaled(factor) => scaled(own, factor),
+            };
+            let mean = if around {
+                let mut mean = [0.0; LANES];
                 for (mean, nodes) in mean.iter_mut().zip(&block.nodes) {
                     let [a, b, c, d] = nodes.map(|node| means[node as usize]);
                     *mean = 0.25 * ((a + b) + (c + d));
                 }
+                Lanes::new(mean)
             } else {
-                for lane in 0..LANES {
-                    let [a, b, c] = &gradients;
-                    let change =
-                        volume_change(&[in_lane(a, lane), in_lane(b, lane), in_lane(c, lane)]);
-                    mean[lane] = network.mean_stress(change);
-                    lowest[lane] = if change < lowest[lane] { change } else { lowest[lane] };
-                }
-            }
-            let total = match history {
-                History::Commit => remember(memory, own, &self.factors),
-                History::Look => foresee(memory, own, &self.factors),
-                History::Scaled(factor) => own.map(|s| s.map(|s| factor * s)),
+                let change = volume_change(&h);
+                lowest = lowest.min(change);
+                network.mean_stress(change)
             };
-            let mut force = [[[0.0; LANES]; 3]; 3];
-            for lane in 0..LANES {
-                let [a, b, c] = &gradients;
-                let h = [in_lane(a, lane), in_lane(b, lane), in_lane(c, lane)];
-                let of = tet4_nodal::nodal_forces(
-                    &block.element(lane),
-                    &h,
-                    &in_lane(&total, lane),
-                    mean[lane],
-                );
-                for n in 0..3 {
-                    for i in 0..3 {
-                        force[n][i][lane] = of[n][i];
-                    }
-                }
-            }
+            let force = tet4_nodal::nodal_forces(&block.element, &h, &total, mean);
             block.add(force, forces);
         }
-        self.lowest = lowest.into_iter().fold(self.lowest, f64::min);
+        self.lowest = lowest.to_array().into_iter().fold(self.lowest, f64::min);
     }
 
     /// Whether at the last evaluation no element was turned inside out or stretched beyond its material.
@@ -342,28 +305,18 @@ fn apart(nodes: &[u32; 4], displacement: &[Node]) -> [Vec3; 3] {
     }))
 }
 
-/// The element in a lane and its displacement gradient.
 #[inline(always)]
-fn gradient(
-    block: &Block<LANES>,
-    apart: &[[[f64; LANES]; 3]; 3],
-    lane: usize,
-) -> (Tet4, [Vec3; 3]) {
-    let [a, b, c] = apart;
-    let tet = block.element(lane);
-    let h = tet.displacement_gradient(&[in_lane(a, lane), in_lane(b, lane), in_lane(c, lane)]);
-    (tet, h)
+fn scaled(mut stress: Sym3<Lanes>, factor: f64) -> Sym3<Lanes> {
+    for s in &mut stress {
+        *s *= Lanes::of(factor);
+    }
+    stress
 }
 
 /// (2.13) and (2.14): Hⱼ stepped on in their places, and the total deviatoric stress.
 #[inline(always)]
-fn remember(
-    memory: &mut [[Lanes; 6]],
-    own: [[f64; LANES]; 6],
-    factors: &StepFactors,
-) -> [[f64; LANES]; 6] {
+fn remember(memory: &mut [[Lanes; 6]], own: Sym3<Lanes>, factors: &StepFactors) -> Sym3<Lanes> {
     let Some((before, terms)) = memory.split_first_mut() else { return own };
-    let own = own.map(Lanes::new);
     let mut change = own;
     for i in 0..6 {
         change[i] = own[i] - before[i];
@@ -371,29 +324,24 @@ fn remember(
     *before = own;
     let mut total = own;
     for ((h, decay), gain) in terms.iter_mut().zip(&factors.decay).zip(&factors.gain) {
-        let (decay, gain) = (Lanes::splat(*decay), Lanes::splat(*gain));
+        let (decay, gain) = (Lanes::of(*decay), Lanes::of(*gain));
         for i in 0..6 {
             h[i] = decay * h[i] + gain * change[i];
             total[i] += h[i];
         }
     }
-    total.map(|lanes| lanes.to_array())
+    total
 }
 
 /// As [`remember`], the memory left as it is.
-fn foresee(
-    memory: &[[Lanes; 6]],
-    own: [[f64; LANES]; 6],
-    factors: &StepFactors,
-) -> [[f64; LANES]; 6] {
+fn foresee(memory: &[[Lanes; 6]], own: Sym3<Lanes>, factors: &StepFactors) -> Sym3<Lanes> {
     let Some((before, terms)) = memory.split_first() else { return own };
-    let own = own.map(Lanes::new);
     let mut total = own;
     for ((h, decay), gain) in terms.iter().zip(&factors.decay).zip(&factors.gain) {
-        let (decay, gain) = (Lanes::splat(*decay), Lanes::splat(*gain));
+        let (decay, gain) = (Lanes::of(*decay), Lanes::of(*gain));
         for i in 0..6 {
             total[i] += decay * h[i] + gain * (own[i] - before[i]);
         }
     }
-    total.map(|lanes| lanes.to_array())
+    total
 }

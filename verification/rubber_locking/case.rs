@@ -1,0 +1,163 @@
+//! Radial stiffness of the bushing of 3.4.1 as its rubber hardly changes its volume: elements that do not lock, and
+//! the source's, which does.
+
+use bearing_dynamics::ch2_housing::elastomer::Elastomer;
+use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
+use bearing_dynamics::mesh::generate::Bushing;
+use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solver::solid::rubber::model::RubberModel;
+use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
+use nalgebra::Complex;
+
+use crate::bushings::{LOCKING, bonded, bonded_tets, quarter, shear_over_modulus};
+use crate::case::{Case, CaseError, Tier};
+use crate::check::Check;
+use crate::context::CaseContext;
+use crate::golden::GoldenTolerance;
+use crate::oracles::bonded_bushing::{Section, incompressible_stiffness, radial_stiffness};
+
+pub const CASE: Case = Case {
+    id: "rubber_locking",
+    title: "Bushing: stiffness as the bulk modulus grows",
+    section: "2.2.3, 3.2.1, 3.4.1, (2.8), (3.1)",
+    tier: Tier::Smoke,
+    published: include_str!("published.toml"),
+    run,
+};
+
+const BODY: Bushing = Bushing { inner_diameter: 0.04, thickness: 0.02, length: 0.04 };
+const SECTION: Section = Section { inner: 0.02, outer: 0.04, length: 0.04 };
+/// C_R of Table 3.1, Pa.
+const MODULUS: f64 = 0.647e6;
+const RATIOS: [(f64, &str); 5] =
+    [(1e1, "1e1"), (1e2, "1e2"), (1e3, "1e3"), (1e4, "1e4"), (1e5, "1e5")];
+const TEN: [usize; 3] = [8, 4, 3];
+const FOUR: [usize; 3] = [12, 6, 6];
+const GRADING: f64 = 1.5;
+
+fn run(context: &mut CaseContext) -> Result<(), CaseError> {
+    let ten_nodes = quarter(&BODY, TEN, GRADING)?;
+    let mut rows = Vec::new();
+    let mut all: Vec<[f64; 4]> = Vec::new();
+    for (ratio, _) in RATIOS {
+        let network = EightChain::new(MODULUS, LOCKING, ratio * MODULUS, ChainPull::FiveTerms)?;
+        let rubber = Elastomer { network, maxwell: Vec::new() };
+        let (ten, _) = bonded(&ten_nodes, rubber.clone(), Profile::Constant(1.0))?;
+        let four = |mean_stress| -> Result<f64, CaseError> {
+            let moved = Profile::Constant(1.0);
+            let (body, _) = bonded_tets(&BODY, FOUR, GRADING, rubber.clone(), mean_stress, moved)?;
+            stiffness(&body.implicit()?)
+        };
+        let shear = Complex::new(shear_over_modulus() * MODULUS, 0.0);
+        let exact = radial_stiffness(SECTION, shear, ratio * MODULUS, 5, 3).re;
+        let found =
+            [exact, stiffness(&ten)?, four(MeanStress::AroundNodes)?, four(MeanStress::OfElement)?];
+        let mut row = vec![format!("{ratio:.0e}")];
+        row.extend(found.iter().map(|k| format!("{k:.4e}")));
+        rows.push(row);
+        all.push(found);
+    }
+    context.table(
+        "ratios",
+        "Relaxed radial stiffness, N/m",
+        &["B/C_R", "oracle", "ten nodes", "four, volume around nodes", "four, volume of each"],
+        rows,
+    );
+    checks(context, &all);
+    let named = [
+        "polynomials of high degree",
+        "ten nodes",
+        "four nodes, volume around nodes",
+        "four nodes, the source's",
+    ];
+    let curves = named.into_iter().enumerate().map(|(k, name)| {
+        let points = RATIOS.iter().zip(&all).map(|((ratio, _), of)| [*ratio, 1e-6 * of[k]]);
+        Curve::new(name, points.collect())
+    });
+    let svg = xy(&XyPlot {
+        title: "Radial stiffness as the bulk modulus grows".into(),
+        x: Axis::log("bulk modulus over C_R", "1"),
+        y: Axis::log("stiffness", "kN/mm"),
+        style: Style::Lines,
+        curves: curves.collect(),
+    })?;
+    context.figure(
+        "locking",
+        svg,
+        "Elements with one volume each follow the bulk modulus; the others the bushing.",
+    );
+    Ok(())
+}
+
+/// Of the whole bushing, N/m.
+fn stiffness(model: &RubberModel) -> Result<f64, CaseError> {
+    Ok(4.0 * complex_stiffness(model, 0.0, &[0.0], 1e-6)?[0].storage)
+}
+
+fn checks(context: &mut CaseContext, all: &[[f64; 4]]) {
+    for ((ratio, key), [exact, ten, around, _]) in RATIOS.into_iter().zip(all) {
+        for (id, elements, ours, tolerance) in [
+            ("ten", "ten-node elements", *ten, 0.01),
+            ("around", "four-node elements, volume around nodes", *around, 0.05),
+        ] {
+            let text = format!("relaxed radial stiffness at B = {ratio:.0e} C_R, {elements}");
+            context.check(
+                Check::new(&format!("{id}_{key}"), &text, "N/m", ours)
+                    .independent(*exact, "one Fourier component, polynomials of degree 5")
+                    .relative(tolerance, "the mesh, and singular corners")
+                    .golden(GoldenTolerance::MIXED),
+            );
+        }
+    }
+    let [exact, ten, around, own] = all[4];
+    let incompressible =
+        incompressible_stiffness(SECTION) * shear_over_modulus() * MODULUS * SECTION.length;
+    context.check(
+        Check::new(
+            "closed_form",
+            "relaxed radial stiffness at B = 1e5 C_R, ten-node elements",
+            "N/m",
+            ten,
+        )
+        .closed_form(incompressible, "rubber that keeps its volume, parabolic along the length")
+        .relative(
+            0.03,
+            "the form is within 2 % of converged elements at this length; the mesh leaves 0.7 %",
+        ),
+    );
+    context.check(
+        Check::new(
+            "bounded",
+            "stiffness at B = 1e5 C_R over that at 1e3 C_R, four nodes, volume around nodes",
+            "1",
+            around / all[2][2],
+        )
+        .independent(exact / all[2][0], "one Fourier component, polynomials of degree 5")
+        .relative(0.02, "locking would be a factor of up to a hundred"),
+    );
+    context.check(
+        Check::new(
+            "locked",
+            "stiffness at B = 1e5 C_R over the oracle's, four nodes, volume of each",
+            "1",
+            own / exact,
+        )
+        .converged(1.0, "an element that does not lock")
+        .at_least(
+            100.0,
+            "what keeps the volume of each element keeps the body from moving: stiffness follows B",
+        ),
+    );
+    context.check(
+        Check::new(
+            "locked_source",
+            "stiffness at B = 100 C_R over the oracle's, four nodes, volume of each",
+            "1",
+            all[1][3] / all[1][0],
+        )
+        .converged(1.0, "an element that does not lock")
+        .at_least(0.3, "the source's element at the source's bulk modulus"),
+    );
+}
