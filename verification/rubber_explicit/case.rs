@@ -9,7 +9,7 @@ use bearing_dynamics::mesh::generate::Bushing;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::explicit::{ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::rubber::explicit::RubberBody;
+use bearing_dynamics::solver::solid::rubber::explicit::{RubberBody, RubberStepLimit};
 use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
 use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
 use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
@@ -75,9 +75,15 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     };
     let mut curves = vec![curve("implicit", &fine)];
     let mut errors = Vec::new();
+    let mut limits = Vec::new();
     for scale in SCALES {
         body.mass_scale = scale;
-        let way = explicit(&body, &inner)?;
+        let (way, found) = explicit(&body, &inner)?;
+        limits.push(vec![
+            scale.to_string(),
+            format!("{:.3e}", found.limit.step),
+            format!("{:.2}", found.stiffening),
+        ]);
         errors.push(apart(&way));
         rows.push(row("explicit", scale, &way, apart(&way)));
         context.work(&format!("steps, masses times {scale}"), way.steps);
@@ -91,6 +97,13 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         &["way", "masses times", "times f², Hz²", "steps", "seconds", "largest difference over largest force"],
         rows,
     );
+    context.table(
+        "limits",
+        "Largest stable steps: the longer, the less of the fast Maxwell elements they meet",
+        &["masses times", "step, s", "deviatoric stiffness over the network's"],
+        limits,
+    );
+    context.golden("force", largest, "N", GoldenTolerance::MIXED);
     let svg = xy(&XyPlot {
         title: "First cycle at 10 Hz, 1 mm".into(),
         x: Axis::linear("displacement", "mm"),
@@ -143,7 +156,7 @@ fn implicit(body: &RubberBody, inner: &[u32], steps: usize) -> Result<Way, CaseE
     Ok(Way { forces, steps: solid.counts.accepted, seconds: clock.elapsed().as_secs_f64() })
 }
 
-fn explicit(body: &RubberBody, inner: &[u32]) -> Result<Way, CaseError> {
+fn explicit(body: &RubberBody, inner: &[u32]) -> Result<(Way, RubberStepLimit), CaseError> {
     let clock = Instant::now();
     let still = || vec![[0.0; 3]; body.nodes.len()];
     let stepping = SolidStepping::FractionOfLimit(0.9);
@@ -162,15 +175,16 @@ fn explicit(body: &RubberBody, inner: &[u32]) -> Result<Way, CaseError> {
         let sum: f64 = inner.iter().map(|node| solid.forces()[*node as usize][2]).sum();
         forces.push(-4.0 * sum);
     }
-    Ok(Way { forces, steps: solid.steps, seconds: clock.elapsed().as_secs_f64() })
+    let seconds = clock.elapsed().as_secs_f64();
+    Ok((Way { forces, steps: solid.steps, seconds }, found))
 }
 
 fn checks(context: &mut CaseContext, errors: &[f64], implicit: [f64; 2]) {
     let text = "largest difference of the force over a cycle, over the largest force";
     let ways = "explicit against implicit steps of the same elements, which share the law but neither forces, nor steps, nor inertia";
     for (k, (key, tolerance, reason)) in [
-        ("true", 1e-3, "steps of some microseconds; waves die within a few rows"),
-        ("scaled_10", 2e-3, "s f² = 1e3 Hz²"),
+        ("true", 1e-3, "a fifth of what is wanted of both ways"),
+        ("scaled_10", 1e-3, "what others found at 1e3 Hz² of mass scale times f²"),
     ]
     .into_iter()
     .enumerate()
@@ -183,8 +197,7 @@ fn checks(context: &mut CaseContext, errors: &[f64], implicit: [f64; 2]) {
                 errors[k],
             )
             .consistency(0.0, ways)
-            .absolute(tolerance, reason)
-            .golden(GoldenTolerance::MIXED),
+            .absolute(tolerance, reason),
         );
     }
     context.check(
@@ -230,7 +243,7 @@ fn mesh(context: &mut CaseContext, body: &RubberBody) -> Result<(), CaseError> {
             ours.dynamic_stiffness,
         )
         .independent(exact.norm(), "one Fourier component, polynomials of degree 5")
-        .relative(0.1, "a coarse mesh: the comparison above is of steps in time")
+        .relative(0.12, "a coarse mesh: the comparison above is of steps in time")
         .golden(GoldenTolerance::MIXED),
     );
     Ok(())
