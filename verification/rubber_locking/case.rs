@@ -123,7 +123,7 @@ fn stiffness(model: &RubberModel) -> Result<f64, CaseError> {
 fn checks(context: &mut CaseContext, all: &[[f64; 4]]) {
     for ((ratio, key), [exact, ten, around, _]) in RATIOS.into_iter().zip(all) {
         for (id, elements, ours, tolerance, reason) in [
-            ("ten", "ten-node elements", *ten, 0.01, "the mesh, and singular corners: 0.6 %"),
+            ("ten", "ten-node elements", *ten, 0.01, "the mesh, and singular corners: 0.8 %"),
             (
                 "around",
                 "four-node elements, volume around nodes",
@@ -154,7 +154,7 @@ fn checks(context: &mut CaseContext, all: &[[f64; 4]]) {
         .closed_form(incompressible, "rubber that keeps its volume, parabolic along the length")
         .relative(
             0.03,
-            "the form is within 2 % of converged elements at this length; the mesh leaves 0.6 %",
+            "the form is within 2 % of converged elements at this length; the mesh leaves 0.8 %",
         ),
     );
     context.check(

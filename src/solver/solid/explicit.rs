@@ -1,4 +1,4 @@
-//! Explicit steps of a solid: central differences, or Runge–Kutta as in the source; of rubber, whose stresses have a
+//! Explicit steps of a solid (2.7): central differences, or Runge–Kutta as in the source; of rubber, whose stresses have a
 //! history ([`super::rubber::explicit`]), central differences.
 
 use super::energy::{SolidEnergy, SolidLedger, strain_energy};
@@ -253,6 +253,7 @@ impl ExplicitSolid {
         self.watch()
     }
 
+    /// (2.7) by central differences; without damping (2.15), (3.12).
     /// v(t+h/2) = [(1 − αh/2) v(t−h/2) + h f/m] / (1 + αh/2), then u(t+h) = u(t) + h v(t+h/2).
     fn central_step(
         &mut self,
