@@ -29,6 +29,7 @@ bench:
 	$(CARGO) bench --locked --bench statics --profile release
 	$(CARGO) bench --locked --bench dynamics --profile release
 	$(CARGO) bench --locked --bench solids --profile release
+	$(CARGO) bench --locked --bench rubber --profile release
 	$(CARGO) bench --locked --bench calculix --profile release
 
 ## Run time against error, as CSV and SVG in target/pareto.

@@ -5,6 +5,8 @@
 //! roof are written here, apart from the library.
 
 mod common;
+#[path = "common/steel.rs"]
+mod steel;
 
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::mesh::numbering::reverse_cuthill_mckee;
@@ -12,9 +14,10 @@ use bearing_dynamics::mesh::quadratic::elevate;
 use bearing_dynamics::mesh::tet_mesh::Elements;
 use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
 use bearing_dynamics::solver::solid::team::Crew;
-use common::{cube, least, solid};
+use common::{cube, least};
 use nalgebra::{Matrix3, Matrix3x4, Vector3};
 use std::hint::black_box;
+use steel::solid;
 
 /// Least acceptable ratios up to 50 000 elements; docs/benchmarks.md has what was measured.
 const LEAST_OVER_PLAIN: f64 = if cfg!(target_feature = "avx512f") { 2.5 } else { 2.2 };

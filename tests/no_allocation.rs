@@ -6,6 +6,8 @@ mod dynamics;
 
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
+use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
+use bearing_dynamics::ch2_housing::elastomer::named::table_3_1;
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::mesh::TetMesh;
 use bearing_dynamics::mesh::quadratic::elevate;
@@ -16,6 +18,8 @@ use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
 use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
+use bearing_dynamics::solver::solid::rubber::explicit::RubberBody;
+use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
 use common::table_4_1;
 use dynamics::*;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -184,6 +188,44 @@ fn explicit_steps_of_a_solid_allocate_nothing() {
                 }
             });
             assert_eq!(count, 0, "{method:?}, quadratic: {quadratic}");
+            assert!(solid.displacement[7][0] > 0.0);
+        }
+    }
+}
+
+#[test]
+fn explicit_steps_of_rubber_allocate_nothing() {
+    let SolidProblem { nodes, elements: Elements::Linear(elements), prescribed, .. } =
+        cube(false).problem
+    else {
+        panic!("of four nodes")
+    };
+    let still = vec![[0.0; 3]; nodes.len()];
+    for mean_stress in [MeanStress::OfElement, MeanStress::AroundNodes] {
+        for pull in [ChainPull::FiveTerms, ChainPull::Exact] {
+            let mut material = table_3_1();
+            material.network.pull = pull;
+            let body = RubberBody {
+                nodes: nodes.clone(),
+                elements: elements.clone(),
+                material,
+                density: 1100.0,
+                mean_stress,
+                mass_scale: 10.0,
+                prescribed: prescribed.clone(),
+                loads: Vec::new(),
+                gravity: [0.0, 0.0, -9.81],
+            };
+            let stepping = SolidStepping::FractionOfLimit(0.5);
+            let (mut solid, _) =
+                ExplicitSolid::of_rubber(&body, stepping, still.clone(), still.clone()).unwrap();
+            solid.step(|_, _, _| {}).unwrap();
+            let count = allocations(|| {
+                for _ in 0..50 {
+                    solid.step(|_, _, forces| forces[7][0] += 1e-3).unwrap();
+                }
+            });
+            assert_eq!(count, 0, "{mean_stress:?} {pull:?}");
             assert!(solid.displacement[7][0] > 0.0);
         }
     }

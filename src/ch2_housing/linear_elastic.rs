@@ -1,6 +1,7 @@
 //! The linear law of steel parts (2.2.2): second Piola–Kirchhoff stress linear in the
 //! Green–Lagrange strain.
 
+use crate::kinematics::number::Number;
 use crate::kinematics::strain::Sym3;
 use thiserror::Error;
 
@@ -55,9 +56,9 @@ impl LinearElastic {
 
     /// Second Piola–Kirchhoff stress (2.4): S = E/(1+ν)·(E + ν/(1−2ν)·tr(E) 1), Pa.
     #[inline(always)]
-    pub fn second_piola_kirchhoff(&self, strain: &Sym3) -> Sym3 {
-        let double = 2.0 * self.shear_modulus;
-        let pressure = self.lambda * (strain[0] + strain[1] + strain[2]);
+    pub fn second_piola_kirchhoff<T: Number>(&self, strain: &Sym3<T>) -> Sym3<T> {
+        let double = T::of(2.0 * self.shear_modulus);
+        let pressure = T::of(self.lambda) * (strain[0] + strain[1] + strain[2]);
         [
             double * strain[0] + pressure,
             double * strain[1] + pressure,

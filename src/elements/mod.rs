@@ -5,6 +5,7 @@
 pub mod tet10;
 pub mod tet10_nodal;
 pub mod tet4;
+pub mod tet4_nodal;
 
 use thiserror::Error;
 

@@ -1,6 +1,7 @@
 //! The four-node tetrahedron of the source: one strain, one stress per element.
 
 use super::ElementError;
+use crate::kinematics::number::Number;
 use crate::kinematics::strain::{
     Mat3, Sym3, cauchy, deformation_gradient, first_piola_kirchhoff, full, green_lagrange,
     green_lagrange_change, times,
@@ -12,11 +13,11 @@ pub const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// What an element needs of the undeformed state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tet4 {
+pub struct Tet4<T = f64> {
     /// ∂N/∂X of the first three nodes, 1/m; the fourth is minus their sum.
-    pub gradients: [Vec3; 3],
+    pub gradients: [[T; 3]; 3],
     /// m³.
-    pub volume: f64,
+    pub volume: T,
 }
 
 impl Tet4 {
@@ -39,11 +40,14 @@ impl Tet4 {
         let of_first = scale(add(of_a, add(of_b, of_c)), -1.0);
         Ok(Tet4 { gradients: [of_first, of_a, of_b], volume })
     }
+}
 
+/// Of one element, or of one a lane.
+impl<T: Number> Tet4<T> {
     /// Displacement gradient H = Σ u ⊗ ∂N/∂X, the sum of (4.2), from displacements of the first
     /// three nodes relative to the fourth.
     #[inline(always)]
-    pub fn displacement_gradient(&self, relative: &[Vec3; 3]) -> Mat3 {
+    pub fn displacement_gradient(&self, relative: &[[T; 3]; 3]) -> Mat3<T> {
         let [a, b, c] = &self.gradients;
         let [u, v, w] = relative;
         let row = |i: usize| {
@@ -59,22 +63,28 @@ impl Tet4 {
     /// Forces on the first three nodes, −V P ∂N/∂X with P = F S, N; the fourth takes minus their
     /// sum. What (4.6) and (4.7) share out face by face comes to the same (errata: sign).
     #[inline(always)]
-    pub fn nodal_forces(&self, relative: &[Vec3; 3], stress: impl Fn(&Sym3) -> Sym3) -> [Vec3; 3] {
+    pub fn nodal_forces(
+        &self,
+        relative: &[[T; 3]; 3],
+        stress: impl Fn(&Sym3<T>) -> Sym3<T>,
+    ) -> [[T; 3]; 3] {
         let h = self.displacement_gradient(relative);
         let mut s = stress(&green_lagrange(&h));
         // Six products here save nine at the gradients.
         for component in &mut s {
-            *component *= -self.volume;
+            *component = *component * -self.volume;
         }
         self.along_gradients(&first_piola_kirchhoff(&h, &s))
     }
 
     #[inline(always)]
-    fn along_gradients(&self, p: &Mat3) -> [Vec3; 3] {
+    pub(super) fn along_gradients(&self, p: &Mat3<T>) -> [[T; 3]; 3] {
         let g = &self.gradients;
         [times(p, g[0]), times(p, g[1]), times(p, g[2])]
     }
+}
 
+impl Tet4 {
     /// Change of the nodal forces when the displacements change: the tangent stiffness applied to
     /// `change`, with the sign of forces. The stress must be linear in the strain.
     #[inline(always)]

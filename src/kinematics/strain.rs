@@ -1,16 +1,17 @@
 //! Deformation at a point of a solid, from the displacement gradient H.
 //!
 //! Strains are made of H itself, never of F − 1: at a strain of 1e-6 that keeps every digit, where
-//! FᵀF − 1 has lost ten. Plain inlined arithmetic without branches, so that a loop over lanes of
-//! elements becomes vector code with the same bits as the single call.
+//! FᵀF − 1 has lost ten. Plain inlined arithmetic without branches, so that it does for
+//! lanes of elements what it does for one, with the same bits.
 
-use crate::kinematics::vec3::{Vec3, cross};
+use crate::kinematics::number::Number;
+use crate::kinematics::vec3::cross;
 
-/// Rows of a 3 × 3 matrix.
-pub type Mat3 = [[f64; 3]; 3];
+/// Rows of a 3 × 3 matrix, of numbers or of lanes.
+pub type Mat3<T = f64> = [[T; 3]; 3];
 
 /// A symmetric tensor: xx, yy, zz, xy, yz, zx.
-pub type Sym3 = [f64; 6];
+pub type Sym3<T = f64> = [T; 6];
 
 /// A fourth-order tensor that is symmetric in its first and in its last two indices, between pairs
 /// in the order of [`Sym3`]: what takes a change of strain to a change of stress.
@@ -28,22 +29,22 @@ pub fn applied(tangent: &Tangent, change: &Sym3) -> Sym3 {
 
 /// A : B.
 #[inline(always)]
-pub fn double_dot(a: &Sym3, b: &Sym3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
+pub fn double_dot<T: Number>(a: &Sym3<T>, b: &Sym3<T>) -> T {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + T::of(2.0) * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
 }
 
 /// The full matrix of a symmetric tensor.
 #[inline(always)]
-pub fn full(s: &Sym3) -> Mat3 {
+pub fn full<T: Number>(s: &Sym3<T>) -> Mat3<T> {
     [[s[0], s[3], s[5]], [s[3], s[1], s[4]], [s[5], s[4], s[2]]]
 }
 
 /// Deformation gradient F = 1 + H (4.2).
 #[inline(always)]
-pub fn deformation_gradient(h: &Mat3) -> Mat3 {
+pub fn deformation_gradient<T: Number>(h: &Mat3<T>) -> Mat3<T> {
     let mut f = *h;
     for i in 0..3 {
-        f[i][i] += 1.0;
+        f[i][i] = f[i][i] + T::of(1.0);
     }
     f
 }
@@ -58,15 +59,16 @@ pub fn right_cauchy_green(h: &Mat3) -> Sym3 {
 
 /// Green–Lagrange strain (2.3), written in the displacement gradient: E = (H + Hᵀ + HᵀH)/2.
 #[inline(always)]
-pub fn green_lagrange(h: &Mat3) -> Sym3 {
+pub fn green_lagrange<T: Number>(h: &Mat3<T>) -> Sym3<T> {
+    let half = T::of(0.5);
     let product = |i: usize, j: usize| h[0][i] * h[0][j] + h[1][i] * h[1][j] + h[2][i] * h[2][j];
     [
-        h[0][0] + 0.5 * product(0, 0),
-        h[1][1] + 0.5 * product(1, 1),
-        h[2][2] + 0.5 * product(2, 2),
-        0.5 * (h[0][1] + h[1][0] + product(0, 1)),
-        0.5 * (h[1][2] + h[2][1] + product(1, 2)),
-        0.5 * (h[2][0] + h[0][2] + product(2, 0)),
+        h[0][0] + half * product(0, 0),
+        h[1][1] + half * product(1, 1),
+        h[2][2] + half * product(2, 2),
+        half * (h[0][1] + h[1][0] + product(0, 1)),
+        half * (h[1][2] + h[2][1] + product(1, 2)),
+        half * (h[2][0] + h[0][2] + product(2, 0)),
     ]
 }
 
@@ -89,19 +91,19 @@ pub fn green_lagrange_change(h: &Mat3, change: &Mat3) -> Sym3 {
 
 /// J − 1 with J = det F (3.5), every digit kept at small H.
 #[inline(always)]
-pub fn volume_change(h: &Mat3) -> f64 {
+pub fn volume_change<T: Number>(h: &Mat3<T>) -> T {
     let minor = |i: usize, j: usize| h[i][i] * h[j][j] - h[i][j] * h[j][i];
     h[0][0] + h[1][1] + h[2][2] + minor(0, 1) + minor(1, 2) + minor(2, 0) + determinant(h)
 }
 
 /// Cofactors of F, the derivative of J by F: J F⁻ᵀ.
 #[inline(always)]
-pub fn cofactor(f: &Mat3) -> Mat3 {
+pub fn cofactor<T: Number>(f: &Mat3<T>) -> Mat3<T> {
     [cross(f[1], f[2]), cross(f[2], f[0]), cross(f[0], f[1])]
 }
 
 #[inline(always)]
-pub fn determinant(a: &Mat3) -> f64 {
+pub fn determinant<T: Number>(a: &Mat3<T>) -> T {
     a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1])
         - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0])
         + a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0])
@@ -109,12 +111,12 @@ pub fn determinant(a: &Mat3) -> f64 {
 
 /// First Piola–Kirchhoff stress P = F S, as S + H S.
 #[inline(always)]
-pub fn first_piola_kirchhoff(h: &Mat3, second: &Sym3) -> Mat3 {
+pub fn first_piola_kirchhoff<T: Number>(h: &Mat3<T>, second: &Sym3<T>) -> Mat3<T> {
     let s = full(second);
     let mut p = s;
     for i in 0..3 {
         for j in 0..3 {
-            p[i][j] += h[i][0] * s[0][j] + h[i][1] * s[1][j] + h[i][2] * s[2][j];
+            p[i][j] = p[i][j] + (h[i][0] * s[0][j] + h[i][1] * s[1][j] + h[i][2] * s[2][j]);
         }
     }
     p
@@ -132,7 +134,7 @@ pub fn cauchy(h: &Mat3, second: &Sym3) -> Sym3 {
 }
 
 #[inline(always)]
-pub fn times(a: &Mat3, v: Vec3) -> Vec3 {
+pub fn times<T: Number>(a: &Mat3<T>, v: [T; 3]) -> [T; 3] {
     [
         a[0][0] * v[0] + a[0][1] * v[1] + a[0][2] * v[2],
         a[1][0] * v[0] + a[1][1] * v[1] + a[1][2] * v[2],

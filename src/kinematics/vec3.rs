@@ -3,6 +3,8 @@
 //! Everything is inlined and without branches, so that a loop over lanes becomes vector code with
 //! the same bits as the single call.
 
+use super::number::Number;
+
 pub type Vec3 = [f64; 3];
 
 #[inline(always)]
@@ -32,7 +34,7 @@ pub fn dot(a: Vec3, b: Vec3) -> f64 {
 }
 
 #[inline(always)]
-pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
+pub fn cross<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 

@@ -11,10 +11,12 @@ use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
 use bearing_dynamics::mesh::{Elements, TetMesh};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel, SolidProblem};
+use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
+use bearing_dynamics::solver::solid::rubber::explicit::RubberBody;
 use bearing_dynamics::solver::solid::rubber::harmonic::ComplexStiffness;
 use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
 use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
 
 use crate::case::CaseError;
 use crate::check::Check;
@@ -50,6 +52,9 @@ pub const BUSHING_3_3: Bushing =
 /// N and B/C_R of Tables 2.3 and 3.1.
 pub const LOCKING: f64 = 8.0;
 pub const BULK_RATIO: f64 = 100.0;
+
+/// kg/m³: the source states none.
+pub const DENSITY: f64 = 1100.0;
 
 /// With C_R in Pa, and every γ times a factor; 0 is the network alone.
 pub fn rubber(modulus: f64, gammas: f64, pull: ChainPull) -> Result<Elastomer, ElastomerError> {
@@ -94,16 +99,7 @@ pub fn bonded(
     material: Elastomer,
     moved: Profile,
 ) -> Result<(RubberModel, Vec<u32>), CaseError> {
-    const HELD: Option<Profile> = Some(Profile::ZERO);
-    let prescribed = supports(
-        mesh,
-        &[
-            ("outer", [HELD; 3]),
-            ("inner", [HELD, HELD, Some(moved)]),
-            ("x_low", [HELD, None, None]),
-            ("y_low", [None, HELD, None]),
-        ],
-    );
+    let prescribed = held(mesh, moved);
     let Elements::Quadratic(elements) = mesh.elements.clone() else {
         return Err(CaseError::message("elements of ten nodes are needed"));
     };
@@ -241,4 +237,46 @@ pub fn order(
                 .at_least(0.0, "an order"),
         );
     }
+}
+
+/// The same quarter in four-node elements, for explicit steps of rubber of 1100 kg/m³; and the nodes that move.
+pub fn bonded_tets(
+    body: &Bushing,
+    cells: [usize; 3],
+    grading: f64,
+    material: Elastomer,
+    mean_stress: MeanStress,
+    moved: Profile,
+) -> Result<(RubberBody, Vec<u32>), CaseError> {
+    let [around, radial, axial] = cells;
+    let mesh = BushingMesh { around, radial, axial, grading, part: Part::Quarter };
+    let mesh = bushing(body, &mesh)?.mesh;
+    let Elements::Linear(elements) = mesh.elements.clone() else {
+        return Err(CaseError::message("elements of four nodes are needed"));
+    };
+    let rubber = RubberBody {
+        nodes: mesh.nodes.clone(),
+        elements,
+        material,
+        density: DENSITY,
+        mean_stress,
+        mass_scale: 1.0,
+        prescribed: held(&mesh, moved),
+        loads: Vec::new(),
+        gravity: [0.0; 3],
+    };
+    Ok((rubber, mesh.node_sets["inner"].clone()))
+}
+
+fn held(mesh: &TetMesh, moved: Profile) -> Vec<Prescribed> {
+    const HELD: Option<Profile> = Some(Profile::ZERO);
+    supports(
+        mesh,
+        &[
+            ("outer", [HELD; 3]),
+            ("inner", [HELD, HELD, Some(moved)]),
+            ("x_low", [HELD, None, None]),
+            ("y_low", [None, HELD, None]),
+        ],
+    )
 }

@@ -62,6 +62,10 @@ mod rod_wave;
 mod rotating_load_orbit;
 #[path = "../rubber_cube_2_3_1/case.rs"]
 mod rubber_cube_2_3_1;
+#[path = "../rubber_explicit/case.rs"]
+mod rubber_explicit;
+#[path = "../rubber_locking/case.rs"]
+mod rubber_locking;
 #[path = "../settling_and_turning/case.rs"]
 mod settling_and_turning;
 #[path = "../shaft_in_two_housings/case.rs"]
@@ -126,6 +130,8 @@ pub const CASES: &[Case] = &[
     bushing_geometries_3_4_2::CASE,
     bushing_bulging_3_4_2::CASE,
     bushing_sleeve_motions::CASE,
+    rubber_locking::CASE,
+    rubber_explicit::CASE,
 ];
 
 /// Cases of a tier (the full tier contains the smoke tier).

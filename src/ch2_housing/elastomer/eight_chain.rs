@@ -7,6 +7,7 @@
 
 use super::ElastomerError;
 use super::langevin;
+use crate::kinematics::number::Number;
 use crate::kinematics::strain::{
     Mat3, Sym3, Tangent, determinant, double_dot, full, volume_change,
 };
@@ -35,7 +36,8 @@ pub struct EightChain {
 }
 
 /// Coefficients of (2.8): of Ī₁ᵏ/Nᵏ⁻¹, from k = 1 on.
-const SERIES: [f64; 5] = [1.0 / 2.0, 1.0 / 20.0, 11.0 / 1050.0, 19.0 / 7000.0, 519.0 / 673_750.0];
+pub(super) const SERIES: [f64; 5] =
+    [1.0 / 2.0, 1.0 / 20.0, 11.0 / 1050.0, 19.0 / 7000.0, 519.0 / 673_750.0];
 
 /// What stress and tangent need of a strain.
 struct Strained {
@@ -228,8 +230,9 @@ impl EightChain {
     }
 
     /// Mean Cauchy stress at the change of volume J − 1, Pa.
-    pub fn mean_stress(&self, change: f64) -> f64 {
-        self.bulk * change
+    #[inline(always)]
+    pub fn mean_stress<T: Number>(&self, change: T) -> T {
+        T::of(self.bulk) * change
     }
 
     /// Strain energy per undeformed volume (2.8), J/m³.

@@ -51,6 +51,12 @@ impl StepFactors {
         if !forward {
             return Err(ElastomerError::Step(dt));
         }
+        self.fill(elements, dt);
+        Ok(())
+    }
+
+    /// As [`StepFactors::set`], of a step that is known to go forward.
+    pub(crate) fn fill(&mut self, elements: &[Maxwell], dt: f64) {
         self.decay.clear();
         self.gain.clear();
         self.total_gain = 0.0;
@@ -61,7 +67,13 @@ impl StepFactors {
             self.gain.push(gain);
             self.total_gain += gain;
         }
-        Ok(())
+    }
+
+    /// Of a change in no time.
+    pub fn sudden(elements: &[Maxwell]) -> StepFactors {
+        let mut factors = StepFactors::default();
+        factors.fill(elements, 0.0);
+        factors
     }
 
     /// # Errors
@@ -162,4 +174,16 @@ pub fn complex_factor(elements: &[Maxwell], pulsation: f64) -> [f64; 2] {
         sum[1] += gamma / (x + inverse);
     }
     sum
+}
+
+/// Deviatoric stiffness over the network's that the recursion shows in steps of `dt` s to a strain that changes its
+/// sign with every step: 1 + Σ γ tanh(x/2)/(x/2), x = Δt/τ. Explicit steps turn unstable with that motion and
+/// with no other (on the unit circle the recursion's answer is real there alone), so that they are limited by
+/// this and not by 1 + Σ γ, which it is for steps shorter than every τ.
+pub fn alternating_factor(elements: &[Maxwell], dt: f64) -> f64 {
+    let part = |Maxwell { gamma, tau }: &Maxwell| {
+        let half = 0.5 * dt / tau;
+        if half > 0.0 { gamma * libm::tanh(half) / half } else { *gamma }
+    };
+    1.0 + elements.iter().map(part).sum::<f64>()
 }

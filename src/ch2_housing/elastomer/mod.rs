@@ -5,6 +5,7 @@
 //! relaxation time. Every function takes the Green–Lagrange strain, which elements make of the
 //! displacement gradient, and keeps its digits at small strain.
 pub mod eight_chain;
+pub mod five_terms;
 pub mod langevin;
 pub mod maxwell;
 pub mod merge;

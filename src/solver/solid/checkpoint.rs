@@ -16,6 +16,8 @@ pub struct SolidCheckpoint {
     pub external_work: Vec<f64>,
     pub damping_work: Vec<f64>,
     pub work: SolidWork,
+    /// Stresses that rubber remembers, Pa; none of an elastic solid.
+    pub memory: Vec<f64>,
 }
 
 impl ExplicitSolid {
@@ -25,7 +27,7 @@ impl ExplicitSolid {
         checkpoint
     }
 
-    /// As [`ExplicitSolid::checkpoint`]; allocates nothing the second time.
+    /// As [`ExplicitSolid::checkpoint`]; allocates nothing the second time, but for rubber.
     pub fn checkpoint_into(&self, checkpoint: &mut SolidCheckpoint) {
         checkpoint.time = self.time;
         checkpoint.steps = self.steps;
@@ -34,12 +36,15 @@ impl ExplicitSolid {
         checkpoint.external_work.clone_from(&self.external_work);
         checkpoint.damping_work.clone_from(&self.damping_work);
         checkpoint.work = self.work;
+        if let Some(rubber) = &self.rubber {
+            checkpoint.memory = rubber.memory();
+        }
     }
 
     /// Goes back or on to where a checkpoint of the same problem, method and step was taken.
     ///
     /// # Panics
-    /// If the checkpoint has another number of nodes.
+    /// If the checkpoint has another number of nodes, or of remembered stresses.
     pub fn restore(&mut self, checkpoint: &SolidCheckpoint) {
         let nodes = self.displacement.len();
         assert_eq!((checkpoint.displacement.len(), checkpoint.rate.len()), (nodes, nodes));
@@ -52,5 +57,8 @@ impl ExplicitSolid {
         self.external_work.clone_from(&checkpoint.external_work);
         self.damping_work.clone_from(&checkpoint.damping_work);
         self.work = checkpoint.work;
+        if let Some(rubber) = &mut self.rubber {
+            rubber.remember(&checkpoint.memory);
+        }
     }
 }

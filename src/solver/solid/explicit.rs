@@ -1,8 +1,11 @@
-//! Explicit steps of a solid: central differences, or Runge–Kutta as in the source.
+//! Explicit steps of a solid (2.7): central differences, or Runge–Kutta as in the source; of rubber, whose stresses have a
+//! history ([`super::rubber::explicit`]), central differences.
 
 use super::energy::{SolidEnergy, SolidLedger, strain_energy};
 use super::model::{Prescribed, SolidError, SolidModel};
-use super::rigid_motion::{RigidMotion, rigid_motion};
+use super::rigid_motion::rigid_motion;
+use super::rubber::tet_forces::{History, RubberForces};
+use super::runge_kutta::Stages;
 use super::step_limit::{SolidStepLimit, step_limit};
 use super::team::Team;
 use super::tet4_blocks::Node;
@@ -60,7 +63,7 @@ pub struct ExplicitSolid {
     pub displacement: Vec<Node>,
     /// At `time` for Runge–Kutta; half a step before it for central differences.
     pub(super) rate: Vec<Node>,
-    force: Vec<Node>,
+    pub(super) force: Vec<Node>,
     /// Work of loads and drives, and of damping (≤ 0), on each node since the start, J: by node, so
     /// that no sum depends on how many threads share the nodes.
     pub(super) external_work: Vec<f64>,
@@ -69,23 +72,17 @@ pub struct ExplicitSolid {
     /// How often each stage has run.
     pub ran: Tally,
     /// What acts on it, as planned.
-    acting: SolidSteps,
-    stages: Option<Box<Stages>>,
+    pub(super) acting: SolidSteps,
+    pub(super) stages: Option<Box<Stages>>,
     /// Where several threads share its elements.
     pub(super) team: Option<Team>,
+    /// Where it is of rubber; the material of its model is then that of its first instant at rest.
+    pub(super) rubber: Option<Box<RubberForces>>,
 }
 
 /// Vectors as the force loop reads them.
 pub fn padded(list: Vec<Vec3>) -> Vec<Node> {
     list.into_iter().map(|v| [v[0], v[1], v[2], 0.0]).collect()
-}
-
-/// Room for the stages of Runge–Kutta.
-struct Stages {
-    displacement: Vec<Node>,
-    rate: Vec<Node>,
-    displacement_sum: Vec<Node>,
-    rate_sum: Vec<Node>,
 }
 
 impl ExplicitSolid {
@@ -130,20 +127,28 @@ impl ExplicitSolid {
             });
         }
         let mut solid = ExplicitSolid::at_rest(model, method, step_size, limit);
-        solid.displacement = displacement;
-        solid.rate = velocity;
-        solid.impose();
-        if method == ExplicitMethod::CentralDifferences {
+        solid.start(displacement, velocity);
+        Ok(solid)
+    }
+
+    /// From displacements and velocities at t = 0.
+    pub(super) fn start(&mut self, displacement: Vec<Node>, velocity: Vec<Node>) {
+        self.displacement = displacement;
+        self.rate = velocity;
+        self.impose();
+        if let Some(rubber) = &mut self.rubber {
+            rubber.relax(&self.displacement);
+        }
+        if self.method == ExplicitMethod::CentralDifferences {
             // Back by half a step, so that the first full kick ends half a step ahead.
-            solid.evaluate();
-            let acceleration = solid.acceleration();
-            for (rate, acceleration) in solid.rate.iter_mut().zip(acceleration) {
+            self.evaluate(History::Look);
+            let acceleration = self.acceleration();
+            for (rate, acceleration) in self.rate.iter_mut().zip(acceleration) {
                 for i in 0..3 {
-                    rate[i] -= 0.5 * step_size * acceleration[i];
+                    rate[i] -= 0.5 * self.step_size * acceleration[i];
                 }
             }
         }
-        Ok(solid)
     }
 
     /// Undeformed and still at t = 0, with a step that is not looked at.
@@ -154,15 +159,7 @@ impl ExplicitSolid {
         limit: SolidStepLimit,
     ) -> ExplicitSolid {
         let count = model.mass.len();
-        let stages = (method == ExplicitMethod::RungeKutta).then(|| {
-            let zeros = || vec![[0.0; 4]; count];
-            Box::new(Stages {
-                displacement: zeros(),
-                rate: zeros(),
-                displacement_sum: zeros(),
-                rate_sum: zeros(),
-            })
-        });
+        let stages = (method == ExplicitMethod::RungeKutta).then(|| Box::new(Stages::new(count)));
         ExplicitSolid {
             method,
             time: 0.0,
@@ -179,6 +176,7 @@ impl ExplicitSolid {
             acting: model.acting(),
             stages,
             team: None,
+            rubber: None,
             model,
         }
     }
@@ -194,7 +192,7 @@ impl ExplicitSolid {
     }
 
     /// Writes prescribed displacements and their rates into the state.
-    fn impose(&mut self) {
+    pub(super) fn impose(&mut self) {
         self.ran.add(Stage::Supports, self.model.problem.prescribed.len() as u64);
         for Prescribed { node, axis, profile } in &self.model.problem.prescribed {
             self.displacement[*node as usize][*axis] = profile.value(self.time);
@@ -221,11 +219,15 @@ impl ExplicitSolid {
     }
 
     /// Forces of elements and loads at the present state.
-    fn evaluate(&mut self) {
+    pub(super) fn evaluate(&mut self, history: History) {
         self.force.fill([0.0; 4]);
-        match &mut self.team {
-            Some(team) => team.add_internal_forces(&self.displacement, &mut self.force),
-            None => self.model.add_internal_forces(&self.displacement, &mut self.force),
+        match (&mut self.rubber, &mut self.team) {
+            (Some(rubber), _) => {
+                rubber.set_step(self.step_size);
+                rubber.add_forces(&self.displacement, &mut self.force, history);
+            }
+            (None, Some(team)) => team.add_internal_forces(&self.displacement, &mut self.force),
+            (None, None) => self.model.add_internal_forces(&self.displacement, &mut self.force),
         }
         self.model.add_external_forces(self.acting, self.time, &mut self.force, &mut self.ran);
         self.work.evaluations += 1;
@@ -243,7 +245,7 @@ impl ExplicitSolid {
         contacts: impl FnMut(f64, &[Node], &mut [Node]),
     ) -> Result<(), SolidError> {
         match self.method {
-            ExplicitMethod::CentralDifferences => self.central_step(contacts),
+            ExplicitMethod::CentralDifferences => self.central_step(contacts)?,
             ExplicitMethod::RungeKutta => self.runge_kutta_step(contacts),
         }
         self.steps += 1;
@@ -251,9 +253,16 @@ impl ExplicitSolid {
         self.watch()
     }
 
+    /// (2.7) by central differences; without damping (2.15), (3.12).
     /// v(t+h/2) = [(1 − αh/2) v(t−h/2) + h f/m] / (1 + αh/2), then u(t+h) = u(t) + h v(t+h/2).
-    fn central_step(&mut self, mut contacts: impl FnMut(f64, &[Node], &mut [Node])) {
-        self.evaluate();
+    fn central_step(
+        &mut self,
+        mut contacts: impl FnMut(f64, &[Node], &mut [Node]),
+    ) -> Result<(), SolidError> {
+        self.evaluate(History::Commit);
+        if let Some(rubber) = self.rubber.as_ref().filter(|rubber| !rubber.is_sound()) {
+            return Err(rubber.failure(&self.model, &self.displacement, self.time, self.steps));
+        }
         contacts(self.time, &self.displacement, &mut self.force);
         let h = self.step_size;
         self.add_load_work(0.5 * h);
@@ -282,6 +291,7 @@ impl ExplicitSolid {
         }
         self.add_load_work(0.5 * h);
         self.time = next;
+        Ok(())
     }
 
     /// Kick and drift with damping. What is left of the body's rigid motion is damped with the mean of
@@ -321,7 +331,7 @@ impl ExplicitSolid {
 
     /// Books what loads and gravity, with their forces at `time`, do in `seconds` at the present
     /// rates.
-    fn add_load_work(&mut self, seconds: f64) {
+    pub(super) fn add_load_work(&mut self, seconds: f64) {
         let SolidModel { problem, mass, .. } = &self.model;
         for load in &problem.loads {
             let factor = seconds * load.profile.value(self.time);
@@ -340,58 +350,6 @@ impl ExplicitSolid {
                     * (gravity[0] * rate[0] + gravity[1] * rate[1] + gravity[2] * rate[2]);
             }
         }
-    }
-
-    /// Classical fourth-order Runge–Kutta for displacements and rates (2.7).
-    fn runge_kutta_step(&mut self, mut contacts: impl FnMut(f64, &[Node], &mut [Node])) {
-        let mut stages = self.stages.take().expect("made for this method");
-        let (h, start) = (self.step_size, self.time);
-        stages.displacement.copy_from_slice(&self.displacement);
-        stages.rate.copy_from_slice(&self.rate);
-        stages.displacement_sum.copy_from_slice(&self.displacement);
-        stages.rate_sum.copy_from_slice(&self.rate);
-        for (weight, ahead) in [(1.0, 0.5), (2.0, 0.5), (2.0, 1.0), (1.0, 0.0)] {
-            self.evaluate();
-            contacts(self.time, &self.displacement, &mut self.force);
-            let share = h * weight / 6.0;
-            self.add_load_work(share);
-            let SolidModel { per_mass, problem, mass, .. } = &self.model;
-            let mut rigid = RigidMotion::default();
-            if self.acting.damping {
-                rigid = rigid_motion(problem, mass, &self.displacement, &self.rate);
-                self.ran.add(Stage::Damping, 1);
-            }
-            for n in 0..mass.len() {
-                let rest = rigid.velocity(problem.nodes[n], self.displacement[n]);
-                for i in 0..3 {
-                    let rate = self.rate[n][i];
-                    // A driven component is not braked: its course is given.
-                    let mut acceleration = 0.0;
-                    if per_mass[n][i] != 0.0 {
-                        let brake = problem.damping * (rate - rest[i]);
-                        self.damping_work[n] -= share * mass[n] * brake * rate;
-                        acceleration = self.force[n][i] * per_mass[n][i] - brake;
-                    }
-                    stages.displacement_sum[n][i] += share * rate;
-                    stages.rate_sum[n][i] += share * acceleration;
-                    self.displacement[n][i] = stages.displacement[n][i] + ahead * h * rate;
-                    self.rate[n][i] = stages.rate[n][i] + ahead * h * acceleration;
-                }
-            }
-            // Drives: what they add to the other forces at this stage.
-            for Prescribed { node, axis, profile } in &problem.prescribed {
-                let (n, i) = (*node as usize, *axis);
-                let drive = mass[n] * profile.acceleration(self.time) - self.force[n][i];
-                self.external_work[n] += share * drive * profile.rate(self.time);
-            }
-            self.time = start + ahead * h;
-            self.impose();
-        }
-        self.time = start + h;
-        self.displacement.copy_from_slice(&stages.displacement_sum);
-        self.rate.copy_from_slice(&stages.rate_sum);
-        self.impose();
-        self.stages = Some(stages);
     }
 
     /// A value that is not finite spreads to the whole body; a look at every node finds it.
@@ -420,7 +378,7 @@ impl ExplicitSolid {
             ExplicitMethod::CentralDifferences => 0.5 * self.step_size,
             ExplicitMethod::RungeKutta => 0.0,
         };
-        self.evaluate();
+        self.evaluate(History::Look);
         contacts(self.time, &self.displacement, &mut self.force);
         let acceleration = self.acceleration();
         self.rate
@@ -452,8 +410,11 @@ impl ExplicitSolid {
         &mut self,
         mut contacts: impl FnMut(f64, &[Node], &mut [Node]),
     ) -> SolidLedger {
-        let strain = strain_energy(&self.model, &self.displacement);
-        self.evaluate();
+        let strain = match &self.rubber {
+            Some(rubber) => rubber.network_energy(&self.displacement),
+            None => strain_energy(&self.model, &self.displacement),
+        };
+        self.evaluate(History::Look);
         contacts(self.time, &self.displacement, &mut self.force);
         let ahead = match self.method {
             ExplicitMethod::CentralDifferences => self.step_size,

@@ -12,6 +12,7 @@ pub mod model;
 pub mod modes;
 pub mod rigid_motion;
 pub mod rubber;
+mod runge_kutta;
 pub mod step_limit;
 pub mod stress;
 pub mod support;

@@ -3,6 +3,7 @@
 use super::labels::{Labels, node_text};
 use super::tet4_blocks::Node;
 use super::{tet4_blocks, tet10_blocks};
+use crate::ch2_housing::elastomer::ElastomerError;
 use crate::ch2_housing::linear_elastic::LinearElastic;
 use crate::elements::ElementError;
 use crate::elements::tet4::Tet4;
@@ -99,6 +100,8 @@ pub enum SolidError {
         rounded(*time)
     )]
     Inverted { element: u64, at: Vec3, ratio: f64, time: f64, step: u64 },
+    #[error("element {element} at {} at t = {} s, step {step}: {source}", place(at), rounded(*time))]
+    Material { element: u64, at: Vec3, source: ElastomerError, time: f64, step: u64 },
 }
 
 pub(super) fn place(at: &Vec3) -> String {

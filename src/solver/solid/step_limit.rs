@@ -31,7 +31,7 @@ pub struct SolidStepLimit {
 
 /// ωh at which a method turns unstable without damping. For Runge–Kutta √8; damping moves either
 /// limit by less than αh.
-fn reach(method: ExplicitMethod) -> f64 {
+pub(super) fn reach(method: ExplicitMethod) -> f64 {
     match method {
         ExplicitMethod::CentralDifferences => 2.0,
         ExplicitMethod::RungeKutta => 8f64.sqrt(),
@@ -40,7 +40,7 @@ fn reach(method: ExplicitMethod) -> f64 {
 
 /// Products with the stiffness after which [`step_limit`] takes the bound instead. Bodies of this
 /// program's meshes take 8 to some 60.
-const MOST_PRODUCTS: usize = 200;
+pub(super) const MOST_PRODUCTS: usize = 200;
 
 /// The largest stable step at given displacements.
 pub fn step_limit(
@@ -177,15 +177,44 @@ fn start_vector() -> [Vec3; 10] {
     x
 }
 
-/// Highest angular frequency of the body, rad/s, by Lanczos' recurrence from a fixed start, ended
-/// when it settles (nothing if it does not); and the products with the stiffness that it took.
+/// Highest angular frequency of the body, rad/s (nothing if the iteration does not settle); and the
+/// products with the stiffness that it took.
 fn highest_frequency(
     model: &SolidModel,
     elements: &ElementTangents,
     most: usize,
 ) -> (Option<f64>, usize) {
-    let root: Vec<[f64; 3]> =
-        model.per_mass.iter().map(|m| [m[0].sqrt(), m[1].sqrt(), m[2].sqrt()]).collect();
+    let root = roots(model);
+    lanczos(&root, most, |now, next| {
+        for element in 0..model.problem.elements.len() {
+            let nodes = model.problem.elements.nodes(element);
+            let Product { count, forces } = elements.product(element, |_, node| {
+                let (x, r) = (now[node as usize], root[node as usize]);
+                [x[0] * r[0], x[1] * r[1], x[2] * r[2]]
+            });
+            for n in 0..count {
+                let (sum, r) = (&mut next[nodes[n] as usize], root[nodes[n] as usize]);
+                for i in 0..3 {
+                    sum[i] -= forces[n][i] * r[i];
+                }
+            }
+        }
+    })
+}
+
+/// Square roots of the reciprocal masses.
+pub(super) fn roots(model: &SolidModel) -> Vec<Vec3> {
+    model.per_mass.iter().map(|m| [m[0].sqrt(), m[1].sqrt(), m[2].sqrt()]).collect()
+}
+
+/// Square root of the largest eigenvalue of a symmetric matrix, whose product with its first argument
+/// `product` adds to its second, by Lanczos' recurrence from a fixed start without what `root` makes
+/// zero, ended when it settles (nothing if it does not); and the products that it took.
+pub(super) fn lanczos(
+    root: &[Vec3],
+    most: usize,
+    mut product: impl FnMut(&[Vec3], &mut [Vec3]),
+) -> (Option<f64>, usize) {
     let count = root.len();
     let dot = |a: &[Vec3], b: &[Vec3]| -> f64 {
         a.iter().zip(b).map(|(a, b)| a[0] * b[0] + a[1] * b[1] + a[2] * b[2]).sum()
@@ -207,21 +236,9 @@ fn highest_frequency(
     let mut before = vec![[0.0; 3]; count];
     let (mut diagonal, mut beside): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let mut largest = 0.0;
-    for product in 1..=most {
+    for taken in 1..=most {
         let mut next = vec![[0.0; 3]; count];
-        for element in 0..model.problem.elements.len() {
-            let nodes = model.problem.elements.nodes(element);
-            let Product { count, forces } = elements.product(element, |_, node| {
-                let (x, r) = (now[node as usize], root[node as usize]);
-                [x[0] * r[0], x[1] * r[1], x[2] * r[2]]
-            });
-            for n in 0..count {
-                let (sum, r) = (&mut next[nodes[n] as usize], root[nodes[n] as usize]);
-                for i in 0..3 {
-                    sum[i] -= forces[n][i] * r[i];
-                }
-            }
-        }
+        product(&now, &mut next);
         let alpha = dot(&next, &now);
         let last = beside.last().copied().unwrap_or(0.0);
         for n in 0..count {
@@ -232,10 +249,10 @@ fn highest_frequency(
         diagonal.push(alpha);
         let found = largest_of_tridiagonal(&diagonal, &beside);
         let beta = dot(&next, &next).sqrt();
-        let settled = (found - largest).abs() <= 1e-5 * found && product >= 8;
+        let settled = (found - largest).abs() <= 1e-5 * found && taken >= 8;
         largest = found;
         if settled || beta <= 1e-12 * found {
-            return (Some(largest.sqrt()), product);
+            return (Some(largest.sqrt()), taken);
         }
         beside.push(beta);
         next.iter_mut().flatten().for_each(|v| *v /= beta);

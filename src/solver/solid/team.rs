@@ -77,8 +77,9 @@ struct Part {
 
 impl ExplicitSolid {
     /// From now on evaluates its elements in so many parts, on the threads of a crew, with the same bits;
-    /// in fewer where there are few of them.
+    /// in fewer where there are few of them, and in one of rubber.
     pub fn share(&mut self, crew: &Crew, parts: usize) {
+        let parts = if self.rubber.is_some() { 1 } else { parts };
         let ranges = ranges(&self.model.problem, parts);
         self.team = (ranges.len() > 1).then(|| Team {
             crew: crew.clone(),

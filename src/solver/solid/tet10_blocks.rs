@@ -1,9 +1,12 @@
 //! Forces of many quadratic tetrahedra, as [`super::tet4_blocks`] does it for linear ones.
 
-use super::tet4_blocks::{LANES, Node, to_lanes, to_nodes};
+use super::tet4_blocks::{Node, to_lanes, to_nodes};
 use crate::ch2_housing::linear_elastic::LinearElastic;
 use crate::elements::tet10::{POINTS, Point, Tet10};
 use wide::f64x4;
+
+/// Elements a block, one a lane: loops over four lanes become vector code.
+const LANES: usize = 4;
 
 /// [`LANES`] elements.
 #[derive(Clone, Debug, PartialEq)]

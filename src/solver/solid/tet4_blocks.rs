@@ -1,28 +1,31 @@
 //! Forces of many linear tetrahedra: blocks of [`LANES`] elements, one element a lane.
 //!
-//! The law of one element is [`Tet4::nodal_forces`], written once; here it is called for every
-//! lane of a block, which the compiler turns into vector code with the same bits. What an element
-//! needs lies lane by lane in the order in which it is read. Only the turning of nodes into lanes
-//! and back is written in vectors: left to the compiler it costs a fifth of the step.
+//! The law of one element is [`Tet4::nodal_forces`], written once, for a number or for lanes of numbers; here it
+//! is called for all lanes of a block at once, with the same bits as one by one. What an element needs lies lane by
+//! lane in the order in which it is read.
 
 use crate::ch2_housing::linear_elastic::LinearElastic;
 use crate::elements::tet4::Tet4;
+use crate::kinematics::number::Number;
 use wide::f64x4;
 
-/// Elements a block.
-pub const LANES: usize = 4;
+/// Elements a block: as many as the processor's vectors hold.
+#[cfg(target_feature = "avx512f")]
+pub type Lanes = wide::f64x8;
+#[cfg(not(target_feature = "avx512f"))]
+pub type Lanes = f64x4;
+
+pub const LANES: usize = size_of::<Lanes>() / size_of::<f64>();
 
 /// A vector at a node, padded to a power of two: it is read and written in one go.
 pub type Node = [f64; 4];
 
 /// [`LANES`] elements.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Block {
     /// Lane, first to fourth node.
     pub nodes: [[u32; 4]; LANES],
-    /// Of the first three nodes, component, lane.
-    gradients: [[[f64; LANES]; 3]; 3],
-    volume: [f64; LANES],
+    pub element: Tet4<Lanes>,
 }
 
 /// Elements in their order, cut into blocks; the last block is filled up with elements of no
@@ -32,18 +35,58 @@ pub fn blocks(elements: impl ExactSizeIterator<Item = (Tet4, [u32; 4])>) -> Vec<
     for (index, (element, nodes)) in elements.enumerate() {
         let lane = index % LANES;
         if lane == 0 {
-            blocks.push(Block { nodes: [nodes; LANES], ..Block::default() });
+            let zero = Lanes::of(0.0);
+            let element = Tet4 { gradients: [[zero; 3]; 3], volume: zero };
+            blocks.push(Block { nodes: [nodes; LANES], element });
         }
         let block = blocks.last_mut().expect("pushed at lane 0");
         block.nodes[lane] = nodes;
         for n in 0..3 {
             for i in 0..3 {
-                block.gradients[n][i][lane] = element.gradients[n][i];
+                block.element.gradients[n][i].as_mut_array()[lane] = element.gradients[n][i];
             }
         }
-        block.volume[lane] = element.volume;
+        block.element.volume.as_mut_array()[lane] = element.volume;
     }
     blocks
+}
+
+impl Block {
+    /// The element in one lane.
+    pub fn element_of(&self, lane: usize) -> Tet4 {
+        let gradients = self.element.gradients.map(|g| g.map(|g| g.as_array()[lane]));
+        Tet4 { gradients, volume: self.element.volume.as_array()[lane] }
+    }
+
+    /// Displacements of the first three nodes relative to the fourth: node, component.
+    #[inline(always)]
+    pub fn relative(&self, displacement: &[Node]) -> [[Lanes; 3]; 3] {
+        let mut relative = [[f64x4::ZERO; LANES]; 3];
+        for lane in 0..LANES {
+            let [a, b, c, d] = self.nodes[lane].map(|node| f64x4::new(displacement[node as usize]));
+            relative[0][lane] = a - d;
+            relative[1][lane] = b - d;
+            relative[2][lane] = c - d;
+        }
+        let [a, b, c] = relative;
+        [joined(a), joined(b), joined(c)]
+    }
+
+    /// Adds forces on the first three nodes, and minus their sum on the fourth.
+    #[inline(always)]
+    pub fn add(&self, force: [[Lanes; 3]; 3], forces: &mut [Node]) {
+        let [a, b, c] = force;
+        let [a, b, c] = [parted(a), parted(b), parted(c)];
+        for lane in 0..LANES {
+            let of = &self.nodes[lane];
+            for (node, add) in of.iter().zip([a[lane], b[lane], c[lane]]) {
+                let sum = &mut forces[*node as usize];
+                *sum = (f64x4::new(*sum) + add).to_array();
+            }
+            let sum = &mut forces[of[3] as usize];
+            *sum = (f64x4::new(*sum) - (a[lane] + b[lane] + c[lane])).to_array();
+        }
+    }
 }
 
 /// Adds the elements' nodal forces to `forces`, in the order of the elements.
@@ -57,55 +100,53 @@ pub fn add_forces(
     // One bound for both, so that it is checked once.
     let displacement = &displacement[..forces.len()];
     for block in blocks {
-        // Of the first three nodes relative to the fourth: node, lane.
-        let mut relative = [[f64x4::ZERO; LANES]; 3];
-        for lane in 0..LANES {
-            let [a, b, c, d] =
-                block.nodes[lane].map(|node| f64x4::new(displacement[node as usize]));
-            relative[0][lane] = a - d;
-            relative[1][lane] = b - d;
-            relative[2][lane] = c - d;
-        }
-        let apart = [to_lanes(relative[0]), to_lanes(relative[1]), to_lanes(relative[2])];
-        let mut force = [[[0.0; LANES]; 3]; 3];
-        for lane in 0..LANES {
-            let vector = |of: &[[f64; LANES]; 3]| [of[0][lane], of[1][lane], of[2][lane]];
-            let [a, b, c] = &block.gradients;
-            let element =
-                Tet4 { gradients: [vector(a), vector(b), vector(c)], volume: block.volume[lane] };
-            let [a, b, c] = &apart;
-            let of = element.nodal_forces(&[vector(a), vector(b), vector(c)], |strain| {
-                material.second_piola_kirchhoff(strain)
-            });
-            for n in 0..3 {
-                for i in 0..3 {
-                    force[n][i][lane] = of[n][i];
-                }
-            }
-        }
-        let [a, b, c] = [to_nodes(force[0]), to_nodes(force[1]), to_nodes(force[2])];
-        for lane in 0..LANES {
-            let of = &block.nodes[lane];
-            for (node, add) in of.iter().zip([a[lane], b[lane], c[lane]]) {
-                let sum = &mut forces[*node as usize];
-                *sum = (f64x4::new(*sum) + add).to_array();
-            }
-            let sum = &mut forces[of[3] as usize];
-            *sum = (f64x4::new(*sum) - (a[lane] + b[lane] + c[lane])).to_array();
-        }
+        let apart = block.relative(displacement);
+        let of =
+            block.element.nodal_forces(&apart, |strain| material.second_piola_kirchhoff(strain));
+        block.add(of, forces);
     }
+}
+
+// Closures are not inlined everywhere: neither `map` nor `from_fn` stands in what follows.
+#[inline(always)]
+fn joined(vectors: [f64x4; LANES]) -> [Lanes; 3] {
+    let [x, y, z] = to_lanes(vectors);
+    [Lanes::new(x), Lanes::new(y), Lanes::new(z)]
+}
+
+#[inline(always)]
+fn parted(components: [Lanes; 3]) -> [f64x4; LANES] {
+    let [x, y, z] = components;
+    to_nodes([x.to_array(), y.to_array(), z.to_array()])
 }
 
 /// Vectors of one node of every lane, component by component.
 #[inline(always)]
-pub fn to_lanes(vectors: [f64x4; LANES]) -> [[f64; LANES]; 3] {
-    let [x, y, z, _] = f64x4::transpose(vectors);
-    [x.to_array(), y.to_array(), z.to_array()]
+pub fn to_lanes<const L: usize>(vectors: [f64x4; L]) -> [[f64; L]; 3] {
+    let mut components = [[0.0; L]; 3];
+    for four in 0..L / 4 {
+        let at = 4 * four;
+        let turned =
+            f64x4::transpose([vectors[at], vectors[at + 1], vectors[at + 2], vectors[at + 3]]);
+        for i in 0..3 {
+            components[i][at..at + 4].copy_from_slice(&turned[i].to_array());
+        }
+    }
+    components
 }
 
 /// Components lane by lane as one vector a lane.
 #[inline(always)]
-pub fn to_nodes(components: [[f64; LANES]; 3]) -> [f64x4; LANES] {
-    let [x, y, z] = components;
-    f64x4::transpose([f64x4::new(x), f64x4::new(y), f64x4::new(z), f64x4::ZERO])
+pub fn to_nodes<const L: usize>(components: [[f64; L]; 3]) -> [f64x4; L] {
+    let mut vectors = [f64x4::ZERO; L];
+    for four in 0..L / 4 {
+        let at = 4 * four;
+        let part = |i: usize| {
+            let of = &components[i];
+            f64x4::new([of[at], of[at + 1], of[at + 2], of[at + 3]])
+        };
+        let turned = f64x4::transpose([part(0), part(1), part(2), f64x4::ZERO]);
+        vectors[at..at + 4].copy_from_slice(&turned);
+    }
+    vectors
 }

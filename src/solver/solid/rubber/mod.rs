@@ -1,10 +1,13 @@
 //! Solids of rubber without inertia: implicit steps of ten-node elements with a continuous mean stress, the
-//! response to small vibrations, and a homogeneous bar.
+//! response to small vibrations, and a homogeneous bar. With inertia: four-node elements for explicit steps.
 pub mod bar;
 pub mod error;
+pub mod explicit;
 pub mod harmonic;
 pub mod model;
 pub mod newton;
 pub mod prony;
 pub mod sleeve;
 pub mod steps;
+pub mod tet4;
+pub mod tet_forces;

@@ -94,6 +94,19 @@ impl RubberModel {
             })?;
             tets.push(tet);
         }
+        RubberModel::of_elements(problem, tets, None)
+    }
+
+    /// From elements that have been made, and where volume is averaged if not around corner nodes.
+    ///
+    /// # Errors
+    /// A node or axis out of range, a component prescribed twice.
+    pub(super) fn of_elements(
+        problem: RubberProblem,
+        tets: Vec<Tet10>,
+        averaged: Option<(Vec<Patch>, Vec<[u32; 4]>)>,
+    ) -> Result<RubberModel, RubberError> {
+        let count = problem.nodes.len();
         let mut free = vec![[false; 3]; count];
         for node in problem.elements.as_flattened() {
             free[*node as usize] = [true; 3];
@@ -111,7 +124,7 @@ impl RubberModel {
                 return Err(SolidError::NoSuchNode { node: *node, count }.into());
             }
         }
-        let (patches, patches_of) = patches(&problem, &tets);
+        let (patches, patches_of) = averaged.unwrap_or_else(|| patches(&problem, &tets));
         let unknowns = Unknowns::over(&problem.nodes, lists(&patches), &free, Ordering::Cheapest);
         Ok(RubberModel { problem, tets, patches, patches_of, unknowns })
     }
