@@ -229,9 +229,9 @@ fn amplitudes(
             })
             .collect(),
     );
-    for (id, amplitude, of) in [("kd_2mm", 2, b), ("kd_4mm", 4, c)] {
+    for (id, amplitude, of, moved) in [("kd_2mm", 2, b, &two), ("kd_4mm", 4, c, &four)] {
         context.golden(id, of.dynamic_stiffness, "N/m", GoldenTolerance::MIXED);
-        context.work(&format!("steps of two cycles of {amplitude} mm"), 2 * PER as u64);
+        context.work(&format!("steps of two cycles of {amplitude} mm"), moved.steps);
     }
     order(
         context,
