@@ -24,18 +24,11 @@ pub(super) fn deck_materials(
         built.materials.iter().filter(|m| m.elastic.is_some() || m.density.is_some()).collect();
     let mut notes = Vec::new();
     for material in &given {
-        let [young, poisson] =
-            material.elastic.unwrap_or(elastic);
+        let [young, poisson] = material.elastic.unwrap_or(elastic);
         let density = material.density.unwrap_or(scene.density);
         // Of the deck and of the scene; whether the scene only has steel's; name and text.
         let parts = [
-            (
-                young,
-                elastic[0],
-                no_young,
-                "youngs_modulus",
-                gigapascals as fn(f64) -> String,
-            ),
+            (young, elastic[0], no_young, "youngs_modulus", gigapascals as fn(f64) -> String),
             (poisson, elastic[1], no_poisson, "poisson_ratio", |value| value.to_string()),
             (density, scene.density, no_density, "density", kilograms),
         ];

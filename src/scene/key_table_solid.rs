@@ -7,8 +7,18 @@ use crate::scene::units::Dimension::{
 };
 use Need::{Default, Depends, Optional, Required};
 
-pub const GENERATORS: &[&str] =
-    &["bar", "block", "ring", "shaft", "cage", "housing-a", "housing-b", "housing-c", "housing-d", "bushing"];
+pub const GENERATORS: &[&str] = &[
+    "bar",
+    "block",
+    "ring",
+    "shaft",
+    "cage",
+    "housing-a",
+    "housing-b",
+    "housing-c",
+    "housing-d",
+    "bushing",
+];
 const AXES: &[&str] = &["x", "y", "z"];
 const LENGTH_UNITS: &[&str] = &["m", "mm"];
 const REPAIRS: &[&str] = &["orient", "merge-duplicates", "drop-unreferenced"];
@@ -78,8 +88,8 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("solid.material.maxwell.relaxation_time", Kind::Quantity(Time, above(0.0, 1e9, "s")), Required,
         "Time over which it relaxes.").hint("the source has 1e-7 to 10 s; check the unit").example_of("10 s"),
 
-    Key::new("solid.harmonic.frequencies", Kind::Quantities(Frequency, above(0.0, 1e9, "Hz")), Depends("required with `[solid.harmonic]`"),
-        "Frequencies at which `statics` gives the complex stiffness, ascending.").example_of("0.1 Hz"),
+    Key::new("solid.harmonic.frequencies", Kind::Quantities(Frequency, closed(0.0, 1e9, "Hz")), Depends("required with `[solid.harmonic]`"),
+        "Frequencies at which `statics` gives the complex stiffness, ascending; 0 is the relaxed network.").example_of("0.1 Hz"),
     Key::new("solid.harmonic.set", Kind::Text, Depends("required with `[solid.harmonic]`"),
         "Held set that moves; all others stay."),
     Key::new("solid.harmonic.axis", Kind::Choice(AXES), Depends("required with `[solid.harmonic]`"), "Axis along which it moves."),

@@ -119,15 +119,19 @@ fn rubber(reader: &mut Reader, table: Option<&'static str>) -> Result<Elastomer,
         }
     };
     let locking = chain.unwrap_or_else(|| {
-        reader.note("solid.material.chain", &plain(CHAIN), "as in Tables 2.3 and 3.1");
+        if table.is_none() {
+            reader.note("solid.material.chain", &plain(CHAIN), "as in Tables 2.3 and 3.1");
+        }
         CHAIN
     });
     let bulk = match (bulk, ratio) {
         (Some(bulk), _) => bulk,
         (None, Some(ratio)) => ratio * modulus,
         (None, None) => {
-            let reason = "100 C_R, as in Tables 2.3 and 3.1";
-            reader.note("solid.material.bulk_ratio", &plain(BULK_RATIO), reason);
+            if table.is_none() {
+                let reason = "100 C_R, as in Tables 2.3 and 3.1";
+                reader.note("solid.material.bulk_ratio", &plain(BULK_RATIO), reason);
+            }
             BULK_RATIO * modulus
         }
     };
@@ -211,8 +215,7 @@ pub(super) fn check_order(
     Err(document.error("solid.mesh.order", Problem::NotApplicable { reason, advice }))
 }
 
-pub(super) const FOUR_NODES_LOCK: &str =
-    "four-node elements of rubber lock: it hardly changes its volume, and they can hardly do anything else";
+pub(super) const FOUR_NODES_LOCK: &str = "four-node elements of rubber lock: it hardly changes its volume, and they can hardly do anything else";
 
 /// How the steps of a run follow from the scene.
 pub(super) fn steps(reader: &mut Reader) -> RunSteps {

@@ -413,8 +413,11 @@ fn run(reader: &mut Reader) -> Result<Option<SolidRun>, SceneError> {
         let problem = Problem::WrongTime { value, relation, other_name, other, allowed, advice };
         Err(reader.document.error(key, problem))
     };
-    let (rows, reason) =
-        if rubber { (100.0, "a hundredth of the run") } else { (1000.0, "a thousandth of the run") };
+    let (rows, reason) = if rubber {
+        (100.0, "a hundredth of the run")
+    } else {
+        (1000.0, "a thousandth of the run")
+    };
     let output_interval = interval("numerics.output_interval", rows, reason)?;
     let fields_interval = interval("numerics.fields_interval", 20.0, "a twentieth of the run")?;
     Ok(Some(SolidRun { steps, end, output_interval, fields_interval }))

@@ -37,7 +37,8 @@ pub fn rubber_setup(
     };
     let Outside { prescribed, supports, loads, probes, mut notes } = outside(scene, built)?;
     if let Some(deck) = built.materials.first() {
-        notes.push(format!("the scene's rubber is used, not the deck's material \"{}\"", deck.name));
+        notes
+            .push(format!("the scene's rubber is used, not the deck's material \"{}\"", deck.name));
     }
     let (nodes, material) = (mesh.nodes.clone(), rubber.material.clone());
     let mut model =

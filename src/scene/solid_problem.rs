@@ -27,7 +27,9 @@ pub enum SolidSetupError {
     Rubber(#[from] RubberError),
     #[error("solid.material.law: this needs a linear elastic solid")]
     OtherLaw,
-    #[error("solid.mesh.file: the mesh has four-node elements; {FOUR_NODES_LOCK}. Write `order = 2` in [solid.mesh]")]
+    #[error(
+        "solid.mesh.file: the mesh has four-node elements; {FOUR_NODES_LOCK}. Write `order = 2` in [solid.mesh]"
+    )]
     FourNodes,
     #[error(
         "solid.harmonic.set: \"{set}\" is not held along {axis}, and only what is held or moved has a \

@@ -8,7 +8,9 @@ use crate::commands::{CommandResult, Outcome, placed, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::{file_name, rubber_stresses, write_fields, write_list};
 use bearing_dynamics::output::results::pretty;
-use bearing_dynamics::output::summary::rubber::{self as summary, harmonic_section, harmonic_series};
+use bearing_dynamics::output::summary::rubber::{
+    self as summary, harmonic_section, harmonic_series,
+};
 use bearing_dynamics::scene::rubber_problem::vibrating;
 use bearing_dynamics::scene::solid::{Harmonic, RubberScene};
 use bearing_dynamics::scene::{Document, SolidScene};
@@ -42,10 +44,8 @@ pub fn run(
     let model = &setup.model;
     let cost = foretold::rubber(model, "statics");
     let found = watched(&cost, &model.unknowns, "", || relaxed(model, time))??;
-    let mut seconds = vec![
-        ("mesh".into(), *mesh_seconds),
-        ("solve".into(), start.elapsed().as_secs_f64()),
-    ];
+    let mut seconds =
+        vec![("mesh".into(), *mesh_seconds), ("solve".into(), start.elapsed().as_secs_f64())];
     let start = Instant::now();
     let mut ran = found.ran;
     let answers = match &rubber.harmonic {

@@ -28,7 +28,11 @@ pub fn run(
     dry: bool,
 ) -> CommandResult {
     if let Law::Elastomer(_) = &scene.law {
-        return Err(format!("{}: {NO_MODES}; [solid.harmonic] asks `bearing statics` for its answer to vibrations", path.display()).into());
+        return Err(format!(
+            "{}: {NO_MODES}; [solid.harmonic] asks `bearing statics` for its answer to vibrations",
+            path.display()
+        )
+        .into());
     }
     let folder = match dry {
         true => None,

@@ -243,7 +243,8 @@ impl<'p> Session<'p> {
     fn go_to_next_stop(&mut self, most: u64) -> Result<(), SessionError> {
         // A bearing goes on from before a step that failed or was shortened by the end, equilibria from
         // before the last one, so that it is found again; others from their rows.
-        let keeps_rows = matches!(self.motion, Motion::Solid(_) | Motion::Housed(_) | Motion::Rubber(_));
+        let keeps_rows =
+            matches!(self.motion, Motion::Solid(_) | Motion::Housed(_) | Motion::Rubber(_));
         if !keeps_rows {
             self.keep();
         }
@@ -309,7 +310,8 @@ impl<'p> Session<'p> {
     /// What a later run goes on from: the last sound state of a run that is complete or has failed, and of
     /// those whose state is that of their rows; the present one of a run under way.
     pub fn resumable(&mut self) -> Sound {
-        let by_rows = matches!(self.motion, Motion::Housed(_) | Motion::Course(_) | Motion::Rubber(_));
+        let by_rows =
+            matches!(self.motion, Motion::Housed(_) | Motion::Course(_) | Motion::Rubber(_));
         if by_rows || self.failed || self.status == Status::Complete {
             let ran = self.with_before(&self.kept_ran.0, &self.kept_ran.1);
             return Sound { ran, ..self.sound.clone() };

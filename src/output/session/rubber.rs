@@ -50,7 +50,11 @@ impl MovingRubber<'_> {
         self.solid.advance(time, |_| {})
     }
 
-    pub(super) fn restore(&mut self, kept: &RubberCheckpoint, rows: u64) -> Result<(), RubberError> {
+    pub(super) fn restore(
+        &mut self,
+        kept: &RubberCheckpoint,
+        rows: u64,
+    ) -> Result<(), RubberError> {
         self.rows = rows;
         self.solid.restore(kept)
     }

@@ -60,12 +60,7 @@ impl RubberEntry {
         let terms = problem.material.maxwell.len();
         let [accepted, undone, iterations, factorisations] = self.counts;
         let bare = RubberCheckpoint {
-            state: RubberState {
-                time,
-                last: self.last,
-                work: self.work,
-                ..RubberState::default()
-            },
+            state: RubberState { time, last: self.last, work: self.work, ..RubberState::default() },
             next: self.next,
             scale: self.scale,
             counts: StepCounts { accepted, undone },

@@ -53,7 +53,9 @@ pub fn write_run_results(
     let [csv, npy, json] = ["series.csv", SERIES, "summary.json"].map(|name| folder.join(name));
     match session.motion {
         // Times of windows and equilibria are no sums of steps.
-        Motion::Housed(_) | Motion::Course(_) | Motion::Rubber(_) => table.series.write_csv(&csv)?,
+        Motion::Housed(_) | Motion::Course(_) | Motion::Rubber(_) => {
+            table.series.write_csv(&csv)?
+        }
         Motion::Bearing(_) | Motion::Solid(_) => readable_times(table)?.write_csv(&csv)?,
     }
     table.series.write_npy(&npy)?;

@@ -40,7 +40,8 @@ pub fn items(problem: &RubberProblem, index: usize, mesh: &str, method: &Method)
     let mut items = vec![Item::does(Stage::Elements, subject, mesh), supports, loads, viscous];
     match method {
         Method::Statics { frequencies } => {
-            let why = "relaxed equilibrium: implicit steps, Newton's method, sparse Cholesky factors";
+            let why =
+                "relaxed equilibrium: implicit steps, Newton's method, sparse Cholesky factors";
             items.push(Item::does(Stage::SolidStatics, subject, why));
             items.push(match frequencies {
                 0 => Item::skips(Stage::Vibrations, subject, "no [solid.harmonic]"),

@@ -53,7 +53,8 @@ pub fn point_stresses(
 ) -> Result<Vec<[Sym3; POINTS]>, StepFailure> {
     let mut means = vec![0.0; model.patches.len()];
     mean_stresses(model, &state.displacement, &mut means)?;
-    let terms = model.problem.material.maxwell.len();
+    // A relaxed state has no history.
+    let terms = state.history.len() / state.deviatoric.len().max(1);
     let of = |index: usize| {
         let moved = corners(&state.displacement, &model.problem.elements[index]);
         let means = at_points(model, index, &means);

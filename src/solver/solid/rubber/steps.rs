@@ -159,7 +159,7 @@ impl<'a> RubberSolid<'a> {
     /// Forces of the supports on all nodes, N.
     pub fn support_forces(&self) -> Vec<Vec3> {
         let all = self.search.internal.iter().zip(&self.search.loads);
-        all.map(|(inner, outer)| std::array::from_fn(|i| -(inner[i] + outer[i]))).collect()
+        all.map(|(inner, outer)| std::array::from_fn(|i| 0.0 - (inner[i] + outer[i]))).collect()
     }
 
     /// m, one for each node.
