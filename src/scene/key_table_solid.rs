@@ -1,6 +1,6 @@
 //! Rows of the key table: a flexible solid by itself, its mesh, supports, loads and outputs.
 
-use crate::scene::key_table::{DENSITY, FORCE, STEEL_DENSITY};
+use crate::scene::key_table::{DENSITY, FORCE};
 use crate::scene::keys::{Key, Kind, Need, Range, Table, above, closed, list_table, open, table};
 use crate::scene::units::Dimension::{
     Acceleration, Frequency, Length, Rate, RotationSpeed, Speed, Stress, Time,
@@ -70,7 +70,7 @@ pub(super) const KEYS: &[Key] = &[
         "Young's modulus.").hint("steel has 210 GPa; check the unit"),
     Key::new("solid.material.poisson_ratio", Kind::Number(open(-1.0, 0.5, "")), Default { value: "0.3", reason: "bearing steel" },
         "Poisson's ratio.").hint("at 0.5 a solid cannot change its volume; this law needs less"),
-    Key::new("solid.material.density", DENSITY, STEEL_DENSITY, "Density; of rubber 1100 kg/m^3 unless given.").hint("steel has 7850 kg/m^3; check the unit"),
+    Key::new("solid.material.density", DENSITY, Depends("7850 kg/m^3, bearing steel; of rubber 1100 kg/m^3"), "Density.").hint("steel has 7850 kg/m^3; check the unit"),
     Key::new("solid.material.table", Kind::Choice(RUBBERS), Depends(WITH_RUBBER),
         "Rubber of this table of the source; keys given beside it take the place of what it says, `[[solid.material.maxwell]]` that of all its Maxwell elements."),
     Key::new("solid.material.rubber_modulus", Kind::Quantity(Stress, closed(1e-6, 1e6, "MPa")), Depends("with `law = \"elastomer\"`; required without `table`"),

@@ -17,8 +17,9 @@ const LAW: &str = "solid.material.law";
 const BULK_RATIO: f64 = 100.0;
 /// N of both tables.
 const CHAIN: f64 = 8.0;
-/// Of filled rubber, kg/m³.
-const DENSITY: f64 = 1100.0;
+/// Densities, kg/m³.
+const STEEL: f64 = 7850.0;
+const RUBBER: f64 = 1100.0;
 /// Estimated error of the stress in a step, over the largest so far.
 const ACCURACY: f64 = 1e-3;
 
@@ -81,7 +82,7 @@ pub(super) fn material(reader: &mut Reader) -> Result<(Law, f64), SceneError> {
             youngs_modulus: number("youngs_modulus", 210e9),
             poisson_ratio: number("poisson_ratio", 0.3),
         };
-        return Ok((law, number("density", 7850.0)));
+        return Ok((law, density(reader, STEEL, "bearing steel")));
     }
     for (key, reason) in NOT_OF_RUBBER {
         if let Some(given) = document.first_below(key) {
@@ -91,13 +92,18 @@ pub(super) fn material(reader: &mut Reader) -> Result<(Law, f64), SceneError> {
     }
     let table = reader.choice_if_given("solid.material.table");
     let material = rubber(reader, table)?;
-    let density = reader.given_number("solid.material.density").unwrap_or_else(|| {
-        let reason = "usual for filled rubber; the source states none";
-        reader.note("solid.material.density", "1100 kg/m^3", reason);
-        DENSITY
-    });
+    let density = density(reader, RUBBER, "usual for filled rubber; the source states none");
     let harmonic = harmonic(reader)?;
     Ok((Law::Elastomer(Box::new(RubberScene { material, table, harmonic })), density))
+}
+
+/// The density that is given, else a usual one.
+fn density(reader: &mut Reader, usual: f64, reason: &str) -> f64 {
+    const KEY: &str = "solid.material.density";
+    reader.given_number(KEY).unwrap_or_else(|| {
+        reader.note(KEY, &format!("{} kg/m^3", plain(usual)), reason);
+        usual
+    })
 }
 
 /// Keys given beside a table take the place of what it says.

@@ -7,6 +7,7 @@ mod bore_contact;
 mod elastomer;
 mod material_laws;
 mod rubber;
+mod rubber_checkpoint;
 mod solid_explicit;
 mod solid_factors;
 mod solid_plan;

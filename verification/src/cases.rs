@@ -16,6 +16,8 @@ mod bushing_geometries_3_4_2;
 mod bushing_materials_3_4_1;
 #[path = "../bushing_relaxation_3_3_1/case.rs"]
 mod bushing_relaxation_3_3_1;
+#[path = "../bushing_scene_3_4_1/case.rs"]
+mod bushing_scene_3_4_1;
 #[path = "../cage_modes_table_5_3/case.rs"]
 mod cage_modes_table_5_3;
 #[path = "../cage_slip/case.rs"]
@@ -113,6 +115,7 @@ pub const CASES: &[Case] = &[
     rubber_cube_2_3_1::CASE,
     bushing_relaxation_3_3_1::CASE,
     bushing_materials_3_4_1::CASE,
+    bushing_scene_3_4_1::CASE,
     bushing_geometries_3_4_2::CASE,
 ];
 
