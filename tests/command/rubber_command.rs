@@ -177,10 +177,10 @@ fn interrupted_killed_and_extended_runs_of_rubber_end_with_the_same_bytes() {
     let place = Place::new();
     // Rows at which steps end on the way, before, at and behind the corner.
     let of = |end: &str| numerics(end).replace("\"10 ms\"", "\"7 ms\"");
-    let scene = place.scene("scene.toml", &of("1.4 s"));
+    let scene = place.scene("scene.toml", &of("7 s"));
     let (whole, parts) = (place.path("whole"), place.path("parts"));
     let child = start(into_folder("run", &scene, &parts, &["--save-every", "1"]));
-    std::thread::sleep(std::time::Duration::from_millis(400));
+    std::thread::sleep(std::time::Duration::from_millis(200));
     signal(&child, "-TERM");
     let (code, message) = wait(child);
     assert_eq!(code, Some(2), "{message}");
@@ -190,19 +190,19 @@ fn interrupted_killed_and_extended_runs_of_rubber_end_with_the_same_bytes() {
     succeed(into_folder("run", &scene, &whole, &[]));
     assert_same_results(&whole, &parts);
     // A complete run goes on to a later end.
-    let longer = place.scene("scene.toml", &of("1.5 s"));
+    let longer = place.scene("scene.toml", &of("7.1 s"));
     succeed(into_folder("run", &longer, &parts, &["--resume"]));
     succeed(into_folder("run", &longer, &whole, &["--fresh"]));
     assert_same_results(&whole, &parts);
     // Another rubber does not go on from there, nor do damaged arrays.
-    let text = of("1.6 s").replace("table = \"3.1\"", "table = \"2.3\"");
+    let text = of("7.2 s").replace("table = \"3.1\"", "table = \"2.3\"");
     let refused =
         into_folder("run", &place.scene("o.toml", &text), &parts, &["--resume"]).output().unwrap();
     assert!(stderr(&refused).contains("another scene"), "{}", stderr(&refused));
     let state = json(parts.join("state.json"));
     let arrays = parts.join(state["rubber"]["arrays"].as_str().unwrap());
     fs::copy(parts.join("series.npy"), arrays).unwrap();
-    let longer = place.scene("scene.toml", &of("1.6 s"));
+    let longer = place.scene("scene.toml", &of("7.2 s"));
     let refused = into_folder("run", &longer, &parts, &["--resume"]).output().unwrap();
     assert_eq!(refused.status.code(), Some(2));
     assert!(stderr(&refused).contains("damaged"), "{}", stderr(&refused));
