@@ -40,9 +40,12 @@ fn ramp() -> Profile {
     Profile::Ramp { from: 0.0, to: 4e-3, start: 0.01, duration: 0.1 }
 }
 
+fn stepped(model: &RubberModel, stepping: Stepping) -> RubberSolid<'_> {
+    RubberSolid::new(model, StepOptions { stepping, ..StepOptions::default() }).unwrap()
+}
+
 fn solid(model: &RubberModel) -> RubberSolid<'_> {
-    let options = StepOptions { stepping: Stepping::Accuracy(1e-3), ..StepOptions::default() };
-    RubberSolid::new(model, options).unwrap()
+    stepped(model, Stepping::Accuracy(1e-3))
 }
 
 fn bits(solid: &RubberSolid) -> Vec<u64> {
@@ -54,9 +57,12 @@ fn steps_from_a_checkpoint_have_the_same_bits() {
     let model = pulled(ramp(), true, named::table_3_1());
     let points = POINTS * model.tets.len();
     let sizes = [model.problem.nodes.len(), points, 14];
-    // At rest, in the ramp, at its end and behind it.
-    for first in [0.005, 0.03, 0.11, 0.15] {
-        let mut whole = solid(&model);
+    // At rest, in the ramp, at its end and behind it; steps whose factors change, and steps that share them.
+    let cases = [0.005, 0.03, 0.11, 0.15].map(|first| {
+        [Stepping::Accuracy(1e-3), Stepping::Fixed(2e-3)].map(|stepping| (first, stepping))
+    });
+    for (first, stepping) in cases.into_iter().flatten() {
+        let mut whole = stepped(&model, stepping);
         whole.advance(first, |_| {}).unwrap();
         let kept = whole.checkpoint();
         let numbers = kept.numbers();
@@ -70,7 +76,7 @@ fn steps_from_a_checkpoint_have_the_same_bits() {
         assert_eq!(through, kept);
         assert_eq!(bare.with_numbers(sizes, &numbers[1..]), None);
         whole.advance(0.3, |_| {}).unwrap();
-        let mut other = solid(&model);
+        let mut other = stepped(&model, stepping);
         other.restore(&through).unwrap();
         other.advance(0.3, |_| {}).unwrap();
         assert_eq!(bits(&whole), bits(&other), "from {first} s");
