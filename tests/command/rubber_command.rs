@@ -2,7 +2,9 @@
 
 use crate::housed_command_common::scene_text;
 use crate::resume_common::{assert_same_results, signal, start, wait};
-use crate::solid_command_common::{Place, column, command, into_folder, json, stderr, succeed};
+use crate::solid_command_common::{
+    Place, column, command, into_folder, json, shipped, stderr, succeed,
+};
 
 use bearing_dynamics::ch2_housing::elastomer::named;
 use bearing_dynamics::mesh::Elements;
@@ -349,6 +351,17 @@ fn what_does_not_fit_rubber_is_refused() {
             assert!(message.contains(needle), "{to}: {needle} is not in: {message}");
         }
     }
+    // A file says what elements it has only when it is read.
+    fs::copy(shipped("meshes/bar.msh"), place.path("bar.msh")).unwrap();
+    let file = "[solid.mesh]\nfile = \"bar.msh\"\nunit = \"mm\"\n";
+    let rubber = "[solid.material]\nlaw = \"elastomer\"\ntable = \"3.1\"\n";
+    let scene = place.scene("f.toml", &[file, rubber].concat());
+    let output = command("check", &scene, &[]).output().unwrap();
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("four-node elements") && message.contains("order = 2"), "{message}");
+    let scene = place.scene("f.toml", &[file, "order = 2\n", rubber].concat());
+    succeed(command("check", &scene, &[]));
     // Rubber's keys in a solid of another law, and rubber in the place of a housing.
     let elastic = RUBBER.replace(law, "").replace(table, "") + HARMONIC;
     let output = command("check", &place.scene("e.toml", &elastic), &[]).output().unwrap();
@@ -389,6 +402,15 @@ fn check_and_plan_say_what_rubber_it_is() {
     let exact = 0.25 * 0.25 * std::f64::consts::PI * (0.036f64.powi(2) - 0.02f64.powi(2)) * 0.02;
     // Ten-node elements follow the sleeves to the fourth order of 22.5 degrees, their four points to the second.
     assert!((volume / exact - 1.0).abs() <= 1e-3, "{volume} {exact}");
+    let other = place.scene("t.toml", &RUBBER.replace("\"3.1\"", "\"2.3\""));
+    let said = succeed(command("check", &other, &[]));
+    for part in [
+        "C_R 0.324 MPa, N 8, bulk modulus 32.4 MPa",
+        "14 Maxwell elements",
+        "Table 2.3 prints none",
+    ] {
+        assert!(said.contains(part), "{part} is not in {said}");
+    }
     // The weight is a load.
     let said = succeed(command("statics", &scene, &["--dry"]));
     let loads = said.lines().find(|line| line.starts_with("loads, N")).unwrap();

@@ -182,7 +182,7 @@ impl Tangent {
         self.is_sound = false;
         let Some(Factored { gain, displacement, carried }) = of else { return Ok(()) };
         let law = StepLaw { gain: *gain, carried };
-        Ok(self.refresh(model, &law, displacement, None)?.map_err(at_rest).map_err(Stop::All)?)
+        self.refresh(model, &law, displacement, None)?.map_err(at_rest).map_err(Stop::All)
     }
 
     /// Factors in a state. If `moves` are changes of the prescribed components, `right` loses the
