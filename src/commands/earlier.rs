@@ -83,7 +83,7 @@ pub fn refuse_half_way(folder: &Path) -> Result<(), Box<dyn Error>> {
 /// Removes what an earlier command left in the folder and this one may not write again; nothing that
 /// this program does not name so. The summary goes first: its presence says that a folder is complete.
 pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
-    const NAMES: [&str; 10] = [
+    const NAMES: [&str; 13] = [
         "summary.json",
         "state.json",
         "series.csv",
@@ -91,6 +91,9 @@ pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
         "series.columns.json",
         "spectrum.csv",
         "bore.csv",
+        "harmonic.csv",
+        "reactions.svg",
+        "loops.svg",
         fields::LIST,
         "energies.svg",
         "spectrum.svg",

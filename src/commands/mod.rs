@@ -13,6 +13,7 @@ pub mod pictures;
 pub mod plan;
 pub mod plan_step;
 mod remarks;
+pub mod rubber;
 pub mod run;
 pub mod schema;
 pub mod solid;

@@ -169,8 +169,15 @@ pub enum Holds {
 }
 
 /// Tables that a command replaces; they are this program's where one of its records lies beside them.
-const TABLES: [&str; 6] =
-    ["series.csv", "series.npy", "spectrum.csv", "bore.csv", "sweep.csv", "sweep.npy"];
+const TABLES: [&str; 7] = [
+    "series.csv",
+    "series.npy",
+    "spectrum.csv",
+    "bore.csv",
+    "harmonic.csv",
+    "sweep.csv",
+    "sweep.npy",
+];
 
 /// What lies in a folder, by the records that this program leaves.
 ///

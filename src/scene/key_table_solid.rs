@@ -1,14 +1,24 @@
 //! Rows of the key table: a flexible solid by itself, its mesh, supports, loads and outputs.
 
-use crate::scene::key_table::{DENSITY, FORCE, STEEL_DENSITY};
+use crate::scene::key_table::{DENSITY, FORCE};
 use crate::scene::keys::{Key, Kind, Need, Range, Table, above, closed, list_table, open, table};
 use crate::scene::units::Dimension::{
-    Acceleration, Length, Rate, RotationSpeed, Speed, Stress, Time,
+    Acceleration, Frequency, Length, Rate, RotationSpeed, Speed, Stress, Time,
 };
 use Need::{Default, Depends, Optional, Required};
 
-pub const GENERATORS: &[&str] =
-    &["bar", "block", "ring", "shaft", "cage", "housing-a", "housing-b", "housing-c", "housing-d"];
+pub const GENERATORS: &[&str] = &[
+    "bar",
+    "block",
+    "ring",
+    "shaft",
+    "cage",
+    "housing-a",
+    "housing-b",
+    "housing-c",
+    "housing-d",
+    "bushing",
+];
 const AXES: &[&str] = &["x", "y", "z"];
 const LENGTH_UNITS: &[&str] = &["m", "mm"];
 const REPAIRS: &[&str] = &["orient", "merge-duplicates", "drop-unreferenced"];
@@ -16,6 +26,11 @@ const DAMPED_MOTIONS: &[&str] = &["absolute", "relative-to-rigid"];
 const METHODS: &[&str] = &["central-differences", "runge-kutta"];
 const MASSES: &[&str] = &["consistent", "lumped"];
 const PLANES: &[&str] = &["x", "y", "z"];
+const LAWS: &[&str] = &["linear-elastic", "elastomer"];
+const RUBBERS: &[&str] = &["2.3", "3.1"];
+const PULLS: &[&str] = &["five-terms", "inverse-langevin"];
+const PARTS: &[&str] = &["whole", "quarter"];
+const WITH_RUBBER: &str = "with `law = \"elastomer\"`";
 
 const SIZE: Kind = Kind::Quantity(Length, open(0.0, 100.0, "m"));
 const PLACE: Range = closed(-1000.0, 1000.0, "m");
@@ -49,11 +64,35 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("solid.spin", Kind::Quantity(RotationSpeed, closed(-1e6, 1e6, "rpm")), Default { value: "0 rpm", reason: "it does not turn" },
         "Rotation of the whole body about X at the start of a run."),
 
+    Key::new("solid.material.law", Kind::Choice(LAWS), Depends("`linear-elastic` unless given"),
+        "Linear elastic (St. Venant-Kirchhoff), or rubber: an eight-chain network (2.8) beside Maxwell elements (2.13)."),
     Key::new("solid.material.youngs_modulus", Kind::Quantity(Stress, closed(1e-6, 10_000.0, "GPa")), Default { value: "210 GPa", reason: "bearing steel" },
         "Young's modulus.").hint("steel has 210 GPa; check the unit"),
     Key::new("solid.material.poisson_ratio", Kind::Number(open(-1.0, 0.5, "")), Default { value: "0.3", reason: "bearing steel" },
         "Poisson's ratio.").hint("at 0.5 a solid cannot change its volume; this law needs less"),
-    Key::new("solid.material.density", DENSITY, STEEL_DENSITY, "Density.").hint("steel has 7850 kg/m^3; check the unit"),
+    Key::new("solid.material.density", DENSITY, Depends("7850 kg/m^3, bearing steel; of rubber 1100 kg/m^3"), "Density.").hint("steel has 7850 kg/m^3; check the unit"),
+    Key::new("solid.material.table", Kind::Choice(RUBBERS), Depends(WITH_RUBBER),
+        "Rubber of this table of the source; keys given beside it take the place of what it says, `[[solid.material.maxwell]]` that of all its Maxwell elements."),
+    Key::new("solid.material.rubber_modulus", Kind::Quantity(Stress, closed(1e-6, 1e6, "MPa")), Depends("with `law = \"elastomer\"`; required without `table`"),
+        "C_R of the network; at N = 8 the shear modulus is 1.085 times that.").hint("the source has 0.324 and 0.647 MPa; check the unit").example_of("0.647 MPa"),
+    Key::new("solid.material.chain", Kind::Number(above(0.0, 1e6, "")), Depends("with `law = \"elastomer\"`; 8 unless given"),
+        "N: chains are straight at a stretch of its root.").hint("the source has 8").example_of("8"),
+    Key::new("solid.material.chain_pull", Kind::Choice(PULLS), Default { value: "five-terms", reason: "as (2.8)" },
+        "Pull of a chain: the five terms of the source, or the inverse Langevin function that they approximate, which has no state beyond the straight chain."),
+    Key::new("solid.material.bulk_ratio", Kind::Number(closed(1.0, 1e6, "")), Depends("with `law = \"elastomer\"`; 100 unless given"),
+        "Bulk modulus over C_R.").group("bulk").hint("the source has 100; many rubbers have 1000").example_of("100"),
+    Key::new("solid.material.bulk_modulus", Kind::Quantity(Stress, closed(1e-6, 1e9, "MPa")), Depends(WITH_RUBBER),
+        "Bulk modulus, in place of `bulk_ratio`.").group("bulk").hint("check the unit").example_of("64.7 MPa"),
+    Key::new("solid.material.maxwell.gamma", Kind::Number(above(0.0, 1e6, "")), Required,
+        "Stiffness of a Maxwell element over the network's deviatoric one.").example_of("0.492"),
+    Key::new("solid.material.maxwell.relaxation_time", Kind::Quantity(Time, above(0.0, 1e9, "s")), Required,
+        "Time over which it relaxes.").hint("the source has 1e-7 to 10 s; check the unit").example_of("10 s"),
+
+    Key::new("solid.harmonic.frequencies", Kind::Quantities(Frequency, closed(0.0, 1e9, "Hz")), Depends("required with `[solid.harmonic]`"),
+        "Frequencies at which `statics` gives the complex stiffness, ascending; 0 is the relaxed network.").example_of("0.1 Hz"),
+    Key::new("solid.harmonic.set", Kind::Text, Depends("required with `[solid.harmonic]`"),
+        "Held set that moves; all others stay."),
+    Key::new("solid.harmonic.axis", Kind::Choice(AXES), Depends("required with `[solid.harmonic]`"), "Axis along which it moves."),
 
     Key::new("solid.mesh.file", Kind::Text, Depends("this or `generate`"),
         "Mesh file, relative to the scene: Gmsh `.msh` (4.1 or 2.2, text or binary) or Abaqus `.inp` (C3D4, C3D10).").group("mesh"),
@@ -76,11 +115,15 @@ pub(super) const KEYS: &[Key] = &[
         "Enclosed cavities that are meant to be there."),
     Key::new("solid.mesh.largest_aspect", Kind::Number(above(1.0, 1e9, "")), Default { value: "1000", reason: "a worse element is a defect" },
         "Largest aspect of an element, 1 for a regular one; beyond it the mesh is refused.").example_of("1000"),
-    size("solid.mesh.length", "bar, shaft", "Length along X."),
+    size("solid.mesh.length", "bar, shaft, bushing", "Length along X."),
     size("solid.mesh.width", "bar (along Y), ring, cage (along X)", "Width."),
     size("solid.mesh.height", "bar", "Height along Z."),
     size("solid.mesh.radius", "shaft", "Radius."),
     size("solid.mesh.inner_radius", "ring, cage", "Inner radius."),
+    size("solid.mesh.inner_diameter", "bushing", "Inner diameter of the rubber."),
+    size("solid.mesh.outer_diameter", "bushing", "Outer diameter of the rubber."),
+    Key::new("solid.mesh.part", Kind::Choice(PARTS), Depends("bushing; `whole` unless given"),
+        "All of a bushing, or its quarter where X and Y are not negative, for a sleeve that moves along Z: hold `x_low` along X and `y_low` along Y, and take forces times four."),
     size("solid.mesh.outer_radius", "ring, cage, housing-b, -c, -d", "Outer radius; of a pillow block that of its annulus."),
     Key::new("solid.mesh.stations", Kind::Quantities(Length, PLACE), Depends("shaft, in place of `length`"),
         "Axial places of a shaft at which a layer of nodes lies, increasing; each is a set `station_1`, ….").example_of("0 mm"),
@@ -100,15 +143,18 @@ pub(super) const KEYS: &[Key] = &[
     cells("solid.mesh.cells.along", "bar, shaft", "Cells along X; a shaft with `stations` has as many as keep layers within its length over this number."),
     cells("solid.mesh.cells.across", "bar", "Cells along Y."),
     cells("solid.mesh.cells.up", "bar", "Cells along Z."),
-    cells("solid.mesh.cells.around", "ring, housings; shaft: a multiple of 8", "Cells around."),
-    cells("solid.mesh.cells.radial", "ring, shaft, housings", "Cells along the radius; of a shaft outside its core."),
-    cells("solid.mesh.cells.axial", "ring, housings", "Cells along X."),
+    cells("solid.mesh.cells.around", "ring, housings, bushing; shaft: a multiple of 8", "Cells around."),
+    cells("solid.mesh.cells.radial", "ring, shaft, housings, bushing: even", "Cells along the radius; of a shaft outside its core."),
+    cells("solid.mesh.cells.axial", "ring, housings, bushing", "Cells along X; of a quarter of a bushing along half of it."),
     cells("solid.mesh.cells.quarter", "cage", "Cells along a quarter of a pocket's edge."),
     cells("solid.mesh.cells.bar", "cage", "Cells from a pocket's edge to the middle of the bar."),
     cells("solid.mesh.cells.wall", "cage", "Cells through the wall."),
     cells("solid.mesh.cells.per_half_width", "block", "Cells per half contact width in the fine zone, 3 b wide and 1.5 b high."),
     cells("solid.mesh.cells.deep", "block", "Cells along the depth."),
     Key::new("solid.mesh.cells.growth", GROWTH, EVEN, "Growth of radial steps outwards (ring, housings), of steps outside the fine zone (block).").example_of("1.25"),
+
+    Key::new("solid.mesh.cells.grading", Kind::Number(closed(1.0, 10.0, "")), Depends("bushing; 1, even, unless given"),
+        "How much cells of a bushing crowd at its sleeves and ends, where stresses have no bound at the corners: stations at a part s from the middle stand at 1 − (1 − s) to this power.").example_of("2"),
 
     Key::new("solid.set.name", Kind::Text, Required, "Name of the set; it joins those of the mesh."),
     Key::new("solid.set.plane", Kind::Choice(PLANES), Optional, "Surface on the plane square to this axis, through `at`.").group("place"),
@@ -152,8 +198,12 @@ pub(super) const KEYS: &[Key] = &[
 #[rustfmt::skip]
 pub(super) const TABLES: &[Table] = &[
     table("solid", "A flexible solid: by itself in place of a bearing, or with one as its housing (`[housing]`).", "[solid]\ndamping = \"77 1/s\""),
-    table("solid.material", "Linear elastic (St. Venant-Kirchhoff).",
+    table("solid.material", "Linear elastic (St. Venant-Kirchhoff), or rubber: `law = \"elastomer\"` with `table = \"3.1\"`, or with `rubber_modulus` and Maxwell elements.",
         "[solid.material]\nyoungs_modulus = \"210 GPa\"\npoisson_ratio = 0.3\ndensity = \"7850 kg/m^3\""),
+    list_table("solid.material.maxwell", "Maxwell elements of a rubber; without them, and without `table`, it is the network alone. As many as wanted.",
+        "[[solid.material.maxwell]]\ngamma = 0.492\nrelaxation_time = \"10 s\""),
+    table("solid.harmonic", "Small vibrations about rest of a solid of rubber, without inertia: complex stiffness against the motion of a set, K_d (3.13) and η_d (3.14) over frequency.",
+        "[solid.harmonic]\nset = \"inner\"\naxis = \"z\"\nfrequencies = [\"0.1 Hz\", \"10 Hz\"]"),
     table("solid.mesh", "Tetrahedra from a file or from a generator. Faults are refused, not repaired, unless `repair` says so.",
         "[solid.mesh]\nfile = \"part.msh\"\nunit = \"mm\""),
     table("solid.mesh.relief", "Rails of a cage lower than its middle; not in the source.",

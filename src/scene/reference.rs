@@ -156,7 +156,10 @@ fn kind_and_range(key: &Key) -> (String, String) {
             (format!("list of pairs: {}, number", noun(dimension)), range)
         }
         Kind::Quantities(dimension, _) => {
-            (format!("list of increasing {}s", noun(dimension)), format!("each {range}"))
+            let noun = noun(dimension);
+            let many =
+                noun.strip_suffix('y').map_or(format!("{noun}s"), |stem| format!("{stem}ies"));
+            (format!("list of increasing {many}"), format!("each {range}"))
         }
         Kind::TrueOrProfile(dimension, _) => {
             (format!("`true`, or {} or profile", noun(dimension)), range)

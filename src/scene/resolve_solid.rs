@@ -7,10 +7,11 @@ use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_assembly::{assembly, is_assembly};
 use crate::scene::resolve_housing::in_housing;
+use crate::scene::resolve_rubber::{self, check_order, is_rubber, refuse_rubber};
 use crate::scene::resolve_solid_mesh::source;
 use crate::scene::solid::{
-    Held, LoadKind, MeshPlace, MeshRequest, MeshSource, Probe, ProbeOf, SetLoad, SetPlace,
-    SetRequest, SolidRun, SolidScene, Subject,
+    Held, LoadKind, MeshPlace, MeshRequest, MeshSource, Probe, ProbeOf, RunSteps, SetLoad,
+    SetPlace, SetRequest, SolidRun, SolidScene, Subject,
 };
 use crate::scene::units::plain;
 use crate::scene::value::Checked;
@@ -80,11 +81,13 @@ fn solid_scene(document: &Document) -> Result<SolidScene, SceneError> {
     refuse_bearing_keys(document)?;
     let mut reader = Reader::new(document);
     let mut scene = body(&mut reader)?;
-    scene.mode_count = reader.number("modes.count").unwrap_or(12.0) as usize;
-    scene.mode_mass = match reader.choice("modes.mass") {
-        Some("lumped") => MassMatrix::Lumped,
-        _ => MassMatrix::Consistent,
-    };
+    if !is_rubber(document) {
+        scene.mode_count = reader.number("modes.count").unwrap_or(12.0) as usize;
+        scene.mode_mass = match reader.choice("modes.mass") {
+            Some("lumped") => MassMatrix::Lumped,
+            _ => MassMatrix::Consistent,
+        };
+    }
     scene.run = run(&mut reader)?;
     let plots = match document.value("output.plots") {
         Some(Checked::Choices(names)) => names.clone(),
@@ -121,6 +124,7 @@ pub(crate) fn housing_solid(document: &Document) -> Result<SolidScene, SceneErro
         let problem = Problem::NotApplicable { reason, advice: advice.to_string() };
         return Err(document.error(key, problem));
     }
+    refuse_rubber(document)?;
     let mut reader = Reader::new(document);
     let mut scene = body(&mut reader)?;
     scene.defaults_used = reader.into_defaults_used();
@@ -132,18 +136,22 @@ pub(crate) fn housing_solid(document: &Document) -> Result<SolidScene, SceneErro
 fn body(reader: &mut Reader) -> Result<SolidScene, SceneError> {
     let document = reader.document;
     let mesh = mesh_request(reader)?;
-    let mut number = |path: &str, usual: f64| reader.number(path).unwrap_or(usual);
-    let youngs_modulus = number("solid.material.youngs_modulus", 210e9);
-    let poisson_ratio = number("solid.material.poisson_ratio", 0.3);
-    let density = number("solid.material.density", 7850.0);
-    let damping = number("solid.damping", 0.0);
-    let spin = number("solid.spin", 0.0);
-    let damped_motion = match reader.choice("solid.damped_motion") {
-        Some("relative-to-rigid") => DampedMotion::RelativeToRigid,
-        _ => DampedMotion::Absolute,
+    let (law, density) = resolve_rubber::material(reader)?;
+    // Of what rubber has no use for, nothing is said.
+    let rubber = is_rubber(document);
+    let mut number = |path: &str| if rubber { 0.0 } else { reader.number(path).unwrap_or(0.0) };
+    let (damping, spin) = (number("solid.damping"), number("solid.spin"));
+    let damped_motion = match document.value("solid.damped_motion") {
+        Some(Checked::Choice("relative-to-rigid")) => DampedMotion::RelativeToRigid,
+        given => {
+            if given.is_none() && !rubber {
+                reader.note_default("solid.damped_motion");
+            }
+            DampedMotion::Absolute
+        }
     };
     let gravity = vector(reader, "solid.gravity");
-    let velocity = vector(reader, "solid.velocity");
+    let velocity = if rubber { [0.0; 3] } else { vector(reader, "solid.velocity") };
     let held: Vec<Held> = document.items("solid.held").map(held).collect::<Result<_, _>>()?;
     let loads: Vec<SetLoad> = document.items("solid.load").map(load).collect::<Result<_, _>>()?;
     let probes: Vec<Probe> = document.items("solid.probe").map(probe).collect::<Result<_, _>>()?;
@@ -152,8 +160,7 @@ fn body(reader: &mut Reader) -> Result<SolidScene, SceneError> {
         source: text(document, "source"),
         assumptions: document.assumptions().to_vec(),
         mesh,
-        youngs_modulus,
-        poisson_ratio,
+        law,
         density,
         damping,
         damped_motion,
@@ -187,7 +194,8 @@ fn refuse_bearing_keys(document: &Document) -> Result<(), SceneError> {
     const OWN: [&str; 4] = ["solid.", "modes.", "numerics.method", "numerics.fields_interval"];
     let reason = "a solid does not use it";
     for key in document.given_keys() {
-        let own = OWN.iter().any(|own| key.path.starts_with(own));
+        let own = OWN.iter().any(|own| key.path.starts_with(own))
+            || (is_rubber(document) && key.path == "numerics.accuracy");
         if !own && !SHARED.contains(&key.path) {
             let problem = Problem::NotApplicable { reason, advice: "leave it out".to_string() };
             return Err(document.error(key.path, problem));
@@ -225,6 +233,7 @@ fn mesh_request(reader: &mut Reader) -> Result<MeshRequest, SceneError> {
         1 => Order::Linear,
         _ => Order::Quadratic,
     });
+    check_order(document, &source, order)?;
     let renumber = match document.value("solid.mesh.renumber") {
         Some(Checked::Boolean(given)) => *given,
         _ => {
@@ -388,6 +397,33 @@ fn probe(item: ItemRef) -> Result<Probe, SceneError> {
 
 fn run(reader: &mut Reader) -> Result<Option<SolidRun>, SceneError> {
     let Some(end) = reader.given_number("numerics.end") else { return Ok(None) };
+    let rubber = is_rubber(reader.document);
+    let steps = if rubber { resolve_rubber::steps(reader) } else { explicit(reader) };
+    let mut interval = |key: &str, parts: f64, reason: &str| -> Result<f64, SceneError> {
+        let Some(value) = reader.given_number(key) else {
+            let value = end / parts;
+            reader.note(key, &format!("{} s", plain(value)), reason);
+            return Ok(value);
+        };
+        if value <= end {
+            return Ok(value);
+        }
+        let (relation, other_name, other) = ("after", "the end of the run", end);
+        let (allowed, advice) = ("up to", "check the units of both");
+        let problem = Problem::WrongTime { value, relation, other_name, other, allowed, advice };
+        Err(reader.document.error(key, problem))
+    };
+    let (rows, reason) = if rubber {
+        (100.0, "a hundredth of the run")
+    } else {
+        (1000.0, "a thousandth of the run")
+    };
+    let output_interval = interval("numerics.output_interval", rows, reason)?;
+    let fields_interval = interval("numerics.fields_interval", 20.0, "a twentieth of the run")?;
+    Ok(Some(SolidRun { steps, end, output_interval, fields_interval }))
+}
+
+fn explicit(reader: &mut Reader) -> RunSteps {
     let method = match reader.choice("numerics.method") {
         Some("runge-kutta") => ExplicitMethod::RungeKutta,
         _ => ExplicitMethod::CentralDifferences,
@@ -406,21 +442,5 @@ fn run(reader: &mut Reader) -> Result<Option<SolidRun>, SceneError> {
         reader.note("numerics.energy_limit", "0.01", "1 % of the energy turned over");
         0.01
     });
-    let mut interval = |key: &str, parts: f64, reason: &str| -> Result<f64, SceneError> {
-        let Some(value) = reader.given_number(key) else {
-            let value = end / parts;
-            reader.note(key, &format!("{} s", plain(value)), reason);
-            return Ok(value);
-        };
-        if value <= end {
-            return Ok(value);
-        }
-        let (relation, other_name, other) = ("after", "the end of the run", end);
-        let (allowed, advice) = ("up to", "check the units of both");
-        let problem = Problem::WrongTime { value, relation, other_name, other, allowed, advice };
-        Err(reader.document.error(key, problem))
-    };
-    let output_interval = interval("numerics.output_interval", 1000.0, "a thousandth of the run")?;
-    let fields_interval = interval("numerics.fields_interval", 20.0, "a twentieth of the run")?;
-    Ok(Some(SolidRun { method, stepping, end, output_interval, fields_interval, energy_limit }))
+    RunSteps::Explicit { method, stepping, energy_limit }
 }

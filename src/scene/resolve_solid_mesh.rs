@@ -1,7 +1,8 @@
 //! Where a solid's mesh comes from: a file, or a generator and its dimensions.
 
 use crate::mesh::generate::{
-    Cage, CageMesh, ContactBlock, Housing, HousingMesh, PillowBlock, RailRelief, Ring, RingMesh,
+    Bushing, BushingMesh, Cage, CageMesh, ContactBlock, Housing, HousingMesh, Part, PillowBlock,
+    RailRelief, Ring, RingMesh,
 };
 use crate::mesh::read::LengthUnit;
 use crate::scene::error::{Problem, SceneError};
@@ -46,6 +47,19 @@ const KEYS_OF: &[(&str, &[&str])] = &[
     ("housing-b", PILLOW_BLOCK),
     ("housing-c", PILLOW_BLOCK),
     ("housing-d", &["bore_radius", "outer_radius", "depth", AROUND, RADIAL, AXIAL, GROWTH]),
+    (
+        "bushing",
+        &[
+            "inner_diameter",
+            "outer_diameter",
+            "length",
+            "part?",
+            AROUND,
+            RADIAL,
+            AXIAL,
+            "cells.grading?",
+        ],
+    ),
 ];
 const AROUND: &str = "cells.around";
 const RADIAL: &str = "cells.radial";
@@ -115,6 +129,10 @@ const KEY_OF_DIMENSION: &[(&str, &str)] = &[
     ("cells along the depth", "cells.deep"),
     ("growth of radial steps", "cells.growth"),
     ("growth of steps", "cells.growth"),
+    ("inner diameter", "inner_diameter"),
+    ("thickness", "outer_diameter"),
+    ("length", "length"),
+    ("grading", "cells.grading"),
 ];
 
 /// The key below `solid.mesh` of what a generator names in an error; nothing for what follows from
@@ -291,6 +309,31 @@ fn generated(reader: &mut Reader, generator: &str) -> Result<MeshSource, SceneEr
             };
             MeshSource::Cage(shape, mesh)
         }
+        "bushing" => {
+            let [inner_diameter, outer_diameter] =
+                [size(reader, "inner_diameter")?, size(reader, "outer_diameter")?];
+            let thickness = 0.5 * (outer_diameter - inner_diameter);
+            let thick = thickness > 0.0;
+            if !thick {
+                let reason = "it is no larger than the inner diameter";
+                let advice = "give a larger one; both are those of the rubber".to_string();
+                let problem = Problem::NotApplicable { reason, advice };
+                return Err(reader.document.error("solid.mesh.outer_diameter", problem));
+            }
+            let part = match reader.choice_if_given("solid.mesh.part") {
+                Some("quarter") => Part::Quarter,
+                _ => Part::Whole,
+            };
+            let mesh = BushingMesh {
+                around: cells(reader, "around")?,
+                radial: cells(reader, "radial")?,
+                axial: cells(reader, "axial")?,
+                grading: reader.given_number("solid.mesh.cells.grading").unwrap_or(1.0),
+                part,
+            };
+            let length = size(reader, "length")?;
+            MeshSource::Bushing(Bushing { inner_diameter, thickness, length }, mesh)
+        }
         _ => {
             let (bore_radius, depth) = (size(reader, "bore_radius")?, size(reader, "depth")?);
             let housing = match generator {
@@ -362,6 +405,7 @@ mod tests {
             "length to be divided",
         ];
         let sources = [
+            include_str!("../mesh/generate/bushing.rs"),
             include_str!("../mesh/generate/cage.rs"),
             include_str!("../mesh/generate/grading.rs"),
             include_str!("../mesh/generate/housing.rs"),

@@ -1,6 +1,9 @@
 //! A scene with a flexible solid alone, resolved: SI units, defaults filled in, its mesh not read.
 
-use crate::mesh::generate::{Cage, CageMesh, ContactBlock, Housing, HousingMesh, Ring, RingMesh};
+use crate::ch2_housing::elastomer::Elastomer;
+use crate::mesh::generate::{
+    Bushing, BushingMesh, Cage, CageMesh, ContactBlock, Housing, HousingMesh, Ring, RingMesh,
+};
 use crate::mesh::read::LengthUnit;
 use crate::mesh::{Order, Surface};
 use crate::scene::assembly::AssemblyScene;
@@ -8,6 +11,7 @@ use crate::scene::resolved::{Assumption, DefaultUsed};
 use crate::solver::profile::Profile;
 use crate::solver::solid::explicit::{ExplicitMethod, SolidStepping};
 use crate::solver::solid::model::DampedMotion;
+use crate::solver::solid::rubber::steps::Stepping;
 use crate::solver::solid::tangent::MassMatrix;
 use std::path::PathBuf;
 
@@ -45,6 +49,7 @@ pub enum MeshSource {
     },
     Cage(Cage, CageMesh),
     Housing(Housing, HousingMesh),
+    Bushing(Bushing, BushingMesh),
 }
 
 /// Where a mesh is put.
@@ -143,15 +148,53 @@ pub enum ProbeOf {
 /// How a run is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidRun {
-    pub method: ExplicitMethod,
-    pub stepping: SolidStepping,
+    pub steps: RunSteps,
     /// s.
     pub end: f64,
     /// Time from one row to the next and from one file of fields to the next, s.
     pub output_interval: f64,
     pub fields_interval: f64,
-    /// Energy unaccounted for over energy turned over at which the run is stopped.
-    pub energy_limit: f64,
+}
+
+/// Steps of a run: with inertia, or from equilibrium to equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RunSteps {
+    Explicit {
+        method: ExplicitMethod,
+        stepping: SolidStepping,
+        /// Energy unaccounted for over energy turned over at which the run is stopped.
+        energy_limit: f64,
+    },
+    Implicit(Stepping),
+}
+
+/// What a solid is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Law {
+    /// Young's modulus in Pa.
+    LinearElastic {
+        youngs_modulus: f64,
+        poisson_ratio: f64,
+    },
+    Elastomer(Box<RubberScene>),
+}
+
+/// A rubber, and what only a solid of rubber is asked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RubberScene {
+    pub material: Elastomer,
+    /// The table of the source that it is named by.
+    pub table: Option<&'static str>,
+    pub harmonic: Option<Harmonic>,
+}
+
+/// Small vibrations that are asked for: of a set along an axis (0, 1 or 2), all other held sets at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Harmonic {
+    pub set: String,
+    pub axis: usize,
+    /// Hz.
+    pub frequencies: Vec<f64>,
 }
 
 /// A resolved scene with a solid.
@@ -162,9 +205,7 @@ pub struct SolidScene {
     pub assumptions: Vec<Assumption>,
     pub defaults_used: Vec<DefaultUsed>,
     pub mesh: MeshRequest,
-    /// Pa.
-    pub youngs_modulus: f64,
-    pub poisson_ratio: f64,
+    pub law: Law,
     /// kg/m³.
     pub density: f64,
     /// 1/s.

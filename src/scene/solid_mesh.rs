@@ -1,7 +1,7 @@
 //! The mesh that a scene asks for: read or made, repaired as asked, checked, with its sets.
 
 use crate::mesh::check::{Faults, Limits, check};
-use crate::mesh::generate::{Solid, bar, contact_block, ring, shaft};
+use crate::mesh::generate::{Part, Solid, bar, bushing, contact_block, ring, shaft};
 use crate::mesh::numbering::reverse_cuthill_mckee;
 use crate::mesh::quadratic::elevate;
 use crate::mesh::quality::{Quality, quality};
@@ -106,6 +106,10 @@ pub(crate) const ON_SURFACE: f64 = 1e-6;
 /// Hexahedra that a generator may make, six tetrahedra each: some gigabytes.
 const MOST_CELLS: f64 = 1e7;
 
+/// What results on a quarter of a bushing are of.
+const QUARTER: &str = "the mesh is a quarter of the bushing: forces, stiffness and energies of the whole are four times \
+                       those of the results";
+
 /// Reads or makes the mesh.
 ///
 /// # Errors
@@ -182,6 +186,9 @@ fn build_around(
             };
             let solid = generate(made).map_err(failed)?;
             let (mut mesh, pulled_back) = of_order(solid, request.order).map_err(failed)?;
+            if matches!(made, MeshSource::Bushing(_, cells) if cells.part == Part::Quarter) {
+                notes.push(QUARTER.to_string());
+            }
             request.place.put(&mut mesh.nodes);
             check(&mesh, &limits).map_err(|faults| {
                 let faults = named(faults, &labels);
@@ -282,6 +289,7 @@ fn cells(source: &MeshSource) -> f64 {
             4.0 * product(&[cage.pocket_count, mesh.quarter, mesh.bar, mesh.wall])
         }
         MeshSource::Housing(_, mesh) => 2.0 * product(&[mesh.around, mesh.radial, mesh.axial]),
+        MeshSource::Bushing(_, mesh) => product(&[mesh.around, mesh.radial, mesh.axial]),
     }
 }
 
@@ -296,6 +304,7 @@ fn generate(source: &MeshSource) -> Result<Solid, MeshError> {
         }
         MeshSource::Cage(cage, cells) => cage.solid(cells),
         MeshSource::Housing(housing, cells) => housing.solid(cells),
+        MeshSource::Bushing(body, cells) => bushing(body, cells),
     }
 }
 

@@ -3,16 +3,17 @@
 use crate::ch2_housing::linear_elastic::{ElasticError, LinearElastic};
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::measure::{Share, tributary_areas};
-use crate::mesh::read::DeckMaterial;
 use crate::mesh::vector_area::vector_areas;
 use crate::mesh::{Face, TetMesh};
 use crate::scene::about::About;
-use crate::scene::solid::{LoadKind, ProbeOf, SolidScene};
+use crate::scene::deck_materials::deck_materials;
+use crate::scene::resolve_rubber::FOUR_NODES_LOCK;
+use crate::scene::solid::{Law, LoadKind, ProbeOf, SolidScene};
 use crate::scene::solid_mesh::BuiltMesh;
-use crate::solver::clock::to_digits;
 use crate::solver::profile::Profile;
 use crate::solver::solid::labels::Labels;
 use crate::solver::solid::model::{Load, Prescribed, SolidProblem};
+use crate::solver::solid::rubber::error::RubberError;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
@@ -22,6 +23,20 @@ use thiserror::Error;
 pub enum SolidSetupError {
     #[error(transparent)]
     Material(#[from] ElasticError),
+    #[error(transparent)]
+    Rubber(#[from] RubberError),
+    #[error("solid.material.law: this needs a linear elastic solid")]
+    OtherLaw,
+    #[error(
+        "solid.mesh.file: the mesh has four-node elements; {FOUR_NODES_LOCK}. Write `order = 2` in [solid.mesh]"
+    )]
+    FourNodes,
+    #[error(
+        "solid.harmonic.set: \"{set}\" is not held along {axis}, and only what is held or moved has a \
+         stiffness; [[solid.held]] has: {}",
+        list(known)
+    )]
+    NotHeld { set: String, axis: &'static str, known: Vec<String> },
     #[error(
         "solid.material: the deck has a material ({deck}), which is not taken from there, and the scene names no \
          {}, so that steel's would be in {} place: {steel}. Write what you mean in [solid]: {write}",
@@ -71,6 +86,10 @@ impl SolidSetupError {
             SolidSetupError::Material(_) | SolidSetupError::DeckMaterial { .. } => {
                 About::key("solid.material")
             }
+            SolidSetupError::OtherLaw => About::key("solid.material.law"),
+            SolidSetupError::Rubber(_) => About::key("solid"),
+            SolidSetupError::FourNodes => About::key("solid.mesh.file"),
+            SolidSetupError::NotHeld { .. } => About::key("solid.harmonic.set"),
             SolidSetupError::NoSuchSet { part: table, index, .. }
             | SolidSetupError::EmptySet { part: table, index, .. } => {
                 About::Item { table, index, key: "set" }
@@ -158,19 +177,41 @@ const ON_A_NODE: f64 = 0.01;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// What acts on a solid from outside, and where it is looked at.
+pub struct Outside {
+    pub prescribed: Vec<Prescribed>,
+    pub supports: Vec<Support>,
+    pub loads: Vec<Load>,
+    pub probes: Vec<NamedNodes>,
+    pub notes: Vec<String>,
+}
+
 /// # Errors
 /// A set that is not there or does not fit its use, supports that contradict each other.
-pub fn setup(scene: &SolidScene, built: &BuiltMesh) -> Result<SolidSetup, SolidSetupError> {
+pub fn outside(scene: &SolidScene, built: &BuiltMesh) -> Result<Outside, SolidSetupError> {
     let mesh = &built.mesh;
-    let material = LinearElastic::new(scene.youngs_modulus, scene.poisson_ratio)?;
     let (prescribed, supports) = supports(scene, mesh)?;
-    let mut notes = deck_materials(scene, built)?;
-    let mut loads = Vec::new();
+    let (mut notes, mut loads) = (Vec::new(), Vec::new());
     for (index, load) in scene.loads.iter().enumerate() {
         let of_set = set_loads(mesh, index, &load.set, &load.kind)?;
         notes.extend(on_supports(index, &load.set, &of_set, &prescribed)?);
         loads.extend(of_set);
     }
+    let probes = probes(scene, mesh, built.quality.longest_edge, &mut notes)?;
+    Ok(Outside { prescribed, supports, loads, probes, notes })
+}
+
+/// # Errors
+/// As [`outside`]; a material of no solid, or one that a deck contradicts.
+pub fn setup(scene: &SolidScene, built: &BuiltMesh) -> Result<SolidSetup, SolidSetupError> {
+    let mesh = &built.mesh;
+    let Law::LinearElastic { youngs_modulus, poisson_ratio } = scene.law else {
+        return Err(SolidSetupError::OtherLaw);
+    };
+    let material = LinearElastic::new(youngs_modulus, poisson_ratio)?;
+    let mut notes = deck_materials(scene, [youngs_modulus, poisson_ratio], built)?;
+    let Outside { prescribed, supports, loads, probes, notes: of_sets } = outside(scene, built)?;
+    notes.extend(of_sets);
     let problem = SolidProblem {
         nodes: mesh.nodes.clone(),
         elements: mesh.elements.clone(),
@@ -186,92 +227,7 @@ pub fn setup(scene: &SolidScene, built: &BuiltMesh) -> Result<SolidSetup, SolidS
     let velocity =
         mesh.nodes.iter().map(|[_, y, z]| [u, v - scene.spin * z, w + scene.spin * y]).collect();
     let labels = built.labels.clone();
-    let probes = probes(scene, mesh, built.quality.longest_edge, &mut notes)?;
     Ok(SolidSetup { problem, labels, velocity, probes, supports, notes })
-}
-
-/// Materials of a deck beside the one of the scene: notes where they differ from it, an error where the
-/// scene has only defaults for what the deck has.
-fn deck_materials(scene: &SolidScene, built: &BuiltMesh) -> Result<Vec<String>, SolidSetupError> {
-    let defaulted = |key: &str| {
-        scene.defaults_used.iter().any(|used| used.key == format!("solid.material.{key}"))
-    };
-    let [no_young, no_poisson, no_density] =
-        ["youngs_modulus", "poisson_ratio", "density"].map(defaulted);
-    // To the digits in which people write moduli.
-    let differ = |a: f64, b: f64| (a - b).abs() > 1e-3 * b.abs();
-    let given: Vec<&DeckMaterial> =
-        built.materials.iter().filter(|m| m.elastic.is_some() || m.density.is_some()).collect();
-    let mut notes = Vec::new();
-    for material in &given {
-        let [young, poisson] =
-            material.elastic.unwrap_or([scene.youngs_modulus, scene.poisson_ratio]);
-        let density = material.density.unwrap_or(scene.density);
-        // Of the deck and of the scene; whether the scene only has steel's; name and text.
-        let parts = [
-            (
-                young,
-                scene.youngs_modulus,
-                no_young,
-                "youngs_modulus",
-                gigapascals as fn(f64) -> String,
-            ),
-            (poisson, scene.poisson_ratio, no_poisson, "poisson_ratio", |value| value.to_string()),
-            (density, scene.density, no_density, "density", kilograms),
-        ];
-        let differing = parts.iter().filter(|(deck, scene, ..)| differ(*deck, *scene));
-        let missing: Vec<_> = differing.clone().filter(|(_, _, no, ..)| *no).collect();
-        let deck = format!(
-            "\"{}\": Young's modulus {}, Poisson's ratio {poisson}, density {}, if its units fit solid.mesh.unit",
-            material.name,
-            gigapascals(young),
-            kilograms(density)
-        );
-        if !missing.is_empty() {
-            let write = format!(
-                "material = {{ youngs_modulus = \"{}\", poisson_ratio = {poisson}, density = \"{}\" }}",
-                gigapascals(young),
-                kilograms(density)
-            );
-            let steel: Vec<_> = missing
-                .iter()
-                .map(|(_, of, _, name, text)| format!("{name} {}", text(*of)))
-                .collect();
-            let missing = missing.iter().map(|(_, _, _, name, _)| *name).collect();
-            return Err(SolidSetupError::DeckMaterial {
-                deck,
-                missing,
-                steel: steel.join(", "),
-                write,
-            });
-        }
-        let differing: Vec<_> = differing
-            .map(|(of_deck, of, _, name, text)| {
-                format!("{name} {} counts, not {}", text(*of), text(*of_deck))
-            })
-            .collect();
-        if !differing.is_empty() {
-            notes.push(format!(
-                "the scene's material is used, not the deck's: {}; the deck has {deck}",
-                differing.join("; ")
-            ));
-        }
-    }
-    if given.len() > 1 {
-        notes.push(format!(
-            "the deck has {} materials: the whole body is of the one of the scene",
-            given.len()
-        ));
-    }
-    Ok(notes)
-}
-
-fn gigapascals(value: f64) -> String {
-    format!("{} GPa", to_digits(1e-9 * value, 6))
-}
-
-fn kilograms(value: f64) -> String {
-    format!("{} kg/m^3", to_digits(value, 6))
 }
 
 /// Every set of the mesh, once.

@@ -4,6 +4,7 @@
 use crate::assembly_common::{BEARING, ENDS, SHAFT};
 use crate::command_line_common::{self as files, Run, bearing, changed, json, read, scene, text};
 use crate::housed_command_common::scene_text;
+use crate::rubber_command::RUBBER;
 use crate::solid_command_common::SHORT_RUN;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -85,6 +86,11 @@ fn bodies() -> Vec<Body> {
             "solid alone",
             changed(SHORT_RUN, "[numerics]\n", ""),
             "solid.material.youngs_modulus=200 GPa, 210 GPa",
+        ),
+        body(
+            "solid of rubber",
+            changed(RUBBER, "duration = \"0.1 s\"", "duration = \"1 ms\""),
+            "solid.material.chain=8, 9",
         ),
         body("bearing in a housing, quasi-static", housed("quasi-static"), FIT),
         body("bearing in a housing, explicit", housed("explicit"), FIT),

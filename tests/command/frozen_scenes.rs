@@ -24,7 +24,8 @@ const CUT: [(&str, &str, &str); 6] = [
 ];
 
 /// What asks for the equilibrium or the modes of a solid.
-const FACTORED: [&str; 7] = [
+const FACTORED: [&str; 8] = [
+    "bushing_radial",
     "cage_modes",
     "cantilever",
     "housing_a_rotating_load",

@@ -38,6 +38,7 @@ mod housed_command_numbers;
 mod housed_command_resume;
 mod housed_command_sweep;
 mod housed_reduced;
+mod rubber_command;
 mod run_command;
 mod run_plan;
 mod run_recorder;

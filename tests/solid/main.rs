@@ -8,6 +8,7 @@ mod elastomer;
 mod material_laws;
 mod rubber;
 mod rubber_bodies;
+mod rubber_checkpoint;
 mod rubber_explicit;
 mod rubber_limits;
 mod rubber_prony;

@@ -20,6 +20,8 @@ mod bushing_loops_3_3;
 mod bushing_materials_3_4_1;
 #[path = "../bushing_relaxation_3_3_1/case.rs"]
 mod bushing_relaxation_3_3_1;
+#[path = "../bushing_scene_3_4_1/case.rs"]
+mod bushing_scene_3_4_1;
 #[path = "../bushing_sleeve_motions/case.rs"]
 mod bushing_sleeve_motions;
 #[path = "../cage_modes_table_5_3/case.rs"]
@@ -127,6 +129,7 @@ pub const CASES: &[Case] = &[
     bushing_relaxation_3_3_1::CASE,
     bushing_loops_3_3::CASE,
     bushing_materials_3_4_1::CASE,
+    bushing_scene_3_4_1::CASE,
     bushing_geometries_3_4_2::CASE,
     bushing_bulging_3_4_2::CASE,
     bushing_sleeve_motions::CASE,

@@ -97,7 +97,8 @@ impl Housing {
 
     /// One that can move as a whole.
     pub fn refuse_free(&self) -> Fallible<()> {
-        let free = free_motions(&self.setup.solid.problem);
+        let problem = &self.setup.solid.problem;
+        let free = free_motions(&problem.nodes, &problem.prescribed);
         if free.count == 0 {
             return Ok(());
         }

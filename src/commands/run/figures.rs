@@ -17,7 +17,7 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
     let mut lines = Lines::new();
     match &session.motion {
         Motion::Bearing(simulation) => of_bearing(simulation, table, &mut lines),
-        Motion::Solid(_) => {}
+        Motion::Solid(_) | Motion::Rubber(_) => {}
         Motion::Housed(housed) => {
             for bearing in &housed.simulation.system.assembly.bearings {
                 let of = bearing.prefix();
@@ -44,6 +44,7 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
             lines.extend(course.problem.seats.iter().map(|seat| of_bore(table, &seat.name)));
         }
         Motion::Solid(_) => {}
+        Motion::Rubber(_) => of_supports(session, table, &mut lines),
     }
     if !session.motion.solids().is_empty() {
         let (most, of) = (session.watch.largest_residual, session.watch.turned_over);
@@ -64,8 +65,33 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
             ("windows".into(), said)
         }
         Motion::Course(course) => ("equilibria".into(), effort(course, seconds)),
+        Motion::Rubber(moving) => {
+            let (iterations, factorisations) = moving.solid.work();
+            let said = format!(
+                "{} in {seconds:.2} s, {} undone; {iterations} iterations, {factorisations} factorisations",
+                moving.solid.counts.accepted, moving.solid.counts.undone
+            );
+            ("steps".into(), said)
+        }
     });
     lines.iter().map(|(label, value)| format!("{label:<22} {value}\n")).collect()
+}
+
+/// Largest force of each support along each axis, and what it was at the end.
+fn of_supports(session: &Session, table: &RunTable, lines: &mut Lines) {
+    for support in &session.recorder.supports {
+        for axis in support.axes().into_iter().map(|axis| ["x", "y", "z"][axis]) {
+            let column = format!("reaction_{}_{axis}", support.name);
+            let (most, all) = (largest(table, &column), table.all(&column).unwrap_or_default());
+            let last = all.last().copied().unwrap_or(0.0);
+            let said = format!("{most:.6} N at most, {last:.6} N at the end");
+            lines.push((format!("{} along {axis}", support.name), said));
+        }
+    }
+    let lost = table.all("energy_viscous").unwrap_or_default();
+    if let Some(lost) = lost.last() {
+        lines.push(("held or lost by Maxwell".into(), format!("{lost:.6} J at the end")));
+    }
 }
 
 /// The seat of this name.

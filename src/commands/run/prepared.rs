@@ -3,17 +3,17 @@
 use crate::commands::assembly::housing::Housing;
 use crate::commands::assembly::shapes::{Shapes, shapes};
 use crate::commands::assembly::{self, housings, plan};
-use crate::commands::solid;
+use crate::commands::{rubber, solid};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::session::{
-    CourseParts, Motion, Parts, RunRequest, Session, SolidParts,
+    CourseParts, Motion, Parts, RubberParts, RunRequest, Session, SolidParts,
 };
 use bearing_dynamics::output::state::{self, StateFile};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::dynamics::DynamicsError;
 use bearing_dynamics::scene::housing::HousingMethod;
-use bearing_dynamics::scene::solid::SolidRun;
+use bearing_dynamics::scene::solid::{Law, RubberScene, RunSteps, SolidRun};
 use bearing_dynamics::scene::solid_mesh::BuiltMesh;
 use bearing_dynamics::scene::{Document, RunPlot, RunSettings, Scene, SolidScene, Subject};
 use bearing_dynamics::solver::channels::ChannelGroup;
@@ -22,7 +22,9 @@ use bearing_dynamics::solver::dynamics::foretell::{Choice, choose};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Start};
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::plan::Stage;
+use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, SolidStepping};
 use bearing_dynamics::solver::solid::model::SolidModel;
+use bearing_dynamics::solver::solid::rubber::steps::Stepping;
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
@@ -42,7 +44,16 @@ pub(super) enum Prepared<'s> {
     Solid {
         scene: &'s SolidScene,
         settings: SolidRun,
+        steps: (ExplicitMethod, SolidStepping),
+        energy_limit: f64,
         mesh: Box<solid::Prepared>,
+    },
+    Rubber {
+        scene: &'s SolidScene,
+        rubber: &'s RubberScene,
+        settings: SolidRun,
+        stepping: Stepping,
+        mesh: Box<rubber::Prepared>,
     },
 }
 
@@ -95,8 +106,19 @@ impl<'s> Prepared<'s> {
             Subject::Assembly(scene) => scene,
             Subject::Solid(scene) => {
                 let settings = scene.run.ok_or(NO_END)?;
-                let mesh = Box::new(solid::prepare(document, scene)?);
-                return Ok(Prepared::Solid { settings, mesh, scene });
+                return match (settings.steps, &scene.law) {
+                    (RunSteps::Explicit { method, stepping, energy_limit }, _) => {
+                        let mesh = Box::new(solid::prepare(document, scene)?);
+                        let steps = (method, stepping);
+                        Ok(Prepared::Solid { settings, steps, energy_limit, mesh, scene })
+                    }
+                    (RunSteps::Implicit(stepping), Law::Elastomer(rubber)) => {
+                        let mesh = Box::new(rubber::prepare(document, scene, rubber)?);
+                        rubber::refuse_free(Path::new(document.name()), &mesh.free)?;
+                        Ok(Prepared::Rubber { settings, stepping, mesh, scene, rubber })
+                    }
+                    (RunSteps::Implicit(_), Law::LinearElastic { .. }) => Err(NO_END.into()),
+                };
             }
         };
         let settings = scene.run().cloned().ok_or(NO_END)?;
@@ -131,12 +153,15 @@ impl<'s> Prepared<'s> {
                 Parts::Course(Box::new(CourseParts { problem, models }))
             }
             Prepared::Bearings { assembly, .. } => Parts::from((**assembly).clone()),
-            Prepared::Solid { settings, mesh, .. } => Parts::Solid(SolidParts {
+            Prepared::Solid { steps: (method, stepping), mesh, .. } => Parts::Solid(SolidParts {
                 setup: &mesh.setup,
-                method: settings.method,
-                stepping: settings.stepping,
+                method: *method,
+                stepping: *stepping,
                 threads,
             }),
+            Prepared::Rubber { stepping, mesh, .. } => {
+                Parts::Rubber(RubberParts { setup: &mesh.setup, stepping: *stepping })
+            }
         })
     }
 
@@ -158,12 +183,14 @@ impl<'s> Prepared<'s> {
                     Way::Explicit | Way::Course(..) => (request, None),
                 }
             }
-            Prepared::Solid { settings, .. } => {
+            Prepared::Solid { settings, .. } | Prepared::Rubber { settings, .. } => {
+                let usual = RunOptions::default();
+                let energy_limit = match self {
+                    Prepared::Solid { energy_limit, .. } => *energy_limit,
+                    _ => usual.energy_limit,
+                };
                 let request = RunRequest {
-                    options: RunOptions {
-                        energy_limit: settings.energy_limit,
-                        ..RunOptions::default()
-                    },
+                    options: RunOptions { energy_limit, ..usual },
                     end: settings.end,
                     output_interval: settings.output_interval,
                     fields_interval: Some(settings.fields_interval),
@@ -181,6 +208,7 @@ impl<'s> Prepared<'s> {
                 housings.iter().flat_map(Housing::notes).collect()
             }
             Prepared::Solid { mesh, .. } => solid::mesh_notes(&mesh.built),
+            Prepared::Rubber { mesh, .. } => solid::mesh_notes(&mesh.built),
         }
     }
 
@@ -189,7 +217,7 @@ impl<'s> Prepared<'s> {
             Prepared::Bearings { scene, .. } => {
                 scene.common().title.clone().unwrap_or_else(|| "Bearing".into())
             }
-            Prepared::Solid { scene, .. } => solid::title(scene),
+            Prepared::Solid { scene, .. } | Prepared::Rubber { scene, .. } => solid::title(scene),
         }
     }
 
@@ -197,7 +225,7 @@ impl<'s> Prepared<'s> {
     pub fn bearing(&self) -> Option<&Scene> {
         match self {
             Prepared::Bearings { scene, .. } => Some(scene.common()),
-            Prepared::Solid { .. } => None,
+            Prepared::Solid { .. } | Prepared::Rubber { .. } => None,
         }
     }
 
@@ -211,6 +239,7 @@ impl<'s> Prepared<'s> {
         let displacement = session.displacement(solid);
         let velocity = match &mut session.motion {
             Motion::Solid(moving) => Some(moving.solid.velocity()),
+            Motion::Rubber(_) => None,
             // Between kicks the rates of a housing are those of the bearing's time.
             motion => motion
                 .solids()
@@ -230,6 +259,9 @@ impl<'s> Prepared<'s> {
             Prepared::Solid { mesh, .. } => {
                 vec![SolidOf { name: None, built: &mesh.built, model: None }]
             }
+            Prepared::Rubber { mesh, .. } => {
+                vec![SolidOf { name: None, built: &mesh.built, model: None }]
+            }
         }
     }
 
@@ -237,14 +269,14 @@ impl<'s> Prepared<'s> {
     pub fn window_start(&self) -> f64 {
         match self {
             Prepared::Bearings { settings, .. } => settings.window_start,
-            Prepared::Solid { .. } => 0.0,
+            Prepared::Solid { .. } | Prepared::Rubber { .. } => 0.0,
         }
     }
 
     /// Whether spectra are asked for.
     pub fn has_spectra(&self) -> bool {
         match self {
-            Prepared::Solid { scene, .. } => scene.draw_spectrum,
+            Prepared::Solid { scene, .. } | Prepared::Rubber { scene, .. } => scene.draw_spectrum,
             _ => self.bearing().is_some_and(|s| s.dynamics.plots.contains(&RunPlot::Spectrum)),
         }
     }
@@ -295,6 +327,10 @@ impl<'s> Prepared<'s> {
             Prepared::Solid { scene, mesh, .. } => {
                 let plan = solid::plan::items(scene, mesh, solid::plan::Of::Run);
                 solid::record(scene, plan, seconds)
+            }
+            Prepared::Rubber { scene, rubber, settings, mesh, .. } => {
+                let plan = rubber::plan::items(scene, rubber, mesh, Some(settings));
+                rubber::record(scene, plan, seconds)
             }
         }
     }

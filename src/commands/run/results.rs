@@ -7,15 +7,20 @@ use crate::commands::assembly::housing::Housing;
 use crate::commands::{remarks, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::bore::{bore_nodes, bore_series};
-use bearing_dynamics::output::fields::{FOLDER, file_name, stresses, write_fields, write_list};
+use bearing_dynamics::output::fields::{
+    FOLDER, file_name, rubber_stresses, stresses, write_fields, write_list,
+};
 use bearing_dynamics::output::pictures::bearing::{Picture, draw};
-use bearing_dynamics::output::pictures::solid::{probe_spectra, series_plots, spectrum_plot};
+use bearing_dynamics::output::pictures::solid::{
+    force_plots, probe_spectra, series_plots, spectrum_plot,
+};
 use bearing_dynamics::output::remarks as of_solid;
 use bearing_dynamics::output::session::{Motion, RunRequest, Session, Status};
 use bearing_dynamics::output::spectrum::Spectrum;
 use bearing_dynamics::output::summary::housing::{
     equilibrium_section, reduced_section, seat_section, solver_section,
 };
+use bearing_dynamics::output::summary::rubber::rubber_mass;
 use bearing_dynamics::output::summary::solid::{field_sections, mass_section};
 use bearing_dynamics::output::summary::{RunReport, write_run_results};
 use bearing_dynamics::output::table::RunTable;
@@ -70,6 +75,7 @@ pub(super) fn write_results(
             said.sections.push(("remarks".into(), json!(said.remarks)));
         }
         Prepared::Solid { .. } => solid_results(prepared, session, &mut said)?,
+        Prepared::Rubber { .. } => rubber_results(prepared, session, &mut said)?,
     }
     let table = RunTable::new(session, prepared.window_start())?;
     let spectra = spectra(prepared, session, &table);
@@ -87,7 +93,7 @@ pub(super) fn write_results(
     match &session.motion {
         Motion::Solid(moving) => record.threads = moving.threads,
         Motion::Housed(housed) => record.threads = housed.threads(),
-        Motion::Bearing(_) | Motion::Course(_) => {}
+        Motion::Bearing(_) | Motion::Course(_) | Motion::Rubber(_) => {}
     }
     let (stepping, integrator) = (request.options.stepping, request.options.integrator);
     let report = RunReport {
@@ -96,8 +102,8 @@ pub(super) fn write_results(
         stepping: Some(stepping),
         integrator: Some(integrator),
         solid_stepping: match prepared {
-            Prepared::Solid { settings, .. } => Some(settings.stepping),
-            Prepared::Bearings { .. } => None,
+            Prepared::Solid { steps: (_, stepping), .. } => Some(*stepping),
+            Prepared::Bearings { .. } | Prepared::Rubber { .. } => None,
         },
     };
     let written = write_run_results(folder, session, &table, &spectra, &report)?;
@@ -125,6 +131,18 @@ fn solid_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fal
     said.sections.extend(field_sections(built, &displacement, &stress)?);
     said.remarks = of_solid::of_run(session, model, &stress);
     said.sections.push(("remarks".into(), json!(said.remarks)));
+    Ok(())
+}
+
+fn rubber_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fallible<()> {
+    let (Prepared::Rubber { mesh, .. }, Motion::Rubber(moving)) = (prepared, &session.motion)
+    else {
+        return Ok(());
+    };
+    let (state, built) = (moving.solid.state(), &mesh.built);
+    let stress = rubber_stresses(moving.solid.model(), state)?;
+    said.sections.push(("mass".into(), rubber_mass(&mesh.setup, built)?));
+    said.sections.extend(field_sections(built, &state.displacement, &stress)?);
     Ok(())
 }
 
@@ -248,6 +266,9 @@ pub(super) fn write_fields_file(
                 (Some(bore_nodes(motion, number, model)), stresses(model, &displacement))
             }
             (None, Motion::Solid(moving)) => (None, stresses(&moving.solid.model, &displacement)),
+            (None, Motion::Rubber(moving)) => {
+                (None, rubber_stresses(moving.solid.model(), moving.solid.state())?)
+            }
             _ => return Ok(()),
         };
         let path = folder.join(file_name(solid.name.unwrap_or("fields"), index as usize));
@@ -277,7 +298,7 @@ fn spectra(prepared: &Prepared, session: &Session, table: &RunTable) -> Vec<(Str
         return Vec::new();
     }
     match session.motion {
-        Motion::Solid(_) => probe_spectra(table, &session.recorder.probes),
+        Motion::Solid(_) | Motion::Rubber(_) => probe_spectra(table, &session.recorder.probes),
         _ => table.spectra(),
     }
 }
@@ -292,9 +313,13 @@ fn pictures(
 ) -> Fallible<Vec<PathBuf>> {
     let title = prepared.title();
     let mut drawn = Vec::new();
-    if let Prepared::Solid { scene, .. } = prepared {
+    if let Prepared::Solid { scene, .. } | Prepared::Rubber { scene, .. } = prepared {
+        let recorder = &session.recorder;
         if scene.draw_series {
-            drawn.extend(series_plots(&title, table, &session.recorder.probes)?);
+            drawn.extend(series_plots(&title, table, &recorder.probes)?);
+        }
+        if scene.draw_series && matches!(session.motion, Motion::Rubber(_)) {
+            drawn.extend(force_plots(&title, table, &recorder.probes, &recorder.supports)?);
         }
         drawn.extend(spectrum_plot(&title, spectra)?);
     }

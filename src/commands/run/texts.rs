@@ -1,14 +1,17 @@
 //! What a run says of its steps: before, on the way, and where it stopped.
 
 use super::prepared::{Prepared, Way};
-use bearing_dynamics::output::session::{Motion, RunRequest, Session};
+use bearing_dynamics::output::session::{Motion, MovingRubber, RunRequest, Session};
 use bearing_dynamics::output::state::StateFile;
 use bearing_dynamics::solver::clock::{Clock, given_steps, rounded};
 use bearing_dynamics::solver::dynamics::foretell::Choice;
-use bearing_dynamics::solver::dynamics::run::{Integrator, Simulation, Stepping};
+use bearing_dynamics::solver::dynamics::run::{
+    Integrator, Simulation, Stepping as BearingStepping,
+};
 use bearing_dynamics::solver::housing::exchange::Exchange;
 use bearing_dynamics::solver::housing::stepped::SteppedSolid;
 use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
+use bearing_dynamics::solver::solid::rubber::steps::Stepping;
 
 /// Step, its reason, how many there will be, and where it goes on from.
 pub(super) fn announcement(
@@ -30,6 +33,7 @@ pub(super) fn announcement(
             }
         }
         (Motion::Solid(moving), _) => of_solid(&moving.solid, clock),
+        (Motion::Rubber(moving), _) => of_rubber(moving, clock),
         (Motion::Housed(housed), _) => of_housed(housed, clock, request),
         (Motion::Course(_), Prepared::Bearings { way: Way::Course(bores, seconds), .. }) => {
             let unknowns: usize = bores.iter().map(|bore| bore.sizes.unknowns).sum();
@@ -58,7 +62,7 @@ fn of_bearing(
     choice: Option<&Choice>,
 ) -> String {
     let integrator = request.options.integrator.name();
-    if let Stepping::Accuracy(accuracy) = request.options.stepping {
+    if let BearingStepping::Accuracy(accuracy) = request.options.stepping {
         let by_plan =
             choice.map_or(String::new(), |choice| format!("chosen: {}\n", choice.reason()));
         return format!(
@@ -109,10 +113,25 @@ fn of_solid(solid: &ExplicitSolid, clock: &Clock) -> String {
     )
 }
 
+fn of_rubber(moving: &MovingRubber, clock: &Clock) -> String {
+    let steps = match moving.stepping {
+        Stepping::Accuracy(accuracy) => format!("accuracy {accuracy}: steps follow from it"),
+        Stepping::Fixed(step) => format!("steps of {step:.4e} s"),
+    };
+    let rows = clock.last.unwrap_or(0);
+    format!(
+        "implicit, {steps}, one a row at least; {} unknowns\nto t = {} s, a row every {:.4e} s, fields every {} rows\n",
+        moving.solid.model().unknowns.count,
+        rounded(rows as f64 * clock.interval),
+        clock.interval,
+        clock.rows_per_fields.unwrap_or(0)
+    )
+}
+
 fn of_housed(housed: &Exchange, clock: &Clock, request: &RunRequest) -> String {
     let windows = clock.last.unwrap_or(0);
     let by_accuracy = match request.options.stepping {
-        Stepping::Accuracy(accuracy) => format!(
+        BearingStepping::Accuracy(accuracy) => format!(
             "{}, accuracy {accuracy}: the bearing's steps follow from it, windows and the housing's steps do not\n",
             request.options.integrator.name()
         ),
@@ -170,6 +189,7 @@ fn step_name(session: &Session) -> &'static str {
         Motion::Bearing(_) | Motion::Solid(_) => "step",
         Motion::Housed(_) => "window",
         Motion::Course(_) => "equilibrium",
+        Motion::Rubber(_) => "row",
     }
 }
 
@@ -180,6 +200,7 @@ pub(super) fn place(session: &Session) -> String {
         Motion::Bearing(_) | Motion::Solid(_) => "steps",
         Motion::Housed(_) => "windows",
         Motion::Course(_) => "equilibria",
+        Motion::Rubber(_) => "rows",
     };
     format!("t = {time} s of {} s, after {done} {counted}", session.clock.end)
 }
@@ -189,7 +210,9 @@ pub(super) fn progress(session: &Session) -> String {
     let (time, end) = (session.motion.time(), session.clock.end);
     let name = step_name(session);
     match (&session.motion, session.clock.last) {
-        (Motion::Course(_), Some(all)) => format!("{name} {} of {all}", session.motion.done()),
+        (Motion::Course(_) | Motion::Rubber(_), Some(all)) => {
+            format!("{name} {} of {all}", session.motion.done())
+        }
         (Motion::Bearing(simulation), _) => {
             format!("t = {time:.5} of {end} s, {name} {:.2e} s", simulation.step_size)
         }

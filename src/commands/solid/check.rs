@@ -1,26 +1,48 @@
 //! `bearing check` of a solid: mesh, sets, supports and loads as understood.
 
 use super::{echo, mesh_notes, prepare};
-use crate::commands::{CommandResult, Outcome, echo_run, say};
+use crate::commands::{CommandResult, Outcome, echo_run, placed, rubber, say};
+use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::recorder::sum;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::summary::solid::mesh_section;
 use bearing_dynamics::output::visible::visible_line;
+use bearing_dynamics::scene::rubber_problem::vibrating;
+use bearing_dynamics::scene::solid::{Law, RubberScene};
+use bearing_dynamics::scene::solid_mesh::BuiltMesh;
 use bearing_dynamics::scene::{Document, SolidScene};
+use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::plan::tally::Tally;
 use bearing_dynamics::solver::solid::model::SolidModel;
+use bearing_dynamics::solver::solid::rubber::model::Moment;
+use bearing_dynamics::solver::solid::support::FreeMotions;
 use serde_json::json;
+use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 
+/// What is looked at, of whatever the solid is made.
+struct Facts {
+    built: BuiltMesh,
+    free: FreeMotions,
+    held: usize,
+    /// kg.
+    mass: f64,
+    /// At t = 0, N.
+    loads: Vec3,
+    law: Vec<(&'static str, String)>,
+}
+
 pub fn run(path: &Path, document: &Document, scene: &SolidScene, json: bool) -> CommandResult {
-    let prepared = prepare(document, scene)?;
-    let model =
-        SolidModel::labelled(prepared.setup.problem.clone(), prepared.setup.labels.clone())?;
+    let facts = match &scene.law {
+        Law::LinearElastic { .. } => elastic(document, scene)?,
+        Law::Elastomer(rubber) => of_rubber(document, scene, rubber)?,
+    };
+    let Facts { built, free, held, mass, loads, law } = facts;
     if json {
         let mut echo = echo::scene(scene)?;
-        echo["mesh"] = mesh_section(&prepared.built)?;
+        echo["mesh"] = mesh_section(&built)?;
         let drawn = [(scene.draw_series, "series"), (scene.draw_spectrum, "spectrum")];
         let drawn: Vec<&str> = drawn.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
         echo["output"] = json!({ "plots": drawn });
@@ -37,7 +59,7 @@ pub fn run(path: &Path, document: &Document, scene: &SolidScene, json: bool) -> 
     if let Some(title) = &scene.title {
         line("title", title.clone());
     }
-    let (mesh, quality) = (&prepared.built.mesh, &prepared.built.quality);
+    let (mesh, quality) = (&built.mesh, &built.quality);
     let nodes_each = if mesh.order() == Order::Linear { 4 } else { 10 };
     line(
         "mesh",
@@ -46,7 +68,6 @@ pub fn run(path: &Path, document: &Document, scene: &SolidScene, json: bool) -> 
     let (low, high) = mesh.bounding_box();
     let span = |i: usize| format!("{:.4} to {:.4}", 1e3 * low[i], 1e3 * high[i]);
     line("extent", format!("x {}, y {}, z {} mm", span(0), span(1), span(2)));
-    let mass: f64 = model.mass.iter().sum();
     line("volume, mass", format!("{:.6e} m^3, {mass:.6e} kg", quality.total_volume));
     line(
         "quality",
@@ -59,25 +80,24 @@ pub fn run(path: &Path, document: &Document, scene: &SolidScene, json: bool) -> 
             1e3 * quality.longest_edge
         ),
     );
-    for note in mesh_notes(&prepared.built) {
+    for note in mesh_notes(&built) {
         line("note", note);
     }
     let sets: Vec<String> =
         mesh.node_sets.iter().map(|(name, nodes)| format!("{name} ({})", nodes.len())).collect();
     line("sets (nodes)", if sets.is_empty() { "none".into() } else { sets.join(", ") });
-    line("held components", prepared.setup.problem.prescribed.len().to_string());
+    line("held components", held.to_string());
     line(
         "free motions",
-        match prepared.free.count {
+        match free.count {
             0 => "none: statics can solve it".to_string(),
-            count => format!("{count}: {}", prepared.free.names()),
+            count => format!("{count}: {}", free.names()),
         },
     );
-    let mut forces = vec![[0.0; 4]; model.mass.len()];
-    model.add_external_forces(model.acting(), 0.0, &mut forces, &mut Tally::default());
-    let forces: Vec<[f64; 3]> = forces.iter().map(|f| [f[0], f[1], f[2]]).collect();
-    let all: Vec<u32> = (0..forces.len() as u32).collect();
-    let [x, y, z] = sum(&forces, &all);
+    for (label, value) in law {
+        line(label, value);
+    }
+    let [x, y, z] = loads;
     line("loads at t = 0", format!("{x:.6} N along x, {y:.6} N along y, {z:.6} N along z"));
     for used in &scene.defaults_used {
         line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
@@ -87,4 +107,60 @@ pub fn run(path: &Path, document: &Document, scene: &SolidScene, json: bool) -> 
     }
     say(&text)?;
     Ok(Outcome::Done)
+}
+
+fn elastic(document: &Document, scene: &SolidScene) -> Result<Facts, Box<dyn Error>> {
+    let prepared = prepare(document, scene)?;
+    let setup = prepared.setup;
+    let model = SolidModel::labelled(setup.problem, setup.labels)?;
+    let mut forces = vec![[0.0; 4]; model.mass.len()];
+    model.add_external_forces(model.acting(), 0.0, &mut forces, &mut Tally::default());
+    let forces: Vec<Vec3> = forces.iter().map(|f| [f[0], f[1], f[2]]).collect();
+    Ok(Facts {
+        held: model.problem.prescribed.len(),
+        mass: model.mass.iter().sum(),
+        loads: total(&forces),
+        built: prepared.built,
+        free: prepared.free,
+        law: Vec::new(),
+    })
+}
+
+fn of_rubber(
+    document: &Document,
+    scene: &SolidScene,
+    rubber: &RubberScene,
+) -> Result<Facts, Box<dyn Error>> {
+    let rubber::Prepared { built, setup, free, .. } = rubber::prepare(document, scene, rubber)?;
+    let mut forces = vec![[0.0; 3]; setup.model.problem.nodes.len()];
+    setup.model.add_loads(Moment::at(0.0), &mut forces);
+    let (network, terms) = (&rubber.material.network, rubber.material.maxwell.len());
+    let said = format!(
+        "C_R {} MPa, N {}, bulk modulus {} MPa; shear modulus {:.4} MPa relaxed, {:.4} MPa at once; {terms} Maxwell \
+         elements",
+        to_digits(1e-6 * network.modulus, 6),
+        network.locking,
+        to_digits(1e-6 * network.bulk, 6),
+        1e-6 * network.shear_modulus(),
+        1e-6 * rubber.material.instantaneous_shear_modulus(),
+    );
+    let mut law = vec![("rubber", said)];
+    if let Some(asked) = &rubber.harmonic {
+        vibrating(&setup, asked).map_err(|error| placed(document, Some(error.about()), error))?;
+        let count = asked.frequencies.len();
+        law.push(("small vibrations", format!("{} at {count} frequencies", asked.set)));
+    }
+    Ok(Facts {
+        held: setup.model.problem.prescribed.len(),
+        mass: setup.density * built.quality.total_volume,
+        loads: total(&forces),
+        built,
+        free,
+        law,
+    })
+}
+
+fn total(forces: &[Vec3]) -> Vec3 {
+    let all: Vec<u32> = (0..forces.len() as u32).collect();
+    sum(forces, &all)
 }

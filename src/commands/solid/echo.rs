@@ -1,14 +1,19 @@
 //! What was understood of a solid, as JSON with units.
 
 use crate::commands::echo_run::profile;
+use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
+use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::mesh::read::LengthUnit;
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::SolidScene;
-use bearing_dynamics::scene::solid::{LoadKind, MeshSource, ProbeOf, SolidRun};
+use bearing_dynamics::scene::solid::{
+    Harmonic, Law, LoadKind, MeshSource, ProbeOf, RunSteps, SolidRun,
+};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, SolidStepping};
 use bearing_dynamics::solver::solid::model::DampedMotion;
+use bearing_dynamics::solver::solid::rubber::steps::Stepping;
 use bearing_dynamics::solver::solid::tangent::MassMatrix;
 use serde_json::{Map, Value, json};
 
@@ -54,11 +59,7 @@ pub fn scene(scene: &SolidScene) -> Echo {
         "solid".into(),
         json!({
             "mesh": mesh(scene)?,
-            "material": {
-                "youngs_modulus": quantity("youngs_modulus", scene.youngs_modulus, "Pa")?,
-                "poisson_ratio": quantity("poisson_ratio", scene.poisson_ratio, "1")?,
-                "density": quantity("density", scene.density, "kg/m^3")?,
-            },
+            "material": material(scene)?,
             "damping": quantity("damping", scene.damping, "1/s")?,
             "damped_motion": match scene.damped_motion {
                 DampedMotion::Absolute => "absolute",
@@ -72,11 +73,20 @@ pub fn scene(scene: &SolidScene) -> Echo {
             "probe": probes?,
         }),
     );
-    let mass = match scene.mode_mass {
-        MassMatrix::Consistent => "consistent",
-        MassMatrix::Lumped => "lumped",
-    };
-    echo.insert("modes".into(), json!({ "count": scene.mode_count, "mass": mass }));
+    match &scene.law {
+        Law::LinearElastic { .. } => {
+            let mass = match scene.mode_mass {
+                MassMatrix::Consistent => "consistent",
+                MassMatrix::Lumped => "lumped",
+            };
+            echo.insert("modes".into(), json!({ "count": scene.mode_count, "mass": mass }));
+        }
+        Law::Elastomer(rubber) => {
+            if let Some(asked) = &rubber.harmonic {
+                echo.insert("harmonic".into(), harmonic(asked)?);
+            }
+        }
+    }
     if let Some(run) = &scene.run {
         echo.insert("numerics".into(), numerics(run)?);
     }
@@ -106,24 +116,72 @@ fn along_axes(profiles: &[Option<Profile>; 3], unit: &str) -> Echo {
     Ok(Value::Object(echo))
 }
 
-fn numerics(run: &SolidRun) -> Echo {
-    let (step_name, step) = match run.stepping {
-        SolidStepping::Fixed(step) => ("step", quantity("step", step, "s")?),
-        SolidStepping::FractionOfLimit(part) => {
-            ("step_fraction", quantity("step_fraction", part, "1")?)
+fn material(scene: &SolidScene) -> Echo {
+    let density = quantity("density", scene.density, "kg/m^3")?;
+    let rubber = match &scene.law {
+        Law::LinearElastic { youngs_modulus, poisson_ratio } => {
+            return Ok(json!({
+                "youngs_modulus": quantity("youngs_modulus", *youngs_modulus, "Pa")?,
+                "poisson_ratio": quantity("poisson_ratio", *poisson_ratio, "1")?,
+                "density": density,
+            }));
         }
+        Law::Elastomer(rubber) => rubber,
     };
+    let network = &rubber.material.network;
+    let mut maxwell = Vec::new();
+    for Maxwell { gamma, tau } in &rubber.material.maxwell {
+        let gamma = quantity("gamma", *gamma, "1")?;
+        maxwell.push(json!({ "gamma": gamma, "relaxation_time": quantity("tau", *tau, "s")? }));
+    }
     Ok(json!({
-        "method": match run.method {
-            ExplicitMethod::CentralDifferences => "central-differences",
-            ExplicitMethod::RungeKutta => "runge-kutta",
+        "law": "elastomer",
+        "table": rubber.table.unwrap_or("none"),
+        "rubber_modulus": quantity("rubber_modulus", network.modulus, "Pa")?,
+        "chain": quantity("chain", network.locking, "1")?,
+        "chain_pull": match network.pull {
+            ChainPull::FiveTerms => "five-terms",
+            ChainPull::Exact => "inverse-langevin",
         },
-        step_name: step,
+        "bulk_modulus": quantity("bulk_modulus", network.bulk, "Pa")?,
+        "density": density,
+        "maxwell": maxwell,
+    }))
+}
+
+/// Vibrations that are asked for.
+fn harmonic(asked: &Harmonic) -> Echo {
+    let frequencies = asked.frequencies.iter().map(|f| quantity("frequency", *f, "Hz"));
+    let frequencies: Vec<Value> = frequencies.collect::<Result<_, _>>()?;
+    Ok(json!({ "set": asked.set, "axis": AXES[asked.axis], "frequencies": frequencies }))
+}
+
+fn numerics(run: &SolidRun) -> Echo {
+    let mut echo = json!({
         "end": quantity("end", run.end, "s")?,
         "output_interval": quantity("output_interval", run.output_interval, "s")?,
         "fields_interval": quantity("fields_interval", run.fields_interval, "s")?,
-        "energy_limit": quantity("energy_limit", run.energy_limit, "1")?,
-    }))
+    });
+    match run.steps {
+        RunSteps::Explicit { method, stepping, energy_limit } => {
+            echo["method"] = json!(match method {
+                ExplicitMethod::CentralDifferences => "central-differences",
+                ExplicitMethod::RungeKutta => "runge-kutta",
+            });
+            match stepping {
+                SolidStepping::Fixed(step) => echo["step"] = quantity("step", step, "s")?,
+                SolidStepping::FractionOfLimit(part) => {
+                    echo["step_fraction"] = quantity("step_fraction", part, "1")?;
+                }
+            }
+            echo["energy_limit"] = quantity("energy_limit", energy_limit, "1")?;
+        }
+        RunSteps::Implicit(Stepping::Fixed(step)) => echo["step"] = quantity("step", step, "s")?,
+        RunSteps::Implicit(Stepping::Accuracy(accuracy)) => {
+            echo["accuracy"] = quantity("accuracy", accuracy, "1")?;
+        }
+    }
+    Ok(echo)
 }
 
 /// Where the mesh comes from; its numbers are in the summary's own part.
@@ -169,5 +227,6 @@ fn source(source: &MeshSource) -> Echo {
         ),
         MeshSource::Cage(cage, cells) => made("cage", format!("{cage:?}, {cells:?}")),
         MeshSource::Housing(housing, cells) => made("housing", format!("{housing:?}, {cells:?}")),
+        MeshSource::Bushing(body, cells) => made("bushing", format!("{body:?}, {cells:?}")),
     })
 }

@@ -32,7 +32,7 @@ pub fn prepare(document: &Document, scene: &SolidScene) -> Result<Prepared, Box<
     let setup =
         setup(scene, &built).map_err(|error| placed(document, Some(error.about()), error))?;
     built.notes.extend(setup.notes.iter().cloned());
-    let free = free_motions(&setup.problem);
+    let free = free_motions(&setup.problem.nodes, &setup.problem.prescribed);
     Ok(Prepared { built, setup, free, mesh_seconds: start.elapsed().as_secs_f64() })
 }
 

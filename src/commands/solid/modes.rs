@@ -3,11 +3,13 @@
 use super::{plan, prepare, record, say_mesh_notes, say_remarks};
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
 use crate::commands::memory::watched;
+use crate::commands::rubber::plan::NO_MODES;
 use crate::commands::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::{file_name, write_list, write_mode};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::{remarks, summary::solid as summary};
+use bearing_dynamics::scene::solid::Law;
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::foretold;
 use bearing_dynamics::solver::solid::model::SolidModel;
@@ -25,6 +27,13 @@ pub fn run(
     out: &Option<PathBuf>,
     dry: bool,
 ) -> CommandResult {
+    if let Law::Elastomer(_) = &scene.law {
+        return Err(format!(
+            "{}: {NO_MODES}; [solid.harmonic] asks `bearing statics` for its answer to vibrations",
+            path.display()
+        )
+        .into());
+    }
     let folder = match dry {
         true => None,
         false => Some(claimed(&modes_folder(path, out), Writes::Modes)?),

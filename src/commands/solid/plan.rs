@@ -3,9 +3,9 @@
 use super::{Prepared, mesh_notes, prepare};
 use crate::commands::plan::say_plan;
 use crate::commands::plan_step::note;
-use crate::commands::{CommandResult, Outcome, memory};
+use crate::commands::{CommandResult, Outcome, memory, rubber};
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::scene::solid::{MeshSource, SolidRun};
+use bearing_dynamics::scene::solid::{Law, MeshSource, RunSteps};
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::clock::whole_number;
 use bearing_dynamics::solver::plan::solid::{self, Method};
@@ -18,29 +18,39 @@ use bearing_dynamics::solver::solid::tangent::{MassMatrix, Unknowns};
 use bearing_dynamics::solver::sparse::Cost;
 
 pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
+    if let Law::Elastomer(rubber) = &scene.law {
+        return rubber::plan::run(document, scene, rubber);
+    }
     let prepared = prepare(document, scene)?;
     let mut lines: Vec<String> =
         mesh_notes(&prepared.built).iter().map(|said| note("mesh", said)).collect();
     let model =
         SolidModel::labelled(prepared.setup.problem.clone(), prepared.setup.labels.clone())?;
     lines.extend(factor_lines(scene, &prepared, &model));
-    if let Some(run) = &scene.run {
-        lines.push(step_line(&model, run));
+    if let Some(run) = &scene.run
+        && let RunSteps::Explicit { method, stepping, .. } = run.steps
+    {
+        lines.push(step_line(&model, (method, stepping), run.output_interval, run.end));
     }
     say_plan(&all_items(scene, &prepared), &lines)?;
     Ok(Outcome::Done)
 }
 
 /// The step of a run, what limits it, and how many there are; as the run finds them.
-fn step_line(model: &SolidModel, run: &SolidRun) -> String {
+fn step_line(
+    model: &SolidModel,
+    (method, stepping): (ExplicitMethod, SolidStepping),
+    interval: f64,
+    end: f64,
+) -> String {
     let still = vec![[0.0; 4]; model.mass.len()];
-    let limit = step_limit(model, &still, run.method);
-    let (step, _) = run.stepping.divide(run.output_interval, limit.step);
+    let limit = step_limit(model, &still, method);
+    let (step, _) = stepping.divide(interval, limit.step);
     let ratio = step / limit.step;
     let [x, y, z] = limit.at.map(|at| 1e3 * at);
     let bound =
         if limit.is_bound { " (a safe bound: the search for it did not settle)" } else { "" };
-    let (name, verdict) = match run.stepping {
+    let (name, verdict) = match stepping {
         SolidStepping::Fixed(_) if ratio > 1.0 => {
             ("given step", ": WARNING: too long, the run will be refused")
         }
@@ -53,8 +63,8 @@ fn step_line(model: &SolidModel, run: &SolidRun) -> String {
         step,
         limit.step,
         model.labels.element(limit.element),
-        whole_number(run.end, step),
-        run.end
+        whole_number(end, step),
+        end
     );
     note(name, &said)
 }
@@ -89,9 +99,11 @@ pub fn items(scene: &SolidScene, prepared: &Prepared, of: Of) -> Vec<Item> {
     };
     let method = match (of, &scene.run) {
         (Of::Run, Some(run)) => {
-            let method = match run.method {
-                ExplicitMethod::CentralDifferences => "central differences",
-                ExplicitMethod::RungeKutta => "Runge-Kutta of order 4",
+            let method = match run.steps {
+                RunSteps::Explicit { method: ExplicitMethod::RungeKutta, .. } => {
+                    "Runge-Kutta of order 4"
+                }
+                _ => "central differences",
             };
             Method::Steps(format!("{method} to {} s", run.end))
         }

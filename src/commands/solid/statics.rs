@@ -3,11 +3,12 @@
 use super::{Prepared, plan, prepare, record, say_mesh_notes, say_remarks};
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
 use crate::commands::memory::watched;
-use crate::commands::{CommandResult, Outcome, results_folder, say};
+use crate::commands::{CommandResult, Outcome, results_folder, rubber, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::{file_name, stresses, write_fields, write_list};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::{remarks, summary::solid as summary};
+use bearing_dynamics::scene::solid::Law;
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_over};
 use bearing_dynamics::solver::solid::foretold;
@@ -28,6 +29,9 @@ pub fn run(
     out: &Option<PathBuf>,
     dry: bool,
 ) -> CommandResult {
+    if let Law::Elastomer(rubber) = &scene.law {
+        return rubber::statics::run(path, document, (scene, rubber), out, dry);
+    }
     let folder = match dry {
         true => None,
         false => Some(claimed(&results_folder(path, out), Writes::Statics)?),
@@ -83,7 +87,7 @@ pub fn run(
 }
 
 /// What a person wants to see first.
-fn table(summary: &Value) -> String {
+pub fn table(summary: &Value) -> String {
     let number = |at: &Value| at["value"].as_f64().unwrap_or(f64::NAN);
     let axes = |at: &Value, scale: f64| {
         let part = |axis: &str| match at[axis]["value"].as_f64() {

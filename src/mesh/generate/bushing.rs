@@ -39,7 +39,8 @@ pub struct BushingMesh {
     pub part: Part,
 }
 
-/// Sets: `inner`, `outer`, `x_low`, `x_high`; of a quarter also `y_low`, its plane of symmetry, as `x_low` is.
+/// Sets: `inner`, `outer`, `x_low`, `x_high`, and the free faces, `ends`; of a quarter also `y_low`, its plane of
+/// symmetry, as `x_low` is.
 ///
 /// # Errors
 /// [`MeshError::Dimension`].
@@ -79,9 +80,11 @@ pub fn bushing(bushing: &Bushing, mesh: &BushingMesh) -> Result<Solid, MeshError
         ("x_low", Surface::plane(0, x[0])),
         ("x_high", Surface::plane(0, x[mesh.axial])),
     ];
-    if !whole {
-        sets.push(("y_low", Surface::plane(1, 0.0)));
-    }
+    sets.push(("ends", Surface::plane(0, x[mesh.axial])));
+    sets.push(match whole {
+        true => ("ends", Surface::plane(0, x[0])),
+        false => ("y_low", Surface::plane(1, 0.0)),
+    });
     with_sets(cells.into_mesh()?, &sets, curved)
 }
 

@@ -29,7 +29,7 @@ pub struct BoreNodeState {
 /// where there is no bore, or no equilibrium yet.
 pub fn bore_nodes(motion: &Motion, solid: usize, model: &SolidModel) -> Vec<BoreNodeState> {
     match motion {
-        Motion::Solid(_) => Vec::new(),
+        Motion::Solid(_) | Motion::Rubber(_) => Vec::new(),
         Motion::Bearing(simulation) => seat_nodes(&simulation.system, solid),
         Motion::Course(course) => match (&course.latest, course.problem.seats.get(solid)) {
             (Some(moment), Some(seat)) => {

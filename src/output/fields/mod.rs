@@ -8,6 +8,10 @@ use crate::mesh::write::{Field, write_pvd, write_vtu};
 use crate::mesh::{MeshError, TetMesh};
 use crate::output::atomic::{WriteError, write_atomic};
 use crate::solver::solid::model::SolidModel;
+use crate::solver::solid::rubber::checkpoint::RubberState;
+use crate::solver::solid::rubber::error::StepFailure;
+use crate::solver::solid::rubber::measures;
+use crate::solver::solid::rubber::model::RubberModel;
 use crate::solver::solid::stress::{element_stresses, nodal_stresses};
 use bore::{BoreNodeState, on_nodes};
 use std::path::{Path, PathBuf};
@@ -37,16 +41,30 @@ pub struct Stresses {
     pub node_von_mises: Vec<f64>,
 }
 
+impl Stresses {
+    /// From the stresses of elements and those at nodes.
+    pub fn new(cell: Vec<Sym3>, nodal: Vec<Sym3>) -> Stresses {
+        Stresses {
+            cell_von_mises: cell.iter().map(von_mises).collect(),
+            node_von_mises: nodal.iter().map(von_mises).collect(),
+            nodal,
+            cell,
+        }
+    }
+}
+
 /// Stresses of a model at given displacements (m, one for each node).
 pub fn stresses(model: &SolidModel, displacement: &[Vec3]) -> Stresses {
-    let cell = element_stresses(model, displacement);
-    let nodal = nodal_stresses(model, displacement);
-    Stresses {
-        cell_von_mises: cell.iter().map(von_mises).collect(),
-        node_von_mises: nodal.iter().map(von_mises).collect(),
-        nodal,
-        cell,
-    }
+    Stresses::new(element_stresses(model, displacement), nodal_stresses(model, displacement))
+}
+
+/// Stresses of a solid of rubber.
+///
+/// # Errors
+/// An element turned inside out.
+pub fn rubber_stresses(model: &RubberModel, state: &RubberState) -> Result<Stresses, StepFailure> {
+    let found = measures::stresses(model, state)?;
+    Ok(Stresses::new(found.cells, found.nodes))
 }
 
 /// Writes a `.vtu` with displacements, velocities where there are any, stresses, and of a housing the

@@ -4,7 +4,7 @@ use super::bearing::{POINTS, add_series, over_time, thin};
 use crate::output::plots::{Axis, Curve, PlotError, Style, XyPlot, xy};
 use crate::output::spectrum::{Spectrum, WINDOW, spectrum};
 use crate::output::table::RunTable;
-use crate::scene::solid_problem::NamedNodes;
+use crate::scene::solid_problem::{NamedNodes, Support};
 
 /// Part of the highest peak of all that the peak of a component must reach to be drawn.
 const LEAST: f64 = 1e-3;
@@ -26,6 +26,7 @@ pub fn series_plots(
         ("work_external", "work of loads and supports"),
         ("work_damping", "work of damping"),
         ("energy_residual", "unaccounted for"),
+        ("energy_viscous", "held or lost in Maxwell elements"),
     ];
     let mut plots = Vec::new();
     let curves = over_time(table, &energies, 1.0);
@@ -37,6 +38,49 @@ pub fn series_plots(
         let curves = over_time(table, &columns, 1e6);
         let (file, heading) = (format!("probe_{name}.svg"), format!("{title}: {name}"));
         add_series(&mut plots, file, heading, "displacement", "um", curves)?;
+    }
+    Ok(plots)
+}
+
+/// Names and contents of the plots of the supports' forces: over time, and of probes that a support of their
+/// name moves over their displacement.
+///
+/// # Errors
+/// A value too large to draw.
+pub fn force_plots(
+    title: &str,
+    table: &RunTable,
+    probes: &[NamedNodes],
+    supports: &[Support],
+) -> Result<Vec<(String, String)>, PlotError> {
+    let (mut plots, mut over, mut loops) = (Vec::new(), Vec::new(), Vec::new());
+    for support in supports {
+        for axis in support.axes().into_iter().map(|axis| ["x", "y", "z"][axis]) {
+            let (name, column) = (&support.name, format!("reaction_{}_{axis}", support.name));
+            let label = format!("{name} {axis}");
+            over.extend(over_time(table, &[(&column, &label)], 1.0));
+            if !probes.iter().any(|probe| probe.name == *name) {
+                continue;
+            }
+            let Some(moved) = table.all(&format!("{name}_{axis}")) else { continue };
+            let forces = table.all(&column).unwrap_or_default();
+            if moved.iter().any(|x| *x != moved[0]) {
+                let points = moved.iter().zip(forces).map(|(x, force)| [1e3 * x, force]);
+                loops.push(Curve::new(label, thin(points.collect(), POINTS)));
+            }
+        }
+    }
+    let heading = format!("{title}: forces of the supports");
+    add_series(&mut plots, "reactions.svg".into(), heading, "force", "N", over)?;
+    if !loops.is_empty() {
+        let plot = XyPlot {
+            title: format!("{title}: force over displacement"),
+            x: Axis::linear("displacement", "mm"),
+            y: Axis::linear("force of the support", "N"),
+            style: Style::Lines,
+            curves: loops,
+        };
+        plots.push(("loops.svg".into(), xy(&plot)?));
     }
     Ok(plots)
 }

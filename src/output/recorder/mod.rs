@@ -2,6 +2,7 @@
 
 mod bearing;
 mod course;
+mod rubber;
 pub mod seat;
 mod solid;
 
@@ -49,6 +50,11 @@ impl Recorder {
             Parts::Course(parts) => {
                 let with_loads = asked.contains(&ChannelGroup::Loads);
                 columns.extend(course::columns(&parts.problem, with_loads));
+            }
+            Parts::Rubber(parts) => {
+                probes.clone_from(&parts.setup.probes);
+                supports.clone_from(&parts.setup.supports);
+                columns.extend(rubber::columns(&probes, &supports));
             }
         }
         let ran = Tally::default();

@@ -2,11 +2,13 @@
 //! the last state that was sound.
 
 pub mod motion;
+pub mod rubber;
 pub mod size;
 pub mod watch;
 
 pub use crate::solver::dynamics::clocked::RunRequest;
 pub use motion::{Checkpoint, CourseParts, HousedParts, Motion, Parts, SolidParts};
+pub use rubber::{MovingRubber, RubberParts};
 pub use size::{TableSize, table_size};
 pub use watch::LedgerWatch;
 
@@ -23,6 +25,7 @@ use crate::solver::housing::exchange::ExchangeError;
 use crate::solver::plan::tally::{Ran, Tally};
 use crate::solver::solid::explicit::ExplicitSolid;
 use crate::solver::solid::model::SolidError;
+use crate::solver::solid::rubber::error::RubberError;
 use thiserror::Error;
 
 #[derive(Debug, Error)]
@@ -48,6 +51,8 @@ pub enum SessionError {
     Course(#[from] CourseError),
     #[error(transparent)]
     Bore(#[from] BoreError),
+    #[error(transparent)]
+    Rubber(#[from] RubberError),
     #[error(
         "{residual:.3e} J are unaccounted for at t = {} s, step {step}, more than {limit} of \
          the {turned_over:.3e} J turned over; take a smaller step",
@@ -211,10 +216,15 @@ impl<'p> Session<'p> {
             if moved.is_err() {
                 self.failed = true;
                 // What the failed step left of a solid is of no use to anybody.
-                if let (Motion::Solid(moving), Checkpoint::Solid(kept, _)) =
-                    (&mut self.motion, &self.sound.checkpoint)
-                {
-                    moving.solid.restore(kept);
+                match (&mut self.motion, &self.sound.checkpoint) {
+                    (Motion::Solid(moving), Checkpoint::Solid(kept, _)) => {
+                        moving.solid.restore(kept);
+                    }
+                    // One that stood before stands again.
+                    (Motion::Rubber(moving), Checkpoint::Rubber(kept, rows)) => {
+                        let _ = moving.restore(kept, *rows);
+                    }
+                    _ => {}
                 }
             }
             moved?;
@@ -233,7 +243,8 @@ impl<'p> Session<'p> {
     fn go_to_next_stop(&mut self, most: u64) -> Result<(), SessionError> {
         // A bearing goes on from before a step that failed or was shortened by the end, equilibria from
         // before the last one, so that it is found again; others from their rows.
-        let keeps_rows = matches!(self.motion, Motion::Solid(_) | Motion::Housed(_));
+        let keeps_rows =
+            matches!(self.motion, Motion::Solid(_) | Motion::Housed(_) | Motion::Rubber(_));
         if !keeps_rows {
             self.keep();
         }
@@ -270,6 +281,7 @@ impl<'p> Session<'p> {
             }
             Motion::Housed(housed) => recorder.record_housed(housed, watch, *energy_limit)?,
             Motion::Course(course) => recorder.record_equilibrium(course),
+            Motion::Rubber(moving) => recorder.record_rubber(&moving.solid)?,
         }
         self.clock.count_row(self.motion.time());
         Ok(())
@@ -298,7 +310,8 @@ impl<'p> Session<'p> {
     /// What a later run goes on from: the last sound state of a run that is complete or has failed, and of
     /// those whose state is that of their rows; the present one of a run under way.
     pub fn resumable(&mut self) -> Sound {
-        let by_rows = matches!(self.motion, Motion::Housed(_) | Motion::Course(_));
+        let by_rows =
+            matches!(self.motion, Motion::Housed(_) | Motion::Course(_) | Motion::Rubber(_));
         if by_rows || self.failed || self.status == Status::Complete {
             let ran = self.with_before(&self.kept_ran.0, &self.kept_ran.1);
             return Sound { ran, ..self.sound.clone() };
@@ -340,6 +353,7 @@ impl<'p> Session<'p> {
         };
         match &self.motion {
             Motion::Course(course) => course.displacement(solid),
+            Motion::Rubber(moving) if solid == 0 => moving.solid.displacement().to_vec(),
             motion => motion.solids().get(solid).map_or_else(Vec::new, of),
         }
     }

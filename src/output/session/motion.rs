@@ -2,6 +2,7 @@
 //! the other.
 
 use super::SessionError;
+use super::rubber::{MovingRubber, RubberParts};
 use crate::scene::solid_problem::SolidSetup;
 use crate::solver::clock::{Clock, whole_number};
 use crate::solver::dynamics::assembly::Assembly;
@@ -17,6 +18,7 @@ use crate::solver::plan::tally::{Ran, Tally};
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
 use crate::solver::solid::model::{SolidError, SolidModel};
+use crate::solver::solid::rubber::checkpoint::RubberCheckpoint;
 use crate::solver::solid::step_limit::{SolidStepLimit, step_limit};
 use crate::solver::solid::team::Crew;
 
@@ -26,6 +28,7 @@ pub enum Parts<'p> {
     Solid(SolidParts<'p>),
     Housed(Box<HousedParts>),
     Course(Box<CourseParts<'p>>),
+    Rubber(RubberParts<'p>),
 }
 
 impl From<Assembly> for Parts<'_> {
@@ -75,6 +78,7 @@ pub enum Motion<'p> {
     Solid(Box<MovingSolid>),
     Housed(Box<Exchange>),
     Course(Box<Course<'p>>),
+    Rubber(Box<MovingRubber<'p>>),
 }
 
 /// A solid that several threads may step.
@@ -91,6 +95,7 @@ impl Motion<'_> {
             Motion::Solid(moving) => Ran { solids: vec![moving.solid.ran], ..Ran::default() },
             Motion::Housed(housed) => housed.ran(),
             Motion::Course(course) => course.ran.clone(),
+            Motion::Rubber(moving) => Ran { solids: vec![*moving.solid.ran()], ..Ran::default() },
         }
     }
 
@@ -98,7 +103,7 @@ impl Motion<'_> {
     pub(super) fn ran_into(&self, to: &mut Ran) {
         match self {
             Motion::Bearing(simulation) => to.copy_from(&simulation.system.ran),
-            Motion::Solid(_) | Motion::Housed(_) | Motion::Course(_) => *to = self.ran(),
+            _ => *to = self.ran(),
         }
     }
 
@@ -109,6 +114,7 @@ impl Motion<'_> {
             Motion::Solid(moving) => moving.solid.ran = Tally::default(),
             Motion::Housed(housed) => housed.forget_ran(),
             Motion::Course(course) => course.ran.clear(),
+            Motion::Rubber(moving) => moving.solid.forget_ran(),
         }
     }
 }
@@ -120,6 +126,8 @@ pub enum Checkpoint {
     Solid(Box<SolidCheckpoint>, SolidStepLimit),
     Housed(Box<ExchangeCheckpoint>, Windows),
     Course(CourseCheckpoint),
+    /// And the rows behind the first.
+    Rubber(Box<RubberCheckpoint>, u64),
 }
 
 impl<'p> Motion<'p> {
@@ -152,6 +160,11 @@ impl<'p> Motion<'p> {
                 let course = Course::new(parts.problem, interval);
                 let clock = Clock { step: interval, steps_per_row: 1, ..Clock::default() };
                 (Motion::Course(Box::new(course)), clock)
+            }
+            Parts::Rubber(parts) => {
+                let moving = parts.started(interval)?;
+                let clock = Clock { step: interval, steps_per_row: 1, ..Clock::default() };
+                (Motion::Rubber(Box::new(moving)), clock)
             }
         };
         (clock.end, clock.interval) = (request.end, interval);
@@ -194,6 +207,11 @@ impl<'p> Motion<'p> {
                 course.restore(kept)?;
                 Motion::Course(Box::new(course))
             }
+            (Parts::Rubber(parts), Checkpoint::Rubber(kept, rows)) => {
+                let mut moving = parts.at_rest(clock.interval)?;
+                moving.restore(kept, *rows)?;
+                Motion::Rubber(Box::new(moving))
+            }
             _ => return Err(SessionError::OtherKind),
         };
         clock.last = motion.last(clock);
@@ -204,7 +222,7 @@ impl<'p> Motion<'p> {
     fn last(&self, clock: &Clock) -> Option<u64> {
         match self {
             Motion::Bearing(_) => None,
-            Motion::Solid(_) => Some(whole_number(clock.end, clock.step)),
+            Motion::Solid(_) | Motion::Rubber(_) => Some(whole_number(clock.end, clock.step)),
             Motion::Housed(_) => {
                 Some(whole_number(clock.end, clock.interval) * clock.steps_per_row)
             }
@@ -225,7 +243,7 @@ impl<'p> Motion<'p> {
         match self {
             Motion::Bearing(simulation) => Some(simulation),
             Motion::Housed(housed) => Some(&housed.simulation),
-            Motion::Solid(_) | Motion::Course(_) => None,
+            Motion::Solid(_) | Motion::Course(_) | Motion::Rubber(_) => None,
         }
     }
 
@@ -233,7 +251,7 @@ impl<'p> Motion<'p> {
         match self {
             Motion::Bearing(simulation) => Some(simulation),
             Motion::Housed(housed) => Some(&mut housed.simulation),
-            Motion::Solid(_) | Motion::Course(_) => None,
+            Motion::Solid(_) | Motion::Course(_) | Motion::Rubber(_) => None,
         }
     }
 
@@ -242,7 +260,7 @@ impl<'p> Motion<'p> {
         match self {
             Motion::Solid(moving) => vec![&moving.solid],
             Motion::Housed(housed) => housed.solids.iter().map(|part| &part.solid).collect(),
-            Motion::Bearing(_) | Motion::Course(_) => Vec::new(),
+            Motion::Bearing(_) | Motion::Course(_) | Motion::Rubber(_) => Vec::new(),
         }
     }
 
@@ -253,6 +271,7 @@ impl<'p> Motion<'p> {
             Motion::Solid(moving) => moving.solid.time,
             Motion::Housed(housed) => housed.time(),
             Motion::Course(course) => course.time(),
+            Motion::Rubber(moving) => moving.solid.time(),
         }
     }
 
@@ -263,6 +282,7 @@ impl<'p> Motion<'p> {
             Motion::Solid(moving) => moving.solid.steps,
             Motion::Housed(housed) => housed.exchanges,
             Motion::Course(course) => course.found,
+            Motion::Rubber(moving) => moving.rows,
         }
     }
 
@@ -291,6 +311,9 @@ impl<'p> Motion<'p> {
                 }
             }
             Motion::Course(course) => course.find_next()?,
+            Motion::Rubber(moving) => {
+                (0..count).try_for_each(|_| moving.go_to_next_row())?;
+            }
         }
         let (row, completes) = clock.after(self.done());
         Ok(Arrival { row, completes })
@@ -310,6 +333,7 @@ impl<'p> Motion<'p> {
             Motion::Solid(moving) => Checkpoint::Solid(Box::default(), moving.solid.limit),
             Motion::Housed(housed) => Checkpoint::Housed(Box::default(), housed.windows()),
             Motion::Course(_) => Checkpoint::Course(CourseCheckpoint::default()),
+            Motion::Rubber(_) => Checkpoint::Rubber(Box::default(), 0),
         }
     }
 
@@ -324,6 +348,9 @@ impl<'p> Motion<'p> {
             }
             (Motion::Housed(housed), Checkpoint::Housed(kept, _)) => housed.checkpoint_into(kept),
             (Motion::Course(course), Checkpoint::Course(kept)) => *kept = course.checkpoint(),
+            (Motion::Rubber(moving), Checkpoint::Rubber(kept, rows)) => {
+                (**kept, *rows) = (moving.solid.checkpoint(), moving.rows);
+            }
             (motion, kept) => {
                 *kept = motion.room();
                 motion.checkpoint_into(kept);

@@ -40,6 +40,7 @@ pub(super) fn write_arrays(
             }
             (1, touches)
         }
+        Checkpoint::Rubber(kept, _) => (1, kept.numbers()),
     };
     let name = arrays_name(steps);
     let path = folder.join(&name);
@@ -65,7 +66,7 @@ fn of_nodes(checkpoint: &SolidCheckpoint) -> Vec<f64> {
     values
 }
 
-fn table(folder: &Path, file: &str, shape: (usize, usize)) -> Result<Series, Refused> {
+pub(super) fn table(folder: &Path, file: &str, shape: (usize, usize)) -> Result<Series, Refused> {
     if file.contains(['/', '\\']) {
         return Err(Refused::Damaged("its arrays lie elsewhere"));
     }

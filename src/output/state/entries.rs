@@ -210,6 +210,7 @@ pub(super) fn place(checkpoint: &Checkpoint) -> (f64, u64) {
         Checkpoint::Solid(kept, _) => (kept.time, kept.steps),
         Checkpoint::Housed(kept, _) => (kept.simulation.time, kept.exchanges),
         Checkpoint::Course(kept) => (kept.time, kept.found),
+        Checkpoint::Rubber(kept, rows) => (kept.state.time, *rows),
     }
 }
 
@@ -257,6 +258,10 @@ pub(super) fn checkpoint(
                 memory: CourseMemory { places, touching },
                 nodes,
             })
+        }
+        Parts::Rubber(parts) => {
+            let kept = file.rubber.as_ref().ok_or(LACKS)?;
+            Checkpoint::Rubber(Box::new(kept.checkpoint(folder, file.time, parts)?), file.steps)
         }
     })
 }

@@ -8,6 +8,7 @@
 pub mod arrays;
 pub mod bearing_entry;
 pub mod entries;
+pub mod rubber_entry;
 
 pub use crate::output::journal::{SERIES, STATE, Stopped};
 
@@ -30,6 +31,7 @@ use crate::solver::solid::model::SolidProblem;
 use arrays::{remove_arrays, write_arrays};
 use bearing_entry::BearingEntry;
 use entries::{CourseEntry, ExchangeEntry, SolidEntry};
+use rubber_entry::{RubberEntry, hash_rubber};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -84,6 +86,8 @@ pub struct StateFile {
     pub exchange: Option<ExchangeEntry>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub course: Option<CourseEntry>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub rubber: Option<RubberEntry>,
 }
 
 #[derive(Debug, Error)]
@@ -157,6 +161,7 @@ pub fn fingerprint(parts: &Parts, request: &RunRequest) -> String {
                 hash.update(format!("{:?}", bore.reach));
             }
         }
+        Parts::Rubber(parts) => hash_rubber(&mut hash, parts),
     }
     journal::hexadecimal(hash)
 }
@@ -234,7 +239,8 @@ pub fn resume<'p>(
         let [kept, asked] = [kept, asked].map(|interval| interval.unwrap_or(f64::INFINITY));
         Err(StateError::Interval { path: path.clone(), what, kept, asked })
     };
-    interval("rows", Some(file.output_interval), Some(request.output_interval), ROWS)?;
+    let rows = if matches!(parts, Parts::Rubber(_)) { ROWS_OF_RUBBER } else { ROWS };
+    interval("rows", Some(file.output_interval), Some(request.output_interval), rows)?;
     interval("fields", file.fields_interval, request.fields_interval, FIELDS)?;
     check_finite(file)?;
     let damaged = |what| StateError::Damaged { path: path.clone(), what };
@@ -279,6 +285,7 @@ pub fn resume<'p>(
 
 /// Rows and files of fields of a run whose scene does not say otherwise.
 const ROWS: f64 = 1000.0;
+const ROWS_OF_RUBBER: f64 = 100.0;
 const FIELDS: f64 = 20.0;
 
 fn state_file(sound: &Sound, clock: &Clock, record: &StateRecord) -> StateFile {
@@ -307,6 +314,7 @@ fn state_file(sound: &Sound, clock: &Clock, record: &StateRecord) -> StateFile {
         solids: Vec::new(),
         exchange: None,
         course: None,
+        rubber: None,
     };
     match &sound.checkpoint {
         Checkpoint::Bearing(kept) => file.bearing = Some(Box::new(BearingEntry::of(kept))),
@@ -321,6 +329,7 @@ fn state_file(sound: &Sound, clock: &Clock, record: &StateRecord) -> StateFile {
             file.exchange = Some(ExchangeEntry::of(kept, windows));
         }
         Checkpoint::Course(kept) => file.course = Some(CourseEntry::of(kept)),
+        Checkpoint::Rubber(kept, _) => file.rubber = Some(RubberEntry::of(kept, steps)),
     }
     file
 }
@@ -353,6 +362,9 @@ fn check_finite(file: &StateFile) -> Result<(), StateError> {
     let mut parts = vec![("time, step or energy", single.collect())];
     if let Some(bearing) = &file.bearing {
         parts.extend(bearing.numbers());
+    }
+    if let Some(rubber) = &file.rubber {
+        parts.push(("a step or a stress", rubber.numbers()));
     }
     if let Some(exchange) = &file.exchange {
         parts.push(("what bodies and solids exchange", exchange.numbers()));

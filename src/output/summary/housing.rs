@@ -214,7 +214,7 @@ pub(super) fn method(motion: &Motion) -> Option<&'static str> {
         Motion::Bearing(simulation) => {
             (!simulation.system.assembly.seats.is_empty()).then_some("reduced")
         }
-        Motion::Solid(_) => None,
+        Motion::Solid(_) | Motion::Rubber(_) => None,
         Motion::Housed(_) => Some("explicit"),
         Motion::Course(_) => Some("quasi-static"),
     }

@@ -2,6 +2,7 @@
 
 mod bearing;
 pub mod housing;
+pub mod rubber;
 pub mod solid;
 
 use crate::output::atomic::write_atomic;
@@ -52,7 +53,9 @@ pub fn write_run_results(
     let [csv, npy, json] = ["series.csv", SERIES, "summary.json"].map(|name| folder.join(name));
     match session.motion {
         // Times of windows and equilibria are no sums of steps.
-        Motion::Housed(_) | Motion::Course(_) => table.series.write_csv(&csv)?,
+        Motion::Housed(_) | Motion::Course(_) | Motion::Rubber(_) => {
+            table.series.write_csv(&csv)?
+        }
         Motion::Bearing(_) | Motion::Solid(_) => readable_times(table)?.write_csv(&csv)?,
     }
     table.series.write_npy(&npy)?;
@@ -105,7 +108,11 @@ pub fn run_summary(
     let motion = &session.motion;
     let complete = session.status == Status::Complete && report.stopped_by.is_none();
     let mut summary = Map::new();
-    let kind = if matches!(motion, Motion::Solid(_)) { "run of a solid" } else { "run" };
+    let kind = match motion {
+        Motion::Solid(_) => "run of a solid",
+        Motion::Rubber(_) => "run of a solid of rubber",
+        _ => "run",
+    };
     summary.insert("kind".into(), json!(kind));
     if let Some(method) = housing::method(motion) {
         summary.insert("housing_method".into(), json!(method));
@@ -120,6 +127,7 @@ pub fn run_summary(
     let work = match motion {
         Motion::Bearing(simulation) => bearing::work(simulation),
         Motion::Solid(moving) => solid::work(&moving.solid),
+        Motion::Rubber(moving) => rubber::work(moving),
         Motion::Housed(housed) => housing::work(housed),
         Motion::Course(course) => {
             let effort = &course.effort;
@@ -137,6 +145,7 @@ pub fn run_summary(
         Motion::Bearing(simulation) => Some(bearing::step(simulation, report)?),
         Motion::Solid(moving) => Some(solid::step(&moving.solid, report)?),
         Motion::Housed(housed) => Some(housing::step(housed)?),
+        Motion::Rubber(moving) => Some(rubber::step(moving)?),
         Motion::Course(_) => None,
     };
     if let Some(step) = step {
@@ -163,7 +172,7 @@ pub fn run_summary(
     }
     if !spectra.is_empty() {
         let section = match motion {
-            Motion::Solid(_) => solid::spectra_section(spectra)?,
+            Motion::Solid(_) | Motion::Rubber(_) => solid::spectra_section(spectra)?,
             _ => spectra_section(table, spectra, spectral_floor(session, spectra, report))?,
         };
         summary.insert("spectra".into(), section);

@@ -10,7 +10,7 @@ use crate::output::results::{ResultsError, RunRecord, insert_record, quantity};
 use crate::output::series::{Series, SeriesError};
 use crate::output::spectrum::{LEAKAGE, Spectrum, WINDOW, peaks};
 use crate::scene::solid_mesh::BuiltMesh;
-use crate::scene::solid_problem::SolidSetup;
+use crate::scene::solid_problem::{NamedNodes, SolidSetup, Support};
 use crate::solver::plan::tally::Tally;
 use crate::solver::solid::energy::strain_energy;
 use crate::solver::solid::equilibrium::Equilibrium;
@@ -23,7 +23,7 @@ use ndarray::Array2;
 use serde_json::{Map, Value, json};
 use std::f64::consts::TAU;
 
-fn vector(name: &str, of: Vec3, unit: &str) -> Part {
+pub(super) fn vector(name: &str, of: Vec3, unit: &str) -> Part {
     let part = |axis: &str, value: f64| quantity(&format!("{name} {axis}"), value, unit);
     Ok(json!({ "x": part("x", of[0])?, "y": part("y", of[1])?, "z": part("z", of[2])? }))
 }
@@ -107,7 +107,7 @@ fn head(kind: &str, model: &SolidModel, built: &BuiltMesh, record: &RunRecord) -
 }
 
 /// Largest displacement and von Mises stresses, with their places.
-fn extremes(mesh: &TetMesh, displacement: &[Vec3], stresses: &Stresses) -> Part {
+pub(super) fn extremes(mesh: &TetMesh, displacement: &[Vec3], stresses: &Stresses) -> Part {
     let largest = |values: &mut dyn Iterator<Item = f64>| {
         let mut best = (0, 0.0);
         for (index, value) in values.enumerate() {
@@ -137,18 +137,19 @@ fn extremes(mesh: &TetMesh, displacement: &[Vec3], stresses: &Stresses) -> Part 
 }
 
 /// Mean displacements of probes, sums of reactions.
-fn named(
-    setup: &SolidSetup,
+pub(super) fn named(
+    of_probes: &[NamedNodes],
+    of_supports: &[Support],
     displacement: &[Vec3],
     reactions: &[Vec3],
 ) -> Result<[Value; 2], ResultsError> {
     let (mut probes, mut supports) = (Map::new(), Map::new());
-    for probe in &setup.probes {
+    for probe in of_probes {
         let mut entry = vector(&probe.name, mean(displacement, &probe.nodes), "m")?;
         entry["nodes"] = json!(probe.nodes.len());
         probes.insert(probe.name.clone(), entry);
     }
-    for support in &setup.supports {
+    for support in of_supports {
         let mut reaction = Map::new();
         for (axis, force) in support.axes().into_iter().zip(support.total(reactions)) {
             let name = ["x", "y", "z"][axis];
@@ -176,7 +177,8 @@ pub fn statics(
     let mut loads = vec![[0.0; 4]; model.mass.len()];
     model.add_external_forces(model.acting(), 0.0, &mut loads, &mut Tally::default());
     let loads: Vec<Vec3> = loads.iter().map(|f| [f[0], f[1], f[2]]).collect();
-    let [probes, supports] = named(setup, &solution.displacement, &solution.reactions)?;
+    let (displacement, reactions) = (&solution.displacement, &solution.reactions);
+    let [probes, supports] = named(&setup.probes, &setup.supports, displacement, reactions)?;
     summary["solver"] = json!({
         "iterations": solution.iterations,
         "factorisations": solution.factorisations,
@@ -190,19 +192,25 @@ pub fn statics(
     summary["largest"] = extremes(&built.mesh, &solution.displacement, stresses)?;
     let energy = strain_energy(model, &padded(solution.displacement.clone()));
     summary["strain_energy"] = quantity("strain energy", energy, "J")?;
-    Ok((summary, static_series(setup, solution)?))
+    let series = static_series(&setup.probes, &setup.supports, displacement, reactions)?;
+    Ok((summary, series))
 }
 
-fn static_series(setup: &SolidSetup, solution: &Equilibrium) -> Result<Series, SeriesError> {
-    let mut columns = probe_columns(&setup.probes, &setup.supports);
+pub(super) fn static_series(
+    probes: &[NamedNodes],
+    supports: &[Support],
+    displacement: &[Vec3],
+    reactions: &[Vec3],
+) -> Result<Series, SeriesError> {
+    let mut columns = probe_columns(probes, supports);
     columns.insert(0, crate::output::series::Column::new("largest_displacement", "m"));
-    let largest = solution.displacement.iter().map(length).fold(0.0, f64::max);
+    let largest = displacement.iter().map(length).fold(0.0, f64::max);
     let mut values = vec![largest];
-    for probe in &setup.probes {
-        values.extend(mean(&solution.displacement, &probe.nodes));
+    for probe in probes {
+        values.extend(mean(displacement, &probe.nodes));
     }
-    for support in &setup.supports {
-        values.extend(support.total(&solution.reactions));
+    for support in supports {
+        values.extend(support.total(reactions));
     }
     let data =
         Array2::from_shape_vec((1, columns.len()), values).expect("one value for each column");

@@ -5,6 +5,7 @@
 //! stage's work counts it ([`tally`]), and tests hold the counts against the items.
 
 pub mod motion;
+pub mod rubber;
 pub mod solid;
 pub mod statics;
 pub mod steps;
@@ -51,11 +52,14 @@ pub enum Stage {
     Supports,
     Loads,
     Damping,
+    Maxwell,
     QuasiStatic,
     Reduced,
     Explicit,
     Seat,
     SolidStatics,
+    Implicit,
+    Vibrations,
     Modes,
     SolidRun,
     // Of what is recorded.
@@ -104,11 +108,14 @@ impl Stage {
         Stage::Supports,
         Stage::Loads,
         Stage::Damping,
+        Stage::Maxwell,
         Stage::QuasiStatic,
         Stage::Reduced,
         Stage::Explicit,
         Stage::Seat,
         Stage::SolidStatics,
+        Stage::Implicit,
+        Stage::Vibrations,
         Stage::Modes,
         Stage::SolidRun,
         Stage::RacesChannels,
@@ -154,11 +161,14 @@ impl Stage {
             Stage::Supports => "supports",
             Stage::Loads => "loads",
             Stage::Damping => "damping",
+            Stage::Maxwell => "Maxwell elements",
             Stage::QuasiStatic => "quasi-static",
             Stage::Reduced => "reduced",
             Stage::Explicit => "explicit",
             Stage::Seat => "seat",
             Stage::SolidStatics => "statics",
+            Stage::Implicit => "implicit steps",
+            Stage::Vibrations => "small vibrations",
             Stage::Modes => "modes",
             Stage::SolidRun => "run",
             Stage::RacesChannels => "channels: races",

@@ -2,7 +2,10 @@
 
 use super::model::SolidModel;
 use super::modes;
+use super::rubber::model::RubberModel;
 use super::tangent::Unknowns;
+use crate::elements::tet10::POINTS;
+use crate::kinematics::strain::Sym3;
 use crate::mesh::tet_mesh::Elements;
 use crate::solver::sparse::{Cost, Task};
 
@@ -38,6 +41,26 @@ pub fn statics(model: &SolidModel, unknowns: &Unknowns) -> Cost {
         traffic: 0.0,
     };
     Cost::new(&unknowns.elimination, task)
+}
+
+/// An equilibrium of a solid of rubber, for `name` of it: with what its points keep from step to step.
+pub fn rubber(model: &RubberModel, name: &'static str) -> Cost {
+    let elements = model.tets.len();
+    // DEV S and its rate, what is carried over, and each Maxwell element, now and in a checkpoint.
+    let tensors = 2 * (3 + model.problem.material.maxwell.len());
+    let task = Task {
+        name,
+        factorisations: 1,
+        repeats: true,
+        passes: NEWTON_STEPS,
+        columns: 1,
+        matrix: model.unknowns.stored,
+        vectors: NEWTON_VECTORS,
+        other: size_of::<Sym3>() * POINTS * elements * tensors,
+        operations: OF_TEN_NODES * elements as f64,
+        traffic: 0.0,
+    };
+    Cost::new(&model.unknowns.elimination, task)
 }
 
 /// The lowest `count` modes.

@@ -111,10 +111,9 @@ pub fn look(model: &SolidModel, displacement: &[Vec3]) -> Look {
 /// jump of the load it smears the jump over an element.
 pub fn nodal_stresses(model: &SolidModel, displacement: &[Vec3]) -> Vec<Sym3> {
     let problem = &model.problem;
-    let mut sums = vec![[0.0; 6]; problem.nodes.len()];
-    let mut volumes = vec![0.0; problem.nodes.len()];
     let sound = "elements were checked when the model was made";
-    for (element, at_points) in point_stresses(model, displacement).iter().enumerate() {
+    let at_points = point_stresses(model, displacement);
+    let of = |(element, at_points): (usize, &Vec<Sym3>)| {
         let (at_nodes, volume) = match &problem.elements {
             Elements::Linear(list) => {
                 let tet = Tet4::new(&corners(&problem.nodes, &list[element])).expect(sound);
@@ -125,7 +124,20 @@ pub fn nodal_stresses(model: &SolidModel, displacement: &[Vec3]) -> Vec<Sym3> {
                 (at_ten_nodes(at_points), tet.volume())
             }
         };
-        for (node, stress) in problem.elements.nodes(element).iter().zip(at_nodes) {
+        (problem.elements.nodes(element), at_nodes, volume)
+    };
+    average_at_nodes(problem.nodes.len(), at_points.iter().enumerate().map(of))
+}
+
+/// Means at so many nodes of what elements have at theirs, weighted by their volumes.
+pub fn average_at_nodes<'a>(
+    count: usize,
+    elements: impl Iterator<Item = (&'a [u32], [Sym3; 10], f64)>,
+) -> Vec<Sym3> {
+    let mut sums = vec![[0.0; 6]; count];
+    let mut volumes = vec![0.0; count];
+    for (nodes, at_nodes, volume) in elements {
+        for (node, stress) in nodes.iter().zip(at_nodes) {
             volumes[*node as usize] += volume;
             for (sum, component) in sums[*node as usize].iter_mut().zip(stress) {
                 *sum += volume * component;
@@ -136,7 +148,7 @@ pub fn nodal_stresses(model: &SolidModel, displacement: &[Vec3]) -> Vec<Sym3> {
 }
 
 /// The linear field through the values at four quadrature points, at the ten nodes.
-fn at_ten_nodes(at_points: &[Sym3]) -> [Sym3; 10] {
+pub fn at_ten_nodes(at_points: &[Sym3]) -> [Sym3; 10] {
     let mut nodes = [[0.0; 6]; 10];
     for corner in 0..4 {
         let mut place = [0.0; 4];

@@ -1,6 +1,7 @@
 //! Whether supports leave a body free to move as a whole.
 
-use super::model::SolidProblem;
+use super::model::Prescribed;
+use crate::kinematics::vec3::Vec3;
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 
 /// Names of the six rigid motions, in the order of [`FreeMotions::shares`].
@@ -31,9 +32,9 @@ const HELD: f64 = 1e-9;
 
 /// Null space of the prescribed components over the rigid motions; rotations are small ones and
 /// are measured by half the body's size.
-pub fn free_motions(problem: &SolidProblem) -> FreeMotions {
+pub fn free_motions(nodes: &[Vec3], prescribed: &[Prescribed]) -> FreeMotions {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for node in &problem.nodes {
+    for node in nodes {
         for i in 0..3 {
             low[i] = low[i].min(node[i]);
             high[i] = high[i].max(node[i]);
@@ -42,8 +43,8 @@ pub fn free_motions(problem: &SolidProblem) -> FreeMotions {
     let middle = [0, 1, 2].map(|i: usize| 0.5 * (low[i] + high[i]));
     let reach = (0..3).map(|i| 0.5 * (high[i] - low[i])).fold(f64::MIN_POSITIVE, f64::max);
     let mut gram = SMatrix::<f64, 6, 6>::zeros();
-    for held in &problem.prescribed {
-        let Some(node) = problem.nodes.get(held.node as usize) else { continue };
+    for held in prescribed {
+        let Some(node) = nodes.get(held.node as usize) else { continue };
         let [x, y, z] = [0, 1, 2].map(|i: usize| (node[i] - middle[i]) / reach);
         // Displacement t + ω × r along the axis.
         let row = match held.axis {
@@ -73,10 +74,8 @@ pub fn free_motions(problem: &SolidProblem) -> FreeMotions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ch2_housing::linear_elastic::LinearElastic;
     use crate::mesh::generate::bar;
     use crate::solver::profile::Profile;
-    use crate::solver::solid::model::{DampedMotion, Prescribed};
 
     fn held(components: &[(usize, f64)]) -> FreeMotions {
         let mesh = bar([0.1, 0.01, 0.01], [4, 2, 2]).unwrap().mesh;
@@ -88,17 +87,7 @@ mod tests {
                 }
             }
         }
-        free_motions(&SolidProblem {
-            nodes: mesh.nodes,
-            elements: mesh.elements,
-            material: LinearElastic::new(2.1e11, 0.3).unwrap(),
-            density: 7850.0,
-            damping: 0.0,
-            damped_motion: DampedMotion::Absolute,
-            prescribed,
-            loads: Vec::new(),
-            gravity: [0.0; 3],
-        })
+        free_motions(&mesh.nodes, &prescribed)
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Forces and stiffness of a solid of rubber at the end of a step, and Newton's method for its
 //! equilibrium there.
 
+use super::checkpoint::Factored;
 use super::error::{RubberError, StepFailure, at_rest};
 use super::model::{Moment, Patch, RubberModel, centre};
 use crate::ch2_housing::elastomer::ElastomerError;
@@ -8,6 +9,7 @@ use crate::elements::tet10::POINTS;
 use crate::elements::tet10_nodal::{self, Response, Stiffness};
 use crate::kinematics::strain::Sym3;
 use crate::kinematics::vec3::{Vec3, add_scaled};
+use crate::solver::plan::{Stage, tally::Tally};
 use crate::solver::solid::model::corners;
 use crate::solver::solid::tangent::PRESCRIBED;
 use crate::solver::sparse::{Entry, Factor, FactorError, SymmetricMatrix};
@@ -95,11 +97,14 @@ pub fn add_forces(
 }
 
 /// Mean stress at the quadrature points of an element, Pa.
-fn at_points(model: &RubberModel, element: usize, means: &[f64]) -> [f64; POINTS] {
+pub(super) fn at_points(model: &RubberModel, element: usize, means: &[f64]) -> [f64; POINTS] {
     tet10_nodal::at_points(&model.patches_of[element].map(|patch| means[patch as usize]))
 }
 
-fn in_element(model: &RubberModel, element: usize) -> impl Fn(ElastomerError) -> StepFailure {
+pub(super) fn in_element(
+    model: &RubberModel,
+    element: usize,
+) -> impl Fn(ElastomerError) -> StepFailure {
     let at = centre(&model.problem, element);
     move |source| StepFailure::Material { element: element + 1, at, source }
 }
@@ -129,8 +134,9 @@ fn element_stiffness(
 pub struct Tangent {
     matrix: SymmetricMatrix,
     factor: Option<Factor>,
-    /// Gain of the step that the factors are of.
-    gain: f64,
+    /// What the factors are of, and whether there are sound ones.
+    factored: Factored,
+    is_sound: bool,
     pub factorisations: usize,
     /// Of the patch at work: how its volume follows the nodes, and its unknowns with that, ascending.
     slopes: Vec<Vec3>,
@@ -143,7 +149,8 @@ impl Tangent {
         Tangent {
             matrix: model.pattern(),
             factor: None,
-            gain: f64::NAN,
+            factored: Factored::default(),
+            is_sound: false,
             factorisations: 0,
             slopes: vec![[0.0; 3]; model.problem.nodes.len()],
             along: Vec::new(),
@@ -158,12 +165,29 @@ impl Tangent {
 
     /// Whether factors of a step with this gain are near enough to begin with.
     pub fn serves(&self, gain: f64) -> bool {
-        self.factor.is_some() && (gain - self.gain).abs() <= 0.05 * (1.0 + self.gain)
+        let made = self.factored.gain;
+        self.is_sound && (gain - made).abs() <= 0.05 * (1.0 + made)
+    }
+
+    /// The state that the factors at hand are of.
+    pub fn factored(&self) -> Option<&Factored> {
+        self.is_sound.then_some(&self.factored)
+    }
+
+    /// Makes the factors of such a state again; with none the next search makes its own.
+    ///
+    /// # Errors
+    /// As [`Tangent::refresh`]; never in a state that factors were made of before.
+    pub fn restore(&mut self, model: &RubberModel, of: Option<&Factored>) -> Result<(), Stop> {
+        self.is_sound = false;
+        let Some(Factored { gain, displacement, carried }) = of else { return Ok(()) };
+        let law = StepLaw { gain: *gain, carried };
+        self.refresh(model, &law, displacement, None)?.map_err(at_rest).map_err(Stop::All)
     }
 
     /// Factors made on the way to where no equilibrium was found serve nobody.
     pub fn forget(&mut self) {
-        self.gain = f64::NAN;
+        self.is_sound = false;
     }
 
     /// Factors in a state. If `moves` are changes of the prescribed components, `right` loses the
@@ -204,12 +228,19 @@ impl Tangent {
         for patch in &model.patches {
             self.add_volume(model, displacement, patch, &mut moves);
         }
-        self.gain = law.gain;
+        self.factored.gain = law.gain;
+        self.factored.displacement.clear();
+        self.factored.displacement.extend_from_slice(displacement);
+        self.factored.carried.clear();
+        self.factored.carried.extend_from_slice(law.carried);
         self.factorisations += 1;
-        Ok(match &mut self.factor {
+        let outcome = match &mut self.factor {
             Some(factor) => factor.refactor(&self.matrix),
             None => model.unknowns.factor(&self.matrix).map(|factor| self.factor = Some(factor)),
-        })
+        };
+        // Factors that failed are of nothing.
+        self.is_sound = outcome.is_ok();
+        Ok(outcome)
     }
 
     /// Adds what the mean stress at one corner node changes: a product of one vector with itself.
@@ -286,6 +317,8 @@ pub struct Search<'a> {
     right: Vec<f64>,
     moves: Vec<Vec3>,
     pub iterations: usize,
+    /// How often each stage ran.
+    pub ran: Tally,
 }
 
 /// When a search has converged, and when it gives up.
@@ -319,6 +352,7 @@ impl<'a> Search<'a> {
             right: vec![0.0; model.unknowns.count],
             moves: vec![[0.0; 3]; count],
             iterations: 0,
+            ran: Tally::default(),
             model,
         }
     }
@@ -371,6 +405,8 @@ impl<'a> Search<'a> {
             &mut self.means,
         )?;
         self.model.add_loads(at, &mut self.loads);
+        self.ran.add(Stage::Elements, self.model.tets.len() as u64);
+        self.ran.add(Stage::Loads, self.model.problem.loads.len() as u64);
         let mut found = Unbalanced::default();
         let mut finite = true;
         for (n, of) in self.model.unknowns.of.iter().enumerate() {
@@ -409,6 +445,7 @@ impl<'a> Search<'a> {
         options: &Convergence,
     ) -> Result<(), Stop> {
         self.model.prescribe(at, &mut self.displacement);
+        self.ran.add(Stage::Supports, self.model.problem.prescribed.len() as u64);
         let mut last = f64::INFINITY;
         let mut fresh = false;
         for iteration in 0..=options.most_iterations {

@@ -5,13 +5,15 @@
 //! the corners of loads and prescribed displacements; behind a corner there is no second difference, so
 //! that a pair of steps is taken and judged together.
 
+use super::checkpoint::{RubberCheckpoint, RubberState};
 use super::error::{RubberError, StepFailure};
 use super::model::{Moment, RubberModel};
 use super::newton::{Convergence, Search, StepLaw, Stop};
 use crate::ch2_housing::elastomer::maxwell::{StepFactors, carried, commit, curvature_error};
 use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::{Sym3, double_dot};
-use crate::kinematics::vec3::Vec3;
+use crate::kinematics::vec3::{Vec3, dot};
+use crate::solver::plan::{Stage, tally::Tally};
 
 /// How long steps are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,27 +48,11 @@ pub struct StepCounts {
     pub undone: u64,
 }
 
-/// The state after an accepted step: nothing else is kept from step to step.
-#[derive(Clone, Debug, PartialEq)]
-struct State {
-    time: f64,
-    displacement: Vec<Vec3>,
-    /// DEV S of the network at the quadrature points, Pa.
-    deviatoric: Vec<Sym3>,
-    /// Stresses of the Maxwell elements, one point after the other, Pa.
-    history: Vec<Sym3>,
-    /// The last step (s) and the rates of displacement (m/s) and DEV S (Pa/s) in it; a step of zero behind
-    /// a corner.
-    last: f64,
-    velocity: Vec<Vec3>,
-    rate: Vec<Sym3>,
-}
-
 /// A solid of rubber on its way.
 pub struct RubberSolid<'a> {
     search: Search<'a>,
     options: StepOptions,
-    state: State,
+    state: RubberState,
     factors: StepFactors,
     carried: Vec<Sym3>,
     corners: Vec<f64>,
@@ -94,23 +80,13 @@ impl<'a> RubberSolid<'a> {
         if !(value > 0.0 && value.is_finite()) {
             return Err(RubberError::Option { what, value });
         }
-        let (points, nodes) = (POINTS * model.tets.len(), model.problem.nodes.len());
-        let terms = model.problem.material.maxwell.len();
-        let state = State {
-            time: 0.0,
-            displacement: vec![[0.0; 3]; nodes],
-            deviatoric: vec![[0.0; 6]; points],
-            history: vec![[0.0; 6]; points * terms],
-            last: 0.0,
-            velocity: vec![[0.0; 3]; nodes],
-            rate: vec![[0.0; 6]; points],
-        };
+        let state = RubberState::rest(model);
         Ok(RubberSolid {
             search: Search::new(model),
             options,
             state,
             factors: StepFactors::default(),
-            carried: vec![[0.0; 6]; points],
+            carried: vec![[0.0; 6]; POINTS * model.tets.len()],
             corners: model.corners(),
             next: 0.0,
             scale: 0.0,
@@ -122,6 +98,68 @@ impl<'a> RubberSolid<'a> {
     /// s.
     pub fn time(&self) -> f64 {
         self.state.time
+    }
+
+    pub fn model(&self) -> &'a RubberModel {
+        self.search.model
+    }
+
+    /// The state that stands.
+    pub fn state(&self) -> &RubberState {
+        &self.state
+    }
+
+    /// All that the steps to come follow from.
+    pub fn checkpoint(&self) -> RubberCheckpoint {
+        let (iterations, factorisations) = self.work();
+        RubberCheckpoint {
+            state: self.state.clone(),
+            next: self.next,
+            scale: self.scale,
+            counts: self.counts,
+            iterations,
+            factorisations,
+            factored: self.search.tangent.factored().cloned(),
+        }
+    }
+
+    /// Goes back or on to where a checkpoint was taken; steps from there have the same bits as those that
+    /// followed it.
+    ///
+    /// # Errors
+    /// No memory for the factors; a state that is not one of this body.
+    ///
+    /// # Panics
+    /// If the checkpoint has other numbers of nodes or points.
+    pub fn restore(&mut self, kept: &RubberCheckpoint) -> Result<(), RubberError> {
+        self.state.clone_from(&kept.state);
+        (self.next, self.scale, self.counts) = (kept.next, kept.scale, kept.counts);
+        self.restore_forces();
+        let outcome = self.search.tangent.restore(self.search.model, kept.factored.as_ref());
+        self.search.iterations = kept.iterations;
+        self.search.tangent.factorisations = kept.factorisations;
+        outcome.map_err(|stop| match stop {
+            Stop::All(error) => error,
+            Stop::Step(failure) => {
+                RubberError::NoEquilibrium { time: self.state.time, step: 0.0, failure }
+            }
+        })
+    }
+
+    /// How often each stage ran.
+    pub fn ran(&self) -> &Tally {
+        &self.search.ran
+    }
+
+    /// Counts anew.
+    pub fn forget_ran(&mut self) {
+        self.search.ran = Tally::default();
+    }
+
+    /// Forces of the supports on all nodes, N.
+    pub fn support_forces(&self) -> Vec<Vec3> {
+        let all = self.search.internal.iter().zip(&self.search.loads);
+        all.map(|(inner, outer)| std::array::from_fn(|i| 0.0 - (inner[i] + outer[i]))).collect()
     }
 
     /// m, one for each node.
@@ -397,12 +435,22 @@ impl<'a> RubberSolid<'a> {
             state.rate[at] = change.map(|c| per * c);
             *old = *new;
         }
+        // What holds the forces of the elements, loads and supports, works against them.
+        let moves = state.displacement.iter().zip(&self.search.displacement);
+        let forces = state.forces.iter_mut().zip(&self.search.internal);
+        for ((before, after), (old, new)) in moves.zip(forces) {
+            let way = std::array::from_fn(|i| after[i] - before[i]);
+            state.work -= 0.5 * (dot(*old, way) + dot(*new, way));
+            *old = *new;
+        }
         for ((u, v), new) in
             state.displacement.iter_mut().zip(&mut state.velocity).zip(&self.search.displacement)
         {
             *v = std::array::from_fn(|i| per * (new[i] - u[i]));
             *u = *new;
         }
+        self.search.ran.add(Stage::Implicit, 1);
+        self.search.ran.add(Stage::Maxwell, terms as u64);
         state.last = step;
         state.time = end;
         self.counts.accepted += 1;

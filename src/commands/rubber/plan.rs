@@ -1,0 +1,97 @@
+//! `bearing plan` of a solid of rubber: what each of its commands would do.
+
+use super::{Prepared, prepare};
+use crate::commands::plan::say_plan;
+use crate::commands::plan_step::note;
+use crate::commands::solid::mesh_notes;
+use crate::commands::{CommandResult, Outcome, memory};
+use bearing_dynamics::scene::solid::{MeshSource, RubberScene, RunSteps, SolidRun};
+use bearing_dynamics::scene::{Document, SolidScene};
+use bearing_dynamics::solver::clock::whole_number;
+use bearing_dynamics::solver::plan::rubber::{self, Method};
+use bearing_dynamics::solver::plan::{Item, Stage, Subject};
+use bearing_dynamics::solver::solid::foretold;
+use bearing_dynamics::solver::solid::rubber::steps::Stepping;
+
+pub fn run(document: &Document, scene: &SolidScene, rubber: &RubberScene) -> CommandResult {
+    let prepared = prepare(document, scene, rubber)?;
+    let mut lines: Vec<String> =
+        mesh_notes(&prepared.built).iter().map(|said| note("mesh", said)).collect();
+    if prepared.free.count == 0 {
+        let cost = foretold::rubber(&prepared.setup.model, "an equilibrium");
+        lines.push(note("an equilibrium takes", &memory::text(&cost)));
+        let rows = scene.run.as_ref().map(|run| whole_number(run.end, run.output_interval));
+        if let Some(rows) = rows {
+            let said = format!(
+                "{rows} at least, one a row; each takes an equilibrium, most with the factors of an earlier one"
+            );
+            lines.push(note("steps", &said));
+        }
+    }
+    say_plan(&all_items(scene, rubber, &prepared), &lines)?;
+    Ok(Outcome::Done)
+}
+
+/// Items of a run, or without one of statics.
+pub fn items(
+    scene: &SolidScene,
+    rubber: &RubberScene,
+    prepared: &Prepared,
+    run: Option<&SolidRun>,
+) -> Vec<Item> {
+    let from = match &scene.mesh.source {
+        MeshSource::File { name, .. } => format!("from {name}"),
+        _ => "generated".to_string(),
+    };
+    let problem = &prepared.setup.model.problem;
+    let count = problem.elements.len();
+    let mesh = format!("{from}: {count} ten-node tetrahedra with a continuous mean stress");
+    let method = match run {
+        Some(run) => Method::Steps(steps(run)),
+        None => Method::Statics {
+            frequencies: rubber.harmonic.as_ref().map_or(0, |asked| asked.frequencies.len()),
+        },
+    };
+    rubber::items(problem, 0, &mesh, &method)
+}
+
+fn steps(run: &SolidRun) -> String {
+    match run.steps {
+        RunSteps::Implicit(Stepping::Accuracy(accuracy)) => {
+            format!("to {} s, no inertia, accuracy {accuracy}", run.end)
+        }
+        RunSteps::Implicit(Stepping::Fixed(step)) => {
+            format!("to {} s, no inertia, of {step} s", run.end)
+        }
+        RunSteps::Explicit { .. } => format!("to {} s", run.end),
+    }
+}
+
+/// Items of a run, or of statics of what has none, and in a line each what the other commands would do.
+fn all_items(scene: &SolidScene, rubber: &RubberScene, prepared: &Prepared) -> Vec<Item> {
+    let subject = Subject::Solid(0);
+    let held = prepared.free.count == 0;
+    let free = format!("free to move {}: rubber must be held", prepared.free.names());
+    let mut items = items(scene, rubber, prepared, scene.run.as_ref());
+    if !held {
+        items.retain(|item| !matches!(item.stage, Stage::Implicit | Stage::SolidStatics));
+        items.push(Item::skips(Stage::SolidStatics, subject, free));
+    } else if scene.run.is_some() {
+        let why = "relaxed equilibrium at the end of the run, by `bearing statics`";
+        items.push(Item::does(Stage::SolidStatics, subject, why));
+        let asked = rubber.harmonic.as_ref();
+        items.push(match asked.map(|asked| asked.frequencies.len()) {
+            Some(count) => {
+                let why = format!("at {count} frequencies, about rest, by `bearing statics`");
+                Item::does(Stage::Vibrations, subject, why)
+            }
+            None => Item::skips(Stage::Vibrations, subject, "no [solid.harmonic]"),
+        });
+    } else {
+        items.push(Item::skips(Stage::Implicit, subject, "no `numerics.end`"));
+    }
+    items.push(Item::skips(Stage::Modes, subject, NO_MODES));
+    items
+}
+
+pub const NO_MODES: &str = "rubber is solved without inertia, and has no natural modes";

@@ -1,0 +1,126 @@
+//! `bearing statics` of a solid of rubber: its relaxed equilibrium, and its answer to small vibrations.
+
+use super::{Prepared, plan, prepare, record, refuse_free};
+use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::memory::watched;
+use crate::commands::solid::{say_mesh_notes, statics::table};
+use crate::commands::{CommandResult, Outcome, placed, results_folder, say};
+use bearing_dynamics::output::atomic::write_atomic;
+use bearing_dynamics::output::fields::{file_name, rubber_stresses, write_fields, write_list};
+use bearing_dynamics::output::results::pretty;
+use bearing_dynamics::output::summary::rubber::{
+    self as summary, harmonic_section, harmonic_series,
+};
+use bearing_dynamics::scene::rubber_problem::vibrating;
+use bearing_dynamics::scene::solid::{Harmonic, RubberScene};
+use bearing_dynamics::scene::{Document, SolidScene};
+use bearing_dynamics::solver::clock::told;
+use bearing_dynamics::solver::plan::tally::Tally;
+use bearing_dynamics::solver::solid::foretold;
+use bearing_dynamics::solver::solid::rubber::relaxed::relaxed;
+use bearing_dynamics::solver::solid::rubber::vibration::{Answer, vibrations};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+pub const HARMONIC: &str = "harmonic.csv";
+
+pub fn run(
+    path: &Path,
+    document: &Document,
+    (scene, rubber): (&SolidScene, &RubberScene),
+    out: &Option<PathBuf>,
+    dry: bool,
+) -> CommandResult {
+    let folder = match dry {
+        true => None,
+        false => Some(claimed(&results_folder(path, out), Writes::Statics)?),
+    };
+    let prepared = prepare(document, scene, rubber)?;
+    let Prepared { built, setup, free, mesh_seconds } = &prepared;
+    refuse_free(path, free)?;
+    let time = scene.run.as_ref().map_or(0.0, |run| run.end);
+    let start = Instant::now();
+    let model = &setup.model;
+    let cost = foretold::rubber(model, "statics");
+    let found = watched(&cost, &model.unknowns, "", || relaxed(model, time))??;
+    let mut seconds =
+        vec![("mesh".into(), *mesh_seconds), ("solve".into(), start.elapsed().as_secs_f64())];
+    let start = Instant::now();
+    let mut ran = found.ran;
+    let answers = match &rubber.harmonic {
+        Some(asked) => Some((asked, answers(document, &prepared, asked, &mut ran)?)),
+        None => None,
+    };
+    if answers.is_some() {
+        seconds.push(("vibrations".into(), start.elapsed().as_secs_f64()));
+    }
+    let stress = rubber_stresses(model, &found.state)?;
+    let mut record = record(scene, plan::items(scene, rubber, &prepared, None), seconds)?;
+    record.ran.solids = vec![ran];
+    let section = match &answers {
+        Some((asked, answers)) => Some(harmonic_section(&asked.set, axis(asked), answers)?),
+        None => None,
+    };
+    let (summary, series) =
+        summary::rubber_statics(setup, built, (time, &found), &stress, section, &record)?;
+    say_mesh_notes(built)?;
+    say(&format!("relaxed, under loads and displacements of t = {} s\n", told(time)))?;
+    say(&table(&summary))?;
+    if let Some((asked, answers)) = &answers {
+        say(&harmonic_table(asked, answers))?;
+    }
+    let Some(folder) = folder else { return Ok(Outcome::Done) };
+    remove_earlier(&folder)?;
+    let file = file_name("fields", 0);
+    let displacement = &found.state.displacement;
+    write_fields(&folder.join(&file), &built.mesh, displacement, None, &stress, None)?;
+    write_list(&folder, &[(0.0, file)])?;
+    series.write_csv(&folder.join("series.csv"))?;
+    series.write_npy(&folder.join("series.npy"))?;
+    let mut files = 6;
+    if let Some((_, answers)) = &answers {
+        harmonic_series(answers)?.write_csv(&folder.join(HARMONIC))?;
+        files += 1;
+    }
+    write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
+    say(&format!("wrote {files} files to {}\n", folder.display()))?;
+    Ok(Outcome::Done)
+}
+
+fn answers(
+    document: &Document,
+    prepared: &Prepared,
+    asked: &Harmonic,
+    ran: &mut Tally,
+) -> Result<Vec<Answer>, Box<dyn std::error::Error>> {
+    let model = vibrating(&prepared.setup, asked)
+        .map_err(|error| placed(document, Some(error.about()), error))?;
+    Ok(vibrations(&model, &asked.frequencies, ran)?)
+}
+
+fn axis(asked: &Harmonic) -> &'static str {
+    ["x", "y", "z"][asked.axis]
+}
+
+fn harmonic_table(asked: &Harmonic, answers: &[Answer]) -> String {
+    let mut text = format!("small vibrations of \"{}\" along {}\n", asked.set, axis(asked));
+    let _ = writeln!(
+        text,
+        "{:>14}{:>16}{:>16}{:>16}{:>12}",
+        "frequency, Hz", "K', N/m", "K'', N/m", "K_d, N/m", "eta_d"
+    );
+    for answer in answers {
+        let (stiffness, of) = (&answer.stiffness, &answer.hysteresis);
+        let _ = writeln!(
+            text,
+            "{:>14}{:>16.1}{:>16.1}{:>16.1}{:>12.5}",
+            told(answer.frequency),
+            stiffness.storage,
+            stiffness.loss,
+            of.dynamic_stiffness,
+            of.damping_ratio
+        );
+    }
+    text
+}

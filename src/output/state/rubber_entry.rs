@@ -1,0 +1,91 @@
+//! A solid of rubber in `state.json`.
+
+use super::arrays::{arrays_name, table};
+use super::entries::Refused;
+use crate::elements::tet10::POINTS;
+use crate::output::session::RubberParts;
+use crate::solver::solid::rubber::checkpoint::{Factored, RubberCheckpoint, RubberState};
+use crate::solver::solid::rubber::steps::StepCounts;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::path::Path;
+
+/// See [`RubberCheckpoint`]. Arrays have all its long parts in one column.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RubberEntry {
+    pub arrays: String,
+    /// The last step and what the next should be, s.
+    pub last: f64,
+    pub next: f64,
+    /// Largest total deviatoric stress so far, Pa.
+    pub scale: f64,
+    /// J.
+    pub work: f64,
+    /// Steps accepted and undone, iterations and factorisations.
+    pub counts: [u64; 4],
+    /// Gain of the step that the factors at hand are of.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub factored: Option<f64>,
+}
+
+impl RubberEntry {
+    pub(super) fn of(kept: &RubberCheckpoint, number: u64) -> RubberEntry {
+        let StepCounts { accepted, undone } = kept.counts;
+        RubberEntry {
+            arrays: arrays_name(number),
+            last: kept.state.last,
+            next: kept.next,
+            scale: kept.scale,
+            work: kept.state.work,
+            counts: [accepted, undone, kept.iterations as u64, kept.factorisations as u64],
+            factored: kept.factored.as_ref().map(|factored| factored.gain),
+        }
+    }
+
+    pub(super) fn numbers(&self) -> Vec<f64> {
+        let gain = self.factored.into_iter();
+        [self.last, self.next, self.scale, self.work].into_iter().chain(gain).collect()
+    }
+
+    /// At `time` (s), with the arrays from `folder`.
+    pub(super) fn checkpoint(
+        &self,
+        folder: &Path,
+        time: f64,
+        parts: &RubberParts,
+    ) -> Result<RubberCheckpoint, Refused> {
+        let problem = &parts.setup.model.problem;
+        let (nodes, points) = (problem.nodes.len(), POINTS * problem.elements.len());
+        let terms = problem.material.maxwell.len();
+        let [accepted, undone, iterations, factorisations] = self.counts;
+        let bare = RubberCheckpoint {
+            state: RubberState { time, last: self.last, work: self.work, ..RubberState::default() },
+            next: self.next,
+            scale: self.scale,
+            counts: StepCounts { accepted, undone },
+            iterations: iterations as usize,
+            factorisations: factorisations as usize,
+            factored: self.factored.map(|gain| Factored { gain, ..Factored::default() }),
+        };
+        let sizes = [nodes, points, terms];
+        let column = table(folder, &self.arrays, (bare.length(sizes), 1))?;
+        let all: Vec<f64> = column.data().iter().copied().collect();
+        let damaged = Refused::Damaged("its arrays have another shape than the mesh asks for");
+        bare.with_numbers(sizes, &all).ok_or(damaged)
+    }
+}
+
+/// What decides the bits of a solid of rubber.
+pub(super) fn hash_rubber(hash: &mut Sha256, parts: &RubberParts) {
+    let problem = &parts.setup.model.problem;
+    for value in problem.nodes.iter().flatten() {
+        hash.update(value.to_bits().to_le_bytes());
+    }
+    for node in problem.elements.as_flattened() {
+        hash.update(node.to_le_bytes());
+    }
+    hash.update(format!("{:?} {:?}", problem.material, problem.prescribed));
+    hash.update(format!("{:?} {:?}", problem.loads, parts.stepping));
+    hash.update(format!("{:?} {:?}", parts.setup.probes, parts.setup.supports));
+}

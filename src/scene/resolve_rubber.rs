@@ -1,0 +1,236 @@
+//! From the given keys to what a solid is made of: linear elastic, or rubber with all that follows from it.
+
+use crate::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
+use crate::ch2_housing::elastomer::maxwell::Maxwell;
+use crate::ch2_housing::elastomer::{Elastomer, ElastomerError, named};
+use crate::scene::document::Document;
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::resolve::Reader;
+use crate::scene::resolve_solid::{item_number, missing};
+use crate::scene::solid::{Harmonic, Law, MeshSource, RubberScene, RunSteps};
+use crate::scene::units::plain;
+use crate::scene::value::Checked;
+use crate::solver::solid::rubber::steps::Stepping;
+
+const LAW: &str = "solid.material.law";
+/// B over C_R where nothing is given: that of Tables 2.3 and 3.1.
+const BULK_RATIO: f64 = 100.0;
+/// N of both tables.
+const CHAIN: f64 = 8.0;
+/// Densities, kg/m³.
+const STEEL: f64 = 7850.0;
+const RUBBER: f64 = 1100.0;
+/// Estimated error of the stress in a step, over the largest so far.
+const ACCURACY: f64 = 1e-3;
+
+/// Keys and tables that only rubber has.
+const OF_RUBBER: [&str; 8] = [
+    "solid.material.rubber_modulus",
+    "solid.material.table",
+    "solid.material.chain",
+    "solid.material.chain_pull",
+    "solid.material.bulk_ratio",
+    "solid.material.bulk_modulus",
+    "solid.material.maxwell",
+    "solid.harmonic",
+];
+
+/// Keys that a solid of rubber has no use for, and why.
+const NOT_OF_RUBBER: [(&str, &str); 10] = [
+    ("solid.material.youngs_modulus", "it belongs to the law \"linear-elastic\""),
+    ("solid.material.poisson_ratio", "it belongs to the law \"linear-elastic\""),
+    ("solid.damping", "what rubber loses follows from its Maxwell elements"),
+    ("solid.damped_motion", "what rubber loses follows from its Maxwell elements"),
+    ("solid.velocity", NO_INERTIA),
+    ("solid.spin", NO_INERTIA),
+    ("modes", NO_INERTIA),
+    ("numerics.method", NO_INERTIA),
+    ("numerics.step_fraction", NO_INERTIA),
+    ("numerics.energy_limit", "implicit steps end in equilibrium, and no ledger is kept"),
+];
+const NO_INERTIA: &str = "rubber is solved without inertia, in implicit steps";
+
+/// Whether the scene's solid is of rubber.
+pub(super) fn is_rubber(document: &Document) -> bool {
+    matches!(document.value(LAW), Some(Checked::Choice("elastomer")))
+}
+
+/// What a housing is made of.
+pub(super) fn refuse_rubber(document: &Document) -> Result<(), SceneError> {
+    if !is_rubber(document) {
+        return Ok(());
+    }
+    let reason = "a housing of rubber is not built";
+    let advice = "leave `law` out, or take the solid by itself: without [bearing] and [housing]";
+    Err(document.error(LAW, Problem::NotApplicable { reason, advice: advice.to_string() }))
+}
+
+/// The law of the material, and its density (kg/m³).
+pub(super) fn material(reader: &mut Reader) -> Result<(Law, f64), SceneError> {
+    let document = reader.document;
+    if !is_rubber(document) {
+        if let Some(key) = OF_RUBBER.iter().find_map(|part| document.first_below(part)) {
+            let reason = "it belongs to the law \"elastomer\"";
+            let advice = "write `law = \"elastomer\"` in [solid.material], or leave it out";
+            let problem = Problem::NotApplicable { reason, advice: advice.to_string() };
+            return Err(document.error(key, problem));
+        }
+        let mut number = |key: &str, usual: f64| {
+            reader.number(&format!("solid.material.{key}")).unwrap_or(usual)
+        };
+        let law = Law::LinearElastic {
+            youngs_modulus: number("youngs_modulus", 210e9),
+            poisson_ratio: number("poisson_ratio", 0.3),
+        };
+        return Ok((law, density(reader, STEEL, "bearing steel")));
+    }
+    for (key, reason) in NOT_OF_RUBBER {
+        if let Some(given) = document.first_below(key) {
+            let problem = Problem::NotApplicable { reason, advice: "leave it out".to_string() };
+            return Err(document.error(given, problem));
+        }
+    }
+    let table = reader.choice_if_given("solid.material.table");
+    let material = rubber(reader, table)?;
+    let density = density(reader, RUBBER, "usual for filled rubber; the source states none");
+    let harmonic = harmonic(reader)?;
+    Ok((Law::Elastomer(Box::new(RubberScene { material, table, harmonic })), density))
+}
+
+/// The density that is given, else a usual one.
+fn density(reader: &mut Reader, usual: f64, reason: &str) -> f64 {
+    const KEY: &str = "solid.material.density";
+    reader.given_number(KEY).unwrap_or_else(|| {
+        reader.note(KEY, &format!("{} kg/m^3", plain(usual)), reason);
+        usual
+    })
+}
+
+/// Keys given beside a table take the place of what it says.
+fn rubber(reader: &mut Reader, table: Option<&'static str>) -> Result<Elastomer, SceneError> {
+    let document = reader.document;
+    let base = match table {
+        Some("2.3") => Some(named::table_2_3()),
+        Some(_) => Some(named::table_3_1()),
+        None => None,
+    };
+    let given = |key: &str| reader.given_number(&format!("solid.material.{key}"));
+    let [modulus, chain, ratio, bulk] =
+        ["rubber_modulus", "chain", "bulk_ratio", "bulk_modulus"].map(given);
+    let modulus = match modulus.or(base.as_ref().map(|base| base.network.modulus)) {
+        Some(modulus) => modulus,
+        None => {
+            let because = " with `law = \"elastomer\"` and no `table`";
+            return Err(reader.missing("solid.material.rubber_modulus", because));
+        }
+    };
+    let locking = chain.unwrap_or_else(|| {
+        if table.is_none() {
+            reader.note("solid.material.chain", &plain(CHAIN), "as in Tables 2.3 and 3.1");
+        }
+        CHAIN
+    });
+    let bulk = match (bulk, ratio) {
+        (Some(bulk), _) => bulk,
+        (None, Some(ratio)) => ratio * modulus,
+        (None, None) => {
+            if table.is_none() {
+                let reason = "100 C_R, as in Tables 2.3 and 3.1";
+                reader.note("solid.material.bulk_ratio", &plain(BULK_RATIO), reason);
+            }
+            BULK_RATIO * modulus
+        }
+    };
+    let pull = match reader.choice("solid.material.chain_pull") {
+        Some("inverse-langevin") => ChainPull::Exact,
+        _ => ChainPull::FiveTerms,
+    };
+    let network = EightChain::new(modulus, locking, bulk, pull).map_err(|error| {
+        let key = match error {
+            ElastomerError::Modulus(_) => "rubber_modulus",
+            ElastomerError::Bulk(_) => "bulk_modulus",
+            _ => "chain",
+        };
+        let reason = "with the inverse Langevin function the chains are straight in the undeformed rubber where it \
+                      is 1 or less";
+        let advice = "take more than 1; the source has 8".to_string();
+        document.error(
+            &format!("solid.material.{key}"),
+            Problem::NotApplicable { reason, advice },
+        )
+    })?;
+    let mut maxwell = Vec::new();
+    for item in document.items("solid.material.maxwell") {
+        let number = |key: &str, example: &str| {
+            item_number(item, key).ok_or_else(|| missing(item, key, "", example))
+        };
+        let gamma = number("gamma", "gamma = 0.492")?;
+        let tau = number("relaxation_time", "relaxation_time = \"10 s\"")?;
+        maxwell.push(Maxwell { gamma, tau });
+    }
+    if let Some(base) = base.filter(|_| maxwell.is_empty()) {
+        maxwell = base.maxwell;
+        if table == Some("2.3") {
+            let value = "those of Table 3.1";
+            let reason = "Table 2.3 prints none; the source says that they were adjusted";
+            reader.note("solid.material.maxwell", value, reason);
+        }
+    }
+    Ok(Elastomer { network, maxwell })
+}
+
+fn harmonic(reader: &Reader) -> Result<Option<Harmonic>, SceneError> {
+    let document = reader.document;
+    if document.first_below("solid.harmonic").is_none() {
+        return Ok(None);
+    }
+    let frequencies = match document.value("solid.harmonic.frequencies") {
+        Some(Checked::Quantities(frequencies)) => frequencies.clone(),
+        _ => return Err(reader.missing("solid.harmonic.frequencies", "")),
+    };
+    let set = match document.value("solid.harmonic.set") {
+        Some(Checked::Text(set)) => set.clone(),
+        _ => return Err(reader.missing("solid.harmonic.set", ", the set that is moved")),
+    };
+    let axis = match reader.choice_if_given("solid.harmonic.axis") {
+        Some("x") => 0,
+        Some("y") => 1,
+        Some(_) => 2,
+        None => return Err(reader.missing("solid.harmonic.axis", ", along which it is moved")),
+    };
+    Ok(Some(Harmonic { set, axis, frequencies }))
+}
+
+/// Implicit elements are those of ten nodes.
+pub(super) fn check_order(
+    document: &Document,
+    source: &MeshSource,
+    order: Option<crate::mesh::Order>,
+) -> Result<(), SceneError> {
+    use crate::mesh::Order;
+    let linear = match source {
+        // A file says what it has; the mesh is looked at when it is read.
+        MeshSource::File { .. } => order == Some(Order::Linear),
+        _ => order != Some(Order::Quadratic),
+    };
+    if !(linear && is_rubber(document)) {
+        return Ok(());
+    }
+    let reason = FOUR_NODES_LOCK;
+    let advice = "write `order = 2` in [solid.mesh]".to_string();
+    Err(document.error("solid.mesh.order", Problem::NotApplicable { reason, advice }))
+}
+
+pub(super) const FOUR_NODES_LOCK: &str = "four-node elements of rubber lock: it hardly changes its volume, and they can hardly do anything else";
+
+/// How the steps of a run follow from the scene.
+pub(super) fn steps(reader: &mut Reader) -> RunSteps {
+    RunSteps::Implicit(match reader.given_number("numerics.step") {
+        Some(step) => Stepping::Fixed(step),
+        None => Stepping::Accuracy(reader.given_number("numerics.accuracy").unwrap_or_else(|| {
+            let reason = "of the largest stress so far, in each step";
+            reader.note("numerics.accuracy", &plain(ACCURACY), reason);
+            ACCURACY
+        })),
+    })
+}

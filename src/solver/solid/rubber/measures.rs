@@ -1,0 +1,94 @@
+//! What a solid of rubber holds: the energy of its network and its stresses.
+
+use super::checkpoint::RubberState;
+use super::error::StepFailure;
+use super::model::RubberModel;
+use super::newton::{at_points, in_element, mean_stresses};
+use crate::elements::tet10::{POINTS, Tet10};
+use crate::elements::tet10_nodal;
+use crate::kinematics::strain::{Sym3, cauchy};
+use crate::kinematics::vec3::Vec3;
+use crate::solver::solid::model::corners;
+use crate::solver::solid::stress::{at_ten_nodes, average_at_nodes};
+
+/// Energy of the network at given displacements, J: of the chains at the quadrature points and of volume around
+/// the corner nodes, whose derivatives the forces are.
+///
+/// # Errors
+/// An element turned inside out or beyond what its material can bear.
+pub fn network_energy(model: &RubberModel, displacement: &[Vec3]) -> Result<f64, StepFailure> {
+    let network = &model.problem.material.network;
+    let mut energy = 0.0;
+    for (index, (tet, nodes)) in model.tets.iter().zip(&model.problem.elements).enumerate() {
+        let (strains, ..) = tet10_nodal::strains(tet, &corners(displacement, nodes));
+        for (point, strain) in tet.points.iter().zip(&strains) {
+            let density = network.isochoric_energy(strain).map_err(in_element(model, index))?;
+            energy += point.volume * density;
+        }
+    }
+    let mut means = vec![0.0; model.patches.len()];
+    mean_stresses(model, displacement, &mut means)?;
+    for (mean, patch) in means.iter().zip(&model.patches) {
+        energy += patch.volume * network.volume_energy(mean / network.bulk);
+    }
+    Ok(energy)
+}
+
+/// Cauchy stresses, Pa: XX YY ZZ XY YZ ZX.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RubberStresses {
+    /// Means of the elements by undeformed volume.
+    pub cells: Vec<Sym3>,
+    /// Continued from the quadrature points and averaged over the elements at a node.
+    pub nodes: Vec<Sym3>,
+}
+
+/// Cauchy stress at the quadrature points of every element, Pa: of network, Maxwell elements and volume.
+///
+/// # Errors
+/// An element turned inside out.
+pub fn point_stresses(
+    model: &RubberModel,
+    state: &RubberState,
+) -> Result<Vec<[Sym3; POINTS]>, StepFailure> {
+    let mut means = vec![0.0; model.patches.len()];
+    mean_stresses(model, &state.displacement, &mut means)?;
+    // A relaxed state has no history.
+    let terms = state.history.len() / state.deviatoric.len().max(1);
+    let of = |index: usize| {
+        let moved = corners(&state.displacement, &model.problem.elements[index]);
+        let means = at_points(model, index, &means);
+        std::array::from_fn(|point| {
+            let at = POINTS * index + point;
+            let mut second = state.deviatoric[at];
+            for held in &state.history[terms * at..terms * (at + 1)] {
+                second.iter_mut().zip(held).for_each(|(sum, part)| *sum += part);
+            }
+            let h = model.tets[index].points[point].displacement_gradient(&moved);
+            let mut stress = cauchy(&h, &second);
+            stress[..3].iter_mut().for_each(|normal| *normal += means[point]);
+            stress
+        })
+    };
+    Ok((0..model.tets.len()).map(of).collect())
+}
+
+/// Stresses of elements and at nodes.
+///
+/// # Errors
+/// An element turned inside out.
+pub fn stresses(model: &RubberModel, state: &RubberState) -> Result<RubberStresses, StepFailure> {
+    let at_points = point_stresses(model, state)?;
+    let mean = |(stresses, tet): (&[Sym3; POINTS], &Tet10)| {
+        let mut sum = [0.0; 6];
+        for (stress, point) in stresses.iter().zip(&tet.points) {
+            sum.iter_mut().zip(stress).for_each(|(sum, s)| *sum += point.volume * s);
+        }
+        sum.map(|sum| sum / tet.volume())
+    };
+    let cells = at_points.iter().zip(&model.tets).map(mean).collect();
+    let elements = model.problem.elements.iter().zip(&model.tets).zip(&at_points);
+    let elements = elements
+        .map(|((nodes, tet), stresses)| (nodes.as_slice(), at_ten_nodes(stresses), tet.volume()));
+    Ok(RubberStresses { cells, nodes: average_at_nodes(model.problem.nodes.len(), elements) })
+}

@@ -1,0 +1,72 @@
+//! The relaxed equilibrium of a solid of rubber: long after every Maxwell element has forgotten how it came there.
+
+use super::checkpoint::RubberState;
+use super::error::{RubberError, StepFailure};
+use super::measures::network_energy;
+use super::model::RubberModel;
+use super::steps::{RubberSolid, StepOptions, Stepping};
+use crate::kinematics::vec3::Vec3;
+use crate::solver::plan::{Stage, tally::Tally};
+use crate::solver::profile::Profile;
+use thiserror::Error;
+
+/// An equilibrium, and what it took.
+#[derive(Clone, Debug)]
+pub struct Relaxed {
+    pub state: RubberState,
+    /// Of the supports on all nodes, N.
+    pub reactions: Vec<Vec3>,
+    /// Of the network, J.
+    pub energy: f64,
+    /// Parts that supports and loads were brought up in.
+    pub steps: u64,
+    pub iterations: usize,
+    pub factorisations: usize,
+    pub ran: Tally,
+}
+
+/// No equilibrium at, or on the way to, what supports and loads ask for.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RelaxedError {
+    #[error(transparent)]
+    Rubber(#[from] RubberError),
+    #[error(
+        "no equilibrium was found beyond {:.3} % of the given loads and displacements: {failure}", 100.0 * part
+    )]
+    Lost { part: f64, failure: StepFailure },
+}
+
+/// Supports and loads are brought up together to what they are at time `t` (s): at once, or in as many parts
+/// as it takes.
+///
+/// # Errors
+/// No equilibrium; a body that is free to move; no memory.
+pub fn relaxed(model: &RubberModel, t: f64) -> Result<Relaxed, RelaxedError> {
+    let ramp = |to: f64| Profile::Ramp { from: 0.0, to, start: 0.0, duration: 1.0 };
+    let mut model = model.clone();
+    model.problem.material.maxwell.clear();
+    for held in &mut model.problem.prescribed {
+        held.profile = ramp(held.profile.value(t));
+    }
+    for load in &mut model.problem.loads {
+        load.profile = ramp(load.profile.value(t));
+    }
+    let stepping = Stepping::Fixed(1.0);
+    let options = StepOptions { stepping, smallest: 1e-4, ..StepOptions::default() };
+    let mut solid = RubberSolid::new(&model, options)?;
+    solid.advance(1.0, |_| {}).map_err(|error| match error {
+        RubberError::NoEquilibrium { time, failure, .. } => {
+            RelaxedError::Lost { part: time, failure }
+        }
+        other => other.into(),
+    })?;
+    let state = solid.state().clone();
+    let lost = |failure| RelaxedError::Lost { part: 1.0, failure };
+    let energy = network_energy(&model, &state.displacement).map_err(lost)?;
+    let (iterations, factorisations) = solid.work();
+    let mut ran = *solid.ran();
+    let steps = ran.take(Stage::Implicit);
+    ran.add(Stage::SolidStatics, steps);
+    let reactions = solid.support_forces();
+    Ok(Relaxed { state, reactions, energy, steps, iterations, factorisations, ran })
+}

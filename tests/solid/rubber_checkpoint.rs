@@ -1,0 +1,154 @@
+//! Steps of rubber that go on from a checkpoint, what they do by their plan, and the stresses that they leave.
+
+use bearing_dynamics::ch2_housing::elastomer::{Elastomer, named};
+use bearing_dynamics::elements::tet10::POINTS;
+use bearing_dynamics::mesh::Elements;
+use bearing_dynamics::mesh::generate::bar;
+use bearing_dynamics::solver::plan::rubber::{Method, items};
+use bearing_dynamics::solver::plan::tally::{Ran, Tally};
+use bearing_dynamics::solver::plan::{Item, counted};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::model::Load;
+use bearing_dynamics::solver::solid::rubber::checkpoint::RubberCheckpoint;
+use bearing_dynamics::solver::solid::rubber::measures::{point_stresses, stresses};
+use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solver::solid::rubber::relaxed::relaxed;
+use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use bearing_dynamics::solver::solid::rubber::vibration::vibrations;
+
+const HELD: Option<Profile> = Some(Profile::ZERO);
+
+/// A bar that is pulled along X and free to grow thinner, or held at both ends altogether.
+fn pulled(by: Profile, bonded: bool, material: Elastomer) -> RubberModel {
+    let mesh = bar([0.02, 0.01, 0.01], [2, 1, 1]).unwrap().quadratic().unwrap().mesh;
+    let across = if bonded { [HELD, HELD] } else { [None, None] };
+    let [y, z] = across;
+    let sets = [
+        ("x_low", [HELD, y.clone(), z.clone()]),
+        ("x_high", [Some(by), y, z]),
+        ("y_low", [None, HELD, None]),
+        ("z_low", [None, None, HELD]),
+    ];
+    let prescribed = supports(&mesh, &sets);
+    let Elements::Quadratic(elements) = mesh.elements else { panic!("ten nodes") };
+    let problem =
+        RubberProblem { nodes: mesh.nodes, elements, material, prescribed, loads: Vec::new() };
+    RubberModel::new(problem).unwrap()
+}
+
+fn ramp() -> Profile {
+    Profile::Ramp { from: 0.0, to: 4e-3, start: 0.01, duration: 0.1 }
+}
+
+fn stepped(model: &RubberModel, stepping: Stepping) -> RubberSolid<'_> {
+    RubberSolid::new(model, StepOptions { stepping, ..StepOptions::default() }).unwrap()
+}
+
+fn solid(model: &RubberModel) -> RubberSolid<'_> {
+    stepped(model, Stepping::Accuracy(1e-3))
+}
+
+fn bits(solid: &RubberSolid) -> Vec<u64> {
+    solid.checkpoint().numbers().iter().map(|x| x.to_bits()).collect()
+}
+
+#[test]
+fn steps_from_a_checkpoint_have_the_same_bits() {
+    let model = pulled(ramp(), true, named::table_3_1());
+    let points = POINTS * model.tets.len();
+    let sizes = [model.problem.nodes.len(), points, 14];
+    // At rest, in the ramp, at its end and behind it; steps whose factors change, and steps that share them.
+    let cases = [0.005, 0.03, 0.11, 0.15].map(|first| {
+        [Stepping::Accuracy(1e-3), Stepping::Fixed(2e-3)].map(|stepping| (first, stepping))
+    });
+    for (first, stepping) in cases.into_iter().flatten() {
+        let mut whole = stepped(&model, stepping);
+        whole.advance(first, |_| {}).unwrap();
+        let kept = whole.checkpoint();
+        let numbers = kept.numbers();
+        assert_eq!(numbers.len(), kept.length(sizes));
+        // Through the numbers of a file.
+        let mut bare = kept.clone();
+        for part in [&mut bare.state.deviatoric, &mut bare.state.history, &mut bare.state.rate] {
+            part.clear();
+        }
+        let through = bare.clone().with_numbers(sizes, &numbers).unwrap();
+        assert_eq!(through, kept);
+        assert_eq!(bare.with_numbers(sizes, &numbers[1..]), None);
+        whole.advance(0.3, |_| {}).unwrap();
+        let mut other = stepped(&model, stepping);
+        other.restore(&through).unwrap();
+        other.advance(0.3, |_| {}).unwrap();
+        assert_eq!(bits(&whole), bits(&other), "from {first} s");
+        assert_eq!(whole.work(), other.work());
+        assert_eq!(whole.counts, other.counts);
+    }
+    let nothing = RubberCheckpoint::default().with_numbers(sizes, &[]);
+    assert_eq!(nothing, None);
+}
+
+fn check(what: &str, plan: &[Item], ran: Tally) {
+    let ran = Ran { solids: vec![ran], ..Ran::default() };
+    for of in counted(plan, &ran) {
+        assert_eq!(of.ran > 0, of.does, "{what}: {of:?}");
+    }
+}
+
+#[test]
+fn rubber_does_what_is_planned_and_nothing_else() {
+    let without = |maxwell: bool, loads: bool| {
+        let mut material = named::table_3_1();
+        if !maxwell {
+            material.maxwell.clear();
+        }
+        let mut model = pulled(ramp(), true, material);
+        if loads {
+            let forces = vec![(40, [0.0, 0.0, 1e-3])];
+            model.problem.loads.push(Load { forces, profile: Profile::Constant(1.0) });
+        }
+        model
+    };
+    for (maxwell, loads) in [(true, true), (true, false), (false, true), (false, false)] {
+        let model = without(maxwell, loads);
+        let what = format!("Maxwell elements {maxwell}, loads {loads}");
+        let planned = |method: &Method| items(&model.problem, 0, "a bar", method);
+        let mut moving = solid(&model);
+        moving.advance(0.05, |_| {}).unwrap();
+        check(&what, &planned(&Method::Steps("so".into())), *moving.ran());
+        let found = relaxed(&model, 0.2).unwrap();
+        check(&what, &planned(&Method::Statics { frequencies: 0 }), found.ran);
+        let mut ran = found.ran;
+        vibrations(&model, &[1.0, 2.0], &mut ran).unwrap();
+        if maxwell {
+            check(&what, &planned(&Method::Statics { frequencies: 2 }), ran);
+        }
+    }
+}
+
+/// A bar under tension has one stress, the force over the deformed section, and nothing across.
+#[test]
+fn stresses_hold_the_forces() {
+    let model = pulled(ramp(), false, named::table_3_1());
+    let mut moving = solid(&model);
+    // In the ramp, where much of the stress is in Maxwell elements.
+    moving.advance(0.06, |_| {}).unwrap();
+    let state = moving.state();
+    let sum = |n: &usize| model.problem.nodes[*n].iter().sum::<f64>();
+    let all = 0..model.problem.nodes.len();
+    let corner = all.max_by(|a, b| sum(a).total_cmp(&sum(b))).unwrap();
+    let end = model.problem.nodes[corner][0];
+    let nodes = (0u32..).zip(&model.problem.nodes);
+    let at_end: Vec<u32> = nodes.filter(|(_, at)| at[0] == end).map(|(node, _)| node).collect();
+    let force = moving.support_force(&at_end)[0];
+    let [_, v, w] = state.displacement[corner];
+    let exact = force / ((0.01 + v) * (0.01 + w));
+    assert!(exact > 1e6, "{exact}");
+    for stress in point_stresses(&model, state).unwrap().as_flattened() {
+        // Iterations end at 1e-9 of the largest force at a node, where four or so of them make the whole.
+        assert!((stress[0] / exact - 1.0).abs() <= 1e-6, "{stress:?} {exact}");
+        assert!(stress[1..].iter().all(|s| s.abs() <= 1e-6 * exact), "{stress:?}");
+    }
+    let found = stresses(&model, state).unwrap();
+    let all = found.cells.iter().chain(&found.nodes);
+    assert!(all.into_iter().all(|stress| (stress[0] / exact - 1.0).abs() <= 1e-6));
+}
