@@ -20,9 +20,9 @@ use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
 use bearing_dynamics::solver::solid::rubber::model::{
     Moment, RubberModel, RubberProblem, supports,
 };
-use bearing_dynamics::solver::solid::rubber::newton::{StepLaw, Tangent, add_forces};
 use bearing_dynamics::solver::solid::rubber::sleeve::{SleeveMotion, sleeve_stiffness};
 use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use bearing_dynamics::solver::solid::rubber::tangent::{StepLaw, Tangent, add_forces};
 use bearing_dynamics::solver::solid::tangent::PRESCRIBED;
 use std::f64::consts::TAU;
 

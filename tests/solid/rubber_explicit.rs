@@ -17,7 +17,7 @@ use bearing_dynamics::solver::solid::explicit::{ExplicitSolid, SolidStepping, pa
 use bearing_dynamics::solver::solid::model::{Prescribed, SolidError};
 use bearing_dynamics::solver::solid::rubber::error::RubberError;
 use bearing_dynamics::solver::solid::rubber::explicit::RubberBody;
-use bearing_dynamics::solver::solid::rubber::newton::{StepLaw, add_forces};
+use bearing_dynamics::solver::solid::rubber::tangent::{StepLaw, add_forces};
 use bearing_dynamics::solver::solid::rubber::tet_forces::{History, MeanStress};
 
 const BOTH: [MeanStress; 2] = [MeanStress::OfElement, MeanStress::AroundNodes];

@@ -48,7 +48,7 @@ impl RubberState {
 /// The state that the factors at hand are of: a search begins with them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Factored {
-    /// See [`super::newton::StepLaw`].
+    /// See [`super::tangent::StepLaw`].
     pub gain: f64,
     pub displacement: Vec<Vec3>,
     pub carried: Vec<Sym3>,

@@ -9,7 +9,8 @@
 
 use super::error::{RubberError, at_rest};
 use super::model::{Moment, RubberModel};
-use super::newton::{StepLaw, Stop, Tangent};
+use super::newton::Stop;
+use super::tangent::{StepLaw, Tangent};
 use crate::ch2_housing::elastomer::maxwell::complex_factor;
 use crate::elements::tet10::POINTS;
 use crate::elements::tet10_nodal;

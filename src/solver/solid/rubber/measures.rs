@@ -3,7 +3,7 @@
 use super::checkpoint::RubberState;
 use super::error::StepFailure;
 use super::model::RubberModel;
-use super::newton::{at_points, in_element, mean_stresses};
+use super::tangent::{at_points, in_element, mean_stresses};
 use crate::elements::tet10::{POINTS, Tet10};
 use crate::elements::tet10_nodal;
 use crate::kinematics::strain::{Sym3, cauchy};

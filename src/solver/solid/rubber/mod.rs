@@ -12,6 +12,7 @@ pub mod prony;
 pub mod relaxed;
 pub mod sleeve;
 pub mod steps;
+pub mod tangent;
 pub mod tet4;
 pub mod tet_forces;
 pub mod vibration;

@@ -45,11 +45,9 @@ pub fn bushing_spring(
     // the rubber itself is none.
     let times = spread(0.03 / fastest, longest.max(0.03 / fastest), PER_DECADE);
     let asked: Vec<f64> = std::iter::once(0.0).chain(pulsations.iter().copied()).collect();
-    let mut law = SpringDashpot::default();
-    law.maxwell = times
-        .iter()
-        .map(|time| MaxwellElement { stiffness: [0.0; 6], relaxation_time: *time })
-        .collect();
+    let element = |time: &f64| MaxwellElement { stiffness: [0.0; 6], relaxation_time: *time };
+    let maxwell = times.iter().map(element).collect();
+    let mut law = SpringDashpot { maxwell, ..SpringDashpot::default() };
     let mut misses = [0.0; 4];
     for (motion, miss) in SleeveMotion::ALL.into_iter().zip(&mut misses) {
         let answers = sleeve_stiffness(mesh, part, material.clone(), motion, &asked, SETTLED)?;

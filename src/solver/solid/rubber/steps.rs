@@ -8,7 +8,8 @@
 use super::checkpoint::{RubberCheckpoint, RubberState};
 use super::error::{RubberError, StepFailure};
 use super::model::{Moment, RubberModel};
-use super::newton::{Convergence, Search, StepLaw, Stop};
+use super::newton::{Convergence, Search, Stop};
+use super::tangent::StepLaw;
 use crate::ch2_housing::elastomer::maxwell::{StepFactors, carried, commit, curvature_error};
 use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::{Sym3, double_dot};
