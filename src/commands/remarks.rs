@@ -197,7 +197,7 @@ pub fn of_springs(scene: &AssemblyScene) -> Vec<String> {
 }
 
 /// Springs of which an equilibrium knows a part only.
-fn at_rest(scene: &AssemblyScene) -> impl Iterator<Item = String> {
+pub fn at_rest(scene: &AssemblyScene) -> impl Iterator<Item = String> {
     scene.springs.iter().filter_map(|Spring { name, damping, maxwell, .. }| {
         let slowest = maxwell.iter().map(|element| element.relaxation_time).fold(0.0, f64::max);
         match (*damping != [0.0; 6], slowest > 0.0) {

@@ -1,14 +1,15 @@
 //! From a scene with a solid of rubber and its mesh to what the implicit steps take.
 
 use crate::elements::tet10::{shape_functions, stiffness_rule};
-use crate::mesh::Elements;
-use crate::scene::solid::{Harmonic, RubberScene, SolidScene};
+use crate::mesh::{Elements, TetMesh};
+use crate::scene::solid::{Harmonic, Held, RubberScene, SolidScene};
 use crate::scene::solid_mesh::BuiltMesh;
 use crate::scene::solid_problem::{NamedNodes, Outside, SolidSetupError, Support, outside};
 use crate::solver::profile::Profile;
 use crate::solver::solid::labels::Labels;
 use crate::solver::solid::model::{Load, Prescribed};
 use crate::solver::solid::rubber::model::{RubberModel, RubberProblem};
+use std::collections::BTreeSet;
 
 /// A solid of rubber ready to be solved, and what is to be written of it.
 #[derive(Clone, Debug)]
@@ -46,8 +47,34 @@ pub fn rubber_setup(
     if scene.gravity != [0.0; 3] {
         model.problem.loads.push(weight(&model, scene.density, scene.gravity));
     }
+    if let Some(asked) = &rubber.harmonic {
+        moves_as_a_whole(scene, mesh, asked)?;
+    }
     let labels = built.labels.clone();
     Ok(RubberSetup { model, labels, density: scene.density, probes, supports, notes })
+}
+
+/// A set that vibrates has no node that another set holds along the same axis: a quarter has no answer to motion
+/// across its planes of symmetry.
+fn moves_as_a_whole(
+    scene: &SolidScene,
+    mesh: &TetMesh,
+    asked: &Harmonic,
+) -> Result<(), SolidSetupError> {
+    let holds = |held: &&Held| held.motion[asked.axis].is_some();
+    if !scene.held.iter().filter(holds).any(|held| held.set == asked.set) {
+        // Said where its stiffness is asked for.
+        return Ok(());
+    }
+    let nodes = |set: &str| mesh.node_sets.get(set).map(Vec::as_slice).unwrap_or_default();
+    let own: BTreeSet<u32> = nodes(&asked.set).iter().copied().collect();
+    let shares = |held: &&Held| {
+        held.set != asked.set && nodes(&held.set).iter().any(|node| own.contains(node))
+    };
+    scene.held.iter().filter(holds).find(shares).map_or(Ok(()), |held| {
+        let (set, other) = (asked.set.clone(), held.set.clone());
+        Err(SolidSetupError::VibratesTwoWays { set, other, axis: ["x", "y", "z"][asked.axis] })
+    })
 }
 
 /// Weight of every element on its nodes.
@@ -67,7 +94,7 @@ fn weight(model: &RubberModel, density: f64, gravity: [f64; 3]) -> Load {
 /// The same body with one set moved by 1 m along an axis, all other supports at rest and no loads.
 ///
 /// # Errors
-/// A set that the supports do not hold along that axis.
+/// A set that the supports do not hold along that axis, or one against which nothing is held.
 pub fn vibrating(setup: &RubberSetup, asked: &Harmonic) -> Result<RubberModel, SolidSetupError> {
     let known = || setup.supports.iter().map(|support| support.name.clone()).collect();
     let support = setup.supports.iter().find(|support| support.name == asked.set);
@@ -81,10 +108,14 @@ pub fn vibrating(setup: &RubberSetup, asked: &Harmonic) -> Result<RubberModel, S
         any |= is_moved;
         *profile = if is_moved { Profile::Constant(1.0) } else { Profile::ZERO };
     }
-    let axis = ["x", "y", "z"][asked.axis];
-    any.then_some(model).ok_or_else(|| SolidSetupError::NotHeld {
-        set: asked.set.clone(),
-        axis,
-        known: known(),
-    })
+    let (set, axis) = (asked.set.clone(), ["x", "y", "z"][asked.axis]);
+    if !any {
+        return Err(SolidSetupError::NotHeld { set, axis, known: known() });
+    }
+    let mut others = setup.supports.iter().filter(|support| support.name != asked.set);
+    let holds = |support: &Support| support.components.iter().any(|(_, of)| *of == asked.axis);
+    if !others.any(holds) {
+        return Err(SolidSetupError::VibratesFreely { set, axis });
+    }
+    Ok(model)
 }

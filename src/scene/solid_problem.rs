@@ -38,6 +38,16 @@ pub enum SolidSetupError {
     )]
     NotHeld { set: String, axis: &'static str, known: Vec<String> },
     #[error(
+        "solid.harmonic.axis: sets \"{set}\" and \"{other}\" hold nodes in common along {axis}, so that \"{set}\" cannot move \
+         along it as a whole. Hint: a plane of symmetry allows motion along itself alone; take the whole body"
+    )]
+    VibratesTwoWays { set: String, other: String, axis: &'static str },
+    #[error(
+        "solid.harmonic.axis: no set but \"{set}\" is held along {axis}, so that moving it meets no stiffness. Hint: hold \
+         another one, or ask along another axis"
+    )]
+    VibratesFreely { set: String, axis: &'static str },
+    #[error(
         "solid.material: the deck has a material ({deck}), which is not taken from there, and the scene names no \
          {}, so that steel's would be in {} place: {steel}. Write what you mean in [solid]: {write}",
         missing.join(" and no "), if missing.len() == 1 { "its" } else { "their" }
@@ -90,6 +100,9 @@ impl SolidSetupError {
             SolidSetupError::Rubber(_) => About::key("solid"),
             SolidSetupError::FourNodes => About::key("solid.mesh.file"),
             SolidSetupError::NotHeld { .. } => About::key("solid.harmonic.set"),
+            SolidSetupError::VibratesTwoWays { .. } | SolidSetupError::VibratesFreely { .. } => {
+                About::key("solid.harmonic.axis")
+            }
             SolidSetupError::NoSuchSet { part: table, index, .. }
             | SolidSetupError::EmptySet { part: table, index, .. } => {
                 About::Item { table, index, key: "set" }

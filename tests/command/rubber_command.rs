@@ -320,6 +320,21 @@ fn what_does_not_fit_rubber_is_refused() {
         ),
         (
             "check",
+            behind("[solid.harmonic]\nset = \"inner\"\naxis = \"x\"\nfrequencies = [\"1 Hz\"]"),
+            &["solid.harmonic.axis", "\"x_low\" hold nodes in common along x"],
+        ),
+        (
+            "check",
+            ("set = \"x_low\"\nx = true", "set = \"x_low\"\ny = true".into()),
+            &["solid.mesh.part", "\"x_low\" is not held along x", "whole"],
+        ),
+        (
+            "check",
+            ("set = \"y_low\"\ny = true", "set = \"y_low\"\nx = true".into()),
+            &["solid.mesh.part", "\"y_low\" is not held along y"],
+        ),
+        (
+            "check",
             behind(
                 "[solid.harmonic]\nset = \"inner\"\naxis = \"z\"\nfrequencies = [\"2 Hz\", \"1 Hz\"]",
             ),

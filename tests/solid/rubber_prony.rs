@@ -1,6 +1,7 @@
 //! A bushing reduced to springs that relax, against its own vibrations and against implicit steps.
 
 use crate::rubber_bodies::{bonded, bushing_mesh, network, rubber_of, scatter};
+use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
 use bearing_dynamics::ch2_housing::elastomer::named;
 use bearing_dynamics::mesh::generate::Part;
 use bearing_dynamics::solver::dynamics::connection::SpringDashpot;
@@ -45,8 +46,8 @@ fn a_bushing_is_a_spring_that_relaxes() {
     println!("{} elements, misses {:?}", maxwell.len(), spring.misses);
     assert_eq!(*damping, [0.0; 6]);
     assert!(maxwell.len() <= 40 && maxwell.iter().all(|of| of.stiffness.iter().all(|k| *k >= 0.0)));
-    // Four times τ a decade: a step of g between two of them, squared.
-    assert!(spring.misses.iter().all(|miss| *miss <= 2e-3), "{:?}", spring.misses);
+    // Eight times τ a decade; the axial motion is missed most, by 4e-5.
+    assert!(spring.misses.iter().all(|miss| *miss <= 2e-4), "{:?}", spring.misses);
     // Another mesh of answers: at frequencies that were neither fitted nor judged.
     for (motion, component) in SleeveMotion::ALL.into_iter().zip([2, 0, 3, 4]) {
         let pulsations = [0.0, TAU * 0.137, TAU * 7.7, TAU * 313.0];
@@ -61,7 +62,7 @@ fn a_bushing_is_a_spring_that_relaxes() {
             }
             let error = (storage - answer.storage).hypot(loss - answer.loss);
             let size = answer.storage.hypot(answer.loss);
-            assert!(error <= 2e-3 * size, "{motion:?} {pulsation}: {:e}", error / size);
+            assert!(error <= 2e-4 * size, "{motion:?} {pulsation}: {:e}", error / size);
         }
     }
 }
@@ -94,7 +95,33 @@ fn a_reduced_bushing_is_pushed_aside_as_the_solid_is() {
         println!("{end} s: {force} N, reduced {expected} N");
         worst = worst.max((force / expected - 1.0).abs());
     }
-    assert!(worst <= 2e-3, "{worst:e}");
+    assert!(worst <= 5e-4, "{worst:e}");
+}
+
+/// Few elements, so that the bushing's own times lie between and beyond them: with γ of 10 up to some τ(1 + γ).
+#[test]
+fn a_bushing_relaxes_more_slowly_than_its_rubber() {
+    for elements in
+        [&[[1.0, 0.01]][..], &[[10.0, 0.01]], &[[100.0, 0.01]], &[[5.0, 0.01], [5.0, 1.3e-3]]]
+    {
+        let maxwell: Vec<Maxwell> =
+            elements.iter().map(|[gamma, tau]| Maxwell::new(*gamma, *tau).unwrap()).collect();
+        let material = rubber_of(network(64.7e6), &maxwell);
+        let spring = bushing_spring(&bushing_mesh(CELLS), Part::Quarter, &material, TAU * 1e3);
+        let misses = spring.unwrap().misses;
+        println!("{elements:?}: {misses:?}");
+        assert!(misses.iter().all(|miss| *miss <= 1e-3), "{elements:?}: {misses:?}");
+    }
+}
+
+#[test]
+fn pulsations_that_are_none_are_refused() {
+    let material = named::table_3_1();
+    let mesh = bushing_mesh([4, 2, 2]);
+    for fastest in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = bushing_spring(&mesh, Part::Quarter, &material, fastest).unwrap_err();
+        assert!(error.to_string().contains("fastest pulsation"), "{error}");
+    }
 }
 
 #[test]

@@ -16,7 +16,7 @@ use bearing_dynamics::solver::solid::rubber::relaxed::relaxed;
 use bearing_dynamics::solver::solid::rubber::vibration::vibrations;
 use nalgebra::Complex;
 
-use crate::bushings::{BULK_RATIO, MAXWELL, complex_factor, shear_over_modulus};
+use crate::bushings::{BULK_RATIO, BUSHING_RADIAL, MAXWELL, complex_factor, shear_over_modulus};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
@@ -33,7 +33,6 @@ pub const CASE: Case = Case {
     run,
 };
 
-const SCENE: &str = include_str!("../../scenes/bushing_radial.toml");
 const SECTION: Section = Section { inner: 0.02, outer: 0.04, length: 0.04 };
 /// C_R of Table 3.1, Pa.
 const MODULUS: f64 = 0.647e6;
@@ -48,7 +47,7 @@ const NODES: usize = 14;
 type C = Complex<f64>;
 
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
-    let document = Document::read_str(SCENE, Format::Toml, "bushing_radial.toml")?;
+    let document = Document::read_str(BUSHING_RADIAL, Format::Toml, "bushing_radial.toml")?;
     let Subject::Solid(scene) = resolve_subject(&document)? else {
         return Err(CaseError::message("no solid in the scene"));
     };

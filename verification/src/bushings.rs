@@ -49,6 +49,9 @@ pub const BUSHING: Bushing = Bushing { inner_diameter: 0.04, thickness: 0.02, le
 pub const BUSHING_3_3: Bushing =
     Bushing { inner_diameter: 0.0197, thickness: 0.00835, length: 0.06 };
 
+/// The shipped scene of the bushing of 3.4.1.
+pub const BUSHING_RADIAL: &str = include_str!("../../scenes/bushing_radial.toml");
+
 /// N and B/C_R of Tables 2.3 and 3.1.
 pub const LOCKING: f64 = 8.0;
 pub const BULK_RATIO: f64 = 100.0;

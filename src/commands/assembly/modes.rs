@@ -6,6 +6,7 @@
 use super::housings::{self, Equilibrium};
 use super::{plan, record};
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::remarks::at_rest;
 use crate::commands::solid::modes::modes_folder;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
@@ -60,15 +61,25 @@ pub fn run(
         let _ = writeln!(text, "{:>4} {:>20.6}  {most}", index + 1, frequency(mode));
     }
     say(&text)?;
-    let mut remarks: Vec<&str> = Vec::new();
+    let mut remarks: Vec<String> = at_rest(scene).collect();
     if found.iter().any(|mode| frequency(mode) == 0.0) {
-        remarks
-            .push("a frequency of zero is of a motion that no contact and no spring brings back");
+        remarks.push(
+            "a frequency of zero is of a motion that no contact and no spring brings back".into(),
+        );
     }
-    remarks.push("about the equilibrium at t = 0, nothing turning; balls are springs without mass");
+    if scene.springs.iter().any(|spring| !spring.maxwell.is_empty()) {
+        remarks.push(
+            "Maxwell elements take no part: what swings faster than they relax meets their stiffness too, and swings faster than \
+             here"
+                .into(),
+        );
+    }
+    remarks.push(
+        "about the equilibrium at t = 0, nothing turning; balls are springs without mass".into(),
+    );
     if !housings.is_empty() {
         remarks.push(
-            "housings take part with their static shapes: an upper bound, near the truth below their own modes",
+            "housings take part with their static shapes: an upper bound, near the truth below their own modes".into(),
         );
     }
     remarks.iter().try_for_each(|remark| say(&format!("note: {remark}\n")))?;

@@ -1,8 +1,9 @@
 //! A bonded bushing as the bodies at its sleeves feel it: six springs and Maxwell elements beside them.
 //!
 //! At small amplitude K(ω) of a bushing is no multiple of the rubber's own factor, since its volume does not relax.
-//! It still is a relaxed stiffness and a sum of k iωτ/(1 + iωτ) with k ≥ 0 and no longer times τ than the rubber's:
-//! the k are fitted on a grid of τ by least squares of the error over |K|, none of them negative.
+//! It still is a relaxed stiffness and a sum of k iωτ/(1 + iωτ) with k ≥ 0: the k are fitted on a grid of τ by least
+//! squares of the error over |K|, none of them negative. What is confined relaxes more slowly than its rubber: the
+//! poles lie where the shear modulus μ(s) is −λB with λ ≥ 0, of one Maxwell element at times from τ to τ(1 + γ).
 
 use super::error::RubberError;
 use super::harmonic::ComplexStiffness;
@@ -22,7 +23,7 @@ pub struct BushingSpring {
 }
 
 /// Relaxation times that are tried, and pulsations that are fitted, in a decade.
-const PER_DECADE: f64 = 4.0;
+const PER_DECADE: f64 = 8.0;
 /// Of the bushing's answers themselves.
 const SETTLED: f64 = 1e-8;
 
@@ -30,20 +31,30 @@ const SETTLED: f64 = 1e-8;
 /// [`sleeve_stiffness`] takes it.
 ///
 /// # Errors
-/// Those of [`sleeve_stiffness`].
+/// Those of [`sleeve_stiffness`]; a pulsation that is not positive and finite.
 pub fn bushing_spring(
     mesh: &TetMesh,
     part: Part,
     material: &Elastomer,
     fastest: f64,
 ) -> Result<BushingSpring, RubberError> {
-    let longest: f64 = material.maxwell.iter().map(|term| term.tau).fold(0.0, f64::max);
+    let in_range = fastest > 0.0 && fastest.is_finite();
+    if !in_range {
+        return Err(RubberError::Option { what: "fastest pulsation", value: fastest });
+    }
+    let gain: f64 = material.maxwell.iter().map(|term| term.gamma).sum();
+    let slowest_term = material.maxwell.iter().map(|term| term.tau).fold(0.0, f64::max);
+    let longest = slowest_term * (1.0 + gain);
     let slowest = if longest > 0.0 { (0.1 / longest).min(fastest) } else { fastest };
     // Fitted at every other one, judged at those between.
     let pulsations = spread(slowest, fastest, 2.0 * PER_DECADE);
-    // What relaxes faster than any vibration of interest is stiffness lost to a dashpot, what relaxes more slowly than
-    // the rubber itself is none.
-    let times = spread(0.03 / fastest, longest.max(0.03 / fastest), PER_DECADE);
+    // What relaxes faster than any vibration of interest is stiffness lost to a dashpot.
+    let mut times = spread(0.03 / fastest, longest.max(0.03 / fastest), PER_DECADE);
+    // The rubber's own times are those of torsion, which changes no volume.
+    let shortest = times[0];
+    times.extend(material.maxwell.iter().map(|term| term.tau).filter(|tau| *tau > shortest));
+    times.sort_by(f64::total_cmp);
+    times.dedup();
     let asked: Vec<f64> = std::iter::once(0.0).chain(pulsations.iter().copied()).collect();
     let element = |time: &f64| MaxwellElement { stiffness: [0.0; 6], relaxation_time: *time };
     let maxwell = times.iter().map(element).collect();
@@ -99,7 +110,7 @@ fn fitted(
     let mut matrix = DMatrix::zeros(2 * picked.len(), times.len());
     let mut right = DVector::zeros(2 * picked.len());
     for (row, (pulsation, answer)) in picked.into_iter().enumerate() {
-        let size = answer.storage.hypot(answer.loss);
+        let size = (answer.storage * answer.storage + answer.loss * answer.loss).sqrt();
         for (column, time) in times.iter().enumerate() {
             let one = element(*time, *pulsation) * (relaxed / size);
             (matrix[(2 * row, column)], matrix[(2 * row + 1, column)]) = (one.re, one.im);
