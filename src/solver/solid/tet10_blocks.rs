@@ -8,7 +8,7 @@ use wide::f64x4;
 /// Elements a block, one a lane: loops over four lanes become vector code.
 const LANES: usize = 4;
 
-/// [`LANES`] elements.
+/// Four elements, one a lane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
     /// Lane, first to tenth node.
