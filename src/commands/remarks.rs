@@ -3,7 +3,7 @@
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use bearing_dynamics::scene::Scene;
-use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing, Spring};
+use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing, Spring, SpringAt};
 use bearing_dynamics::scene::statics::{ball_mass, orbital_speed};
 use bearing_dynamics::solver::clock::told;
 use bearing_dynamics::solver::dynamics::assembly::Bearing;
@@ -167,28 +167,40 @@ pub fn of_run(scene: &AssemblyScene, simulation: &Simulation) -> Vec<String> {
 
 /// Springs whose axes turn with the body that they begin at, and that are not the same along all of them.
 pub fn of_springs(scene: &AssemblyScene) -> Vec<String> {
-    let turns = |body: usize| match &scene.bodies[body].race.rotation {
+    let turning = |rotation: &Rotation| match rotation {
         Rotation::Speed(speed) => *speed != Profile::ZERO,
         Rotation::Torque(_) => true,
     };
+    let turns = |at: SpringAt| match at {
+        SpringAt::Ground => false,
+        SpringAt::Body(body) => turning(&scene.bodies[body].race.rotation),
+        SpringAt::Race { bearing, side } => {
+            let of = &scene.bearings[bearing].scene.dynamics;
+            let race = if side == 0 { Some(&of.inner) } else { of.outer.as_ref() };
+            race.is_some_and(|race| turning(&race.rotation))
+        }
+    };
+    let bare = |name: &str| name.trim_start_matches("body.").to_string();
     let uneven = |of: &[f64; 6]| of[1] != of[2] || of[4] != of[5];
     let said = |spring: &Spring| {
-        let [(from, _), (to, _)] = spring.ends;
-        let from = from.filter(|body| turns(*body))?;
+        let [from, to] = spring.ends.map(|end| end.at);
         let uneven_element = spring.maxwell.iter().any(|element| uneven(&element.stiffness));
-        if !uneven(&spring.stiffness) && !uneven(&spring.damping) && !uneven_element {
+        let alike = !uneven(&spring.stiffness) && !uneven(&spring.damping) && !uneven_element;
+        if alike || !turns(from) {
             return None;
         }
-        let body = &scene.bodies[from].name;
-        let end = to.map_or("ground", |other| scene.bodies[other].name.as_str());
-        let advice = match to {
-            Some(other) if turns(other) => {
-                "both ends turn: make it alike along y and z".to_string()
-            }
-            _ => format!("for axes that stand still write from = {end:?}, to = {body:?}"),
+        let [body, end] = [from, to].map(|at| scene.name_of_end(at));
+        let advice = if turns(to) {
+            "both ends turn: make it alike along y and z".to_string()
+        } else {
+            format!(
+                "for axes that stand still write from = {:?}, to = {:?}",
+                bare(&end),
+                bare(&body)
+            )
         };
         Some(format!(
-            "spring {} turns with body.{body}, where it begins: its axes are those of that body, and what it does along \
+            "spring {} turns with {body}, where it begins: its axes are those of that body, and what it does along \
              y differs from along z, so that its force goes round with the body; {advice}",
             spring.name
         ))

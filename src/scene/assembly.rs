@@ -1,8 +1,11 @@
 //! A scene of bearings, rigid bodies and springs, resolved, and the lists that the solver takes.
 
 use crate::ch2_housing::bearing::inertia::Inertia;
+use crate::ch2_housing::elastomer::Elastomer;
+use crate::mesh::generate::{Bushing, BushingMesh};
 use crate::scene::dynamics::{DynamicsError, dynamic_problem};
 use crate::scene::housing::{HousedScene, HousingMethod, HousingSettings};
+use crate::scene::key_table_assembly::OWN_RACES;
 use crate::scene::resolved::{DefaultUsed, RunSettings, Scene};
 use crate::scene::solid::SolidScene;
 use crate::scene::statics::{ball_mass, orbital_speed};
@@ -95,15 +98,52 @@ pub struct SceneBody {
 /// Displacements and turns along and about the axes of a spring's first body.
 pub const SIX: [&str; 6] = ["x", "y", "z", "turn_x", "turn_y", "turn_z"];
 
+/// What a spring ends at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpringAt {
+    Ground,
+    /// Index in [`AssemblyScene::bodies`].
+    Body(usize),
+    /// A race that is a body of its own; index in [`AssemblyScene::bearings`], inner (0) or outer (1).
+    Race {
+        bearing: usize,
+        side: usize,
+    },
+}
+
+/// One end of a spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringEnd {
+    pub at: SpringAt,
+    /// Place along the body's axis from its centre, of the ground along X, m.
+    pub along: f64,
+}
+
 /// Springs and dashpots between two bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spring {
     pub name: String,
-    /// Index in [`AssemblyScene::bodies`], `None` for the ground; place along its axis, m.
-    pub ends: [(Option<usize>, f64); 2],
+    pub ends: [SpringEnd; 2],
     pub stiffness: [f64; 6],
     pub damping: [f64; 6],
     pub maxwell: Vec<MaxwellElement>,
+    /// What the stiffness and the Maxwell elements stand for.
+    pub bushing: Option<Box<BushingOfSpring>>,
+}
+
+/// A bonded bushing between two bodies, reduced to springs that relax.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BushingOfSpring {
+    pub body: Bushing,
+    pub mesh: BushingMesh,
+    pub material: Elastomer,
+    /// Table of the source that the rubber is of.
+    pub table: Option<&'static str>,
+    /// Up to which frequency the springs were fitted, Hz.
+    pub fastest: f64,
+    /// Largest error of the complex stiffness over its magnitude, of each of
+    /// [`SleeveMotion::ALL`](crate::solver::solid::rubber::sleeve::SleeveMotion::ALL).
+    pub misses: [f64; 4],
 }
 
 impl AssemblyScene {
@@ -179,7 +219,8 @@ impl AssemblyScene {
             add_bearing(&mut all, placed)?;
         }
         let ground = all.bodies.len();
-        if self.springs.iter().any(|spring| spring.ends.iter().any(|(body, _)| body.is_none())) {
+        if self.springs.iter().flat_map(|spring| spring.ends).any(|end| end.at == SpringAt::Ground)
+        {
             all.bodies.push(Body {
                 name: GROUND.into(),
                 label: None,
@@ -189,19 +230,44 @@ impl AssemblyScene {
                 unbalance: 0.0,
             });
         }
-        all.connections.extend(self.springs.iter().map(|spring| {
-            let ends = spring.ends.map(|(body, along)| Mount {
-                body: body.unwrap_or(ground),
-                along,
-                reversed: false,
+        let joints = self.springs.iter().map(|spring| {
+            let ends = spring.ends.map(|SpringEnd { at, along }| {
+                let body = match at {
+                    SpringAt::Ground => ground,
+                    SpringAt::Body(body) => body,
+                    SpringAt::Race { bearing, side } => all.bearings[bearing].mounts[side].body,
+                };
+                Mount { body, along, reversed: false }
             });
-            let rest = [spring.ends[1].1 - spring.ends[0].1, 0.0, 0.0];
+            let [from, to] = spring.ends.map(|end| self.place(end));
             let Spring { stiffness, damping, .. } = *spring;
-            let maxwell = spring.maxwell.clone();
+            let (maxwell, rest) = (spring.maxwell.clone(), [to - from, 0.0, 0.0]);
             let law = Law::SpringDashpot(SpringDashpot { stiffness, damping, maxwell, rest });
-            Connection { name: format!("the spring {}", spring.name), ends, law }
-        }));
+            let label = Some(spring.name.clone());
+            Connection { name: format!("the spring {}", spring.name), label, ends, law }
+        });
+        all.connections = joints.collect();
         Ok(all)
+    }
+
+    /// X of the place where an end of a spring stands at first, m.
+    pub(crate) fn place(&self, end: SpringEnd) -> f64 {
+        end.along + race_at(&self.bearings, end.at)
+    }
+
+    /// As scenes name it.
+    pub fn name_of_end(&self, at: SpringAt) -> String {
+        match at {
+            SpringAt::Ground => "ground".into(),
+            SpringAt::Body(body) => format!("body.{}", self.bodies[body].name),
+            SpringAt::Race { bearing, side } => {
+                let race = OWN_RACES[side];
+                match &self.bearings[bearing].name {
+                    Some(name) => format!("{name}.{race}"),
+                    None => race.into(),
+                }
+            }
+        }
     }
 
     /// What is in equilibrium at t = 0: as a motion would start, without the centrifugal force of the balls
@@ -217,6 +283,14 @@ impl AssemblyScene {
             bearing.centrifugal = ball_mass(scene) * speed * speed;
         }
         Ok(still)
+    }
+}
+
+/// X of the centre at first of what a spring ends at, m: bodies and the ground stand at the origin.
+pub(crate) fn race_at(bearings: &[PlacedBearing], at: SpringAt) -> f64 {
+    match at {
+        SpringAt::Race { bearing, side } => bearings[bearing].carriers[side].at(),
+        SpringAt::Ground | SpringAt::Body(_) => 0.0,
     }
 }
 

@@ -5,8 +5,9 @@ use crate::scene::key_table_dynamics::{
     DASHPOT, FOUNDATION, FOUNDATION_HINT, INERTIA, INERTIA_HINT, MASS, MASS_HINT, TILT_DASHPOT,
     TILT_FOUNDATION,
 };
-use crate::scene::keys::{Key, Kind, Need, Table, above, closed, list_table, table};
-use crate::scene::units::Dimension::{Angle, Length, Time, Unbalance};
+use crate::scene::key_table_solid::RUBBERS;
+use crate::scene::keys::{Key, Kind, Need, Table, above, closed, list_table, open, table};
+use crate::scene::units::Dimension::{Angle, Frequency, Length, Stress, Time, Unbalance};
 use Need::{Default, Depends, Optional, Required};
 
 /// The word for a race that is a body of its own, and for what does not move.
@@ -15,6 +16,10 @@ pub const GROUND: &str = "ground";
 
 const PLACE: Kind = Kind::Quantity(Length, closed(-1e5, 1e5, "mm"));
 const PLACE_HINT: &str = "a distance along the body's axis from its centre; check the unit";
+const SIZE: Kind = Kind::Quantity(Length, open(0.0, 10.0, "m"));
+const SIZE_HINT: &str = "a positive length; check the unit";
+const CELLS: Kind = Kind::Integer { low: 2, high: 100 };
+const WITH_BUSHING: Need = Depends("required with `[spring.NAME.bushing]`");
 const FREE: Need = Depends("neither key: the coordinate is free and unloaded");
 const ALL_THREE: Need = Depends("all three, required for a run and with gravity");
 const NONE: Need = Default { value: "0 N/m", reason: "none is given" };
@@ -59,10 +64,10 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("body.foundation.damping.z", DASHPOT, NO_DASHPOT, "Dashpot along Z.").hint(FOUNDATION_HINT),
     Key::new("body.foundation.damping.tilt_y", TILT_DASHPOT, NO_TURN_DASHPOT, "Dashpot against tilting about Y.").hint(FOUNDATION_HINT),
     Key::new("body.foundation.damping.tilt_z", TILT_DASHPOT, NO_TURN_DASHPOT, "Dashpot against tilting about Z.").hint(FOUNDATION_HINT),
-    Key::new("spring.from", Kind::Text, Required, "The body it begins at, `shaft` for `[body.shaft]`, or `ground`. Its axes are those of the spring and turn with it: what holds a turning shaft begins at the `ground`."),
-    Key::new("spring.to", Kind::Text, Default { value: "ground", reason: "what does not move" }, "The body it ends at, `shaft` for `[body.shaft]`, or `ground`."),
-    Key::new("spring.from_at", PLACE, Default { value: "0 mm", reason: "at the centre of the body" }, "Where it begins: distance from the body's centre along its axis; of the ground along X.").hint(PLACE_HINT).example_of("100 mm"),
-    Key::new("spring.to_at", PLACE, Depends("as `from_at`"), "Where it ends, as `from_at`.").hint(PLACE_HINT).example_of("100 mm"),
+    Key::new("spring.from", Kind::Text, Required, "The body it begins at, `shaft` for `[body.shaft]`; a race that is a body of its own, `outer_race` or `left.outer_race`; or `ground`. Its axes are those of the spring and turn with it: what holds a turning shaft begins at the `ground`."),
+    Key::new("spring.to", Kind::Text, Default { value: "ground", reason: "what does not move" }, "What it ends at, as `from`. Its force and moment there are columns of a run (`forces`)."),
+    Key::new("spring.from_at", PLACE, Default { value: "0 mm", reason: "at the centre of the body" }, "Where it begins: distance from the body's or race's centre along its axis; of the ground along X, where the race sits if it ends at one.").hint(PLACE_HINT).example_of("100 mm"),
+    Key::new("spring.to_at", PLACE, Depends("at the place where it begins"), "Where it ends, as `from_at`.").hint(PLACE_HINT).example_of("100 mm"),
     Key::new("spring.stiffness.x", FOUNDATION, NONE, "Spring along X of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.stiffness.y", FOUNDATION, NONE, "Spring along Y of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.stiffness.z", FOUNDATION, NONE, "Spring along Z of the first body.").hint(FOUNDATION_HINT),
@@ -75,6 +80,19 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("spring.damping.turn_x", TILT_DASHPOT, NO_TURN_DASHPOT, "Dashpot against turns about X of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.turn_y", TILT_DASHPOT, NO_TURN_DASHPOT, "Dashpot against turns about Y of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.turn_z", TILT_DASHPOT, NO_TURN_DASHPOT, "Dashpot against turns about Z of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.bushing.inner_diameter", SIZE, WITH_BUSHING, "Inner diameter of the rubber.").hint(SIZE_HINT).example_of("71 mm"),
+    Key::new("spring.bushing.outer_diameter", SIZE, WITH_BUSHING, "Outer diameter of the rubber.").hint(SIZE_HINT).example_of("91 mm"),
+    Key::new("spring.bushing.length", SIZE, WITH_BUSHING, "Length of the rubber along X.").hint(SIZE_HINT).example_of("20 mm"),
+    Key::new("spring.bushing.table", Kind::Choice(RUBBERS), Depends("this or `rubber_modulus`"), "Rubber of this table of the source, as in `[solid.material]`: keys given beside it take the place of what it says.").example_of("3.1"),
+    Key::new("spring.bushing.rubber_modulus", Kind::Quantity(Stress, closed(1e-6, 1e6, "MPa")), Depends("required without `table`"), "C_R of the network.").hint("the source's rubbers have 0.324 and 0.647 MPa; the shear modulus is 1.085 times it").example_of("0.647 MPa"),
+    Key::new("spring.bushing.chain", Kind::Number(above(0.0, 1e6, "")), Depends("8 unless given"), "N, the links of a chain."),
+    Key::new("spring.bushing.bulk_ratio", Kind::Number(closed(1.0, 1e6, "")), Depends("100 unless given"), "Bulk modulus over C_R."),
+    Key::new("spring.bushing.fastest", Kind::Quantity(Frequency, closed(1e-6, 1e9, "Hz")), Default { value: "10 kHz", reason: "faster than bodies on rubber swing" }, "Up to this frequency the springs answer as the rubber does; beyond it they are as stiff as there.").example_of("10 kHz"),
+    Key::new("spring.bushing.cells.around", CELLS, Default { value: "12", reason: "the stiffness is within 2 % of finer meshes" }, "Cells of the mesh around half of the bushing."),
+    Key::new("spring.bushing.cells.radial", CELLS, Default { value: "4", reason: "as `around`" }, "Cells across the wall, an even number."),
+    Key::new("spring.bushing.cells.axial", CELLS, Default { value: "3", reason: "as `around`" }, "Cells along half of the length."),
+    Key::new("spring.bushing.maxwell.gamma", Kind::Number(above(0.0, 1e6, "")), Required, "Stiffness of the element over that of the network."),
+    Key::new("spring.bushing.maxwell.relaxation_time", Kind::Quantity(Time, above(0.0, 1e9, "s")), Required, "Time in which its stress falls to 1/e at rest.").hint("of rubber 1 us to 100 s; check the unit").example_of("10 s"),
     Key::new("spring.maxwell.relaxation_time", Kind::Quantity(Time, above(0.0, 1e9, "s")), Required, "Time in which the element's force falls to 1/e at rest.").hint("of rubber 1 us to 100 s; check the unit").example_of("10 ms"),
     Key::new("spring.maxwell.x", FOUNDATION, NONE, "Stiffness along X of the first body before it relaxes.").hint(FOUNDATION_HINT).example_of("2e6 N/m"),
     Key::new("spring.maxwell.y", FOUNDATION, NONE, "The same along Y.").hint(FOUNDATION_HINT),
@@ -105,6 +123,11 @@ pub(super) const TABLES: &[Table] = &[
         "[spring.coupling]\nfrom = \"ground\"\nto = \"shaft\"\nstiffness = { turn_x = \"100 N m/rad\" }"),
     table("spring.stiffness", "Springs along and about the axes of the first body.", "stiffness = { x = \"1e8 N/m\", turn_y = \"1e4 N m/rad\" }"),
     table("spring.damping", "Dashpots along and about the same axes.", "damping = { x = \"1000 N s/m\", turn_y = \"1 N m s/rad\" }"),
+    table("spring.bushing", "A bonded bushing of rubber about X in place of `stiffness` and `maxwell`, between sleeves that are the two bodies: meshed by ten-node elements, its small vibrations solved along, across, about X and tilting, and written as springs and Maxwell elements up to the `fastest` frequency. Results tell how well they fit. It stands for motions of a few hundredths of its wall.",
+        "[spring.mount.bushing]\ninner_diameter = \"71 mm\"\nouter_diameter = \"91 mm\"\nlength = \"20 mm\"\ntable = \"3.1\""),
+    table("spring.bushing.cells", "Cells of its mesh, a quarter of it; they crowd at sleeves and ends.", "cells = { around = 12, radial = 4, axial = 3 }"),
+    list_table("spring.bushing.maxwell", "Maxwell elements of the rubber in place of those of `table`; as many as wanted.",
+        "[[spring.mount.bushing.maxwell]]\ngamma = 0.492\nrelaxation_time = \"10 s\""),
     list_table("spring.maxwell", "Springs in series with dashpots beside those of `stiffness`, which then is what is left at rest: rubber, by its Prony series. As many as wanted. In motion each has a state of its own; in an equilibrium all have relaxed.",
-        "[[spring.bushing.maxwell]]\nrelaxation_time = \"10 ms\"\ny = \"2e6 N/m\"\nz = \"2e6 N/m\""),
+        "[[spring.mount.maxwell]]\nrelaxation_time = \"10 ms\"\ny = \"2e6 N/m\"\nz = \"2e6 N/m\""),
 ];

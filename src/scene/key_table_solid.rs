@@ -27,7 +27,7 @@ const METHODS: &[&str] = &["central-differences", "runge-kutta"];
 const MASSES: &[&str] = &["consistent", "lumped"];
 const PLANES: &[&str] = &["x", "y", "z"];
 const LAWS: &[&str] = &["linear-elastic", "elastomer"];
-const RUBBERS: &[&str] = &["2.3", "3.1"];
+pub(super) const RUBBERS: &[&str] = &["2.3", "3.1"];
 const PULLS: &[&str] = &["five-terms", "inverse-langevin"];
 const PARTS: &[&str] = &["whole", "quarter"];
 const WITH_RUBBER: &str = "with `law = \"elastomer\"`";

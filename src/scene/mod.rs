@@ -38,6 +38,7 @@ mod profile;
 pub mod reference;
 mod resolve;
 mod resolve_assembly;
+mod resolve_bushing;
 mod resolve_cage;
 mod resolve_contact;
 mod resolve_dynamics;

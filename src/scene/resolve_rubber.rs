@@ -91,7 +91,12 @@ pub(super) fn material(reader: &mut Reader) -> Result<(Law, f64), SceneError> {
         }
     }
     let table = reader.choice_if_given("solid.material.table");
-    let material = rubber(reader, table)?;
+    let pull = match reader.choice("solid.material.chain_pull") {
+        Some("inverse-langevin") => ChainPull::Exact,
+        _ => ChainPull::FiveTerms,
+    };
+    let because = " with `law = \"elastomer\"` and no `table`";
+    let material = rubber(reader, "solid.material", table, pull, because)?;
     let density = density(reader, RUBBER, "usual for filled rubber; the source states none");
     let harmonic = harmonic(reader)?;
     Ok((Law::Elastomer(Box::new(RubberScene { material, table, harmonic })), density))
@@ -106,27 +111,33 @@ fn density(reader: &mut Reader, usual: f64, reason: &str) -> f64 {
     })
 }
 
-/// Keys given beside a table take the place of what it says.
-fn rubber(reader: &mut Reader, table: Option<&'static str>) -> Result<Elastomer, SceneError> {
+/// The rubber of the keys in the table `of`; keys given beside a table of the source take the place of what it says.
+pub(super) fn rubber(
+    reader: &mut Reader,
+    of: &str,
+    table: Option<&'static str>,
+    pull: ChainPull,
+    because: &str,
+) -> Result<Elastomer, SceneError> {
     let document = reader.document;
+    let path = |key: &str| format!("{of}.{key}");
     let base = match table {
         Some("2.3") => Some(named::table_2_3()),
         Some(_) => Some(named::table_3_1()),
         None => None,
     };
-    let given = |key: &str| reader.given_number(&format!("solid.material.{key}"));
+    let given = |key: &str| reader.given_number(&path(key));
     let [modulus, chain, ratio, bulk] =
         ["rubber_modulus", "chain", "bulk_ratio", "bulk_modulus"].map(given);
     let modulus = match modulus.or(base.as_ref().map(|base| base.network.modulus)) {
         Some(modulus) => modulus,
         None => {
-            let because = " with `law = \"elastomer\"` and no `table`";
-            return Err(reader.missing("solid.material.rubber_modulus", because));
+            return Err(reader.missing(&path("rubber_modulus"), because));
         }
     };
     let locking = chain.unwrap_or_else(|| {
         if table.is_none() {
-            reader.note("solid.material.chain", &plain(CHAIN), "as in Tables 2.3 and 3.1");
+            reader.note(&path("chain"), &plain(CHAIN), "as in Tables 2.3 and 3.1");
         }
         CHAIN
     });
@@ -136,14 +147,10 @@ fn rubber(reader: &mut Reader, table: Option<&'static str>) -> Result<Elastomer,
         (None, None) => {
             if table.is_none() {
                 let reason = "100 C_R, as in Tables 2.3 and 3.1";
-                reader.note("solid.material.bulk_ratio", &plain(BULK_RATIO), reason);
+                reader.note(&path("bulk_ratio"), &plain(BULK_RATIO), reason);
             }
             BULK_RATIO * modulus
         }
-    };
-    let pull = match reader.choice("solid.material.chain_pull") {
-        Some("inverse-langevin") => ChainPull::Exact,
-        _ => ChainPull::FiveTerms,
     };
     let network = EightChain::new(modulus, locking, bulk, pull).map_err(|error| {
         let key = match error {
@@ -154,13 +161,10 @@ fn rubber(reader: &mut Reader, table: Option<&'static str>) -> Result<Elastomer,
         let reason = "with the inverse Langevin function the chains are straight in the undeformed rubber where it \
                       is 1 or less";
         let advice = "take more than 1; the source has 8".to_string();
-        document.error(
-            &format!("solid.material.{key}"),
-            Problem::NotApplicable { reason, advice },
-        )
+        document.error(&path(key), Problem::NotApplicable { reason, advice })
     })?;
-    let mut maxwell = Vec::new();
-    for item in document.items("solid.material.maxwell") {
+    let (mut maxwell, list) = (Vec::new(), path("maxwell"));
+    for item in document.items(&list) {
         let number = |key: &str, example: &str| {
             item_number(item, key).ok_or_else(|| missing(item, key, "", example))
         };
@@ -173,7 +177,7 @@ fn rubber(reader: &mut Reader, table: Option<&'static str>) -> Result<Elastomer,
         if table == Some("2.3") {
             let value = "those of Table 3.1";
             let reason = "Table 2.3 prints none; the source says that they were adjusted";
-            reader.note("solid.material.maxwell", value, reason);
+            reader.note(&path("maxwell"), value, reason);
         }
     }
     Ok(Elastomer { network, maxwell })

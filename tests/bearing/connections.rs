@@ -37,9 +37,9 @@ fn kinds() -> Vec<Connection> {
     let alike = ends.map(|end| Mount { reversed: false, ..end });
     let torsion = Law::Torsion(Torsion { stiffness: 800.0, damping: 0.5 });
     vec![
-        Connection { name: "spring".into(), ends, law: Law::SpringDashpot(SPRING) },
-        Connection { name: "torsion".into(), ends: alike, law: torsion },
-        Connection { name: "rubber".into(), ends, law: Law::SpringDashpot(rubber()) },
+        Connection { name: "spring".into(), label: None, ends, law: Law::SpringDashpot(SPRING) },
+        Connection { name: "torsion".into(), label: None, ends: alike, law: torsion },
+        Connection { name: "rubber".into(), label: None, ends, law: Law::SpringDashpot(rubber()) },
     ]
 }
 
@@ -338,7 +338,7 @@ fn nothing_is_left_of_a_connection_of_zeros() {
     let without = with.clone();
     let ends = [Mount { body: 0, along: 0.02, reversed: false }, Mount::at_centre(1)];
     let law = Law::SpringDashpot(SpringDashpot::default());
-    with.connections.push(Connection { name: "nothing".into(), ends, law });
+    with.connections.push(Connection { name: "nothing".into(), label: None, ends, law });
     assert!(with.connections[0].is_void());
     let end = |assembly: &Assembly| {
         let mut simulation =

@@ -78,6 +78,7 @@ fn with_ring() -> Assembly {
     let law = SpringDashpot { stiffness: [1e6; 6], damping: [1.0; 6], ..SpringDashpot::default() };
     assembly.connections.push(Connection {
         name: "a spring".into(),
+        label: None,
         ends: [INNER, OUTER].map(Mount::at_centre),
         law: Law::SpringDashpot(law),
     });
@@ -256,6 +257,7 @@ fn statics_does_what_is_planned_and_nothing_else() {
             let law = SpringDashpot { stiffness: [1e6; 6], ..SpringDashpot::default() };
             assembly.connections.push(Connection {
                 name: "a spring".into(),
+                label: None,
                 ends: [INNER, OUTER].map(Mount::at_centre),
                 law: Law::SpringDashpot(law),
             });

@@ -51,6 +51,7 @@ fn on_rubber(elements: &[(f64, f64)], load: Profile) -> Assembly {
     let (block, ground) = (assembly.bodies.len() - 2, assembly.bodies.len() - 1);
     assembly.connections.push(Connection {
         name: "rubber".into(),
+        label: None,
         ends: [Mount::at_centre(ground), Mount::at_centre(block)],
         law: Law::SpringDashpot(SpringDashpot {
             stiffness: z(RELAXED),

@@ -6,6 +6,7 @@ mod assembly_common;
 mod fuzz_common;
 
 mod scene_assembly;
+mod scene_bushing;
 mod scene_docs;
 mod scene_dynamics;
 mod scene_dynamics_errors;

@@ -79,6 +79,7 @@ fn on_spring(law: SpringDashpot, about_y: Drive) -> Result<Assembly, CaseError> 
     });
     assembly.connections.push(Connection {
         name: "the bushing".into(),
+        label: None,
         ends: [ground, OUTER].map(Mount::at_centre),
         law: Law::SpringDashpot(law),
     });

@@ -52,6 +52,9 @@ pub const BUSHING_3_3: Bushing =
 /// The shipped scene of the bushing of 3.4.1.
 pub const BUSHING_RADIAL: &str = include_str!("../../scenes/bushing_radial.toml");
 
+/// The shipped scene of a bearing on a bushing, hit.
+pub const BEARING_ON_BUSHING: &str = include_str!("../../scenes/bearing_on_bushing.toml");
+
 /// N and B/C_R of Tables 2.3 and 3.1.
 pub const LOCKING: f64 = 8.0;
 pub const BULK_RATIO: f64 = 100.0;

@@ -10,6 +10,8 @@ mod assembly_fits_2_4_1;
 mod axial_load_closed_form;
 #[path = "../bearing_conservation/case.rs"]
 mod bearing_conservation;
+#[path = "../bearing_on_bushing_3_4_3/case.rs"]
+mod bearing_on_bushing_3_4_3;
 #[path = "../bushing_bulging_3_4_2/case.rs"]
 mod bushing_bulging_3_4_2;
 #[path = "../bushing_geometries_3_4_2/case.rs"]
@@ -133,6 +135,7 @@ pub const CASES: &[Case] = &[
     bushing_geometries_3_4_2::CASE,
     bushing_bulging_3_4_2::CASE,
     bushing_sleeve_motions::CASE,
+    bearing_on_bushing_3_4_3::CASE,
     rubber_locking::CASE,
     rubber_explicit::CASE,
 ];

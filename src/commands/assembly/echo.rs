@@ -7,12 +7,14 @@ use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::RunSettings;
 use bearing_dynamics::scene::assembly::{
-    AssemblyScene, Carrier, PlacedBearing, PlacedHousing, SIX, Spring,
+    AssemblyScene, BushingOfSpring, Carrier, PlacedBearing, PlacedHousing, SIX, Spring, SpringAt,
+    SpringEnd,
 };
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{FitSize, HousingMethod, HousingSettings};
 use bearing_dynamics::solver::dynamics::connection::MaxwellElement;
 use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
+use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
 use serde_json::{Map, Value, json};
 
 /// The scene as understood, every dimensional value with its unit.
@@ -65,9 +67,12 @@ pub fn echo(scene: &AssemblyScene) -> Fallible<Value> {
 }
 
 fn spring(scene: &AssemblyScene, spring: &Spring) -> Result<Value, ResultsError> {
-    let end = |(body, at): (Option<usize>, f64)| -> Result<Value, ResultsError> {
-        let name = body.map_or("ground", |index| scene.bodies[index].name.as_str());
-        Ok(json!({ "body": name, "at": quantity("place", 1e3 * at, "mm")? }))
+    let end = |end: SpringEnd| -> Result<Value, ResultsError> {
+        let body = match end.at {
+            SpringAt::Body(index) => scene.bodies[index].name.clone(),
+            other => scene.name_of_end(other),
+        };
+        Ok(json!({ "body": body, "at": quantity("place", 1e3 * end.along, "mm")? }))
     };
     let six = |values: &[f64; 6], units: [&str; 2]| -> Result<Value, ResultsError> {
         let entry = |(i, name): (usize, &&str)| {
@@ -89,6 +94,28 @@ fn spring(scene: &AssemblyScene, spring: &Spring) -> Result<Value, ResultsError>
     if !spring.maxwell.is_empty() {
         let elements = spring.maxwell.iter().map(element);
         echo["maxwell"] = Value::Array(elements.collect::<Result<_, ResultsError>>()?);
+    }
+    if let Some(of) = &spring.bushing {
+        echo["bushing"] = bushing(of)?;
+    }
+    Ok(echo)
+}
+
+/// The rubber that a spring stands for, and by how much it misses its vibrations.
+fn bushing(of: &BushingOfSpring) -> Result<Value, ResultsError> {
+    let BushingOfSpring { body, mesh, material, table, fastest, misses } = of;
+    let millimetres = |name: &str, metres: f64| quantity(name, 1e3 * metres, "mm");
+    let mut echo = json!({
+        "inner_diameter": millimetres("inner_diameter", body.inner_diameter)?,
+        "outer_diameter": millimetres("outer_diameter", body.inner_diameter + 2.0 * body.thickness)?,
+        "length": millimetres("length", body.length)?,
+        "material": solid::echo::rubber(material, *table)?,
+        "fastest": quantity("fastest", *fastest, "Hz")?,
+        "cells": { "around": mesh.around, "radial": mesh.radial, "axial": mesh.axial },
+    });
+    for (motion, miss) in SleeveMotion::ALL.into_iter().zip(misses) {
+        let name = format!("{motion:?}").to_lowercase();
+        echo["largest_error_of_springs"][name] = quantity("error", 100.0 * miss, "%")?;
     }
     Ok(echo)
 }

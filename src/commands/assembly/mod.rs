@@ -104,18 +104,25 @@ pub fn lines(scene: &AssemblyScene) -> Vec<(String, String)> {
         said.push((format!("body {}", body.name), race_freedom(&body.race)));
     }
     for spring in &scene.springs {
-        let end = |(body, _): (Option<usize>, f64)| {
-            body.map_or("the ground".to_string(), |index| {
-                format!("body.{}", scene.bodies[index].name)
-            })
-        };
-        let [from, to] = spring.ends.map(end);
+        let [from, to] = spring.ends.map(|end| scene.name_of_end(end.at));
         let relaxing = match spring.maxwell.len() {
             0 => String::new(),
             1 => ", 1 Maxwell element".into(),
             count => format!(", {count} Maxwell elements"),
         };
         said.push((format!("spring {}", spring.name), format!("from {from} to {to}{relaxing}")));
+        if let Some(bushing) = &spring.bushing {
+            let [x, y, _, turn_x, turn_y, _] = spring.stiffness;
+            said.push((
+                format!("bushing {}", spring.name),
+                format!(
+                    "relaxed {x:.4e} N/m along, {y:.4e} N/m across, {turn_x:.4e} N m/rad about its axis, {turn_y:.4e} \
+                     N m/rad tilting; to {} Hz its springs miss its vibrations by {:.1e} at most",
+                    bushing.fastest,
+                    bushing.misses.iter().copied().fold(0.0, f64::max)
+                ),
+            ));
+        }
     }
     said
 }

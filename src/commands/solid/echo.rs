@@ -1,6 +1,7 @@
 //! What was understood of a solid, as JSON with units.
 
 use crate::commands::echo_run::profile;
+use bearing_dynamics::ch2_housing::elastomer::Elastomer;
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
 use bearing_dynamics::mesh::Order;
@@ -128,15 +129,22 @@ fn material(scene: &SolidScene) -> Echo {
         }
         Law::Elastomer(rubber) => rubber,
     };
-    let network = &rubber.material.network;
+    let mut echo = self::rubber(&rubber.material, rubber.table)?;
+    echo["density"] = density;
+    Ok(echo)
+}
+
+/// A network and its Maxwell elements, by a table of the source or none.
+pub fn rubber(material: &Elastomer, table: Option<&str>) -> Echo {
+    let network = &material.network;
     let mut maxwell = Vec::new();
-    for Maxwell { gamma, tau } in &rubber.material.maxwell {
+    for Maxwell { gamma, tau } in &material.maxwell {
         let gamma = quantity("gamma", *gamma, "1")?;
         maxwell.push(json!({ "gamma": gamma, "relaxation_time": quantity("tau", *tau, "s")? }));
     }
     Ok(json!({
         "law": "elastomer",
-        "table": rubber.table.unwrap_or("none"),
+        "table": table.unwrap_or("none"),
         "rubber_modulus": quantity("rubber_modulus", network.modulus, "Pa")?,
         "chain": quantity("chain", network.locking, "1")?,
         "chain_pull": match network.pull {
@@ -144,7 +152,6 @@ fn material(scene: &SolidScene) -> Echo {
             ChainPull::Exact => "inverse-langevin",
         },
         "bulk_modulus": quantity("bulk_modulus", network.bulk, "Pa")?,
-        "density": density,
         "maxwell": maxwell,
     }))
 }

@@ -10,7 +10,7 @@ use crate::output::series::Column;
 use crate::solver::channels::ChannelGroup;
 use crate::solver::dynamics::assembly::{Assembly, BallMeeting, Bearing};
 use crate::solver::dynamics::ball_set::BallSet;
-use crate::solver::dynamics::race::{RaceNow, tilts_of};
+use crate::solver::dynamics::race::{RaceLoads, RaceNow, tilts_of};
 use crate::solver::dynamics::run::{Simulation, Snapshot};
 use crate::solver::dynamics::state::{Ledger, POSITION, SPIN, VELOCITY};
 use crate::solver::mount::Mount;
@@ -84,6 +84,15 @@ impl Recorder {
                 for (body, now) in system.assembly.bodies.iter().zip(&system.bodies) {
                     if body.label.is_some() {
                         self.race(now, 0.0, 1.0);
+                    }
+                }
+            }
+            if group == ChannelGroup::Forces {
+                for index in 0..system.connections.len() {
+                    if system.assembly.connections[index].label.is_some() {
+                        let RaceLoads { force, moment } =
+                            system.pull(&simulation.state, index).on[1];
+                        self.values.extend(force.into_iter().chain(moment));
                     }
                 }
             }
@@ -297,7 +306,17 @@ fn add_columns(
             columns.extend(own);
         }
     }
+    if group == ChannelGroup::Forces {
+        let labels = assembly.connections.iter().filter_map(|joint| joint.label.as_ref());
+        columns.extend(labels.flat_map(|label| {
+            let of = |what: &str, axis| format!("{label}_{what}_{axis}");
+            let forces = AXES.map(|axis| Column::new(of("force", axis), "N"));
+            forces.into_iter().chain(AXES.map(|axis| Column::new(of("moment", axis), "N m")))
+        }));
+    }
 }
+
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 fn bearing_columns(
     assembly: &Assembly,
@@ -361,7 +380,7 @@ fn bearing_columns(
         }),
         ChannelGroup::Forces => {
             for race in ["inner", "outer"] {
-                for axis in ["x", "y", "z"] {
+                for axis in AXES {
                     add(format!("contact_force_on_{race}_{axis}"), "N");
                 }
             }

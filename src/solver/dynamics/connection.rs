@@ -15,6 +15,8 @@ use nalgebra::{Matrix3, Vector3};
 pub struct Connection {
     /// As messages name it.
     pub name: String,
+    /// What its columns begin with; without it there are none.
+    pub label: Option<String>,
     /// The first end's axes are those in which the law is written.
     pub ends: [Mount; 2],
     pub law: Law,

@@ -1,6 +1,5 @@
 //! What is stored in a state: kinetic energy, contacts, gravity, springs, reduced solids and their seats.
 
-use super::race::mounted;
 use super::state::{POSITION, SPIN, VELOCITY};
 use super::system::System;
 use crate::ch2_housing::bearing::cage::cage_energy;
@@ -93,10 +92,8 @@ impl System {
                 energy.foundation += 0.5 * driven.foundation_stiffness[i] * stretch * stretch;
             }
         }
-        for (connection, &at) in assembly.connections.iter().zip(&self.connections) {
-            let elongated = &state[at..at + 6 * connection.maxwell().len()];
-            let ends = connection.ends.map(|mount| mounted(&self.bodies[mount.body], &mount));
-            energy.foundation += connection.pull([&ends[0], &ends[1]], elongated).energy;
+        for index in 0..assembly.connections.len() {
+            energy.foundation += self.pull(state, index).energy;
         }
         for solid in 0..assembly.solids.len() {
             let of = self.energy_of_solid(state, solid);

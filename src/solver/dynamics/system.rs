@@ -2,7 +2,7 @@
 
 use super::assembly::{Assembly, Body, Mobility};
 use super::ball_set::{BallSet, onto_body};
-use super::connection::Connection;
+use super::connection::{Connection, Pull};
 use super::contacts::{Driver, Want, Work};
 use super::model::Rotation;
 use super::race::{self, RaceLoads, RaceNow, mounted};
@@ -103,6 +103,15 @@ impl System {
         for (set, bearing) in self.sets.iter_mut().zip(&self.assembly.bearings) {
             set.place(bearing, &self.bodies);
         }
+    }
+
+    /// What a connection does in a state; call after [`System::evaluate`] at the same state.
+    pub fn pull(&self, state: &[f64], connection: usize) -> Pull {
+        let at = self.connections[connection];
+        let connection = &self.assembly.connections[connection];
+        let elongated = &state[at..at + 6 * connection.maxwell().len()];
+        let ends = connection.ends.map(|mount| mounted(&self.bodies[mount.body], &mount));
+        connection.pull([&ends[0], &ends[1]], elongated)
     }
 
     /// Rates of the whole state vector at time `t`.

@@ -22,6 +22,7 @@ pub mod shaft;
 pub mod statics;
 #[cfg(test)]
 mod statics_tests;
+pub mod swing;
 pub mod timoshenko;
 pub mod trust_region;
 pub mod uniform_load;

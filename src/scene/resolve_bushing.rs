@@ -1,0 +1,73 @@
+//! From the keys of a bonded bushing between two bodies to the springs that it is.
+
+use crate::ch2_housing::elastomer::eight_chain::ChainPull;
+use crate::mesh::generate::{Bushing, BushingMesh, Part, bushing as mesh_of};
+use crate::scene::assembly::BushingOfSpring;
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::resolve::Reader;
+use crate::scene::resolve_rubber::rubber;
+use crate::solver::dynamics::connection::SpringDashpot;
+use crate::solver::solid::rubber::prony::bushing_spring;
+use std::f64::consts::TAU;
+
+const TABLE: &str = "spring.bushing";
+/// Cells crowd at sleeves and ends by this power.
+const GRADING: f64 = 2.0;
+/// Beyond them reading a scene would take minutes.
+const MOST_CELLS: usize = 1500;
+
+/// The bushing of a spring, if it is one, and its law.
+pub(super) fn bushing(
+    reader: &mut Reader,
+) -> Result<Option<(BushingOfSpring, SpringDashpot)>, SceneError> {
+    let document = reader.document;
+    if document.first_below(TABLE).is_none() {
+        return Ok(None);
+    }
+    let refused = |key: &str, reason: String, advice: &str| {
+        document.error(key, Problem::Refused { reason, advice: advice.into() })
+    };
+    for part in ["spring.stiffness", "spring.maxwell"] {
+        if let Some(given) = document.first_below(part) {
+            let reason = "the spring is a bushing, which says how stiff it is".into();
+            return Err(refused(given, reason, "leave this or [spring.NAME.bushing] out"));
+        }
+    }
+    let size = |key: &str| reader.required_number(&format!("{TABLE}.{key}"), " of a bushing");
+    let [inner_diameter, outer_diameter, length] =
+        [size("inner_diameter")?, size("outer_diameter")?, size("length")?];
+    let thickness = 0.5 * (outer_diameter - inner_diameter);
+    let thick = thickness > 0.0;
+    if !thick {
+        let reason = "it is no larger than the inner diameter".into();
+        let advice = "give a larger one; both are those of the rubber";
+        return Err(refused("spring.bushing.outer_diameter", reason, advice));
+    }
+    let mut cells = |key: &str| {
+        reader.number(&format!("{TABLE}.cells.{key}")).map_or(0, |count| count as usize)
+    };
+    let [around, radial, axial] = ["around", "radial", "axial"].map(&mut cells);
+    let all = around * radial * axial;
+    if all > MOST_CELLS {
+        let reason = format!("{around} × {radial} × {axial} are {all} cells");
+        let advice = "take at most 1500, each is five elements of ten nodes; finer ones are for [solid.mesh] with \
+                      `generate = \"bushing\"`";
+        return Err(refused("spring.bushing.cells", reason, advice));
+    }
+    let mesh = BushingMesh { around, radial, axial, grading: GRADING, part: Part::Quarter };
+    let body = Bushing { inner_diameter, thickness, length };
+    let fastest = reader.number("spring.bushing.fastest").unwrap_or(f64::NAN);
+    let table = reader.choice_if_given("spring.bushing.table");
+    let because = " of a bushing without `table`";
+    let material = rubber(reader, TABLE, table, ChainPull::FiveTerms, because)?;
+    let meshed = mesh_of(&body, &mesh).and_then(|solid| solid.quadratic());
+    let meshed = meshed.map_err(|error| {
+        refused("spring.bushing.cells", error.to_string(), "change the cells or the dimensions")
+    })?;
+    let found = bushing_spring(&meshed.mesh, Part::Quarter, &material, TAU * fastest);
+    let spring = found.map_err(|error| {
+        refused(TABLE, error.to_string(), "check its dimensions, cells and rubber")
+    })?;
+    let misses = spring.misses;
+    Ok(Some((BushingOfSpring { body, mesh, material, table, fastest, misses }, spring.law)))
+}
