@@ -56,7 +56,7 @@ pub(super) fn bushing(
     }
     let mesh = BushingMesh { around, radial, axial, grading: GRADING, part: Part::Quarter };
     let body = Bushing { inner_diameter, thickness, length };
-    let fastest = reader.number("spring.bushing.fastest").unwrap_or(f64::NAN);
+    let fastest = reader.number("spring.bushing.fastest").unwrap_or(10e3);
     let table = reader.choice_if_given("spring.bushing.table");
     let because = " of a bushing without `table`";
     let material = rubber(reader, TABLE, table, ChainPull::FiveTerms, because)?;

@@ -74,12 +74,14 @@ fn keys_of_the_rubber_reach_the_springs() {
     let one = "rubber_modulus = \"0.647 MPa\"\ncells = { around = 5, radial = 2, axial = 2 }\n\
                [[spring.mount.bushing.maxwell]]\ngamma = 2.0\nrelaxation_time = \"10 ms\"";
     let one = law(&read(&[(SMALL.0, one)]).unwrap());
-    // Torsion changes no volume: one element, γ times the relaxed stiffness, of the rubber's own time.
-    let twisting: Vec<_> =
-        one.maxwell.iter().filter(|of| of.stiffness[3] > 1e-6 * one.stiffness[3]).collect();
-    assert_eq!(twisting.len(), 1);
-    assert!((twisting[0].stiffness[3] / one.stiffness[3] - 2.0).abs() <= 1e-6);
-    assert!((twisting[0].relaxation_time - 0.01).abs() <= 1e-15);
+    // Torsion changes no volume: the element is the rubber's own, γ times the relaxed stiffness; the rest is rounding.
+    let twisting = |near: bool| -> f64 {
+        let times =
+            one.maxwell.iter().filter(|of| near == ((of.relaxation_time - 0.01).abs() <= 1e-12));
+        times.map(|of| of.stiffness[3] / one.stiffness[3]).sum()
+    };
+    assert!((twisting(true) - 2.0).abs() <= 1e-3, "{}", twisting(true));
+    assert!(twisting(false) <= 1e-3, "{}", twisting(false));
 }
 
 #[test]
@@ -129,10 +131,9 @@ fn what_cannot_be_is_told() {
 #[test]
 fn springs_end_at_races_where_those_sit() {
     let text = include_str!("../../scenes/shaft_back_to_back.toml");
-    let spring = "\n[spring.brace]\nfrom = \"ground\"\nto = \"right.outer_race\"\nstiffness = { x = \"1e7 N/m\", y = \"1e7 N/m\", z = \"1e7 N/m\" }\n\
-                  [outer_race.right]\nmotion = \"5-dof\"\nspeed = \"0 rpm\"\n";
-    let held: Vec<&str> = text.lines().filter(|line| !line.contains("never")).collect();
-    let text = held.join("\n") + spring;
+    let spring = "\n[spring.brace]\nfrom = \"ground\"\nto = \"right.outer_race\"\nstiffness = { x = \"1e7 N/m\", y = \"1e7 N/m\", z = \"1e7 N/m\" }\n";
+    let moving = "[outer_race.right]\nmotion = \"5-dof\"\nspeed = \"0 rpm\"\n";
+    let text = text.replace("[outer_race.right]\n", moving) + spring;
     let document = Document::read_str(&text, Format::Toml, "scene").unwrap();
     let Ok(Subject::Assembly(scene)) = resolve_subject(&document) else {
         panic!("{:?}", resolve_subject(&document).err())

@@ -158,7 +158,8 @@ fn seeds() -> Vec<(String, Format)> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
     let mut paths: Vec<_> =
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.retain(|path| path.is_file());
+    // To read a bushing is to solve its vibrations, up to seconds for a thousand cells.
+    paths.retain(|path| path.is_file() && !path.ends_with("bearing_on_bushing.toml"));
     paths.sort();
     let mut seeds = Vec::new();
     for path in paths {
