@@ -1,5 +1,6 @@
 //! What was understood of a solid, as JSON with units.
 
+use crate::commands::echo::head;
 use crate::commands::echo_run::profile;
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
@@ -23,12 +24,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The resolved scene, every dimensional value with its unit.
 pub fn scene(scene: &SolidScene) -> Echo {
-    let mut echo = Map::new();
-    for (name, text) in [("title", &scene.title), ("source", &scene.source)] {
-        if let Some(text) = text {
-            echo.insert(name.into(), json!(text));
-        }
-    }
+    let mut echo = head(&scene.title, &scene.source);
     let held: Result<Vec<Value>, ResultsError> = scene
         .held
         .iter()
