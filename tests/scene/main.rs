@@ -6,6 +6,7 @@ mod assembly_common;
 mod fuzz_common;
 
 mod scene_assembly;
+mod scene_defaults;
 mod scene_docs;
 mod scene_dynamics;
 mod scene_dynamics_errors;
@@ -13,3 +14,4 @@ mod scene_errors;
 mod scene_fuzz;
 mod scene_read;
 mod scene_to_problem;
+mod scene_units;
