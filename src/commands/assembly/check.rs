@@ -5,7 +5,7 @@ use super::housing::Housing;
 use super::{defaults, housings, lines};
 use crate::commands::check::{Line, say_json, say_lines};
 use crate::commands::echo::through;
-use crate::commands::remarks::of_springs;
+use crate::commands::remarks::{of_springs, turning_races};
 use crate::commands::run::{planned_request, request};
 use crate::commands::{CommandResult, echo_run};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
@@ -160,6 +160,7 @@ fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, Str
         && let Some(one) = scene.one()
     {
         said.extend(bodies(&one.scene));
+        said.extend(turning_races(scene).map(|said| ("note", said)));
     }
     if let Some(housing) = housings.first() {
         let fields = match housing.scene.housing.fields_interval {
