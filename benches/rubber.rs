@@ -4,6 +4,8 @@
 //! apart from the library.
 
 mod common;
+#[path = "common/plain.rs"]
+mod plain;
 
 use bearing_dynamics::ch2_housing::elastomer::merge::merged;
 use bearing_dynamics::ch2_housing::elastomer::named::table_3_1;
@@ -14,7 +16,8 @@ use bearing_dynamics::solver::solid::rubber::explicit::RubberBody;
 use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
 use bearing_dynamics::solver::solid::tet4_blocks::LANES;
 use common::{cube, least};
-use nalgebra::{Matrix3, Matrix3x4, Vector3};
+use nalgebra::{Matrix3, Matrix3x4};
+use plain::{PlainElement, PlainNodes, plain_elements};
 
 /// Least acceptable ratio up to 50 000 elements; docs/benchmarks.md has what was measured.
 const LEAST_OVER_PLAIN: f64 = if cfg!(target_feature = "avx512f") { 2.8 } else { 2.5 };
@@ -51,7 +54,8 @@ fn solid(body: &RubberBody) -> ExplicitSolid {
 
 /// The element as nalgebra's matrices write (2.12) to (2.14), one after the other.
 struct Plain {
-    elements: Vec<(Matrix3x4<f64>, f64, [usize; 4])>,
+    elements: Vec<PlainElement>,
+    nodes: PlainNodes,
     /// DEV S, and one of each Maxwell element, of every element.
     before: Vec<Matrix3<f64>>,
     history: Vec<Vec<Matrix3<f64>>>,
@@ -60,34 +64,17 @@ struct Plain {
     /// Powers of Ī₁ in ∂W/∂Ī₁, over C_R; C_R, B.
     slope: [f64; 5],
     moduli: [f64; 2],
-    step: f64,
-    per_mass: Vec<f64>,
-    displacement: Vec<Vector3<f64>>,
-    rate: Vec<Vector3<f64>>,
-    force: Vec<Vector3<f64>>,
 }
 
 impl Plain {
     fn new(body: &RubberBody, solid: &ExplicitSolid) -> Plain {
-        let elements: Vec<_> = body
-            .elements
-            .iter()
-            .map(|nodes| {
-                let x = nodes.map(|n| Vector3::from(body.nodes[n as usize]));
-                let map = Matrix3::from_columns(&[x[1] - x[0], x[2] - x[0], x[3] - x[0]]);
-                let inverse = map.try_inverse().expect("a sound element").transpose();
-                let [b, c, d] = [0, 1, 2].map(|i: usize| inverse.column(i).into_owned());
-                let gradients = Matrix3x4::from_columns(&[-(b + c + d), b, c, d]);
-                (gradients, map.determinant() / 6.0, nodes.map(|n| n as usize))
-            })
-            .collect();
+        let elements = plain_elements(&body.nodes, &body.elements);
         let (maxwell, network) = (&body.material.maxwell, &body.material.network);
         let step = solid.step_size;
         let factor = |gamma: f64, tau: f64| {
             let decay = (-step / tau).exp();
             [decay, gamma * (1.0 - decay) * tau / step]
         };
-        let count = body.nodes.len();
         let n = network.locking;
         Plain {
             before: vec![Matrix3::zeros(); elements.len()],
@@ -101,15 +88,7 @@ impl Plain {
                 2595.0 / 673_750.0 / n.powi(4),
             ],
             moduli: [network.modulus, network.bulk],
-            step,
-            per_mass: solid.model.mass.iter().map(|mass| 1.0 / mass).collect(),
-            displacement: solid
-                .displacement
-                .iter()
-                .map(|u| Vector3::new(u[0], u[1], u[2]))
-                .collect(),
-            rate: vec![Vector3::zeros(); count],
-            force: vec![Vector3::zeros(); count],
+            nodes: PlainNodes::new(solid),
             elements,
         }
     }
@@ -117,7 +96,7 @@ impl Plain {
     fn step(&mut self) {
         let [modulus, bulk] = self.moduli;
         for (index, (gradients, volume, nodes)) in self.elements.iter().enumerate() {
-            let [a, b, c, d] = nodes.map(|n| self.displacement[n]);
+            let [a, b, c, d] = nodes.map(|n| self.nodes.displacement[n]);
             let f = Matrix3::identity()
                 + Matrix3x4::from_columns(&[a, b, c, d]) * gradients.transpose();
             let right = f.transpose() * f;
@@ -138,14 +117,10 @@ impl Plain {
             }
             let forces = f * stress * gradients * -*volume;
             for (node, force) in nodes.iter().zip(forces.column_iter()) {
-                self.force[*node] += force;
+                self.nodes.force[*node] += force;
             }
         }
-        for n in 0..self.rate.len() {
-            self.rate[n] += self.force[n] * (self.step * self.per_mass[n]);
-            self.displacement[n] += self.rate[n] * self.step;
-            self.force[n] = Vector3::zeros();
-        }
+        self.nodes.step();
     }
 }
 

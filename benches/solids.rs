@@ -5,6 +5,8 @@
 //! roof are written here, apart from the library.
 
 mod common;
+#[path = "common/plain.rs"]
+mod plain;
 #[path = "common/steel.rs"]
 mod steel;
 
@@ -15,7 +17,8 @@ use bearing_dynamics::mesh::tet_mesh::Elements;
 use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
 use bearing_dynamics::solver::solid::team::Crew;
 use common::{cube, least};
-use nalgebra::{Matrix3, Matrix3x4, Vector3};
+use nalgebra::{Matrix3, Matrix3x4};
+use plain::{PlainElement, PlainNodes, plain_elements};
 use std::hint::black_box;
 use steel::solid;
 
@@ -30,63 +33,35 @@ const FLOPS: f64 = 238.0;
 
 /// The element as nalgebra's matrices write it, one after the other.
 struct Plain {
-    elements: Vec<(Matrix3x4<f64>, f64, [usize; 4])>,
+    elements: Vec<PlainElement>,
+    nodes: PlainNodes,
     material: LinearElastic,
-    step: f64,
-    per_mass: Vec<f64>,
-    displacement: Vec<Vector3<f64>>,
-    rate: Vec<Vector3<f64>>,
-    force: Vec<Vector3<f64>>,
 }
 
 impl Plain {
     fn new(solid: &ExplicitSolid) -> Plain {
         let problem = &solid.model.problem;
         let Elements::Linear(list) = &problem.elements else { panic!("linear elements") };
-        let elements = list
-            .iter()
-            .map(|nodes| {
-                let x = nodes.map(|n| Vector3::from(problem.nodes[n as usize]));
-                let map = Matrix3::from_columns(&[x[1] - x[0], x[2] - x[0], x[3] - x[0]]);
-                let inverse = map.try_inverse().expect("a sound element").transpose();
-                let [b, c, d] = [0, 1, 2].map(|i: usize| inverse.column(i).into_owned());
-                let gradients = Matrix3x4::from_columns(&[-(b + c + d), b, c, d]);
-                (gradients, map.determinant() / 6.0, nodes.map(|n| n as usize))
-            })
-            .collect();
-        let count = problem.nodes.len();
         Plain {
-            elements,
+            elements: plain_elements(&problem.nodes, list),
+            nodes: PlainNodes::new(solid),
             material: problem.material,
-            step: solid.step_size,
-            per_mass: solid.model.mass.iter().map(|mass| 1.0 / mass).collect(),
-            displacement: solid
-                .displacement
-                .iter()
-                .map(|u| Vector3::new(u[0], u[1], u[2]))
-                .collect(),
-            rate: vec![Vector3::zeros(); count],
-            force: vec![Vector3::zeros(); count],
         }
     }
 
     fn step(&mut self) {
         let (lambda, double) = (self.material.lambda, 2.0 * self.material.shear_modulus);
         for (gradients, volume, nodes) in &self.elements {
-            let [a, b, c, d] = nodes.map(|n| self.displacement[n]);
+            let [a, b, c, d] = nodes.map(|n| self.nodes.displacement[n]);
             let h = Matrix3x4::from_columns(&[a, b, c, d]) * gradients.transpose();
             let strain = (h + h.transpose() + h.transpose() * h) * 0.5;
             let stress = strain * double + Matrix3::identity() * (lambda * strain.trace());
             let forces = (Matrix3::identity() + h) * stress * gradients * -*volume;
             for (node, force) in nodes.iter().zip(forces.column_iter()) {
-                self.force[*node] += force;
+                self.nodes.force[*node] += force;
             }
         }
-        for n in 0..self.rate.len() {
-            self.rate[n] += self.force[n] * (self.step * self.per_mass[n]);
-            self.displacement[n] += self.rate[n] * self.step;
-            self.force[n] = Vector3::zeros();
-        }
+        self.nodes.step();
     }
 }
 

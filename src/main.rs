@@ -31,7 +31,7 @@ enum Command {
     Run(run::Arguments),
     /// Equilibrium of a bearing (ball loads, stiffness) or of a solid (displacements, stresses)
     Statics(statics::Arguments),
-    /// Natural frequencies and mode shapes of a solid
+    /// Natural frequencies: of a solid with its mode shapes, of bearings and what they sit on
     Modes(modes::Arguments),
     /// Solve a scene for many values of some keys, on all cores; the same command resumes it
     Sweep(sweep::Arguments),

@@ -1,8 +1,12 @@
 //! `bearing check SCENE`.
 
-use super::{CommandResult, assembly, solid};
-use bearing_dynamics::scene::{Document, Subject, resolve_subject};
-use std::path::PathBuf;
+use super::{CommandResult, Outcome, assembly, echo_run, say, solid};
+use bearing_dynamics::output::results::pretty;
+use bearing_dynamics::output::visible::visible_line;
+use bearing_dynamics::scene::{Assumption, DefaultUsed, Document, Subject, resolve_subject};
+use serde_json::Value;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -20,4 +24,48 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         Subject::Solid(solid) => solid::check::run(path, &document, &solid, *json),
         Subject::Assembly(scene) => assembly::check::run(path, &document, *scene, *json),
     }
+}
+
+/// Says what was understood as JSON: the scene, what it has written, what it assumes.
+pub fn say_json(
+    mut echo: Value,
+    output: Value,
+    assumptions: &[Assumption],
+    defaults: &[DefaultUsed],
+) -> CommandResult {
+    echo["output"] = output;
+    for (name, notes) in echo_run::notes(assumptions, defaults) {
+        echo[name] = notes;
+    }
+    say(&pretty(&echo))?;
+    Ok(Outcome::Done)
+}
+
+/// A label and what is said of it.
+pub type Line<'a> = dyn FnMut(&str, String) + 'a;
+
+/// Says what was understood, a line each: title, what `lines` has of the scene, what it assumes.
+pub fn say_lines(
+    path: &Path,
+    title: &Option<String>,
+    lines: impl FnOnce(&mut Line),
+    assumptions: &[Assumption],
+    defaults: &[DefaultUsed],
+) -> CommandResult {
+    let mut text = format!("{}: a valid scene\n", visible_line(&path.display().to_string()));
+    let mut line = |label: &str, value: String| {
+        let _ = writeln!(text, "  {label:<22} {}", visible_line(&value));
+    };
+    if let Some(title) = title {
+        line("title", title.clone());
+    }
+    lines(&mut line);
+    for used in defaults {
+        line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
+    }
+    for assumption in assumptions {
+        line("assumption", format!("{}: {}", assumption.name, assumption.text));
+    }
+    say(&text)?;
+    Ok(Outcome::Done)
 }

@@ -13,14 +13,15 @@ use serde_json::{Map, Value, json};
 
 type Echo = Result<Value, ResultsError>;
 
+/// What any scene may say of itself.
+pub fn head(title: &Option<String>, source: &Option<String>) -> Map<String, Value> {
+    let given = [("title", title), ("source", source)].into_iter();
+    given.filter_map(|(name, text)| Some((name.into(), json!(text.as_ref()?)))).collect()
+}
+
 /// The resolved scene, every dimensional value with its unit.
 pub fn scene(scene: &Scene) -> Echo {
-    let mut echo = Map::new();
-    for (name, text) in [("title", &scene.title), ("source", &scene.source)] {
-        if let Some(text) = text {
-            echo.insert(name.into(), json!(text));
-        }
-    }
+    let mut echo = head(&scene.title, &scene.source);
     echo.insert("bearing".into(), bearing(scene)?);
     echo.insert("inner_race".into(), conditions(scene)?);
     let mut outer = Map::new();

@@ -1,5 +1,6 @@
 //! One file a subcommand; here what they share.
 
+mod asked;
 pub mod assembly;
 pub mod check;
 pub mod compare;

@@ -1,5 +1,6 @@
 //! `bearing modes SCENE`.
 
+use super::asked::Asked;
 use super::{CommandResult, assembly, solid};
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use std::path::PathBuf;
@@ -19,8 +20,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> CommandResult {
     let Arguments { scene: path, out, dry } = arguments;
     let document = Document::read_file(path)?;
+    let asked = Asked { path, document: &document, out, dry: *dry };
     match resolve_subject(&document)? {
-        Subject::Solid(solid) => solid::modes::run(path, &document, &solid, out, *dry),
-        Subject::Assembly(scene) => assembly::modes::run(path, &document, &scene, out, *dry),
+        Subject::Solid(solid) => solid::modes::run(&asked, &solid),
+        Subject::Assembly(scene) => assembly::modes::run(&asked, &scene),
     }
 }

@@ -208,9 +208,32 @@ pub fn of_springs(scene: &AssemblyScene) -> Vec<String> {
     scene.springs.iter().filter_map(said).collect()
 }
 
-/// Springs of which an equilibrium knows a part only.
+/// Outer races that turn as they are told, whatever acts on them.
+pub fn turning_races(scene: &AssemblyScene) -> impl Iterator<Item = String> {
+    scene.bearings.iter().filter_map(|placed| {
+        let outer = placed.scene.dynamics.outer.as_ref()?;
+        let turns = matches!(&outer.rotation, Rotation::Speed(speed) if !speed.is_zero());
+        let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
+        turns.then(|| {
+            format!(
+                "the outer race{of} turns about its axis at the speed that is given, which nothing that acts on it \
+                 changes; write motion = \"6-dof\" for a race that moments turn"
+            )
+        })
+    })
+}
+
+/// Springs and foundations of which an equilibrium knows a part only.
 pub fn at_rest(scene: &AssemblyScene) -> impl Iterator<Item = String> {
-    scene.springs.iter().filter_map(|Spring { name, damping, maxwell, .. }| {
+    let bodies = scene.bodies.iter().map(|body| (format!("body {}", body.name), &body.race));
+    let races = scene.bearings.iter().filter_map(|placed| {
+        let name = placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
+        Some((format!("the outer race{name}"), placed.scene.dynamics.outer.as_ref()?))
+    });
+    let damped = bodies.chain(races).filter(|(_, race)| race.foundation_damping != [0.0; 5]);
+    let foundations =
+        damped.map(|(of, _)| format!("foundation of {of}: its dashpots push nothing at rest"));
+    let springs = scene.springs.iter().filter_map(|Spring { name, damping, maxwell, .. }| {
         let slowest = maxwell.iter().map(|element| element.relaxation_time).fold(0.0, f64::max);
         match (*damping != [0.0; 6], slowest > 0.0) {
             (_, true) => Some(format!(
@@ -220,7 +243,8 @@ pub fn at_rest(scene: &AssemblyScene) -> impl Iterator<Item = String> {
             (true, false) => Some(format!("spring {name}: its dashpots push nothing at rest")),
             (false, false) => None,
         }
-    })
+    });
+    springs.chain(foundations)
 }
 
 /// With the name of the bearing that they are about.

@@ -1,5 +1,6 @@
 //! `bearing statics SCENE`.
 
+use super::asked::Asked;
 use super::{CommandResult, assembly, solid};
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use std::path::PathBuf;
@@ -21,11 +22,12 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
     let Arguments { scene: path, out, dry } = arguments;
     let document = Document::read_file(path)?;
+    let asked = Asked { path, document: &document, out, dry: *dry };
     match resolve_subject(&document)? {
-        Subject::Solid(solid) => solid::statics::run(path, &document, &solid, out, *dry),
+        Subject::Solid(solid) => solid::statics::run(&asked, &solid),
         Subject::Assembly(scene) => {
             let read = start.elapsed().as_secs_f64();
-            assembly::statics::run(path, &document, &scene, out, *dry, read)
+            assembly::statics::run(&asked, &scene, read)
         }
     }
 }

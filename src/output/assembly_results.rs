@@ -1,17 +1,15 @@
 //! The results folder of an equilibrium of several bodies: `summary.json` with a part for each body and each
 //! bearing, and `series.csv` with a row for each ball of each bearing.
 
-use crate::output::atomic::write_atomic;
 use crate::output::results::{
-    ResultsError, RunRecord, ball, ball_columns, ball_rows, insert_record, load_zone, pretty,
-    quantity, vector,
+    ResultsError, RunRecord, ball, ball_columns, ball_rows, determinacy, insert_record, load_zone,
+    place_and_loads, quantity, solver, vector, write_results,
 };
-use crate::output::series::{Column, Series, columns_path};
+use crate::output::series::{Column, Series};
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::static_assembly::{Place, StaticAssembly};
 use crate::solver::static_tables::BearingState;
-use crate::solver::statics::{AssemblySolution, COORDINATE_NAMES, Determinacy};
-use nalgebra::DVector;
+use crate::solver::statics::{AssemblySolution, COORDINATE_NAMES};
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
 use std::f64::consts::{PI, TAU};
@@ -70,12 +68,7 @@ pub fn write(
 ) -> Result<Vec<PathBuf>, ResultsError> {
     let summary = summary(solved, record)?;
     let series = series(solved)?;
-    series.check_finite()?;
-    let [csv, npy, json] = ["series.csv", "series.npy", "summary.json"].map(|n| folder.join(n));
-    series.write_csv(&csv)?;
-    series.write_npy(&npy)?;
-    write_atomic(&json, pretty(&summary).as_bytes())?;
-    Ok(vec![csv, columns_path(&npy), npy, json])
+    write_results(folder, &series, &summary)
 }
 
 /// One row a ball, bearing after bearing: number of the bearing, then what a bearing alone has.
@@ -102,20 +95,23 @@ pub fn summary(solved: &Solved, record: &RunRecord) -> Result<Value, ResultsErro
     let solution = solved.solution;
     let mut summary = Map::new();
     summary.insert("kind".into(), json!("static solution"));
-    summary.insert("determinacy".into(), determinacy(solved)?);
+    let names = coordinate_names(solved.assembly);
+    summary.insert(
+        "determinacy".into(),
+        determinacy(&solution.determinacy, &names, "a pitch radius")?,
+    );
     summary.insert(
         "solver".into(),
-        json!({
-            "iterations": solution.iterations,
-            "contact_evaluations": solution.contact_evaluations,
-            "saddles_left": solution.saddles_left,
-            "residual": quantity("residual", solution.residual, "N")?,
-        }),
+        solver(
+            [solution.iterations, solution.contact_evaluations, solution.saddles_left],
+            solution.residual,
+        )?,
     );
     let mut bodies = Map::new();
     for (index, body) in solved.assembly.bodies.iter().enumerate() {
         if matches!(body.place, Place::Loaded(_)) {
-            bodies.insert(key(&body.name), body_part(solution, index)?);
+            let part = place_and_loads(&solution.coordinates[index], &solution.loads[index])?;
+            bodies.insert(key(&body.name), part);
         }
     }
     summary.insert("bodies".into(), Value::Object(bodies));
@@ -133,20 +129,6 @@ pub fn summary(solved: &Solved, record: &RunRecord) -> Result<Value, ResultsErro
 pub fn key(name: &str) -> String {
     let name = name.strip_prefix("the ").unwrap_or(name);
     name.strip_prefix("body ").unwrap_or(name).replace(' ', "_")
-}
-
-fn body_part(solution: &AssemblySolution, index: usize) -> Result<Value, ResultsError> {
-    let (mut position, mut loads) = (Map::new(), Map::new());
-    for (i, name) in COORDINATE_NAMES.iter().enumerate() {
-        let coordinate = solution.coordinates[index][i];
-        let (given, unit, load_unit) = match i < 3 {
-            true => (coordinate, "m", "N"),
-            false => (coordinate.to_degrees(), "deg", "N m"),
-        };
-        position.insert(name.to_string(), quantity(name, given, unit)?);
-        loads.insert(name.to_string(), quantity(name, solution.loads[index][i], load_unit)?);
-    }
-    Ok(json!({ "position": position, "loads": loads }))
 }
 
 fn bearing(state: &BearingState) -> Result<Value, ResultsError> {
@@ -187,23 +169,4 @@ fn stiffness(solved: &Solved) -> Result<Value, ResultsError> {
         rows.push(row);
     }
     Ok(json!({ "coordinates": names, "matrix": rows, "unit": "N, N m over m, rad" }))
-}
-
-fn determinacy(solved: &Solved) -> Result<Value, ResultsError> {
-    let Determinacy::Indeterminate { free_directions } = &solved.solution.determinacy else {
-        return Ok(json!({ "kind": "determinate" }));
-    };
-    let names = coordinate_names(solved.assembly);
-    let direction = |direction: &DVector<f64>| -> Result<Value, ResultsError> {
-        let entry = |(name, value): (&String, &f64)| {
-            Ok((name.clone(), quantity("free direction", *value, "1")?))
-        };
-        let map = names.iter().zip(direction.iter()).map(entry);
-        Ok(Value::Object(map.collect::<Result<_, ResultsError>>()?))
-    };
-    Ok(json!({
-        "kind": "indeterminate",
-        "free_directions": free_directions.iter().map(direction).collect::<Result<Vec<_>, _>>()?,
-        "note": "unit vectors; tilts are multiplied by a pitch radius",
-    }))
 }

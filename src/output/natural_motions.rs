@@ -1,9 +1,8 @@
 //! The results folder of natural motions of bodies: `summary.json`, and `series.csv` with a row for each.
 
 use crate::output::assembly_results::key;
-use crate::output::atomic::write_atomic;
-use crate::output::results::{ResultsError, RunRecord, insert_record, pretty, quantity};
-use crate::output::series::{Column, Series, columns_path};
+use crate::output::results::{ResultsError, RunRecord, insert_record, quantity, write_results};
+use crate::output::series::{Column, Series};
 use crate::solver::housing::inertia::{Mode, MovingBody};
 use crate::solver::static_assembly::StaticAssembly;
 use crate::solver::statics::COORDINATE_NAMES;
@@ -44,7 +43,6 @@ pub fn write(
         _ => modes[row].shape[column - 2],
     });
     let series = Series::new(columns, data)?;
-    series.check_finite()?;
     let entry = |(index, mode): (usize, &Mode)| -> Result<Value, ResultsError> {
         let housings: f64 = mode.housings.iter().sum();
         Ok(json!({
@@ -59,11 +57,7 @@ pub fn write(
     summary.insert("kind".into(), json!("natural modes of bodies"));
     summary.insert("modes".into(), json!(list?));
     insert_record(&mut summary, record)?;
-    let [csv, npy, json] = ["series.csv", "series.npy", "summary.json"].map(|n| folder.join(n));
-    series.write_csv(&csv)?;
-    series.write_npy(&npy)?;
-    write_atomic(&json, pretty(&Value::Object(summary)).as_bytes())?;
-    Ok(vec![csv, columns_path(&npy), npy, json])
+    write_results(folder, &series, &Value::Object(summary))
 }
 
 /// The coordinate that has most of the kinetic energy.

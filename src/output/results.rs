@@ -10,13 +10,13 @@
 //! that has it is complete.
 
 use crate::output::atomic::{WriteError, write_atomic};
-use crate::output::series::{Column, Series, SeriesError};
+use crate::output::series::{Column, Series, SeriesError, columns_path};
 use crate::solver::plan::tally::Ran;
 use crate::solver::plan::{Item, counted};
 use crate::solver::statics::{
     BallState, COORDINATE_NAMES, ContactState, Determinacy, StaticSolution,
 };
-use nalgebra::Vector3;
+use nalgebra::{SVector, Vector3};
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
@@ -84,12 +84,21 @@ pub fn write_static_results(
 ) -> Result<Vec<PathBuf>, ResultsError> {
     let summary = static_summary(solution, run)?;
     let series = ball_series(solution)?;
+    write_results(folder, &series, &summary)
+}
+
+/// Writes a table and its summary and returns the files.
+pub(super) fn write_results(
+    folder: &Path,
+    series: &Series,
+    summary: &Value,
+) -> Result<Vec<PathBuf>, ResultsError> {
     series.check_finite()?;
     let [csv, npy, json] = ["series.csv", "series.npy", "summary.json"].map(|n| folder.join(n));
     series.write_csv(&csv)?;
     series.write_npy(&npy)?;
-    write_atomic(&json, pretty(&summary).as_bytes())?;
-    let columns = crate::output::series::columns_path(&npy);
+    write_atomic(&json, pretty(summary).as_bytes())?;
+    let columns = columns_path(&npy);
     Ok(vec![csv, npy, columns, json])
 }
 
@@ -180,17 +189,20 @@ pub fn static_summary(solution: &StaticSolution, run: &RunRecord) -> Result<Valu
     put("program", program());
     put("threads", json!(run.threads));
     put("seconds", seconds(&run.seconds)?);
-    put("determinacy", determinacy(&solution.determinacy)?);
     put(
-        "solver",
-        json!({
-            "iterations": solution.iterations,
-            "contact_evaluations": solution.contact_evaluations,
-            "saddles_left": solution.saddles_left,
-            "residual": quantity("residual", solution.residual, "N")?,
-        }),
+        "determinacy",
+        determinacy(
+            &solution.determinacy,
+            &COORDINATE_NAMES.map(str::to_string),
+            "the pitch radius",
+        )?,
     );
-    put("inner_race", inner_race(solution)?);
+    let counts = [solution.iterations, solution.contact_evaluations, solution.saddles_left];
+    put("solver", solver(counts, solution.residual)?);
+    let mut inner = place_and_loads(&solution.coordinates, &solution.loads)?;
+    inner["contact_force"] = vector("contact_force", &solution.force_on_inner, "N")?;
+    inner["contact_moment"] = vector("contact_moment", &solution.moment_on_inner, "N m")?;
+    put("inner_race", inner);
     put(
         "outer_race",
         json!({
@@ -219,43 +231,60 @@ fn strings(pairs: &[(String, String)]) -> Value {
     Value::Object(pairs.iter().map(|(name, text)| (name.clone(), json!(text))).collect())
 }
 
-fn determinacy(determinacy: &Determinacy) -> Result<Value, ResultsError> {
+/// What the search took; the residual in N.
+pub(super) fn solver(
+    [iterations, contact_evaluations, saddles_left]: [usize; 3],
+    residual: f64,
+) -> Result<Value, ResultsError> {
+    Ok(json!({
+        "iterations": iterations,
+        "contact_evaluations": contact_evaluations,
+        "saddles_left": saddles_left,
+        "residual": quantity("residual", residual, "N")?,
+    }))
+}
+
+/// `names` are those of the coordinates, `length` is what tilts are multiplied by.
+pub(super) fn determinacy(
+    determinacy: &Determinacy,
+    names: &[String],
+    length: &str,
+) -> Result<Value, ResultsError> {
     let Determinacy::Indeterminate { free_directions } = determinacy else {
         return Ok(json!({ "kind": "determinate" }));
     };
     let mut directions = Vec::new();
     for direction in free_directions {
         let mut map = Map::new();
-        for (name, &component) in COORDINATE_NAMES.iter().zip(direction.iter()) {
-            map.insert(name.to_string(), quantity("free direction", component, "1")?);
+        for (name, &component) in names.iter().zip(direction.iter()) {
+            map.insert(name.clone(), quantity("free direction", component, "1")?);
         }
         directions.push(Value::Object(map));
     }
     Ok(json!({
         "kind": "indeterminate",
         "free_directions": directions,
-        "note": "unit vectors; tilts are multiplied by the pitch radius",
+        "note": format!("unit vectors; tilts are multiplied by {length}"),
     }))
 }
 
-fn inner_race(solution: &StaticSolution) -> Result<Value, ResultsError> {
+/// Where a body is (m, rad) and what holds it there (N, N m).
+pub(super) fn place_and_loads(
+    coordinates: &SVector<f64, 5>,
+    loads: &SVector<f64, 5>,
+) -> Result<Value, ResultsError> {
     let mut position = Map::new();
-    let mut loads = Map::new();
+    let mut held = Map::new();
     for (index, name) in COORDINATE_NAMES.iter().enumerate() {
-        let coordinate = solution.coordinates[index];
+        let coordinate = coordinates[index];
         let (given, unit, load_unit) = match index < 3 {
             true => (coordinate, "m", "N"),
             false => (coordinate.to_degrees(), "deg", "N m"),
         };
         position.insert(name.to_string(), quantity(name, given, unit)?);
-        loads.insert(name.to_string(), quantity(name, solution.loads[index], load_unit)?);
+        held.insert(name.to_string(), quantity(name, loads[index], load_unit)?);
     }
-    Ok(json!({
-        "position": position,
-        "loads": loads,
-        "contact_force": vector("contact_force", &solution.force_on_inner, "N")?,
-        "contact_moment": vector("contact_moment", &solution.moment_on_inner, "N m")?,
-    }))
+    Ok(json!({ "position": position, "loads": held }))
 }
 
 /// Row: the load, column: the coordinate it is differentiated by.

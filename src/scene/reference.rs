@@ -252,7 +252,7 @@ The grooves' axial offset in an angular-contact bearing is left out of the mass.
 **Cage.** A cage takes part in a run if the scene gives `pocket_radius`, `inner_radius`, `outer_radius`, `mass` and `guidance`, and
 `race_clearance` where a race guides it; otherwise it is left out, with the reason. Its length follows from its mass if not given.
 
-**Outer race.** `fixed` has no equations. `5-dof` does not turn about X, `6-dof` may. Loads, motions, inertia and foundation of a
+**Outer race.** `fixed` has no equations. `5-dof` turns about X at the given `speed`, zero unless given, `6-dof` as moments turn it. Loads, motions, inertia and foundation of a
 fixed race are refused. The foundation is at rest where the race starts.
 
 **Start.** `equilibrium` is that of both races under the loads at t = 0: a moving outer race rests on its springs, and one that

@@ -106,19 +106,17 @@ fn refuse_motion(document: &Document, reader: &Reader) -> Result<(), SceneError>
 
 /// Loads and motions of an outer race that a rigid housing fixes.
 fn refuse_drives(document: &Document, bearing: &Scene) -> Result<(), SceneError> {
+    const FIXED: &str = "a rigid housing fixes the outer race";
+    const ADVICE: &str = "leave it out, or choose another method";
     let Some(outer) = &bearing.dynamics.outer else { return Ok(()) };
+    if matches!(&outer.rotation, Rotation::Speed(speed) if !speed.is_zero()) {
+        return not_applicable(document, "outer_race.speed", FIXED, ADVICE);
+    }
     for (name, drive) in COORDINATE_NAMES.iter().zip(&outer.drives) {
         let moves =
             matches!(drive, Drive::Motion(profile) if !matches!(profile, Profile::Constant(_)));
         if moves {
-            let key = drive_key(name, false);
-            let reason = "a rigid housing fixes the outer race";
-            return not_applicable(
-                document,
-                &key,
-                reason,
-                "leave it out, or choose another method",
-            );
+            return not_applicable(document, &drive_key(name, false), FIXED, ADVICE);
         }
     }
     Ok(())

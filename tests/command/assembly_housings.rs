@@ -163,6 +163,23 @@ fn a_course_in_two_housings_is_statics_row_by_row() {
     }
 }
 
+/// Items of a plan are told apart by the names of their seats.
+#[test]
+fn no_two_items_of_a_plan_have_one_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let course = [("method = \"reduced\"", "method = \"quasi-static\"")];
+    for (name, changes) in [("shapes", &[][..]), ("steps", &EXPLICIT), ("course", &course)] {
+        let said = done(&["plan", &variant(folder.path(), name, changes)]);
+        let items = said.lines().filter(|line| !line.starts_with("notes"));
+        let mut names: Vec<&str> = items.map(|line| line[6..34].trim()).collect();
+        assert!(names.contains(&"left: seat") && names.contains(&"right: seat"), "{said}");
+        let count = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), count, "{name}: {said}");
+    }
+}
+
 #[test]
 fn threads_and_a_break_change_no_bit() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -170,6 +170,23 @@ fn given_places_of_outer_races_count_from_their_bearing() {
     }
 }
 
+/// Of a foundation, as of a spring, an equilibrium knows the springs alone.
+#[test]
+fn statics_tells_dashpots_of_foundations() {
+    const MOVING: &str = "motion = \"5-dof\"\nfoundation = { stiffness = { x = \"1e8 N/m\", y = \"1e8 N/m\", \
+         z = \"1e8 N/m\", tilt_y = \"1e5 N m/rad\", tilt_z = \"1e5 N m/rad\" }DASHPOT }\n";
+    let with = |dashpot: &str| {
+        let ends = changed(ENDS, "x = \"-6 um\"\n", &MOVING.replace("DASHPOT", dashpot));
+        let (said, summary) = statics(&[BEARING, &ends, SHAFT].concat());
+        let remarks = summary["remarks"].to_string();
+        [said, remarks]
+    };
+    const TOLD: &str =
+        "foundation of the outer race of bearing left: its dashpots push nothing at rest";
+    assert!(with(", damping.z = \"100 N s/m\"").iter().all(|said| said.contains(TOLD)));
+    assert!(with("").iter().all(|said| !said.contains("dashpots")));
+}
+
 #[test]
 fn named_bearings_have_what_a_bearing_alone_has() {
     let (said, summary) = statics(&[BEARING, ENDS, SHAFT].concat());

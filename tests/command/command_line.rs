@@ -365,3 +365,10 @@ fn clearance_alone_is_no_reason_to_remark_how_far_the_races_are_apart() {
     let (_, said) = remarks("5 um", "displacement = \"0 um\"", "displacement = \"-800 um\"");
     assert!(said.contains("the centres of the races are 0.8000 mm apart"), "{said}");
 }
+
+/// `modes` takes scenes of bearings as well as of solids, and its help says so.
+#[test]
+fn help_of_modes_names_both_kinds_of_scene() {
+    let said = done(&["modes", "--help"]);
+    assert!(said.contains("of a solid") && said.contains("of bearings"), "{said}");
+}

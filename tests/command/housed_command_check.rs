@@ -136,3 +136,36 @@ fn fits_and_seats_are_not_taken_in_silence() {
     let pressure = summary["housing"]["seat"]["peak_pressure_note"].as_str().unwrap();
     assert!(pressure.starts_with("of one node"), "{pressure}");
 }
+
+/// Sizes of a generated mesh have units; the assumed ones of a pillow block are among them.
+#[test]
+fn sizes_of_generated_meshes_are_echoed_with_units() {
+    let place = Place::new();
+    let text = scene_text("fit.radial = \"2 um\"", RUN);
+    let block = text.replace("housing-d", "housing-c");
+    for (text, depth, others) in [(&text, 0.02, 2), (&block, 0.02, 7)] {
+        let (_, echo) = checked(&place, text);
+        let mesh = echo["solid"]["mesh"].as_object().unwrap();
+        assert_eq!(mesh["depth"], json!({ "value": depth, "unit": "m" }));
+        assert_eq!(mesh["cells"]["around"], 24);
+        let lengths = mesh.values().filter(|value| value["unit"] == "m").count();
+        assert_eq!(lengths, 1 + others, "{mesh:?}");
+        let debug = |value: &&Value| value.as_str().is_some_and(|text| text.contains('{'));
+        assert_eq!(mesh.values().find(debug), None);
+    }
+}
+
+/// A race that turns as it is told does so whatever acts on it.
+#[test]
+fn a_given_speed_of_the_outer_race_is_noted() {
+    let place = Place::new();
+    let still = scene_text("method = \"explicit\"\nfit.radial = \"2 um\"", RUN);
+    let turning = still.replace("motion = \"5-dof\"", "motion = \"5-dof\"\nspeed = \"100 rpm\"");
+    for (text, noted) in [(still, false), (turning, true)] {
+        let (said, _) = checked(&place, &text);
+        let scene = place.path("scene.toml");
+        for said in [said, succeed(command("plan", &scene, &[]))] {
+            assert_eq!(said.contains("at the speed that is given"), noted, "{said}");
+        }
+    }
+}

@@ -96,6 +96,12 @@ fn cases() -> Vec<Case> {
             &["973.0 um larger than the bore"],
         ),
         (
+            "a speed of a race that a rigid housing fixes",
+            changed("fit.radial = \"1 um\"", "method = \"rigid\"")
+                .replace("motion = \"5-dof\"", "motion = \"5-dof\"\nspeed = \"100 rpm\""),
+            &["outer_race.speed", "a rigid housing fixes the outer race", "another method"],
+        ),
+        (
             "a bore that is held",
             changed("set = \"fixed\"", "set = \"bore\""),
             &["housing.bore", "held by [[solid.held]]", "Hold another set", "rigid"],

@@ -3,11 +3,10 @@
 
 pub(crate) use crate::solid_command_common as solids;
 
-use std::fs;
-use std::path::Path;
-
 #[allow(unused_imports)]
-pub use solids::{Place, command, into_folder, json, shipped, stderr, succeed};
+pub use solids::{
+    Place, column_of as column, command, into_folder, json, shipped, stderr, succeed,
+};
 
 pub const BEARING: &str = r#"title = "A bearing in a ring"
 [assumptions]
@@ -55,14 +54,4 @@ z = true
 /// A scene of these parts, with `[housing]` and what else is given.
 pub fn scene_text(housing: &str, further: &str) -> String {
     format!("{BEARING}{RACES}[housing]\n{housing}\n{RING}{further}\n")
-}
-
-/// A column of a `.csv` file.
-pub fn column(path: &Path, name: &str) -> Vec<f64> {
-    let text = fs::read_to_string(path).unwrap();
-    let mut lines = text.lines();
-    let header = lines.next().unwrap();
-    let at = header.split(',').position(|head| head.starts_with(&format!("{name} [")));
-    let at = at.unwrap_or_else(|| panic!("{name} is not in {header}"));
-    lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap()).collect()
 }

@@ -4,5 +4,7 @@
 mod output_common;
 
 mod compare_finds;
+mod compare_npy;
+mod compare_tolerances;
 mod output_files;
 mod output_plots;

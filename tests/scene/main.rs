@@ -7,6 +7,7 @@ mod fuzz_common;
 
 mod scene_assembly;
 mod scene_bushing;
+mod scene_defaults;
 mod scene_docs;
 mod scene_dynamics;
 mod scene_dynamics_errors;
@@ -14,3 +15,4 @@ mod scene_errors;
 mod scene_fuzz;
 mod scene_read;
 mod scene_to_problem;
+mod scene_units;

@@ -4,6 +4,7 @@
 mod solid_common;
 
 mod bore_contact;
+mod cylinder_contact_runs;
 mod elastomer;
 mod material_laws;
 mod rubber;

@@ -1,23 +1,18 @@
 //! Laws of stresses: patches, objectivity, balance with the forces, convergence on the nodes.
 
-use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
+use crate::solid_common::{YOUNG, end_loaded, free};
 use bearing_dynamics::kinematics::strain::{Sym3, full, principal, von_mises};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, bar, ring};
-use bearing_dynamics::mesh::measure::{Share, tributary_areas};
 use bearing_dynamics::mesh::node_order::EDGES;
 use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
-use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::energy::strain_energy;
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::model::{
-    DampedMotion, Load, Prescribed, SolidModel, SolidProblem,
-};
+use bearing_dynamics::solver::solid::model::{SolidModel, SolidProblem};
 use bearing_dynamics::solver::solid::stress::{element_stresses, nodal_stresses, point_stresses};
 use bearing_dynamics::solver::solid::trust::energy_error;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-const YOUNG: f64 = 2.1e11;
 const POISSON: f64 = 0.3;
 const SIZE: [f64; 3] = [0.03, 0.02, 0.01];
 
@@ -27,18 +22,7 @@ fn model(counts: [usize; 3], order: Order) -> SolidModel {
         Order::Linear => solid.mesh,
         Order::Quadratic => solid.quadratic().unwrap().mesh,
     };
-    SolidModel::new(SolidProblem {
-        nodes: mesh.nodes,
-        elements: mesh.elements,
-        material: LinearElastic::new(YOUNG, POISSON).unwrap(),
-        density: 7800.0,
-        damping: 0.0,
-        damped_motion: DampedMotion::Absolute,
-        prescribed: Vec::new(),
-        loads: Vec::new(),
-        gravity: [0.0; 3],
-    })
-    .unwrap()
+    SolidModel::new(free(&mesh, POISSON)).unwrap()
 }
 
 fn moved(model: &SolidModel, field: impl Fn(Vec3) -> Vec3) -> Vec<Vec3> {
@@ -227,26 +211,7 @@ fn bent(cells: [usize; 3], order: Order, poisson: f64) -> (SolidModel, Vec<Vec3>
         Order::Linear => solid.mesh,
         Order::Quadratic => solid.quadratic().unwrap().mesh,
     };
-    let faces = |name: &str| mesh.surface_set(name).unwrap();
-    let held = mesh.nodes_of_faces(faces("x_low"));
-    let shares = tributary_areas(&mesh, faces("x_high"), Share::Consistent);
-    let total: f64 = shares.iter().sum();
-    let force = |(node, share): (u32, &f64)| (node, [0.0, 0.0, -100.0 * share / total]);
-    let loads = (0..).zip(&shares).filter(|(_, share)| **share != 0.0).map(force).collect();
-    let hold =
-        |node: &u32| [0, 1, 2].map(|axis| Prescribed { node: *node, axis, profile: Profile::ZERO });
-    let model = SolidModel::new(SolidProblem {
-        prescribed: held.iter().flat_map(hold).collect(),
-        loads: vec![Load { forces: loads, profile: Profile::Constant(1.0) }],
-        material: LinearElastic::new(YOUNG, poisson).unwrap(),
-        nodes: mesh.nodes.clone(),
-        elements: mesh.elements.clone(),
-        density: 7800.0,
-        damping: 0.0,
-        damped_motion: DampedMotion::Absolute,
-        gravity: [0.0; 3],
-    })
-    .unwrap();
+    let model = SolidModel::new(end_loaded(&mesh, poisson, [0.0, 0.0, -100.0])).unwrap();
     let u = equilibrium(&model, 0.0, &EquilibriumOptions::default()).unwrap().displacement;
     let along: f64 =
         model.problem.loads[0].forces.iter().map(|(n, f)| f[2] * u[*n as usize][2]).sum();
@@ -297,18 +262,7 @@ fn the_energy_of_stresses_counts_each_point_with_its_volume() {
         ring(&shape, &cells).unwrap().mesh,
         ring(&shape, &cells).unwrap().quadratic().unwrap().mesh,
     ] {
-        let model = SolidModel::new(SolidProblem {
-            nodes: mesh.nodes,
-            elements: mesh.elements,
-            material: LinearElastic::new(YOUNG, POISSON).unwrap(),
-            density: 7800.0,
-            damping: 0.0,
-            damped_motion: DampedMotion::Absolute,
-            prescribed: Vec::new(),
-            loads: Vec::new(),
-            gravity: [0.0; 3],
-        })
-        .unwrap();
+        let model = SolidModel::new(free(&mesh, POISSON)).unwrap();
         // Strains up to 1e-6 that vary over an element.
         let u = moved(&model, |[x, y, z]| [1e-5 * x * y, 2e-5 * y * z, -1e-5 * y * y]);
         let padded: Vec<_> = u.iter().map(|u| [u[0], u[1], u[2], 0.0]).collect();

@@ -1,17 +1,12 @@
 //! What the estimate of a mesh's error is worth.
 
-use crate::solid_common::cut_cubes;
-use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
+use crate::solid_common::{cut_cubes, end_loaded};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, bar, ring};
 use bearing_dynamics::mesh::layers::thinnest_wall;
-use bearing_dynamics::mesh::measure::{Share, tributary_areas};
 use bearing_dynamics::mesh::tet_mesh::Order;
-use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::model::{
-    DampedMotion, Load, Prescribed, SolidModel, SolidProblem,
-};
+use bearing_dynamics::solver::solid::model::SolidModel;
 use bearing_dynamics::solver::solid::stress::nodal_stresses;
 use bearing_dynamics::solver::solid::trust::{at_most, energy_error};
 
@@ -23,25 +18,7 @@ fn clamped(size: Vec3, cells: [usize; 3], order: Order, poisson: f64, along: Vec
         Order::Linear => solid.mesh,
         Order::Quadratic => solid.quadratic().unwrap().mesh,
     };
-    let faces = |name: &str| mesh.surface_set(name).unwrap();
-    let shares = tributary_areas(&mesh, faces("x_high"), Share::Consistent);
-    let total: f64 = shares.iter().sum();
-    let force = |(node, share): (u32, &f64)| (node, along.map(|a| a * share / total));
-    let loads = (0..).zip(&shares).filter(|(_, share)| **share != 0.0).map(force).collect();
-    let hold =
-        |node: &u32| [0, 1, 2].map(|axis| Prescribed { node: *node, axis, profile: Profile::ZERO });
-    let model = SolidModel::new(SolidProblem {
-        prescribed: mesh.nodes_of_faces(faces("x_low")).iter().flat_map(hold).collect(),
-        loads: vec![Load { forces: loads, profile: Profile::Constant(1.0) }],
-        material: LinearElastic::new(2.1e11, poisson).unwrap(),
-        nodes: mesh.nodes.clone(),
-        elements: mesh.elements.clone(),
-        density: 7800.0,
-        damping: 0.0,
-        damped_motion: DampedMotion::Absolute,
-        gravity: [0.0; 3],
-    })
-    .unwrap();
+    let model = SolidModel::new(end_loaded(&mesh, poisson, along)).unwrap();
     let u = equilibrium(&model, 0.0, &EquilibriumOptions::default()).unwrap().displacement;
     let work: f64 = model.problem.loads[0]
         .forces

@@ -70,7 +70,12 @@ pub fn assert_near(ours: f64, expected: f64, relative: f64) {
 
 /// A column of a run's `series.csv`.
 pub fn column(folder: &Path, name: &str) -> Vec<f64> {
-    let text = fs::read_to_string(folder.join("series.csv")).unwrap();
+    column_of(&folder.join("series.csv"), name)
+}
+
+/// A column of a `.csv` file.
+pub fn column_of(path: &Path, name: &str) -> Vec<f64> {
+    let text = fs::read_to_string(path).unwrap();
     let mut lines = text.lines();
     let header = lines.next().unwrap();
     let at = header.split(',').position(|head| head.starts_with(&format!("{name} [")));

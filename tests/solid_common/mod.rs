@@ -3,9 +3,11 @@
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::TetMesh;
+use bearing_dynamics::mesh::measure::{Share, tributary_areas};
 use bearing_dynamics::mesh::quadratic::elevate;
 use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
-use bearing_dynamics::solver::solid::model::{DampedMotion, SolidProblem};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::solid::model::{DampedMotion, Load, Prescribed, SolidProblem};
 
 pub const YOUNG: f64 = 2.1e11;
 pub const DENSITY: f64 = 7800.0;
@@ -66,15 +68,36 @@ pub fn solid(mesh: TetMesh, order: Order) -> SolidProblem {
         Order::Linear => mesh,
         Order::Quadratic => elevate(&mesh, &[]).unwrap().mesh,
     };
+    free(&mesh, 0.3)
+}
+
+/// A free body of this mesh and Poisson's ratio, without load or damping.
+pub fn free(mesh: &TetMesh, poisson: f64) -> SolidProblem {
     SolidProblem {
-        nodes: mesh.nodes,
-        elements: mesh.elements,
-        material: LinearElastic::new(YOUNG, 0.3).unwrap(),
+        nodes: mesh.nodes.clone(),
+        elements: mesh.elements.clone(),
+        material: LinearElastic::new(YOUNG, poisson).unwrap(),
         density: DENSITY,
         damping: 0.0,
         damped_motion: DampedMotion::Absolute,
         prescribed: Vec::new(),
         loads: Vec::new(),
         gravity: [0.0; 3],
+    }
+}
+
+/// A bar held at its lower end along X, under a force (N) spread over the other one.
+pub fn end_loaded(mesh: &TetMesh, poisson: f64, force: Vec3) -> SolidProblem {
+    let faces = |name: &str| mesh.surface_set(name).unwrap();
+    let shares = tributary_areas(mesh, faces("x_high"), Share::Consistent);
+    let total: f64 = shares.iter().sum();
+    let of = |(node, share): (u32, &f64)| (node, force.map(|along| along * share / total));
+    let forces = (0..).zip(&shares).filter(|(_, share)| **share != 0.0).map(of).collect();
+    let hold =
+        |node: &u32| [0, 1, 2].map(|axis| Prescribed { node: *node, axis, profile: Profile::ZERO });
+    SolidProblem {
+        prescribed: mesh.nodes_of_faces(faces("x_low")).iter().flat_map(hold).collect(),
+        loads: vec![Load { forces, profile: Profile::Constant(1.0) }],
+        ..free(mesh, poisson)
     }
 }

@@ -8,6 +8,7 @@ use bearing_dynamics::ch3_bushing::hysteresis::Hysteresis;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
 
 use crate::bushings::{
     BUSHING, MODULUS, bonded, complex_factor, exact, four_nodes, of_quarter, quarter, rubber,
@@ -252,7 +253,7 @@ fn meshes(context: &mut CaseContext, exact: f64) -> Result<(), CaseError> {
 /// stiffness by θ times the slope of ln K over ln μ.
 fn locked(context: &mut CaseContext, exact: &[Hysteresis; 2]) -> Result<(), CaseError> {
     let mu = shear_over_modulus() * MODULUS;
-    let stiffness = |shear: f64| four_nodes(&BUSHING, [12, 4, 3], shear);
+    let stiffness = |shear: f64| four_nodes(&BUSHING, [12, 4, 3], shear, SleeveMotion::Radial);
     let mut rows = Vec::new();
     let mut read = Vec::new();
     for ((frequency, _), exact) in FREQUENCIES.into_iter().zip(*exact) {

@@ -16,12 +16,15 @@ use bearing_dynamics::solver::solid::rubber::relaxed::relaxed;
 use bearing_dynamics::solver::solid::rubber::vibration::vibrations;
 use nalgebra::Complex;
 
-use crate::bushings::{BULK_RATIO, BUSHING_RADIAL, MAXWELL, complex_factor, shear_over_modulus};
+use crate::bushings::{
+    BULK_RATIO, BUSHING, BUSHING_RADIAL, MAXWELL, MODULUS, complex_factor, section,
+    shear_over_modulus,
+};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::oracles::bonded_bushing::{Section, radial_stiffness};
+use crate::oracles::bonded_bushing::radial_stiffness;
 use crate::solids::largest;
 
 pub const CASE: Case = Case {
@@ -33,9 +36,6 @@ pub const CASE: Case = Case {
     run,
 };
 
-const SECTION: Section = Section { inner: 0.02, outer: 0.04, length: 0.04 };
-/// C_R of Table 3.1, Pa.
-const MODULUS: f64 = 0.647e6;
 const FREQUENCY: f64 = 10.0;
 /// m.
 const AMPLITUDE: f64 = 1e-3;
@@ -224,7 +224,7 @@ fn stiffness(s: C) -> C {
         MAXWELL.iter().fold(one, |sum, [gamma, tau]| sum + s * *tau / (one + s * *tau) * *gamma)
     };
     let shear = factor * (shear_over_modulus() * MODULUS);
-    radial_stiffness(SECTION, shear, BULK_RATIO * MODULUS, 5, 3)
+    radial_stiffness(section(&BUSHING), shear, BULK_RATIO * MODULUS, 5, 3)
 }
 
 /// The linear force of a sine that begins at rest.

@@ -1,8 +1,7 @@
 //! Moment over tilt of the bearing of 3.4.5 with its outer race in a bonded bushing, relaxed.
 
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
-use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
-use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
+use bearing_dynamics::mesh::generate::{Bushing, Part};
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, Mobility, OUTER};
 use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
@@ -10,14 +9,14 @@ use bearing_dynamics::solver::dynamics::equilibrium::at_start;
 use bearing_dynamics::solver::dynamics::model::{Drive, Rotation};
 use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel, SolidProblem};
 use bearing_dynamics::solver::solid::rubber::prony::bushing_spring;
-use bearing_dynamics::solver::solid::rubber::sleeve::{SleeveMotion, sleeve_supports};
+use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
 use std::f64::consts::PI;
 
 use crate::bearings::{DEEP_GROOVE, Lengths};
-use crate::bushings::{BULK_RATIO, complex_shear, quarter, rubber, section, shear_over_modulus};
+use crate::bushings::{
+    BULK_RATIO, MODULUS, complex_shear, four_nodes, quarter, rubber, section, shear_over_modulus,
+};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::{Check, Explanation};
 use crate::context::CaseContext;
@@ -37,8 +36,6 @@ pub const CASE: Case = Case {
 
 const INTERFERENCE: Lengths = Lengths { clearance: -5e-6, ..DEEP_GROOVE };
 const PHASE: f64 = 11.25;
-/// C_R of Table 3.1, Pa.
-const MODULUS: f64 = 0.647e6;
 /// Outside diameter and length of Table 3.5, m.
 const DIAMETER: f64 = 71e-3;
 const LENGTH: f64 = 20e-3;
@@ -102,39 +99,9 @@ fn moment_at(law: &SpringDashpot, tilt: f64) -> Result<f64, CaseError> {
 /// Of four-node elements with sides of about `size` m: linear elastic, with the rubber's shear and bulk modulus.
 fn locked(thickness: f64, size: f64) -> Result<f64, CaseError> {
     let cells = |length: f64| ((length / size).round() as usize).max(1);
-    let mesh = BushingMesh {
-        around: cells(0.5 * PI * (DIAMETER + thickness)),
-        radial: 2 * cells(0.5 * thickness),
-        axial: cells(0.5 * LENGTH),
-        grading: 1.0,
-        part: Part::Quarter,
-    };
-    let mesh = bushing(&body(thickness), &mesh)?.mesh;
-    let by = 1e-6;
-    let mut prescribed = sleeve_supports(&mesh, Part::Quarter, SleeveMotion::Conical);
-    for of in &mut prescribed {
-        of.profile = Profile::Constant(by * of.profile.value(0.0));
-    }
-    let shear_modulus = shear_over_modulus() * MODULUS;
-    let lambda = BULK_RATIO * MODULUS - 2.0 / 3.0 * shear_modulus;
-    let inner = mesh.node_sets["inner"].clone();
-    let model = SolidModel::new(SolidProblem {
-        nodes: mesh.nodes.clone(),
-        elements: mesh.elements,
-        material: LinearElastic { lambda, shear_modulus },
-        density: 1100.0,
-        damping: 0.0,
-        damped_motion: DampedMotion::Absolute,
-        prescribed,
-        loads: Vec::new(),
-        gravity: [0.0; 3],
-    })?;
-    let found = equilibrium(&model, 0.0, &EquilibriumOptions::default())?;
-    let about_y = inner.iter().map(|&node| {
-        let (place, force) = (mesh.nodes[node as usize], found.reactions[node as usize]);
-        place[2] * force[0] - place[0] * force[2]
-    });
-    Ok(4.0 / by * about_y.sum::<f64>())
+    let mesh =
+        [cells(0.5 * PI * (DIAMETER + thickness)), 2 * cells(0.5 * thickness), cells(0.5 * LENGTH)];
+    four_nodes(&body(thickness), mesh, shear_over_modulus() * MODULUS, SleeveMotion::Conical)
 }
 
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {

@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::ch3_bushing::hysteresis::of_complex_stiffness;
-use bearing_dynamics::mesh::generate::Bushing;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::explicit::{ExplicitSolid, SolidStepping};
@@ -14,12 +13,12 @@ use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
 use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
 use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
 
-use crate::bushings::{BULK_RATIO, bonded_tets, complex_factor, rubber, shear_over_modulus};
+use crate::bushings::{BULK_RATIO, BUSHING, MODULUS, bonded_tets, complex_shear, rubber, section};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::oracles::bonded_bushing::{Section, radial_stiffness};
+use crate::oracles::bonded_bushing::radial_stiffness;
 
 pub const CASE: Case = Case {
     id: "rubber_explicit",
@@ -30,10 +29,6 @@ pub const CASE: Case = Case {
     run,
 };
 
-const BODY: Bushing = Bushing { inner_diameter: 0.04, thickness: 0.02, length: 0.04 };
-const SECTION: Section = Section { inner: 0.02, outer: 0.04, length: 0.04 };
-/// C_R of Table 3.1, Pa.
-const MODULUS: f64 = 0.647e6;
 const FREQUENCY: f64 = 10.0;
 /// Half of the way there and back, m.
 const AMPLITUDE: f64 = 0.5e-3;
@@ -54,7 +49,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     };
     let material = rubber(MODULUS, 1.0, ChainPull::FiveTerms)?;
     let (mut body, inner) =
-        bonded_tets(&BODY, CELLS, GRADING, material, MeanStress::AroundNodes, moved)?;
+        bonded_tets(&BUSHING, CELLS, GRADING, material, MeanStress::AroundNodes, moved)?;
     let coarse = implicit(&body, &inner, ROWS)?;
     let middle = implicit(&body, &inner, 2 * ROWS)?;
     let fine = implicit(&body, &inner, 4 * ROWS)?;
@@ -233,8 +228,8 @@ fn mesh(context: &mut CaseContext, body: &RubberBody) -> Result<(), CaseError> {
     }
     let answer = complex_stiffness(&unit.implicit()?, 0.0, &[pulsation], 1e-6)?[0];
     let ours = of_complex_stiffness(4.0 * answer.storage, 4.0 * answer.loss);
-    let shear = complex_factor(1.0, FREQUENCY) * (shear_over_modulus() * MODULUS);
-    let exact = radial_stiffness(SECTION, shear, BULK_RATIO * MODULUS, 5, 3);
+    let shear = complex_shear(1.0, FREQUENCY);
+    let exact = radial_stiffness(section(&BUSHING), shear, BULK_RATIO * MODULUS, 5, 3);
     context.check(
         Check::new(
             "mesh",

@@ -3,20 +3,21 @@
 
 use bearing_dynamics::ch2_housing::elastomer::Elastomer;
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
-use bearing_dynamics::mesh::generate::Bushing;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
 use bearing_dynamics::solver::solid::rubber::model::RubberModel;
 use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
-use nalgebra::Complex;
 
-use crate::bushings::{LOCKING, bonded, bonded_tets, quarter, shear_over_modulus};
+use crate::bushings::{
+    BUSHING, LOCKING, MODULUS, bonded, bonded_tets, complex_shear, quarter, section,
+    shear_over_modulus,
+};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::oracles::bonded_bushing::{Section, incompressible_stiffness, radial_stiffness};
+use crate::oracles::bonded_bushing::{incompressible_stiffness, radial_stiffness};
 
 pub const CASE: Case = Case {
     id: "rubber_locking",
@@ -27,10 +28,6 @@ pub const CASE: Case = Case {
     run,
 };
 
-const BODY: Bushing = Bushing { inner_diameter: 0.04, thickness: 0.02, length: 0.04 };
-const SECTION: Section = Section { inner: 0.02, outer: 0.04, length: 0.04 };
-/// C_R of Table 3.1, Pa.
-const MODULUS: f64 = 0.647e6;
 const RATIOS: [(f64, &str); 5] =
     [(1e1, "1e1"), (1e2, "1e2"), (1e3, "1e3"), (1e4, "1e4"), (1e5, "1e5")];
 /// Cells around, across and along, and how they shrink towards the bonded ends.
@@ -40,13 +37,13 @@ const COARSER: [usize; 3] = [8, 4, 4];
 const GRADING: [f64; 2] = [2.0, 1.5];
 
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
-    let ten_nodes = quarter(&BODY, TEN, GRADING[0])?;
+    let ten_nodes = quarter(&BUSHING, TEN, GRADING[0])?;
     let mut rows = Vec::new();
     let mut all: Vec<[f64; 4]> = Vec::new();
     for (ratio, _) in RATIOS {
         let (ten, _) = bonded(&ten_nodes, network(ratio)?, Profile::Constant(1.0))?;
-        let shear = Complex::new(shear_over_modulus() * MODULUS, 0.0);
-        let exact = radial_stiffness(SECTION, shear, ratio * MODULUS, 5, 3).re;
+        let shear = complex_shear(0.0, 0.0);
+        let exact = radial_stiffness(section(&BUSHING), shear, ratio * MODULUS, 5, 3).re;
         let found = [
             exact,
             stiffness(&ten)?,
@@ -111,7 +108,7 @@ fn network(ratio: f64) -> Result<Elastomer, CaseError> {
 
 fn four_nodes(ratio: f64, cells: [usize; 3], mean_stress: MeanStress) -> Result<f64, CaseError> {
     let (rubber, moved) = (network(ratio)?, Profile::Constant(1.0));
-    let (body, _) = bonded_tets(&BODY, cells, GRADING[1], rubber, mean_stress, moved)?;
+    let (body, _) = bonded_tets(&BUSHING, cells, GRADING[1], rubber, mean_stress, moved)?;
     stiffness(&body.implicit()?)
 }
 
@@ -142,8 +139,10 @@ fn checks(context: &mut CaseContext, all: &[[f64; 4]]) {
         }
     }
     let [exact, ten, around, own] = all[4];
-    let incompressible =
-        incompressible_stiffness(SECTION) * shear_over_modulus() * MODULUS * SECTION.length;
+    let incompressible = incompressible_stiffness(section(&BUSHING))
+        * shear_over_modulus()
+        * MODULUS
+        * BUSHING.length;
     context.check(
         Check::new(
             "closed_form",

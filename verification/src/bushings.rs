@@ -15,6 +15,7 @@ use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidMode
 use bearing_dynamics::solver::solid::rubber::explicit::RubberBody;
 use bearing_dynamics::solver::solid::rubber::harmonic::ComplexStiffness;
 use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solver::solid::rubber::sleeve::{SleeveMotion, sleeve_supports};
 use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
 use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
 
@@ -69,6 +70,16 @@ pub fn rubber(modulus: f64, gammas: f64, pull: ChainPull) -> Result<Elastomer, E
     let maxwell =
         all.map(|[gamma, tau]| Maxwell::new(gammas * gamma, *tau)).collect::<Result<_, _>>()?;
     Ok(Elastomer { network, maxwell })
+}
+
+/// The rubber that stands in for that of the bushing of 3.3.
+pub fn rubber_of_3_3(context: &mut CaseContext) -> Result<Elastomer, ElastomerError> {
+    context.assumption(
+        "rubber",
+        "The constants of this bushing's rubber are not printed; those of Table 3.1 stand in",
+        "Table 3.1",
+    );
+    rubber(MODULUS, 1.0, ChainPull::FiveTerms)
 }
 
 /// 1 + Σ γ iωτ/(1 + iωτ), written for oracles.
@@ -194,29 +205,28 @@ pub fn steady_loop(
     Ok(SteadyLoop { points, steps: moved.solid.counts.accepted })
 }
 
-/// Radial stiffness of elements of four nodes at a shear modulus (Pa) and the bulk modulus of Table 3.1, N/m.
-pub fn four_nodes(body: &Bushing, cells: [usize; 3], shear: f64) -> Result<f64, CaseError> {
-    const HELD: Option<Profile> = Some(Profile::ZERO);
+/// Stiffness against a motion of the sleeve of linear elastic elements of four nodes at a shear modulus (Pa) and the
+/// bulk modulus of Table 3.1, N/m or N·m/rad.
+pub fn four_nodes(
+    body: &Bushing,
+    cells: [usize; 3],
+    shear: f64,
+    motion: SleeveMotion,
+) -> Result<f64, CaseError> {
     const BY: f64 = 1e-6;
     let [around, radial, axial] = cells;
     let mesh = BushingMesh { around, radial, axial, grading: 1.0, part: Part::Quarter };
     let mesh = bushing(body, &mesh)?.mesh;
-    let moved = [HELD, HELD, Some(Profile::Constant(BY))];
-    let prescribed = supports(
-        &mesh,
-        &[
-            ("outer", [HELD; 3]),
-            ("inner", moved),
-            ("x_low", [HELD, None, None]),
-            ("y_low", [None, HELD, None]),
-        ],
-    );
+    let mut prescribed = sleeve_supports(&mesh, Part::Quarter, motion);
+    for of in &mut prescribed {
+        of.profile = Profile::Constant(BY * of.profile.value(0.0));
+    }
     let lambda = BULK_RATIO * MODULUS - 2.0 / 3.0 * shear;
     let problem = SolidProblem {
         nodes: mesh.nodes.clone(),
         elements: mesh.elements.clone(),
         material: LinearElastic { lambda, shear_modulus: shear },
-        density: 1100.0,
+        density: DENSITY,
         damping: 0.0,
         damped_motion: DampedMotion::Absolute,
         prescribed,
@@ -225,8 +235,16 @@ pub fn four_nodes(body: &Bushing, cells: [usize; 3], shear: f64) -> Result<f64, 
     };
     let model = SolidModel::new(problem)?;
     let found = equilibrium(&model, 0.0, &EquilibriumOptions::default())?;
-    let inner = &mesh.node_sets["inner"];
-    Ok(4.0 / BY * inner.iter().map(|n| found.reactions[*n as usize][2]).sum::<f64>())
+    let resists = mesh.node_sets["inner"].iter().map(|&node| {
+        let (place, force) = (mesh.nodes[node as usize], found.reactions[node as usize]);
+        match motion {
+            SleeveMotion::Radial => force[2],
+            SleeveMotion::Axial => force[0],
+            SleeveMotion::Torsional => place[1] * force[2] - place[2] * force[1],
+            SleeveMotion::Conical => place[2] * force[0] - place[0] * force[2],
+        }
+    });
+    Ok(4.0 / BY * resists.sum::<f64>())
 }
 
 /// Checks of an order that a sentence of the source states: `value` is at least zero.

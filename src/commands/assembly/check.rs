@@ -3,16 +3,15 @@
 use super::echo::{echo, motion, numerics};
 use super::housing::Housing;
 use super::{defaults, housings, lines};
+use crate::commands::check::{Line, say_json, say_lines};
 use crate::commands::echo::through;
-use crate::commands::remarks::of_springs;
+use crate::commands::remarks::{of_springs, turning_races};
 use crate::commands::run::{planned_request, request};
-use crate::commands::{CommandResult, Outcome, echo_run, say};
+use crate::commands::{CommandResult, echo_run};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
-use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::session::table_size;
 use bearing_dynamics::output::summary::housing::seat_section;
 use bearing_dynamics::output::summary::solid::mesh_section;
-use bearing_dynamics::output::visible::visible_line;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::HousingMethod;
@@ -20,7 +19,6 @@ use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{CageInRun, Document, RunSettings, Scene};
 use bearing_dynamics::solver::dynamics::run::Stepping;
 use bearing_dynamics::solver::plan::motion::race_freedom;
-use std::fmt::Write;
 use std::path::Path;
 
 pub fn run(
@@ -49,9 +47,10 @@ pub fn run(
         scene.bearings[0].scene.dynamics.run = Some(run);
     }
     let scene = &scene;
+    let (common, defaults) = (scene.common(), defaults(scene));
     if !json {
-        say(&text(&path.display().to_string(), scene, &housings))?;
-        return Ok(Outcome::Done);
+        let lines = |line: &mut Line| of_scene(scene, &housings, line);
+        return say_lines(path, &common.title, lines, &common.assumptions, &defaults);
     }
     let mut understood = echo(scene)?;
     if let (Some(run), None) = (scene.run(), scene.one().filter(|one| one.housing.is_some())) {
@@ -66,27 +65,16 @@ pub fn run(
         of["seat"] = seat_section(&housing.setup)?;
         of["mesh"] = mesh_section(&housing.built)?;
     }
-    understood["output"] = echo_run::output(scene.common())?;
-    for (name, notes) in echo_run::notes(&scene.common().assumptions, &defaults(scene)) {
-        understood[name] = notes;
-    }
-    say(&pretty(&understood))?;
-    Ok(Outcome::Done)
+    say_json(understood, echo_run::output(common)?, &common.assumptions, &defaults)
 }
 
-fn text(name: &str, scene: &AssemblyScene, housings: &[Housing]) -> String {
-    let mut text = format!("{}: a valid scene\n", visible_line(name));
-    let mut line = |label: &str, value: String| {
-        let _ = writeln!(text, "  {label:<22} {}", visible_line(&value));
-    };
-    if let Some(title) = &scene.common().title {
-        line("title", title.clone());
-    }
+/// Bearings and what they sit on and in, a line each.
+fn of_scene(scene: &AssemblyScene, housings: &[Housing], line: &mut Line) {
     for (index, placed) in scene.bearings.iter().enumerate() {
         if let Some(name) = &placed.name {
             line("bearing", format!("\"{name}\""));
         }
-        bearing_lines(&placed.scene, &mut line);
+        bearing_lines(&placed.scene, line);
         for housing in housings.iter().filter(|housing| housing.bearing == index) {
             housing.lines().into_iter().for_each(|(label, said)| line(&label, said));
         }
@@ -98,17 +86,10 @@ fn text(name: &str, scene: &AssemblyScene, housings: &[Housing]) -> String {
     for (label, value) in of_run(scene, housings) {
         line(label, value);
     }
-    for used in defaults(scene) {
-        line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
-    }
-    for assumption in &scene.common().assumptions {
-        line("assumption", format!("{}: {}", assumption.name, assumption.text));
-    }
-    text
 }
 
 /// Kind and geometry, a line each.
-fn bearing_lines(scene: &Scene, line: &mut impl FnMut(&str, String)) {
+fn bearing_lines(scene: &Scene, line: &mut Line) {
     let (geometry, sizes) = (&scene.geometry, &scene.dimensions);
     let kind = match geometry.kind {
         BearingKind::DeepGroove => "deep-groove",
@@ -179,6 +160,7 @@ fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, Str
         && let Some(one) = scene.one()
     {
         said.extend(bodies(&one.scene));
+        said.extend(turning_races(scene).map(|said| ("note", said)));
     }
     if let Some(housing) = housings.first() {
         let fields = match housing.scene.housing.fields_interval {

@@ -22,13 +22,8 @@ pub fn echo(scene: &AssemblyScene) -> Fallible<Value> {
     if let Some(one) = scene.one() {
         return of_one(one);
     }
-    let mut echo = Map::new();
     let common = scene.common();
-    for (name, text) in [("title", &common.title), ("source", &common.source)] {
-        if let Some(text) = text {
-            echo.insert(name.into(), json!(text));
-        }
-    }
+    let mut echo = bearing_echo::head(&common.title, &common.source);
     let mut bearings = Map::new();
     for placed in &scene.bearings {
         let mut own = bearing_echo::scene(&placed.scene)?;

@@ -5,32 +5,22 @@
 
 use super::housings::{self, Equilibrium};
 use super::{plan, record};
-use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::asked::Asked;
+use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::remarks::at_rest;
-use crate::commands::solid::modes::modes_folder;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
-use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
 use bearing_dynamics::solver::housing::inertia::{MovingBody, housing_mass, modes};
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly, StaticBody};
 use serde_json::json;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-pub fn run(
-    path: &Path,
-    document: &Document,
-    scene: &AssemblyScene,
-    out: &Option<PathBuf>,
-    dry: bool,
-) -> CommandResult {
-    let folder = match dry {
-        true => None,
-        false => Some(claimed(&modes_folder(path, out), Writes::Modes)?),
-    };
+pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
+    let Asked { path, document, .. } = asked;
+    let folder = asked.folder(Writes::Modes)?;
     let housings = housings::prepare(document, scene)?;
     let start = Instant::now();
     let bores = housings::condensed(&housings)?;

@@ -7,7 +7,7 @@ use super::shapes::{Shapes, shapes};
 use super::{Fallible, housings, still};
 use crate::commands::plan::say_plan;
 use crate::commands::plan_step::{note, refused, step_lines};
-use crate::commands::remarks::of_springs;
+use crate::commands::remarks::{of_springs, turning_races};
 use crate::commands::run::planned_request;
 use crate::commands::{CommandResult, Outcome, memory};
 use bearing_dynamics::output::session::{HousedParts, RunRequest, table_size};
@@ -46,7 +46,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         Some(HousingMethod::Reduced) => Some(shapes(scene, &housings)?),
         _ => None,
     };
-    let (mut items, mut notes) = match (scene.run(), method) {
+    let (items, mut notes) = match (scene.run(), method) {
         (None, _) => (of_statics(scene, &housings)?, Vec::new()),
         (Some(settings), Some(HousingMethod::QuasiStatic)) => {
             (of_course(scene, &housings, settings)?, Vec::new())
@@ -54,6 +54,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         (Some(settings), _) => of_steps(scene, &housings, reduced.as_ref(), settings)?,
     };
     notes.extend(of_springs(scene).iter().map(|said| note("spring", said)));
+    notes.extend(turning_races(scene).map(|said| note("outer race", &said)));
     for housing in &housings {
         notes.extend(housing.notes().iter().map(|said| note("housing mesh", said)));
     }
@@ -71,8 +72,8 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         notes.push(explicit_note(scene, &housings, settings));
     }
     if scene.common().rigid_housing {
-        let why = "housing.method = rigid: the outer race is fixed, no mesh is read";
-        items.push(Item::skips(Stage::Housing, Subject::Whole, why));
+        let said = "housing.method = rigid: the outer race is fixed, no mesh is read";
+        notes.push(note("housing", said));
     }
     say_plan(&items, &notes)?;
     Ok(Outcome::Done)
@@ -158,7 +159,8 @@ fn of_equilibrium(still: &StaticAssembly, housings: &[Housing], centrifugal: &st
     for (index, housing) in housings.iter().enumerate() {
         solids.extend(housing.items(index, &Method::QuasiStatic));
         let body = still.bearings[housing.bearing].mounts[1].body;
-        solids.push(statics::seat(index, &still.bodies[body].name));
+        let seat = statics::seat(index, &still.bodies[body].name);
+        solids.push(seat.named(housing.name.clone()));
     }
     statics::items(still, solids, centrifugal)
 }

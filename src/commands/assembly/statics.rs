@@ -4,11 +4,10 @@ use super::course::{estimate_at, section, verdicts};
 use super::housing::Housing;
 use super::housings::{self, Equilibrium};
 use super::{Fallible, defaults, echo, name_of, plan};
-use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::asked::Asked;
+use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::echo::{frequencies, hertz, sections};
-use crate::commands::{
-    CommandResult, Outcome, pictures, record, remarks, results_folder, say, table,
-};
+use crate::commands::{CommandResult, Outcome, pictures, record, remarks, say, table};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::assembly_results::{Solved, readable, write};
 use bearing_dynamics::output::atomic::write_atomic;
@@ -321,19 +320,9 @@ impl Settled {
 }
 
 /// Finds the equilibrium, says it, and writes it to a folder unless it is only to be said.
-pub fn run(
-    path: &Path,
-    document: &Document,
-    scene: &AssemblyScene,
-    out: &Option<PathBuf>,
-    dry: bool,
-    read: f64,
-) -> CommandResult {
-    let folder = match dry {
-        true => None,
-        false => Some(claimed(&results_folder(path, out), Writes::Statics)?),
-    };
-    let found = find_equilibrium(document, scene, read)?;
+pub fn run(asked: &Asked, scene: &AssemblyScene, read: f64) -> CommandResult {
+    let folder = asked.folder(Writes::Statics)?;
+    let found = find_equilibrium(asked.document, scene, read)?;
     // Nothing computed is lost if a file cannot be written.
     say(&found.text())?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };

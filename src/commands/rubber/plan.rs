@@ -4,8 +4,9 @@ use super::{Prepared, prepare};
 use crate::commands::plan::say_plan;
 use crate::commands::plan_step::note;
 use crate::commands::solid::mesh_notes;
+use crate::commands::solid::plan::from;
 use crate::commands::{CommandResult, Outcome, memory};
-use bearing_dynamics::scene::solid::{MeshSource, RubberScene, RunSteps, SolidRun};
+use bearing_dynamics::scene::solid::{RubberScene, RunSteps, SolidRun};
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::clock::whole_number;
 use bearing_dynamics::solver::plan::rubber::{self, Method};
@@ -39,13 +40,9 @@ pub fn items(
     prepared: &Prepared,
     run: Option<&SolidRun>,
 ) -> Vec<Item> {
-    let from = match &scene.mesh.source {
-        MeshSource::File { name, .. } => format!("from {name}"),
-        _ => "generated".to_string(),
-    };
     let problem = &prepared.setup.model.problem;
-    let count = problem.elements.len();
-    let mesh = format!("{from}: {count} ten-node tetrahedra with a continuous mean stress");
+    let kind = "ten-node tetrahedra with a continuous mean stress";
+    let mesh = from(scene, problem.elements.len(), kind);
     let method = match run {
         Some(run) => Method::Steps(steps(run)),
         None => Method::Statics {

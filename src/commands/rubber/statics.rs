@@ -1,12 +1,14 @@
 //! `bearing statics` of a solid of rubber: its relaxed equilibrium, and its answer to small vibrations.
 
-use super::{Prepared, plan, prepare, record, refuse_free};
-use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use super::{Prepared, plan, prepare, refuse_free};
+use crate::commands::asked::Asked;
+use crate::commands::earlier::Writes;
 use crate::commands::memory::watched;
-use crate::commands::solid::{say_mesh_notes, statics::table};
-use crate::commands::{CommandResult, Outcome, placed, results_folder, say};
+use crate::commands::solid::statics::{WRITTEN, table, write};
+use crate::commands::solid::{record, say_mesh_notes};
+use crate::commands::{CommandResult, Outcome, placed, say};
 use bearing_dynamics::output::atomic::write_atomic;
-use bearing_dynamics::output::fields::{file_name, rubber_stresses, write_fields, write_list};
+use bearing_dynamics::output::fields::rubber_stresses;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::summary::rubber::{
     self as summary, harmonic_section, harmonic_series,
@@ -20,22 +22,13 @@ use bearing_dynamics::solver::solid::foretold;
 use bearing_dynamics::solver::solid::rubber::relaxed::relaxed;
 use bearing_dynamics::solver::solid::rubber::vibration::{Answer, vibrations};
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 pub const HARMONIC: &str = "harmonic.csv";
 
-pub fn run(
-    path: &Path,
-    document: &Document,
-    (scene, rubber): (&SolidScene, &RubberScene),
-    out: &Option<PathBuf>,
-    dry: bool,
-) -> CommandResult {
-    let folder = match dry {
-        true => None,
-        false => Some(claimed(&results_folder(path, out), Writes::Statics)?),
-    };
+pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandResult {
+    let Asked { path, document, .. } = asked;
+    let folder = asked.folder(Writes::Statics)?;
     let prepared = prepare(document, scene, rubber)?;
     let Prepared { built, setup, free, mesh_seconds } = &prepared;
     refuse_free(path, free)?;
@@ -71,14 +64,8 @@ pub fn run(
         say(&harmonic_table(asked, answers))?;
     }
     let Some(folder) = folder else { return Ok(Outcome::Done) };
-    remove_earlier(&folder)?;
-    let file = file_name("fields", 0);
-    let displacement = &found.state.displacement;
-    write_fields(&folder.join(&file), &built.mesh, displacement, None, &stress, None)?;
-    write_list(&folder, &[(0.0, file)])?;
-    series.write_csv(&folder.join("series.csv"))?;
-    series.write_npy(&folder.join("series.npy"))?;
-    let mut files = 6;
+    write(&folder, &built.mesh, &found.state.displacement, &stress, &series)?;
+    let mut files = WRITTEN + 1;
     if let Some((_, answers)) = &answers {
         harmonic_series(answers)?.write_csv(&folder.join(HARMONIC))?;
         files += 1;

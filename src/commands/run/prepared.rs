@@ -330,7 +330,7 @@ impl<'s> Prepared<'s> {
             }
             Prepared::Rubber { scene, rubber, settings, mesh, .. } => {
                 let plan = rubber::plan::items(scene, rubber, mesh, Some(settings));
-                rubber::record(scene, plan, seconds)
+                solid::record(scene, plan, seconds)
             }
         }
     }

@@ -1,13 +1,12 @@
 //! `bearing check` of a solid: mesh, sets, supports and loads as understood.
 
 use super::{echo, mesh_notes, prepare};
-use crate::commands::{CommandResult, Outcome, echo_run, placed, rubber, say};
+use crate::commands::check::{Line, say_json, say_lines};
+use crate::commands::{CommandResult, placed, rubber};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::recorder::sum;
-use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::summary::solid::mesh_section;
-use bearing_dynamics::output::visible::visible_line;
 use bearing_dynamics::scene::rubber_problem::vibrating;
 use bearing_dynamics::scene::solid::{Law, RubberScene};
 use bearing_dynamics::scene::solid_mesh::BuiltMesh;
@@ -19,7 +18,6 @@ use bearing_dynamics::solver::solid::rubber::model::Moment;
 use bearing_dynamics::solver::solid::support::FreeMotions;
 use serde_json::json;
 use std::error::Error;
-use std::fmt::Write;
 use std::path::Path;
 
 /// What is looked at, of whatever the solid is made.
@@ -39,74 +37,65 @@ pub fn run(path: &Path, document: &Document, scene: &SolidScene, json: bool) -> 
         Law::LinearElastic { .. } => elastic(document, scene)?,
         Law::Elastomer(rubber) => of_rubber(document, scene, rubber)?,
     };
-    let Facts { built, free, held, mass, loads, law } = facts;
     if json {
         let mut echo = echo::scene(scene)?;
-        echo["mesh"] = mesh_section(&built)?;
+        echo["mesh"] = mesh_section(&facts.built)?;
         let drawn = [(scene.draw_series, "series"), (scene.draw_spectrum, "spectrum")];
         let drawn: Vec<&str> = drawn.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
-        echo["output"] = json!({ "plots": drawn });
-        for (name, notes) in echo_run::notes(&scene.assumptions, &scene.defaults_used) {
-            echo[name] = notes;
+        let output = json!({ "plots": drawn });
+        return say_json(echo, output, &scene.assumptions, &scene.defaults_used);
+    }
+    let lines = |line: &mut Line| facts.lines(line);
+    say_lines(path, &scene.title, lines, &scene.assumptions, &scene.defaults_used)
+}
+
+impl Facts {
+    fn lines(self, line: &mut Line) {
+        let Facts { built, free, held, mass, loads, law } = self;
+        let (mesh, quality) = (&built.mesh, &built.quality);
+        let nodes_each = if mesh.order() == Order::Linear { 4 } else { 10 };
+        line(
+            "mesh",
+            format!("{} nodes, {} elements of {nodes_each}", mesh.nodes.len(), mesh.elements.len()),
+        );
+        let (low, high) = mesh.bounding_box();
+        let span = |i: usize| format!("{:.4} to {:.4}", 1e3 * low[i], 1e3 * high[i]);
+        line("extent", format!("x {}, y {}, z {} mm", span(0), span(1), span(2)));
+        line("volume, mass", format!("{:.6e} m^3, {mass:.6e} kg", quality.total_volume));
+        line(
+            "quality",
+            format!(
+                "aspect up to {:.2}, dihedral angles {:.1} to {:.1} deg, edges {:.4} to {:.4} mm",
+                quality.aspect.value,
+                quality.least_dihedral.value.to_degrees(),
+                quality.greatest_dihedral.value.to_degrees(),
+                1e3 * quality.shortest_edge.value,
+                1e3 * quality.longest_edge
+            ),
+        );
+        for note in mesh_notes(&built) {
+            line("note", note);
         }
-        say(&pretty(&echo))?;
-        return Ok(Outcome::Done);
+        let sets: Vec<String> = mesh
+            .node_sets
+            .iter()
+            .map(|(name, nodes)| format!("{name} ({})", nodes.len()))
+            .collect();
+        line("sets (nodes)", if sets.is_empty() { "none".into() } else { sets.join(", ") });
+        line("held components", held.to_string());
+        line(
+            "free motions",
+            match free.count {
+                0 => "none: statics can solve it".to_string(),
+                count => format!("{count}: {}", free.names()),
+            },
+        );
+        for (label, value) in law {
+            line(label, value);
+        }
+        let [x, y, z] = loads;
+        line("loads at t = 0", format!("{x:.6} N along x, {y:.6} N along y, {z:.6} N along z"));
     }
-    let mut text = format!("{}: a valid scene\n", visible_line(&path.display().to_string()));
-    let mut line = |label: &str, value: String| {
-        let _ = writeln!(text, "  {label:<22} {}", visible_line(&value));
-    };
-    if let Some(title) = &scene.title {
-        line("title", title.clone());
-    }
-    let (mesh, quality) = (&built.mesh, &built.quality);
-    let nodes_each = if mesh.order() == Order::Linear { 4 } else { 10 };
-    line(
-        "mesh",
-        format!("{} nodes, {} elements of {nodes_each}", mesh.nodes.len(), mesh.elements.len()),
-    );
-    let (low, high) = mesh.bounding_box();
-    let span = |i: usize| format!("{:.4} to {:.4}", 1e3 * low[i], 1e3 * high[i]);
-    line("extent", format!("x {}, y {}, z {} mm", span(0), span(1), span(2)));
-    line("volume, mass", format!("{:.6e} m^3, {mass:.6e} kg", quality.total_volume));
-    line(
-        "quality",
-        format!(
-            "aspect up to {:.2}, dihedral angles {:.1} to {:.1} deg, edges {:.4} to {:.4} mm",
-            quality.aspect.value,
-            quality.least_dihedral.value.to_degrees(),
-            quality.greatest_dihedral.value.to_degrees(),
-            1e3 * quality.shortest_edge.value,
-            1e3 * quality.longest_edge
-        ),
-    );
-    for note in mesh_notes(&built) {
-        line("note", note);
-    }
-    let sets: Vec<String> =
-        mesh.node_sets.iter().map(|(name, nodes)| format!("{name} ({})", nodes.len())).collect();
-    line("sets (nodes)", if sets.is_empty() { "none".into() } else { sets.join(", ") });
-    line("held components", held.to_string());
-    line(
-        "free motions",
-        match free.count {
-            0 => "none: statics can solve it".to_string(),
-            count => format!("{count}: {}", free.names()),
-        },
-    );
-    for (label, value) in law {
-        line(label, value);
-    }
-    let [x, y, z] = loads;
-    line("loads at t = 0", format!("{x:.6} N along x, {y:.6} N along y, {z:.6} N along z"));
-    for used in &scene.defaults_used {
-        line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
-    }
-    for assumption in &scene.assumptions {
-        line("assumption", format!("{}: {}", assumption.name, assumption.text));
-    }
-    say(&text)?;
-    Ok(Outcome::Done)
 }
 
 fn elastic(document: &Document, scene: &SolidScene) -> Result<Facts, Box<dyn Error>> {

@@ -1,10 +1,14 @@
 //! What was understood of a solid, as JSON with units.
 
+use crate::commands::echo::head;
 use crate::commands::echo_run::profile;
 use bearing_dynamics::ch2_housing::elastomer::Elastomer;
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::mesh::generate::{
+    CageMesh, ContactBlock, Housing, HousingMesh, Part, PillowBlock,
+};
 use bearing_dynamics::mesh::read::LengthUnit;
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::SolidScene;
@@ -24,12 +28,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The resolved scene, every dimensional value with its unit.
 pub fn scene(scene: &SolidScene) -> Echo {
-    let mut echo = Map::new();
-    for (name, text) in [("title", &scene.title), ("source", &scene.source)] {
-        if let Some(text) = text {
-            echo.insert(name.into(), json!(text));
-        }
-    }
+    let mut echo = head(&scene.title, &scene.source);
     let held: Result<Vec<Value>, ResultsError> = scene
         .held
         .iter()
@@ -214,7 +213,6 @@ fn mesh(scene: &SolidScene) -> Echo {
 }
 
 fn source(source: &MeshSource) -> Echo {
-    let made = |name: &str, dimensions: String| json!({ "generate": name, "si": dimensions });
     Ok(match source {
         MeshSource::File { name, unit, .. } => json!({
             "file": name,
@@ -223,17 +221,116 @@ fn source(source: &MeshSource) -> Echo {
         MeshSource::Bar { size, cells } => {
             json!({ "generate": "bar", "size": vector(size, "m")?, "cells": cells })
         }
-        MeshSource::Block(block) => made("block", format!("{block:?}")),
-        MeshSource::Ring(shape, cells) => made("ring", format!("{shape:?}, {cells:?}")),
-        MeshSource::Shaft { radius, stations, longest_layer, around, radial } => made(
-            "shaft",
-            format!(
-                "radius {radius}, stations {stations:?}, longest layer {longest_layer}, {around} \
-                 cells around, {radial} radial"
-            ),
+        MeshSource::Block(ContactBlock {
+            half_width,
+            cells_per_half_width,
+            depth_cells,
+            growth,
+        }) => merged(
+            json!({
+                "generate": "block",
+                "cells": { "per_half_width": cells_per_half_width, "deep": depth_cells, "growth": growth },
+            }),
+            lengths(&[("half_width", *half_width)])?,
         ),
-        MeshSource::Cage(cage, cells) => made("cage", format!("{cage:?}, {cells:?}")),
-        MeshSource::Housing(housing, cells) => made("housing", format!("{housing:?}, {cells:?}")),
-        MeshSource::Bushing(body, cells) => made("bushing", format!("{body:?}, {cells:?}")),
+        MeshSource::Ring(ring, cells) => merged(
+            json!({ "generate": "ring", "cells": around(cells.around, cells.radial, cells.axial, cells.radial_growth) }),
+            lengths(&[
+                ("inner_radius", ring.inner_radius),
+                ("outer_radius", ring.outer_radius),
+                ("width", ring.width),
+            ])?,
+        ),
+        MeshSource::Shaft { radius, stations, longest_layer, around, radial } => {
+            let places = stations.iter().map(|at| quantity("station", *at, "m"));
+            let stations: Vec<Value> = places.collect::<Result<_, _>>()?;
+            merged(
+                json!({
+                    "generate": "shaft",
+                    "stations": stations,
+                    "cells": { "around": around, "radial": radial },
+                }),
+                lengths(&[("radius", *radius), ("longest_layer", *longest_layer)])?,
+            )
+        }
+        MeshSource::Cage(cage, cells) => {
+            let mut sizes = vec![
+                ("pocket_radius", cage.pocket_radius),
+                ("inner_radius", cage.inner_radius),
+                ("outer_radius", cage.outer_radius),
+                ("width", cage.width),
+            ];
+            if let Some(relief) = cage.relief {
+                sizes.extend([("relief_depth", relief.depth), ("belt_width", relief.belt_width)]);
+            }
+            let CageMesh { quarter, bar, wall } = cells;
+            merged(
+                json!({
+                    "generate": "cage",
+                    "pockets": cage.pocket_count,
+                    "cells": { "quarter": quarter, "bar": bar, "wall": wall },
+                }),
+                lengths(&sizes)?,
+            )
+        }
+        MeshSource::Housing(housing, cells) => housing_source(housing, cells)?,
+        MeshSource::Bushing(body, cells) => merged(
+            json!({
+                "generate": "bushing",
+                "part": match cells.part { Part::Whole => "whole", Part::Quarter => "quarter" },
+                "cells": {
+                    "around": cells.around,
+                    "radial": cells.radial,
+                    "axial": cells.axial,
+                    "grading": cells.grading,
+                },
+            }),
+            lengths(&[
+                ("inner_diameter", body.inner_diameter),
+                ("thickness", body.thickness),
+                ("length", body.length),
+            ])?,
+        ),
     })
+}
+
+fn housing_source(housing: &Housing, cells: &HousingMesh) -> Echo {
+    let (name, sizes) = match housing {
+        Housing::Square { bore_radius, side, depth } => {
+            ("housing-a", vec![("bore_radius", *bore_radius), ("side", *side), ("depth", *depth)])
+        }
+        Housing::Annulus { bore_radius, outer_radius, depth } => (
+            "housing-d",
+            vec![("bore_radius", *bore_radius), ("outer_radius", *outer_radius), ("depth", *depth)],
+        ),
+        Housing::MirroredPillowBlock(block) => ("housing-b", pillow_block(block)),
+        Housing::PillowBlock(block) => ("housing-c", pillow_block(block)),
+    };
+    let HousingMesh { around: about, radial, axial, radial_growth } = *cells;
+    let made = json!({ "generate": name, "cells": around(about, radial, axial, radial_growth) });
+    Ok(merged(made, lengths(&sizes)?))
+}
+
+fn pillow_block(block: &PillowBlock) -> Vec<(&'static str, f64)> {
+    vec![
+        ("bore_radius", block.bore_radius),
+        ("outer_radius", block.outer_radius),
+        ("centre_height", block.centre_height),
+        ("base_width", block.base_width),
+        ("base_height", block.base_height),
+        ("neck_width", block.neck_width),
+        ("fillet_radius", block.fillet_radius),
+        ("depth", block.depth),
+    ]
+}
+
+/// Cells of a body with a bore.
+fn around(around: usize, radial: usize, axial: usize, growth: f64) -> Value {
+    json!({ "around": around, "radial": radial, "axial": axial, "growth": growth })
+}
+
+/// Sizes in m.
+fn lengths(sizes: &[(&str, f64)]) -> Echo {
+    let size = |(name, value): &(&str, f64)| Ok((name.to_string(), quantity(name, *value, "m")?));
+    Ok(Value::Object(sizes.iter().map(size).collect::<Result<_, ResultsError>>()?))
 }

@@ -10,7 +10,7 @@ use super::{placed, say};
 use bearing_dynamics::mesh::repair::Repaired;
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build};
-use bearing_dynamics::scene::solid_problem::{SolidSetup, setup};
+use bearing_dynamics::scene::solid_problem::{SolidSetup, SolidSetupError, setup};
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::plan::Item;
 use bearing_dynamics::solver::solid::support::{FreeMotions, free_motions};
@@ -18,21 +18,33 @@ use std::error::Error;
 use std::time::Instant;
 
 /// A scene with its mesh, ready to be solved.
-pub struct Prepared {
+pub struct Prepared<S = SolidSetup> {
     pub built: BuiltMesh,
-    pub setup: SolidSetup,
+    pub setup: S,
     pub free: FreeMotions,
     pub mesh_seconds: f64,
 }
 
 /// Reads or makes the mesh; the document says where in the scene an error stands.
 pub fn prepare(document: &Document, scene: &SolidScene) -> Result<Prepared, Box<dyn Error>> {
+    let of = |SolidSetup { notes, problem, .. }: &SolidSetup| {
+        (notes.clone(), free_motions(&problem.nodes, &problem.prescribed))
+    };
+    prepared(document, scene, |built| setup(scene, built), of)
+}
+
+/// With what is set up on the mesh, the notes of that, and how the body is free to move.
+pub fn prepared<S>(
+    document: &Document,
+    scene: &SolidScene,
+    setup: impl FnOnce(&BuiltMesh) -> Result<S, SolidSetupError>,
+    of: impl FnOnce(&S) -> (Vec<String>, FreeMotions),
+) -> Result<Prepared<S>, Box<dyn Error>> {
     let start = Instant::now();
     let mut built = build(&scene.mesh).map_err(|error| placed(document, error.about(), error))?;
-    let setup =
-        setup(scene, &built).map_err(|error| placed(document, Some(error.about()), error))?;
-    built.notes.extend(setup.notes.iter().cloned());
-    let free = free_motions(&setup.problem.nodes, &setup.problem.prescribed);
+    let setup = setup(&built).map_err(|error| placed(document, Some(error.about()), error))?;
+    let (notes, free) = of(&setup);
+    built.notes.extend(notes);
     Ok(Prepared { built, setup, free, mesh_seconds: start.elapsed().as_secs_f64() })
 }
 

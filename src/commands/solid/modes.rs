@@ -1,44 +1,35 @@
 //! `bearing modes`: natural frequencies and mode shapes of a solid.
 
 use super::{plan, prepare, record, say_mesh_notes, say_remarks};
-use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::asked::Asked;
+use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::watched;
 use crate::commands::rubber::plan::NO_MODES;
-use crate::commands::{CommandResult, Outcome, results_folder, say};
+use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::{file_name, write_list, write_mode};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::{remarks, summary::solid as summary};
+use bearing_dynamics::scene::SolidScene;
 use bearing_dynamics::scene::solid::Law;
-use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::foretold;
 use bearing_dynamics::solver::solid::model::SolidModel;
 use bearing_dynamics::solver::solid::modes::{ModeOptions, modes_over};
 use bearing_dynamics::solver::solid::tangent::Unknowns;
 use serde_json::json;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-pub fn run(
-    path: &Path,
-    document: &Document,
-    scene: &SolidScene,
-    out: &Option<PathBuf>,
-    dry: bool,
-) -> CommandResult {
+pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     if let Law::Elastomer(_) = &scene.law {
         return Err(format!(
             "{}: {NO_MODES}; [solid.harmonic] asks `bearing statics` for its answer to vibrations",
-            path.display()
+            asked.path.display()
         )
         .into());
     }
-    let folder = match dry {
-        true => None,
-        false => Some(claimed(&modes_folder(path, out), Writes::Modes)?),
-    };
-    let prepared = prepare(document, scene)?;
+    let folder = asked.folder(Writes::Modes)?;
+    let prepared = prepare(asked.document, scene)?;
     let (built, setup) = (&prepared.built, &prepared.setup);
     let start = Instant::now();
     let model = SolidModel::labelled(setup.problem.clone(), setup.labels.clone())?;
@@ -82,14 +73,4 @@ pub fn run(
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
     say(&format!("wrote {} files to {}\n", steps.len() + 5, folder.display()))?;
     Ok(Outcome::Done)
-}
-
-/// Apart from the folder of statics and of runs, so that each holds one kind of results.
-pub fn modes_folder(scene: &Path, out: &Option<PathBuf>) -> PathBuf {
-    let folder = results_folder(scene, out);
-    if out.is_some() {
-        return folder;
-    }
-    let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    folder.with_file_name(format!("{name}-modes"))
 }

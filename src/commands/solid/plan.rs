@@ -89,10 +89,6 @@ pub enum Of {
 /// Items of one command.
 pub fn items(scene: &SolidScene, prepared: &Prepared, of: Of) -> Vec<Item> {
     let (problem, mesh) = (&prepared.setup.problem, &prepared.built.mesh);
-    let from = match &scene.mesh.source {
-        MeshSource::File { name, .. } => format!("from {name}"),
-        _ => "generated".to_string(),
-    };
     let kind = match mesh.order() {
         Order::Linear => "constant-strain tetrahedra",
         Order::Quadratic => "ten-node tetrahedra",
@@ -110,12 +106,21 @@ pub fn items(scene: &SolidScene, prepared: &Prepared, of: Of) -> Vec<Item> {
         (Of::Modes, _) => Method::Modes,
         _ => Method::Statics,
     };
-    let mesh = format!("{from}: {} {kind}", mesh.elements.len());
+    let mesh = from(scene, mesh.elements.len(), kind);
     let mut items = solid::items(problem, 0, None, &mesh, &method);
     if of == Of::Modes {
         items.push(modes(scene));
     }
     items
+}
+
+/// Where so many elements of a kind come from.
+pub fn from(scene: &SolidScene, count: usize, kind: &str) -> String {
+    let from = match &scene.mesh.source {
+        MeshSource::File { name, .. } => format!("from {name}"),
+        _ => "generated".to_string(),
+    };
+    format!("{from}: {count} {kind}")
 }
 
 fn modes(scene: &SolidScene) -> Item {

@@ -1,48 +1,44 @@
 //! `bearing statics` of a solid.
 
 use super::{Prepared, plan, prepare, record, say_mesh_notes, say_remarks};
-use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::asked::Asked;
+use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::watched;
-use crate::commands::{CommandResult, Outcome, results_folder, rubber, say};
+use crate::commands::{CommandResult, Outcome, rubber, say};
+use bearing_dynamics::kinematics::vec3::Vec3;
+use bearing_dynamics::mesh::TetMesh;
 use bearing_dynamics::output::atomic::write_atomic;
-use bearing_dynamics::output::fields::{file_name, stresses, write_fields, write_list};
+use bearing_dynamics::output::fields::{Stresses, file_name, stresses, write_fields, write_list};
 use bearing_dynamics::output::results::pretty;
+use bearing_dynamics::output::series::Series;
 use bearing_dynamics::output::{remarks, summary::solid as summary};
+use bearing_dynamics::scene::SolidScene;
 use bearing_dynamics::scene::solid::Law;
-use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_over};
 use bearing_dynamics::solver::solid::foretold;
 use bearing_dynamics::solver::solid::model::SolidModel;
 use bearing_dynamics::solver::solid::tangent::Unknowns;
 use serde_json::{Value, json};
+use std::error::Error;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 /// What needs no factors.
 const INSTEAD: &str = ", explicit steps with damping until the body rests (`bearing run`)";
 
-pub fn run(
-    path: &Path,
-    document: &Document,
-    scene: &SolidScene,
-    out: &Option<PathBuf>,
-    dry: bool,
-) -> CommandResult {
+pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     if let Law::Elastomer(rubber) = &scene.law {
-        return rubber::statics::run(path, document, (scene, rubber), out, dry);
+        return rubber::statics::run(asked, scene, rubber);
     }
-    let folder = match dry {
-        true => None,
-        false => Some(claimed(&results_folder(path, out), Writes::Statics)?),
-    };
-    let prepared = prepare(document, scene)?;
+    let folder = asked.folder(Writes::Statics)?;
+    let prepared = prepare(asked.document, scene)?;
     let Prepared { built, setup, free, mesh_seconds } = &prepared;
     if free.count > 0 {
         return Err(format!(
             "{}: statics needs a body that is held, and this one is free to move {}; add \
              [[solid.held]], or let it move with `bearing run`",
-            path.display(),
+            asked.path.display(),
             free.names()
         )
         .into());
@@ -75,15 +71,30 @@ pub fn run(
     say(&table(&summary))?;
     say_remarks(&remarks)?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
-    remove_earlier(&folder)?;
-    let file = file_name("fields", 0);
-    write_fields(&folder.join(&file), &built.mesh, &solution.displacement, None, &stress, None)?;
-    write_list(&folder, &[(0.0, file)])?;
-    series.write_csv(&folder.join("series.csv"))?;
-    series.write_npy(&folder.join("series.npy"))?;
+    write(&folder, &built.mesh, &solution.displacement, &stress, &series)?;
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
-    say(&format!("wrote 6 files to {}\n", folder.display()))?;
+    say(&format!("wrote {} files to {}\n", WRITTEN + 1, folder.display()))?;
     Ok(Outcome::Done)
+}
+
+/// Files of [`write`].
+pub const WRITTEN: usize = 5;
+
+/// Fields and tables of an equilibrium in place of earlier ones. A summary comes last: it says that a folder is
+/// complete.
+pub fn write(
+    folder: &Path,
+    mesh: &TetMesh,
+    displacement: &[Vec3],
+    stress: &Stresses,
+    series: &Series,
+) -> Result<(), Box<dyn Error>> {
+    remove_earlier(folder)?;
+    let file = file_name("fields", 0);
+    write_fields(&folder.join(&file), mesh, displacement, None, stress, None)?;
+    write_list(folder, &[(0.0, file)])?;
+    series.write_csv(&folder.join("series.csv"))?;
+    Ok(series.write_npy(&folder.join("series.npy"))?)
 }
 
 /// What a person wants to see first.

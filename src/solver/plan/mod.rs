@@ -47,7 +47,6 @@ pub enum Stage {
     Ledger,
     // Of solids.
     FlexibleBodies,
-    Housing,
     Elements,
     Supports,
     Loads,
@@ -103,7 +102,6 @@ impl Stage {
         Stage::Impulses,
         Stage::Ledger,
         Stage::FlexibleBodies,
-        Stage::Housing,
         Stage::Elements,
         Stage::Supports,
         Stage::Loads,
@@ -156,7 +154,6 @@ impl Stage {
             Stage::Impulses => "impulses of seats",
             Stage::Ledger => "ledger",
             Stage::FlexibleBodies => "flexible bodies",
-            Stage::Housing => "housing",
             Stage::Elements => "mesh",
             Stage::Supports => "supports",
             Stage::Loads => "loads",

@@ -1,0 +1,172 @@
+//! Defaults that the readers use are those of the key table.
+
+use super::scene_dynamics::BEARING;
+use bearing_dynamics::scene::keys::{self, Key, Kind, Need};
+use bearing_dynamics::scene::units::parse_quantity;
+use bearing_dynamics::scene::{self, Document, Format, Scene, Subject};
+use std::path::Path;
+
+/// A default of the key table as JSON.
+fn written(key: &Key, value: &str) -> serde_json::Value {
+    match key.kind {
+        Kind::Boolean => (value == "true").into(),
+        Kind::Integer { .. } => value.parse::<i64>().unwrap().into(),
+        Kind::Number(_) => value.parse::<f64>().unwrap().into(),
+        Kind::Choices(words) => {
+            let named: Vec<&str> = value.split(", ").filter(|word| words.contains(word)).collect();
+            named.into()
+        }
+        Kind::Vector(_, range) => vec![format!("0 {}", range.unit); 3].into(),
+        _ => value.into(),
+    }
+}
+
+/// What a scene is resolved to, without the list of defaults.
+fn understood(text: &str, name: &str) -> Result<Subject, String> {
+    let document = Document::read_str(text, Format::Json, name).map_err(|e| e.to_string())?;
+    let mut subject = scene::resolve_subject(&document).map_err(|e| e.to_string())?;
+    let forget = |scene: &mut Scene| {
+        scene.defaults_used.clear();
+        scene.dynamics.defaults_used.clear();
+    };
+    match &mut subject {
+        Subject::Assembly(scene) => {
+            scene.defaults_used.clear();
+            for placed in &mut scene.bearings {
+                forget(&mut placed.scene);
+                if let Some(housing) = &mut placed.housing {
+                    housing.settings.defaults_used.clear();
+                    housing.solid.defaults_used.clear();
+                }
+            }
+        }
+        Subject::Solid(scene) => scene.defaults_used.clear(),
+    }
+    Ok(subject)
+}
+
+/// A default that is written out changes nothing: no reader has another one in mind.
+#[test]
+fn a_default_of_the_table_is_the_one_in_use() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let mut trees: Vec<(String, serde_json::Value)> = Vec::new();
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_string();
+        if name.ends_with(".toml") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            trees.push((path.to_str().unwrap().into(), toml::from_str(&text).unwrap()));
+        }
+    }
+    // Laws that no shipped scene has, on one of them.
+    let base = |lines: &str| {
+        let text = format!("{BEARING}{lines}[numerics]\nend = \"1 s\"\n");
+        ("laws.json".to_string(), toml::from_str(&text).unwrap())
+    };
+    trees.push(base("[contact_damping]\nlaw = \"lankarani-nikravesh\"\nrestitution = 0.9\n"));
+    trees.push(base("[traction]\nlaw = \"slide-to-roll\"\n"));
+    trees.push(base(
+        "[inner_race.rotating_load]\nforce = \"1 N\"\nspeed = \"50 rpm\"\n[outer_race]\nmotion = \"6-dof\"\n",
+    ));
+    for along in ["x", "y"] {
+        trees.push(base(&format!(
+            "[body.hub]\nspeed = \"0 rpm\"\nrotating_load = {{ force = \"1 N\", speed = \"50 rpm\" }}\n\
+             inertia = {{ mass = \"1 kg\", axial = \"1 kg m^2\", transverse = \"1 kg m^2\" }}\n\
+             [spring.mount]\nfrom = \"hub\"\nstiffness = {{ {along} = \"1 N/m\" }}\n\
+             damping = {{ {along} = \"1 N s/m\" }}\n"
+        )));
+    }
+    // What all shipped scenes state.
+    for (scene, table, key) in
+        [("bar_impact.toml", "solid", "material"), ("interference_fit.toml", "housing", "method")]
+    {
+        let (name, tree) = trees.iter().find(|(name, _)| name.ends_with(scene)).unwrap();
+        let (name, mut tree) = (name.clone(), tree.clone());
+        assert!(tree[table].as_object_mut().unwrap().remove(key).is_some());
+        trees.push((name, tree));
+    }
+    let mut untried = Vec::new();
+    for key in keys::KEYS.iter().filter(|key| !key.in_list()) {
+        let Need::Default { value, .. } = key.need else { continue };
+        let mut tried = 0;
+        for (name, tree) in &trees {
+            let given = |path: &str| tree.pointer(&format!("/{}", path.replace('.', "/")));
+            if given(key.path).is_some() || key.rivals().any(|rival| given(rival.path).is_some()) {
+                continue;
+            }
+            let mut with = tree.clone();
+            let (mut at, mut names) = (&mut with, key.path.split('.').collect::<Vec<_>>());
+            if ["body", "spring"].contains(&names[0]) {
+                let Some(named) = tree[names[0]].as_object() else { continue };
+                let name = named.keys().next().expect("a name");
+                if named[name].pointer(&format!("/{}", names[1..].join("/"))).is_some() {
+                    continue;
+                }
+                names.insert(1, name);
+            }
+            let (last, tables) = names.split_last().unwrap();
+            let mut fits = true;
+            for table in tables {
+                if !at.is_object() {
+                    fits = false;
+                    break;
+                }
+                let all = at.as_object_mut().unwrap();
+                at = all.entry(*table).or_insert_with(|| serde_json::json!({}));
+            }
+            if !fits || !at.is_object() {
+                continue;
+            }
+            at[*last] = written(key, value);
+            let before = understood(&tree.to_string(), name).unwrap();
+            // A key that the scene has no use for is refused.
+            let Ok(after) = understood(&with.to_string(), name) else { continue };
+            assert_eq!(before, after, "{} = {value} in {name}", key.path);
+            tried += 1;
+        }
+        if tried == 0 {
+            untried.push(key.path);
+        }
+    }
+    assert!(untried.is_empty(), "no scene takes {untried:?}");
+}
+
+/// No reader has a default of its own beside that of the table, which would never come to be used.
+#[test]
+fn readers_name_no_other_default_than_the_table() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scene");
+    let mut seen = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+        let text: String = text.split_whitespace().collect();
+        for call in ["reader.number(\"", "self.number(\"", "reader.choice(\""] {
+            for rest in text.split(call).skip(1) {
+                let (path, rest) = rest.split_once('"').unwrap();
+                let Some((_, key)) = keys::find(path) else { continue };
+                let Some(fallback) = rest.strip_prefix(").unwrap_or(") else {
+                    assert!(!rest.starts_with(").unwrap_or"), "{path} has a rule of its own");
+                    continue;
+                };
+                let fallback = fallback.split(')').next().unwrap();
+                seen += 1;
+                let Need::Default { value, .. } = key.need else {
+                    panic!("{path} is read with a default that the table does not state")
+                };
+                let number = value.split(' ').next().unwrap().parse::<f64>();
+                let same = match (number, fallback.parse::<f64>()) {
+                    // In SI units, as the reader has them.
+                    (Ok(number), Ok(fallback)) => match key.kind {
+                        Kind::Quantity(dimension, _) | Kind::Profile(dimension, _) => {
+                            let si = parse_quantity(value, dimension).unwrap().si;
+                            (si - fallback).abs() <= 1e-12 * si.abs()
+                        }
+                        _ => number == fallback,
+                    },
+                    _ => fallback.trim_matches('"') == value,
+                };
+                assert!(same, "{path}: the table says {value}, its reader {fallback}");
+            }
+        }
+    }
+    assert!(seen >= 12, "{seen}");
+}
