@@ -83,7 +83,7 @@ pub fn refuse_half_way(folder: &Path) -> Result<(), Box<dyn Error>> {
 /// Removes what an earlier command left in the folder and this one may not write again; nothing that
 /// this program does not name so. The summary goes first: its presence says that a folder is complete.
 pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
-    const NAMES: [&str; 13] = [
+    const NAMES: [&str; 14] = [
         "summary.json",
         "state.json",
         "series.csv",
@@ -92,6 +92,7 @@ pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
         "spectrum.csv",
         "bore.csv",
         "harmonic.csv",
+        "curve.csv",
         "reactions.svg",
         "loops.svg",
         fields::LIST,

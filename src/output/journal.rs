@@ -27,7 +27,7 @@ pub enum Stopped {
 pub enum JournalError {
     #[error("cannot read {}: {source}", path.display())]
     Read { path: PathBuf, source: InputError },
-    #[error("{} is not the state of such a run: {source}", path.display())]
+    #[error("{} is not the state of such a run: {source}; start anew (--fresh)", path.display())]
     Json { path: PathBuf, source: serde_json::Error },
     #[error(
         "{} was written by version {found}; this is {}, whose bits may differ; start anew (--fresh)",

@@ -209,6 +209,8 @@ const GENERATORS_INTRODUCTION: &str = "\
 Bars begin at the origin and lie along X, shafts at their first station; rings, cages and housings are centred on the
 origin, their axis X. Sets: `x_low` and `x_high`, and `y_low` to `z_high` of bars and blocks; `inner`, `outer` of rings and
 cages; `outer` and `station_N` of shafts; `pocket_N` of cages; `bore` and `fixed` (what the source holds) of housings.
+A whole bushing is centred on the origin, its axis X; of a quarter the origin is in the middle of the whole one. Sets of it: `inner` and `outer`, where sleeves are
+bonded, `x_low` and `x_high`, and `ends`, the faces that are free; of a quarter `x_low` and `y_low` are the planes of symmetry, `x_high` and `ends` the one free face.
 
 ";
 

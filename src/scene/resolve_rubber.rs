@@ -142,6 +142,13 @@ pub(super) fn rubber(
         CHAIN
     });
     let bulk = match (bulk, ratio) {
+        (Some(bulk), _) if bulk < modulus => {
+            let reason =
+                "rubber hardly changes its volume, and this is less than C_R of its network";
+            let advice = "give at least C_R, usually 100 times that and more".to_string();
+            let problem = Problem::NotApplicable { reason, advice };
+            return Err(document.error("solid.material.bulk_modulus", problem));
+        }
         (Some(bulk), _) => bulk,
         (None, Some(ratio)) => ratio * modulus,
         (None, None) => {

@@ -293,9 +293,16 @@ fn integer(key: &Key, text: &str, low: i64, high: i64) -> Result<i64, Problem> {
 fn choice(text: &str, choices: &'static [&'static str]) -> Result<&'static str, Problem> {
     choices.iter().find(|choice| **choice == text).copied().ok_or_else(|| Problem::UnknownChoice {
         written: format!("\"{}\"", shortened(text)),
-        nearest: nearest(text, choices.iter().copied(), 0.5).map(str::to_string),
+        nearest: meant(text, choices),
         allowed: choices,
     })
+}
+
+/// The choice most like what is written; none where two are equally like it, as those of numbers are.
+fn meant(text: &str, choices: &'static [&'static str]) -> Option<String> {
+    let first = nearest(text, choices.iter().copied(), 0.5);
+    let last = nearest(text, choices.iter().rev().copied(), 0.5);
+    first.filter(|_| first == last).map(str::to_string)
 }
 
 fn choice_list(

@@ -2,7 +2,7 @@
 
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
 use bearing_dynamics::ch2_housing::elastomer::maxwell::{
-    Maxwell, StepFactors, carried, commit, complex_factor, curvature_error, dissipated,
+    DashpotFactors, Maxwell, StepFactors, carried, commit, complex_factor, curvature_error,
     spring_energy,
 };
 use bearing_dynamics::ch2_housing::elastomer::merge::merged;
@@ -248,6 +248,8 @@ fn energy_closes_at_small_strain() {
     };
     for (dt, steps) in [(1e-2, 130), (1e-3, 1300)] {
         let factors = StepFactors::of(&rubber.maxwell, dt).unwrap();
+        let mut dashpots = DashpotFactors::default();
+        dashpots.set(&rubber.maxwell, dt);
         let mut history = vec![[0.0; 6]; 14];
         let (mut work, mut lost) = (0.0, 0.0);
         let total = |history: &[Sym3], t: f64| -> Sym3 {
@@ -262,7 +264,7 @@ fn energy_closes_at_small_strain() {
             // Within a step the strain goes straight; H does not, so that its mean is taken exactly: what
             // it loses to the dashpots is H/τ, hence ∫H dt/τ = γ ΔDEV S − ΔH.
             let before = history.clone();
-            lost += dissipated(&rubber.maxwell, &before, &change, dt, mu);
+            lost += dashpots.energy(&before, &change, mu);
             commit(&mut history, &change, &factors);
             let mut mean = [0.0; 6];
             for ((m, h0), h1) in rubber.maxwell.iter().zip(&before).zip(&history) {

@@ -126,7 +126,7 @@ fn checks(context: &mut CaseContext, all: &[[f64; 4]]) {
                 "four-node elements, volume around nodes",
                 *around,
                 0.12,
-                "four nodes to a coarse mesh: 10 %, which falls with its cells",
+                "four nodes need more cells than ten: 10 % on this mesh, less on finer ones",
             ),
         ] {
             let text = format!("relaxed radial stiffness at B = {ratio:.0e} C_R, {elements}");

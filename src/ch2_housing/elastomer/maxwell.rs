@@ -132,34 +132,46 @@ pub fn spring_energy(elements: &[Maxwell], history: &[Sym3], shear_modulus: f64)
     elements.iter().zip(history).map(of).sum::<f64>() / (4.0 * shear_modulus)
 }
 
-/// What the dashpots take at small strain during a step from `before`, `change` (Pa) being that of
-/// DEV S over `dt` s, J/m³: ∫ Σ H:H/(2 μ₀ γ τ) dt, exact for a straight change.
-pub fn dissipated(
-    elements: &[Maxwell],
-    before: &[Sym3],
-    change: &Sym3,
-    dt: f64,
-    shear_modulus: f64,
-) -> f64 {
-    let mut sum = 0.0;
-    for (Maxwell { gamma, tau }, h) in elements.iter().zip(before) {
-        let ratio = dt / tau;
-        // H(s) = rest + (h − rest) exp(−s/τ), where it would stay at this rate.
-        let rest = change.map(|c| gamma * c / ratio);
-        let away: Sym3 = std::array::from_fn(|i| h[i] - rest[i]);
-        let squares = if ratio < 1e-4 {
-            // H is as good as straight; the parts below would cancel.
-            let after: Sym3 = std::array::from_fn(|i| h[i] + gamma * change[i] - ratio * h[i]);
-            ratio * (double_dot(h, h) + double_dot(h, &after) + double_dot(&after, &after)) / 3.0
-        } else {
-            let [once, twice] = [1.0, 2.0].map(|k| -libm::expm1(-k * ratio) / k);
-            double_dot(&away, &away) * twice
-                + 2.0 * double_dot(&away, &rest) * once
-                + double_dot(&rest, &rest) * ratio
-        };
-        sum += squares / gamma;
+/// What the dashpots take at small strain in one step, the same at every point of a body: ∫ Σ H:H/(2 μ₀ γ τ) dt,
+/// exact where DEV S changes along a straight line.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DashpotFactors {
+    /// Of each element what stands before H:H and before H:ΔDEV S, H as it is before the step.
+    of: Vec<[f64; 2]>,
+    /// Before ΔDEV S:ΔDEV S.
+    of_change: f64,
+}
+
+impl DashpotFactors {
+    /// For a step of `dt` s ≥ 0; a sudden change takes nothing.
+    pub fn set(&mut self, elements: &[Maxwell], dt: f64) {
+        self.of.clear();
+        self.of_change = 0.0;
+        for Maxwell { gamma, tau } in elements {
+            // Within the step H goes as r + (H − r) exp(−s/τ), r = γ ΔDEV S/x, x the ratio.
+            let x = dt / tau;
+            let [once, twice] = [1.0, 2.0].map(|k: f64| -libm::expm1(-k * x) / k);
+            let crossed = if x > 0.0 { once * once / x } else { 0.0 };
+            let squared = if x < 1e-2 {
+                // Of the closed form the first two orders cancel.
+                x * (1.0 / 3.0 - x * (1.0 / 4.0 - x * (7.0 / 60.0 - x / 24.0)))
+            } else {
+                (1.0 + (twice - 2.0 * once) / x) / x
+            };
+            self.of.push([twice / gamma, crossed]);
+            self.of_change += gamma * squared;
+        }
     }
-    sum / (2.0 * shear_modulus)
+
+    /// J/m³ at a point with Hⱼ as before the step, `change` being that of DEV S, Pa; μ₀ of the network.
+    #[inline]
+    pub fn energy(&self, history: &[Sym3], change: &Sym3, shear_modulus: f64) -> f64 {
+        let own = self.of_change * double_dot(change, change);
+        let parts = history.iter().zip(&self.of).map(|(h, [squared, crossed])| {
+            squared * double_dot(h, h) + crossed * double_dot(h, change)
+        });
+        parts.fold(own, |sum, part| sum + part) / (2.0 * shear_modulus)
+    }
 }
 
 /// Storage and loss of the deviatoric stiffness over the network's, at `pulsation` rad/s, infinity being a
@@ -174,6 +186,32 @@ pub fn complex_factor(elements: &[Maxwell], pulsation: f64) -> [f64; 2] {
         sum[1] += gamma / (x + inverse);
     }
     sum
+}
+
+/// As [`complex_factor`] what the recursion shows in steady cycles by steps of `dt` s, at their ends:
+/// 1 + Σ gain (1 − 1/z)/(1 − decay/z), z = exp(iωΔt).
+///
+/// # Errors
+/// As [`StepFactors::set`].
+pub fn complex_factor_of_steps(
+    elements: &[Maxwell],
+    pulsation: f64,
+    dt: f64,
+) -> Result<[f64; 2], ElastomerError> {
+    let factors = StepFactors::of(elements, dt)?;
+    let angle = pulsation * dt;
+    let (sine, half) = (libm::sin(angle), libm::sin(0.5 * angle));
+    let below = 2.0 * half * half;
+    let mut sum = [1.0, 0.0];
+    for (decay, gain) in factors.decay.iter().zip(&factors.gain) {
+        let left = 1.0 - decay + decay * below;
+        let size = left * left + decay * decay * sine * sine;
+        if size > 0.0 {
+            sum[0] += gain * (below * left + decay * sine * sine) / size;
+            sum[1] += gain * sine * (1.0 - decay) / size;
+        }
+    }
+    Ok(sum)
 }
 
 /// Deviatoric stiffness over the network's that the recursion shows in steps of `dt` s to a strain that changes its

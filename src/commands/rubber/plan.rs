@@ -27,10 +27,32 @@ pub fn run(document: &Document, scene: &SolidScene, rubber: &RubberScene) -> Com
                 "{rows} at least, one a row; each takes an equilibrium, most with the factors of an earlier one"
             );
             lines.push(note("steps", &said));
+            lines.push(note("factorisations", &factorisations(&prepared, scene.run.as_ref())));
+        } else {
+            let vibrations =
+                if rubber.harmonic.is_some() { "; one more for all vibrations" } else { "" };
+            let said = format!(
+                "2 or more: one at rest, another where the body bends, and further ones where it folds{vibrations}"
+            );
+            lines.push(note("factorisations", &said));
         }
     }
     say_plan(&all_items(scene, rubber, &prepared), &lines)?;
     Ok(Outcome::Done)
+}
+
+/// How many there will be at least: a step at the start and behind each corner of what drives the body begins with
+/// its own.
+fn factorisations(prepared: &Prepared, run: Option<&SolidRun>) -> String {
+    let end = run.map_or(0.0, |run| run.end);
+    let corners = prepared.setup.model.corners();
+    let corners = corners.iter().filter(|corner| (0.0..end).contains(*corner) && **corner > 0.0);
+    let corners = corners.count();
+    format!(
+        "{} at least: one at the start, one behind each of {corners} corners of motions and loads; one more where \
+         steps change so much that an earlier one serves no longer, or the body bends",
+        corners + 1
+    )
 }
 
 /// Items of a run, or without one of statics.

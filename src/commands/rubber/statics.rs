@@ -19,12 +19,15 @@ use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::clock::told;
 use bearing_dynamics::solver::plan::tally::Tally;
 use bearing_dynamics::solver::solid::foretold;
-use bearing_dynamics::solver::solid::rubber::relaxed::relaxed;
+use bearing_dynamics::solver::solid::rubber::relaxed::{RelaxedError, relaxed};
 use bearing_dynamics::solver::solid::rubber::vibration::{Answer, vibrations};
+use std::error::Error;
 use std::fmt::Write;
 use std::time::Instant;
 
 pub const HARMONIC: &str = "harmonic.csv";
+/// Equilibria on the way to one that was lost.
+const CURVE: &str = "curve.csv";
 
 pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandResult {
     let Asked { path, document, .. } = asked;
@@ -36,7 +39,8 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     let start = Instant::now();
     let model = &setup.model;
     let cost = foretold::rubber(model, "statics");
-    let found = watched(&cost, &model.unknowns, "", || relaxed(model, time))??;
+    let found = watched(&cost, &model.unknowns, "", || relaxed(model, time))?;
+    let found = found.map_err(|error| keep_curve(&prepared, folder.as_deref(), error))?;
     let mut seconds =
         vec![("mesh".into(), *mesh_seconds), ("solve".into(), start.elapsed().as_secs_f64())];
     let start = Instant::now();
@@ -73,6 +77,25 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
     say(&format!("wrote {files} files to {}\n", folder.display()))?;
     Ok(Outcome::Done)
+}
+
+/// Of an equilibrium that was lost on the way: writes what was found before, and says what to do.
+fn keep_curve(prepared: &Prepared, folder: Option<&Path>, error: RelaxedError) -> Box<dyn Error> {
+    let RelaxedError::Lost { reached, .. } = &error else { return error.into() };
+    const ADVICE: &str = "ask for less, refine the mesh where it is bonded, or let it take time (`bearing run`): what \
+                          folds slowly follows further in steps while Maxwell elements hold it";
+    let (count, text) = (reached.len(), error.to_string());
+    let Some(folder) = folder.filter(|_| count > 0) else {
+        return format!("{text}; {ADVICE}").into();
+    };
+    let written = remove_earlier(folder).and_then(|()| {
+        let curve = summary::reached_series(&prepared.setup, reached)?;
+        Ok(curve.write_csv(&folder.join(CURVE))?)
+    });
+    match written {
+        Ok(()) => format!("{text}; {count} equilibria up to there are in {CURVE}; {ADVICE}").into(),
+        Err(also) => format!("{text}; {CURVE} could not be written: {also}; {ADVICE}").into(),
+    }
 }
 
 fn answers(

@@ -91,6 +91,13 @@ fn of_supports(session: &Session, table: &RunTable, lines: &mut Lines) {
     let lost = table.all("energy_viscous").unwrap_or_default();
     if let Some(lost) = lost.last() {
         lines.push(("held or lost by Maxwell".into(), format!("{lost:.6} J at the end")));
+        let last = |name: &str| table.all(name).and_then(|all| all.last().copied()).unwrap_or(0.0);
+        let [springs, dashpots, rest] =
+            ["energy_maxwell", "energy_dissipated", "energy_residual"].map(last);
+        let said = format!(
+            "{springs:.6} J in springs, {dashpots:.6} J taken by dashpots, {rest:.3e} J unaccounted for"
+        );
+        lines.push(("as of small strain".into(), said));
     }
 }
 

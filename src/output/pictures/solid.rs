@@ -27,6 +27,8 @@ pub fn series_plots(
         ("work_damping", "work of damping"),
         ("energy_residual", "unaccounted for"),
         ("energy_viscous", "held or lost in Maxwell elements"),
+        ("energy_maxwell", "held in their springs"),
+        ("energy_dissipated", "taken by their dashpots"),
     ];
     let mut plots = Vec::new();
     let curves = over_time(table, &energies, 1.0);

@@ -17,7 +17,7 @@ const TITLE_SIZE: i32 = 25;
 pub const TEXT_SIZE: i32 = 21;
 
 /// Okabe and Ito's colours without yellow, which is hard to see on white.
-pub const COLOURS: [RGBColor; 7] = [
+const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -26,6 +26,21 @@ pub const COLOURS: [RGBColor; 7] = [
     RGBColor(230, 159, 0),
     RGBColor(0, 0, 0),
 ];
+
+/// Of curve number `index`: the colours, then as many darker and as many paler ones.
+pub fn colour(index: usize) -> RGBColor {
+    let RGBColor(red, green, blue) = COLOURS[index % COLOURS.len()];
+    let shade = |part: u8| match index / COLOURS.len() % 3 {
+        0 => part,
+        1 => part / 2,
+        _ => 110 + (u32::from(part) * 120 / 255) as u8,
+    };
+    match (index / COLOURS.len() % 3, red) {
+        // Black has no darker one.
+        (1, 0) if green == 0 && blue == 0 => RGBColor(120, 120, 120),
+        _ => RGBColor(shade(red), shade(green), shade(blue)),
+    }
+}
 
 /// Calls `paint` with an empty white drawing of this size and returns the SVG.
 pub fn draw(
@@ -131,7 +146,7 @@ pub fn arrow(area: &Area, from: Point, to: Point, colour: RGBColor) -> Result<()
 
 /// The marker of curve number `index`: shapes differ as well as colours.
 pub fn marker(area: &Area, index: usize, (x, y): Point) -> Result<(), PlotError> {
-    let colour = COLOURS[index % COLOURS.len()];
+    let colour = colour(index);
     let r = 6;
     match index % 5 {
         0 => area.draw(&Circle::new((x, y), r, colour.filled())).map_err(failed),
@@ -200,7 +215,7 @@ impl Legend {
         for &(index, x, row) in &self.entries {
             let (with_line, with_marker) = line_and_marker(&curves[index]);
             let y = top + row * LEGEND_ROW + LEGEND_ROW / 2;
-            let colour = COLOURS[index % COLOURS.len()];
+            let colour = colour(index);
             if with_line {
                 line(area, vec![(x, y), (x + LEGEND_SAMPLE - 14, y)], colour, 3)?;
             }
@@ -217,4 +232,21 @@ impl Legend {
 /// Width in px of a text of `TEXT_SIZE`, on the safe side for common fonts.
 fn text_width(content: &str) -> i32 {
     content.chars().count() as i32 * 11
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn twenty_curves_differ_in_colour() {
+        for one in 0..3 * COLOURS.len() {
+            for other in 0..one {
+                let far = |a: u8, b: u8| u32::from(a.abs_diff(b));
+                let (RGBColor(a, b, c), RGBColor(x, y, z)) = (colour(one), colour(other));
+                // Far enough to be told apart in a legend.
+                assert!(far(a, x) + far(b, y) + far(c, z) >= 30, "{one} {other}");
+            }
+        }
+    }
 }

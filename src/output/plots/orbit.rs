@@ -70,7 +70,7 @@ pub fn orbit(plot: &OrbitPlot) -> Result<String, PlotError> {
                 .map(|&[y, z]| (across(scales[0].position(y)), up(scales[1].position(z))))
                 .collect();
             let last = points.last().copied();
-            canvas::line(area, points, canvas::COLOURS[index % canvas::COLOURS.len()], 2)?;
+            canvas::line(area, points, canvas::colour(index), 2)?;
             if let Some(last) = last {
                 canvas::marker(area, index, last)?;
             }

@@ -98,7 +98,7 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
                 continue;
             }
             let closed = points.iter().copied().chain([points[0]]).collect();
-            canvas::line(area, closed, canvas::COLOURS[index % canvas::COLOURS.len()], 3)?;
+            canvas::line(area, closed, canvas::colour(index), 3)?;
             // Markers on a dense curve would be taken for balls.
             if points.len() <= 40 {
                 canvas::markers(area, index, &points)?;

@@ -104,7 +104,7 @@ pub fn xy(plot: &XyPlot) -> Result<String, PlotError> {
                 .collect();
             let style = plot.style.of(curve);
             if style != Style::Markers {
-                let colour = canvas::COLOURS[index % canvas::COLOURS.len()];
+                let colour = canvas::colour(index);
                 canvas::line(area, points.clone(), colour, 3)?;
             }
             match style {

@@ -6,12 +6,20 @@ use crate::output::series::Column;
 use crate::output::session::SessionError;
 use crate::scene::solid_problem::{NamedNodes, Support};
 use crate::solver::solid::rubber::error::{RubberError, StepFailure};
-use crate::solver::solid::rubber::measures::{network_energy, point_stresses};
+use crate::solver::solid::rubber::measures::{RubberLedger, point_stresses};
 use crate::solver::solid::rubber::steps::RubberSolid;
 
 pub(super) fn columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column> {
-    // The last of the three is held in the Maxwell elements or lost in them.
-    let names = ["energy_strain", "work_external", "energy_viscous"];
+    // The third is held in the Maxwell elements or lost in them; of that, by the law of small strain, the two
+    // behind it, and what they leave.
+    let names = [
+        "energy_strain",
+        "work_external",
+        "energy_viscous",
+        "energy_maxwell",
+        "energy_dissipated",
+        "energy_residual",
+    ];
     let mut columns = names.map(|name| Column::new(name, "J")).to_vec();
     columns.push(Column::new("largest_displacement", "m"));
     columns.push(Column::new("largest_von_mises", "Pa"));
@@ -36,11 +44,13 @@ impl Recorder {
                 failure,
             })
         };
-        let held = network_energy(model, &state.displacement).map_err(cannot_be)?;
+        let ledger = RubberLedger::of(model, state).map_err(cannot_be)?;
         let stresses = point_stresses(model, state).map_err(cannot_be)?;
         let largest = state.displacement.iter().map(length).fold(0.0, f64::max);
         let stress = stresses.as_flattened().iter().map(von_mises).fold(0.0, f64::max);
-        self.values.extend([state.time, held, state.work, state.work - held, largest, stress]);
+        let RubberLedger { network, springs, dissipated, work } = ledger;
+        self.values.extend([state.time, network, work, work - network]);
+        self.values.extend([springs, dissipated, ledger.residual(), largest, stress]);
         for probe in &self.probes {
             self.values.extend(mean(&state.displacement, &probe.nodes));
         }

@@ -103,9 +103,9 @@ pub enum StateError {
         "the {what} beside {} are {kept} s apart, the scene now asks for {asked} s", path.display()
     )]
     Interval { path: PathBuf, what: &'static str, kept: f64, asked: f64 },
-    #[error("{} holds a damaged state: {what}", path.display())]
+    #[error("{} holds a damaged state: {what}; start anew (--fresh)", path.display())]
     Damaged { path: PathBuf, what: &'static str },
-    #[error("{} has no rows that fit the state beside it", path.display())]
+    #[error("{} has no rows that fit the state beside it; start anew (--fresh)", path.display())]
     Rows { path: PathBuf },
     #[error("the run has already come to {} s, past its new end of {end} s", rounded(*time))]
     Past { time: f64, end: f64 },

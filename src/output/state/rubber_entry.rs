@@ -20,8 +20,9 @@ pub struct RubberEntry {
     pub next: f64,
     /// Largest total deviatoric stress so far, Pa.
     pub scale: f64,
-    /// J.
+    /// Put in and taken by dashpots so far, J.
     pub work: f64,
+    pub dissipated: f64,
     /// Steps accepted and undone, iterations and factorisations.
     pub counts: [u64; 4],
     /// Gain of the step that the factors at hand are of.
@@ -38,6 +39,7 @@ impl RubberEntry {
             next: kept.next,
             scale: kept.scale,
             work: kept.state.work,
+            dissipated: kept.state.dissipated,
             counts: [accepted, undone, kept.iterations as u64, kept.factorisations as u64],
             factored: kept.factored.as_ref().map(|factored| factored.gain),
         }
@@ -45,7 +47,10 @@ impl RubberEntry {
 
     pub(super) fn numbers(&self) -> Vec<f64> {
         let gain = self.factored.into_iter();
-        [self.last, self.next, self.scale, self.work].into_iter().chain(gain).collect()
+        [self.last, self.next, self.scale, self.work, self.dissipated]
+            .into_iter()
+            .chain(gain)
+            .collect()
     }
 
     /// At `time` (s), with the arrays from `folder`.
@@ -60,7 +65,13 @@ impl RubberEntry {
         let terms = problem.material.maxwell.len();
         let [accepted, undone, iterations, factorisations] = self.counts;
         let bare = RubberCheckpoint {
-            state: RubberState { time, last: self.last, work: self.work, ..RubberState::default() },
+            state: RubberState {
+                time,
+                last: self.last,
+                work: self.work,
+                dissipated: self.dissipated,
+                ..RubberState::default()
+            },
             next: self.next,
             scale: self.scale,
             counts: StepCounts { accepted, undone },

@@ -11,7 +11,7 @@ use crate::output::session::MovingRubber;
 use crate::scene::rubber_problem::RubberSetup;
 use crate::scene::solid_mesh::BuiltMesh;
 use crate::solver::solid::rubber::model::Moment;
-use crate::solver::solid::rubber::relaxed::Relaxed;
+use crate::solver::solid::rubber::relaxed::{Reached, Relaxed};
 use crate::solver::solid::rubber::steps::Stepping;
 use crate::solver::solid::rubber::vibration::Answer;
 use ndarray::Array2;
@@ -68,6 +68,26 @@ pub fn rubber_statics(
     }
     let series = static_series(&setup.probes, &setup.supports, displacement, &found.reactions)?;
     Ok((summary, series))
+}
+
+/// Equilibria on the way as a table: which part of what supports and loads ask for, and the columns of statics.
+///
+/// # Errors
+/// A value that is not finite.
+pub fn reached_series(setup: &RubberSetup, reached: &[Reached]) -> Result<Series, SeriesError> {
+    let mut columns = vec![Column::new("part", "1")];
+    let mut values = Vec::new();
+    for Reached { part, displacement, reactions } in reached {
+        let row = static_series(&setup.probes, &setup.supports, displacement, reactions)?;
+        if values.is_empty() {
+            columns.extend(row.columns().iter().cloned());
+        }
+        values.push(*part);
+        values.extend(row.data());
+    }
+    let data = Array2::from_shape_vec((reached.len(), columns.len()), values)
+        .expect("one value for each column");
+    Series::new(columns, data)
 }
 
 /// Answers over frequency, for the summary.

@@ -38,6 +38,7 @@ pub fn statics(model: &SolidModel, unknowns: &Unknowns) -> Cost {
         vectors: NEWTON_VECTORS,
         other: 0,
         operations: assembly(model),
+        four_nodes: true,
         traffic: 0.0,
     };
     Cost::new(&unknowns.elimination, task)
@@ -58,6 +59,7 @@ pub fn rubber(model: &RubberModel, name: &'static str) -> Cost {
         vectors: NEWTON_VECTORS,
         other: size_of::<Sym3>() * POINTS * elements * tensors,
         operations: OF_TEN_NODES * elements as f64,
+        four_nodes: false,
         traffic: 0.0,
     };
     Cost::new(&model.unknowns.elimination, task)
@@ -79,6 +81,7 @@ pub fn modes(model: &SolidModel, unknowns: &Unknowns, count: usize) -> Cost {
         operations: assembly(model),
         // Each new vector is made orthogonal to all others, twice, and goes five times through the
         // masses, in places picked from it; bytes fitted as those of `Cost::seconds`.
+        four_nodes: true,
         traffic: (40 * solves * solves) as f64 * unknowns.count as f64
             + (160 * solves) as f64 * unknowns.mass_stored as f64,
     };
@@ -97,6 +100,7 @@ pub fn condensed(model: &SolidModel, unknowns: &Unknowns, kept: usize, columns: 
         vectors: 2 * columns + 2,
         other: 8 * kept * kept,
         operations: assembly(model),
+        four_nodes: true,
         traffic: 0.0,
     };
     Cost::new(&unknowns.elimination, task)

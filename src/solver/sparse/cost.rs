@@ -40,6 +40,8 @@ pub struct Task {
     pub vectors: usize,
     /// Bytes of other things.
     pub other: usize,
+    /// Whether elements of four nodes would do as well, if worse; rubber locks in them.
+    pub four_nodes: bool,
     /// What else takes time: as much as so many multiplications and additions of dense products, and
     /// as reading so many bytes.
     pub operations: f64,
@@ -65,7 +67,7 @@ pub struct Cost {
 #[error(
     "{what} of {unknowns} unknowns needs {:.3} GB of memory, {:.3} GB of it for the factors of the \
      stiffness, and may take {:.3} GB ({limit_from}); take a coarser mesh (edges twice as long need \
-     about a tenth), four-node elements (order = 1){other}, or allow more with --memory GB",
+     about a tenth){fewer_nodes}{other}, or allow more with --memory GB",
     1e-9 * bytes, 1e-9 * factor_bytes, 1e-9 * limit
 )]
 pub struct TooLarge {
@@ -78,7 +80,8 @@ pub struct TooLarge {
     pub limit: f64,
     /// Who set the limit.
     pub limit_from: String,
-    /// Another way to solve it, where there is one.
+    /// Elements that need less, where they would do, and another way to solve it, where there is one.
+    pub fewer_nodes: &'static str,
     pub other: &'static str,
 }
 
@@ -147,6 +150,7 @@ impl Cost {
             factor_bytes: self.factor_bytes,
             limit,
             limit_from: limit_from.into(),
+            fewer_nodes: if self.task.four_nodes { ", four-node elements (order = 1)" } else { "" },
             other,
         })
     }

@@ -3,7 +3,9 @@
 use std::f64::consts::TAU;
 
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
-use bearing_dynamics::ch3_bushing::hysteresis::{Hysteresis, of_loop};
+use bearing_dynamics::ch3_bushing::hysteresis::{
+    Hysteresis, first_harmonic, of_complex_stiffness, of_loop, of_steps,
+};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
 use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
@@ -27,7 +29,7 @@ pub const SLOW: Study = Study {
     id: "rubber_cycle_0p1_hz",
     title: "Bushing of 3.4.1, steady cycle at 0.1 Hz",
     error_label: "error of the dynamic stiffness",
-    more_errors: &["error of the damping ratio"],
+    more_errors: &["error of the damping ratio", "the larger of both"],
     run: |context| cycle(context, 0.1),
 };
 
@@ -35,7 +37,7 @@ pub const FAST: Study = Study {
     id: "rubber_cycle_10_hz",
     title: "Bushing of 3.4.1, steady cycle at 10 Hz",
     error_label: "error of the dynamic stiffness",
-    more_errors: &["error of the damping ratio"],
+    more_errors: &["error of the damping ratio", "the larger of both"],
     run: |context| cycle(context, 10.0),
 };
 
@@ -95,19 +97,17 @@ fn name([around, radial, axial]: [usize; 3]) -> String {
 }
 
 /// Small vibrations on five meshes, and steady loops in steps of small amplitude: two cycles, of which the second
-/// is read.
+/// is read; by its largest force and its area as (3.13) and (3.14) have it, by its first harmonic, and by that with
+/// what the recursion of the steps is known to make of it.
 fn cycle(context: &mut ParetoContext, frequency: f64) -> Result<(), CaseError> {
     let truth = exact(&BUSHING, 1.0, frequency, 6);
     let material = rubber(MODULUS, 1.0, ChainPull::FiveTerms)?;
     let mut push = |series: &str, cells, seconds, found: Hysteresis| {
+        let of_stiffness = off(found.dynamic_stiffness, truth.dynamic_stiffness);
+        let of_damping = off(found.damping_ratio, truth.damping_ratio);
         context.push(Point {
-            more_errors: vec![off(found.damping_ratio, truth.damping_ratio)],
-            ..Point::new(
-                series,
-                &name(cells),
-                seconds,
-                off(found.dynamic_stiffness, truth.dynamic_stiffness),
-            )
+            more_errors: vec![of_damping, of_damping.max(of_stiffness)],
+            ..Point::new(series, &name(cells), seconds, of_stiffness)
         });
     };
     for cells in MESHES {
@@ -119,20 +119,31 @@ fn cycle(context: &mut ParetoContext, frequency: f64) -> Result<(), CaseError> {
         })?;
         push("small vibrations", cells, seconds, found);
     }
-    for per in [24, 48] {
-        for cells in &MESHES[..3] {
-            let (seconds, found) = timed(|| {
+    // Three readings of the same loops.
+    for per in [8, 12, 24, 48, 96] {
+        for cells in &MESHES[1..3] {
+            let (seconds, points) = timed(|| {
                 let mesh = quarter(&BUSHING, *cells, GRADING)?;
-                let moved = steady_loop(&mesh, material.clone(), AMPLITUDE, frequency, per)?;
-                of_loop(&moved.points).ok_or_else(|| CaseError::message("a loop without force"))
+                Ok(steady_loop(&mesh, material.clone(), AMPLITUDE, frequency, per)?.points)
             })?;
-            push(&format!("{per} steps a cycle"), *cells, seconds, found);
+            let none = || CaseError::message("a loop without force");
+            let first = first_harmonic(&points).ok_or_else(none)?;
+            let corrected = of_steps(&points, &material.maxwell, 1.0 / frequency)?;
+            for (reading, found) in [
+                ("peak and area", of_loop(&points).ok_or_else(none)?),
+                ("first harmonic", of_complex_stiffness(first.re, first.im)),
+                ("first harmonic, corrected", corrected.ok_or_else(none)?),
+            ] {
+                push(&format!("{per} steps a cycle, {reading}"), *cells, seconds, found);
+            }
         }
     }
-    for (measure, whole) in [(0, "dynamic stiffness"), (1, "damping ratio")] {
+    for (measure, whole) in
+        [(0, "dynamic stiffness"), (1, "damping ratio"), (2, "both, the larger counting")]
+    {
         let ways = cheapest_ways(context.points(), measure, whole);
         context.sentence(format!("The {ways}"));
-        let steps = context.points().iter().filter(|point| point.series.ends_with("a cycle"));
+        let steps = context.points().iter().filter(|point| point.series.contains("a cycle"));
         let ways = cheapest_ways(steps, measure, whole);
         context.sentence(format!("Of steps the {ways}"));
     }

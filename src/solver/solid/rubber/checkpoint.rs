@@ -26,6 +26,8 @@ pub struct RubberState {
     pub forces: Vec<Vec3>,
     /// Work of loads and supports so far, by the trapezium rule over the steps, J.
     pub work: f64,
+    /// What the dashpots have taken so far by the law of small strain, J.
+    pub dissipated: f64,
 }
 
 impl RubberState {

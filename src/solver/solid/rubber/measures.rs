@@ -4,6 +4,7 @@ use super::checkpoint::RubberState;
 use super::error::StepFailure;
 use super::model::RubberModel;
 use super::tangent::{at_points, in_element, mean_stresses};
+use crate::ch2_housing::elastomer::maxwell::spring_energy;
 use crate::elements::tet10::{POINTS, Tet10};
 use crate::elements::tet10_nodal;
 use crate::kinematics::strain::{Sym3, cauchy};
@@ -32,6 +33,48 @@ pub fn network_energy(model: &RubberModel, displacement: &[Vec3]) -> Result<f64,
         energy += patch.volume * network.volume_energy(mean / network.bulk);
     }
     Ok(energy)
+}
+
+/// Energy in the springs of the Maxwell elements by the law of small strain, J.
+pub fn maxwell_energy(model: &RubberModel, state: &RubberState) -> f64 {
+    let material = &model.problem.material;
+    let (terms, shear_modulus) = (material.maxwell.len(), material.network.shear_modulus());
+    // A relaxed state has no history.
+    let points = model.tets.iter().flat_map(|tet| &tet.points);
+    points.zip(state.history.chunks_exact(terms.max(1))).fold(0.0, |sum, (point, history)| {
+        sum + point.volume * spring_energy(&material.maxwell, history, shear_modulus)
+    })
+}
+
+/// What became of the work of loads and supports, J. What Maxwell elements hold and have lost is known at
+/// small strain alone; the rest is what strain and length of steps leave of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RubberLedger {
+    /// Held by the network.
+    pub network: f64,
+    /// Held by the springs of the Maxwell elements.
+    pub springs: f64,
+    /// Taken by their dashpots.
+    pub dissipated: f64,
+    pub work: f64,
+}
+
+impl RubberLedger {
+    /// # Errors
+    /// As [`network_energy`].
+    pub fn of(model: &RubberModel, state: &RubberState) -> Result<RubberLedger, StepFailure> {
+        Ok(RubberLedger {
+            network: network_energy(model, &state.displacement)?,
+            springs: maxwell_energy(model, state),
+            dissipated: state.dissipated,
+            work: state.work,
+        })
+    }
+
+    /// What is held and was taken, less what was put in.
+    pub fn residual(&self) -> f64 {
+        self.network + self.springs + self.dissipated - self.work
+    }
 }
 
 /// Cauchy stresses, Pa: XX YY ZZ XY YZ ZX.

@@ -33,7 +33,17 @@ pub enum RelaxedError {
     #[error(
         "no equilibrium was found beyond {:.3} % of the given loads and displacements: {failure}", 100.0 * part
     )]
-    Lost { part: f64, failure: StepFailure },
+    Lost { part: f64, failure: StepFailure, reached: Vec<Reached> },
+}
+
+/// An equilibrium on the way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reached {
+    /// Of what supports and loads ask for.
+    pub part: f64,
+    pub displacement: Vec<Vec3>,
+    /// Of the supports on all nodes, N.
+    pub reactions: Vec<Vec3>,
 }
 
 /// Supports and loads are brought up together to what they are at time `t` (s): at once, or in as many parts
@@ -54,14 +64,20 @@ pub fn relaxed(model: &RubberModel, t: f64) -> Result<Relaxed, RelaxedError> {
     let stepping = Stepping::Fixed(1.0);
     let options = StepOptions { stepping, smallest: 1e-4, ..StepOptions::default() };
     let mut solid = RubberSolid::new(&model, options)?;
-    solid.advance(1.0, |_| {}).map_err(|error| match error {
-        RubberError::NoEquilibrium { time, failure, .. } => {
-            RelaxedError::Lost { part: time, failure }
+    let mut reached = Vec::new();
+    let ended = solid.advance(1.0, |solid| {
+        let (displacement, reactions) = (solid.displacement().to_vec(), solid.support_forces());
+        reached.push(Reached { part: solid.time(), displacement, reactions });
+    });
+    match ended {
+        Ok(()) => {}
+        Err(RubberError::NoEquilibrium { time, failure, .. }) => {
+            return Err(RelaxedError::Lost { part: time, failure, reached });
         }
-        other => other.into(),
-    })?;
+        Err(other) => return Err(other.into()),
+    }
     let state = solid.state().clone();
-    let lost = |failure| RelaxedError::Lost { part: 1.0, failure };
+    let lost = |failure| RelaxedError::Lost { part: 1.0, failure, reached: Vec::new() };
     let energy = network_energy(&model, &state.displacement).map_err(lost)?;
     let (iterations, factorisations) = solid.work();
     let mut ran = *solid.ran();

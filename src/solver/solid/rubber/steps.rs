@@ -10,7 +10,9 @@ use super::error::{RubberError, StepFailure};
 use super::model::{Moment, RubberModel};
 use super::newton::{Convergence, Search, Stop};
 use super::tangent::StepLaw;
-use crate::ch2_housing::elastomer::maxwell::{StepFactors, carried, commit, curvature_error};
+use crate::ch2_housing::elastomer::maxwell::{
+    DashpotFactors, StepFactors, carried, commit, curvature_error,
+};
 use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::{Sym3, double_dot};
 use crate::kinematics::vec3::{Vec3, dot};
@@ -55,6 +57,7 @@ pub struct RubberSolid<'a> {
     options: StepOptions,
     state: RubberState,
     factors: StepFactors,
+    dashpots: DashpotFactors,
     carried: Vec<Sym3>,
     corners: Vec<f64>,
     /// What the next step should be, s; zero if unknown.
@@ -87,6 +90,7 @@ impl<'a> RubberSolid<'a> {
             options,
             state,
             factors: StepFactors::default(),
+            dashpots: DashpotFactors::default(),
             carried: vec![[0.0; 6]; POINTS * model.tets.len()],
             corners: model.corners(),
             next: 0.0,
@@ -363,14 +367,19 @@ impl<'a> RubberSolid<'a> {
         let at = Moment::at(end);
         let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried };
         let state = &self.state;
-        self.search.displacement.copy_from_slice(&state.displacement);
         if state.last > 0.0 {
+            self.search.displacement.copy_from_slice(&state.displacement);
             for (u, v) in self.search.displacement.iter_mut().zip(&state.velocity) {
                 *u = std::array::from_fn(|i| u[i] + step * v[i]);
             }
-        } else {
-            self.search.predict(at, &law)?;
+            match self.search.converge(at, &law, &self.options.convergence) {
+                // Rubber that hardly changes its volume goes along its tangent where it goes along no straight line.
+                Err(Stop::Step(_)) => self.search.tangent.forget(),
+                outcome => return outcome,
+            }
         }
+        self.search.displacement.copy_from_slice(&state.displacement);
+        self.search.predict(at, &law)?;
         self.search.converge(at, &law, &self.options.convergence)
     }
 
@@ -425,14 +434,20 @@ impl<'a> RubberSolid<'a> {
 
     /// Takes what [`RubberSolid::equilibrium`] found as the state.
     fn accept(&mut self, step: f64, end: f64) {
-        let terms = self.search.model.problem.material.maxwell.len();
+        let model = self.search.model;
+        let material = &model.problem.material;
+        let (terms, shear_modulus) = (material.maxwell.len(), material.network.shear_modulus());
+        self.dashpots.set(&material.maxwell, step);
         let state = &mut self.state;
         // Behind a sudden change nothing is known of the rates to come.
         let per = if step > 0.0 { 1.0 / step } else { 0.0 };
         for (at, (new, old)) in self.search.deviatoric.iter().zip(&mut state.deviatoric).enumerate()
         {
             let change: Sym3 = std::array::from_fn(|i| new[i] - old[i]);
-            commit(&mut state.history[terms * at..terms * (at + 1)], &change, &self.factors);
+            let history = &mut state.history[terms * at..terms * (at + 1)];
+            let volume = model.tets[at / POINTS].points[at % POINTS].volume;
+            state.dissipated += volume * self.dashpots.energy(history, &change, shear_modulus);
+            commit(history, &change, &self.factors);
             state.rate[at] = change.map(|c| per * c);
             *old = *new;
         }
