@@ -2,7 +2,7 @@
 
 use super::{Prepared, plan, prepare, refuse_free};
 use crate::commands::asked::Asked;
-use crate::commands::earlier::Writes;
+use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::watched;
 use crate::commands::solid::statics::{WRITTEN, table, write};
 use crate::commands::solid::{record, say_mesh_notes};
@@ -23,6 +23,7 @@ use bearing_dynamics::solver::solid::rubber::relaxed::{RelaxedError, relaxed};
 use bearing_dynamics::solver::solid::rubber::vibration::{Answer, vibrations};
 use std::error::Error;
 use std::fmt::Write;
+use std::path::Path;
 use std::time::Instant;
 
 pub const HARMONIC: &str = "harmonic.csv";
