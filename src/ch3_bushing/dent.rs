@@ -65,7 +65,7 @@ pub struct Dent {
 
 /// How Δ changes, all in m or without unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Drop {
+pub struct Lost {
     /// Δ, m: the approach that the dent costs.
     pub value: f64,
     /// Slopes by the approach, along the rolling direction and across the groove.
@@ -104,8 +104,7 @@ fn basis(u: f64) -> ([f64; 4], [f64; 4]) {
         (4.0 - 6.0 * v * v + 3.0 * v * v * v) / 6.0,
         u * u * u / 6.0,
     ];
-    let slope =
-        [-0.5 * v * v, u * (1.5 * u - 2.0), v * (2.0 - 1.5 * v), 0.5 * u * u];
+    let slope = [-0.5 * v * v, u * (1.5 * u - 2.0), v * (2.0 - 1.5 * v), 0.5 * u * u];
     (value, slope)
 }
 
@@ -120,7 +119,7 @@ impl DentTable {
     /// Δ and its slopes at an approach δ and a place s, y from the dent's centre (m); `None` where the dent is out of
     /// reach.
     #[inline]
-    pub fn drop(&self, approach: f64, [s, y]: [f64; 2]) -> Option<Drop> {
+    pub fn lost(&self, approach: f64, [s, y]: [f64; 2]) -> Option<Lost> {
         let square = approach + self.shoulder;
         // Written so that NaN goes on and is found.
         if square <= 0.0 {
@@ -171,7 +170,7 @@ impl DentTable {
         let by_q = mixed(1)
             - by_x * x * self.spread[0] / lengths[0]
             - by_z * z * self.spread[1] / lengths[1];
-        Some(Drop {
+        Some(Lost {
             value: mixed(0),
             by_approach: 0.5 * by_q / q,
             along: by_x / lengths[0],
@@ -182,10 +181,10 @@ impl DentTable {
     /// Exponent n of (3.20) at an approach δ > 0 and a place (m), with lengths in metres; infinite where the ball hangs free.
     #[doc(alias = "3.20")]
     pub fn exponent(&self, approach: f64, place: [f64; 2]) -> f64 {
-        let share = self.drop(approach, place).map_or(1.0, |drop| {
-            let w = approach - drop.value;
+        let share = self.lost(approach, place).map_or(1.0, |lost| {
+            let w = approach - lost.value;
             let held = if w > 0.0 { w / approach } else { 0.0 };
-            held * held.sqrt() * (1.0 - drop.by_approach)
+            held * held.sqrt() * (1.0 - lost.by_approach)
         });
         1.5 + libm::log(share) / libm::log(approach)
     }

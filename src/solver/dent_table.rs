@@ -78,9 +78,7 @@ impl DentedContact {
         let start = if libm::hypot(dent[0], dent[1]) >= reach { 0.0 } else { f64::INFINITY };
         let at = |i: usize| (2.0 * i as f64 / SEARCHED as f64 - 1.0) * reach;
         let points = (0..=SEARCHED).flat_map(|i| (0..=SEARCHED).map(move |j| [at(i), at(j)]));
-        points.fold(start, |least, [x, y]| {
-            least.min(self.gap([dent[0] + x, dent[1] + y], dent))
-        })
+        points.fold(start, |least, [x, y]| least.min(self.gap([dent[0] + x, dent[1] + y], dent)))
     }
 
     fn spread(&self) -> [f64; 2] {
@@ -133,9 +131,8 @@ impl Bed {
         let gap = (0..self.unit.cells()).map(|cell| {
             let [along, aside] = self.unit.middle(cell).map(|at| at * scale);
             let point = if self.direction == 0 { [along, aside] } else { [aside, along] };
-            let below = dent.map_or(0.0, |dent| {
-                self.contact.shape.depth_at(libm::hypot(along - dent, aside))
-            });
+            let below = dent
+                .map_or(0.0, |dent| self.contact.shape.depth_at(libm::hypot(along - dent, aside)));
             self.contact.undented(point) + below
         });
         let gap: Vec<f64> = gap.collect();
@@ -180,7 +177,8 @@ pub fn dent_table(contact: &DentedContact, fineness: Fineness) -> Result<DentTab
             for column in 0..columns {
                 let sigma = column as f64 / columns as f64;
                 let along = sigma * (reach + spread[direction] * q);
-                let free = contact.free_drop(if direction == 0 { [along, 0.0] } else { [0.0, along] });
+                let free =
+                    contact.free_drop(if direction == 0 { [along, 0.0] } else { [0.0, along] });
                 let drop = if approach <= free {
                     free
                 } else {
@@ -194,20 +192,12 @@ pub fn dent_table(contact: &DentedContact, fineness: Fineness) -> Result<DentTab
         }
     }
     let coefficients = values.map(|values| splined(&values, rows, columns));
-    Ok(DentTable {
-        shoulder,
-        reach,
-        spread,
-        deepest,
-        intervals: fineness.intervals,
-        coefficients,
-    })
+    Ok(DentTable { shoulder, reach, spread, deepest, intervals: fineness.intervals, coefficients })
 }
 
 /// Splines through values in rows of equal q: along σ, then along q.
 fn splined(values: &[f64], rows: usize, columns: usize) -> Vec<f64> {
-    let by_row: Vec<Vec<f64>> =
-        values.chunks(columns + 1).map(|row| spline(row, true)).collect();
+    let by_row: Vec<Vec<f64>> = values.chunks(columns + 1).map(|row| spline(row, true)).collect();
     let mut coefficients = vec![0.0; (rows + 3) * (columns + 3)];
     for column in 0..columns + 3 {
         let values: Vec<f64> = by_row.iter().map(|row| row[column]).collect();
