@@ -158,13 +158,10 @@ pub fn press(
         }
         if worst <= tolerance * overclosed {
             let load = p.iter().sum::<f64>() * area;
-            let work: f64 = p.iter().zip(&sunk).map(|(p, u)| p * u).sum();
-            return Some(Pressed {
-                load,
-                energy: 0.5 * work * area,
-                pressure: p,
-                iterations: iteration,
-            });
+            // The minimum, which what is left of the gaps changes to second order only.
+            let inside = gap.iter().zip(&sunk).map(|(gap, u)| approach - gap - 0.5 * u);
+            let energy = p.iter().zip(inside).map(|(p, inside)| p * inside).sum::<f64>() * area;
+            return Some(Pressed { load, energy, pressure: p, iterations: iteration });
         }
         let follow = if before > 0.0 { conjugate * square / before } else { 0.0 };
         for cell in 0..cells {

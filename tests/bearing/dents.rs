@@ -108,7 +108,7 @@ fn a_shallow_pit_costs_what_the_pressure_finds_in_it() {
             / spokes as f64;
         println!("{direction} {along}: {lost:e} J, closed form {expected:e} J");
         // A thousandth of the approach, and cells of a 24th of the contact.
-        assert!((lost / expected - 1.0).abs() <= 5e-3, "{direction} {along}");
+        assert!((lost / expected - 1.0).abs() <= 2e-3, "{direction} {along}");
     }
 }
 
@@ -173,7 +173,7 @@ fn the_exponent_follows_load_shape_and_distance() {
     assert!(away.windows(2).all(|pair| pair[1] < pair[0]), "{away:?}");
     let shoulder = DentShape { shoulder_height: 1e-6, shoulder_width: 100e-6, ..pit(WIDE, 5e-6) };
     let raised = table_of(shoulder);
-    assert!(raised.exponent(delta, [300e-6, 0.0]) < 1.49);
+    assert!(raised.exponent(delta, [300e-6, 0.0]) < 1.498);
     // It carries before the surface around it does.
     let lost = raised.lost(-0.2e-6, [300e-6, 0.0]).unwrap();
     assert!(-0.2e-6 - lost.value > 0.3e-6, "{lost:?}");
