@@ -56,7 +56,7 @@ fn dent(side: usize) -> Dent {
 /// The bushing of 10 mm around Table 3.5's bearing, every γ of Table 3.1 times a factor.
 fn bushing(gammas: f64) -> Result<SpringDashpot, CaseError> {
     let body = Bushing { inner_diameter: 71e-3, thickness: 10e-3, length: 20e-3 };
-    let mesh = quarter(&body, [8, 3, 3], 1.5)?;
+    let mesh = quarter(&body, [8, 4, 3], 1.5)?;
     let material = rubber(MODULUS, gammas, ChainPull::FiveTerms)?;
     Ok(bushing_spring(&mesh, Part::Quarter, &material, TAU * FASTEST)?.law)
 }
