@@ -22,7 +22,6 @@ use crate::bushings::{quarter, rubber};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::{Check, Explanation};
 use crate::context::CaseContext;
-use crate::golden::GoldenTolerance;
 use crate::motion::{self, RPM, race};
 
 pub const CASE: Case = Case {
@@ -239,8 +238,15 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     let law = bushing(1.0)?;
     let fixed = roll(bearing(vec![dent(1)], None)?, end, 1e-4)?;
     let soft = roll(bearing(vec![dent(1)], Some(&law))?, end, 1e-4)?;
-    context.work("steps, fixed", fixed.steps);
-    context.work("steps, bushing", soft.steps);
+    context.finding(
+        "quasi_static",
+        format!(
+            "In {} and {} steps of five passes the load of ball 1 stays between {:.1} and {:.1} N with the outer race fixed, {:.1} and {:.1} N in \
+             the bushing. Stiffer and more viscous rubber moves the inner race a little less, in the order of Figs. 3.29 and 3.30; there is no \
+             oscillation left between passes whose decay could be compared.",
+            fixed.steps, soft.steps, fixed.least, fixed.most, soft.least, soft.most
+        ),
+    );
     context.check(
         Check::new(
             "reduction",
@@ -252,11 +258,13 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         .under("dent")
         .absolute(1.0, "two printed digits")
         .explained(Explanation::new(
-            "The largest displacement of the inner race along Z. The source says neither what it takes for the vibration nor load, \
-             depth, masses or friction.",
+            "The largest displacement of the inner race along Z. At 100 rpm a ball takes some 4 ms to cross the dent, hundreds of \
+             periods of the bearing: its load dips smoothly, the race follows, nothing rings, and the bushing has nothing to take (figures, table of \
+             rubbers). The published race rings from one pass to the next, so that its law of the dent is steeper than that of elastic bodies \
+             over a pit of this size; the source prints neither exponent, depth, load nor masses.",
             GAP,
-            5.0,
-            &["ball_load", "inner_race", "dip"],
+            0.5,
+            &["dip", "ball_load", "inner_race", "materials", "quasi_static"],
         )),
     );
     for (id, history) in [("ledger_fixed", &fixed), ("ledger_bushing", &soft)] {
@@ -286,8 +294,7 @@ fn dip(context: &mut CaseContext, pitch: f64) -> Result<(), CaseError> {
     context.check(
         Check::new("dip", "least load of a ball in its first pass", "N", coarse.least)
             .converged(fine.least, "the same pass at a hundredth of the error")
-            .relative(5e-3, "ringing of the pass, steps of an accuracy of 1e-4")
-            .golden(GoldenTolerance::MIXED),
+            .relative(5e-3, "ringing of the pass, steps of an accuracy of 1e-4"),
     );
     let mut simulation = Simulation::new(
         bearing(vec![dent(1)], None)?,
@@ -400,4 +407,4 @@ fn figures(context: &mut CaseContext, fixed: &History, soft: &History) -> Result
 }
 
 /// Ours less the published part, per cent.
-const GAP: f64 = 0.0;
+const GAP: f64 = -68.939;
