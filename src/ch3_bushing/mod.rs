@@ -1,3 +1,4 @@
-//! Chapter 3: elastomeric bushings.
+//! Chapter 3: elastomeric bushings, dents in races.
+pub mod dent;
 pub mod hysteresis;
 pub mod similitude;

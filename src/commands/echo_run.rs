@@ -4,6 +4,7 @@ use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
+use bearing_dynamics::ch3_bushing::dent::Dent;
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::assembly::SceneBody;
 use bearing_dynamics::scene::{Assumption, DefaultUsed, Plot, RunPlot, RunSettings, Scene};
@@ -106,6 +107,10 @@ pub fn motion(problem: &DynamicProblem) -> Echo {
     }
     echo.insert("traction".into(), traction(problem)?);
     echo.insert("contact_damping".into(), damping(&problem.damping)?);
+    if !problem.dents.is_empty() {
+        let dents = problem.dents.iter().map(dent).collect::<Result<_, ResultsError>>()?;
+        echo.insert("dents".into(), Value::Array(dents));
+    }
     if !matches!(problem.assembly().bearings[0].ball_meeting(), BallMeeting::KeptApart { .. }) {
         echo.insert("ball_contact".into(), ball_contact(problem)?);
     }
@@ -256,6 +261,19 @@ fn damping(damping: &ContactDamping) -> Echo {
             "slowest": quantity("slowest", *slowest, "m/s")?,
         }),
     })
+}
+
+fn dent(dent: &Dent) -> Echo {
+    let shape = &dent.shape;
+    Ok(json!({
+        "race": if dent.side == 0 { "inner" } else { "outer" },
+        "angle": quantity("angle", dent.angle.to_degrees(), "deg")?,
+        "groove_angle": quantity("groove_angle", dent.groove_angle.to_degrees(), "deg")?,
+        "diameter": quantity("diameter", shape.diameter, "m")?,
+        "depth": quantity("depth", shape.depth, "m")?,
+        "shoulder_height": quantity("shoulder_height", shape.shoulder_height, "m")?,
+        "shoulder_width": quantity("shoulder_width", shape.shoulder_width, "m")?,
+    }))
 }
 
 fn ball_contact(problem: &DynamicProblem) -> Echo {

@@ -69,6 +69,7 @@ pub fn dynamic_problem(scene: &Scene) -> Result<DynamicProblem, DynamicsError> {
             let stiffness = equal_spheres(modulus, geometry.ball_radius);
             BallContactLaw { stiffness, friction, regularisation_speed }
         }),
+        dents: dynamics.dents.clone(),
         gravity: scene.gravity,
         rotating_load: dynamics.rotating_load.clone(),
         unbalance: dynamics.unbalance,

@@ -1,6 +1,6 @@
 //! Rows of the key table: geometry and materials, conditions on the races, outputs.
 
-use crate::scene::keys::{Key, Kind, Need, Range, Table, closed, open, table};
+use crate::scene::keys::{Key, Kind, Need, Range, Table, closed, list_table, open, table};
 use crate::scene::units::Dimension::{
     Acceleration, Angle, Density, Force, Length, Mass, Moment, RotationSpeed, Stress,
 };
@@ -9,6 +9,7 @@ use Need::{Default, Depends, Optional, Required};
 pub const KINDS: &[&str] = &["deep-groove", "angular-contact"];
 pub const HERTZ_MODELS: &[&str] = &["hamrock-brewe", "exact"];
 pub const THROUGH: &[&str] = &["ball", "inner-race", "outer-race"];
+pub const DENTED: &[&str] = &["outer", "inner"];
 pub const GUIDANCE: &[&str] = &["outer-race", "inner-race", "balls"];
 /// The first three are drawn by statics, the others by a run.
 pub const PLOTS: &[&str] =
@@ -60,6 +61,8 @@ const POISSON_HINT: &str = "steel has 0.3; 0.5 would be incompressible";
 const CONFORMITY_HINT: &str = "conformity is groove radius / ball diameter, usually 0.505 to 0.54";
 const OSCULATION_HINT: &str =
     "osculation is ball diameter / (2 groove radius), usually 0.92 to 0.99";
+const DENT_HINT: &str =
+    "dents are micrometres deep and some tenths of a millimetre wide; check the unit";
 const GROOVE_HINT: &str = "the groove's cross-section radius is slightly more than the ball radius";
 
 pub(super) const fn quantity(path: &'static str, kind: Kind, need: Need, doc: &'static str) -> Key {
@@ -139,6 +142,23 @@ pub(super) const KEYS: &[Key] = &[
     quantity("bearing.cage.outer_radius", RADIUS, Optional, "Outer radius."),
     quantity("bearing.cage.race_clearance", Kind::Quantity(Length, closed(0.0, 1000.0, "mm")), Optional,
         "Radial gap to the race that guides the cage."),
+    Key::new("bearing.dent.race", Kind::Choice(DENTED), Required, "The race that has it."),
+    quantity("bearing.dent.angle", Kind::Quantity(Angle, closed(-360.0, 360.0, "deg")), Required,
+        "Where it is around the race, from the race's own Y towards its Z; it turns with the race.").example_of("270 deg"),
+    quantity("bearing.dent.groove_angle", Kind::Quantity(Angle, closed(-80.0, 80.0, "deg")),
+        Default { value: "0 deg", reason: "at the bottom of the groove" },
+        "Where it is around the groove, from its bottom towards the race's X."),
+    quantity("bearing.dent.diameter", Kind::Quantity(Length, open(0.0, 100.0, "mm")), Required,
+        "Diameter of the pit, at most half the ball's radius.").hint(DENT_HINT).example_of("500 um"),
+    quantity("bearing.dent.depth", Kind::Quantity(Length, closed(0.0, 10.0, "mm")),
+        Depends("a twentieth of the diameter"),
+        "Depth of the pit below the surface, half a wave of a cosine; 0 leaves none.").hint(DENT_HINT).example_of("25 um"),
+    quantity("bearing.dent.shoulder_height", Kind::Quantity(Length, closed(0.0, 1.0, "mm")),
+        Default { value: "0 um", reason: "the source's dent has no shoulder" },
+        "Height of the shoulder around the pit, a wave of a cosine.").hint(DENT_HINT).example_of("1 um"),
+    quantity("bearing.dent.shoulder_width", Kind::Quantity(Length, open(0.0, 100.0, "mm")),
+        Depends("a quarter of the diameter"),
+        "Width of the shoulder beyond the pit.").hint(DENT_HINT).example_of("125 um"),
     quantity("bearing.cage.mass", Kind::Quantity(Mass, open(0.0, 10_000.0, "kg")), Optional, "Mass of the cage."),
     Key::new("bearing.cage.guidance", Kind::Choice(GUIDANCE), Optional, "What guides the cage."),
 
@@ -189,6 +209,8 @@ pub(super) const TABLES: &[Table] = &[
     table("bearing.outer_race.material", "Material of the outer race; every entry may be left out.", MATERIAL_EXAMPLE),
     table("bearing.ball", "Balls.", "ball = { radius = \"5.953 mm\" }"),
     table("bearing.ball.material", "Material of the balls; every entry may be left out.", MATERIAL_EXAMPLE),
+    list_table("bearing.dent", "A dent in a race (3.20), in a run. As many as wanted; equilibria know of none.",
+        "[[bearing.dent]]\nrace = \"outer\"\nangle = \"270 deg\"\ndiameter = \"500 um\""),
     table("bearing.cage", "Cage; may be left out, and every entry of it.", "[bearing.cage]\npocket_radius = \"6.2 mm\""),
     table("inner_race", "What acts on the inner race, or where it is held. Each coordinate is free and unloaded unless given.",
         "[inner_race]\nx = { load = \"250 N\" }"),

@@ -61,6 +61,7 @@ pub(crate) fn dynamics(
         heathcote: heathcote(reader),
         damping: resolve_contact::damping(reader)?,
         ball_friction: resolve_contact::ball_friction(reader, balls_meet)?,
+        dents: resolve_contact::dents(reader, parts.geometry)?,
         run: run(reader)?,
         plots: Vec::new(),
         defaults_used: Vec::new(),

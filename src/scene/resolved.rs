@@ -4,6 +4,7 @@ use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough, Material};
 use crate::ch2_housing::bearing::hertz::HertzModel;
 use crate::ch2_housing::bearing::traction::TractionLaw;
+use crate::ch3_bushing::dent::Dent;
 pub use crate::scene::document::Assumption;
 use crate::scene::sweep::SweepAxis;
 use crate::solver::channels::ChannelGroup;
@@ -135,6 +136,7 @@ pub struct Dynamics {
     pub damping: ContactDamping,
     /// Friction coefficient and regularisation speed (m/s) of the contact between balls.
     pub ball_friction: Option<[f64; 2]>,
+    pub dents: Vec<Dent>,
     /// Beside the groove of the inner and of the outer race.
     pub shoulders: [Shoulder; 2],
     /// `None` where the scene gives no end.

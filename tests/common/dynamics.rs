@@ -61,6 +61,7 @@ pub fn bearing(geometry: BearingGeometry, loads: [f64; 5], speed: f64) -> Dynami
         slices: 15,
         heathcote: false,
         damping: ContactDamping::None,
+        dents: Vec::new(),
         ball_contact: Some(ball_law(&geometry)),
         gravity: [0.0; 3],
         rotating_load: None,

@@ -40,6 +40,7 @@ pub fn frictionless() -> DynamicProblem {
         slices: 15,
         heathcote: false,
         damping: ContactDamping::None,
+        dents: Vec::new(),
         ball_contact: Some(BallContactLaw {
             stiffness: equal_spheres(210e9 / 0.91, geometry.ball_radius),
             friction: 0.1,

@@ -38,6 +38,8 @@ mod calculix_comparison;
 mod cantilever_timoshenko;
 #[path = "../cylinder_on_block_table_2_1/case.rs"]
 mod cylinder_on_block_table_2_1;
+#[path = "../dent_3_4_4/case.rs"]
+mod dent_3_4_4;
 #[path = "../free_ring_modes/case.rs"]
 mod free_ring_modes;
 #[path = "../hertz_elliptic/case.rs"]
@@ -100,6 +102,7 @@ pub const CASES: &[Case] = &[
     shaft_on_two_bearings::CASE,
     misalignment_moment::CASE,
     misalignment_on_bushing_3_4_5::CASE,
+    dent_3_4_4::CASE,
     settling_and_turning::CASE,
     varying_compliance_statics::CASE,
     varying_compliance_dynamics::CASE,

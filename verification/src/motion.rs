@@ -64,6 +64,7 @@ pub fn moving(
         slices: 15,
         heathcote: false,
         damping: ContactDamping::None,
+        dents: Vec::new(),
         ball_contact: Some(BallContactLaw {
             stiffness: equal_spheres(
                 Material::STEEL.youngs_modulus / (1.0 - Material::STEEL.poisson_ratio.powi(2)),

@@ -127,6 +127,21 @@ fn bearing_lines(scene: &Scene, line: &mut Line) {
     }
     line("pitch radius", format!("{:.4} mm", 1e3 * geometry.pitch_radius));
     line("contact angle", format!("{:.4} deg (nominal)", geometry.contact_angle.to_degrees()));
+    for dent in &scene.dynamics.dents {
+        let shape = &dent.shape;
+        line(
+            "dent",
+            format!(
+                "{} race at {:.4} deg, {:.4} deg up the groove: {:.4} um wide, {:.4} um deep, shoulder {:.4} um high",
+                if dent.side == 0 { "inner" } else { "outer" },
+                dent.angle.to_degrees(),
+                dent.groove_angle.to_degrees(),
+                1e6 * shape.diameter,
+                1e6 * shape.depth,
+                1e6 * shape.shoulder_height
+            ),
+        );
+    }
 }
 
 /// What a run computes, and how.

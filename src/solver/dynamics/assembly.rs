@@ -17,6 +17,7 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::bearing::traction::TractionLaw;
+use crate::ch3_bushing::dent::Dent;
 use crate::solver::mount::Mount;
 use crate::solver::profile::Profile;
 use std::f64::consts::PI;
@@ -128,6 +129,8 @@ pub struct Bearing {
     pub damping: ContactDamping,
     /// Between neighbouring balls; `None` lets them pass into each other, which ends the run.
     pub ball_contact: Option<BallContactLaw>,
+    /// In its races.
+    pub dents: Vec<Dent>,
 }
 
 /// The body that keeps balls apart, and its contacts.
@@ -372,6 +375,7 @@ impl From<&DynamicProblem> for Assembly {
             heathcote: problem.heathcote,
             damping: problem.damping,
             ball_contact: problem.ball_contact,
+            dents: problem.dents.clone(),
         };
         Assembly {
             bodies,

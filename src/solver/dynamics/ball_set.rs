@@ -3,6 +3,7 @@
 
 use super::assembly::Bearing;
 use super::contacts::{self, ContactLaws, ContactTable, Driver, Want, Work};
+use super::dents;
 use super::race::{RaceLoads, RaceNow, mounted};
 use super::state::{
     LEDGER, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
@@ -15,6 +16,7 @@ use crate::ch2_housing::bearing::geometry::Raceway;
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use crate::ch2_housing::bearing::traction::{Motion, Slices};
 use crate::kinematics::vec3::{Vec3, add, cross, scale, sub};
+use crate::solver::dent_table::DentError;
 use crate::solver::mount::Mount;
 use crate::solver::plan::Stage;
 use crate::solver::plan::steps::BearingSteps;
@@ -42,6 +44,8 @@ pub struct BallSet {
     pub on_races: [RaceLoads; 2],
     /// On the cage, about its own centre.
     pub on_cage: RaceLoads,
+    /// Why its dents have no law; nothing is to move then.
+    pub no_dents: Option<DentError>,
     ball_force: Vec<Vec3>,
     ball_moment: Vec<Vec3>,
 }
@@ -71,6 +75,10 @@ impl BallSet {
         let curvature = |groove: f64| {
             if steps.curved { 0.25 * (groove + radius) / (groove * radius) } else { 0.0 }
         };
+        let (dents, no_dents) = match dents::dents(bearing) {
+            Ok(dents) => (dents, None),
+            Err(error) => (Vec::new(), Some(error)),
+        };
         let slices = if steps.traction { bearing.slices } else { 1 };
         let laws = ContactLaws {
             races: [
@@ -84,6 +92,7 @@ impl BallSet {
                 curvature(geometry.inner.groove_radius),
                 curvature(geometry.outer.groove_radius),
             ],
+            dents,
         };
         let alpha = match bearing.damping {
             ContactDamping::HuntCrossley { alpha } => 1.5 * alpha,
@@ -101,6 +110,7 @@ impl BallSet {
             cage: bearing.cage.as_ref().map(|cage| bodies[cage.body]),
             on_races: [RaceLoads::default(); 2],
             on_cage: RaceLoads::default(),
+            no_dents,
             ball_force: vec![[0.0; 3]; layout.balls],
             ball_moment: vec![[0.0; 3]; layout.balls],
             laws,
@@ -203,6 +213,14 @@ impl BallSet {
             loads.force = sub(loads.force, force);
             loads.moment = sub(loads.moment, add(cross(race_arm, force), moment));
         }
+        // What a dent pushes along the surface goes through the ball's centre.
+        for dented in &self.table.dented {
+            let (side, ball) = (dented.pair / self.layout.padded, dented.pair % self.layout.padded);
+            self.ball_force[ball] = add(self.ball_force[ball], dented.aside);
+            let centre = self.layout.ball_vector(state, POSITION, ball);
+            let race = self.races[side].motion.position;
+            self.on_races[side].add_at(race, centre, scale(dented.aside, -1.0));
+        }
     }
 
     /// Power of contact damping, W, ≤ 0. A contact that opens faster than its damping allows
@@ -213,7 +231,10 @@ impl BallSet {
             for ball in 0..self.layout.balls {
                 let pair = side * self.layout.padded + ball;
                 let contact = &self.table.contact[pair];
-                let elastic = normal_load(law.stiffness, contact.overlap);
+                let elastic = match self.table.dented(pair) {
+                    Some(dented) => dented.elastic,
+                    None => normal_load(law.stiffness, contact.overlap),
+                };
                 power -= (self.table.load[pair] - elastic) * contact.closing_speed;
             }
         }

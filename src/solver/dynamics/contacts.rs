@@ -5,6 +5,7 @@
 //! over blocks of [`LANES`] contacts. The order of operations within a contact is the same, so the
 //! bits are too.
 
+use super::dents::{self, DentOnRace, DentedPair};
 use super::race::RaceNow;
 use super::state::{LANES, Layout, POSITION, SPIN, VELOCITY};
 use crate::ch2_housing::bearing::contact::{
@@ -30,6 +31,8 @@ pub struct ContactLaws {
     pub slices: Slices,
     /// 1/(2R) of the contact surface across each groove, 1/m; zero leaves the Heathcote term out.
     pub curvature: [f64; 2],
+    /// In either race.
+    pub dents: Vec<DentOnRace>,
 }
 
 /// Result of one evaluation, pair by pair: index = race · padded + ball.
@@ -45,6 +48,8 @@ pub struct ContactTable {
     pub slope: Vec<TractionSlope>,
     /// Loaded pairs, in order.
     pub active: Vec<usize>,
+    /// Pairs that a dent has changed, in order; their overlap is w of [`dents`].
+    pub dented: Vec<DentedPair>,
 }
 
 impl ContactTable {
@@ -57,7 +62,13 @@ impl ContactTable {
             sliding: vec![Sliding::default(); pairs],
             slope: vec![TractionSlope::default(); pairs],
             active: Vec::with_capacity(pairs),
+            dented: Vec::with_capacity(pairs),
         }
+    }
+
+    /// What a dent has made of a pair.
+    pub fn dented(&self, pair: usize) -> Option<&DentedPair> {
+        self.dented.iter().find(|dented| dented.pair == pair)
     }
 }
 
@@ -137,6 +148,9 @@ pub fn evaluate(
         (Driver::Plain, false) => detect_plain::<false>(&set, state, table, ran),
         (Driver::Lanes, true) => detect_lanes::<true>(&set, state, table, ran),
         (Driver::Lanes, false) => detect_lanes::<false>(&set, state, table, ran),
+    }
+    if set.steps.dents {
+        dents::apply(&set, state, want, table, ran);
     }
     table.active.clear();
     for race in 0..2 {
@@ -393,7 +407,7 @@ fn lanes_of<const SLOPES: bool>(
 ) {
     let motions = races.map(race_motion);
     let axes = races.map(|now| now.motion.axis);
-    let ContactTable { contact, load, traction, sliding, slope, active } = table;
+    let ContactTable { contact, load, traction, sliding, slope, active, .. } = table;
     for block in active.chunks(LANES) {
         let mut slip = [[0.0; LANES]; 2];
         let mut spin = [[0.0; LANES]; 3];

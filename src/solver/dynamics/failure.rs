@@ -1,6 +1,7 @@
 //! What keeps a simulation from starting, or ends it.
 
 use crate::solver::clock::told;
+use crate::solver::dent_table::DentError;
 use crate::solver::statics::StaticsError;
 use thiserror::Error;
 
@@ -8,6 +9,8 @@ use thiserror::Error;
 pub enum SimulationError {
     #[error(transparent)]
     Start(#[from] StaticsError),
+    #[error(transparent)]
+    Dent(#[from] DentError),
     #[error("the step is {0} s; it must be positive and finite")]
     Step(f64),
     #[error("the accuracy is {0}; it must be positive and finite")]

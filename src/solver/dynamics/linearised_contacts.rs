@@ -41,10 +41,16 @@ pub(super) fn race_contacts(
         let contact = &table.contact[pair];
         let motion = &race.motion;
         let normal = contact.normal;
-        let elastic = normal_load(law.stiffness, contact.overlap);
+        let (elastic, stiffness) = match table.dented(pair) {
+            Some(dented) => (dented.elastic, dented.stiffness),
+            None => (
+                normal_load(law.stiffness, contact.overlap),
+                normal_stiffness(law.stiffness, contact.overlap),
+            ),
+        };
         // K δ^{3/2} (1 + c δ̇).
         let share = table.load[pair] / elastic;
-        to.stiffness[lane] = share * normal_stiffness(law.stiffness, contact.overlap);
+        to.stiffness[lane] = share * stiffness;
         to.damping[lane] = elastic * set.damping[pair];
         let between = sub(layout.ball_vector(state, POSITION, ball), motion.position);
         put(&mut to.on_ball[0], lane, joined(normal, [0.0; 3]));

@@ -16,6 +16,7 @@ pub mod clocked;
 pub mod connection;
 pub mod contacts;
 pub mod control;
+pub mod dents;
 pub mod dormand_prince;
 pub mod elimination;
 pub mod energy;

@@ -9,6 +9,7 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::bearing::traction::TractionLaw;
+use crate::ch3_bushing::dent::Dent;
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
 use crate::solver::profile::Profile;
@@ -101,6 +102,8 @@ pub struct DynamicProblem {
     pub damping: ContactDamping,
     /// Between neighbouring balls; `None` lets them pass into each other, which ends the run.
     pub ball_contact: Option<BallContactLaw>,
+    /// In its races.
+    pub dents: Vec<Dent>,
     /// m/s².
     pub gravity: [f64; 3],
     pub rotating_load: Option<RotatingLoad>,

@@ -247,6 +247,9 @@ impl Simulation {
         time: f64,
     ) -> Result<Simulation, SimulationError> {
         let mut system = System::new(assembly, options.driver);
+        if let Some(error) = system.sets.iter().find_map(|set| set.no_dents.clone()) {
+            return Err(error.into());
+        }
         let length = state.len();
         let integrator = match options.integrator {
             Integrator::RungeKutta => Stepper::RungeKutta(RungeKutta::new(length)),

@@ -5,6 +5,7 @@ use crate::ch2_housing::bearing::cage::{Guidance, Pocket};
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::solver::channels::ChannelGroup;
+use crate::solver::dent_table::Fineness;
 use crate::solver::dynamics::assembly::{Assembly, BallMeeting, Bearing, Body, GROUND, Mobility};
 use crate::solver::dynamics::ball_set::neighbours;
 use crate::solver::dynamics::model::{Drive, RaceBody, Rotation};
@@ -91,6 +92,7 @@ fn of_bearing(bearing: &Bearing, subject: Subject, left_out: Option<&str>) -> Ve
         heathcote(bearing, subject),
         contact_damping(bearing, subject),
     ];
+    items.extend(dents(bearing, subject));
     items.extend(cage(bearing, subject, left_out));
     items.push(ball_contact(bearing, subject));
     items.into_iter().map(|item| item.named(bearing.name.clone())).collect()
@@ -255,6 +257,25 @@ fn contact_damping(bearing: &Bearing, subject: Subject) -> Item {
     };
     let pairs = 2 * bearing.geometry.ball_count as u64;
     Item::does(Stage::ContactDamping, subject, why).costing(pairs)
+}
+
+/// Of a bearing that has some.
+fn dents(bearing: &Bearing, subject: Subject) -> Option<Item> {
+    if bearing.dents.is_empty() {
+        return None;
+    }
+    let count = bearing.dents.iter().filter(|dent| !dent.shape.vanishes()).count();
+    if count == 0 {
+        let why = "of no depth: Hertz's law is left as it is";
+        return Some(Item::skips(Stage::Dents, subject, why));
+    }
+    let balls = bearing.geometry.ball_count;
+    let why = format!(
+        "{count}, {balls} balls each; a table for each shape first, of at most {} solves of a half-space (some \
+         seconds); the equilibrium at the start knows of none",
+        Fineness::USUAL.solves()
+    );
+    Some(Item::does(Stage::Dents, subject, why).costing((count * balls) as u64))
 }
 
 fn cage(bearing: &Bearing, subject: Subject, left_out: Option<&str>) -> Vec<Item> {

@@ -1,0 +1,220 @@
+//! A dent in a raceway (3.4.4): the contact law F = K_H δ^n of (3.20), whose exponent follows the load, the shape of the
+//! dent and where the ball is over it.
+//!
+//! The source prints no formula of the exponent. Here it comes from what it stands for: a ball pressed on a dented
+//! race, without friction. Such a contact stores an energy U that depends on the approach δ and on where
+//! the contact lies from the dent's centre, s along the rolling direction and y across the groove, and all its forces are slopes of U.
+//! With U = (2/5) K_H w^{5/2} the law is one length, w = δ − Δ(δ, s, y): the approach at which the undented contact
+//! holds the same energy. Then
+//!
+//! F = K_H w^{3/2} ∂w/∂δ,  and  n = 3/2 + ln(F/(K_H δ^{3/2}))/ln(δ/1 m),
+//!
+//! so that (3.20) holds in SI numbers, with a reference length of 1 m. Far from the dent Δ = 0, n = 3/2. A table of Δ is made once from a half-space
+//! (`solver::dent_table`), which needs the dent and both relative radii of the contact and nothing else.
+
+use std::f64::consts::{PI, TAU};
+
+/// A dent, m: a pit between r = 0 and half its diameter, and the shoulder that was pushed up around it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DentShape {
+    pub diameter: f64,
+    pub depth: f64,
+    pub shoulder_height: f64,
+    pub shoulder_width: f64,
+}
+
+impl DentShape {
+    /// Depth below the undented surface at a distance from the centre, m: half a wave of a cosine in the pit, a
+    /// whole one on the shoulder, both flat where they meet; negative on the shoulder.
+    pub fn depth_at(&self, r: f64) -> f64 {
+        let radius = 0.5 * self.diameter;
+        if r < radius {
+            return 0.5 * self.depth * (1.0 + libm::cos(PI * r / radius));
+        }
+        let beyond = r - radius;
+        if beyond < self.shoulder_width {
+            let wave = 1.0 - libm::cos(TAU * beyond / self.shoulder_width);
+            return -0.5 * self.shoulder_height * wave;
+        }
+        0.0
+    }
+
+    /// Where the surface is as it was, m from the centre.
+    pub fn reach(&self) -> f64 {
+        let shoulder = if self.shoulder_height > 0.0 { self.shoulder_width } else { 0.0 };
+        0.5 * self.diameter + shoulder
+    }
+
+    /// Whether there is nothing of it.
+    pub fn vanishes(&self) -> bool {
+        self.depth == 0.0 && self.shoulder_height == 0.0
+    }
+}
+
+/// A dent on one race of a bearing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dent {
+    pub shape: DentShape,
+    /// Inner race 0, outer race 1.
+    pub side: usize,
+    /// Around the race from its own Y towards its own Z, rad; it turns with the race.
+    pub angle: f64,
+    /// Around the groove from its bottom towards the race's X, rad.
+    pub groove_angle: f64,
+}
+
+/// How Δ changes, all in m or without unit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lost {
+    /// Δ, m: the approach that the dent costs.
+    pub value: f64,
+    /// Slopes by the approach, along the rolling direction and across the groove.
+    pub by_approach: f64,
+    pub along: f64,
+    pub across: f64,
+}
+
+/// Δ over q = √(δ + shoulder) and a distance σ of 0 to 1, of contacts along the rolling direction and across the groove:
+/// cubic splines on an even grid.
+///
+/// σ² = (s/l_s)² + (y/l_y)² with l = reach + √(2R) q: at σ = 1 the dent leaves what the ball overlaps at that approach. Between the
+/// two directions Δ goes with the squared cosine of the angle in that ellipse.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DentTable {
+    /// m.
+    pub shoulder: f64,
+    pub reach: f64,
+    /// √(2R) of the relative radii, m^0.5: rolling direction, across the groove.
+    pub spread: [f64; 2],
+    /// Largest q, m^0.5, beyond which Δ stays.
+    pub deepest: f64,
+    /// Intervals in q and σ.
+    pub intervals: [usize; 2],
+    /// Coefficients of the splines, rows of equal q.
+    pub coefficients: [Vec<f64>; 2],
+}
+
+/// Values of the four cubic B-splines that are not zero, and their slopes, `u` of an interval in.
+#[inline]
+fn basis(u: f64) -> ([f64; 4], [f64; 4]) {
+    let v = 1.0 - u;
+    let value = [
+        v * v * v / 6.0,
+        (4.0 - 6.0 * u * u + 3.0 * u * u * u) / 6.0,
+        (4.0 - 6.0 * v * v + 3.0 * v * v * v) / 6.0,
+        u * u * u / 6.0,
+    ];
+    let slope = [-0.5 * v * v, u * (1.5 * u - 2.0), v * (2.0 - 1.5 * v), 0.5 * u * u];
+    (value, slope)
+}
+
+/// The interval that holds `at` (in intervals) and how far in.
+#[inline]
+fn interval(at: f64, count: usize) -> (usize, f64) {
+    let index = (at as usize).min(count - 1);
+    (index, at - index as f64)
+}
+
+impl DentTable {
+    /// Δ and its slopes at an approach δ and a place s, y from the dent's centre (m); `None` where the dent is out of
+    /// reach.
+    #[inline]
+    pub fn lost(&self, approach: f64, [s, y]: [f64; 2]) -> Option<Lost> {
+        let square = approach + self.shoulder;
+        // Written so that NaN goes on and is found.
+        if square <= 0.0 {
+            return None;
+        }
+        let q = square.sqrt();
+        let lengths = self.spread.map(|spread| self.reach + spread * q);
+        let (x, z) = (s / lengths[0], y / lengths[1]);
+        let distance = x * x + z * z;
+        if distance >= 1.0 {
+            return None;
+        }
+        let sigma = distance.sqrt();
+        let [rows, columns] = self.intervals;
+        let stays = q >= self.deepest;
+        let (row, u) = interval(q.min(self.deepest) / self.deepest * rows as f64, rows);
+        let (column, v) = interval(sigma * columns as f64, columns);
+        let (by_row, row_slope) = basis(u);
+        let (by_column, column_slope) = basis(v);
+        let row_scale = if stays { 0.0 } else { rows as f64 / self.deepest };
+        // Value, slope by q, slope by σ of both directions.
+        let of = |coefficients: &[f64]| {
+            let mut sum = [0.0; 3];
+            for k in 0..4 {
+                let at = (row + k) * (columns + 3) + column;
+                let (mut value, mut slope) = (0.0, 0.0);
+                for l in 0..4 {
+                    value += by_column[l] * coefficients[at + l];
+                    slope += column_slope[l] * coefficients[at + l];
+                }
+                sum[0] += by_row[k] * value;
+                sum[1] += row_slope[k] * value;
+                sum[2] += by_row[k] * slope;
+            }
+            [sum[0], sum[1] * row_scale, sum[2] * columns as f64]
+        };
+        let [along, across] = [of(&self.coefficients[0]), of(&self.coefficients[1])];
+        // Parts of the two directions; at the centre both are the same.
+        let (part, per_square) =
+            if distance > 0.0 { (z * z / distance, 1.0 / distance) } else { (0.0, 0.0) };
+        let differ = across[0] - along[0];
+        let mixed = |i: usize| along[i] + part * (across[i] - along[i]);
+        // By x and by z: through σ and through the part.
+        let per_sigma = if sigma > 0.0 { mixed(2) / sigma } else { 0.0 };
+        let turn = 2.0 * differ * part * per_square;
+        let by_x = x * (per_sigma - turn);
+        let by_z = z * (per_sigma - turn) + 2.0 * differ * z * per_square;
+        let by_q = mixed(1)
+            - by_x * x * self.spread[0] / lengths[0]
+            - by_z * z * self.spread[1] / lengths[1];
+        Some(Lost {
+            value: mixed(0),
+            by_approach: 0.5 * by_q / q,
+            along: by_x / lengths[0],
+            across: by_z / lengths[1],
+        })
+    }
+
+    /// Exponent n of (3.20) at an approach δ > 0 and a place (m), with lengths in metres; infinite where the ball hangs free.
+    #[doc(alias = "3.20")]
+    pub fn exponent(&self, approach: f64, place: [f64; 2]) -> f64 {
+        let share = self.lost(approach, place).map_or(1.0, |lost| {
+            let w = approach - lost.value;
+            let held = if w > 0.0 { w / approach } else { 0.0 };
+            held * held.sqrt() * (1.0 - lost.by_approach)
+        });
+        1.5 + libm::log(share) / libm::log(approach)
+    }
+}
+
+/// Load F = K_H δ^n of (3.20) at an approach δ with the exponent n, N.
+#[doc(alias = "3.20")]
+pub fn dented_load(stiffness: f64, approach: f64, exponent: f64) -> f64 {
+    stiffness * libm::pow(approach, exponent)
+}
+
+/// Coefficients of a cubic spline through values at even distances, two more than there are values. It has no slope at
+/// its end; at its beginning no slope either, or else no curvature.
+pub fn spline(values: &[f64], flat_beginning: bool) -> Vec<f64> {
+    let count = values.len();
+    // c₋₁ + 4c₀ + c₁ = 6f₀ and so on, c₋₁ = c₁ or c₋₁ = 2c₀ − c₁; cₙ₊₁ = cₙ₋₁.
+    let (mut upper, mut c) = (vec![0.0; count], vec![0.0; count]);
+    let first = if flat_beginning { [4.0, 2.0] } else { [6.0, 0.0] };
+    upper[0] = first[1] / first[0];
+    c[0] = 6.0 * values[0] / first[0];
+    for i in 1..count {
+        let lower = if i + 1 == count { 2.0 } else { 1.0 };
+        let pivot = 4.0 - lower * upper[i - 1];
+        upper[i] = 1.0 / pivot;
+        c[i] = (6.0 * values[i] - lower * c[i - 1]) / pivot;
+    }
+    for i in (0..count - 1).rev() {
+        c[i] -= upper[i] * c[i + 1];
+    }
+    let before = if flat_beginning { c[1] } else { 2.0 * c[0] - c[1] };
+    let after = c[count - 2];
+    [before].into_iter().chain(c).chain([after]).collect()
+}

@@ -1,0 +1,284 @@
+//! Laws of dented races (3.20): the half-space against Hertz and against what a shallow pit costs, the table against its own
+//! slopes, a bearing against its books.
+
+use super::dynamics_integrators::{motion, started};
+use crate::dynamics::{self, RPM, free_race};
+use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, Material};
+use bearing_dynamics::ch2_housing::bearing::hertz::{
+    HertzContact, HertzModel, RaceSide, contact, contact_ellipse,
+};
+use bearing_dynamics::ch3_bushing::dent::{Dent, DentShape, DentTable, dented_load};
+use bearing_dynamics::kinematics::vec3::{add, cross, norm, scale};
+use bearing_dynamics::solver::dent_table::{Bed, DentedContact, Fineness, dent_table};
+use bearing_dynamics::solver::dynamics::contacts::Driver;
+use bearing_dynamics::solver::dynamics::model::DynamicProblem;
+use bearing_dynamics::solver::dynamics::run::{Integrator, Stepping};
+use bearing_dynamics::solver::dynamics::start;
+use bearing_dynamics::solver::dynamics::state::{POSITION, VELOCITY};
+use bearing_dynamics::solver::dynamics::system::System;
+use bearing_dynamics::solver::half_space::love;
+use std::sync::OnceLock;
+
+fn table_3_5() -> BearingGeometry {
+    BearingGeometry::deep_groove(8, 20.047e-3, 6.013e-3, 31.953e-3, 6.310e-3, 5.9555e-3)
+}
+
+fn outer() -> HertzContact {
+    let steel = Material::STEEL;
+    contact(HertzModel::Exact, RaceSide::Outer, &table_3_5(), &steel, &steel).unwrap()
+}
+
+fn pit(diameter: f64, depth: f64) -> DentShape {
+    DentShape { diameter, depth, shoulder_height: 0.0, shoulder_width: 0.0 }
+}
+
+const WIDE: f64 = 500e-6;
+
+fn table_of(shape: DentShape) -> DentTable {
+    dent_table(&DentedContact::new(shape, &outer()), Fineness { cells: 24, intervals: [16, 12] })
+        .unwrap()
+}
+
+fn usual() -> &'static DentTable {
+    static TABLE: OnceLock<DentTable> = OnceLock::new();
+    TABLE.get_or_init(|| table_of(pit(WIDE, 25e-6)))
+}
+
+/// A rectangle seen from far away is a point load, u = P/(π E* r); over its middle the closed form is Love's.
+#[test]
+fn a_loaded_rectangle_sinks_as_love_has_it() {
+    let (a, b) = (1e-5, 2e-5);
+    let (far, load) = (libm::hypot(3e-3, 4e-3), 4.0 * a * b);
+    let found = love(3e-3, 4e-3, a, b);
+    // Of the order of (b/r)².
+    assert!((found * std::f64::consts::PI * far / load - 1.0).abs() <= 2e-5, "{found}");
+    let middle = 4.0 * (a * libm::asinh(b / a) + b * libm::asinh(a / b)) / std::f64::consts::PI;
+    assert!((love(0.0, 0.0, a, b) / middle - 1.0).abs() <= 1e-14);
+    // Four quarters are the whole.
+    let quarters = [[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]]
+        .map(|[x, y]| love(3e-5 - x * a, 1e-5 - y * b, 0.5 * a, 0.5 * b));
+    let whole = love(3e-5, 1e-5, a, b);
+    assert!((quarters.iter().sum::<f64>() / whole - 1.0).abs() <= 1e-13);
+}
+
+/// Load and energy of the elliptic contact by complete elliptic integrals.
+#[test]
+fn the_half_space_comes_to_hertz() {
+    let (hertz, delta) = (outer(), 3e-6);
+    let modulus = 0.5 * hertz.effective_modulus;
+    let misses = [16, 32, 64].map(|cells| {
+        let bed = Bed::new(DentedContact::new(pit(WIDE, 0.0), &hertz), cells, 1).unwrap();
+        let found = bed.solve(0.0, delta, None, None).unwrap();
+        let load = hertz.stiffness * delta * delta.sqrt();
+        [found.load * modulus / load - 1.0, found.energy * modulus / (0.4 * load * delta) - 1.0]
+    });
+    println!("{misses:?}");
+    // The edge of the contact runs through cells: a load scatters, an energy does less.
+    assert!(misses[2].iter().all(|miss| miss.abs() <= 3e-4), "{misses:?}");
+    let order = libm::log2(misses[0][1] / misses[2][1]) / 2.0;
+    assert!(order >= 1.5, "{order}");
+}
+
+/// To first order in its depth a pit costs the undented pressure times its depth.
+#[test]
+fn a_shallow_pit_costs_what_the_pressure_finds_in_it() {
+    let (hertz, delta) = (outer(), 3e-6);
+    let load = hertz.stiffness * delta * delta.sqrt();
+    let ellipse = contact_ellipse(&hertz, load);
+    for (direction, along) in [(0, 0.0), (0, 80e-6), (1, 300e-6)] {
+        let shape = pit(WIDE, 3e-9);
+        let bed = Bed::new(DentedContact::new(shape, &hertz), 48, direction).unwrap();
+        let energy = |dent| bed.solve(0.0, delta, dent, None).unwrap().energy;
+        let lost = (energy(None) - energy(Some(along))) * 0.5 * hertz.effective_modulus;
+        // ∫ p d dA over the ellipse, in rings.
+        let (rings, spokes) = (200, 400);
+        let mut expected = 0.0;
+        for i in 0..rings {
+            let r = (i as f64 + 0.5) / rings as f64;
+            for j in 0..spokes {
+                let (sin, cos) =
+                    libm::sincos(std::f64::consts::TAU * (j as f64 + 0.5) / spokes as f64);
+                let (x, y) = (ellipse.semi_minor * r * cos, ellipse.semi_major * r * sin);
+                let from = if direction == 0 { [x - along, y] } else { [x, y - along] };
+                let depth = shape.depth_at(libm::hypot(from[0], from[1]));
+                expected += ellipse.peak_pressure * (1.0 - r * r).sqrt() * depth * r;
+            }
+        }
+        expected *= ellipse.semi_minor * ellipse.semi_major / rings as f64 * std::f64::consts::TAU
+            / spokes as f64;
+        println!("{direction} {along}: {lost:e} J, closed form {expected:e} J");
+        // A thousandth of the approach, and cells of a 24th of the contact.
+        assert!((lost / expected - 1.0).abs() <= 2e-3, "{direction} {along}");
+    }
+}
+
+#[test]
+fn slopes_of_the_table_are_its_differences() {
+    let table = usual();
+    let mut noise = dynamics::Noise(5);
+    for _ in 0..2000 {
+        let delta = 20e-6 * (1.0 + noise.next());
+        let place = [4e-4 * noise.next(), 9e-4 * noise.next()];
+        let value =
+            |delta: f64, s: f64, y: f64| table.lost(delta, [s, y]).map_or(0.0, |lost| lost.value);
+        let [s, y] = place;
+        let (h, d) = (1e-9, 1e-5 * delta);
+        let found = table.lost(delta, place).unwrap_or_default();
+        let differences = [
+            (found.by_approach, (value(delta + d, s, y) - value(delta - d, s, y)) / (2.0 * d)),
+            (found.along, (value(delta, s + h, y) - value(delta, s - h, y)) / (2.0 * h)),
+            (found.across, (value(delta, s, y + h) - value(delta, s, y - h)) / (2.0 * h)),
+        ];
+        for (slope, difference) in differences {
+            // Rounding of 1e-6 m in differences of 1e-9 m, and the splines' third derivative.
+            assert!((slope - difference).abs() <= 1e-5 * (1.0 + slope.abs()), "{delta} {place:?}");
+        }
+    }
+}
+
+/// What the table is made from, between its nodes.
+#[test]
+fn the_table_says_what_the_half_space_does() {
+    let (hertz, shape) = (outer(), pit(WIDE, 25e-6));
+    let table = dent_table(&DentedContact::new(shape, &hertz), Fineness::USUAL).unwrap();
+    for direction in 0..2 {
+        let bed = Bed::new(DentedContact::new(shape, &hertz), 64, direction).unwrap();
+        for delta in [1.5e-6, 4e-6, 11e-6] {
+            for along in [0.0, 90e-6, 170e-6, 280e-6] {
+                let flat = bed.solve(0.0, delta, None, None).unwrap().load;
+                let found = bed.solve(0.0, delta, Some(along), None).unwrap().load / flat;
+                let place = if direction == 0 { [along, 0.0] } else { [0.0, along] };
+                let n = table.exponent(delta, place);
+                let share = dented_load(1.0, delta, n) / (delta * delta.sqrt());
+                println!("{delta} {place:?}: {share:.4} of {found:.4}, n {n:.4}");
+                assert!((share - found).abs() <= 0.02, "{delta} {place:?}: {share} {found}");
+            }
+        }
+    }
+}
+
+/// 3/2 far away and under a load that fills the dent; larger over a wider one; smaller on a shoulder.
+#[test]
+fn the_exponent_follows_load_shape_and_distance() {
+    let (table, wide) = (usual(), table_of(pit(2.0 * WIDE, 25e-6)));
+    let delta = 3e-6;
+    assert_eq!(table.exponent(delta, [1e-3, 0.0]), 1.5);
+    assert_eq!(table.exponent(delta, [0.0, 3e-3]), 1.5);
+    let n = |delta: f64| table.exponent(delta, [0.0, 0.0]);
+    assert!(wide.exponent(delta, [0.0, 0.0]) > n(delta) + 0.02);
+    let course = [1e-6, 3e-6, 10e-6, 30e-6, 50e-6].map(n);
+    assert!(course.windows(2).all(|pair| pair[1] < pair[0]), "{course:?}");
+    assert!(course[0] > 1.54 && course[4] < 1.501, "{course:?}");
+    let away = [0.0, 1e-4, 2e-4, 3e-4, 4e-4].map(|s| table.exponent(delta, [s, 0.0]));
+    assert!(away.windows(2).all(|pair| pair[1] < pair[0]), "{away:?}");
+    let shoulder = DentShape { shoulder_height: 1e-6, shoulder_width: 100e-6, ..pit(WIDE, 5e-6) };
+    let raised = table_of(shoulder);
+    assert!(raised.exponent(delta, [300e-6, 0.0]) < 1.498);
+    // It carries before the surface around it does.
+    let lost = raised.lost(-0.2e-6, [300e-6, 0.0]).unwrap();
+    assert!(-0.2e-6 - lost.value > 0.3e-6, "{lost:?}");
+}
+
+fn dent(side: usize, angle: f64) -> Dent {
+    Dent { shape: pit(WIDE, 25e-6), side, angle, groove_angle: 0.02 }
+}
+
+fn dented(dents: Vec<Dent>) -> DynamicProblem {
+    let mut problem = dynamics::bearing(table_3_5(), [0.0, 0.0, -300.0, 0.0, 0.0], 1000.0 * RPM);
+    (problem.dents, problem.ball_phase) = (dents, 0.0);
+    problem
+}
+
+/// Both races free: forces on all bodies sum to nothing, and so do their moments.
+#[test]
+fn a_dent_makes_no_momentum() {
+    let mut problem = dented(vec![dent(1, 0.004), dent(0, -0.003), dent(1, 0.79)]);
+    (problem.inner, problem.outer) = (free_race(), Some(free_race()));
+    for driver in [Driver::Plain, Driver::Lanes] {
+        let mut system = System::new(&problem, driver);
+        let state = start_of(&problem);
+        let mut rates = vec![0.0; state.len()];
+        system.evaluate(0.0, &state, &mut rates);
+        let set = &system.sets[0];
+        assert!(set.table.dented.len() >= 3, "{:?}", set.table.dented);
+        assert!(set.table.dented.iter().any(|dented| norm(dented.aside) > 0.1));
+        let (mut force, mut moment, mut largest) = ([0.0; 3], [0.0; 3], 0.0f64);
+        for ball in 0..8 {
+            let at = set.layout.ball_vector(&state, POSITION, ball);
+            let pushed = scale(set.layout.ball_vector(&rates, VELOCITY, ball), problem.ball.mass);
+            largest = largest.max(norm(pushed));
+            force = add(force, pushed);
+            moment = add(moment, cross(at, pushed));
+        }
+        for (loads, race) in set.on_races.iter().zip(&set.races) {
+            force = add(force, loads.force);
+            moment = add(moment, add(loads.moment, cross(race.motion.position, loads.force)));
+        }
+        assert!(largest > 1.0 && norm(force) <= 1e-11 * largest, "{force:?} of {largest}");
+        assert!(norm(moment) <= 1e-12 * largest, "{moment:?}");
+    }
+}
+
+/// Nominal positions: every ball in the middle of an interference of 5 µm.
+fn start_of(problem: &DynamicProblem) -> Vec<f64> {
+    start::nominal(&problem.assembly())
+}
+
+/// In and out of dents of both races, without loss and without friction.
+#[test]
+fn a_pass_makes_no_energy() {
+    let problem = dented(vec![dent(1, 0.03), dent(0, -0.03)]);
+    let drift = |step: f64, end: f64| {
+        let mut simulation = started(&problem, Integrator::RungeKutta, Stepping::Fixed(step));
+        let (mut dented, mut passed, mut held) = (false, false, 0.0f64);
+        while simulation.time < end {
+            simulation.step().unwrap();
+            let now = simulation.system.sets[0].table.dented.iter().any(|of| of.pair >= 8);
+            (dented, passed) = (dented || now, passed || (dented && !now));
+            held = held.max(simulation.system.energy(&simulation.state).contact);
+        }
+        assert!(passed, "not across the dent");
+        simulation.snapshot().unwrap().residual / held
+    };
+    let found = [drift(1e-6, 3e-3), drift(0.5e-6, 3e-3)];
+    println!("{found:?}");
+    assert!(found[1].abs() <= 1e-7, "{found:?}");
+}
+
+/// A dent of no depth is none: every bit as without it.
+#[test]
+fn a_vanishing_dent_is_hertz() {
+    let mut flat = dent(1, 0.01);
+    flat.shape.depth = 0.0;
+    let run = |dents: Vec<Dent>| {
+        let problem = dented(dents);
+        let mut simulation = started(&problem, Integrator::RungeKutta, Stepping::Fixed(1e-6));
+        for _ in 0..500 {
+            simulation.step().unwrap();
+        }
+        simulation.state.iter().map(|value| value.to_bits()).collect::<Vec<u64>>()
+    };
+    let without = run(Vec::new());
+    assert!(without == run(vec![flat]));
+    assert!(without != run(vec![dent(1, 0.01)]));
+    // And the law itself where the dent is out of reach.
+    assert_eq!(usual().lost(3e-6, [1e-3, 0.0]), None);
+}
+
+/// Linearly implicit steps at a tight accuracy and small explicit ones go the same way.
+#[test]
+fn both_methods_cross_a_dent_alike() {
+    let problem = dented(vec![dent(1, 0.02)]);
+    let place = |integrator, stepping| {
+        let (rows, simulation) = motion(&problem, integrator, stepping, 1.2e-3, 1);
+        (rows[0], simulation.steps)
+    };
+    let (exact, _) = place(Integrator::RungeKutta, Stepping::Fixed(2e-7));
+    let misses = [1e-4, 1e-6].map(|accuracy| {
+        let (found, steps) = place(Integrator::Rosenbrock, Stepping::Accuracy(accuracy));
+        println!("accuracy {accuracy}: {steps} steps, z {:e} of {:e} m", found[2], exact[2]);
+        (found[2] - exact[2]).abs()
+    });
+    // The race moves by some tenths of a micrometre.
+    assert!(misses[0] <= 2e-8 && misses[1] <= 1e-9, "{misses:?}");
+}
