@@ -92,6 +92,7 @@ fn bearing(dents: Vec<Dent>, support: Option<&SpringDashpot>) -> Result<Assembly
             unbalance: 0.0,
         });
         assembly.connections.push(Connection {
+            label: None,
             name: "the bushing".into(),
             ends: [ground, OUTER].map(Mount::at_centre),
             law: Law::SpringDashpot(law.clone()),
