@@ -7,8 +7,9 @@ use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::Reader;
 use crate::scene::resolve_rubber::rubber;
 use crate::solver::dynamics::connection::SpringDashpot;
-use crate::solver::solid::rubber::prony::bushing_spring;
+use crate::solver::solid::rubber::prony::{BushingSpring, bushing_spring};
 use std::f64::consts::TAU;
+use std::sync::{Mutex, PoisonError};
 
 const TABLE: &str = "spring.bushing";
 /// Cells crowd at sleeves and ends by this power.
@@ -60,14 +61,30 @@ pub(super) fn bushing(
     let table = reader.choice_if_given("spring.bushing.table");
     let because = " of a bushing without `table`";
     let material = rubber(reader, TABLE, table, ChainPull::FiveTerms, because)?;
-    let meshed = mesh_of(&body, &mesh).and_then(|solid| solid.quadratic());
-    let meshed = meshed.map_err(|error| {
-        refused("spring.bushing.cells", error.to_string(), "change the cells or the dimensions")
-    })?;
-    let found = bushing_spring(&meshed.mesh, Part::Quarter, &material, TAU * fastest);
-    let spring = found.map_err(|error| {
-        refused(TABLE, error.to_string(), "check its dimensions, cells and rubber")
-    })?;
-    let misses = spring.misses;
-    Ok(Some((BushingOfSpring { body, mesh, material, table, fastest, misses }, spring.law)))
+    let mut of = BushingOfSpring { body, mesh, material, table, fastest, misses: [0.0; 4] };
+    let spring = fitted(&of)
+        .map_err(|(key, error)| refused(key, error, "check its dimensions, cells and rubber"))?;
+    of.misses = spring.misses;
+    Ok(Some((of, spring.law)))
+}
+
+/// Bushings that were fitted last: a sweep reads one scene many times, and a fit takes a second.
+static FITTED: Mutex<Vec<(BushingOfSpring, BushingSpring)>> = Mutex::new(Vec::new());
+const KEPT: usize = 8;
+
+/// The spring of a bushing whose `misses` are zero; else the key to blame, and why.
+fn fitted(of: &BushingOfSpring) -> Result<BushingSpring, (&'static str, String)> {
+    let mut kept = FITTED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, spring)) = kept.iter().find(|(other, _)| other == of) {
+        return Ok(spring.clone());
+    }
+    let solid = mesh_of(&of.body, &of.mesh).and_then(|solid| solid.quadratic());
+    let solid = solid.map_err(|error| ("spring.bushing.cells", error.to_string()))?;
+    let found = bushing_spring(&solid.mesh, Part::Quarter, &of.material, TAU * of.fastest);
+    let spring = found.map_err(|error| (TABLE, error.to_string()))?;
+    if kept.len() == KEPT {
+        kept.remove(0);
+    }
+    kept.push((of.clone(), spring.clone()));
+    Ok(spring)
 }

@@ -154,7 +154,7 @@ fn hit(context: &mut CaseContext, variant: &Variant) -> Result<Hit, CaseError> {
         )
         .independent(0.0, "two masses on the complex stiffness of degree 4, by the spectrum of the pulse")
         .under("pulse")
-         .absolute(0.03, "the bearing between the masses stiffens under 500 N, which the spectrum leaves out; 1.7 % on the stiffest bushing")
+         .absolute(0.03, "the bearing between the masses stiffens under 500 N, which the spectrum leaves out, and the bushing has its mesh; 1.7 % on the stiffest one")
         .golden(GoldenTolerance::MIXED),
     );
     let loud = after.iter().rev().find(|[_, f]| f.abs() > 0.05 * peak);
@@ -330,7 +330,7 @@ fn figure(context: &mut CaseContext, hits: &[Hit]) -> Result<(), CaseError> {
     let mut curves = Vec::new();
     for (variant, hit) in VARIANTS[..3].iter().zip(hits) {
         curves.push(Curve::new(variant.text, points(&hit.course)));
-        curves.push(Curve::new(&format!("{}, by its spectrum", variant.text), points(&hit.exact)));
+        curves.push(Curve::new(format!("{}, by its spectrum", variant.text), points(&hit.exact)));
     }
     let svg = xy(&XyPlot {
         title: "Reaction of the bushing after 500 N for 0.5 ms".into(),
