@@ -153,6 +153,11 @@ fn of_balls(scene: &Scene, still: &Still) -> Vec<String> {
     let mut remarks = shared(scene, still.contacts, &seen);
     remarks.extend(gyroscopic(scene, still.balls));
     remarks.extend(without_centrifugal(scene, still.balls));
+    if !scene.dynamics.dents.is_empty() {
+        remarks.push(
+            "dents are left out: an equilibrium has races without them, a run does not".into(),
+        );
+    }
     remarks
 }
 

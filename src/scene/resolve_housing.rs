@@ -324,6 +324,10 @@ fn refuse_inertia(document: &Document, bearing: &Scene) -> Result<(), SceneError
         let reason = "an unbalance is inertia";
         return not_applicable(document, "inner_race.unbalance", reason, ADVICE);
     }
+    if !bearing.dynamics.dents.is_empty() {
+        let reason = "an equilibrium knows races without dents alone";
+        return not_applicable(document, "bearing.dent", reason, ADVICE);
+    }
     Ok(())
 }
 

@@ -313,3 +313,20 @@ fn remarks_tell_numbers_of_the_results() {
     let remarks = summary["remarks"].as_array().unwrap();
     assert!(remarks.iter().all(|r| !r.as_str().unwrap().contains("is left out")), "{remarks:?}");
 }
+
+/// Equilibria have races without dents: `statics` says so, a course of them is refused.
+#[test]
+fn equilibria_say_that_dents_are_left_out() {
+    let place = Place::new();
+    let dented = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/dented_race.toml");
+    let output = bearing(&["statics", dented]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert!(said(&output).contains("dents are left out"), "{}", said(&output));
+    let plain = include_str!("../../scenes/housing_a_rotating_load.toml");
+    assert!(plain.contains("quasi-static"));
+    let dent = "\n[[bearing.dent]]\nrace = \"outer\"\nangle = \"270 deg\"\ndiameter = \"500 um\"\n";
+    let scene = place.scene("course.toml", &format!("{plain}{dent}"));
+    let output = bearing(&["check", scene.to_str().unwrap()]);
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    assert!(stderr(&output).contains("races without dents"), "{}", stderr(&output));
+}
