@@ -9,16 +9,15 @@ use bearing_dynamics::ch3_bushing::dent::{Dent, DentShape, dented_load};
 use bearing_dynamics::mesh::generate::{Bushing, Part};
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::output::spectrum::spectrum;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, Mobility, OUTER};
-use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::solver::dynamics::assembly::Assembly;
+use bearing_dynamics::solver::dynamics::connection::SpringDashpot;
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
-use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::rubber::prony::bushing_spring;
 
 use crate::bearings::{DEEP_GROOVE, Lengths};
-use crate::bushings::{quarter, rubber};
+use crate::bushings::{quarter, rubber, spring_to_ground};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::{Check, Explanation};
 use crate::context::CaseContext;
@@ -82,21 +81,7 @@ fn bearing(dents: Vec<Dent>, support: Option<&SpringDashpot>) -> Result<Assembly
     }
     let mut assembly = problem.assembly();
     if let Some(law) = support {
-        let ground = assembly.bodies.len();
-        assembly.bodies.push(Body {
-            name: "the ground".into(),
-            label: None,
-            mobility: Mobility::Fixed,
-            rest: [0.0; 5],
-            rotating_load: None,
-            unbalance: 0.0,
-        });
-        assembly.connections.push(Connection {
-            label: None,
-            name: "the bushing".into(),
-            ends: [ground, OUTER].map(Mount::at_centre),
-            law: Law::SpringDashpot(law.clone()),
-        });
+        spring_to_ground(&mut assembly, law.clone());
     }
     Ok(assembly)
 }

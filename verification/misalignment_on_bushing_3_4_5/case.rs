@@ -3,11 +3,10 @@
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::mesh::generate::{Bushing, Part};
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, Mobility, OUTER};
-use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::solver::dynamics::assembly::{Assembly, OUTER};
+use bearing_dynamics::solver::dynamics::connection::SpringDashpot;
 use bearing_dynamics::solver::dynamics::equilibrium::at_start;
 use bearing_dynamics::solver::dynamics::model::{Drive, Rotation};
-use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::rubber::prony::bushing_spring;
 use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
@@ -16,6 +15,7 @@ use std::f64::consts::PI;
 use crate::bearings::{DEEP_GROOVE, Lengths};
 use crate::bushings::{
     BULK_RATIO, MODULUS, complex_shear, four_nodes, quarter, rubber, section, shear_over_modulus,
+    spring_to_ground,
 };
 use crate::case::{Case, CaseError, Tier};
 use crate::check::{Check, Explanation};
@@ -65,21 +65,7 @@ fn on_spring(law: SpringDashpot, about_y: Drive) -> Result<Assembly, CaseError> 
     problem.inner.drives[3] = about_y;
     problem.outer = Some(race([0.0; 5], Rotation::Speed(Profile::ZERO)));
     let mut assembly = problem.assembly();
-    let ground = assembly.bodies.len();
-    assembly.bodies.push(Body {
-        name: "the ground".into(),
-        label: None,
-        mobility: Mobility::Fixed,
-        rest: [0.0; 5],
-        rotating_load: None,
-        unbalance: 0.0,
-    });
-    assembly.connections.push(Connection {
-        name: "the bushing".into(),
-        label: None,
-        ends: [ground, OUTER].map(Mount::at_centre),
-        law: Law::SpringDashpot(law),
-    });
+    spring_to_ground(&mut assembly, law);
     Ok(assembly)
 }
 

@@ -9,6 +9,9 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::ch3_bushing::hysteresis::{Hysteresis, of_complex_stiffness};
 use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
 use bearing_dynamics::mesh::{Elements, TetMesh};
+use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, Mobility, OUTER};
+use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
 use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
@@ -245,6 +248,25 @@ pub fn four_nodes(
         }
     });
     Ok(4.0 / BY * resists.sum::<f64>())
+}
+
+/// Puts the outer race of the only bearing on a spring to the ground.
+pub fn spring_to_ground(assembly: &mut Assembly, law: SpringDashpot) {
+    let ground = assembly.bodies.len();
+    assembly.bodies.push(Body {
+        name: "the ground".into(),
+        label: None,
+        mobility: Mobility::Fixed,
+        rest: [0.0; 5],
+        rotating_load: None,
+        unbalance: 0.0,
+    });
+    assembly.connections.push(Connection {
+        name: "the bushing".into(),
+        label: None,
+        ends: [ground, OUTER].map(Mount::at_centre),
+        law: Law::SpringDashpot(law),
+    });
 }
 
 /// Checks of an order that a sentence of the source states: `value` is at least zero.
