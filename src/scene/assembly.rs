@@ -144,6 +144,24 @@ pub struct BushingOfSpring {
     /// Largest error of the complex stiffness over its magnitude, of each of
     /// [`SleeveMotion::ALL`](crate::solver::solid::rubber::sleeve::SleeveMotion::ALL).
     pub misses: [f64; 4],
+    /// Where its elements move beside the bodies in place of the springs.
+    pub elements: Option<BushingInElements>,
+}
+
+/// How the elements of a bushing are stepped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BushingInElements {
+    /// kg/m³.
+    pub density: f64,
+    pub stepping: BushingStepping,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BushingStepping {
+    /// Four-node elements, by this part of the longest stable step.
+    Explicit { fraction: f64 },
+    /// Ten-node elements, by at most so many seconds.
+    Implicit { step: f64 },
 }
 
 impl AssemblyScene {
@@ -191,6 +209,12 @@ impl AssemblyScene {
     pub fn housing_method(&self) -> Option<HousingMethod> {
         let mut housings = self.bearings.iter().filter_map(|placed| placed.housing.as_ref());
         housings.next().map(|housing| housing.settings.method)
+    }
+
+    /// Whether elements of rubber move beside the bearings.
+    pub fn has_bushings_in_elements(&self) -> bool {
+        let mut bushings = self.springs.iter().filter_map(|spring| spring.bushing.as_deref());
+        bushings.any(|of| of.elements.is_some())
     }
 
     pub fn run(&self) -> Option<&RunSettings> {

@@ -1,6 +1,6 @@
 //! Rows of the key table: which bodies bearings sit on, rigid bodies besides the races, springs between them.
 
-use crate::scene::key_table::{DISPLACEMENT, FORCE, LOAD_HINT, MOMENT, SPIN, TILT, TILT_HINT};
+use crate::scene::key_table::{DENSITY, DISPLACEMENT, FORCE, LOAD_HINT, MOMENT, SPIN, TILT, TILT_HINT};
 use crate::scene::key_table_dynamics::{
     DASHPOT, FOUNDATION, FOUNDATION_HINT, INERTIA, INERTIA_HINT, MASS, MASS_HINT, TILT_DASHPOT,
     TILT_FOUNDATION,
@@ -19,6 +19,7 @@ const PLACE_HINT: &str = "a distance along the body's axis from its centre; chec
 const SIZE: Kind = Kind::Quantity(Length, open(0.0, 10.0, "m"));
 const SIZE_HINT: &str = "a positive length; check the unit";
 const CELLS: Kind = Kind::Integer { low: 2, high: 100 };
+const METHODS: &[&str] = &["reduced", "explicit", "implicit"];
 const WITH_BUSHING: Need = Depends("required with `[spring.NAME.bushing]`");
 const FREE: Need = Depends("neither key: the coordinate is free and unloaded");
 const ALL_THREE: Need = Depends("all three, required for a run and with gravity");
@@ -88,6 +89,10 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("spring.bushing.chain", Kind::Number(above(0.0, 1e6, "")), Depends("8 unless given"), "N, the links of a chain.").example_of("8"),
     Key::new("spring.bushing.bulk_ratio", Kind::Number(closed(1.0, 1e6, "")), Depends("100 unless given"), "Bulk modulus over C_R.").example_of("100"),
     Key::new("spring.bushing.fastest", Kind::Quantity(Frequency, closed(1e-6, 1e9, "Hz")), Default { value: "10 kHz", reason: "faster than bodies on rubber swing" }, "Up to this frequency the springs answer as the rubber does; beyond it they are as stiff as there.").example_of("10 kHz"),
+    Key::new("spring.bushing.method", Kind::Choice(METHODS), Default { value: "reduced", reason: "motions are a few hundredths of the wall" }, "`reduced`: the fitted springs. `explicit`: four-node elements in explicit steps beside the bearing, `implicit`: ten-node elements in implicit steps, both with the rubber's mass, at any strain and from rest in the equilibrium of the fitted springs.").example_of("implicit"),
+    Key::new("spring.bushing.density", DENSITY, Default { value: "1100 kg/m^3", reason: "the source states none; usual for rubber" }, "Density of the rubber; fitted springs have no mass.").hint("of rubber 900 to 1500 kg/m^3"),
+    Key::new("spring.bushing.step_fraction", Kind::Number(closed(1e-3, 0.95, "")), Default { value: "0.8", reason: "below the stability limit" }, "Explicit steps over the longest stable one."),
+    Key::new("spring.bushing.step", Kind::Quantity(Time, above(0.0, 1e3, "s")), Depends("as long as bodies and rubber may go without each other, unless given"), "Longest implicit step.").hint("shorter than a twentieth of a swing").example_of("50 us"),
     Key::new("spring.bushing.cells.around", CELLS, Default { value: "16", reason: "bushings of 3.4.3 answer within 2 % of an axisymmetric computation" }, "Cells of the mesh around half of the bushing."),
     Key::new("spring.bushing.cells.radial", CELLS, Default { value: "4", reason: "as `around`" }, "Cells across the wall, an even number."),
     Key::new("spring.bushing.cells.axial", CELLS, Default { value: "4", reason: "as `around`" }, "Cells along half of the length."),
@@ -123,7 +128,7 @@ pub(super) const TABLES: &[Table] = &[
         "[spring.coupling]\nfrom = \"ground\"\nto = \"shaft\"\nstiffness = { turn_x = \"100 N m/rad\" }"),
     table("spring.stiffness", "Springs along and about the axes of the first body.", "stiffness = { x = \"1e8 N/m\", turn_y = \"1e4 N m/rad\" }"),
     table("spring.damping", "Dashpots along and about the same axes.", "damping = { x = \"1000 N s/m\", turn_y = \"1 N m s/rad\" }"),
-    table("spring.bushing", "A bonded bushing of rubber about X in place of `stiffness` and `maxwell`, between sleeves that are the two bodies: meshed by ten-node elements, its small vibrations solved along, across, about X and tilting, and written as springs and Maxwell elements up to the `fastest` frequency. Results tell how well they fit. It stands for motions of a few hundredths of its wall.",
+    table("spring.bushing", "A bonded bushing of rubber about X in place of `stiffness` and `maxwell`, between sleeves that are the two bodies: meshed by ten-node elements, its small vibrations solved along, across, about X and tilting, and written as springs and Maxwell elements up to the `fastest` frequency. Results tell how well they fit. It stands for motions of a few hundredths of its wall; `method` puts its elements beside the bearing instead.",
         "[spring.mount.bushing]\ninner_diameter = \"71 mm\"\nouter_diameter = \"91 mm\"\nlength = \"20 mm\"\ntable = \"3.1\""),
     table("spring.bushing.cells", "Cells of its mesh, a quarter of it; they crowd at sleeves and ends.", "cells = { around = 16, radial = 4, axial = 4 }"),
     list_table("spring.bushing.maxwell", "Maxwell elements of the rubber in place of those of `table`; as many as wanted.",

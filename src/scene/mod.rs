@@ -20,6 +20,7 @@
 pub mod about;
 pub mod assembly;
 pub mod bore_shape;
+pub mod bushing_problem;
 mod deck_materials;
 pub mod document;
 pub mod dynamics;

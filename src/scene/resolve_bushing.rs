@@ -2,7 +2,7 @@
 
 use crate::ch2_housing::elastomer::eight_chain::ChainPull;
 use crate::mesh::generate::{Bushing, BushingMesh, Part, bushing as mesh_of};
-use crate::scene::assembly::BushingOfSpring;
+use crate::scene::assembly::{BushingInElements, BushingOfSpring, BushingStepping};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::Reader;
 use crate::scene::resolve_rubber::rubber;
@@ -61,10 +61,26 @@ pub(super) fn bushing(
     let table = reader.choice_if_given("spring.bushing.table");
     let because = " of a bushing without `table`";
     let material = rubber(reader, TABLE, table, ChainPull::FiveTerms, because)?;
-    let mut of = BushingOfSpring { body, mesh, material, table, fastest, misses: [0.0; 4] };
+    let (misses, elements) = ([0.0; 4], None);
+    let mut of = BushingOfSpring { body, mesh, material, table, fastest, misses, elements };
     let spring = fitted(&of)
         .map_err(|(key, error)| refused(key, error, "check its dimensions, cells and rubber"))?;
     of.misses = spring.misses;
+    let stepping = match reader.choice("spring.bushing.method") {
+        Some("explicit") => {
+            let fraction = reader.number("spring.bushing.step_fraction").unwrap_or(0.8);
+            Some(BushingStepping::Explicit { fraction })
+        }
+        Some("implicit") => {
+            let step = reader.given_number("spring.bushing.step").unwrap_or(f64::MAX);
+            Some(BushingStepping::Implicit { step })
+        }
+        _ => None,
+    };
+    of.elements = stepping.map(|stepping| {
+        let density = reader.number("spring.bushing.density").unwrap_or(1100.0);
+        BushingInElements { density, stepping }
+    });
     Ok(Some((of, spring.law)))
 }
 

@@ -305,7 +305,7 @@ fn one_factorisation_serves_all_frequencies() {
     }
     motions.push(sleeve);
     let dense = |gain: f64| {
-        let law = StepLaw { gain, carried: &[] };
+        let law = StepLaw { gain, carried: &[], inertia: 0.0 };
         let mut deviatoric = vec![[0.0; 6]; POINTS * model.tets.len()];
         let mut means = vec![0.0; model.patches.len()];
         let mut forces = |motion: &[Vec3], by: f64| {

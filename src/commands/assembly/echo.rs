@@ -7,7 +7,7 @@ use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::RunSettings;
 use bearing_dynamics::scene::assembly::{
-    AssemblyScene, BushingOfSpring, Carrier, PlacedBearing, PlacedHousing, SIX, Spring, SpringAt,
+    AssemblyScene, BushingInElements, BushingOfSpring, BushingStepping, Carrier, PlacedBearing, PlacedHousing, SIX, Spring, SpringAt,
     SpringEnd,
 };
 use bearing_dynamics::scene::dynamics::dynamic_problem;
@@ -98,7 +98,7 @@ fn spring(scene: &AssemblyScene, spring: &Spring) -> Result<Value, ResultsError>
 
 /// The rubber that a spring stands for, and by how much it misses its vibrations.
 fn bushing(of: &BushingOfSpring) -> Result<Value, ResultsError> {
-    let BushingOfSpring { body, mesh, material, table, fastest, misses } = of;
+    let BushingOfSpring { body, mesh, material, table, fastest, misses, elements } = of;
     let millimetres = |name: &str, metres: f64| quantity(name, 1e3 * metres, "mm");
     let mut echo = json!({
         "inner_diameter": millimetres("inner_diameter", body.inner_diameter)?,
@@ -108,6 +108,19 @@ fn bushing(of: &BushingOfSpring) -> Result<Value, ResultsError> {
         "fastest": quantity("fastest", *fastest, "Hz")?,
         "cells": { "around": mesh.around, "radial": mesh.radial, "axial": mesh.axial },
     });
+    if let Some(BushingInElements { density, stepping }) = elements {
+        echo["density"] = quantity("density", *density, "kg/m^3")?;
+        let (method, key, value) = match stepping {
+            BushingStepping::Explicit { fraction } => {
+                ("explicit", "step_fraction", json!(fraction))
+            }
+            BushingStepping::Implicit { step } if *step < f64::MAX => {
+                ("implicit", "step", quantity("step", *step, "s")?)
+            }
+            BushingStepping::Implicit { .. } => ("implicit", "step", json!("as the windows are")),
+        };
+        (echo["method"], echo[key]) = (json!(method), value);
+    }
     for (motion, miss) in SleeveMotion::ALL.into_iter().zip(misses) {
         let name = format!("{motion:?}").to_lowercase();
         echo["largest_error_of_springs"][name] = quantity("error", 100.0 * miss, "%")?;

@@ -11,6 +11,7 @@ use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
 use bearing_dynamics::solver::dynamics::equilibrium::{conditions, static_assembly};
 use bearing_dynamics::solver::dynamics::run::RunOptions;
+use bearing_dynamics::solver::housing::bonded::BondedPart;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::course::{CourseProblem, CourseSeat, Moment};
 use bearing_dynamics::solver::housing::course_search::CourseSearch;
@@ -43,8 +44,18 @@ pub fn prepare(document: &Document, scene: &AssemblyScene) -> Fallible<Vec<Housi
 
 /// What the scene's way of solving cannot have.
 pub fn refuse(document: &Document, scene: &AssemblyScene, housings: &[Housing]) -> Fallible<()> {
-    if scene.housing_method() == Some(HousingMethod::QuasiStatic) {
+    let method = scene.housing_method();
+    if method == Some(HousingMethod::QuasiStatic) {
         refuse_steps(document)?;
+    }
+    if scene.has_bushings_in_elements() && method.is_some_and(|of| of != HousingMethod::Explicit) {
+        let place = document.place_of(&About::key("housing.method"));
+        return Err(format!(
+            "{place}: housing.method: refused: a bushing of the scene is solved in elements, beside which housings move \
+             in explicit steps only. Hint: write method = \"explicit\" in [housing], or method = \"reduced\" in the \
+             bushing's table"
+        )
+        .into());
     }
     housings.iter().try_for_each(|housing| housing.refuse(document))
 }
@@ -118,15 +129,17 @@ pub fn equilibrium<'b>(
     Ok(Equilibrium { still, moment, in_bores: Some((course, search)) })
 }
 
-/// Bodies, bearings, solids and seats for explicit steps.
-pub fn explicit(
+/// Bodies, bearings, solids, seats and bushings for steps of their own.
+pub fn explicit<'p>(
     scene: &AssemblyScene,
+    mut assembly: Assembly,
     housings: &[Housing],
+    bushings: Vec<BondedPart<'p>>,
     threads: usize,
-) -> Fallible<HousedParts> {
-    let mut assembly = scene.assembly()?;
+) -> Fallible<HousedParts<'p>> {
     let start = start_of_steps(&mut assembly, housings)?;
-    parts(scene, assembly, housings, start, threads)
+    let parts = parts(scene, assembly, housings, start, threads)?;
+    Ok(HousedParts { bushings, ..parts })
 }
 
 /// The same from undeformed housings, whatever the scene says.
@@ -134,18 +147,21 @@ pub fn undeformed(
     scene: &AssemblyScene,
     housings: &[Housing],
     threads: usize,
-) -> Fallible<HousedParts> {
+) -> Fallible<HousedParts<'static>> {
     parts(scene, scene.assembly()?, housings, Vec::new(), threads)
 }
 
-fn parts(
+/// Windows as ωH of a body on its bushings, where no housing says: drift and kick are 0.2 % off a swing.
+const PHASE: f64 = 0.2;
+
+fn parts<'p>(
     scene: &AssemblyScene,
     assembly: Assembly,
     housings: &[Housing],
     start: Vec<Vec<Vec3>>,
     threads: usize,
-) -> Fallible<HousedParts> {
-    let first = housings.first().ok_or("no housing")?;
+) -> Fallible<HousedParts<'p>> {
+    let first = housings.first().map(|housing| &housing.scene.housing);
     let run = scene.run().ok_or("a run needs `end` in [numerics]")?;
     let mut start = start.into_iter();
     let (mut seats, mut solids) = (Vec::new(), Vec::new());
@@ -158,18 +174,18 @@ fn parts(
         });
     }
     let options = ExchangeOptions {
-        solid_fraction: first.scene.housing.step_fraction,
-        seat_phase: first.scene.housing.window_phase,
+        solid_fraction: first.map_or(1.0, |housing| housing.step_fraction),
+        seat_phase: first.map_or(PHASE, |housing| housing.window_phase),
         // All together are balanced, not the bearings alone.
         bearing: RunOptions { energy_limit: f64::INFINITY, ..run.options },
     };
-    Ok(HousedParts { assembly, solids, seats, options, threads })
+    Ok(HousedParts { assembly, solids, seats, bushings: Vec::new(), options, threads })
 }
 
 /// Puts races that explicit steps start from where all is in equilibrium; how far the nodes of their housings have
 /// gone there, m. Nothing where they start undeformed.
 fn start_of_steps(assembly: &mut Assembly, housings: &[Housing]) -> Fallible<Vec<Vec<Vec3>>> {
-    if !housings.iter().all(|housing| housing.scene.housing.from_equilibrium) {
+    if housings.is_empty() || !housings.iter().all(|of| of.scene.housing.from_equilibrium) {
         return Ok(Vec::new());
     }
     let bores = condensed(housings)?;

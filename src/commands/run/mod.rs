@@ -12,6 +12,7 @@ use super::{CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::session::{Motion, Session, SessionError, Status};
 use bearing_dynamics::output::state::{self, StateFile, StateRecord, Stopped};
 use bearing_dynamics::scene::{Document, resolve_subject};
+use bearing_dynamics::solver::housing::bonded::BondedBushing;
 use bearing_dynamics::solver::housing::stepped::SteppedSolid;
 use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -226,7 +227,9 @@ fn at_once(session: &Session) -> u64 {
         Motion::Solid(moving) => (ELEMENTS_AT_ONCE / elements(&moving.solid)).max(1),
         Motion::Housed(housed) => {
             let in_window = |part: &SteppedSolid| elements(&part.solid) * part.steps as u64;
-            (ELEMENTS_AT_ONCE / housed.solids.iter().map(in_window).sum::<u64>()).max(1)
+            let of_solids: u64 = housed.solids.iter().map(in_window).sum();
+            let of_bushings: u64 = housed.bushings.iter().map(BondedBushing::effort).sum();
+            (ELEMENTS_AT_ONCE / (of_solids + of_bushings).max(1)).max(1)
         }
     }
 }

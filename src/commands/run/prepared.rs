@@ -11,6 +11,7 @@ use bearing_dynamics::output::session::{
 };
 use bearing_dynamics::output::state::{self, StateFile};
 use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::scene::bushing_problem::{BushingElements, take_bushings};
 use bearing_dynamics::scene::dynamics::DynamicsError;
 use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::scene::solid::{Law, RubberScene, RunSteps, SolidRun};
@@ -36,9 +37,10 @@ pub(super) enum Prepared<'s> {
     Bearings {
         scene: &'s AssemblyScene,
         settings: RunSettings,
-        /// With the housings that are reduced.
+        /// With the housings that are reduced, without the springs of bushings in elements.
         assembly: Box<Assembly>,
         housings: Vec<Housing>,
+        bushings: Vec<BushingElements>,
         way: Way,
     },
     Solid {
@@ -61,7 +63,7 @@ pub(super) enum Prepared<'s> {
 pub(super) enum Way {
     /// In steps, all housings rigid.
     Rigid,
-    /// Bearings and housings in steps of their own.
+    /// Bearings, and housings or bushings, in steps of their own.
     Explicit,
     Reduced(Box<Shapes>),
     /// Through equilibria; and the wall time that condensing took, s.
@@ -124,7 +126,9 @@ impl<'s> Prepared<'s> {
         let settings = scene.run().cloned().ok_or(NO_END)?;
         let housings = housings::prepare(document, scene)?;
         housings::refuse(document, scene, &housings)?;
+        let in_elements = scene.has_bushings_in_elements();
         let way = match scene.housing_method() {
+            None if in_elements => Way::Explicit,
             None => Way::Rigid,
             Some(HousingMethod::Explicit) => Way::Explicit,
             Some(HousingMethod::Reduced) => Way::Reduced(Box::new(shapes(scene, &housings)?)),
@@ -134,18 +138,22 @@ impl<'s> Prepared<'s> {
                 Way::Course(bores, start.elapsed().as_secs_f64())
             }
         };
-        let assembly = Box::new(match &way {
+        let mut assembly = Box::new(match &way {
             Way::Reduced(shapes) => shapes.assembly.clone(),
             _ => scene.assembly()?,
         });
-        Ok(Prepared::Bearings { scene, settings, assembly, housings, way })
+        let bushings = take_bushings(scene, &mut assembly)?;
+        Ok(Prepared::Bearings { scene, settings, assembly, housings, bushings, way })
     }
 
     /// What moves.
     pub fn parts(&self, threads: usize) -> Fallible<Parts<'_>> {
         Ok(match self {
-            Prepared::Bearings { scene, housings, way: Way::Explicit, .. } => {
-                Parts::Housed(Box::new(housings::explicit(scene, housings, threads)?))
+            Prepared::Bearings { scene, assembly, housings, bushings, way: Way::Explicit, .. } => {
+                let bushings = bushings.iter().map(BushingElements::part).collect();
+                let assembly = (**assembly).clone();
+                let parts = housings::explicit(scene, assembly, housings, bushings, threads)?;
+                Parts::Housed(Box::new(parts))
             }
             Prepared::Bearings { scene, housings, way: Way::Course(bores, _), .. } => {
                 let problem = housings::course(scene, housings, bores)?;
@@ -168,7 +176,7 @@ impl<'s> Prepared<'s> {
     /// What the scene asks of the run, with the integrator that the plan chooses for a bearing.
     pub fn request(&self, kept: Option<&StateFile>) -> Fallible<(RunRequest, Option<Choice>)> {
         Ok(match self {
-            Prepared::Bearings { scene, settings, assembly, housings, way } => {
+            Prepared::Bearings { scene, settings, assembly, housings, way, .. } => {
                 let mut request = request(scene.common(), settings);
                 if let Some(first) = housings.first() {
                     request.fields_interval = first.scene.housing.fields_interval;
@@ -303,7 +311,7 @@ impl<'s> Prepared<'s> {
         seconds: Vec<(String, f64)>,
     ) -> Fallible<RunRecord> {
         match self {
-            Prepared::Bearings { scene, settings, assembly, housings, way } => {
+            Prepared::Bearings { scene, settings, assembly, housings, way, .. } => {
                 // With housings a run that is extended has the bytes of an unbroken one.
                 let choice = choice.filter(|_| housings.is_empty());
                 let planned = match way {

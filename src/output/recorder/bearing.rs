@@ -308,12 +308,15 @@ fn add_columns(
     }
     if group == ChannelGroup::Forces {
         let labels = assembly.connections.iter().filter_map(|joint| joint.label.as_ref());
-        columns.extend(labels.flat_map(|label| {
-            let of = |what: &str, axis| format!("{label}_{what}_{axis}");
-            let forces = AXES.map(|axis| Column::new(of("force", axis), "N"));
-            forces.into_iter().chain(AXES.map(|axis| Column::new(of("moment", axis), "N m")))
-        }));
+        columns.extend(labels.flat_map(|label| connection_columns(label)));
     }
+}
+
+/// Load on the second body of a connection with this label.
+pub(super) fn connection_columns(label: &str) -> impl Iterator<Item = Column> {
+    let of = |what: &str, axis| format!("{label}_{what}_{axis}");
+    let forces = AXES.map(|axis| Column::new(of("force", axis), "N"));
+    forces.into_iter().chain(AXES.map(|axis| Column::new(of("moment", axis), "N m")))
 }
 
 const AXES: [&str; 3] = ["x", "y", "z"];

@@ -45,7 +45,7 @@ impl Recorder {
             }
             Parts::Housed(parts) => {
                 bearing = Some(of_bearing(&parts.assembly));
-                columns.extend(seat::explicit_columns(&parts.solids, &parts.seats));
+                columns.extend(seat::explicit_columns(parts));
             }
             Parts::Course(parts) => {
                 let with_loads = asked.contains(&ChannelGroup::Loads);

@@ -1,14 +1,15 @@
 //! Columns of a seat in a housing, the same whichever way it is solved, and of housings in explicit steps.
 
-use super::{Recorder, solid::check_finite};
+use super::{Recorder, bearing::connection_columns, solid::check_finite};
 use crate::ch2_housing::bore_contact::ContactSum;
 use crate::kinematics::vec3::Vec3;
 use crate::output::series::Column;
-use crate::output::session::{LedgerWatch, SessionError};
+use crate::output::session::{HousedParts, LedgerWatch, SessionError};
+use crate::solver::dynamics::race::RaceLoads;
+use crate::solver::housing::bonded::BondedPart;
 use crate::solver::housing::bore_equilibrium::BoreState;
 use crate::solver::housing::condensed::CondensedBore;
-use crate::solver::housing::exchange::{Exchange, ExchangeError, SolidPart};
-use crate::solver::housing::seat::Seat;
+use crate::solver::housing::exchange::{Exchange, ExchangeError};
 use crate::solver::solid::explicit::ExplicitSolid;
 use crate::solver::solid::model::SolidError;
 use crate::solver::solid::stress::first_inverted;
@@ -74,8 +75,10 @@ pub fn prefix(name: &Option<String>) -> String {
     name.as_ref().map_or(String::new(), |name| format!("{name}_"))
 }
 
-/// Beside the bearings' own. Seats come with their solids, as they do in the exchange.
-pub(super) fn explicit_columns(solids: &[SolidPart], seats: &[Seat]) -> Vec<Column> {
+/// Beside the bearings' own. Seats come with their solids, as they do in the exchange; bushings have the columns of
+/// springs, and their energies.
+pub(super) fn explicit_columns(parts: &HousedParts) -> Vec<Column> {
+    let HousedParts { solids, seats, bushings, .. } = parts;
     let of_solids: Vec<String> = solids.iter().map(|solid| prefix(&solid.name)).collect();
     let by_solid =
         (0..solids.len()).flat_map(|index| seats.iter().filter(move |s| s.solid == index));
@@ -90,6 +93,11 @@ pub(super) fn explicit_columns(solids: &[SolidPart], seats: &[Seat]) -> Vec<Colu
     energies(&of_seats, &["energy_seat", "work_housing_on_outer"]);
     energies(&of_solids, &["work_on_housing", "work_housing_damping"]);
     energies(&of_seats, &["work_fit"]);
+    for BondedPart { name, .. } in bushings {
+        columns.extend(connection_columns(name));
+        let energies = OF_BUSHING.map(|of| Column::new(format!("{name}_{of}"), "J"));
+        columns.extend(energies);
+    }
     columns.push(Column::new("energy_coupled_residual", "J"));
     for seat in &of_seats {
         let name = |axis| format!("{seat}housing_impulse_on_outer_{axis}");
@@ -97,6 +105,10 @@ pub(super) fn explicit_columns(solids: &[SolidPart], seats: &[Seat]) -> Vec<Colu
     }
     columns
 }
+
+/// What a bushing in elements holds and has lost; of the Maxwell elements by the law of small strain.
+const OF_BUSHING: [&str; 5] =
+    ["energy_strain", "energy_maxwell", "energy_kinetic", "energy_dissipated", "work_on_bodies"];
 
 impl Recorder {
     /// Adds a row of bearings and housings in explicit steps.
@@ -132,6 +144,11 @@ impl Recorder {
         seats().for_each(|seat| values.extend([seat.contact.energy, seat.work]));
         solids().for_each(|solid| values.extend([solid.external_work, solid.damping_work]));
         values.extend(seats().map(|seat| seat.growth_work));
+        for (of, bushing) in snapshot.bushings.iter().zip(&housed.bushings) {
+            let RaceLoads { force, moment } = of.loads[bushing.second];
+            values.extend(force.into_iter().chain(moment));
+            values.extend([of.network, of.springs, of.kinetic, of.dissipated, of.work]);
+        }
         values.push(residual);
         values.extend(housed.seats().flat_map(|seat| seat.impulse));
         Ok(())

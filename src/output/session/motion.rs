@@ -10,6 +10,7 @@ use crate::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
 use crate::solver::dynamics::clocked::{self, Arrival, RunRequest};
 use crate::solver::dynamics::model::DynamicProblem;
 use crate::solver::dynamics::run::Simulation;
+use crate::solver::housing::bonded::BondedPart;
 use crate::solver::housing::checkpoint::{ExchangeCheckpoint, Windows};
 use crate::solver::housing::course::{Course, CourseCheckpoint, CourseProblem};
 use crate::solver::housing::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
@@ -26,7 +27,7 @@ use crate::solver::solid::team::Crew;
 pub enum Parts<'p> {
     Bearing(Box<Assembly>),
     Solid(SolidParts<'p>),
-    Housed(Box<HousedParts>),
+    Housed(Box<HousedParts<'p>>),
     Course(Box<CourseParts<'p>>),
     Rubber(RubberParts<'p>),
 }
@@ -53,12 +54,14 @@ pub struct SolidParts<'p> {
     pub threads: usize,
 }
 
-/// Bodies with their bearings, solids in explicit steps, and the seats of one in the other.
+/// Bodies with their bearings, solids in explicit steps with the seats of one in the other, and bushings in steps of
+/// their own.
 #[derive(Clone, Debug)]
-pub struct HousedParts {
+pub struct HousedParts<'p> {
     pub assembly: Assembly,
     pub solids: Vec<SolidPart>,
     pub seats: Vec<Seat>,
+    pub bushings: Vec<BondedPart<'p>>,
     pub options: ExchangeOptions,
     /// Threads that step the solids, with the same bits.
     pub threads: usize,
@@ -76,7 +79,7 @@ pub struct CourseParts<'p> {
 pub enum Motion<'p> {
     Bearing(Box<Simulation>),
     Solid(Box<MovingSolid>),
-    Housed(Box<Exchange>),
+    Housed(Box<Exchange<'p>>),
     Course(Box<Course<'p>>),
     Rubber(Box<MovingRubber<'p>>),
 }
@@ -196,9 +199,10 @@ impl<'p> Motion<'p> {
                 Motion::Solid(moving)
             }
             (Parts::Housed(parts), Checkpoint::Housed(kept, windows)) => {
-                let HousedParts { assembly, solids, seats, options, threads } = *parts;
-                let mut housed =
-                    Exchange::from_checkpoint(assembly, solids, seats, &options, windows, kept)?;
+                let HousedParts { assembly, solids, seats, bushings, options, threads } = *parts;
+                let mut housed = Exchange::from_checkpoint(
+                    assembly, solids, seats, bushings, &options, windows, kept,
+                )?;
                 housed.share(threads);
                 Motion::Housed(Box::new(housed))
             }
@@ -380,15 +384,15 @@ impl SolidParts<'_> {
     }
 }
 
-impl HousedParts {
+impl<'p> HousedParts<'p> {
     /// All at the start, in windows that divide the rows, which are `interval` apart (s); and how many
     /// a row has.
     ///
     /// # Errors
     /// As [`Exchange::new`].
-    pub fn started(self, interval: f64) -> Result<(Exchange, u64), ExchangeError> {
-        let HousedParts { assembly, solids, seats, options, threads } = self;
-        let mut housed = Exchange::new(assembly, solids, seats, &options)?;
+    pub fn started(self, interval: f64) -> Result<(Exchange<'p>, u64), ExchangeError> {
+        let HousedParts { assembly, solids, seats, bushings, options, threads } = self;
+        let mut housed = Exchange::with_bushings(assembly, solids, seats, bushings, &options)?;
         housed.share(threads);
         let windows = housed.divide(interval)?;
         Ok((housed, windows))

@@ -18,6 +18,11 @@ pub(super) fn arrays_name(steps: u64) -> String {
     format!("state-{steps}.npy")
 }
 
+/// Name of the file with the numbers of bushings after so many windows.
+pub(super) fn bushings_name(windows: u64) -> String {
+    format!("state-{windows}.bushings.npy")
+}
+
 /// Writes the arrays of a checkpoint after so many steps: of the nodes of one solid behind the other, or of
 /// those of condensed bores. Returns the name of the file, if there is something to write.
 pub(super) fn write_arrays(
@@ -29,6 +34,9 @@ pub(super) fn write_arrays(
         Checkpoint::Bearing(_) => return Ok(None),
         Checkpoint::Solid(kept, _) => (WIDTH, of_nodes(kept)),
         Checkpoint::Housed(kept, _) => {
+            if !kept.bushings.is_empty() {
+                write_table(folder, &bushings_name(kept.exchanges), 1, kept.bushings.concat())?;
+            }
             (WIDTH, kept.solids.iter().flat_map(|part| of_nodes(&part.solid)).collect())
         }
         Checkpoint::Course(kept) => {
@@ -43,7 +51,17 @@ pub(super) fn write_arrays(
         Checkpoint::Rubber(kept, _) => (1, kept.numbers()),
     };
     let name = arrays_name(steps);
-    let path = folder.join(&name);
+    write_table(folder, &name, width, values)?;
+    Ok(Some(name))
+}
+
+fn write_table(
+    folder: &Path,
+    name: &str,
+    width: usize,
+    values: Vec<f64>,
+) -> Result<(), StateError> {
+    let path = folder.join(name);
     if !values.iter().all(|value| value.is_finite()) {
         return Err(StateError::Damaged { path, what: "a value that is not finite" });
     }
@@ -53,8 +71,7 @@ pub(super) fn write_arrays(
     table
         .write_npy(&mut bytes)
         .map_err(|source| StateError::Encode { path: path.clone(), source })?;
-    write_atomic(&path, &bytes)?;
-    Ok(Some(name))
+    Ok(write_atomic(&path, &bytes)?)
 }
 
 fn of_nodes(checkpoint: &SolidCheckpoint) -> Vec<f64> {
@@ -119,13 +136,15 @@ pub(super) fn read_touching(
     Ok(nodes.iter().map(of_bore).collect())
 }
 
-/// Removes arrays of states that are not `kept`. What cannot be removed stays: it harms nothing.
+/// Removes arrays of states that are not `kept` nor beside it. What cannot be removed stays: it harms nothing.
 pub fn remove_arrays(folder: &Path, kept: &str) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
+    // "state-12." of "state-12.npy".
+    let stem = kept.strip_suffix("npy").filter(|stem| !stem.is_empty());
     for entry in entries.flatten() {
         let name = entry.file_name();
         let name = name.to_string_lossy();
-        if name.starts_with("state-") && name.ends_with(".npy") && name != kept {
+        if name.starts_with("state-") && name.ends_with(".npy") && !stem.is_some_and(|stem| name.starts_with(stem)) {
             let _ = std::fs::remove_file(entry.path());
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{
     StateFile,
-    arrays::{arrays_name, read_arrays, read_touching},
+    arrays::{arrays_name, bushings_name, read_arrays, read_touching, table},
 };
 use crate::output::series::SeriesError;
 use crate::output::session::{Checkpoint, HousedParts, Parts};
@@ -93,6 +93,9 @@ pub struct ExchangeEntry {
     pub steps_per_window: Vec<usize>,
     /// Of each solid.
     pub seats: Vec<Vec<SeatEntry>>,
+    /// File with the numbers of all bushings in one column, and how many each has.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub bushings: Option<(String, Vec<usize>)>,
     /// What the ledger of all held at the start, J.
     pub first: f64,
 }
@@ -154,10 +157,13 @@ impl SolidEntry {
 
 impl ExchangeEntry {
     pub(super) fn of(kept: &ExchangeCheckpoint, windows: &Windows) -> ExchangeEntry {
+        let lengths: Vec<usize> = kept.bushings.iter().map(Vec::len).collect();
+        let file = || bushings_name(kept.exchanges);
         let seats = |part: &SteppedCheckpoint| part.seats.iter().map(SeatEntry::of).collect();
         ExchangeEntry {
             steps_per_window: windows.solids.iter().map(|(steps, _)| *steps).collect(),
             seats: kept.solids.iter().map(seats).collect(),
+            bushings: (!lengths.is_empty()).then(|| (file(), lengths)),
             first: kept.first,
         }
     }
@@ -301,5 +307,30 @@ fn exchange(
         solids: steps_per_window.iter().copied().zip(limits).collect(),
     };
     let (exchanges, first) = (file.steps, exchange.first);
-    Ok((ExchangeCheckpoint { simulation, solids, exchanges, first }, windows))
+    let bushings = read_bushings(folder, exchange, parts)?;
+    Ok((ExchangeCheckpoint { simulation, solids, bushings, exchanges, first }, windows))
+}
+
+/// The numbers of each bushing.
+fn read_bushings(
+    folder: &Path,
+    exchange: &ExchangeEntry,
+    parts: &HousedParts,
+) -> Result<Vec<Vec<f64>>, Refused> {
+    let none = (String::new(), Vec::new());
+    let (file, lengths) = exchange.bushings.as_ref().unwrap_or(&none);
+    if lengths.len() != parts.bushings.len() {
+        return Err(LACKS);
+    }
+    if lengths.is_empty() {
+        return Ok(Vec::new());
+    }
+    for (length, part) in lengths.iter().zip(&parts.bushings) {
+        if !part.may_have(*length) {
+            return Err(Refused::Damaged("its arrays have another shape than the mesh asks for"));
+        }
+    }
+    let column = table(folder, file, (lengths.iter().sum(), 1))?;
+    let mut all = column.data().iter().copied();
+    Ok(lengths.iter().map(|length| all.by_ref().take(*length).collect()).collect())
 }

@@ -150,6 +150,9 @@ pub fn fingerprint(parts: &Parts, request: &RunRequest) -> String {
                 hash_solid(&mut hash, &solid.model.problem);
             }
             hash.update(format!("{:?} {:?}", parts.seats, parts.options));
+            for bushing in &parts.bushings {
+                hash.update(format!("{bushing:?}"));
+            }
         }
         Parts::Course(parts) => {
             parts.models.iter().for_each(|model| hash_solid(&mut hash, &model.problem));

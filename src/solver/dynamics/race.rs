@@ -154,7 +154,7 @@ pub fn mounted(body: &RaceNow, mount: &Mount) -> RaceNow {
 }
 
 /// Force and moment on a body.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RaceLoads {
     /// Contacts, gravity, rotating load, unbalance; N, inertial axes.
     pub force: Vec3,

@@ -1,6 +1,7 @@
 //! Everything that bodies and solids in explicit steps, with seats between them, need to go on with the
 //! same bits.
 
+use super::bonded::{BondedBushing, BondedPart};
 use super::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
 use super::seat::{Growth, Seat};
 use super::stepped::{SteppedSolid, seated};
@@ -17,6 +18,8 @@ use crate::solver::solid::step_limit::SolidStepLimit;
 pub struct ExchangeCheckpoint {
     pub simulation: Checkpoint,
     pub solids: Vec<SteppedCheckpoint>,
+    /// Of each bushing [`BondedBushing::numbers`].
+    pub bushings: Vec<Vec<f64>>,
     pub exchanges: u64,
     /// What the ledger of all held at the start, J.
     pub first: f64,
@@ -49,7 +52,7 @@ pub struct Windows {
     pub solids: Vec<(usize, SolidStepLimit)>,
 }
 
-impl Exchange {
+impl<'p> Exchange<'p> {
     /// Where all are now. Nodes are sorted by reach first, so that going on from here and going on
     /// from the checkpoint tests the same ones.
     pub fn checkpoint_into(&mut self, checkpoint: &mut ExchangeCheckpoint) {
@@ -67,6 +70,7 @@ impl Exchange {
                 sorts: seat.sorts,
             }));
         }
+        checkpoint.bushings = self.bushings.iter().map(BondedBushing::numbers).collect();
         checkpoint.exchanges = self.exchanges;
         checkpoint.first = self.first;
     }
@@ -76,21 +80,22 @@ impl Exchange {
         Windows { window: self.window, solids: self.solids.iter().map(of).collect() }
     }
 
-    /// Goes on where a checkpoint of the same assembly, solids, seats and options was taken.
+    /// Goes on where a checkpoint of the same assembly, solids, seats, bushings and options was taken.
     ///
     /// # Errors
     /// A step size that is no step.
     ///
     /// # Panics
-    /// If the checkpoint has other numbers of balls, solids, nodes or seats.
+    /// If the checkpoint has other numbers of balls, solids, nodes, seats or bushings.
     pub fn from_checkpoint(
         assembly: impl Into<Assembly>,
         solids: Vec<SolidPart>,
         seats: Vec<Seat>,
+        bushings: Vec<BondedPart<'p>>,
         options: &ExchangeOptions,
         windows: &Windows,
         checkpoint: &ExchangeCheckpoint,
-    ) -> Result<Exchange, ExchangeError> {
+    ) -> Result<Exchange<'p>, ExchangeError> {
         assert_eq!(solids.len(), windows.solids.len());
         let method = ExplicitMethod::CentralDifferences;
         let mut solids: Vec<SteppedSolid> = solids
@@ -106,7 +111,16 @@ impl Exchange {
         seated(&assembly, &mut solids, seats);
         let simulation =
             Simulation::from_checkpoint(assembly, options.bearing, &checkpoint.simulation)?;
-        let mut exchange = Exchange::of(simulation, solids, windows.window);
+        assert_eq!(bushings.len(), checkpoint.bushings.len());
+        let mut on_rubber = Vec::with_capacity(bushings.len());
+        for (part, kept) in bushings.into_iter().zip(&checkpoint.bushings) {
+            let name = part.name.clone();
+            let made = BondedBushing::unmoved(part, &simulation);
+            let mut bushing = made.map_err(|source| ExchangeError::Bushing { name, source })?;
+            bushing.restore(windows.window, kept).expect("as many numbers as the bushing left");
+            on_rubber.push(bushing);
+        }
+        let mut exchange = Exchange::of(simulation, solids, on_rubber, windows.window);
         exchange.exchanges = checkpoint.exchanges;
         exchange.first = checkpoint.first;
         for (part, kept) in exchange.solids.iter_mut().zip(&checkpoint.solids) {

@@ -8,6 +8,7 @@
 //! too, with the other sign. Drift, kick, drift: of second order, and an elastic contact between the two
 //! neither makes nor loses energy in the long run. Within a window no solid knows of another.
 
+use super::bonded::{BondedBushing, BondedPart, BondedSnapshot};
 use super::exchange_window::{check, divided, longest_window};
 use super::seat::{Lost, Seat, SeatSnapshot, SeatState};
 use super::stepped::{SolidSnapshot, SteppedSolid, seated};
@@ -24,6 +25,7 @@ use crate::solver::solid::contact::closed_limit;
 use crate::solver::solid::energy::SolidLedger;
 use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, padded};
 use crate::solver::solid::model::{SolidError, SolidModel};
+use crate::solver::solid::rubber::error::RubberError;
 use crate::solver::solid::step_limit::step_limit;
 use crate::solver::solid::team::Crew;
 use crate::solver::statics::StaticsError;
@@ -62,6 +64,8 @@ pub enum ExchangeError {
     Bearing(#[from] SimulationError),
     #[error("{}{source}", of_solid(name))]
     Solid { name: Option<String>, source: SolidError },
+    #[error("bushing {name}: {source}")]
+    Bushing { name: String, source: RubberError },
     #[error("the start has no equilibrium: {0}")]
     Start(#[from] StaticsError),
     #[error(
@@ -97,11 +101,12 @@ fn of_solid(name: &Option<String>) -> String {
 /// Windows between two looks at how far things have moved.
 const LOOK: u64 = 16;
 
-/// An assembly of bodies and bearings with its races in the bores of solids.
-pub struct Exchange {
+/// An assembly of bodies and bearings with its races in the bores of solids, or on bushings of rubber.
+pub struct Exchange<'p> {
     pub simulation: Simulation,
     /// The seats lie with their solids; that is the order of every sum over them.
     pub solids: Vec<SteppedSolid>,
+    pub bushings: Vec<BondedBushing<'p>>,
     /// In which all are taken on, s.
     pub window: f64,
     pub exchanges: u64,
@@ -119,13 +124,14 @@ pub struct Exchange {
 pub struct ExchangeSnapshot {
     pub simulation: Snapshot,
     pub solids: Vec<SolidSnapshot>,
+    pub bushings: Vec<BondedSnapshot>,
     /// Energy unaccounted for in all together, J.
     pub residual: f64,
     /// Energy held in all and all work and losses, J: what the residual is a part of.
     pub turned_over: f64,
 }
 
-impl Exchange {
+impl<'p> Exchange<'p> {
     /// Starts with the bodies that sit in solids where they rest, the others in equilibrium with them there
     /// and the bearings rolling, the solids still and displaced as they are given.
     ///
@@ -139,7 +145,25 @@ impl Exchange {
         solids: Vec<SolidPart>,
         seats: Vec<Seat>,
         options: &ExchangeOptions,
-    ) -> Result<Exchange, ExchangeError> {
+    ) -> Result<Exchange<'p>, ExchangeError> {
+        Exchange::with_bushings(assembly, solids, seats, Vec::new(), options)
+    }
+
+    /// The same with bushings between bodies: where these and the rest are in equilibrium on the springs that the
+    /// bushings are like, the rubber relaxed.
+    ///
+    /// # Errors
+    /// As [`Exchange::new`]; rubber without an equilibrium.
+    ///
+    /// # Panics
+    /// If a seat or a bushing names a body or a solid that is not there.
+    pub fn with_bushings(
+        assembly: impl Into<Assembly>,
+        solids: Vec<SolidPart>,
+        seats: Vec<Seat>,
+        bushings: Vec<BondedPart<'p>>,
+        options: &ExchangeOptions,
+    ) -> Result<Exchange<'p>, ExchangeError> {
         let assembly = assembly.into();
         check(&assembly, &seats, options)?;
         let method = ExplicitMethod::CentralDifferences;
@@ -154,7 +178,16 @@ impl Exchange {
             })
             .collect();
         let seats = seated(&assembly, &mut solids, seats);
-        let longest = longest_window(&assembly, &seats, options.seat_phase)?;
+        let state = held_start(&assembly, &seats, &bushings)?;
+        let simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
+        let mut on_rubber = Vec::with_capacity(bushings.len());
+        for part in bushings {
+            let name = part.name.clone();
+            let bushing = BondedBushing::new(part, &simulation);
+            on_rubber.push(bushing.map_err(|source| ExchangeError::Bushing { name, source })?);
+        }
+        let assembly = &simulation.system.assembly;
+        let longest = longest_window(assembly, &seats, &on_rubber, options.seat_phase)?;
         let steps: Vec<f64> = solids
             .iter()
             .map(|SteppedSolid { solid, seats, .. }| {
@@ -167,26 +200,30 @@ impl Exchange {
             .collect();
         let elements: Vec<usize> =
             solids.iter().map(|part| part.solid.model.problem.elements.len()).collect();
-        let state = held_start(&assembly, &seats)?;
-        let simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
         // The bodies' own steps divide the windows or are divided by them.
         let (window, steps) = divided(&elements, &steps, longest);
         for (part, steps) in solids.iter_mut().zip(steps) {
             part.steps = steps;
         }
-        let mut exchange = Exchange::of(simulation, solids, window);
+        let mut exchange = Exchange::of(simulation, solids, on_rubber, window);
         exchange.simulation.system.ran.whole.add(Stage::StartEquilibrium, 1);
         exchange.begin()?;
         Ok(exchange)
     }
 
     /// Before its first window.
-    pub(super) fn of(simulation: Simulation, solids: Vec<SteppedSolid>, window: f64) -> Exchange {
+    pub(super) fn of(
+        simulation: Simulation,
+        solids: Vec<SteppedSolid>,
+        bushings: Vec<BondedBushing<'p>>,
+        window: f64,
+    ) -> Exchange<'p> {
         Exchange {
-            is_alone: is_alone(&simulation.system.assembly, &solids),
+            is_alone: is_alone(&simulation.system.assembly, &solids, &bushings),
             loads: Vec::with_capacity(simulation.system.assembly.bodies.len()),
             simulation,
             solids,
+            bushings,
             window,
             exchanges: 0,
             first: 0.0,
@@ -219,6 +256,9 @@ impl Exchange {
             }
             part.sort(&self.simulation);
         }
+        for bushing in &mut self.bushings {
+            bushing.step_in(self.window);
+        }
         self.first = self.balance()?.residual;
         Ok(())
     }
@@ -249,6 +289,7 @@ impl Exchange {
     pub fn ran(&self) -> Ran {
         let mut ran = self.simulation.system.ran.clone();
         ran.solids = self.solids.iter().map(|part| part.solid.ran).collect();
+        ran.solids.extend(self.bushings.iter().map(BondedBushing::ran));
         ran.seats = self.seats().map(|_| Tally::default()).collect();
         for (tally, seat) in ran.seats.iter_mut().zip(self.seats()) {
             tally.add(Stage::Seat, seat.presses);
@@ -263,6 +304,7 @@ impl Exchange {
             part.solid.ran = Tally::default();
             part.seats.iter_mut().for_each(|seat| seat.presses = 0);
         }
+        self.bushings.iter_mut().for_each(BondedBushing::forget_ran);
     }
 
     pub fn seats(&self) -> impl Iterator<Item = &SeatState> {
@@ -286,6 +328,12 @@ impl Exchange {
             let moved = part.through_window();
             moved.map_err(|source| ExchangeError::Solid { name: part.name.clone(), source })
         })?;
+        for bushing in &mut self.bushings {
+            bushing.begin_window(&self.simulation);
+            let moved = bushing.through_window();
+            let named = |source| ExchangeError::Bushing { name: bushing.name.clone(), source };
+            moved.map_err(named)?;
+        }
         self.hand_over();
         self.exchanges += 1;
         let target = self.window * self.exchanges as f64;
@@ -323,12 +371,18 @@ impl Exchange {
     /// The bodies get what their seats have summed up in the window.
     fn hand_over(&mut self) {
         self.loads.clear();
-        for seat in self.solids.iter_mut().flat_map(|part| &mut part.seats) {
-            let (body, load) = (seat.seat.mount.body, seat.take_mean_load(self.window));
-            match self.loads.iter_mut().find(|(other, _)| *other == body) {
+        let (loads, window) = (&mut self.loads, self.window);
+        let mut push = |body: usize, load: RaceLoads| {
+            match loads.iter_mut().find(|(other, _)| *other == body) {
                 Some((_, sum)) => sum.add(&load),
-                None => self.loads.push((body, load)),
+                None => loads.push((body, load)),
             }
+        };
+        for seat in self.solids.iter_mut().flat_map(|part| &mut part.seats) {
+            push(seat.seat.mount.body, seat.take_mean_load(window));
+        }
+        for now in self.bushings.iter().flat_map(|bushing| &bushing.sleeves) {
+            push(now.sleeve.body, now.mean_load(window));
         }
         self.simulation.set_outside_loads(&self.loads);
     }
@@ -344,6 +398,9 @@ impl Exchange {
                 Some(work) => seat.work = work,
                 None => seat.book(self.window, &self.simulation.body(seat.seat.mount.body)),
             }
+        }
+        for now in self.bushings.iter_mut().flat_map(|bushing| &mut bushing.sleeves) {
+            now.book(self.window, &self.simulation.body(now.sleeve.body));
         }
     }
 
@@ -373,9 +430,13 @@ impl Exchange {
     /// contacts do to the bodies in between is added.
     fn balance(&mut self) -> Result<ExchangeSnapshot, ExchangeError> {
         let bodies = self.simulation.snapshot()?;
-        let Exchange { simulation, solids, .. } = self;
+        let Exchange { simulation, solids, bushings, .. } = self;
         let solids: Vec<SolidSnapshot> =
             solids.iter_mut().map(|part| part.snapshot(simulation)).collect();
+        let bushings: Vec<BondedSnapshot> =
+            bushings.iter_mut().map(|part| part.snapshot(simulation)).collect();
+        let of_bushings =
+            |of: fn(&BondedSnapshot) -> f64| -> f64 { bushings.iter().map(of).sum() };
         let of_seats = |of: fn(&SeatSnapshot) -> f64| -> f64 {
             solids.iter().flat_map(|solid| &solid.seats).map(of).sum()
         };
@@ -389,33 +450,43 @@ impl Exchange {
             bodies.residual + of_seats(|seat| seat.work) + of_seats(|seat| seat.to_come) + held
                 - of_solids(|solid| solid.ledger.external_work)
                 - of_solids(|solid| solid.ledger.damping_work)
-                - of_seats(|seat| seat.growth_work);
+                - of_seats(|seat| seat.growth_work)
+                + of_bushings(|of| of.work + of.to_come + of.held() + of.dissipated);
         let work: f64 = bodies.ledger.iter().map(|entry| entry.abs()).sum();
         let turned_over = bodies.energy.contact
             + held
             + work
             + of_solids(|solid| solid.ledger.external_work.abs())
             + of_solids(|solid| solid.ledger.damping_work.abs())
-            + of_seats(|seat| seat.growth_work.abs());
-        Ok(ExchangeSnapshot { simulation: bodies, solids, residual, turned_over })
+            + of_seats(|seat| seat.growth_work.abs())
+            + of_bushings(|of| of.held() + of.dissipated);
+        Ok(ExchangeSnapshot { simulation: bodies, solids, bushings, residual, turned_over })
     }
 }
 
 /// Whether one seat is all that pushes or brakes the bodies of an assembly from outside.
-fn is_alone(assembly: &Assembly, solids: &[SteppedSolid]) -> bool {
+fn is_alone(assembly: &Assembly, solids: &[SteppedSolid], bushings: &[BondedBushing]) -> bool {
     let mut brakes =
         assembly.bodies.iter().filter_map(Body::driven).flat_map(|b| b.foundation_damping);
     let seats: usize = solids.iter().map(|part| part.seats.len()).sum();
-    seats == 1 && assembly.connections.is_empty() && brakes.all(|damping| damping == 0.0)
+    seats == 1 && bushings.is_empty() && assembly.connections.is_empty() && brakes.all(|damping| damping == 0.0)
 }
 
-/// State of an assembly in equilibrium whose bodies in solids are held where they rest.
-fn held_start(assembly: &Assembly, seats: &[Seat]) -> Result<Vec<f64>, StaticsError> {
+/// State of an assembly in equilibrium whose bodies in solids are held where they rest, those on bushings on the
+/// springs that these are like.
+fn held_start(
+    assembly: &Assembly,
+    seats: &[Seat],
+    bushings: &[BondedPart],
+) -> Result<Vec<f64>, StaticsError> {
     let mut held = assembly.clone();
+    held.connections.extend(bushings.iter().map(|part| part.spring.clone()));
     for seat in seats {
         held.bodies[seat.mount.body].hold();
     }
     let mut state = start::at_equilibrium(&held)?;
+    let [own, with_springs] = [assembly, &held].map(|of| Places::of(of).ledger());
+    state.drain(own..with_springs);
     for seat in seats {
         let body = seat.mount.body;
         if held.bodies[body].driven().is_some() {

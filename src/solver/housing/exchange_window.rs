@@ -1,16 +1,18 @@
 //! How long the windows of an exchange are, and what cannot be exchanged.
 
+use super::bonded::BondedBushing;
 use super::exchange::{ExchangeError, ExchangeOptions};
 use super::seat::Seat;
 use crate::solver::dynamics::assembly::Assembly;
 
-/// The longest window for which no body goes further on its seats than `phase`, s.
+/// The longest window for which no body goes further on its seats and bushings than `phase`, s.
 pub(super) fn longest_window(
     assembly: &Assembly,
     seats: &[Seat],
+    bushings: &[BondedBushing],
     phase: f64,
 ) -> Result<f64, ExchangeError> {
-    if seats.is_empty() {
+    if seats.is_empty() && bushings.is_empty() {
         return Err(ExchangeError::NoSeat { seat: String::new() });
     }
     let mut most = 0.0f64;
@@ -21,6 +23,13 @@ pub(super) fn longest_window(
             if shift.is_nan() || shift <= 0.0 {
                 return Err(ExchangeError::NoSeat { seat: seat.suffix() });
             }
+            sums = [sums[0] + shift, sums[1] + tilt];
+        }
+        let sleeves = |bushing: &&BondedBushing| {
+            bushing.sleeves.iter().any(|now| now.sleeve.body == index)
+        };
+        for bushing in bushings.iter().filter(sleeves) {
+            let [shift, tilt] = bushing.stiffness;
             sums = [sums[0] + shift, sums[1] + tilt];
         }
         let Some(inertia) = body.inertia() else { continue };

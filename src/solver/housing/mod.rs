@@ -11,6 +11,8 @@
 //!
 //! With inertia, for linear housings: [`reduce`] makes of the housing some shapes that move with the bodies of the bearing
 //! (`solver::dynamics`), from [`reduced_start`] on. What a condensed housing takes for granted it takes too.
+pub mod bonded;
+pub mod bonded_state;
 pub mod bore_equilibrium;
 pub mod checkpoint;
 pub mod condensed;

@@ -92,18 +92,40 @@ impl Seat {
 
     /// The body that carries the race, and the race, after `time` s if nothing pushes them.
     fn carried(&self, body: &BodyState, time: f64) -> [RaceNow; 2] {
-        let turn = UnitQuaternion::from_scaled_axis(Vector3::from(body.spin) * time);
-        let body = RaceNow::new(BodyState {
-            position: add_scaled(body.position, time, body.velocity),
-            orientation: turn * body.orientation,
-            ..*body
-        });
+        let body = RaceNow::new(carried_on(body, time));
         [body, mounted(&body, &self.mount)]
     }
 
     fn frame_after(&self, body: &BodyState, time: f64) -> Frame {
         frame(&self.carried(body, time)[1])
     }
+}
+
+/// A body after `time` s if nothing pushes it.
+pub(super) fn carried_on(body: &BodyState, time: f64) -> BodyState {
+    let turn = UnitQuaternion::from_scaled_axis(Vector3::from(body.spin) * time);
+    BodyState {
+        position: add_scaled(body.position, time, body.velocity),
+        orientation: turn * body.orientation,
+        ..*body
+    }
+}
+
+/// What an impulse and a moment of impulse (N·s, N·m·s) come to as loads over all of a window (s).
+pub(super) fn mean_over(handed: &RaceLoads, window: f64) -> RaceLoads {
+    RaceLoads {
+        force: scale(handed.force, 1.0 / window),
+        moment: scale(handed.moment, 1.0 / window),
+    }
+}
+
+/// What loads do to a body in a window, J.
+pub(super) fn work_on_way(loads: &RaceLoads, from: &BodyState, to: &BodyState) -> f64 {
+    let way = sub(to.position, from.position);
+    // A turn of a window is so small that its sine is the angle.
+    let turn = (to.orientation * from.orientation.inverse()).into_inner();
+    let turn = scale([turn.i, turn.j, turn.k], 2.0 * turn.w.signum());
+    dot(loads.force, way) + dot(loads.moment, turn)
 }
 
 fn frame(race: &RaceNow) -> Frame {
@@ -229,19 +251,12 @@ impl SeatState {
     /// What the window's impulse comes to as a load on the body over all of it (N, N·m); from here on it counts.
     pub(super) fn take_mean_load(&mut self, window: f64) -> RaceLoads {
         self.impulse = add(self.impulse, self.handed.force);
-        RaceLoads {
-            force: scale(self.handed.force, 1.0 / window),
-            moment: scale(self.handed.moment, 1.0 / window),
-        }
+        mean_over(&self.handed, window)
     }
 
     /// Books what that load did to the body while it came to `to`.
     pub(super) fn book(&mut self, window: f64, to: &BodyState) {
-        let way = sub(to.position, self.from.position);
-        // A turn of a window is so small that its sine is the angle.
-        let turn = (to.orientation * self.from.orientation.inverse()).into_inner();
-        let turn = scale([turn.i, turn.j, turn.k], 2.0 * turn.w.signum());
-        self.work += (dot(self.handed.force, way) + dot(self.handed.moment, turn)) / window;
+        self.work += work_on_way(&mean_over(&self.handed, window), &self.from, to);
     }
 
     /// Sorts the nodes of the bore into those that are tested and those out of reach.

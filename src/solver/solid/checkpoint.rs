@@ -18,6 +18,8 @@ pub struct SolidCheckpoint {
     pub work: SolidWork,
     /// Stresses that rubber remembers, Pa; none of an elastic solid.
     pub memory: Vec<f64>,
+    /// What its dashpots have taken, where that is counted, J.
+    pub dissipated: f64,
 }
 
 impl ExplicitSolid {
@@ -38,6 +40,7 @@ impl ExplicitSolid {
         checkpoint.work = self.work;
         if let Some(rubber) = &self.rubber {
             checkpoint.memory = rubber.memory();
+            checkpoint.dissipated = rubber.dissipated;
         }
     }
 
@@ -59,6 +62,7 @@ impl ExplicitSolid {
         self.work = checkpoint.work;
         if let Some(rubber) = &mut self.rubber {
             rubber.remember(&checkpoint.memory);
+            rubber.dissipated = checkpoint.dissipated;
         }
     }
 }

@@ -28,6 +28,9 @@ pub struct RubberState {
     pub work: f64,
     /// What the dashpots have taken so far by the law of small strain, J.
     pub dissipated: f64,
+    /// Of the nodes, m/s and m/s², where they have inertia.
+    pub speed: Vec<Vec3>,
+    pub acceleration: Vec<Vec3>,
 }
 
 impl RubberState {
@@ -42,6 +45,8 @@ impl RubberState {
             velocity: vec![[0.0; 3]; nodes],
             rate: vec![[0.0; 6]; points],
             forces: vec![[0.0; 3]; nodes],
+            speed: vec![[0.0; 3]; model.mass.len()],
+            acceleration: vec![[0.0; 3]; model.mass.len()],
             ..RubberState::default()
         }
     }
@@ -52,6 +57,7 @@ impl RubberState {
 pub struct Factored {
     /// See [`super::tangent::StepLaw`].
     pub gain: f64,
+    pub inertia: f64,
     pub displacement: Vec<Vec3>,
     pub carried: Vec<Sym3>,
 }

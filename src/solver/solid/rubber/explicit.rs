@@ -122,6 +122,40 @@ impl ExplicitSolid {
         Ok((solid, found))
     }
 
+    /// Rubber at rest in given displacements (m), in `fraction` of the longest step; what it prescribes is carried
+    /// along by bodies ([`ExplicitSolid::carry`]), which have the mass of those nodes. What its dashpots take is counted.
+    ///
+    /// # Errors
+    /// As [`RubberBody::model`].
+    pub fn of_carried_rubber(
+        body: &RubberBody,
+        fraction: f64,
+        displacement: Vec<Vec3>,
+    ) -> Result<ExplicitSolid, RubberError> {
+        let (mut model, mut forces) = (body.model()?, body.forces()?);
+        let displacement = padded(displacement);
+        let limit = rubber_step_limit(body, &model, &mut forces, &displacement).limit;
+        for Prescribed { node, .. } in std::mem::take(&mut model.problem.prescribed) {
+            model.mass[node as usize] = 0.0;
+        }
+        let still = vec![[0.0; 4]; displacement.len()];
+        let method = ExplicitMethod::CentralDifferences;
+        let mut solid = ExplicitSolid::at_rest(model, method, fraction * limit.step, limit);
+        forces.count_dissipation();
+        solid.rubber = Some(Box::new(forces));
+        solid.start(displacement, still);
+        Ok(solid)
+    }
+
+    /// Puts nodes that bodies carry where they are now and lets them go on at such a rate: node, displacement (m), rate
+    /// (m/s).
+    pub fn carry(&mut self, nodes: impl Iterator<Item = (u32, Vec3, Vec3)>) {
+        for (node, displacement, rate) in nodes {
+            self.displacement[node as usize][..3].copy_from_slice(&displacement);
+            self.rate[node as usize][..3].copy_from_slice(&rate);
+        }
+    }
+
     /// Forces and memory of a solid of rubber.
     pub fn rubber(&self) -> Option<&RubberForces> {
         self.rubber.as_deref()

@@ -98,7 +98,7 @@ struct Space<'a> {
 impl<'a> Space<'a> {
     fn new(model: &'a RubberModel, t: f64, middle: f64) -> Result<Space<'a>, RubberError> {
         let mut tangent = Tangent::new(model);
-        let law = StepLaw { gain: middle - 1.0, carried: &[] };
+        let law = StepLaw { gain: middle - 1.0, carried: &[], inertia: 0.0 };
         let rest = vec![[0.0; 3]; model.problem.nodes.len()];
         let mut moved = rest.clone();
         model.prescribe(Moment::at(t), &mut moved);

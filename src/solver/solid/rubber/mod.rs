@@ -1,7 +1,9 @@
-//! Solids of rubber without inertia: implicit steps of ten-node elements with a continuous mean stress, the
-//! response to small vibrations, and a homogeneous bar. With inertia: four-node elements for explicit steps.
+//! Solids of rubber: implicit steps of ten-node elements with a continuous mean stress, without inertia or (where bodies
+//! carry their bonded nodes) with it; the response to small vibrations; a homogeneous bar; four-node elements for
+//! explicit steps.
 pub mod bar;
 pub mod checkpoint;
+pub mod driven;
 pub mod error;
 pub mod explicit;
 pub mod harmonic;

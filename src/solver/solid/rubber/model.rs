@@ -2,7 +2,7 @@
 
 use super::error::RubberError;
 use crate::ch2_housing::elastomer::Elastomer;
-use crate::elements::tet10::{POINTS, Tet10};
+use crate::elements::tet10::{POINTS, Tet10, lumped_mass};
 use crate::elements::tet10_nodal;
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::TetMesh;
@@ -33,6 +33,8 @@ pub struct RubberModel {
     /// The patches at the corners of each element.
     pub patches_of: Vec<[u32; 4]>,
     pub unknowns: Unknowns,
+    /// kg, one for each node; none where its mass is left out.
+    pub mass: Vec<f64>,
 }
 
 /// When loads and prescribed displacements are taken.
@@ -126,7 +128,20 @@ impl RubberModel {
         }
         let (patches, patches_of) = averaged.unwrap_or_else(|| patches(&problem, &tets));
         let unknowns = Unknowns::over(&problem.nodes, lists(&patches), &free, Ordering::Cheapest);
-        Ok(RubberModel { problem, tets, patches, patches_of, unknowns })
+        Ok(RubberModel { problem, tets, patches, patches_of, unknowns, mass: Vec::new() })
+    }
+
+    /// The same with the mass of rubber of `density` kg/m³, lumped.
+    #[must_use]
+    pub fn with_inertia(mut self, density: f64) -> RubberModel {
+        self.mass = vec![0.0; self.problem.nodes.len()];
+        for element in &self.problem.elements {
+            let shares = lumped_mass(&corners(&self.problem.nodes, element), density);
+            for (node, share) in element.iter().zip(shares) {
+                self.mass[*node as usize] += share;
+            }
+        }
+        self
     }
 
     /// An empty stiffness over the unknowns.

@@ -31,6 +31,10 @@ pub struct Search<'a> {
     /// Forces of the elements on the nodes, and loads, N.
     pub internal: Vec<Vec3>,
     pub loads: Vec<Vec3>,
+    /// Displacements of nodes that bodies carry, m.
+    pub driven: Vec<(u32, Vec3)>,
+    /// Where the nodes would be without acceleration at the end of the step, m; with inertia only.
+    pub unaccelerated: Vec<Vec3>,
     right: Vec<f64>,
     moves: Vec<Vec3>,
     pub iterations: usize,
@@ -66,6 +70,8 @@ impl<'a> Search<'a> {
             means: vec![0.0; model.patches.len()],
             internal: vec![[0.0; 3]; count],
             loads: vec![[0.0; 3]; count],
+            driven: Vec::new(),
+            unaccelerated: vec![[0.0; 3]; model.mass.len()],
             right: vec![0.0; model.unknowns.count],
             moves: vec![[0.0; 3]; count],
             iterations: 0,
@@ -94,7 +100,7 @@ impl<'a> Search<'a> {
         let unbalanced = self.balance(at, law)?;
         let before = std::mem::take(&mut self.displacement);
         self.moves.copy_from_slice(&before);
-        self.model.prescribe(at, &mut self.moves);
+        prescribe(self.model, at, &self.driven, &mut self.moves);
         for (moved, before) in self.moves.iter_mut().zip(&before) {
             *moved = std::array::from_fn(|i| moved[i] - before[i]);
         }
@@ -102,7 +108,7 @@ impl<'a> Search<'a> {
             self.tangent.refresh(self.model, law, &before, Some((&self.moves, &mut self.right)));
         self.displacement = before;
         self.check_factor(outcome?, unbalanced.scale == 0.0)?;
-        self.model.prescribe(at, &mut self.displacement);
+        prescribe(self.model, at, &self.driven, &mut self.displacement);
         self.tangent.solve(&mut self.right);
         self.advance();
         self.iterations += 1;
@@ -124,6 +130,15 @@ impl<'a> Search<'a> {
         self.model.add_loads(at, &mut self.loads);
         self.ran.add(Stage::Elements, self.model.tets.len() as u64);
         self.ran.add(Stage::Loads, self.model.problem.loads.len() as u64);
+        if law.inertia > 0.0 {
+            // Their inertia is a load on the nodes.
+            let nodes = self.displacement.iter().zip(&self.unaccelerated);
+            for ((load, mass), (u, free)) in self.loads.iter_mut().zip(&self.model.mass).zip(nodes) {
+                for i in 0..3 {
+                    load[i] -= law.inertia * mass * (u[i] - free[i]);
+                }
+            }
+        }
         let mut found = Unbalanced::default();
         let mut finite = true;
         for (n, of) in self.model.unknowns.of.iter().enumerate() {
@@ -161,7 +176,7 @@ impl<'a> Search<'a> {
         law: &StepLaw,
         options: &Convergence,
     ) -> Result<(), Stop> {
-        self.model.prescribe(at, &mut self.displacement);
+        prescribe(self.model, at, &self.driven, &mut self.displacement);
         self.ran.add(Stage::Supports, self.model.problem.prescribed.len() as u64);
         let mut last = f64::INFINITY;
         let mut fresh = false;
@@ -176,7 +191,7 @@ impl<'a> Search<'a> {
                 let (residual, iterations) = (largest, iteration);
                 return Err(StepFailure::NotConverged { residual, scale, iterations }.into());
             }
-            fresh = !self.tangent.serves(law.gain) || largest > 0.1 * last;
+            fresh = !self.tangent.serves(law) || largest > 0.1 * last;
             if fresh {
                 let displacement = std::mem::take(&mut self.displacement);
                 let outcome = self.tangent.refresh(self.model, law, &displacement, None);
@@ -207,6 +222,14 @@ impl<'a> Search<'a> {
             }
         }
         sum
+    }
+}
+
+/// Sets what is prescribed, and what bodies carry, to where it is at a moment.
+fn prescribe(model: &RubberModel, at: Moment, driven: &[(u32, Vec3)], displacement: &mut [Vec3]) {
+    model.prescribe(at, displacement);
+    for (node, place) in driven {
+        displacement[*node as usize] = *place;
     }
 }
 

@@ -53,12 +53,12 @@ pub struct StepCounts {
 
 /// A solid of rubber on its way.
 pub struct RubberSolid<'a> {
-    search: Search<'a>,
-    options: StepOptions,
-    state: RubberState,
+    pub(super) search: Search<'a>,
+    pub(super) options: StepOptions,
+    pub(super) state: RubberState,
     factors: StepFactors,
     dashpots: DashpotFactors,
-    carried: Vec<Sym3>,
+    pub(super) carried: Vec<Sym3>,
     corners: Vec<f64>,
     /// What the next step should be, s; zero if unknown.
     next: f64,
@@ -250,7 +250,7 @@ impl<'a> RubberSolid<'a> {
     /// way does not matter.
     fn sudden_part(&mut self, at: Moment, from: &[Vec3]) -> Result<(), Stop> {
         self.carry(0.0)?;
-        let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried };
+        let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia: 0.0 };
         self.search.displacement.copy_from_slice(from);
         self.search.predict(at, &law)?;
         self.search.converge(at, &law, &self.options.convergence)
@@ -361,11 +361,12 @@ impl<'a> RubberSolid<'a> {
 
     /// Finds the equilibrium at the end of a step and changes nothing else. A step that ends at a jump
     /// ends before it.
-    fn equilibrium(&mut self, step: f64, end: f64) -> Result<(), Stop> {
+    pub(super) fn equilibrium(&mut self, step: f64, end: f64) -> Result<(), Stop> {
         let end = if step > 0.0 { end.next_down() } else { end };
         self.carry(step)?;
         let at = Moment::at(end);
-        let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried };
+        let inertia = self.unaccelerated(step);
+        let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia };
         let state = &self.state;
         if state.last > 0.0 {
             self.search.displacement.copy_from_slice(&state.displacement);
@@ -433,7 +434,7 @@ impl<'a> RubberSolid<'a> {
     }
 
     /// Takes what [`RubberSolid::equilibrium`] found as the state.
-    fn accept(&mut self, step: f64, end: f64) {
+    pub(super) fn accept(&mut self, step: f64, end: f64) {
         let model = self.search.model;
         let material = &model.problem.material;
         let (terms, shear_modulus) = (material.maxwell.len(), material.network.shear_modulus());
@@ -469,15 +470,16 @@ impl<'a> RubberSolid<'a> {
         self.search.ran.add(Stage::Maxwell, terms as u64);
         state.last = step;
         state.time = end;
+        self.accelerate(step);
         self.counts.accepted += 1;
     }
 
     /// Forces of the state that stands, after a search that failed.
-    fn restore_forces(&mut self) {
+    pub(super) fn restore_forces(&mut self) {
         self.search.displacement.copy_from_slice(&self.state.displacement);
         // A step of nothing is never refused.
         let _ = self.carry(0.0);
-        let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried };
+        let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia: 0.0 };
         self.search.return_to(Moment::at(self.state.time), &law);
     }
 }

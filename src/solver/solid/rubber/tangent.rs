@@ -20,11 +20,13 @@ pub struct StepLaw<'a> {
     pub gain: f64,
     /// One for each point, or empty for none.
     pub carried: &'a [Sym3],
+    /// Acceleration that a displacement at the end of the step makes, 1/s²; zero without inertia.
+    pub inertia: f64,
 }
 
 impl StepLaw<'_> {
     /// The network alone: long after every Maxwell element has relaxed.
-    pub const RELAXED: StepLaw<'static> = StepLaw { gain: 0.0, carried: &[] };
+    pub const RELAXED: StepLaw<'static> = StepLaw { gain: 0.0, carried: &[], inertia: 0.0 };
 
     fn total(&self, at: usize, own: &Sym3) -> Sym3 {
         let carried = self.carried.get(at).copied().unwrap_or_default();
@@ -162,10 +164,11 @@ impl Tangent {
         &self.matrix
     }
 
-    /// Whether factors of a step with this gain are near enough to begin with.
-    pub fn serves(&self, gain: f64) -> bool {
-        let made = self.factored.gain;
-        self.is_sound && (gain - made).abs() <= 0.05 * (1.0 + made)
+    /// Whether factors of a step are near enough to begin another one with.
+    pub fn serves(&self, law: &StepLaw) -> bool {
+        let Factored { gain, inertia, .. } = self.factored;
+        let near = (law.gain - gain).abs() <= 0.05 * (1.0 + gain);
+        self.is_sound && near && (law.inertia - inertia).abs() <= 0.05 * inertia
     }
 
     /// The state that the factors at hand are of.
@@ -179,8 +182,8 @@ impl Tangent {
     /// As [`Tangent::refresh`]; never in a state that factors were made of before.
     pub fn restore(&mut self, model: &RubberModel, of: Option<&Factored>) -> Result<(), Stop> {
         self.is_sound = false;
-        let Some(Factored { gain, displacement, carried }) = of else { return Ok(()) };
-        let law = StepLaw { gain: *gain, carried };
+        let Some(Factored { gain, inertia, displacement, carried }) = of else { return Ok(()) };
+        let law = StepLaw { gain: *gain, carried, inertia: *inertia };
         self.refresh(model, &law, displacement, None)?.map_err(at_rest).map_err(Stop::All)
     }
 
@@ -227,7 +230,13 @@ impl Tangent {
         for patch in &model.patches {
             self.add_volume(model, displacement, patch, &mut moves);
         }
-        self.factored.gain = law.gain;
+        for (of, mass) in model.unknowns.of.iter().zip(&model.mass) {
+            for unknown in of.iter().filter(|unknown| **unknown != PRESCRIBED) {
+                let entry = Entry { row: *unknown, column: *unknown };
+                self.matrix.add(entry, law.inertia * mass);
+            }
+        }
+        (self.factored.gain, self.factored.inertia) = (law.gain, law.inertia);
         self.factored.displacement.clear();
         self.factored.displacement.extend_from_slice(displacement);
         self.factored.carried.clear();

@@ -6,7 +6,7 @@
 
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::ch2_housing::elastomer::five_terms::FiveTerms;
-use crate::ch2_housing::elastomer::maxwell::StepFactors;
+use crate::ch2_housing::elastomer::maxwell::{DashpotFactors, StepFactors, spring_energy};
 use crate::elements::tet4::{Tet4, relative};
 use crate::elements::tet4_nodal;
 use crate::kinematics::number::Number;
@@ -47,6 +47,10 @@ pub struct RubberForces {
     /// s.
     step: f64,
     factors: StepFactors,
+    /// Where the dashpots' take is counted, which costs a step some of its speed.
+    dashpots: Option<DashpotFactors>,
+    /// What they have taken since, by the law of small strain, J.
+    pub dissipated: f64,
     /// Of each block DEV S, then Hⱼ, Pa.
     memory: Vec<[Lanes; 6]>,
     /// Undeformed volume around each node, a quarter of each element there, m³.
@@ -78,6 +82,8 @@ impl RubberForces {
             memory: vec![zero; blocks.len() * (material.maxwell.len() + 1)],
             chain: FiveTerms::of(&material.network),
             factors: StepFactors::sudden(&material.maxwell),
+            dashpots: None,
+            dissipated: 0.0,
             means: vec![0.0; nodes],
             step: 0.0,
             lowest: 0.0,
@@ -93,7 +99,29 @@ impl RubberForces {
         if dt != self.step {
             self.step = dt;
             self.factors.fill(&self.material.maxwell, dt);
+            if let Some(dashpots) = &mut self.dashpots {
+                dashpots.set(&self.material.maxwell, dt);
+            }
         }
+    }
+
+    /// From now on counts what the dashpots take.
+    pub fn count_dissipation(&mut self) {
+        let mut dashpots = DashpotFactors::default();
+        dashpots.set(&self.material.maxwell, self.step);
+        self.dashpots = Some(dashpots);
+    }
+
+    /// Energy in the springs of the Maxwell elements by the law of small strain, J.
+    pub fn maxwell_energy(&self) -> f64 {
+        let maxwell = &self.material.maxwell;
+        let shear_modulus = self.material.network.shear_modulus();
+        let blocks = self.blocks.iter().zip(self.memory.chunks_exact(maxwell.len() + 1));
+        let of = |(block, memory): (&Block, &[[Lanes; 6]])| {
+            let density = spring_energy(maxwell, &memory[1..], shear_modulus);
+            (block.element.volume * density).to_array().iter().sum::<f64>()
+        };
+        blocks.map(of).sum()
     }
 
     /// About the side of the smallest element, m.
@@ -246,6 +274,8 @@ impl RubberForces {
         let network = self.material.network;
         let around = self.mean_stress == MeanStress::AroundNodes;
         let mut lowest = Lanes::of(f64::INFINITY);
+        let mut taken = Lanes::of(0.0);
+        let shear_modulus = network.shear_modulus();
         // One bound for all, so that it is checked once.
         let displacement = &displacement[..forces.len()];
         let means = &self.means[..forces.len()];
@@ -253,7 +283,14 @@ impl RubberForces {
             let h = block.element.displacement_gradient(&block.relative(displacement));
             let own = law(&green_lagrange(&h));
             let total = match history {
-                History::Commit => remember(memory, own, &self.factors),
+                History::Commit => {
+                    if let Some(dashpots) = &self.dashpots {
+                        let change = std::array::from_fn(|i| own[i] - memory[0][i]);
+                        let density = dashpots.energy(&memory[1..], &change, shear_modulus);
+                        taken += block.element.volume * density;
+                    }
+                    remember(memory, own, &self.factors)
+                }
                 History::Look => foresee(memory, own, &self.factors),
                 History::Scaled(factor) => scaled(own, factor),
             };
@@ -273,6 +310,7 @@ impl RubberForces {
             block.add(force, forces);
         }
         self.lowest = lowest.to_array().into_iter().fold(self.lowest, f64::min);
+        self.dissipated += taken.to_array().iter().sum::<f64>();
     }
 
     /// Whether at the last evaluation no element was turned inside out or stretched beyond its material.
