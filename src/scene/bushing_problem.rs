@@ -8,6 +8,7 @@ use crate::scene::assembly::{
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::connection::Connection;
 use crate::solver::housing::bonded::{BondedElements, BondedPart, Sleeve, add_mass};
+use crate::solver::plan::rubber::Bonded;
 use crate::solver::profile::Profile;
 use crate::solver::solid::model::Prescribed;
 use crate::solver::solid::rubber::error::RubberError;
@@ -171,7 +172,7 @@ impl BushingElements {
     pub fn part(&self) -> BondedPart<'_> {
         let elements = match &self.solved {
             Solved::Explicit { body, fraction } => {
-                BondedElements::Explicit { body, start: &self.model, fraction: *fraction }
+                BondedElements::Explicit { body, fraction: *fraction }
             }
             Solved::Implicit { step } => {
                 BondedElements::Implicit { model: &self.model, step: *step }
@@ -179,6 +180,30 @@ impl BushingElements {
         };
         let (name, sleeves) = (self.name.clone(), self.sleeves.clone());
         BondedPart { name, sleeves, spring: self.spring.clone(), elements }
+    }
+
+    /// The same elements in implicit steps of at most so many seconds: what explicit steps are held against.
+    ///
+    /// # Errors
+    /// As [`RubberBody::implicit`].
+    pub fn in_implicit_steps(&self, step: f64) -> Result<BushingElements, RubberError> {
+        let mut same = BushingElements { solved: Solved::Implicit { step }, ..self.clone() };
+        if let Solved::Explicit { body, .. } = &self.solved {
+            same.model = body.implicit()?;
+            same.model.mass = body.model()?.mass;
+            for node in same.sleeves.iter().flat_map(|sleeve| &sleeve.nodes) {
+                same.model.mass[*node as usize] = 0.0;
+            }
+        }
+        Ok(same)
+    }
+
+    /// As a plan has it, the `index`-th solid of a run.
+    pub fn planned(&self, index: usize) -> Bonded<'_> {
+        let problem = &self.model.problem;
+        let (name, terms) = (self.name.as_str(), problem.material.maxwell.len());
+        let is_explicit = matches!(self.solved, Solved::Explicit { .. });
+        Bonded { name, index, is_explicit, elements: problem.elements.len(), terms }
     }
 
     /// kg, of the nodes that its sleeves have, whoever carries them.

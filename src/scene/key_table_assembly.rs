@@ -1,6 +1,8 @@
 //! Rows of the key table: which bodies bearings sit on, rigid bodies besides the races, springs between them.
 
-use crate::scene::key_table::{DENSITY, DISPLACEMENT, FORCE, LOAD_HINT, MOMENT, SPIN, TILT, TILT_HINT};
+use crate::scene::key_table::{
+    DENSITY, DISPLACEMENT, FORCE, LOAD_HINT, MOMENT, SPIN, TILT, TILT_HINT,
+};
 use crate::scene::key_table_dynamics::{
     DASHPOT, FOUNDATION, FOUNDATION_HINT, INERTIA, INERTIA_HINT, MASS, MASS_HINT, TILT_DASHPOT,
     TILT_FOUNDATION,

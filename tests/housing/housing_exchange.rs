@@ -105,15 +105,15 @@ fn joined(
     model: SolidModel,
     seat: Seat,
     options: &ExchangeOptions,
-) -> Result<Exchange, ExchangeError> {
+) -> Result<Exchange<'static>, ExchangeError> {
     Exchange::new(problem, vec![SolidPart::undeformed(None, model)], vec![seat], options)
 }
 
-fn only(housed: &Exchange) -> &SeatState {
+fn only<'h>(housed: &'h Exchange<'_>) -> &'h SeatState {
     &housed.solids[0].seats[0]
 }
 
-fn start(problem: DynamicProblem, held: bool, damping: f64, reach: f64) -> Exchange {
+fn start(problem: DynamicProblem, held: bool, damping: f64, reach: f64) -> Exchange<'static> {
     start_with(problem, held, damping, reach, &options())
 }
 
@@ -123,7 +123,7 @@ fn start_with(
     damping: f64,
     reach: f64,
     options: &ExchangeOptions,
-) -> Exchange {
+) -> Exchange<'static> {
     let (model, nodes) = housing(held, damping);
     joined(problem, model, seat(nodes, reach), options).unwrap()
 }

@@ -7,6 +7,7 @@ mod dynamics;
 #[path = "../housing_common/mod.rs"]
 mod housing_common;
 
+mod bonded_bushings;
 mod housing_assembly;
 mod housing_bore;
 mod housing_exchange;

@@ -167,7 +167,11 @@ fn options(solid_fraction: f64, seat_phase: f64) -> ExchangeOptions {
 }
 
 /// The two outer races in these housings.
-fn housed(assembly: Assembly, housings: [Housing; 2], options: &ExchangeOptions) -> Exchange {
+fn housed(
+    assembly: Assembly,
+    housings: [Housing; 2],
+    options: &ExchangeOptions,
+) -> Exchange<'static> {
     let (solids, seats) = [0, 1]
         .map(|index| fitted(&housings[index], index, Mount::at_centre(1 + index)))
         .into_iter()
@@ -258,7 +262,7 @@ fn shaft_housings_and_supports_keep_the_momentum() {
 }
 
 /// Races at the ends of a shaft, one put on the other way round, in two free rings.
-fn in_two_bores(options: &ExchangeOptions) -> Exchange {
+fn in_two_bores(options: &ExchangeOptions) -> Exchange<'static> {
     let assembly = Assembly {
         bodies: vec![body("the shaft", Mobility::Driven(free_race().into()), 0.0)],
         ..Assembly::default()
@@ -594,7 +598,7 @@ fn what_is_not_joined_does_not_feel_the_other() {
     }
 }
 
-fn parts(threads: usize) -> HousedParts {
+fn parts(threads: usize) -> HousedParts<'static> {
     // Enough elements for two threads each.
     let fine = |housing: Housing| Housing { around: 120, damping: 77.0, ..housing };
     let housings = [fine(left(true)), fine(Housing { wall: 8e-3, ..right(true) })];
@@ -603,7 +607,14 @@ fn parts(threads: usize) -> HousedParts {
         .into_iter()
         .unzip();
     let assembly = on_two(struck(10e-3), ContactDamping::None);
-    HousedParts { assembly, solids, seats, options: options(0.8, 0.25), threads }
+    HousedParts {
+        assembly,
+        solids,
+        seats,
+        bushings: Vec::new(),
+        options: options(0.8, 0.25),
+        threads,
+    }
 }
 
 fn request(end: f64) -> RunRequest {
@@ -616,7 +627,7 @@ fn request(end: f64) -> RunRequest {
     }
 }
 
-fn run(parts: HousedParts, end: f64) -> Session<'static> {
+fn run(parts: HousedParts<'static>, end: f64) -> Session<'static> {
     let mut session = Session::start(Parts::Housed(Box::new(parts)), &request(end)).unwrap();
     while session.advance(1000).unwrap() != Status::Complete {}
     session

@@ -123,7 +123,7 @@ impl Shaft {
     }
 
     /// From the equilibrium of all.
-    pub fn explicit(&self, threads: usize) -> Result<HousedParts, CaseError> {
+    pub fn explicit(&self, threads: usize) -> Result<HousedParts<'static>, CaseError> {
         let mut assembly: Assembly = self.scene.assembly()?;
         let bores = self.bores()?;
         let course = self.course(&bores)?;
@@ -157,7 +157,7 @@ impl Shaft {
             seat_phase: 0.25,
             bearing: RunOptions { energy_limit: f64::INFINITY, ..run.options },
         };
-        Ok(HousedParts { assembly, solids, seats, options, threads })
+        Ok(HousedParts { assembly, solids, seats, bushings: Vec::new(), options, threads })
     }
 
     pub fn request(&self) -> Result<RunRequest, CaseError> {

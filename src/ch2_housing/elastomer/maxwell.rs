@@ -128,14 +128,9 @@ pub fn curvature_error(elements: &[Maxwell], dt: f64) -> f64 {
 }
 
 /// Energy in the springs at small strain, J/m³: Σ H:H/(4 μ₀ γ), μ₀ of the network.
-pub fn spring_energy<T: Number>(
-    elements: &[Maxwell],
-    history: &[Sym3<T>],
-    shear_modulus: f64,
-) -> T {
-    let of = |(element, h): (&Maxwell, &Sym3<T>)| double_dot(h, h) / T::of(element.gamma);
-    let sum = elements.iter().zip(history).map(of).fold(T::of(0.0), |sum, part| sum + part);
-    sum / T::of(4.0 * shear_modulus)
+pub fn spring_energy(elements: &[Maxwell], history: &[Sym3], shear_modulus: f64) -> f64 {
+    let of = |(element, h): (&Maxwell, &Sym3)| double_dot(h, h) / element.gamma;
+    elements.iter().zip(history).map(of).sum::<f64>() / (4.0 * shear_modulus)
 }
 
 /// What the dashpots take at small strain in one step, the same at every point of a body: ∫ Σ H:H/(2 μ₀ γ τ) dt,
@@ -171,7 +166,12 @@ impl DashpotFactors {
 
     /// J/m³ at a point with Hⱼ as before the step, `change` being that of DEV S, Pa; μ₀ of the network.
     #[inline]
-    pub fn energy<T: Number>(&self, history: &[Sym3<T>], change: &Sym3<T>, shear_modulus: f64) -> T {
+    pub fn energy<T: Number>(
+        &self,
+        history: &[Sym3<T>],
+        change: &Sym3<T>,
+        shear_modulus: f64,
+    ) -> T {
         let own = T::of(self.of_change) * double_dot(change, change);
         let parts = history.iter().zip(&self.of).map(|(h, [squared, crossed])| {
             T::of(*squared) * double_dot(h, h) + T::of(*crossed) * double_dot(h, change)

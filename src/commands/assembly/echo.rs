@@ -7,8 +7,8 @@ use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::RunSettings;
 use bearing_dynamics::scene::assembly::{
-    AssemblyScene, BushingInElements, BushingOfSpring, BushingStepping, Carrier, PlacedBearing, PlacedHousing, SIX, Spring, SpringAt,
-    SpringEnd,
+    AssemblyScene, BushingInElements, BushingOfSpring, BushingStepping, Carrier, PlacedBearing,
+    PlacedHousing, SIX, Spring, SpringAt, SpringEnd,
 };
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{FitSize, HousingMethod, HousingSettings};

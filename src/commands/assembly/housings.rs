@@ -151,9 +151,6 @@ pub fn undeformed(
     parts(scene, scene.assembly()?, housings, Vec::new(), threads)
 }
 
-/// Windows as ωH of a body on its bushings, where no housing says: drift and kick are 0.2 % off a swing.
-const PHASE: f64 = 0.2;
-
 fn parts<'p>(
     scene: &AssemblyScene,
     assembly: Assembly,
@@ -173,11 +170,15 @@ fn parts<'p>(
             None => SolidPart::undeformed(name, model),
         });
     }
-    let options = ExchangeOptions {
-        solid_fraction: first.map_or(1.0, |housing| housing.step_fraction),
-        seat_phase: first.map_or(PHASE, |housing| housing.window_phase),
-        // All together are balanced, not the bearings alone.
-        bearing: RunOptions { energy_limit: f64::INFINITY, ..run.options },
+    // All together are balanced, not the bearings alone.
+    let bearing = RunOptions { energy_limit: f64::INFINITY, ..run.options };
+    let options = match first {
+        Some(of) => ExchangeOptions {
+            solid_fraction: of.step_fraction,
+            seat_phase: of.window_phase,
+            bearing,
+        },
+        None => ExchangeOptions::on_rubber(bearing),
     };
     Ok(HousedParts { assembly, solids, seats, bushings: Vec::new(), options, threads })
 }

@@ -8,10 +8,11 @@ use super::{Fallible, housings, still};
 use crate::commands::plan::say_plan;
 use crate::commands::plan_step::{note, refused, step_lines};
 use crate::commands::remarks::{of_springs, turning_races};
-use crate::commands::run::planned_request;
+use crate::commands::run::{self, planned_request};
 use crate::commands::{CommandResult, Outcome, memory};
 use bearing_dynamics::output::session::{HousedParts, RunRequest, table_size};
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
+use bearing_dynamics::scene::bushing_problem::{BushingElements, take_bushings};
 use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{CageInRun, Document, RunSettings};
@@ -20,9 +21,11 @@ use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::foretell::Choice;
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::dynamics::run::Start;
+use bearing_dynamics::solver::housing::bonded::BondedBushing;
 use bearing_dynamics::solver::housing::condensed::Sizes;
 use bearing_dynamics::solver::housing::stepped::SteppedSolid;
 use bearing_dynamics::solver::plan::motion::{self, Planned};
+use bearing_dynamics::solver::plan::rubber;
 use bearing_dynamics::solver::plan::solid::Method;
 use bearing_dynamics::solver::plan::statics::{self, ASKED_FOR};
 use bearing_dynamics::solver::plan::{Item, Stage, Subject};
@@ -90,16 +93,26 @@ fn of_steps(
     reduced: Option<&Shapes>,
     settings: &RunSettings,
 ) -> Fallible<(Vec<Item>, Vec<String>)> {
-    let assembly = match reduced {
+    let mut assembly = match reduced {
         Some(shapes) => shapes.assembly.clone(),
         None => scene.assembly()?,
     };
-    let (request, choice) = planned_request(scene, settings, &assembly, None);
-    let items = stages(scene, housings, &assembly, &request, choice.as_ref());
+    let bushings = take_bushings(scene, &mut assembly)?;
+    // Races without their housings or bushings would have nothing to hold them.
+    let alone = bushings.is_empty() && (housings.is_empty() || reduced.is_some());
+    let (request, choice) = match alone || bushings.is_empty() {
+        true => planned_request(scene, settings, &assembly, None),
+        false => (run::request(scene.common(), settings), None),
+    };
+    let items = stages(scene, (housings, &bushings), &assembly, &request, choice.as_ref());
     let mut notes = Vec::new();
-    // Races without their housings would have nothing to hold them.
-    if housings.is_empty() || reduced.is_some() {
+    if alone {
         notes.extend(step_lines(&assembly, &request));
+    }
+    if !bushings.is_empty() {
+        let parts = bushings.iter().map(BushingElements::part).collect();
+        let parts = housings::explicit(scene, assembly.clone(), housings, parts, 1)?;
+        notes.push(note("step", &windows_text(parts, settings)?));
     }
     notes.push(size_line(&assembly, &request));
     Ok((items, notes))
@@ -108,7 +121,7 @@ fn of_steps(
 /// Items of a run in steps.
 pub fn stages(
     scene: &AssemblyScene,
-    housings: &[Housing],
+    (housings, bushings): (&[Housing], &[BushingElements]),
     assembly: &Assembly,
     request: &RunRequest,
     choice: Option<&Choice>,
@@ -120,7 +133,7 @@ pub fn stages(
     let left_out: Vec<Option<String>> = scene.bearings.iter().map(left_out).collect();
     let left_out: Vec<Option<&str>> = left_out.iter().map(Option::as_deref).collect();
     let mut options = request.options;
-    if !housings.is_empty() {
+    if !(housings.is_empty() && bushings.is_empty()) {
         // Bearings roll in equilibrium with races that are held where they sit in their housings.
         options.start = Start::Equilibrium;
     }
@@ -134,6 +147,9 @@ pub fn stages(
             let seat = (body, housing.name.as_deref());
             solids.extend(motion::stepped_seat(assembly, index, seat));
         }
+    }
+    for (index, bushing) in bushings.iter().enumerate() {
+        solids.extend(rubber::bonded(&bushing.planned(housings.len() + index)));
     }
     let mut items = motion::items(Planned {
         assembly,
@@ -284,9 +300,12 @@ fn windows_text(parts: HousedParts, run: &RunSettings) -> Result<String, Box<dyn
     let steps = |part: &SteppedSolid| {
         let of = part.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
         let limit = part.solid.limit.step;
-        format!("{} of the housing{of} (limit {limit:.3e} s)", steps(part.steps))
+        format!("{} of the housing{of} (limit {limit:.3e} s)", steps_of(part.steps))
     };
-    let solids: Vec<String> = housed.solids.iter().map(steps).collect();
+    let mut solids: Vec<String> = housed.solids.iter().map(steps).collect();
+    let of_bushing =
+        |of: &BondedBushing| format!("{} of the bushing {}", steps_of(of.steps), of.name);
+    solids.extend(housed.bushings.iter().map(of_bushing));
     let start = Instant::now();
     let mut done = 0u64;
     while start.elapsed() < TIMED && done < all {
@@ -307,7 +326,7 @@ fn windows_text(parts: HousedParts, run: &RunSettings) -> Result<String, Box<dyn
     ))
 }
 
-fn steps(count: usize) -> String {
+fn steps_of(count: usize) -> String {
     if count == 1 { "one step".into() } else { format!("{count} steps") }
 }
 

@@ -46,7 +46,7 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
         Motion::Solid(_) => {}
         Motion::Rubber(_) => of_supports(session, table, &mut lines),
     }
-    if !session.motion.solids().is_empty() {
+    if session.motion.is_balanced_whole() {
         let (most, of) = (session.watch.largest_residual, session.watch.turned_over);
         let said = format!("{most:.3e} J at most, of {of:.3e} J turned over");
         lines.push(("energy unaccounted for".into(), said));
@@ -59,9 +59,14 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
         Motion::Housed(housed) => {
             let of_housing: u64 = housed.solids.iter().map(|part| part.solid.steps).sum();
             let of_bearing = housed.simulation.steps;
-            let said = format!(
-                "{done} in {seconds:.2} s; {of_housing} steps of the housing, {of_bearing} of the bearing"
-            );
+            let mut said = format!("{done} in {seconds:.2} s; ");
+            if !housed.solids.is_empty() {
+                said += &format!("{of_housing} steps of the housing, ");
+            }
+            for bushing in &housed.bushings {
+                said += &format!("{} steps of the bushing {}, ", bushing.steps_done(), bushing.name);
+            }
+            said += &format!("{of_bearing} of the bearing");
             ("windows".into(), said)
         }
         Motion::Course(course) => ("equilibria".into(), effort(course, seconds)),

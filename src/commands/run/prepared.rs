@@ -149,7 +149,9 @@ impl<'s> Prepared<'s> {
     /// What moves.
     pub fn parts(&self, threads: usize) -> Fallible<Parts<'_>> {
         Ok(match self {
-            Prepared::Bearings { scene, assembly, housings, bushings, way: Way::Explicit, .. } => {
+            Prepared::Bearings {
+                scene, assembly, housings, bushings, way: Way::Explicit, ..
+            } => {
                 let bushings = bushings.iter().map(BushingElements::part).collect();
                 let assembly = (**assembly).clone();
                 let parts = housings::explicit(scene, assembly, housings, bushings, threads)?;
@@ -311,12 +313,12 @@ impl<'s> Prepared<'s> {
         seconds: Vec<(String, f64)>,
     ) -> Fallible<RunRecord> {
         match self {
-            Prepared::Bearings { scene, settings, assembly, housings, way, .. } => {
+            Prepared::Bearings { scene, settings, assembly, housings, bushings, way } => {
                 // With housings a run that is extended has the bytes of an unbroken one.
                 let choice = choice.filter(|_| housings.is_empty());
                 let planned = match way {
                     Way::Course(..) => plan::of_course(scene, housings, settings)?,
-                    _ => plan::stages(scene, housings, assembly, request, choice),
+                    _ => plan::stages(scene, (housings, bushings), assembly, request, choice),
                 };
                 let mut record = assembly::record(scene, planned, seconds)?;
                 record.ran.whole.add(Stage::IntegratorChoice, u64::from(choice.is_some()));

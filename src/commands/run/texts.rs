@@ -8,6 +8,7 @@ use bearing_dynamics::solver::dynamics::foretell::Choice;
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, Simulation, Stepping as BearingStepping,
 };
+use bearing_dynamics::solver::housing::bonded::{BondedBushing, BondedRubber};
 use bearing_dynamics::solver::housing::exchange::Exchange;
 use bearing_dynamics::solver::housing::stepped::SteppedSolid;
 use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
@@ -132,12 +133,13 @@ fn of_housed(housed: &Exchange, clock: &Clock, request: &RunRequest) -> String {
     let windows = clock.last.unwrap_or(0);
     let by_accuracy = match request.options.stepping {
         BearingStepping::Accuracy(accuracy) => format!(
-            "{}, accuracy {accuracy}: the bearing's steps follow from it, windows and the housing's steps do not\n",
+            "{}, accuracy {accuracy}: the bearing's steps follow from it, windows and the steps of solids do not\n",
             request.options.integrator.name()
         ),
         _ => String::new(),
     };
-    let solids: Vec<String> = housed.solids.iter().map(of_solid_in_window).collect();
+    let mut solids: Vec<String> = housed.solids.iter().map(of_solid_in_window).collect();
+    solids.extend(housed.bushings.iter().map(of_bushing_in_window));
     let seats: String = housed
         .seats()
         .map(|seat| {
@@ -170,6 +172,26 @@ fn of_solid_in_window(part: &SteppedSolid) -> String {
         limit.step,
         part.solid.model.labels.element(limit.element),
     )
+}
+
+fn of_bushing_in_window(bushing: &BondedBushing) -> String {
+    let steps = match bushing.steps {
+        1 => "one step".into(),
+        count => format!("{count} steps"),
+    };
+    let name = &bushing.name;
+    match &bushing.rubber {
+        BondedRubber::Explicit(solid) => format!(
+            "{steps} of the bushing {name} in it (explicit, {} elements of four nodes; limit {:.4e} s)",
+            solid.model.problem.elements.len(),
+            solid.limit.step
+        ),
+        BondedRubber::Implicit(solid) => format!(
+            "{steps} of the bushing {name} in it (implicit, {} elements of ten nodes, {} unknowns)",
+            solid.model().problem.elements.len(),
+            solid.model().unknowns.count
+        ),
+    }
 }
 
 /// How far rows are apart, and how far they were to be.

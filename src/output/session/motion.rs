@@ -259,6 +259,11 @@ impl<'p> Motion<'p> {
         }
     }
 
+    /// Whether a watch balances the energy of all that moves, solids with it.
+    pub fn is_balanced_whole(&self) -> bool {
+        matches!(self, Motion::Solid(_) | Motion::Housed(_))
+    }
+
     /// The solids that move in steps.
     pub fn solids(&self) -> Vec<&ExplicitSolid> {
         match self {

@@ -144,7 +144,10 @@ pub fn remove_arrays(folder: &Path, kept: &str) {
     for entry in entries.flatten() {
         let name = entry.file_name();
         let name = name.to_string_lossy();
-        if name.starts_with("state-") && name.ends_with(".npy") && !stem.is_some_and(|stem| name.starts_with(stem)) {
+        if name.starts_with("state-")
+            && name.ends_with(".npy")
+            && !stem.is_some_and(|stem| name.starts_with(stem))
+        {
             let _ = std::fs::remove_file(entry.path());
         }
     }

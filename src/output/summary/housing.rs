@@ -215,7 +215,7 @@ pub(super) fn method(motion: &Motion) -> Option<&'static str> {
             (!simulation.system.assembly.seats.is_empty()).then_some("reduced")
         }
         Motion::Solid(_) | Motion::Rubber(_) => None,
-        Motion::Housed(_) => Some("explicit"),
+        Motion::Housed(housed) => (!housed.solids.is_empty()).then_some("explicit"),
         Motion::Course(_) => Some("quasi-static"),
     }
 }
@@ -229,6 +229,11 @@ pub(super) fn step(housed: &Exchange) -> Part {
         let (of, solid) = (prefix(&part.name), &part.solid);
         section.insert(format!("{of}housing"), quantity("step", solid.step_size, "s")?);
         section.insert(format!("{of}housing_steps_a_window"), json!(part.steps));
+    }
+    for bushing in &housed.bushings {
+        let name = &bushing.name;
+        section.insert(format!("{name}_bushing"), quantity("step", bushing.step, "s")?);
+        section.insert(format!("{name}_bushing_steps_a_window"), json!(bushing.steps));
     }
     let most = bodies.step_size.min(housed.window);
     section.insert("bearing_at_most".into(), quantity("step", most, "s")?);
@@ -244,6 +249,9 @@ pub(super) fn work(housed: &Exchange) -> Value {
     section.insert("windows".into(), json!(housed.exchanges));
     for part in &housed.solids {
         section.insert(format!("{}housing_steps", prefix(&part.name)), json!(part.solid.steps));
+    }
+    for bushing in &housed.bushings {
+        section.insert(format!("{}_bushing_steps", bushing.name), json!(bushing.steps_done()));
     }
     section.insert("bearing_steps".into(), json!(housed.simulation.steps));
     for part in &housed.solids {

@@ -221,7 +221,7 @@ fn energy(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsE
         let largest = residuals.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
         terms.insert("largest_residual".into(), quantity("largest_residual", largest, "J")?);
     }
-    if !session.motion.solids().is_empty() {
+    if session.motion.is_balanced_whole() {
         let watch = &session.watch;
         let (residual, turned_over) = (watch.largest_residual, watch.turned_over);
         let part = if turned_over > 0.0 { residual / turned_over } else { 0.0 };
@@ -239,7 +239,9 @@ fn energy(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsE
 fn unprefixed<'n>(column: &'n str, motion: &Motion) -> &'n str {
     let Motion::Housed(housed) = motion else { return column };
     let solids = housed.solids.iter().map(|part| &part.name);
-    let mut names = solids.chain(housed.seats().map(|seat| &seat.seat.name)).flatten();
+    let seats = housed.seats().map(|seat| &seat.seat.name);
+    let bushings = housed.bushings.iter().map(|bushing| &bushing.name);
+    let mut names = solids.chain(seats).flatten().chain(bushings);
     let own = |name: &String| column.strip_prefix(name.as_str())?.strip_prefix('_');
     names.find_map(own).unwrap_or(column)
 }

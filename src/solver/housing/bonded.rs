@@ -4,7 +4,7 @@
 //! with is summed over a window and given to the bodies, as of a seat.
 
 use super::seat::{carried_on, mean_over, work_on_way};
-use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, scale, sub};
+use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::connection::{Connection, Law};
 use crate::solver::dynamics::race::RaceLoads;
@@ -16,6 +16,7 @@ use crate::solver::solid::rubber::error::RubberError;
 use crate::solver::solid::rubber::explicit::RubberBody;
 use crate::solver::solid::rubber::measures::RubberLedger;
 use crate::solver::solid::rubber::model::RubberModel;
+use crate::solver::solid::rubber::sleeve::SleeveMotion;
 use crate::solver::solid::rubber::steps::{RubberSolid, StepOptions};
 use crate::solver::solid::tet4_blocks::Node;
 use nalgebra::Vector3;
@@ -27,7 +28,7 @@ pub struct BondedPart<'p> {
     pub name: String,
     /// The bodies of its outer and of its inner sleeve, and where on their axes the middle of the bushing is.
     pub sleeves: [Sleeve; 2],
-    /// The springs that it is like, whose equilibrium a run starts from.
+    /// The springs that it is like, whose equilibrium a run starts from: with the relaxed stiffness of the elements.
     pub spring: Connection,
     pub elements: BondedElements<'p>,
 }
@@ -44,13 +45,59 @@ pub struct Sleeve {
     pub nominal: Vec3,
 }
 
+impl BondedPart<'_> {
+    /// Gives its spring the relaxed stiffness of the elements themselves, which coarse ones overrate: where a run starts
+    /// is then their own equilibrium.
+    ///
+    /// # Errors
+    /// Rubber without an equilibrium.
+    pub(super) fn measure(&mut self) -> Result<(), RubberError> {
+        const BY: f64 = 1e-6;
+        let own;
+        let model = match self.elements {
+            BondedElements::Implicit { model, .. } => model,
+            BondedElements::Explicit { body, .. } => {
+                own = body.implicit()?;
+                &own
+            }
+        };
+        let mut solid = RubberSolid::new(model, StepOptions::default())?;
+        let [outer, inner] = &self.sleeves;
+        let second = usize::from(inner.body == self.spring.ends[1].body);
+        let along = self.spring.ends[second].along;
+        let mut stiffness = [0.0; 4];
+        for (motion, stiffness) in SleeveMotion::ALL.into_iter().zip(&mut stiffness) {
+            let arms = inner.arms.iter().map(|arm| [arm[0] - along, arm[1], arm[2]]);
+            let ways: Vec<Vec3> = arms.map(|arm| motion.displacement(arm)).collect();
+            let moved = inner.nodes.iter().zip(&ways).map(|(node, way)| (*node, scale(*way, BY)));
+            solid.rest_with(outer.nodes.iter().map(|node| (*node, [0.0; 3])).chain(moved))?;
+            let forces = &solid.state().forces;
+            let pulls = inner.nodes.iter().zip(&ways);
+            *stiffness = -pulls.map(|(n, way)| dot(forces[*n as usize], *way)).sum::<f64>() / BY;
+        }
+        let [radial, axial, torsional, conical] = stiffness;
+        if let Law::SpringDashpot(law) = &mut self.spring.law {
+            law.stiffness = [axial, radial, radial, torsional, conical, conical];
+        }
+        Ok(())
+    }
+
+    /// Whether its sleeves are not where they are undeformed.
+    pub(super) fn is_moved(&self, simulation: &Simulation) -> bool {
+        let moved = |sleeve: &Sleeve| {
+            let body = simulation.body(sleeve.body);
+            sleeve.displacements(&body).any(|(_, u)| u != [0.0; 3])
+        };
+        self.sleeves.iter().any(moved)
+    }
+}
+
 /// How the rubber is solved.
 #[derive(Clone, Debug)]
 pub enum BondedElements<'p> {
-    /// Four-node elements in explicit steps (3.12) of so large a part of the longest one; at the start their nodes lie
-    /// where those of the ten-node elements (theirs first) are in equilibrium.
-    Explicit { body: &'p RubberBody, start: &'p RubberModel, fraction: f64 },
-    /// Ten-node elements in implicit steps of about so many seconds.
+    /// Four-node elements in explicit steps (3.12) of so large a part of the longest one.
+    Explicit { body: &'p RubberBody, fraction: f64 },
+    /// Implicit steps of at most so many seconds.
     Implicit { model: &'p RubberModel, step: f64 },
 }
 
@@ -140,10 +187,8 @@ impl SleeveNow {
 
     pub(super) fn begin_window(&mut self, window: f64, body: BodyState) {
         let per_time = |now: Vec3, then: Vec3| scale(sub(now, then), 1.0 / window);
-        self.pushed = [
-            per_time(body.velocity, self.from.velocity),
-            per_time(body.spin, self.from.spin),
-        ];
+        self.pushed =
+            [per_time(body.velocity, self.from.velocity), per_time(body.spin, self.from.spin)];
         self.from = body;
         self.handed = RaceLoads::default();
     }
@@ -183,10 +228,7 @@ impl SleeveNow {
     fn load_now(&self) -> RaceLoads {
         let [last, before] = &self.loads;
         let on = |last: Vec3, before: Vec3| add_scaled(last, 0.5, sub(last, before));
-        RaceLoads {
-            force: on(last.force, before.force),
-            moment: on(last.moment, before.moment),
-        }
+        RaceLoads { force: on(last.force, before.force), moment: on(last.moment, before.moment) }
     }
 }
 
@@ -210,10 +252,11 @@ impl<'p> BondedBushing<'p> {
                     solid.rest_with(at())?;
                     BondedRubber::Implicit(Box::new(solid))
                 }
-                BondedElements::Explicit { body, start, fraction } => {
-                    let mut solid = RubberSolid::new(start, StepOptions::default())?;
+                BondedElements::Explicit { body, fraction } => {
+                    let model = body.implicit()?;
+                    let mut solid = RubberSolid::new(&model, StepOptions::default())?;
                     solid.rest_with(at())?;
-                    let displacement = solid.displacement()[..body.nodes.len()].to_vec();
+                    let displacement = solid.displacement().to_vec();
                     let solid = ExplicitSolid::of_carried_rubber(body, fraction, displacement)?;
                     BondedRubber::Explicit(Box::new(solid))
                 }
@@ -235,7 +278,7 @@ impl<'p> BondedBushing<'p> {
                 let solid = RubberSolid::new(model, StepOptions::default())?;
                 (BondedRubber::Implicit(Box::new(solid)), step)
             }
-            BondedElements::Explicit { body, fraction, .. } => {
+            BondedElements::Explicit { body, fraction } => {
                 let still = vec![[0.0; 3]; body.nodes.len()];
                 let solid = ExplicitSolid::of_carried_rubber(body, fraction, still)?;
                 let step = solid.step_size;
@@ -302,9 +345,11 @@ impl<'p> BondedBushing<'p> {
                 for now in sleeves.iter_mut() {
                     let [here, next] = [after, after + step].map(|t| now.ahead(t));
                     let ways = now.sleeve.displacements(&here).zip(now.sleeve.displacements(&next));
-                    solid.carry(ways.map(|((node, u), (_, next))| {
-                        (node, u, scale(sub(next, u), 1.0 / step))
-                    }));
+                    solid.carry(
+                        ways.map(|((node, u), (_, next))| {
+                            (node, u, scale(sub(next, u), 1.0 / step))
+                        }),
+                    );
                     now.there = next;
                 }
                 solid.step(|_, _, forces: &mut [Node]| {
@@ -319,7 +364,8 @@ impl<'p> BondedBushing<'p> {
             BondedRubber::Implicit(solid) => {
                 let ends = sleeves.each_ref().map(|now| now.ahead(after));
                 let nodes = sleeves.iter().zip(&ends);
-                solid.driven_step(step, nodes.flat_map(|(now, at)| now.sleeve.displacements(at)))?;
+                solid
+                    .driven_step(step, nodes.flat_map(|(now, at)| now.sleeve.displacements(at)))?;
                 for (now, at) in sleeves.iter_mut().zip(ends) {
                     now.there = at;
                     now.take(after, step, |node| solid.state().forces[node as usize]);
@@ -337,6 +383,14 @@ impl<'p> BondedBushing<'p> {
             BondedRubber::Implicit(solid) => (solid.model().problem.elements.len(), 1000),
         };
         (elements * worth * self.steps) as u64
+    }
+
+    /// Steps of the rubber so far.
+    pub fn steps_done(&self) -> u64 {
+        match &self.rubber {
+            BondedRubber::Explicit(solid) => solid.steps,
+            BondedRubber::Implicit(solid) => solid.counts.accepted,
+        }
     }
 
     /// How often each stage ran.
@@ -368,9 +422,8 @@ impl<'p> BondedBushing<'p> {
         let mut found = match &mut self.rubber {
             BondedRubber::Explicit(solid) => {
                 let energy = solid.ledger().energy;
-                let rubber = solid.rubber();
-                let [springs, dissipated] =
-                    rubber.map_or([0.0; 2], |rubber| [rubber.maxwell_energy(), rubber.dissipated]);
+                let of = solid.rubber().map(|rubber| rubber.maxwell_ledger(&solid.displacement));
+                let [springs, dissipated] = of.unwrap_or_default();
                 let (network, kinetic) = (energy.strain, energy.kinetic);
                 BondedSnapshot { network, springs, dissipated, kinetic, ..Default::default() }
             }

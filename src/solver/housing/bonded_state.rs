@@ -60,7 +60,16 @@ impl BondedBushing<'_> {
                 let counts = [accepted, undone, kept.iterations as u64, kept.factorisations as u64];
                 let factored = kept.factored.as_ref();
                 let [gain, inertia] = factored.map_or([-1.0; 2], |of| [of.gain, of.inertia]);
-                all.extend([*time, *last, *work, *dissipated, kept.next, kept.scale, gain, inertia]);
+                all.extend([
+                    *time,
+                    *last,
+                    *work,
+                    *dissipated,
+                    kept.next,
+                    kept.scale,
+                    gain,
+                    inertia,
+                ]);
                 all.extend(counts.map(|count| count as f64));
                 all.extend(speed.as_flattened());
                 all.extend(acceleration.as_flattened());
@@ -90,7 +99,9 @@ impl BondedBushing<'_> {
         match &mut self.rubber {
             BondedRubber::Explicit(solid) => {
                 let nodes = solid.displacement.len();
-                let [time, steps, dissipated] = *rest.split_off(..OF_EXPLICIT)? else { return None };
+                let [time, steps, dissipated] = *rest.split_off(..OF_EXPLICIT)? else {
+                    return None;
+                };
                 let mut next = || -> Option<Vec<Node>> {
                     let part = rest.split_off(..3 * nodes)?.as_chunks::<3>().0;
                     Some(part.iter().map(|v| [v[0], v[1], v[2], 0.0]).collect())

@@ -58,6 +58,13 @@ pub struct ExchangeOptions {
     pub bearing: RunOptions,
 }
 
+impl ExchangeOptions {
+    /// Of bushings without a housing beside them: drift and kick are 0.2 % off the frequency of a swing.
+    pub fn on_rubber(bearing: RunOptions) -> ExchangeOptions {
+        ExchangeOptions { solid_fraction: 1.0, seat_phase: 0.2, bearing }
+    }
+}
+
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ExchangeError {
     #[error(transparent)]
@@ -149,8 +156,8 @@ impl<'p> Exchange<'p> {
         Exchange::with_bushings(assembly, solids, seats, Vec::new(), options)
     }
 
-    /// The same with bushings between bodies: where these and the rest are in equilibrium on the springs that the
-    /// bushings are like, the rubber relaxed.
+    /// The same with bushings between bodies: where these and the rest are in equilibrium on springs as stiff as the
+    /// relaxed rubber in its elements.
     ///
     /// # Errors
     /// As [`Exchange::new`]; rubber without an equilibrium.
@@ -178,8 +185,19 @@ impl<'p> Exchange<'p> {
             })
             .collect();
         let seats = seated(&assembly, &mut solids, seats);
+        let mut bushings = bushings;
         let state = held_start(&assembly, &seats, &bushings)?;
-        let simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
+        let mut simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
+        if bushings.iter().any(|part| part.is_moved(&simulation)) {
+            for part in &mut bushings {
+                let measured = part.measure();
+                let named = |source| ExchangeError::Bushing { name: part.name.clone(), source };
+                measured.map_err(named)?;
+            }
+            let assembly = simulation.system.assembly;
+            let state = held_start(&assembly, &seats, &bushings)?;
+            simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
+        }
         let mut on_rubber = Vec::with_capacity(bushings.len());
         for part in bushings {
             let name = part.name.clone();
@@ -372,12 +390,12 @@ impl<'p> Exchange<'p> {
     fn hand_over(&mut self) {
         self.loads.clear();
         let (loads, window) = (&mut self.loads, self.window);
-        let mut push = |body: usize, load: RaceLoads| {
-            match loads.iter_mut().find(|(other, _)| *other == body) {
+        let mut push =
+            |body: usize, load: RaceLoads| match loads.iter_mut().find(|(other, _)| *other == body)
+            {
                 Some((_, sum)) => sum.add(&load),
                 None => loads.push((body, load)),
-            }
-        };
+            };
         for seat in self.solids.iter_mut().flat_map(|part| &mut part.seats) {
             push(seat.seat.mount.body, seat.take_mean_load(window));
         }
@@ -435,8 +453,7 @@ impl<'p> Exchange<'p> {
             solids.iter_mut().map(|part| part.snapshot(simulation)).collect();
         let bushings: Vec<BondedSnapshot> =
             bushings.iter_mut().map(|part| part.snapshot(simulation)).collect();
-        let of_bushings =
-            |of: fn(&BondedSnapshot) -> f64| -> f64 { bushings.iter().map(of).sum() };
+        let of_bushings = |of: fn(&BondedSnapshot) -> f64| -> f64 { bushings.iter().map(of).sum() };
         let of_seats = |of: fn(&SeatSnapshot) -> f64| -> f64 {
             solids.iter().flat_map(|solid| &solid.seats).map(of).sum()
         };
@@ -469,7 +486,10 @@ fn is_alone(assembly: &Assembly, solids: &[SteppedSolid], bushings: &[BondedBush
     let mut brakes =
         assembly.bodies.iter().filter_map(Body::driven).flat_map(|b| b.foundation_damping);
     let seats: usize = solids.iter().map(|part| part.seats.len()).sum();
-    seats == 1 && bushings.is_empty() && assembly.connections.is_empty() && brakes.all(|damping| damping == 0.0)
+    seats == 1
+        && bushings.is_empty()
+        && assembly.connections.is_empty()
+        && brakes.all(|damping| damping == 0.0)
 }
 
 /// State of an assembly in equilibrium whose bodies in solids are held where they rest, those on bushings on the

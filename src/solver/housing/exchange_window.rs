@@ -25,9 +25,8 @@ pub(super) fn longest_window(
             }
             sums = [sums[0] + shift, sums[1] + tilt];
         }
-        let sleeves = |bushing: &&BondedBushing| {
-            bushing.sleeves.iter().any(|now| now.sleeve.body == index)
-        };
+        let sleeves =
+            |bushing: &&BondedBushing| bushing.sleeves.iter().any(|now| now.sleeve.body == index);
         for bushing in bushings.iter().filter(sleeves) {
             let [shift, tilt] = bushing.stiffness;
             sums = [sums[0] + shift, sums[1] + tilt];

@@ -12,6 +12,34 @@ pub enum Method {
     Steps(String),
 }
 
+/// A bushing in elements between two bodies.
+#[derive(Clone, Copy, Debug)]
+pub struct Bonded<'n> {
+    pub name: &'n str,
+    /// Index among the solids of the run.
+    pub index: usize,
+    pub is_explicit: bool,
+    pub elements: usize,
+    /// Maxwell elements of its rubber.
+    pub terms: usize,
+}
+
+/// Items of a bushing in elements.
+pub fn bonded(of: &Bonded) -> Vec<Item> {
+    let subject = Subject::Solid(of.index);
+    let (nodes, stage, way) = match of.is_explicit {
+        true => ("four", Stage::Explicit, "explicit steps"),
+        false => ("ten", Stage::Implicit, "implicit steps"),
+    };
+    let mesh =
+        format!("{} elements of {nodes} nodes with {} Maxwell elements", of.elements, of.terms);
+    let why = format!(
+        "{way} beside the bearing, with which it exchanges impulses; in place of its springs"
+    );
+    let items = [Item::does(Stage::Elements, subject, mesh), Item::does(stage, subject, why)];
+    items.into_iter().map(|item| item.named(Some(of.name))).collect()
+}
+
 /// Items of the `index`-th solid; `mesh` is what it is made of.
 pub fn items(problem: &RubberProblem, index: usize, mesh: &str, method: &Method) -> Vec<Item> {
     let subject = Subject::Solid(index);

@@ -133,7 +133,8 @@ impl<'a> Search<'a> {
         if law.inertia > 0.0 {
             // Their inertia is a load on the nodes.
             let nodes = self.displacement.iter().zip(&self.unaccelerated);
-            for ((load, mass), (u, free)) in self.loads.iter_mut().zip(&self.model.mass).zip(nodes) {
+            for ((load, mass), (u, free)) in self.loads.iter_mut().zip(&self.model.mass).zip(nodes)
+            {
                 for i in 0..3 {
                     load[i] -= law.inertia * mass * (u[i] - free[i]);
                 }

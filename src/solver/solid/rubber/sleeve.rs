@@ -28,7 +28,7 @@ impl SleeveMotion {
         [SleeveMotion::Radial, SleeveMotion::Axial, SleeveMotion::Torsional, SleeveMotion::Conical];
 
     /// Displacement of a place (m) by a unit of the motion, small angles.
-    fn displacement(self, [x, y, z]: Vec3) -> Vec3 {
+    pub fn displacement(self, [x, y, z]: Vec3) -> Vec3 {
         match self {
             SleeveMotion::Radial => [0.0, 0.0, 1.0],
             SleeveMotion::Axial => [1.0, 0.0, 0.0],

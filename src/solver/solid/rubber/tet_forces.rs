@@ -6,7 +6,7 @@
 
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::ch2_housing::elastomer::five_terms::FiveTerms;
-use crate::ch2_housing::elastomer::maxwell::{DashpotFactors, StepFactors, spring_energy};
+use crate::ch2_housing::elastomer::maxwell::{DashpotFactors, StepFactors, commit, spring_energy};
 use crate::elements::tet4::{Tet4, relative};
 use crate::elements::tet4_nodal;
 use crate::kinematics::number::Number;
@@ -112,16 +112,34 @@ impl RubberForces {
         self.dashpots = Some(dashpots);
     }
 
-    /// Energy in the springs of the Maxwell elements by the law of small strain, J.
-    pub fn maxwell_energy(&self) -> f64 {
-        let maxwell = &self.material.maxwell;
-        let shear_modulus = self.material.network.shear_modulus();
-        let blocks = self.blocks.iter().zip(self.memory.chunks_exact(maxwell.len() + 1));
-        let of = |(block, memory): (&Block, &[[Lanes; 6]])| {
-            let density = spring_energy(maxwell, &memory[1..], shear_modulus);
-            (block.element.volume * density).to_array().iter().sum::<f64>()
-        };
-        blocks.map(of).sum()
+    /// Energy in the springs of the Maxwell elements, and what the dashpots have taken since that is counted, by the law of
+    /// small strain, J: in a state one step ahead of what is remembered, as explicit steps leave it.
+    pub fn maxwell_ledger(&self, displacement: &[Node]) -> [f64; 2] {
+        let material = &self.material;
+        let (terms, shear_modulus) = (material.maxwell.len(), material.network.shear_modulus());
+        let mut dashpots = DashpotFactors::default();
+        dashpots.set(&material.maxwell, self.step);
+        let (mut springs, mut taken) = (0.0, self.dissipated);
+        let mut history = vec![[0.0; 6]; terms];
+        let remembered = self.memory.chunks_exact(terms + 1);
+        for (block, memory) in self.blocks.iter().zip(remembered) {
+            for (lane, nodes) in block.nodes.iter().enumerate() {
+                let tet = block.element_of(lane);
+                let strain =
+                    green_lagrange(&tet.displacement_gradient(&apart(nodes, displacement)));
+                let own = material.network.isochoric_stress(&strain).unwrap_or([f64::NAN; 6]);
+                let of_lane = |part: &Sym3<Lanes>| part.map(|lanes| lanes.as_array()[lane]);
+                let before = of_lane(&memory[0]);
+                let change: Sym3 = std::array::from_fn(|i| own[i] - before[i]);
+                for (to, from) in history.iter_mut().zip(&memory[1..]) {
+                    *to = of_lane(from);
+                }
+                taken += tet.volume * dashpots.energy(&history, &change, shear_modulus);
+                commit(&mut history, &change, &self.factors);
+                springs += tet.volume * spring_energy(&material.maxwell, &history, shear_modulus);
+            }
+        }
+        [springs, taken]
     }
 
     /// About the side of the smallest element, m.
