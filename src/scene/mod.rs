@@ -21,6 +21,7 @@ pub mod about;
 pub mod assembly;
 pub mod bore_shape;
 mod deck_materials;
+pub mod bushing_reach;
 pub mod document;
 pub mod dynamics;
 pub mod error;

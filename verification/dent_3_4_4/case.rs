@@ -193,7 +193,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             100.0 * (1.0 - soft.vibration() / fixed.vibration()),
         )
         .published("reduction")
-        .under("dent")
+        .under("depth")
         .absolute(1.0, "two printed digits")
         .golden(GoldenTolerance::MIXED.floor(0.05))
         .explained(Explanation::new(
@@ -392,4 +392,4 @@ fn figures(context: &mut CaseContext, fixed: &History, soft: &History) -> Result
 }
 
 /// Ours less the published part, per cent.
-const GAP: f64 = -68.939;
+const GAP: f64 = -69.868;

@@ -71,6 +71,7 @@ pub(super) fn write_results(
             if let Some(simulation) = session.motion.bearing() {
                 said.remarks = remarks::of_run(scene, simulation);
             }
+            said.remarks.extend(remarks::beyond_bushings(scene, session));
             housing_results(folder, prepared, session, &mut said)?;
             said.sections.push(("remarks".into(), json!(said.remarks)));
         }

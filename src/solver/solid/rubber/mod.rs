@@ -5,6 +5,7 @@ pub mod checkpoint;
 pub mod error;
 pub mod explicit;
 pub mod harmonic;
+pub mod holds;
 pub mod measures;
 pub mod model;
 pub mod newton;
