@@ -226,14 +226,22 @@ pub fn of_bushings(scene: &AssemblyScene) -> Vec<String> {
             Ok(all) => {
                 let reaches: Vec<String> =
                     SleeveMotion::ALL.into_iter().zip(all).filter_map(reaching).collect();
+                let reached =
+                    if reaches.is_empty() { "nowhere".into() } else { reaches.join(", ") };
+                let rest = if reaches.len() == all.len() {
+                    ""
+                } else {
+                    "; the other motions go to 30 % of its wall with less"
+                };
                 format!(
-                    "the springs of bushing {} are off by {part} % from where relaxed rubber goes {}: measured at large \
-                     displacements on a coarse mesh",
-                    spring.name,
-                    reaches.join(", ")
+                    "the springs of bushing {} are off by {part} % from {reached} on{rest}: relaxed rubber at large \
+                     displacements, on a coarse mesh",
+                    spring.name
                 )
             }
-            Err(error) => format!("how far the springs of bushing {} hold is not known: {error}", spring.name),
+            Err(error) => {
+                format!("how far the springs of bushing {} hold is not known: {error}", spring.name)
+            }
         })
     };
     scene.springs.iter().filter_map(said).collect()
@@ -259,8 +267,8 @@ pub fn beyond_bushings(scene: &AssemblyScene, session: &Session) -> Vec<String> 
         let went = reaching((beyond.motion, beyond.reached))?;
         let holds = reaching((beyond.motion, beyond.holds))?;
         Some(format!(
-            "bushing {} went {went} at t = {} s: its springs, fitted to small vibrations, are off by {} % from {holds} on; \
-             they push back less than the rubber there",
+            "bushing {} went {went} at t = {} s: its springs, fitted to small vibrations, are off by {} % from {holds} on, \
+             and more beyond",
             scene.springs[beyond.spring].name,
             told(beyond.time),
             100.0 * PART

@@ -27,8 +27,10 @@ type Farthest = [[f64; 2]; 4];
 pub fn farthest(assembly: &Assembly, recorder: &Recorder, spring: &str) -> Option<Farthest> {
     let joint = assembly.connections.iter().find(|joint| joint.label.as_deref() == Some(spring))?;
     let Law::SpringDashpot(law) = &joint.law else { return None };
-    let [first, second] =
-        [columns(assembly, recorder, &joint.ends[0])?, columns(assembly, recorder, &joint.ends[1])?];
+    let [first, second] = [
+        columns(assembly, recorder, &joint.ends[0])?,
+        columns(assembly, recorder, &joint.ends[1])?,
+    ];
     let mut all = Farthest::default();
     for row in 0..recorder.rows() {
         let values = recorder.row(row);

@@ -27,9 +27,9 @@
 //! | `state.json`, `state-N.npy` | what the run goes on from |
 //!
 //! Lengths in m, loads in N, angles in degrees, speeds in rad/s.
-pub mod bushing_reach;
 pub mod assembly_results;
 pub mod atomic;
+pub mod bushing_reach;
 pub mod compare;
 pub mod fields;
 pub mod folder;

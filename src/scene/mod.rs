@@ -20,8 +20,8 @@
 pub mod about;
 pub mod assembly;
 pub mod bore_shape;
-mod deck_materials;
 pub mod bushing_reach;
+mod deck_materials;
 pub mod document;
 pub mod dynamics;
 pub mod error;

@@ -82,7 +82,7 @@ fn name_what_holds(bearings: &mut [PlacedBearing], springs: &[Spring]) {
         if names.is_empty() {
             continue;
         }
-        let defaults = placed.scene.defaults_used.iter_mut();
+        let defaults = placed.scene.dynamics.defaults_used.iter_mut();
         for told in defaults.filter(|told| told.key == "outer_race.foundation") {
             told.reason = format!("the moving outer race is held by spring {}", names.join(", "));
         }

@@ -53,7 +53,7 @@ const DEGREE: usize = 4;
 const LAYERS: i32 = 2;
 /// Points of its contour: where it creeps, and where it swings.
 const CREEPING: usize = 24;
-const SWINGING: usize = 48;
+const SWINGING: usize = 40;
 
 struct Rate {
     id: &'static str,
@@ -149,7 +149,7 @@ fn equilibrium(
     context.check(
         Check::new("relaxed", "outer race under 250 N, relaxed", "m", outer)
             .independent(LOAD / at_rest, "load over the stiffness of axisymmetric polynomials")
-            .relative(0.005, "the bushing's mesh; 0.2 % found")
+            .relative(0.01, "the bushing's default mesh, which is 0.6 % too stiff here")
             .golden(GoldenTolerance::MIXED),
     );
     let bearing = TABLE_3_5.bearing(TABLE_3_5.stiffness(fitted), 0.0);
@@ -166,7 +166,7 @@ fn equilibrium(
     context.check(
         Check::new("creeps_to", "outer race 75 s after the load began", "m", long.outer[last])
             .consistency(outer, "course in time against relaxed equilibrium of the same scene")
-            .relative(SAME, "after five times the slowest exponential of the creep, 14.9 s, 0.2 % of the displacement is left")
+            .relative(SAME, "after 75 s 0.4 % of the displacement is left to creep")
             .golden(GoldenTolerance::MIXED),
     );
     let crept = (
@@ -219,7 +219,10 @@ fn creep(
                 apart,
             )
             .independent(0.0, "Laplace transform on axisymmetric polynomials, inverted")
-            .absolute(0.01, "0.4 % of the bushing's mesh, 0.5 % of its springs")
+            .absolute(
+                0.01,
+                "0.6 % of the bushing's mesh; its springs and steps add nothing to that",
+            )
             .golden(GoldenTolerance::MIXED.floor(1e-5)),
         );
         all.push(exact);
@@ -292,14 +295,17 @@ fn together(context: &mut CaseContext, courses: &[Course; 3], outer: f64) {
         .absolute(SAME, "not seen in a figure")
         .golden(GoldenTolerance::MIXED.floor(1e-6)),
     );
-    let left = 100.0 * (1.0 - courses[1].outer_at(30.0) / outer);
+    let long = &courses[1];
+    let last = long.times.len() - 1;
+    let left = [long.row(30.0), last].map(|row| 1.0 - long.outer[row] / outer);
+    let slow = (long.times[last] - 30.0) / (left[0] / left[1]).ln();
     context.finding(
         "left",
         format!(
-            "At 30 s the three agree with one another, and still lack {left:.1} % of the relaxed equilibrium: the slowest Maxwell element, τ = 10 s with \
-             γ = 0.492, creeps by exp(−t/14.9 s), as creep under a constant load is slower than relaxation by 1 + γ. A load that takes {} s would leave the \
-             three 0.5 % apart at 30 s only if the fastest took as long.",
-            RATES[2].duration
+            "At 30 s the three agree with one another, and still lack {:.1} % of the relaxed equilibrium, {:.2} % at {LONG} s. What is left falls by e within \
+             {slow:.1} s: creep under a constant load is slower than the relaxation of its slowest element, 10 s.",
+            100.0 * left[0],
+            100.0 * left[1]
         ),
     );
 }
@@ -382,8 +388,9 @@ fn shares(context: &mut CaseContext) -> Result<(), CaseError> {
             mass: balls + races[0] + races[1],
             stiffness: stiffness(0.01 * f64::from(share)),
         };
-        let exact: Vec<[f64; 2]> = (1..=16)
-            .map(|k| 1e-3 * f64::from(k))
+        let exact: Vec<[f64; 2]> = [1.0, 2.0, 4.0, 7.0, 10.0, 16.0]
+            .map(|ms| 1e-3 * ms)
+            .into_iter()
             .map(|t| [t, on.after_ramp(LOAD, SUDDEN, t, SWINGING)])
             .collect();
         let apart = largest(exact.iter().map(|[t, u]| (course.outer_at(*t) - u).abs() / whole));

@@ -35,7 +35,8 @@ pub fn holds(
         let arm = lever(motion, body);
         let secant = |walls: f64| stiffness(mesh, material, motion, walls * body.thickness / arm);
         let rest = secant(REST)?;
-        let off = |walls: f64| -> Result<f64, RelaxedError> { Ok((secant(walls)? / rest - 1.0).abs()) };
+        let off =
+            |walls: f64| -> Result<f64, RelaxedError> { Ok((secant(walls)? / rest - 1.0).abs()) };
         let look = FIRST * (part / off(FIRST)?).sqrt();
         if look > FARTHEST {
             continue;
