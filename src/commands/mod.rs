@@ -2,6 +2,7 @@
 
 mod asked;
 pub mod assembly;
+mod bushing_remarks;
 pub mod check;
 pub mod compare;
 pub mod earlier;
