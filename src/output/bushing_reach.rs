@@ -38,7 +38,8 @@ pub fn farthest(assembly: &Assembly, recorder: &Recorder, spring: &str) -> Optio
             .map(|(columns, mount)| place(columns, mount, values));
         let by: [f64; 5] = std::array::from_fn(|i| b[i] - a[i]);
         let [x, y, z] = [0, 1, 2].map(|i| by[i] - law.rest[i]);
-        let here = [y.hypot(z), x.abs(), 0.0, by[3].hypot(by[4])];
+        let across = |a: f64, b: f64| (a * a + b * b).sqrt();
+        let here = [across(y, z), x.abs(), 0.0, across(by[3], by[4])];
         for (most, here) in all.iter_mut().zip(here) {
             if here > most[0] {
                 *most = [here, values[0]];

@@ -53,7 +53,7 @@ fn lever(motion: SleeveMotion, body: &Bushing) -> f64 {
     match motion {
         SleeveMotion::Radial | SleeveMotion::Axial => 1.0,
         SleeveMotion::Torsional => radius,
-        SleeveMotion::Conical => radius.hypot(half),
+        SleeveMotion::Conical => (radius * radius + half * half).sqrt(),
     }
 }
 
