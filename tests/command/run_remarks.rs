@@ -335,7 +335,7 @@ fn equilibria_say_that_dents_are_left_out() {
 #[test]
 fn a_run_says_where_it_took_a_bushing_beyond_its_springs() {
     let place = Place::new();
-    let shipped = crate::command_line_common::scene("bearing_on_bushing");
+    let shipped = crate::command_line_common::scene("bearing_on_bushing.toml");
     let out = place.path("out");
     let pushed = |load: &str| {
         let load = format!("inner_race.z.load={load}");
@@ -346,6 +346,8 @@ fn a_run_says_where_it_took_a_bushing_beyond_its_springs() {
             &load,
             "--set",
             "numerics.end=1 ms",
+            "--set",
+            "output.window_start=0 s",
             "--fresh",
             "--out",
             out.to_str().unwrap(),
@@ -379,7 +381,7 @@ fn said_by(output: &Output) -> String {
 /// What holds a race is named, where a spring does.
 #[test]
 fn a_race_on_a_spring_is_not_told_to_have_none() {
-    let shipped = crate::command_line_common::scene("bearing_on_bushing");
+    let shipped = crate::command_line_common::scene("bearing_on_bushing.toml");
     let check = said_by(&bearing(&["check", &shipped]));
     assert!(check.contains("the moving outer race is held by spring mount"), "{check}");
     assert!(!check.contains("no spring holds"), "{check}");
@@ -388,7 +390,7 @@ fn a_race_on_a_spring_is_not_told_to_have_none() {
 /// `--set` is `--vary` with one value.
 #[test]
 fn keys_can_be_replaced_from_the_command_line() {
-    let shipped = crate::command_line_common::scene("settling");
+    let shipped = crate::command_line_common::scene("settling.toml");
     let plan = |set: &str| bearing(&["plan", &shipped, "--set", set]);
     let shorter = said_by(&plan("numerics.end=0.1 s"));
     assert!(shorter.contains("steps to t = 0.1 s"), "{shorter}");
