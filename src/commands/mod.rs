@@ -2,6 +2,7 @@
 
 mod asked;
 pub mod assembly;
+mod bushing_remarks;
 pub mod check;
 pub mod compare;
 pub mod earlier;
@@ -42,6 +43,28 @@ pub enum Outcome {
 
 /// Any error that ends a command: it is shown as one message, with exit code 2.
 pub type CommandResult = Result<Outcome, Box<dyn Error>>;
+
+/// Keys of a scene that the command line replaces.
+#[derive(clap::Args)]
+pub struct Changes {
+    /// key=value in place of what the scene says, as `sweep --vary` writes one; repeat it for more
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    set: Vec<String>,
+}
+
+impl Changes {
+    /// The scene with its keys replaced.
+    pub fn read(&self, scene: &Path) -> Result<Document, Box<dyn Error>> {
+        let mut document = Document::read_file(scene)?;
+        for change in &self.set {
+            let (key, value) = change
+                .split_once('=')
+                .ok_or_else(|| format!("--set {change}: write --set \"key=value\""))?;
+            document.set(key.trim(), value.trim())?;
+        }
+        Ok(document)
+    }
+}
 
 /// Writes to standard output, without what a terminal would obey; a reader that went away
 /// (`bearing … | head`) is no error.

@@ -1,7 +1,7 @@
 //! `bearing plan SCENE`.
 
-use super::{CommandResult, assembly, say, solid};
-use bearing_dynamics::scene::{Document, Subject, resolve_subject};
+use super::{Changes, CommandResult, assembly, say, solid};
+use bearing_dynamics::scene::{Subject, resolve_subject};
 use bearing_dynamics::solver::plan::Item;
 use std::error::Error;
 use std::path::PathBuf;
@@ -10,10 +10,12 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// Scene file (.toml or .json); with a [numerics] table the plan is that of a run
     scene: PathBuf,
+    #[command(flatten)]
+    changes: Changes,
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
-    let document = Document::read_file(&arguments.scene)?;
+    let document = arguments.changes.read(&arguments.scene)?;
     match resolve_subject(&document)? {
         Subject::Solid(solid) => solid::plan::run(&document, &solid),
         Subject::Assembly(scene) => assembly::plan::run(&document, &scene),

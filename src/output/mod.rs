@@ -29,6 +29,7 @@
 //! Lengths in m, loads in N, angles in degrees, speeds in rad/s.
 pub mod assembly_results;
 pub mod atomic;
+pub mod bushing_reach;
 pub mod compare;
 pub mod fields;
 pub mod folder;

@@ -21,6 +21,7 @@ pub mod about;
 pub mod assembly;
 pub mod bore_shape;
 pub mod bushing_problem;
+pub mod bushing_reach;
 mod deck_materials;
 pub mod document;
 pub mod dynamics;

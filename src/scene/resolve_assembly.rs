@@ -63,12 +63,30 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
         .names("spring")
         .map(|name| spring(document, name, (&bodies, &bearings), &mut defaults_used))
         .collect::<Result<Vec<_>, _>>()?;
+    let mut bearings = bearings;
+    name_what_holds(&mut bearings, &springs);
     let scene = AssemblyScene { bearings, bodies: resolved, springs, defaults_used };
     refuse_free_bodies(document, &scene)?;
     if scene.housing_method() == Some(HousingMethod::QuasiStatic) {
         refuse_inertia(document, &scene)?;
     }
     Ok(scene)
+}
+
+/// A race without a foundation may have springs that hold it: its default says which.
+fn name_what_holds(bearings: &mut [PlacedBearing], springs: &[Spring]) {
+    for (index, placed) in bearings.iter_mut().enumerate() {
+        let of_race = |end: &SpringEnd| end.at == SpringAt::Race { bearing: index, side: 1 };
+        let holding = springs.iter().filter(|spring| spring.ends.iter().any(of_race));
+        let names: Vec<&str> = holding.map(|spring| spring.name.as_str()).collect();
+        if names.is_empty() {
+            continue;
+        }
+        let defaults = placed.scene.dynamics.defaults_used.iter_mut();
+        for told in defaults.filter(|told| told.key == "outer_race.foundation") {
+            told.reason = format!("the moving outer race is held by spring {}", names.join(", "));
+        }
+    }
 }
 
 /// What bodies cannot have where equilibria follow one another.

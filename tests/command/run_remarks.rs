@@ -330,3 +330,75 @@ fn equilibria_say_that_dents_are_left_out() {
     assert_eq!(code(&output), 2, "{}", said(&output));
     assert!(stderr(&output).contains("races without dents"), "{}", stderr(&output));
 }
+
+/// A hundredth of a wall is within what the springs of a bushing hold, a sixth is beyond, and both commands say where that is.
+#[test]
+fn a_run_says_where_it_took_a_bushing_beyond_its_springs() {
+    let place = Place::new();
+    let shipped = crate::command_line_common::scene("bearing_on_bushing.toml");
+    let out = place.path("out");
+    let pushed = |load: &str| {
+        let load = format!("inner_race.z.load={load}");
+        let output = bearing(&[
+            "run",
+            &shipped,
+            "--set",
+            &load,
+            "--set",
+            "numerics.end=1 ms",
+            "--set",
+            "output.window_start=0 s",
+            "--fresh",
+            "--out",
+            out.to_str().unwrap(),
+        ]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let summary = json(out.join("summary.json"));
+        let remarks = summary["remarks"].as_array().unwrap().iter();
+        remarks.map(|said| said.as_str().unwrap().to_string()).collect::<Vec<_>>()
+    };
+    let within = pushed("-150 N");
+    assert!(!within.iter().any(|said| said.contains("bushing")), "{within:?}");
+    let beyond = pushed("-2500 N");
+    let said = beyond.iter().find(|said| said.contains("bushing mount went 1.7 mm across"));
+    assert!(
+        said.is_some_and(|said| said.contains("off by 2 % from 1.2 mm across on")),
+        "{beyond:?}"
+    );
+    let output = bearing(&["plan", &shipped]);
+    let plan = said_by(&output);
+    assert!(
+        plan.contains("springs of bushing mount are off by 2 % from 1.2 mm across on"),
+        "{plan}"
+    );
+}
+
+fn said_by(output: &Output) -> String {
+    assert_eq!(code(output), 0, "{}", stderr(output));
+    said(output)
+}
+
+/// What holds a race is named, where a spring does.
+#[test]
+fn a_race_on_a_spring_is_not_told_to_have_none() {
+    let shipped = crate::command_line_common::scene("bearing_on_bushing.toml");
+    let check = said_by(&bearing(&["check", &shipped]));
+    assert!(check.contains("the moving outer race is held by spring mount"), "{check}");
+    assert!(!check.contains("no spring holds"), "{check}");
+}
+
+/// `--set` is `--vary` with one value.
+#[test]
+fn keys_can_be_replaced_from_the_command_line() {
+    let shipped = crate::command_line_common::scene("settling.toml");
+    let plan = |set: &str| bearing(&["plan", &shipped, "--set", set]);
+    let shorter = said_by(&plan("numerics.end=0.1 s"));
+    assert!(shorter.contains("steps to t = 0.1 s"), "{shorter}");
+    for (set, why) in
+        [("numerics.end", "write --set"), ("numerics.ende=1 s", "ende"), ("numerics.end=1 N", "N")]
+    {
+        let output = plan(set);
+        assert_eq!(code(&output), 2, "{set}");
+        assert!(stderr(&output).contains(why), "{}", stderr(&output));
+    }
+}

@@ -3,9 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::output::session::{RunRequest, Session, Status};
 use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
 use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use nalgebra::Complex;
 
@@ -16,6 +14,7 @@ use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
+use crate::motion::{changed_scene, ran};
 use crate::oracles::bonded_bushing::{Section, radial_stiffness};
 use crate::oracles::misalignment::{TABLE_3_5, fitted};
 use crate::oracles::swing::{Stiffness, TwoMasses};
@@ -63,18 +62,8 @@ impl Variant {
         let outer = format!("\"{} mm\"", 2e3 * (INNER_RADIUS + self.thickness));
         let rubber = format!("table = \"3.1\"\nrubber_modulus = \"{} MPa\"", 1e-6 * self.modulus);
         let own = [("\"91 mm\"", outer.as_str()), ("table = \"3.1\"", rubber.as_str())];
-        let mut text = BEARING_ON_BUSHING.to_string();
-        for (from, to) in own.iter().chain(changes) {
-            if !text.contains(from) {
-                return Err(CaseError::message(format!("no {from:?} in the scene")));
-            }
-            text = text.replace(from, to);
-        }
-        let document = Document::read_str(&text, Format::Toml, "bearing_on_bushing.toml")?;
-        match resolve_subject(&document)? {
-            Subject::Assembly(scene) => Ok(*scene),
-            _ => Err(CaseError::message("no bearing in the scene")),
-        }
+        let all: Vec<_> = own.iter().chain(changes).copied().collect();
+        changed_scene(BEARING_ON_BUSHING, &all)
     }
 
     /// By the oracle, at a frequency in Hz.
@@ -99,26 +88,6 @@ fn two_masses(assembly: &Assembly) -> TwoMasses {
     let by = 1e-7;
     let between = (held(by) - held(-by)) / (2.0 * by);
     TwoMasses { masses: [mass(0) + 0.5 * balls, mass(1) + 0.5 * balls], between }
-}
-
-/// Columns of a run.
-fn ran(scene: &AssemblyScene, names: &[&str]) -> Result<Vec<Vec<f64>>, CaseError> {
-    let run = scene.run().ok_or_else(|| CaseError::message("no end"))?;
-    let request = RunRequest {
-        options: run.options,
-        end: run.end,
-        output_interval: run.output_interval,
-        fields_interval: None,
-        channels: run.channels.clone(),
-    };
-    let mut session = Session::start(scene.assembly()?, &request)?;
-    while session.advance(1000)? != Status::Complete {}
-    let series = session.series()?;
-    let column = |name: &&str| {
-        let found = series.column(name).map(|column| column.to_vec());
-        found.ok_or_else(|| CaseError::message(format!("no column {name}")))
-    };
-    names.iter().map(column).collect()
 }
 
 /// What is left to tell of a hit.
@@ -287,12 +256,9 @@ fn steel(context: &mut CaseContext) -> Result<(), CaseError> {
     let fixed = BEARING_ON_BUSHING
         .replace(springs, "")
         .replace("motion = \"5-dof\"\nspeed = \"0 rpm\"", "motion = \"fixed\"");
-    let document = Document::read_str(&fixed, Format::Toml, "fixed.toml")?;
-    let Subject::Assembly(fixed) = resolve_subject(&document)? else {
-        return Err(CaseError::message("no bearing in the scene"));
-    };
+    let fixed = changed_scene(&fixed, &[])?;
     let mut left = Vec::new();
-    for scene in [VARIANTS[0].scene(&[])?, *fixed] {
+    for scene in [VARIANTS[0].scene(&[])?, fixed] {
         let columns = ran(&scene, &["time", "contact_force_on_outer_z"])?;
         let of = |from: f64, to: f64| {
             let rows = (0..columns[0].len()).filter(|row| (from..to).contains(&columns[0][*row]));

@@ -18,8 +18,9 @@ use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::housings::assumptions;
+use crate::motion::{column, done};
 use crate::solids::largest;
-use parts::{Shaft, column, done};
+use parts::Shaft;
 
 pub const CASE: Case = Case {
     id: "shaft_in_two_housings",

@@ -1,14 +1,10 @@
 //! From the shipped scene, with words changed, to what a session moves in each of three ways.
 
-use bearing_dynamics::output::series::Series;
-use bearing_dynamics::output::session::{
-    CourseParts, HousedParts, Parts, RunRequest, Session, Status,
-};
+use bearing_dynamics::output::session::{CourseParts, HousedParts, Parts, RunRequest};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::scene::housing_problem::{HousingSetup, setup};
 use bearing_dynamics::scene::solid_mesh::build_housing;
-use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
 use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::equilibrium::static_assembly;
 use bearing_dynamics::solver::dynamics::run::{RunOptions, Start};
@@ -25,6 +21,7 @@ use bearing_dynamics::solver::statics::{StaticOptions, solve_assembly};
 
 use crate::case::CaseError;
 use crate::housings::SHAFT_IN_TWO_HOUSINGS;
+use crate::motion;
 
 /// Natural shapes of the housings up to this, Hz, and the force that shapes are made for, N.
 const MODES_TO: f64 = 70e3;
@@ -44,23 +41,13 @@ pub struct Shaft {
 impl Shaft {
     /// The shipped scene with these words changed.
     pub fn new(changes: &[(&str, &str)]) -> Result<Shaft, CaseError> {
-        let mut text = SHAFT_IN_TWO_HOUSINGS.to_string();
-        for (from, to) in changes {
-            if !text.contains(from) {
-                return Err(CaseError::message(format!("no {from:?} in the scene")));
-            }
-            text = text.replace(from, to);
-        }
-        let document = Document::read_str(&text, Format::Toml, "shaft_in_two_housings.toml")?;
-        let Subject::Assembly(scene) = resolve_subject(&document)? else {
-            return Err(CaseError::message("no bearings in the scene"));
-        };
+        let scene = motion::changed_scene(SHAFT_IN_TWO_HOUSINGS, changes)?;
         let mut housings = Vec::new();
         for scene in scene.bearings.iter().filter_map(|placed| placed.housed()) {
             let built = build_housing(&scene)?;
             housings.push(Housing { setup: setup(&scene, &built)?, scene });
         }
-        Ok(Shaft { scene: *scene, housings })
+        Ok(Shaft { scene, housings })
     }
 
     pub fn bores(&self) -> Result<Vec<CondensedBore>, CaseError> {
@@ -161,29 +148,10 @@ impl Shaft {
     }
 
     pub fn request(&self) -> Result<RunRequest, CaseError> {
-        let run = self.scene.run().ok_or_else(|| CaseError::message("no end"))?;
+        let asked = motion::request(&self.scene)?;
         Ok(RunRequest {
-            options: RunOptions { start: Start::Equilibrium, ..run.options },
-            end: run.end,
-            output_interval: run.output_interval,
-            fields_interval: None,
-            channels: run.channels.clone(),
+            options: RunOptions { start: Start::Equilibrium, ..asked.options },
+            ..asked
         })
     }
-}
-
-/// A session to its end.
-pub fn done<'p>(
-    parts: impl Into<Parts<'p>>,
-    request: &RunRequest,
-) -> Result<Session<'p>, CaseError> {
-    let mut session = Session::start(parts, request)?;
-    while session.advance(1000)? != Status::Complete {}
-    Ok(session)
-}
-
-/// A column of a table.
-pub fn column(series: &Series, name: &str) -> Result<Vec<f64>, CaseError> {
-    let column = series.column(name);
-    Ok(column.ok_or_else(|| CaseError::message(format!("no column {name}")))?.to_vec())
 }

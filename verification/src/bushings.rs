@@ -59,6 +59,20 @@ pub const BUSHING_RADIAL: &str = include_str!("../../scenes/bushing_radial.toml"
 /// The shipped scene of a bearing on a bushing, hit.
 pub const BEARING_ON_BUSHING: &str = include_str!("../../scenes/bearing_on_bushing.toml");
 
+/// The shipped scene of a bearing with a dent in its fixed outer race.
+pub const DENTED_RACE: &str = include_str!("../../scenes/dented_race.toml");
+
+/// Maxwell elements of Table 3.1 in words of a scene, every γ times a factor, for `[spring.mount.bushing]`.
+pub fn diluted(gammas: f64) -> String {
+    let element = |[gamma, tau]: &[f64; 2]| {
+        let gamma = gammas * gamma;
+        format!(
+            "\n[[spring.mount.bushing.maxwell]]\ngamma = {gamma}\nrelaxation_time = \"{tau} s\"\n"
+        )
+    };
+    MAXWELL.iter().map(element).collect()
+}
+
 /// N and B/C_R of Tables 2.3 and 3.1.
 pub const LOCKING: f64 = 8.0;
 pub const BULK_RATIO: f64 = 100.0;

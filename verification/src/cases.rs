@@ -70,6 +70,8 @@ mod rotating_load_orbit;
 mod rubber_cube_2_3_1;
 #[path = "../rubber_explicit/case.rs"]
 mod rubber_explicit;
+#[path = "../rubber_load_rates_2_4_3/case.rs"]
+mod rubber_load_rates_2_4_3;
 #[path = "../rubber_locking/case.rs"]
 mod rubber_locking;
 #[path = "../settling_and_turning/case.rs"]
@@ -78,6 +80,8 @@ mod settling_and_turning;
 mod shaft_in_two_housings;
 #[path = "../shaft_on_two_bearings/case.rs"]
 mod shaft_on_two_bearings;
+#[path = "../slip_and_spin_3_4_5/case.rs"]
+mod slip_and_spin_3_4_5;
 #[path = "../solid_elements/case.rs"]
 mod solid_elements;
 #[path = "../solid_energy_and_steps/case.rs"]
@@ -138,7 +142,9 @@ pub const CASES: &[Case] = &[
     bushing_geometries_3_4_2::CASE,
     bushing_bulging_3_4_2::CASE,
     bushing_sleeve_motions::CASE,
+    rubber_load_rates_2_4_3::CASE,
     bearing_on_bushing_3_4_3::CASE,
+    slip_and_spin_3_4_5::CASE,
     rubber_locking::CASE,
     rubber_explicit::CASE,
 ];

@@ -9,6 +9,10 @@ use bearing_dynamics::ch2_housing::bearing::geometry::Material;
 use bearing_dynamics::ch2_housing::bearing::hertz::HertzError;
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::output::series::Series;
+use bearing_dynamics::output::session::{Parts, RunRequest, Session, Status};
+use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::race::tilts_of;
 use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Stepping};
@@ -17,6 +21,7 @@ use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::Condition;
 
 use crate::bearings::{self, Hertz, Lengths};
+use crate::case::CaseError;
 use crate::oracles::statics::OracleBearing;
 
 /// rad/s in one revolution a minute.
@@ -77,6 +82,56 @@ pub fn moving(
         rotating_load: None,
         unbalance: 0.0,
     })
+}
+
+/// A shipped scene of bearings with these words changed. Words that are not there are an error: no case computes what it
+/// does not say.
+pub fn changed_scene(shipped: &str, changes: &[(&str, &str)]) -> Result<AssemblyScene, CaseError> {
+    let mut text = shipped.to_string();
+    for (from, to) in changes {
+        if !text.contains(from) {
+            return Err(CaseError::message(format!("no {from:?} in the scene")));
+        }
+        text = text.replace(from, to);
+    }
+    match resolve_subject(&Document::read_str(&text, Format::Toml, "changed.toml")?)? {
+        Subject::Assembly(scene) => Ok(*scene),
+        _ => Err(CaseError::message("no bearing in the scene")),
+    }
+}
+
+/// What the scene asks of its run.
+pub fn request(scene: &AssemblyScene) -> Result<RunRequest, CaseError> {
+    let run = scene.run().ok_or_else(|| CaseError::message("no end"))?;
+    Ok(RunRequest {
+        options: run.options,
+        end: run.end,
+        output_interval: run.output_interval,
+        fields_interval: None,
+        channels: run.channels.clone(),
+    })
+}
+
+/// A session to its end.
+pub fn done<'p>(
+    parts: impl Into<Parts<'p>>,
+    request: &RunRequest,
+) -> Result<Session<'p>, CaseError> {
+    let mut session = Session::start(parts, request)?;
+    while session.advance(1000)? != Status::Complete {}
+    Ok(session)
+}
+
+/// A column of a table.
+pub fn column(series: &Series, name: &str) -> Result<Vec<f64>, CaseError> {
+    let column = series.column(name);
+    Ok(column.ok_or_else(|| CaseError::message(format!("no column {name}")))?.to_vec())
+}
+
+/// Columns of the run of a scene.
+pub fn ran(scene: &AssemblyScene, names: &[&str]) -> Result<Vec<Vec<f64>>, CaseError> {
+    let series = done(scene.assembly()?, &request(scene)?)?.series()?;
+    names.iter().map(|name| column(&series, name)).collect()
 }
 
 /// Runge–Kutta with a fixed step; the balance of energy is left to the case.

@@ -5,6 +5,7 @@ use super::course::{along_course, inertia_estimate, verdicts};
 use super::housing::Housing;
 use super::shapes::{Shapes, shapes};
 use super::{Fallible, housings, still};
+use crate::commands::bushing_remarks::of_bushings;
 use crate::commands::plan::say_plan;
 use crate::commands::plan_step::{note, refused, step_lines};
 use crate::commands::remarks::{of_springs, turning_races};
@@ -57,6 +58,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         (Some(settings), _) => of_steps(scene, &housings, reduced.as_ref(), settings)?,
     };
     notes.extend(of_springs(scene).iter().map(|said| note("spring", said)));
+    notes.extend(of_bushings(scene).iter().map(|said| note("bushing", said)));
     notes.extend(turning_races(scene).map(|said| note("outer race", &said)));
     for housing in &housings {
         notes.extend(housing.notes().iter().map(|said| note("housing mesh", said)));

@@ -8,10 +8,10 @@ mod texts;
 pub use prepared::{planned_request, request};
 
 use super::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
-use super::{CommandResult, Outcome, results_folder, say};
+use super::{Changes, CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::session::{Motion, Session, SessionError, Status};
 use bearing_dynamics::output::state::{self, StateFile, StateRecord, Stopped};
-use bearing_dynamics::scene::{Document, resolve_subject};
+use bearing_dynamics::scene::resolve_subject;
 use bearing_dynamics::solver::housing::bonded::BondedBushing;
 use bearing_dynamics::solver::housing::stepped::SteppedSolid;
 use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
@@ -33,6 +33,8 @@ const ELEMENTS_AT_ONCE: u64 = 200_000;
 pub struct Arguments {
     /// Scene file (.toml or .json) with a [numerics] table
     scene: PathBuf,
+    #[command(flatten)]
+    changes: Changes,
     /// Results folder [default: results/<name of the scene>]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -67,7 +69,7 @@ enum End {
 
 pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
-    let document = Document::read_file(&arguments.scene)?;
+    let document = arguments.changes.read(&arguments.scene)?;
     let subject = resolve_subject(&document)?;
     check_end(&arguments.scene, &subject)?;
     let folder = results_folder(&arguments.scene, &arguments.out);

@@ -4,6 +4,7 @@ use super::figures::key_figures;
 use super::prepared::{Fields, Prepared, SolidOf, Way};
 use crate::commands::assembly::course::{along_course, inertia_estimate, section, verdicts};
 use crate::commands::assembly::housing::Housing;
+use crate::commands::bushing_remarks::beyond_bushings;
 use crate::commands::{remarks, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::bore::{bore_nodes, bore_series};
@@ -71,6 +72,7 @@ pub(super) fn write_results(
             if let Some(simulation) = session.motion.bearing() {
                 said.remarks = remarks::of_run(scene, simulation);
             }
+            said.remarks.extend(beyond_bushings(scene, session));
             housing_results(folder, prepared, session, &mut said)?;
             said.sections.push(("remarks".into(), json!(said.remarks)));
         }

@@ -1,6 +1,7 @@
 //! Studies of run time against error.
 
 mod cage;
+mod dent;
 mod housing;
 mod motion;
 mod motion_sweeps;
@@ -37,4 +38,5 @@ pub const STUDIES: &[Study] = &[
     rubber::RELAXED,
     rubber::SLOW,
     rubber::FAST,
+    dent::DENT,
 ];

@@ -7,6 +7,7 @@ pub mod driven;
 pub mod error;
 pub mod explicit;
 pub mod harmonic;
+pub mod holds;
 pub mod measures;
 pub mod model;
 pub mod newton;

@@ -1,0 +1,68 @@
+//! How far the springs that stand for bushings hold, and where a run went beyond.
+
+use bearing_dynamics::output::bushing_reach::{Beyond, beyond};
+use bearing_dynamics::output::session::Session;
+use bearing_dynamics::scene::assembly::{AssemblyScene, Spring};
+use bearing_dynamics::scene::bushing_reach::{PART, reach};
+use bearing_dynamics::solver::clock::{to_digits, told};
+use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
+
+/// How far a bushing may move before the springs that stand for it stop holding; one line for each.
+pub fn of_bushings(scene: &AssemblyScene) -> Vec<String> {
+    let said = |spring: &Spring| {
+        let of = spring.bushing.as_ref()?;
+        let part = 100.0 * PART;
+        Some(match reach(of) {
+            Ok(all) => {
+                let reaches: Vec<String> =
+                    SleeveMotion::ALL.into_iter().zip(all).filter_map(reaching).collect();
+                let reached =
+                    if reaches.is_empty() { "nowhere".into() } else { reaches.join(", ") };
+                let rest = if reaches.len() == all.len() {
+                    ""
+                } else {
+                    "; the other motions go to 30 % of its wall with less"
+                };
+                format!(
+                    "the springs of bushing {} are off by {part} % from {reached} on{rest}: relaxed rubber at large \
+                     displacements, on a coarse mesh",
+                    spring.name
+                )
+            }
+            Err(error) => {
+                format!("how far the springs of bushing {} hold is not known: {error}", spring.name)
+            }
+        })
+    };
+    scene.springs.iter().filter_map(said).collect()
+}
+
+/// "0.95 mm across"; nothing of a motion without end.
+fn reaching((motion, amplitude): (SleeveMotion, f64)) -> Option<String> {
+    amplitude.is_finite().then(|| match motion {
+        SleeveMotion::Radial => format!("{} mm across", to_digits(1e3 * amplitude, 2)),
+        SleeveMotion::Axial => format!("{} mm along", to_digits(1e3 * amplitude, 2)),
+        SleeveMotion::Torsional => {
+            format!("{} deg about its axis", to_digits(amplitude.to_degrees(), 2))
+        }
+        SleeveMotion::Conical => format!("{} deg tilting", to_digits(amplitude.to_degrees(), 2)),
+    })
+}
+
+/// Bushings that a run took beyond that.
+pub fn beyond_bushings(scene: &AssemblyScene, session: &Session) -> Vec<String> {
+    let Some(assembly) = session.motion.assembly() else { return Vec::new() };
+    let known = |spring: usize| reach(scene.springs[spring].bushing.as_ref()?).ok();
+    let said = |beyond: Beyond| {
+        let went = reaching((beyond.motion, beyond.reached))?;
+        let holds = reaching((beyond.motion, beyond.holds))?;
+        Some(format!(
+            "bushing {} went {went} at t = {} s: its springs, fitted to small vibrations, are off by {} % from {holds} on, \
+             and more beyond",
+            scene.springs[beyond.spring].name,
+            told(beyond.time),
+            100.0 * PART
+        ))
+    };
+    beyond(scene, assembly, &session.recorder, known).into_iter().filter_map(said).collect()
+}

@@ -1,0 +1,21 @@
+//! How far the springs that stand for a bushing of a scene hold.
+
+use crate::mesh::generate::{BushingMesh, Part, bushing};
+use crate::scene::assembly::BushingOfSpring;
+use crate::solver::solid::rubber::holds::holds;
+
+/// Part by which relaxed rubber may push back harder or softer than the springs: as much as their own mesh may miss.
+pub const PART: f64 = 0.02;
+/// The whole bushing, for what follows from ratios of stiffnesses on one mesh: within some per cent of that of finer ones.
+const MESH: BushingMesh =
+    BushingMesh { around: 12, radial: 2, axial: 4, grading: 1.0, part: Part::Whole };
+
+/// Amplitude across, along, about the axis and tilting, m and rad, at which the springs stop holding by [`PART`].
+///
+/// # Errors
+/// Why it could not be found, in words.
+pub fn reach(of: &BushingOfSpring) -> Result<[f64; 4], String> {
+    let solid = bushing(&of.body, &MESH).and_then(|solid| solid.quadratic());
+    let solid = solid.map_err(|error| error.to_string())?;
+    holds(&solid.mesh, &of.body, &of.material, PART).map_err(|error| error.to_string())
+}

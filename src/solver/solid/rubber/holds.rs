@@ -1,0 +1,110 @@
+//! How far the inner sleeve of a bonded bushing may go before springs fitted to small vibrations stop holding: by
+//! relaxed equilibria of the rubber itself at large displacements.
+
+use super::model::{RubberModel, RubberProblem, supports};
+use super::relaxed::{RelaxedError, relaxed};
+use super::sleeve::SleeveMotion;
+use crate::ch2_housing::elastomer::Elastomer;
+use crate::kinematics::vec3::{Vec3, add, sub};
+use crate::mesh::generate::Bushing;
+use crate::mesh::{Elements, TetMesh};
+use crate::solver::profile::Profile;
+use crate::solver::solid::model::Prescribed;
+
+/// Of the wall: where the stiffness counts as that of rest, where it is first looked at, and as far as is looked.
+const REST: f64 = 1e-3;
+const FIRST: f64 = 0.05;
+const FARTHEST: f64 = 0.3;
+
+/// Amplitude of each of [`SleeveMotion::ALL`], m or rad, at which force or moment over displacement differs by `part` from that
+/// of small amplitudes; infinite where it does not within 30 % of the wall. The mesh is that of a whole bushing.
+///
+/// The difference grows with the square of the amplitude: one equilibrium at 5 % of the wall says where to look, one there says
+/// where it is.
+///
+/// # Errors
+/// Those of [`relaxed`]; a mesh of four-node elements.
+pub fn holds(
+    mesh: &TetMesh,
+    body: &Bushing,
+    material: &Elastomer,
+    part: f64,
+) -> Result<[f64; 4], RelaxedError> {
+    let mut all = [f64::INFINITY; 4];
+    for (motion, reach) in SleeveMotion::ALL.into_iter().zip(&mut all) {
+        let arm = lever(motion, body);
+        let secant = |walls: f64| stiffness(mesh, material, motion, walls * body.thickness / arm);
+        let rest = secant(REST)?;
+        let off =
+            |walls: f64| -> Result<f64, RelaxedError> { Ok((secant(walls)? / rest - 1.0).abs()) };
+        let look = FIRST * (part / off(FIRST)?).sqrt();
+        if look > FARTHEST {
+            continue;
+        }
+        let walls = look * (part / off(look)?).sqrt();
+        *reach = walls * body.thickness / arm;
+    }
+    Ok(all)
+}
+
+/// What a unit of the motion moves the sleeve by where it goes farthest: 1, or m a radian.
+fn lever(motion: SleeveMotion, body: &Bushing) -> f64 {
+    let (radius, half) = (0.5 * body.inner_diameter, 0.5 * body.length);
+    match motion {
+        SleeveMotion::Radial | SleeveMotion::Axial => 1.0,
+        SleeveMotion::Torsional => radius,
+        SleeveMotion::Conical => (radius * radius + half * half).sqrt(),
+    }
+}
+
+/// Where a motion by `amount` (m, rad) takes a place of the sleeve.
+fn moved(motion: SleeveMotion, amount: f64, [x, y, z]: Vec3) -> Vec3 {
+    let (sin, cos) = (libm::sin(amount), libm::cos(amount));
+    match motion {
+        SleeveMotion::Radial => [x, y, z + amount],
+        SleeveMotion::Axial => [x + amount, y, z],
+        SleeveMotion::Torsional => [x, cos * y - sin * z, sin * y + cos * z],
+        SleeveMotion::Conical => [cos * x + sin * z, y, cos * z - sin * x],
+    }
+}
+
+/// Relaxed force or moment over the motion, N/m or N·m/rad.
+fn stiffness(
+    mesh: &TetMesh,
+    material: &Elastomer,
+    motion: SleeveMotion,
+    amount: f64,
+) -> Result<f64, RelaxedError> {
+    const HELD: Option<Profile> = Some(Profile::ZERO);
+    let Elements::Quadratic(elements) = &mesh.elements else {
+        return Err(super::error::RubberError::FourNodes.into());
+    };
+    let inner = mesh.node_sets.get("inner").map(Vec::as_slice).unwrap_or_default();
+    let mut prescribed = supports(mesh, &[("outer", [HELD; 3])]);
+    for &node in inner {
+        let place = mesh.nodes[node as usize];
+        let by = sub(moved(motion, amount, place), place);
+        let of = |axis: usize| Prescribed { node, axis, profile: Profile::Constant(by[axis]) };
+        prescribed.extend([0, 1, 2].map(of));
+    }
+    let model = RubberModel::new(RubberProblem {
+        nodes: mesh.nodes.clone(),
+        elements: elements.clone(),
+        material: material.clone(),
+        prescribed,
+        loads: Vec::new(),
+    })?;
+    let found = relaxed(&model, 0.0)?;
+    let pushes = inner.iter().map(|&node| {
+        let node = node as usize;
+        let force = found.reactions[node];
+        let [x, y, z] = add(mesh.nodes[node], found.state.displacement[node]);
+        match motion {
+            SleeveMotion::Radial => force[2],
+            SleeveMotion::Axial => force[0],
+            SleeveMotion::Torsional => y * force[2] - z * force[1],
+            SleeveMotion::Conical => z * force[0] - x * force[2],
+        }
+    });
+    Ok(pushes.sum::<f64>() / amount)
+}
