@@ -1,0 +1,2 @@
+//! A flexible shaft as a beam of stations.
+pub mod beam;

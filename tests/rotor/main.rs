@@ -1,0 +1,3 @@
+//! Laws of flexible rotors.
+
+mod beam;
