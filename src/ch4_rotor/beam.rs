@@ -3,7 +3,7 @@
 //! One plane of bending at a time, over the deflection w (m) and the turn s of the section (rad: the slope but for shear)
 //! at each station. Both are polynomials of degree four in between, which hold the cubic of a beam that is loaded at its ends:
 //! such loads are answered exactly, nothing locks however thin the shaft, and frequencies have errors of the eighth order of the
-//! element's length. The usual element of two stations (its shapes solve the static beam) has a constant shear force,
+//! element's length (of the sixth in slender shafts). The usual element of two stations (its shapes solve the static beam) has a constant shear force,
 //! and errors of the second order wherever shear matters.
 
 use nalgebra::{SMatrix, SVector};
