@@ -7,11 +7,11 @@ use bearing_dynamics::solver::rotor::beam::{
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
-const E: f64 = 210e9;
+pub const E: f64 = 210e9;
 const NU: f64 = 0.3;
-const DENSITY: f64 = 7850.0;
+pub const DENSITY: f64 = 7850.0;
 
-fn steel(length: f64, outer_diameter: f64, inner_diameter: f64) -> BeamSegment {
+pub fn steel(length: f64, outer_diameter: f64, inner_diameter: f64) -> BeamSegment {
     BeamSegment {
         length,
         outer_diameter,
@@ -23,7 +23,7 @@ fn steel(length: f64, outer_diameter: f64, inner_diameter: f64) -> BeamSegment {
 }
 
 /// Area, second moment, κ G A of a full section.
-fn full(diameter: f64) -> [f64; 3] {
+pub fn full(diameter: f64) -> [f64; 3] {
     let area = PI / 4.0 * diameter * diameter;
     let kappa = 6.0 * (1.0 + NU) / (7.0 + 6.0 * NU);
     [area, PI / 64.0 * diameter.powi(4), kappa * E / (2.0 + 2.0 * NU) * area]

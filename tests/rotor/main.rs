@@ -1,3 +1,4 @@
 //! Laws of flexible rotors.
 
 mod beam;
+mod whirl;
