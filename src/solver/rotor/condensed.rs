@@ -20,8 +20,11 @@ pub struct CondensedBeam {
 
 impl BeamMatrices {
     /// What is felt at the stations `kept` when `loads` act on the shaft; [`None`] where what is between them could move
-    /// freely, as it does if there is one station or none.
+    /// freely, as it does if no station is kept.
     pub fn condensed(&self, kept: &[usize], loads: &[StationLoad]) -> Option<CondensedBeam> {
+        if kept.is_empty() {
+            return None;
+        }
         let stations = self.stations.len();
         let mut axial = DVector::zeros(stations);
         let mut lateral = DVector::zeros(STATION * stations);
