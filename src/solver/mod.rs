@@ -20,6 +20,7 @@ pub mod mount;
 pub mod plan;
 pub mod profile;
 pub mod race_position;
+pub mod shaft_shapes;
 pub mod solid;
 pub mod sparse;
 pub mod static_assembly;

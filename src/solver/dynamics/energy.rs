@@ -21,7 +21,7 @@ pub struct Energy {
     pub foundation: f64,
     /// Stored in contacts between balls.
     pub ball_contact: f64,
-    /// Motion and strain of reduced solids.
+    /// Motion and strain of reduced solids, and of bending of shafts.
     pub solid_kinetic: f64,
     pub solid_strain: f64,
     /// Stored in contacts of seats.
@@ -100,6 +100,11 @@ impl System {
             energy.solid_kinetic += of.kinetic;
             energy.solid_strain += of.strain;
             energy.gravity += of.gravity;
+        }
+        for (index, shaft) in assembly.shafts.iter().enumerate() {
+            let of = shaft.energy(self.bent(state, index));
+            energy.solid_kinetic += of.kinetic;
+            energy.solid_strain += of.strain;
         }
         energy.seat = self.seats.iter().map(|seat| seat.contact.energy).sum();
         energy

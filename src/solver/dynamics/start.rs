@@ -63,6 +63,9 @@ fn with_solids(assembly: &Assembly, state: &[f64]) -> Vec<f64> {
     let mut whole = vec![0.0; places.state_len()];
     let bodies = places.body(assembly.bodies.len());
     whole[..bodies].copy_from_slice(&state[..bodies]);
+    for (shaft, at) in assembly.shafts.iter().zip(places.shafts(assembly)) {
+        whole[at..at + shaft.start.len()].copy_from_slice(&shaft.start);
+    }
     for (solid, at) in assembly.solids.iter().zip(places.solids(assembly)) {
         whole[at..at + solid.start.len()].copy_from_slice(&solid.start);
     }
