@@ -6,6 +6,7 @@
 //! the part of the compliance that the natural shapes left out would have had.
 
 use crate::solver::dynamics::shaft::Section;
+use crate::solver::rotor::beam::{Beam, BeamError, BeamMatrices, STATION};
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use std::f64::consts::TAU;
 
@@ -75,6 +76,28 @@ const DEPENDENT: f64 = 1e-10;
 pub enum ShapesError {
     #[error("the mass of the shaft is not positive: {0} kg")]
     Mass(f64),
+}
+
+impl From<&BeamMatrices> for BendingPlane {
+    /// A shaft of revolution bends in both planes alike: the one of Y is taken.
+    fn from(beam: &BeamMatrices) -> BendingPlane {
+        let size = 2 * beam.stations.len();
+        let towards_y = |i: usize| STATION * (i / 2) + [0, 3][i % 2];
+        // (coordinate, its sign) of deflection along Z and turn towards Z.
+        let towards_z = |i: usize| (STATION * (i / 2) + 1 + i % 2, [1.0, -1.0][i % 2]);
+        let in_plane = |of: &DMatrix<f64>| {
+            DMatrix::from_fn(size, size, |i, j| of[(towards_y(i), towards_y(j))])
+        };
+        BendingPlane {
+            stations: beam.stations.clone(),
+            mass: in_plane(&beam.mass),
+            stiffness: in_plane(&beam.stiffness),
+            axial_inertia: DMatrix::from_fn(size, size, |i, j| {
+                let (column, sign) = towards_z(j);
+                sign * beam.gyroscopic[(towards_y(i), column)]
+            }),
+        }
+    }
 }
 
 impl BendingPlane {
@@ -197,7 +220,7 @@ impl BendingPlane {
     /// stiffness, and their frequencies.
     fn independent(&self, answers: &DMatrix<f64>, frequencies: &[f64]) -> (Vec<f64>, DMatrix<f64>) {
         let mass = answers.transpose() * answers;
-        if mass.is_empty() {
+        if answers.is_empty() {
             return (Vec::new(), DMatrix::zeros(answers.nrows(), 0));
         }
         let gram = SymmetricEigen::new(mass);
@@ -279,4 +302,46 @@ impl ShaftShapes {
     pub fn hertz(&self) -> Vec<f64> {
         self.frequencies.iter().map(|w| w / TAU).collect()
     }
+}
+
+/// Why a shaft does not bend as asked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FreeShaftError {
+    #[error(transparent)]
+    Beam(#[from] BeamError),
+    #[error(transparent)]
+    Shapes(#[from] ShapesError),
+}
+
+/// How many shapes a shaft gets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kept {
+    /// Natural ones up to here, rad/s.
+    pub below: f64,
+    /// And no more than these.
+    pub most: usize,
+}
+
+impl Kept {
+    pub const ALL: Kept = Kept { below: f64::INFINITY, most: usize::MAX };
+}
+
+/// The rigid part and the shapes of a beam; something takes hold of it at `holds` (m from its first end, and
+/// whether it may turn the section too).
+///
+/// # Errors
+/// A beam that is none.
+pub fn free_shaft(
+    beam: &Beam,
+    kept: Kept,
+    holds: &[(f64, bool)],
+) -> Result<(RigidPart, ShaftShapes), FreeShaftError> {
+    let places: Vec<f64> = holds.iter().map(|(at, _)| *at).collect();
+    let matrices = beam.matrices(&places)?;
+    let plane = BendingPlane::from(&matrices);
+    let held = holds.iter().filter_map(|&(at, turns)| {
+        matrices.station(at).map(|station| Hold { station, turns })
+    });
+    let shapes = plane.shapes(kept.below, kept.most, &held.collect::<Vec<Hold>>())?;
+    Ok((plane.rigid_part(), shapes))
 }

@@ -7,6 +7,7 @@ mod dynamics;
 
 mod clock_laws;
 mod connections;
+mod bending;
 mod dents;
 mod dynamics_balls;
 mod dynamics_cage;

@@ -284,10 +284,10 @@ impl Linearised {
             }
         }
         let (guides, others) = joints.split_at_mut(2 * system.sets.len());
-        for ((guides, set), bearing) in
-            guides.chunks_mut(2).zip(&system.sets).zip(&system.assembly.bearings)
-        {
-            update_guides(guides, set, bearing, &system.bodies, hubs);
+        for (index, (guides, set)) in guides.chunks_mut(2).zip(&system.sets).enumerate() {
+            let (bearing, holds) =
+                (&system.assembly.bearings[index], &system.holds.bearings[index]);
+            update_guides(guides, set, (bearing, holds), &system.bodies, hubs);
         }
         let held = system.assembly.connections.iter().zip(&system.holds.connections);
         for (joint, (connection, holds)) in others.iter_mut().zip(held) {
@@ -328,13 +328,16 @@ fn update_seat(joint: &mut SeatJoint, now: &SeatNow, off: Vec3, hubs: &[Hub]) {
 fn update_guides(
     guides: &mut [Joint],
     set: &BallSet,
-    bearing: &Bearing,
+    (bearing, holds): (&Bearing, &[Option<Hold>; 2]),
     bodies: &[RaceNow],
     hubs: &[Hub],
 ) {
     let Some(caged) = &bearing.cage else { return };
     let Some(side) = guiding_side(caged.contacts.guidance) else { return };
-    let centres = [bearing.mounts[side].body, caged.body].map(|body| bodies[body].motion.position);
+    let centres = [
+        centre_of_hub(&holds[side], &bodies[bearing.mounts[side].body]),
+        bodies[caged.body].motion.position,
+    ];
     for (guide, contact) in guides.iter_mut().zip(&set.guides) {
         guide.count = if contact.normal_load > 0.0 { 3 } else { 0 };
         if guide.count == 0 {

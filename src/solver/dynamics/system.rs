@@ -8,7 +8,7 @@ use super::model::Rotation;
 use super::race::{self, RaceLoads, RaceNow, mounted};
 use super::reduced_solid::ModalEnergy;
 use super::seat::SeatNow;
-use super::shaft::Bend;
+use super::shaft::{Bend, Section};
 use super::shaft_holds::{Hold, Holds, handed_on, sitting};
 use super::state::{
     BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, POSITION, Places, SPIN, VELOCITY,
@@ -304,6 +304,13 @@ impl System {
                 hold.section.place(body, mount, &bend).race
             }
         }
+    }
+
+    /// A section of a shaft that bends, where a state has it; given motions are not imposed.
+    pub fn section_now(&self, state: &[f64], shaft: usize, section: &Section) -> RaceNow {
+        let body = self.assembly.shafts[shaft].body;
+        let now = RaceNow::new(self.body_state(state, body));
+        section.place(&now, &Mount::at_centre(body), &Bend::of(self.bent(state, shaft))).race
     }
 
     /// Energy of a reduced solid in a state.
