@@ -5,6 +5,7 @@
 //! - [`dynamics`]: bodies, bearings, reduced solids in motion, one state and one step.
 //! - [`solid`]: flexible solids by themselves (explicit steps, equilibrium, modes); [`sparse`] their factors.
 //! - [`housing`]: bearings in flexible solids: exchange with explicit ones, condensed bores, reduction to shapes.
+//! - [`rotor`]: a flexible shaft as a beam.
 //! - [`plan`]: what is done and what is left out; [`clock`] and [`profile`]: time; [`channels`]: what is recorded.
 pub mod ball;
 pub mod ball_on_race;
@@ -20,6 +21,7 @@ pub mod mount;
 pub mod plan;
 pub mod profile;
 pub mod race_position;
+pub mod rotor;
 pub mod shaft_shapes;
 pub mod solid;
 pub mod sparse;

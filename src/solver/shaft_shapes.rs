@@ -339,9 +339,9 @@ pub fn free_shaft(
     let places: Vec<f64> = holds.iter().map(|(at, _)| *at).collect();
     let matrices = beam.matrices(&places)?;
     let plane = BendingPlane::from(&matrices);
-    let held = holds.iter().filter_map(|&(at, turns)| {
-        matrices.station(at).map(|station| Hold { station, turns })
-    });
+    let held = holds
+        .iter()
+        .filter_map(|&(at, turns)| matrices.station(at).map(|station| Hold { station, turns }));
     let shapes = plane.shapes(kept.below, kept.most, &held.collect::<Vec<Hold>>())?;
     Ok((plane.rigid_part(), shapes))
 }

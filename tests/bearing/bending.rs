@@ -54,7 +54,11 @@ fn alone(beam: &Beam, kept: Kept, holds: &[f64], speed: f64) -> Assembly {
     let spinning = RaceBody { inertia, ..spinning };
     Assembly {
         bodies: vec![
-            body("the shaft", Mobility::Driven(spinning.into()), [rigid.centre, 0.0, 0.0, 0.0, 0.0]),
+            body(
+                "the shaft",
+                Mobility::Driven(spinning.into()),
+                [rigid.centre, 0.0, 0.0, 0.0, 0.0],
+            ),
             body(GROUND, Mobility::Fixed, [0.0; 5]),
         ],
         shafts: vec![ElasticShaft { shapes, ..ElasticShaft::default() }],
@@ -138,7 +142,8 @@ fn a_spinning_shaft_rings_as_the_whole_beam() {
         for (kept, tolerance) in [(Kept::ALL, 2e-5), (Kept { most: 3, ..Kept::ALL }, 2e-3)] {
             let mut assembly = alone(&beam, kept, &holds, speed);
             on_springs(&mut assembly, &holds, stiffness);
-            let along_axis = (2.0 * stiffness[0] / assembly.bodies[0].inertia().unwrap().mass).sqrt();
+            let along_axis =
+                (2.0 * stiffness[0] / assembly.bodies[0].inertia().unwrap().mass).sqrt();
             let mut ours = frequencies(&assembly);
             // The motion along the axis is the rigid body's own.
             let axial = ours.iter().position(|w| (w / along_axis - 1.0).abs() < 1e-6).unwrap();
@@ -185,10 +190,8 @@ fn static_answers_make_few_shapes_exact_at_rest() {
     let size = coordinates.len();
     let stiffness =
         DMatrix::from_fn(size, size, |i, j| matrices.stiffness[(coordinates[i], coordinates[j])]);
-    let middle = coordinates
-        .iter()
-        .position(|i| *i == STATION * matrices.station(0.2).unwrap())
-        .unwrap();
+    let middle =
+        coordinates.iter().position(|i| *i == STATION * matrices.station(0.2).unwrap()).unwrap();
     let mut force = DVector::zeros(size);
     force[middle] = -1000.0;
     let expected = stiffness.lu().solve(&force).unwrap()[middle];
@@ -219,11 +222,7 @@ fn run(assembly: Assembly, integrator: Integrator, stepping: Stepping, end: f64)
 fn off(simulation: &Simulation, at: f64) -> f64 {
     let assembly = &simulation.system.assembly;
     let section = section(assembly, at);
-    let [_, y, z] = simulation
-        .system
-        .section_now(&simulation.state, 0, &section)
-        .state
-        .position;
+    let [_, y, z] = simulation.system.section_now(&simulation.state, 0, &section).state.position;
     y.hypot(z)
 }
 
@@ -277,8 +276,7 @@ fn unbalance_response_below_and_above_critical() {
         }
         let push = row(&sections[2]) * (1e-3 * speed * speed);
         let answer = dynamic.lu().solve(&push.map(|value| Complex::new(value, 0.0))).unwrap();
-        let expected =
-            row(&sections[2]).map(|value| Complex::new(value, 0.0)).dot(&answer).norm();
+        let expected = row(&sections[2]).map(|value| Complex::new(value, 0.0)).dot(&answer).norm();
         let simulation = run(assembly, Integrator::RungeKutta, Stepping::Fixed(4e-6), 0.08);
         let ours = off(&simulation, 0.2);
         println!("{rpm} rpm: {ours:e} m, linear {expected:e} m");
@@ -296,8 +294,10 @@ fn on_bearings(speed: Profile, youngs_modulus: f64) -> Assembly {
     assembly.bodies.push(body("the other outer race", Mobility::Fixed, [0.4, 0.0, 0.0, 0.0, 0.0]));
     let ends = [along(&assembly, 0.0), along(&assembly, 0.4)];
     let geometry = table_4_1(-2e-6);
-    assembly.bearings =
-        vec![seated(geometry, "left", ends[0], false, 1), seated(geometry, "right", ends[1], false, 2)];
+    assembly.bearings = vec![
+        seated(geometry, "left", ends[0], false, 1),
+        seated(geometry, "right", ends[1], false, 2),
+    ];
     assembly
 }
 

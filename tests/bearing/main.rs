@@ -5,9 +5,9 @@ mod common;
 #[path = "../common/dynamics.rs"]
 mod dynamics;
 
+mod bending;
 mod clock_laws;
 mod connections;
-mod bending;
 mod dents;
 mod dynamics_balls;
 mod dynamics_cage;

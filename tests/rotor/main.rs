@@ -1,0 +1,4 @@
+//! Laws of flexible rotors.
+
+mod beam;
+mod whirl;
