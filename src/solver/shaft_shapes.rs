@@ -327,7 +327,7 @@ impl Kept {
 }
 
 /// The rigid part and the shapes of a beam; something takes hold of it at `holds` (m from its first end, and
-/// whether it may turn the section too).
+/// whether it may turn the section too), `others` are places where its sections are asked for besides.
 ///
 /// # Errors
 /// A beam that is none.
@@ -335,8 +335,9 @@ pub fn free_shaft(
     beam: &Beam,
     kept: Kept,
     holds: &[(f64, bool)],
+    others: &[f64],
 ) -> Result<(RigidPart, ShaftShapes), FreeShaftError> {
-    let places: Vec<f64> = holds.iter().map(|(at, _)| *at).collect();
+    let places: Vec<f64> = holds.iter().map(|(at, _)| *at).chain(others.iter().copied()).collect();
     let matrices = beam.matrices(&places)?;
     let plane = BendingPlane::from(&matrices);
     let held = holds

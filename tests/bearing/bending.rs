@@ -5,7 +5,7 @@ use crate::common;
 use crate::dynamics;
 use crate::shafts;
 
-use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
+use bearing_dynamics::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, GROUND, Mobility};
 use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::solver::dynamics::contacts::Driver;
@@ -16,19 +16,19 @@ use bearing_dynamics::solver::dynamics::run::{
 use bearing_dynamics::solver::dynamics::shaft::{ElasticShaft, Section, ShaftLoad, Unbalance};
 use bearing_dynamics::solver::dynamics::stability::jacobian;
 use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{POSITION, SPIN, VELOCITY};
+use bearing_dynamics::solver::dynamics::state::{SPIN, VELOCITY};
 use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::mount::Mount;
+use bearing_dynamics::solver::plan::{Stage, Subject};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc, BeamMatrices, BeamSegment, STATION};
 use bearing_dynamics::solver::shaft_shapes::{Kept, free_shaft};
 use common::table_4_1;
 use dynamics::*;
-use nalgebra::{Complex, DMatrix, DVector, Schur};
+use nalgebra::{Complex, DMatrix, DVector, Schur, Vector3};
 use shafts::{body, seated};
-use std::f64::consts::TAU;
 
-/// 30 mm steel, 400 mm, in eight elements, with a disc.
+/// 30 mm steel, 400 mm, in four elements, with a disc.
 fn beam(disc: BeamDisc, youngs_modulus: f64) -> Beam {
     let segment = BeamSegment {
         length: 0.4,
@@ -38,7 +38,7 @@ fn beam(disc: BeamDisc, youngs_modulus: f64) -> Beam {
         youngs_modulus,
         poisson_ratio: 0.3,
     };
-    Beam { discs: vec![disc], longest_element: 0.0501, ..Beam::new(vec![segment]) }
+    Beam { discs: vec![disc], longest_element: 0.1001, ..Beam::new(vec![segment]) }
 }
 
 const STEEL: f64 = 210e9;
@@ -48,7 +48,7 @@ const MIDDLE: BeamDisc = BeamDisc { at: 0.2, mass: 20.0, axial: 0.09, transverse
 /// An assembly of the shaft alone, turning at `speed` (rad/s), its sections at `holds` (m from its end) asked for.
 fn alone(beam: &Beam, kept: Kept, holds: &[f64], speed: f64) -> Assembly {
     let holds: Vec<(f64, bool)> = holds.iter().map(|at| (*at, true)).collect();
-    let (rigid, shapes) = free_shaft(beam, kept, &holds).unwrap();
+    let (rigid, shapes) = free_shaft(beam, kept, &holds, &[]).unwrap();
     let inertia = Inertia { mass: rigid.mass, axial: rigid.axial, transverse: rigid.transverse };
     let spinning = race([0.0; 5], Rotation::Speed(Profile::Constant(speed)));
     let spinning = RaceBody { inertia, ..spinning };
@@ -328,5 +328,205 @@ fn all_methods_bend_a_shaft_the_same_way() {
     ] {
         let ours = end(integrator, stepping);
         assert!((ours / reference - 1.0).abs() <= 1e-3, "{ours:e} {reference:e}");
+    }
+}
+
+/// The shaft and two rings as free bodies; nothing but balls, and springs between shaft and rings, joins them.
+fn free_together() -> Assembly {
+    let mut assembly = on_bearings(Profile::ZERO, STEEL);
+    let shaft = assembly.bodies[0].driven_mut().unwrap();
+    shaft.rotation = Rotation::Torque(Profile::ZERO);
+    let ring = hollow_cylinder(36e-3, 40e-3, 16e-3, 7850.0);
+    for index in [1, 2] {
+        assembly.bodies[index].mobility =
+            Mobility::Driven(RaceBody { inertia: ring, ..free_race() }.into());
+    }
+    for (ring, at) in [(1, 0.1), (2, 0.35)] {
+        let along = [along(&assembly, at), at - assembly.bodies[ring].rest[0]];
+        let law = SpringDashpot {
+            stiffness: [1e5, 2e6, 3e6, 0.0, 50.0, 80.0],
+            damping: [10.0; 6],
+            ..SpringDashpot::default()
+        };
+        let ends = [0, 1].map(|i| Mount { along: along[i], ..Mount::at_centre([0, ring][i]) });
+        let (name, law) = ("a spring".into(), Law::SpringDashpot(law));
+        assembly.connections.push(Connection { name, label: None, ends, law });
+    }
+    assembly
+}
+
+/// What the shaft gives its bearings and its springs it has lost: momentum to rounding, angular momentum but for what
+/// goes with the square of bending, energy to the error of the steps.
+#[test]
+fn a_free_bending_shaft_keeps_momentum_and_energy() {
+    let assembly = free_together();
+    let mut state = start::nominal(&assembly);
+    let places = bearing_dynamics::solver::dynamics::state::Places::of(&assembly);
+    let at = places.body(0);
+    for (entry, value) in [(VELOCITY + 1, 0.02), (VELOCITY, 0.01), (SPIN, 300.0), (SPIN + 2, 0.3)] {
+        state[at + entry] += value;
+    }
+    let (momentum, angular) = with_bending(&assembly, &state);
+    let options = fixed_step(2e-7, Start::Nominal);
+    let mut simulation = Simulation::from_state(assembly.clone(), options, state, 0.0).unwrap();
+    for _ in 0..20_000 {
+        simulation.step().unwrap();
+    }
+    let (momentum_end, angular_end) = with_bending(&assembly, &simulation.state);
+    let snapshot = simulation.snapshot().unwrap();
+    let bent = snapshot.energy.bending_strain + snapshot.energy.bending_kinetic;
+    let lost = [(momentum_end - momentum).norm() / momentum.norm()];
+    let turned = (angular_end - angular).norm() / angular.norm();
+    println!(
+        "momentum {:e}, angular {turned:e}, residual {:e} J of {:e} J, in bending {bent:e} J",
+        lost[0],
+        snapshot.residual,
+        snapshot.energy.total(),
+    );
+    assert!(lost[0] <= 1e-11);
+    // Tilts and turns of sections are below 1e-3 here: their squares.
+    assert!(turned <= 1e-6, "{turned:e}");
+    assert!(bent > 1e-6, "nothing bends: {bent:e} J");
+    let met = simulation.checkpoint().largest_contact_energy;
+    assert!(snapshot.residual.abs() <= 1e-6 * met, "{:e} of {met:e} J", snapshot.residual);
+}
+
+/// Momenta of all bodies and, of bending, Ω g·a e₂ + Ω g·b e₃ and the whirl about the axis.
+fn with_bending(assembly: &Assembly, state: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
+    let (momentum, mut angular) = momenta(assembly.clone(), state);
+    let mut system = System::new(assembly.clone(), Driver::Plain);
+    let mut rates = vec![0.0; state.len()];
+    system.evaluate(0.0, state, &mut rates);
+    let (shaft, body) = (&assembly.shafts[0], &system.bodies[0]);
+    let bent = system.bent(state, 0);
+    let count = shaft.count();
+    let spin = Vector3::from(body.motion.spin).dot(&Vector3::from(body.motion.axis));
+    let [e2, e3] = body.tilt_directions.map(Vector3::from);
+    for k in 0..count {
+        let [a, b, u, v] = [0, 1, 2, 3].map(|part| bent[part * count + k]);
+        let tilted = shaft.shapes.tilt_coupling[k] * spin;
+        angular += (e2 * a + e3 * b) * tilted + Vector3::from(body.motion.axis) * (a * v - b * u);
+    }
+    (momentum, angular)
+}
+
+fn loaded(assembly: &mut Assembly, at: f64, [y, z]: [f64; 2]) {
+    let force =
+        [0.0, y, z].map(|force| Profile::Ramp { from: 0.0, to: force, start: 0.0, duration: 2e-3 });
+    let section = section(assembly, at);
+    assembly.shafts[0].loads.push(ShaftLoad { section, force });
+}
+
+/// A shaft that hardly bends moves as the rigid one, whose load acts at the same place.
+#[test]
+fn a_stiff_shaft_moves_as_a_rigid_one() {
+    let speed = Profile::Constant(2000.0 * RPM);
+    let mut stiff = on_bearings(speed, 1e4 * STEEL);
+    let (at, load) = (0.25, [300.0, -800.0]);
+    loaded(&mut stiff, at, load);
+    let mut rigid = stiff.clone();
+    rigid.shafts.clear();
+    let arm = along(&stiff, at);
+    let shaft = rigid.bodies[0].driven_mut().unwrap();
+    let ramp = |to: f64| Profile::Ramp { from: 0.0, to, start: 0.0, duration: 2e-3 };
+    let [y, z] = load;
+    for (drive, load) in shaft.drives.iter_mut().zip([0.0, y, z, -arm * z, arm * y]) {
+        *drive = Drive::Load(ramp(load));
+    }
+    let at_end = |assembly: Assembly| {
+        let simulation = run(assembly, Integrator::Rosenbrock, Stepping::Accuracy(1e-4), 4e-3);
+        let [left, right] =
+            [0, 1].map(|bearing| simulation.system.race_of(&simulation.state, bearing, 0).motion);
+        [left.position[1], left.position[2], right.position[1], right.position[2], left.axis[2]]
+    };
+    let (ours, expected) = (at_end(stiff), at_end(rigid));
+    println!("{ours:?} {expected:?}");
+    for (index, (ours, expected)) in ours.into_iter().zip(expected).enumerate() {
+        // Races go some micrometres, and tilt by them over the span.
+        let scale = if index < 4 { 5e-6 } else { 5e-6 / 0.4 };
+        assert!((ours - expected).abs() <= 2e-3 * scale, "{index}: {ours:e} {expected:e}");
+    }
+}
+
+/// Everything turned about the axis by a ball pitch: so is the answer.
+#[test]
+fn turning_everything_about_the_axis_turns_the_answer() {
+    let turn = std::f64::consts::TAU / 8.0;
+    let (sin, cos) = turn.sin_cos();
+    let answer = |turned: bool| {
+        let mut assembly = on_bearings(Profile::Constant(3000.0 * RPM), STEEL);
+        let [y, z] = [200.0, -500.0];
+        let load = if turned { [cos * y - sin * z, sin * y + cos * z] } else { [y, z] };
+        loaded(&mut assembly, 0.13, load);
+        let mut unbalance = unbalanced(3e-4, &assembly, 0.3);
+        unbalance.angle += if turned { turn } else { 0.0 };
+        assembly.shafts[0].unbalances.push(unbalance);
+        let step = Stepping::Fixed(1e-6);
+        let simulation = run(assembly, Integrator::RungeKutta, step, 4e-3);
+        let section = section(&simulation.system.assembly, 0.2);
+        simulation.system.section_now(&simulation.state, 0, &section).motion
+    };
+    let (plain, turned) = (answer(false), answer(true));
+    let [_, y, z] = plain.position;
+    let expected = [cos * y - sin * z, sin * y + cos * z];
+    let off = y.hypot(z);
+    println!("{off:e} m off, turned {:?}, expected {expected:?}", turned.position);
+    assert!(off > 1e-6);
+    for (i, expected) in expected.into_iter().enumerate() {
+        // Rounding of 4000 steps on springs that keep their energy.
+        assert!((turned.position[1 + i] - expected).abs() <= 1e-9 * off, "{i}");
+    }
+}
+
+/// Damping that spins with the material brakes below the critical speed and drives the whirl above it; the books are
+/// kept of both.
+#[test]
+fn internal_damping_feeds_the_whirl_above_the_critical_speed() {
+    let beam = beam(MIDDLE, STEEL);
+    for (rpm, grows) in [(3000.0, false), (8000.0, true)] {
+        let mut assembly = alone(&beam, Kept { most: 3, ..Kept::ALL }, &[0.0, 0.2, 0.4], rpm * RPM);
+        on_springs(&mut assembly, &[0.0, 0.4], [1e7, 1e9, 1e9]);
+        assembly.shafts[0].internal_damping = 300.0;
+        let mut state = start::nominal(&assembly);
+        let at = bearing_dynamics::solver::dynamics::state::Places::of(&assembly).body(0);
+        state[at + VELOCITY + 1] = 1e-3;
+        let options = fixed_step(4e-6, Start::Nominal);
+        let mut simulation = Simulation::from_state(assembly, options, state, 0.0).unwrap();
+        let mut largest = [0.0f64; 2];
+        while simulation.time < 0.1 {
+            simulation.step().unwrap();
+            let late = usize::from(simulation.time > 0.05);
+            largest[late] = largest[late].max(off(&simulation, 0.2));
+        }
+        let snapshot = simulation.snapshot().unwrap();
+        println!("{rpm} rpm: {largest:?} m, residual {:e} J", snapshot.residual);
+        assert_eq!(largest[1] > largest[0], grows, "{rpm} rpm: {largest:?}");
+        let turned: f64 = snapshot.ledger.iter().map(|entry| entry.abs()).sum();
+        assert!(snapshot.residual.abs() <= 1e-6 * turned, "{:e}", snapshot.residual);
+    }
+}
+
+/// Each evaluation does what the plan says, so often.
+#[test]
+fn a_plan_counts_what_bending_does() {
+    let mut assembly = on_bearings(Profile::Constant(100.0), STEEL);
+    loaded(&mut assembly, 0.13, [0.0, -100.0]);
+    assembly.shafts[0].damping = 10.0;
+    let unbalance = unbalanced(3e-4, &assembly, 0.3);
+    assembly.shafts[0].unbalances.push(unbalance);
+    let mut simulation = Simulation::new(assembly, fixed_step(1e-6, Start::Nominal)).unwrap();
+    let before = simulation.system.ran.clone();
+    let evaluations = simulation.system.work.evaluations;
+    for _ in 0..10 {
+        simulation.step().unwrap();
+    }
+    let evaluations = simulation.system.work.evaluations - evaluations;
+    for (stage, each) in [(Stage::Reduced, 1), (Stage::Loads, 2), (Stage::Damping, 1)] {
+        let of = Subject::Body(0);
+        let ran = simulation.system.ran.of(stage, of) - before.of(stage, of);
+        assert_eq!(ran, each * evaluations, "{stage:?}");
+        let items = simulation.system.plan.iter();
+        let mut items = items.filter(|item| item.stage == stage && item.subject == of);
+        assert!(items.any(|item| item.does && item.cost == Some(each)), "{stage:?}");
     }
 }

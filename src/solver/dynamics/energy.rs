@@ -21,9 +21,12 @@ pub struct Energy {
     pub foundation: f64,
     /// Stored in contacts between balls.
     pub ball_contact: f64,
-    /// Motion and strain of reduced solids, and of bending of shafts.
+    /// Motion and strain of reduced solids.
     pub solid_kinetic: f64,
     pub solid_strain: f64,
+    /// Of bending of shafts.
+    pub bending_kinetic: f64,
+    pub bending_strain: f64,
     /// Stored in contacts of seats.
     pub seat: f64,
 }
@@ -37,6 +40,7 @@ impl Energy {
             + self.foundation
             + self.ball_contact
             + (self.solid_kinetic + self.solid_strain + self.seat)
+            + (self.bending_kinetic + self.bending_strain)
     }
 }
 
@@ -103,8 +107,8 @@ impl System {
         }
         for (index, shaft) in assembly.shafts.iter().enumerate() {
             let of = shaft.energy(self.bent(state, index));
-            energy.solid_kinetic += of.kinetic;
-            energy.solid_strain += of.strain;
+            energy.bending_kinetic += of.kinetic;
+            energy.bending_strain += of.strain;
         }
         energy.seat = self.seats.iter().map(|seat| seat.contact.energy).sum();
         energy

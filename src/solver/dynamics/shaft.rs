@@ -40,6 +40,8 @@ pub struct ElasticShaft {
     pub internal_damping: f64,
     pub loads: Vec<ShaftLoad>,
     pub unbalances: Vec<Unbalance>,
+    /// Sections that are recorded, by name.
+    pub watched: Vec<(String, Section)>,
     /// Amplitudes at the start of a run, a and then b, m; nothing is unbent.
     pub start: Vec<f64>,
 }
