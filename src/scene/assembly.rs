@@ -110,6 +110,8 @@ pub struct SceneBeam {
     pub kept: Kept,
     /// 1/s.
     pub damping: f64,
+    /// Whether it brakes the rigid motion, too.
+    pub absolute: bool,
     pub internal_damping: f64,
     /// Where, and along X, Y, Z, N.
     pub loads: Vec<(f64, [Profile; 3])>,
@@ -372,6 +374,10 @@ fn bend(all: &mut Assembly, index: usize, of: &SceneBeam) -> Result<(), FreeShaf
     if let Some(race) = body.driven_mut() {
         let RigidPart { mass, axial, transverse, .. } = rigid;
         race.inertia = Inertia { mass, axial, transverse };
+        if of.absolute {
+            let dashpots = [mass, mass, mass, transverse, transverse].map(|of_mass| of.damping * of_mass);
+            race.foundation_damping.iter_mut().zip(dashpots).for_each(|(to, more)| *to += more);
+        }
     }
     let mounts = all.bearings.iter_mut().flat_map(|bearing| &mut bearing.mounts);
     let mounts = mounts.chain(all.connections.iter_mut().flat_map(|joint| &mut joint.ends));

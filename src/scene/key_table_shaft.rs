@@ -2,6 +2,7 @@
 
 use crate::scene::key_table::{DENSITY, DENSITY_HINT, FORCE, LOAD_HINT, STEEL_DENSITY};
 use crate::scene::key_table_dynamics::{INERTIA, INERTIA_HINT, MASS, MASS_HINT};
+use crate::scene::key_table_solid::DAMPED_MOTIONS;
 use crate::scene::keys::{Key, Kind, Need, Range, Table, closed, list_table, open, table};
 use crate::scene::units::Dimension::{Angle, Frequency, Length, Rate, Stress, Unbalance};
 use Need::{Default, Depends, Optional, Required};
@@ -29,8 +30,9 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("body.beam.poisson_ratio", POISSON, Default { value: "0.3", reason: "steel" }, "Poisson's ratio; for the shear of the sections."),
     Key::new("body.beam.density", DENSITY, STEEL_DENSITY, "Density of segments, and of discs of a given size.").hint(DENSITY_HINT),
     Key::new("body.beam.below", Kind::Quantity(Frequency, closed(0.0, 1e7, "Hz")), Default { value: "5 kHz", reason: "far above the speed of a shaft" }, "Natural shapes of the free shaft up to this frequency are taken, and beside them its static answers to whatever takes hold of it; `plan` says what is left out.").example_of("5 kHz"),
-    Key::new("body.beam.damping", BRAKE, Default { value: "0 1/s", reason: "no damping" }, "Mass-proportional damping of bending, in axes that do not spin: of motion beside the body's rigid one, of which `foundation.damping` is.").hint("the source has 77 and 100 1/s for solids").example_of("100 1/s"),
-    Key::new("body.beam.internal_damping", BRAKE, Default { value: "0 1/s", reason: "no damping" }, "The same as the spinning material feels it; above a critical speed it feeds the whirl.").example_of("10 1/s"),
+    Key::new("body.beam.damping", BRAKE, Default { value: "0 1/s", reason: "no damping" }, "Mass-proportional damping: force per mass and velocity, in axes that do not spin.").hint("the source has 77 and 100 1/s for solids").example_of("100 1/s"),
+    Key::new("body.beam.damped_motion", Kind::Choice(DAMPED_MOTIONS), Default { value: "absolute", reason: "as (2.7)" }, "What it brakes: all motion across the axis and along it, or bending alone, which hardly brakes a whirl whose bearings stand still."),
+    Key::new("body.beam.internal_damping", BRAKE, Default { value: "0 1/s", reason: "no damping" }, "The same of bending alone as the spinning material feels it; above a critical speed it feeds the whirl.").example_of("10 1/s"),
     Key::new("body.beam.segments.length", SIZE, Required, "Length along the axis.").hint(SIZE_HINT).example_of("400 mm"),
     Key::new("body.beam.segments.outer_diameter", SIZE, Required, "Outer diameter.").hint(SIZE_HINT).example_of("30 mm"),
     Key::new("body.beam.segments.inner_diameter", BORE, Depends("0 unless given: full"), "Diameter of the bore.").hint(SIZE_HINT).example_of("10 mm"),

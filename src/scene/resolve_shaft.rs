@@ -38,6 +38,7 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
         ["youngs_modulus", "poisson_ratio", "density"].map(&mut number);
     let [below, damping, internal_damping] =
         ["below", "damping", "internal_damping"].map(&mut number);
+    let absolute = reader.choice("body.beam.damped_motion") == Some("absolute");
     let segment = |item: ItemRef| {
         let size = |name, example| required(item, name, example);
         let inner_diameter = item_number(item, "inner_diameter").unwrap_or(0.0);
@@ -106,6 +107,7 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
         start,
         kept: Kept { below: TAU * below, most: usize::MAX },
         damping,
+        absolute,
         internal_damping,
         loads: document.items("body.beam.load").map(load).collect::<Result<_, _>>()?,
         unbalances: document
