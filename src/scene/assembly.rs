@@ -375,7 +375,8 @@ fn bend(all: &mut Assembly, index: usize, of: &SceneBeam) -> Result<(), FreeShaf
         let RigidPart { mass, axial, transverse, .. } = rigid;
         race.inertia = Inertia { mass, axial, transverse };
         if of.absolute {
-            let dashpots = [mass, mass, mass, transverse, transverse].map(|of_mass| of.damping * of_mass);
+            let dashpots =
+                [mass, mass, mass, transverse, transverse].map(|of_mass| of.damping * of_mass);
             race.foundation_damping.iter_mut().zip(dashpots).for_each(|(to, more)| *to += more);
         }
     }

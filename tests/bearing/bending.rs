@@ -134,9 +134,7 @@ fn whole(beam: &BeamMatrices, springs: &[f64], stiffness: [f64; 2], speed: f64) 
 fn a_spinning_shaft_rings_as_the_whole_beam() {
     let speed = 10_000.0 * RPM;
     let holds = [0.0, 0.2];
-    for (disc, stiffness) in
-        [(OVERHUNG, [1e7, 2e7, 9e7]), (OFF_MIDDLE, [1e7, 1e10, 1e10])]
-    {
+    for (disc, stiffness) in [(OVERHUNG, [1e7, 2e7, 9e7]), (OFF_MIDDLE, [1e7, 1e10, 1e10])] {
         let beam = beam(disc, STEEL);
         let matrices = beam.matrices(&holds).unwrap();
         let [_, y, z] = stiffness;

@@ -2,7 +2,7 @@
 //! over the half length, stepped by Newmark's rule.
 //!
 //! Deflection y + i z and slope count as complex numbers. Balls have no mass: each lies on the line between the centres of
-//! the two grooves at its azimuth, both of its contacts in series, and rolls on with the cage of ideal rolling.
+//! the two grooves at its azimuth, both of its contacts in series.
 
 use super::dense::solve_positive_definite;
 use nalgebra::Complex;
@@ -51,6 +51,8 @@ pub struct Balls {
     pub stiffness: [f64; 2],
     /// Azimuth of the first, rad.
     pub phase: f64,
+    /// Whether balls go round with the cage of ideal rolling; without friction they stay.
+    pub rolls: bool,
 }
 
 /// Where the middle of the rotor was farthest off.
@@ -185,9 +187,12 @@ impl RunUp {
         let times = |of: &Square, by: &[C]| -> Vec<C> {
             of.iter().map(|row| row.iter().zip(by).map(|(a, b)| b * *a).sum()).collect()
         };
-        let along = |row: &[f64; SIZE], by: &[C]| -> C { row.iter().zip(by).map(|(a, b)| b * *a).sum() };
-        let pushed = [end_w, end_s].map(|row| times(&inverse, &row.map(|value| C::new(value, 0.0))));
-        let gives = [end_w, end_s].map(|row| [along(&row, &pushed[0]).re, along(&row, &pushed[1]).re]);
+        let along =
+            |row: &[f64; SIZE], by: &[C]| -> C { row.iter().zip(by).map(|(a, b)| b * *a).sum() };
+        let pushed =
+            [end_w, end_s].map(|row| times(&inverse, &row.map(|value| C::new(value, 0.0))));
+        let gives =
+            [end_w, end_s].map(|row| [along(&row, &pushed[0]).re, along(&row, &pushed[1]).re]);
         let mut now = vec![C::new(0.0, 0.0); SIZE];
         let (mut speeds, mut rates) = (now.clone(), now.clone());
         let mut load = [C::new(0.0, 0.0); 2];
@@ -199,9 +204,11 @@ impl RunUp {
             let ahead: Vec<C> = (0..SIZE).map(|i| speeds[i] + rates[i] * dt).collect();
             let gyroscopic = times(&gyro, &ahead);
             let kept: Vec<C> = (0..SIZE)
-                .map(|i| now[i] * (4.0 / (dt * dt) + 2.0 * self.damping / dt)
-                    + speeds[i] * (4.0 / dt + self.damping)
-                    + rates[i])
+                .map(|i| {
+                    now[i] * (4.0 / (dt * dt) + 2.0 * self.damping / dt)
+                        + speeds[i] * (4.0 / dt + self.damping)
+                        + rates[i]
+                })
                 .collect();
             let kept = times(&mass, &kept);
             let right: Vec<C> = (0..SIZE)
@@ -210,8 +217,9 @@ impl RunUp {
             let free = times(&inverse, &right);
             let free_end = [along(&end_w, &free), along(&end_s, &free)];
             load = self.held(free_end, gives, load, angle);
-            let next: Vec<C> =
-                (0..SIZE).map(|i| free[i] + pushed[0][i] * load[0] + pushed[1][i] * load[1]).collect();
+            let next: Vec<C> = (0..SIZE)
+                .map(|i| free[i] + pushed[0][i] * load[0] + pushed[1][i] * load[1])
+                .collect();
             for i in 0..SIZE {
                 let gone = next[i] - now[i];
                 let rate = gone * (4.0 / (dt * dt)) - speeds[i] * (4.0 / dt) - rates[i];
@@ -297,11 +305,10 @@ impl Support {
 
 impl Balls {
     fn load(&self, w: C, s: C, angle: f64) -> [C; 2] {
-        let [inner, outer] =
-            [self.inner[0] + self.inner[1], self.outer[0] - self.outer[1]];
+        let [inner, outer] = [self.inner[0] + self.inner[1], self.outer[0] - self.outer[1]];
         let closed = self.inner[1] + self.outer[1] - 2.0 * self.ball_radius;
         let pitch = 0.5 * (self.inner[0] + self.outer[0]);
-        let cage = 0.5 * (1.0 - self.ball_radius / pitch);
+        let cage = if self.rolls { 0.5 * (1.0 - self.ball_radius / pitch) } else { 0.0 };
         let soft = |k: f64| k.powf(-2.0 / 3.0);
         let stiffness = (soft(self.stiffness[0]) + soft(self.stiffness[1])).powf(-1.5);
         let mut sum = [C::new(0.0, 0.0); 2];
