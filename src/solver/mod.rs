@@ -22,6 +22,7 @@ pub mod plan;
 pub mod profile;
 pub mod race_position;
 pub mod rotor;
+pub mod shaft_shapes;
 pub mod solid;
 pub mod sparse;
 pub mod static_assembly;

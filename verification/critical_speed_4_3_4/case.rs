@@ -137,14 +137,14 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             "rpm",
             at / RPM,
         )
-        .published("critical")
+        .published("critical_speed")
         .under("ramp_time")
         .fit("the ramp time was chosen so that the run-up of one pinned motion meets this number")
         .relative(0.005, "one motion on pins stands for the rotor on its bearings"),
     );
     context.check(
         Check::new("critical", "first critical speed, pinned", "rpm", ours)
-            .published("critical")
+            .published("critical_speed")
             .under("pins")
             .relative(0.005, "what agreement would be")
             .explained(Explanation::new(

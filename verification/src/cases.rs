@@ -44,6 +44,8 @@ mod cylinder_on_block_table_2_1;
 mod dent_3_4_4;
 #[path = "../flexible_shaft_4_3_3/case.rs"]
 mod flexible_shaft_4_3_3;
+#[path = "../rotor_run_up_4_3_4/case.rs"]
+mod rotor_run_up_4_3_4;
 #[path = "../free_ring_modes/case.rs"]
 mod free_ring_modes;
 #[path = "../hertz_elliptic/case.rs"]
@@ -115,6 +117,7 @@ pub const CASES: &[Case] = &[
     misalignment_moment::CASE,
     misalignment_on_bushing_3_4_5::CASE,
     dent_3_4_4::CASE,
+    rotor_run_up_4_3_4::CASE,
     settling_and_turning::CASE,
     varying_compliance_statics::CASE,
     varying_compliance_dynamics::CASE,

@@ -286,6 +286,11 @@ fn directions(system: &System) -> Vec<Direction> {
             directions.push(Direction::Rate(at + solid.count() + shape));
         }
     }
+    for (shaft, at) in system.assembly.shafts.iter().zip(&system.shafts) {
+        let half = 2 * shaft.count();
+        directions.extend((0..half).map(|k| Direction::Position(at + k)));
+        directions.extend((half..2 * half).map(|k| Direction::Rate(at + k)));
+    }
     for (connection, at) in system.assembly.connections.iter().zip(&system.connections) {
         directions.extend((0..6 * connection.maxwell().len()).map(|k| Direction::Position(at + k)));
     }

@@ -17,6 +17,7 @@ pub mod misalignment;
 pub mod ring;
 pub mod rolling;
 pub mod rubber_point;
+pub mod run_up;
 pub mod seated;
 pub mod seated_shaft;
 pub mod shaft;
