@@ -44,8 +44,6 @@ mod cylinder_on_block_table_2_1;
 mod dent_3_4_4;
 #[path = "../flexible_shaft_4_3_3/case.rs"]
 mod flexible_shaft_4_3_3;
-#[path = "../rotor_run_up_4_3_4/case.rs"]
-mod rotor_run_up_4_3_4;
 #[path = "../free_ring_modes/case.rs"]
 mod free_ring_modes;
 #[path = "../hertz_elliptic/case.rs"]
@@ -74,6 +72,8 @@ mod rod_wave;
 mod ross_comparison;
 #[path = "../rotating_load_orbit/case.rs"]
 mod rotating_load_orbit;
+#[path = "../rotor_run_up_4_3_4/case.rs"]
+mod rotor_run_up_4_3_4;
 #[path = "../rubber_cube_2_3_1/case.rs"]
 mod rubber_cube_2_3_1;
 #[path = "../rubber_explicit/case.rs"]
