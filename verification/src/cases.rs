@@ -40,8 +40,6 @@ mod cantilever_timoshenko;
 mod cylinder_on_block_table_2_1;
 #[path = "../dent_3_4_4/case.rs"]
 mod dent_3_4_4;
-#[path = "../rotor_run_up_4_3_4/case.rs"]
-mod rotor_run_up_4_3_4;
 #[path = "../free_ring_modes/case.rs"]
 mod free_ring_modes;
 #[path = "../hertz_elliptic/case.rs"]
@@ -68,6 +66,8 @@ mod reduced_housing;
 mod rod_wave;
 #[path = "../rotating_load_orbit/case.rs"]
 mod rotating_load_orbit;
+#[path = "../rotor_run_up_4_3_4/case.rs"]
+mod rotor_run_up_4_3_4;
 #[path = "../rubber_cube_2_3_1/case.rs"]
 mod rubber_cube_2_3_1;
 #[path = "../rubber_explicit/case.rs"]
