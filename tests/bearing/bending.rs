@@ -25,6 +25,7 @@ use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc, BeamMatrices, BeamSe
 use bearing_dynamics::solver::shaft_shapes::{Kept, free_shaft};
 use common::table_4_1;
 use dynamics::*;
+use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix, DVector, Schur, Vector3};
 use shafts::{body, seated};
 
@@ -101,7 +102,11 @@ fn frequencies(assembly: &Assembly) -> Vec<f64> {
 }
 
 fn positive(matrix: DMatrix<f64>) -> Vec<f64> {
-    let eigenvalues = Schur::new(matrix).complex_eigenvalues();
+    let mut matrix = matrix;
+    // Entries of 1 and of 1e14 keep the iteration from ending.
+    balance_parlett_reinsch(&mut matrix);
+    let schur = Schur::try_new(matrix, f64::EPSILON, 20_000).expect("eigenvalues");
+    let eigenvalues = schur.complex_eigenvalues();
     let mut all: Vec<f64> =
         eigenvalues.iter().map(|value: &Complex<f64>| value.im).filter(|im| *im > 1.0).collect();
     all.sort_by(f64::total_cmp);
@@ -485,7 +490,7 @@ fn internal_damping_feeds_the_whirl_above_the_critical_speed() {
     for (rpm, grows) in [(3000.0, false), (8000.0, true)] {
         let mut assembly = alone(&beam, Kept { most: 3, ..Kept::ALL }, &[0.0, 0.2, 0.4], rpm * RPM);
         on_springs(&mut assembly, &[0.0, 0.4], [1e7, 1e9, 1e9]);
-        assembly.shafts[0].internal_damping = 300.0;
+        assembly.shafts[0].internal_damping = 3000.0;
         let mut state = start::nominal(&assembly);
         let at = bearing_dynamics::solver::dynamics::state::Places::of(&assembly).body(0);
         state[at + VELOCITY + 1] = 1e-3;
@@ -528,4 +533,45 @@ fn a_plan_counts_what_bending_does() {
         let mut items = items.filter(|item| item.stage == stage && item.subject == of);
         assert!(items.any(|item| item.does && item.cost == Some(each)), "{stage:?}");
     }
+}
+
+/// A start in equilibrium under a load that bends the shaft: nothing is accelerated, and the middle hangs as far below its
+/// ends as the beam says.
+#[test]
+fn a_bent_shaft_starts_in_equilibrium() {
+    let mut assembly = on_bearings(Profile::Constant(500.0 * RPM), STEEL);
+    assembly.gravity = GRAVITY;
+    for bearing in &mut assembly.bearings {
+        bearing.ball_phase = 0.3;
+    }
+    let section = section(&assembly, 0.2);
+    let force = [0.0, 300.0, -2000.0].map(Profile::Constant);
+    assembly.shafts[0].loads.push(ShaftLoad { section: section.clone(), force });
+    let state = start::at_equilibrium(&assembly).unwrap();
+    let mut system = System::new(assembly.clone(), Driver::Lanes);
+    let mut rates = vec![0.0; state.len()];
+    system.evaluate(0.0, &state, &mut rates);
+    let at = system.places.body(0);
+    let Inertia { mass, transverse, .. } = *assembly.bodies[0].inertia().unwrap();
+    for i in 0..3 {
+        let force = rates[at + VELOCITY + i] * mass;
+        // Bending that a spin and the rolling balls' speeds leave out.
+        assert!(force.abs() <= 1e-5 * 2000.0, "{i}: {force:e} N");
+        let moment = rates[at + SPIN + i] * transverse;
+        assert!(moment.abs() <= 1e-5 * 2000.0 * 0.2, "{i}: {moment:e} N m");
+    }
+    let bent = system.shafts[0]..system.shafts[0] + assembly.shafts[0].entries();
+    for (k, push) in rates[bent].iter().enumerate().skip(2 * assembly.shafts[0].count()) {
+        assert!(push.abs() <= 1e-5 * 2000.0, "{k}: {push:e} N");
+    }
+    let at_rest =
+        |along: f64| system.section_now(&state, 0, &assembly.shafts[0].shapes.section(along));
+    let heights =
+        [assembly.bearings[0].mounts[0].along, section.along, assembly.bearings[1].mounts[0].along]
+            .map(|along| at_rest(along).motion.position[2]);
+    let sag = heights[1] - 0.5 * (heights[0] + heights[2]);
+    println!("{sag:e} m");
+    // 2000 N, and 196 N of the disc, on 400 mm of 30 mm steel: F L³/(48 E I), bearings' moments against it.
+    let free = -2196.0 * 0.4f64.powi(3) / (48.0 * STEEL * 3.976e-8);
+    assert!(sag / free > 0.85 && sag / free < 1.01, "{sag:e} {free:e}");
 }

@@ -9,6 +9,7 @@ use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDash
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, Start, Stepping,
 };
+use bearing_dynamics::solver::dynamics::state::Ledger;
 
 use crate::bearings::{self, DEEP_GROOVE, Hertz};
 use crate::case::{Case, CaseError, Tier};
@@ -39,7 +40,7 @@ const TOP: f64 = 10_000.0;
 /// Steps of the oracle, s.
 const STEP: f64 = 1e-5;
 /// Peak of the scene over the published speed, less one.
-const GAP: f64 = -0.04;
+const GAP: f64 = -0.0294;
 
 /// The shipped scene with another ramp (s) and unbalance (kg·m).
 fn rotor(ramp: f64, unbalance: &str) -> Result<Assembly, CaseError> {
@@ -82,7 +83,7 @@ struct Done {
     history: Vec<[f64; 2]>,
     steps: u64,
     seconds: f64,
-    /// Energy that no entry names over what the unbalance and the drive brought.
+    /// Largest energy that no entry names, over the largest in bending and contacts and what damping took.
     residual: f64,
 }
 
@@ -99,7 +100,7 @@ fn run_up(
     simulation.snapshot()?;
     let (_, section) = simulation.system.assembly.shafts[0].watched[0].clone();
     let mut done = Done::default();
-    let mut next = 0.0;
+    let (mut next, mut stored) = (0.0, 0.0f64);
     while simulation.time < end * (1.0 - 1e-12) {
         simulation.step_by(simulation.step_size.min(end - simulation.time))?;
         let now = simulation.system.section_now(&simulation.state, 0, &section).motion;
@@ -111,11 +112,14 @@ fn run_up(
         if simulation.time >= next {
             done.history.push([speed / RPM, 1e6 * height]);
             next += 1e-3 * end;
+            let now = simulation.snapshot()?;
+            let energy = now.energy;
+            stored = stored.max(energy.bending_kinetic + energy.bending_strain + energy.contact);
+            done.residual = done.residual.max(now.residual.abs());
         }
     }
-    let last = simulation.snapshot()?;
-    let moved = last.energy.bending_kinetic + last.energy.bending_strain + last.energy.contact;
-    done.residual = last.residual / moved;
+    let damped = simulation.snapshot()?.ledger[Ledger::Foundation as usize].abs();
+    done.residual /= stored + damped;
     done.steps = simulation.steps;
     done.seconds = started.elapsed().as_secs_f64();
     Ok(done)
@@ -195,7 +199,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         "Without friction, cage and gravity: balls stay where they are as the races turn; fixed outer races, no clearance.",
         "scenes/rotor_run_up.toml",
     );
-    let explicit = (Integrator::DormandPrince, Stepping::Accuracy(1e-3));
+    let explicit = (Integrator::DormandPrince, Stepping::Accuracy(1e-4));
     let linear =
         run_up(pinned(RAMP, "1e-3")?, Integrator::RungeKutta, Stepping::Fixed(4e-6), RAMP)?;
     let linear_oracle = oracle(RAMP, "1e-3", Support::Spring(PIN)).peak(RAMP);
@@ -217,13 +221,13 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             Check::new(
                 &format!("{id}_ledger"),
                 &format!(
-                    "{what}: energy that no entry names over what bends and presses at the end"
+                    "{what}: largest energy that no entry names over the largest in bending and contacts and what damping took"
                 ),
                 "1",
                 ours.residual,
             )
             .closed_form(0.0, "conservation")
-            .absolute(1e-3, "steps of an accuracy of 1e-3"),
+            .absolute(1e-3, "steps of an accuracy of 1e-4"),
         );
         let size: f64 = unbalance.parse().unwrap_or(f64::NAN);
         heights.push(ours.peak.height / size);
@@ -258,8 +262,8 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     );
     // The ramp at which the oracle peaks at the published speed, and what the library makes of it.
     let published = 6457.0 * RPM;
-    let (mut fast, mut slow) = (0.05, 0.5);
-    for _ in 0..12 {
+    let (mut fast, mut slow) = (0.1, 0.3);
+    for _ in 0..9 {
         let middle = 0.5 * (fast + slow);
         let peak = oracle(middle, UNBALANCES[0], balls()).peak(middle);
         if peak.speed > published { fast = middle } else { slow = middle }
@@ -309,7 +313,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 "The speed at the peak of a run-up follows from the ramp, which the source does not state: it falls towards the critical speed of \
                  the steady rotor as the ramp gets slower. One ramp within the range gives the published number (finding), the scene's gives another.",
                 GAP,
-                5e-3,
+                2e-3,
                 &["unbalance_1em3_speed", "ramp_of_6457_speed", "ramps", "ramp_of_the_published_speed"],
             )),
     );
