@@ -75,7 +75,8 @@ fn check_unbent(assembly: &Assembly, state: &[f64]) -> Result<(), StaticsError> 
                 most.max(libm::hypot(along(&gone[..count]), along(&gone[count..])))
             });
         // NaN is too far.
-        if !(deflection <= allowed) {
+        let unbent = deflection <= allowed;
+        if !unbent {
             let body = assembly.bodies[shaft.body].name.clone();
             return Err(StaticsError::BentAtStart { body, deflection, allowed });
         }
