@@ -1,6 +1,6 @@
 //! What computes: equilibria, motions, solids.
 //!
-//! - [`statics`] and the `static_*` files: one search for equilibria of any bodies, bearings, springs and seats; [`ball`] and [`ball_on_race`]
+//! - [`statics`] and the `static_*` files: one search for equilibria of any bodies, bearings, springs, seats and shafts; [`ball`] and [`ball_on_race`]
 //!   eliminate each ball.
 //! - [`dynamics`]: bodies, bearings, reduced solids in motion, one state and one step.
 //! - [`solid`]: flexible solids by themselves (explicit steps, equilibrium, modes); [`sparse`] their factors.
@@ -31,6 +31,7 @@ mod static_connection;
 mod static_model;
 mod static_search;
 mod static_seat;
+mod static_shaft;
 mod static_start;
 pub mod static_tables;
 mod static_verdict;

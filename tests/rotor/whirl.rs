@@ -178,6 +178,13 @@ fn a_stiff_shaft_on_springs_moves_as_a_rigid_body() {
     let free = RotorModel::new(&rotor).unwrap();
     assert_eq!(free.natural[..4], [0.0; 4]);
     assert!(free.natural[4] > 0.0);
+    // At rest nothing of a rigid motion oscillates; spinning, the axis goes round about its own direction.
+    assert!(free.whirls(0.0, 2).unwrap()[0].frequency() >= 0.999 * free.natural[4]);
+    let first = &free.whirls(500.0, 1).unwrap()[0];
+    let [area, moment, _] = full(0.03);
+    let transverse = DENSITY * (area * LENGTH.powi(3) / 12.0 + moment * LENGTH);
+    let precession = 2.0 * DENSITY * moment * LENGTH * 500.0 / transverse;
+    assert!((first.frequency() / precession - 1.0).abs() <= 1e-6 && first.is_forward());
     assert_eq!(free.critical_speeds().unwrap_err(), RotorError::Unheld { frequency: 0.0 });
 }
 

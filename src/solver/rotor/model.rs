@@ -128,6 +128,12 @@ impl RotorModel {
         let free = free_coordinates(&matrices, &rotor.held);
         let (basis, natural) = natural_motions(&matrices, &stiffness, &free, rotor.modes)?;
         let project = |matrix: &DMatrix<f64>| basis.transpose() * matrix * &basis;
+        let mut modal_stiffness = project(&stiffness);
+        for rigid in (0..natural.len()).filter(|&i| natural[i] == 0.0) {
+            // Rounding that would oscillate.
+            modal_stiffness.row_mut(rigid).fill(0.0);
+            modal_stiffness.column_mut(rigid).fill(0.0);
+        }
         let mut turned = DMatrix::zeros(basis.nrows(), basis.ncols());
         for pair in 0..basis.nrows() / 2 {
             turned.row_mut(2 * pair).copy_from(&(-basis.row(2 * pair + 1)));
@@ -136,7 +142,7 @@ impl RotorModel {
         Ok(RotorModel {
             damping: project(&damping),
             gyroscopic: project(&matrices.gyroscopic),
-            stiffness: project(&stiffness),
+            stiffness: modal_stiffness,
             quarter_turn: basis.transpose() * &matrices.mass * turned,
             matrices,
             basis,

@@ -81,7 +81,6 @@ impl RotorModel {
                 state[(modes + i, modes + j)] = -damping[(i, j)];
             }
         }
-        let largest = state.amax();
         let iterations = ITERATIONS * 2 * modes;
         let schur = Schur::try_new(state, f64::EPSILON, iterations)
             .ok_or(RotorError::Eigenvalues { speed, iterations })?;
@@ -89,7 +88,7 @@ impl RotorModel {
             .complex_eigenvalues()
             .iter()
             .copied()
-            .filter(|value| value.im > ROUNDING * largest)
+            .filter(|value| value.im > ROUNDING * least)
             .collect();
         values.sort_by(|a, b| a.im.total_cmp(&b.im));
         Ok(values)
@@ -172,5 +171,6 @@ impl RotorModel {
     }
 }
 
-/// A frequency below this part of the largest value in the matrix is none.
-const ROUNDING: f64 = 1e-12;
+/// A frequency below this part of the lowest one with a stiffness is none: what rounding leaves of a rigid motion, whose two
+/// eigenvalues fall together.
+const ROUNDING: f64 = 1e-5;
