@@ -7,7 +7,6 @@
 use super::assembly::{Assembly, Bearing, Body};
 use super::bounds::FARTHEST;
 use super::model::{Drive, RaceBody, Rotation};
-use super::shaft::ShaftLoad;
 use crate::ch2_housing::bearing::frequencies::ratios;
 use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient};
 use crate::kinematics::Pose;
@@ -191,16 +190,6 @@ pub fn conditions(assembly: &Assembly, body: &Body, race: &RaceBody, t: f64) -> 
     if let Some(load) = &body.rotating_load {
         for (other, force) in others.iter_mut().zip(load.force(t)) {
             *other += force;
-        }
-    }
-    let index = assembly.bodies.iter().position(|other| std::ptr::eq(other, body));
-    for shaft in assembly.shafts.iter().filter(|shaft| Some(shaft.body) == index) {
-        for ShaftLoad { section, force } in &shaft.loads {
-            let [x, y, z] = force.each_ref().map(|profile| profile.value(t));
-            // At small tilts.
-            let along = section.along;
-            let five = [x, y, z, -along * z, along * y];
-            others.iter_mut().zip(five).for_each(|(other, load)| *other += load);
         }
     }
     std::array::from_fn(|i| match &race.drives[i] {

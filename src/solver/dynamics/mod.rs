@@ -10,7 +10,6 @@ pub mod arrow;
 mod arrow_terms;
 pub mod assembly;
 pub mod ball_set;
-mod bent_start;
 pub mod bounds;
 pub mod checkpoint;
 pub mod clocked;

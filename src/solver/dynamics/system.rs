@@ -205,18 +205,18 @@ impl System {
         rates: &mut [f64],
         ledger: &mut [f64; LEDGER],
     ) {
-        let t = t.min(self.latest);
+        let time = t.min(self.latest);
         for &(index, steps) in &self.steps.shafts {
             let (shaft, at) = (&self.assembly.shafts[index], self.shafts[index]);
             let body = &self.assembly.bodies[shaft.body];
             let acceleration = match body.driven().map(|driven| &driven.rotation) {
-                Some(Rotation::Speed(profile)) => profile.rate(t),
+                Some(Rotation::Speed(profile)) => profile.rate(time),
                 Some(Rotation::Torque(_)) | None => 0.0,
             };
             let entries = at..at + shaft.entries();
             let (now, own) = (&self.bodies[shaft.body], &mut self.ran.bodies[shaft.body]);
             let bent = (now, &state[entries.clone()]);
-            let done = shaft.rates(steps, t, acceleration, bent, &mut rates[entries], own);
+            let done = shaft.rates(steps, time, acceleration, bent, &mut rates[entries], own);
             ledger[Ledger::Foundation as usize] += done.damped;
             ledger[Ledger::Drives as usize] += done.driven;
             self.loads[shaft.body].add(&done.on_body);

@@ -77,9 +77,9 @@ impl Steps {
             of(Stage::Reduced).then_some((index, acting))
         };
         let shaft = |(index, shaft): (usize, &ElasticShaft)| {
-            let of = |stage| of(stage, Subject::Body(shaft.body));
-            let acting = ShaftSteps { loads: of(Stage::Loads), damping: of(Stage::Damping) };
-            of(Stage::Reduced).then_some((index, acting))
+            let acts = |stage| of(stage, Subject::Body(shaft.body));
+            let acting = ShaftSteps { loads: acts(Stage::Loads), damping: acts(Stage::Damping) };
+            acts(Stage::Reduced).then_some((index, acting))
         };
         let solids = 0..assembly.solids.len();
         let seats = 0..assembly.seats.len();
