@@ -10,6 +10,7 @@
 
 pub mod ch2_housing;
 pub mod ch3_bushing;
+pub mod ch4_rotor;
 pub mod elements;
 pub mod kinematics;
 pub mod mesh;

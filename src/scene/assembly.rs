@@ -13,7 +13,11 @@ use crate::solver::dynamics::assembly::{Assembly, Body, CAGE, GROUND, INNER, Mob
 use crate::solver::dynamics::connection::{Connection, Law, MaxwellElement, SpringDashpot};
 use crate::solver::dynamics::equilibrium::static_assembly;
 use crate::solver::dynamics::model::{Drive, RaceBody, RotatingLoad};
+use crate::solver::dynamics::shaft::{ElasticShaft, ShaftLoad, Unbalance};
 use crate::solver::mount::Mount;
+use crate::solver::profile::Profile;
+use crate::solver::rotor::beam::Beam;
+use crate::solver::shaft_shapes::{FreeShaftError, Kept, RigidPart, free_shaft};
 use crate::solver::static_assembly::StaticAssembly;
 
 /// Bearings and what they sit on, SI units.
@@ -93,6 +97,27 @@ pub struct SceneBody {
     pub rotating_load: Option<RotatingLoad>,
     /// kg·m.
     pub unbalance: f64,
+    /// How it bends, if it does; then its inertia is that of the beam.
+    pub beam: Option<Box<SceneBeam>>,
+}
+
+/// How a body bends; places count from the body's centre along its axis, m.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneBeam {
+    pub beam: Beam,
+    /// Of its first end.
+    pub start: f64,
+    pub kept: Kept,
+    /// 1/s.
+    pub damping: f64,
+    /// Whether it brakes the rigid motion, too.
+    pub absolute: bool,
+    pub internal_damping: f64,
+    /// Where, and along X, Y, Z, N.
+    pub loads: Vec<(f64, [Profile; 3])>,
+    /// Where, kg·m, and rad from Y towards Z.
+    pub unbalances: Vec<(f64, f64, f64)>,
+    pub watched: Vec<(String, f64)>,
 }
 
 /// Displacements and turns along and about the axes of a spring's first body.
@@ -271,6 +296,12 @@ impl AssemblyScene {
             Connection { name: format!("the spring {}", spring.name), label, ends, law }
         });
         all.connections = joints.collect();
+        for (index, body) in self.bodies.iter().enumerate() {
+            if let Some(beam) = &body.beam {
+                bend(&mut all, index, beam)
+                    .map_err(|error| DynamicsError::Beam { body: body.name.clone(), error })?;
+            }
+        }
         Ok(all)
     }
 
@@ -300,6 +331,9 @@ impl AssemblyScene {
     /// # Errors
     /// As [`AssemblyScene::assembly`].
     pub fn statics(&self) -> Result<StaticAssembly<'static>, DynamicsError> {
+        if let Some(body) = self.bodies.iter().find(|body| body.beam.is_some()) {
+            return Err(DynamicsError::BendsInRuns { body: body.name.clone() });
+        }
         let mut still = static_assembly(&self.assembly()?, 0.0, &[]);
         for (bearing, placed) in still.bearings.iter_mut().zip(&self.bearings) {
             let scene = &placed.scene;
@@ -343,6 +377,56 @@ fn add_bearing(all: &mut Assembly, placed: &PlacedBearing) -> Result<(), Dynamic
         all.bodies.push(body);
     }
     all.bearings.push(bearing);
+    Ok(())
+}
+
+/// Lets a body bend. Its centre is that of its mass from now on.
+fn bend(all: &mut Assembly, index: usize, of: &SceneBeam) -> Result<(), FreeShaftError> {
+    let of_index = |mount: &&Mount| mount.body == index;
+    let bearings = || all.bearings.iter().flat_map(|bearing| &bearing.mounts).filter(of_index);
+    let springs = || all.connections.iter().flat_map(|joint| &joint.ends).filter(of_index);
+    let turned = bearings().chain(springs()).map(|mount| (mount.along, true));
+    let pushed = of.loads.iter().map(|(at, _)| *at);
+    let pushed = pushed.chain(of.unbalances.iter().map(|(at, ..)| *at)).map(|at| (at, false));
+    let holds: Vec<(f64, bool)> =
+        turned.chain(pushed).map(|(at, turns)| (at - of.start, turns)).collect();
+    let watched: Vec<f64> = of.watched.iter().map(|(_, at)| at - of.start).collect();
+    let (rigid, shapes) = free_shaft(&of.beam, of.kept, &holds, &watched)?;
+    let centre = of.start + rigid.centre;
+    let body = &mut all.bodies[index];
+    move_along(body, centre);
+    if let Some(race) = body.driven_mut() {
+        let RigidPart { mass, axial, transverse, .. } = rigid;
+        race.inertia = Inertia { mass, axial, transverse };
+        if of.absolute {
+            let dashpots =
+                [mass, mass, mass, transverse, transverse].map(|of_mass| of.damping * of_mass);
+            race.foundation_damping.iter_mut().zip(dashpots).for_each(|(to, more)| *to += more);
+        }
+    }
+    let mounts = all.bearings.iter_mut().flat_map(|bearing| &mut bearing.mounts);
+    let mounts = mounts.chain(all.connections.iter_mut().flat_map(|joint| &mut joint.ends));
+    mounts.filter(|mount| mount.body == index).for_each(|mount| mount.along -= centre);
+    let section = |at: f64| shapes.section(at - centre);
+    let loads = of.loads.iter();
+    let loads = loads.map(|(at, force)| ShaftLoad { section: section(*at), force: force.clone() });
+    let unbalances = of.unbalances.iter().map(|&(at, size, angle)| Unbalance {
+        section: section(at),
+        size,
+        angle,
+    });
+    let watched = of.watched.iter().map(|(name, at)| (name.clone(), section(*at)));
+    let shaft = ElasticShaft {
+        body: index,
+        damping: of.damping,
+        internal_damping: of.internal_damping,
+        loads: loads.collect(),
+        unbalances: unbalances.collect(),
+        watched: watched.collect(),
+        start: Vec::new(),
+        shapes: shapes.clone(),
+    };
+    all.shafts.push(shaft);
     Ok(())
 }
 

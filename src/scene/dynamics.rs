@@ -5,6 +5,7 @@ use crate::ch2_housing::bearing::hertz::{HertzError, RaceSide, contact, effectiv
 use crate::ch2_housing::bearing::inertia;
 use crate::scene::resolved::{CageInRun, RunSettings, Scene};
 use crate::solver::dynamics::model::{DynamicProblem, RaceBody};
+use crate::solver::shaft_shapes::FreeShaftError;
 use thiserror::Error;
 
 /// Why a valid scene cannot be run.
@@ -26,6 +27,12 @@ pub enum DynamicsError {
         "numerics.end: missing; it makes a scene one of a run. Hint: add a table [numerics] with `end = \"0.1 s\"`"
     )]
     NoEnd,
+    #[error("body.{body}.beam: {error}")]
+    Beam { body: String, error: FreeShaftError },
+    #[error(
+        "body.{body}.beam: a body that bends is there in a run only. Hint: `bearing run`, or leave `beam` out"
+    )]
+    BendsInRuns { body: String },
 }
 
 /// The bearing in motion of a scene.

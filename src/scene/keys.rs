@@ -4,7 +4,8 @@
 
 use crate::scene::units::Dimension::{self, *};
 use crate::scene::{
-    key_table, key_table_assembly, key_table_dynamics, key_table_housing, key_table_solid,
+    key_table, key_table_assembly, key_table_dynamics, key_table_housing, key_table_shaft,
+    key_table_solid,
 };
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -254,17 +255,19 @@ pub static KEYS: &[Key] = &ALL_KEYS;
 /// Every table, in the order of the reference. `assumptions` and `sweep` have keys of the user's.
 pub static TABLES: &[Table] = &ALL_TABLES;
 
-const PARTS: [&[Key]; 5] = [
+const PARTS: [&[Key]; 6] = [
     key_table::KEYS,
     key_table_dynamics::KEYS,
     key_table_assembly::KEYS,
+    key_table_shaft::KEYS,
     key_table_solid::KEYS,
     key_table_housing::KEYS,
 ];
-const TABLE_PARTS: [&[Table]; 5] = [
+const TABLE_PARTS: [&[Table]; 6] = [
     key_table::TABLES,
     key_table_dynamics::TABLES,
     key_table_assembly::TABLES,
+    key_table_shaft::TABLES,
     key_table_solid::TABLES,
     key_table_housing::TABLES,
 ];

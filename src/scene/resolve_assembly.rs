@@ -14,6 +14,7 @@ use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_bushing::bushing;
 use crate::scene::resolve_dynamics::{check_inertia, foundation, rotating_load, rotation};
 use crate::scene::resolve_housing::in_housing;
+use crate::scene::resolve_shaft::beam;
 use crate::scene::resolve_solid::{item_number, missing};
 use crate::scene::resolved::{DefaultUsed, Scene};
 use crate::scene::scopes::no_such;
@@ -360,7 +361,11 @@ fn body(
     let scoped = document.scoped(name);
     let mut reader = Reader::new(&scoped);
     let parts = ["mass", "axial", "transverse"].map(|key| format!("body.inertia.{key}"));
-    let inertia = if needs_mass || parts.iter().any(|key| reader.is_given(key)) {
+    let beam = beam(&mut reader)?;
+    let inertia = if beam.is_some() {
+        // It follows from the beam.
+        NO_INERTIA
+    } else if needs_mass || parts.iter().any(|key| reader.is_given(key)) {
         let missing = |key: &String| {
             let (_, key) = keys::find(key).ok_or_else(|| reader.missing(key, ""))?;
             let because = format!(" of body.{name}, for a run and with gravity");
@@ -385,7 +390,8 @@ fn body(
     let rotating_load = rotating_load(&mut reader, "body")?;
     let unbalance = reader.given_number("body.unbalance").unwrap_or(0.0);
     note_named(reader, &scoped, defaults);
-    Ok(SceneBody { name: name.into(), race, rotating_load, unbalance })
+    let beam = beam.map(Box::new);
+    Ok(SceneBody { name: name.into(), race, rotating_load, unbalance, beam })
 }
 
 fn spring(

@@ -347,7 +347,7 @@ fn exclusive(item: ItemRef, later: &str, earlier: &str) -> SceneError {
     item.error(later, Problem::Exclusive { rival: earlier.to_string(), advice })
 }
 
-fn item_text(item: ItemRef, name: &str, example: &str) -> Result<String, SceneError> {
+pub(super) fn item_text(item: ItemRef, name: &str, example: &str) -> Result<String, SceneError> {
     match item.value(name) {
         Some(Checked::Text(text)) => Ok(text.clone()),
         _ => Err(missing(item, name, "", example)),
@@ -361,7 +361,7 @@ pub(super) fn item_number(item: ItemRef, name: &str) -> Option<f64> {
     }
 }
 
-fn item_profile(item: ItemRef, name: &str) -> Option<Profile> {
+pub(super) fn item_profile(item: ItemRef, name: &str) -> Option<Profile> {
     match item.value(name)? {
         Checked::Number(value) => Some(Profile::Constant(*value)),
         Checked::Boolean(true) => Some(Profile::ZERO),

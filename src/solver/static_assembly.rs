@@ -11,7 +11,7 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::kinematics::Pose;
-use nalgebra::Vector3;
+use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Bodies and bearings in one frame.
 #[derive(Clone, Debug, Default)]
@@ -21,6 +21,19 @@ pub struct StaticAssembly<'b> {
     /// Their dashpots are at rest.
     pub connections: Vec<Connection>,
     pub seats: Vec<StaticSeat<'b>>,
+    pub shafts: Vec<StaticShaft>,
+}
+
+/// An elastic shaft as the bodies feel it that sit on it: what is between them is eliminated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StaticShaft {
+    /// Bodies that are fixed to it. At zero coordinates each is where the straight shaft has it, so that their axes are the
+    /// shaft's; one that is held as a whole holds the shaft there.
+    pub bodies: Vec<usize>,
+    /// Over x, y, z, tilt_y, tilt_z of each of them, symmetric. N/m, N, N·m/rad.
+    pub stiffness: DMatrix<f64>,
+    /// What loads in between put on them. N, N·m.
+    pub loads: DVector<f64>,
 }
 
 /// A rigid body.

@@ -55,6 +55,15 @@ fn origin(assembly: &StaticAssembly, bearing: &StaticBearing) -> Vector3<f64> {
     }
 }
 
+/// Pitch radius of a bearing on the same shaft as a body.
+fn on_shaft_with(assembly: &StaticAssembly, body: usize) -> Option<f64> {
+    let shaft = assembly.shafts.iter().find(|shaft| shaft.bodies.contains(&body))?;
+    let on_it = |bearing: &&StaticBearing| {
+        bearing.mounts.iter().any(|mount| shaft.bodies.contains(&mount.body))
+    };
+    assembly.bearings.iter().find(on_it).map(|bearing| bearing.geometry.pitch_radius)
+}
+
 impl<'a> Model<'a> {
     pub(super) fn new(assembly: &'a StaticAssembly) -> Self {
         let mut unknowns = Vec::with_capacity(assembly.bodies.len());
@@ -71,7 +80,7 @@ impl<'a> Model<'a> {
                     let pitch = match (own, seat) {
                         (Some(bearing), _) => bearing.geometry.pitch_radius,
                         (None, Some(seat)) => seat.fit.radius,
-                        (None, None) => 1.0,
+                        (None, None) => on_shaft_with(assembly, index).unwrap_or(1.0),
                     };
                     scale.extend([1.0, 1.0, 1.0, pitch, pitch]);
                     Some(scale.len() - 5)

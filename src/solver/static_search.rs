@@ -1,7 +1,7 @@
 //! The search for an equilibrium: Newton's method with a trust radius on the energy, over the coordinates
 //! of all bodies that are loaded. Balls are in equilibrium at every evaluation.
 //!
-//! Each bearing, connection and seat adds energy, force and stiffness over the coordinates of its bodies, what is its
+//! Each bearing, connection, shaft and seat adds energy, force and stiffness over the coordinates of its bodies, what is its
 //! own eliminated: balls in equilibrium, nodes of a bore in contact or not.
 
 use super::ball::energy_noise;
@@ -13,6 +13,7 @@ use super::static_bearing::add_bearing;
 use super::static_connection::add_connection;
 use super::static_model::{Evaluation, Five, Model};
 use super::static_seat::add_seat;
+use super::static_shaft::add_shaft;
 use super::static_start;
 use super::statics::{StaticOptions, StaticsError};
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -176,6 +177,11 @@ impl<'a, 'b> Search<'a, 'b> {
             add_connection(self.model, connection, &mut here);
             self.ran.whole.add(Stage::Springs, 1);
         }
+        let shafts: &[_] = if steps.springs { &self.model.assembly.shafts } else { &[] };
+        for shaft in shafts {
+            add_shaft(self.model, shaft, &mut here);
+            self.ran.whole.add(Stage::Springs, 1);
+        }
         here.stiffest = (0..count)
             .map(|i| here.stiffness[(i, i)] / self.model.scale[i].powi(2))
             .fold(0.0, f64::max);
@@ -270,7 +276,8 @@ impl<'a, 'b> Search<'a, 'b> {
             // Near the end the change drowns in rounding, and the unbalanced load decides alone.
             let mut noise = self.noise(here.largest_ball_load.max(there.largest_ball_load));
             let assembly = self.model.assembly;
-            if !(assembly.connections.is_empty() && assembly.seats.is_empty()) {
+            let springs = !(assembly.connections.is_empty() && assembly.shafts.is_empty());
+            if springs || !assembly.seats.is_empty() {
                 // Springs may hold far more energy than contacts.
                 noise += 16.0 * f64::EPSILON * here.energy.abs().max(there.energy.abs());
             }
@@ -298,8 +305,8 @@ impl<'a, 'b> Search<'a, 'b> {
     /// spoilt leaves what is soft (a race in its bore against tilts) far less certain than the rest, and the error
     /// falls as its square.
     fn polish(&mut self, here: &mut Evaluation, residual: f64) -> Result<(), StaticsError> {
-        let StaticAssembly { bearings, connections, seats, .. } = self.model.assembly;
-        let no_spring = connections.iter().all(Connection::is_void);
+        let StaticAssembly { bearings, connections, seats, shafts, .. } = self.model.assembly;
+        let no_spring = connections.iter().all(Connection::is_void) && shafts.is_empty();
         let one_holds = bearings.len() <= 1 && no_spring && seats.is_empty();
         let strict = self.options.tolerance * self.applied().max(here.largest_ball_load);
         if one_holds || residual <= 1e-2 * strict {

@@ -187,6 +187,12 @@ pub enum StaticsError {
         position: [f64; 3],
         tilts: [f64; 2],
     },
+    #[error(
+        "{body} bends, and the loads at the start would bend it by {deflection:.3e} m, against {allowed:.1e} m that pass \
+         for unbent: equilibria of bodies that bend are not solved. Let loads grow from nothing, or start in nominal \
+         positions (numerics.start = \"nominal\")"
+    )]
+    BentAtStart { body: String, deflection: f64, allowed: f64 },
     #[error("the outer race{of} in its bore: {source}")]
     Seat { of: String, source: BoreError },
 }

@@ -5,6 +5,7 @@ mod common;
 #[path = "../common/dynamics.rs"]
 mod dynamics;
 
+mod bending;
 mod clock_laws;
 mod connections;
 mod dents;

@@ -14,5 +14,6 @@ mod scene_dynamics_errors;
 mod scene_errors;
 mod scene_fuzz;
 mod scene_read;
+mod scene_shaft;
 mod scene_to_problem;
 mod scene_units;

@@ -68,6 +68,9 @@ fn a_default_of_the_table_is_the_one_in_use() {
     trees.push(base(
         "[inner_race.rotating_load]\nforce = \"1 N\"\nspeed = \"50 rpm\"\n[outer_race]\nmotion = \"6-dof\"\n",
     ));
+    trees.push(base(
+        "[body.hub]\nspeed = \"0 rpm\"\n[body.hub.beam]\nsegments = [{ length = \"0.4 m\", outer_diameter = \"30 mm\" }]\n",
+    ));
     for along in ["x", "y"] {
         trees.push(base(&format!(
             "[body.hub]\nspeed = \"0 rpm\"\nrotating_load = {{ force = \"1 N\", speed = \"50 rpm\" }}\n\

@@ -36,10 +36,14 @@ mod cage_speed_table_5_4;
 mod calculix_comparison;
 #[path = "../cantilever_timoshenko/case.rs"]
 mod cantilever_timoshenko;
+#[path = "../critical_speed_4_3_4/case.rs"]
+mod critical_speed_4_3_4;
 #[path = "../cylinder_on_block_table_2_1/case.rs"]
 mod cylinder_on_block_table_2_1;
 #[path = "../dent_3_4_4/case.rs"]
 mod dent_3_4_4;
+#[path = "../flexible_shaft_4_3_3/case.rs"]
+mod flexible_shaft_4_3_3;
 #[path = "../free_ring_modes/case.rs"]
 mod free_ring_modes;
 #[path = "../hertz_elliptic/case.rs"]
@@ -64,8 +68,12 @@ mod misalignment_on_bushing_3_4_5;
 mod reduced_housing;
 #[path = "../rod_wave/case.rs"]
 mod rod_wave;
+#[path = "../ross_comparison/case.rs"]
+mod ross_comparison;
 #[path = "../rotating_load_orbit/case.rs"]
 mod rotating_load_orbit;
+#[path = "../rotor_run_up_4_3_4/case.rs"]
+mod rotor_run_up_4_3_4;
 #[path = "../rubber_cube_2_3_1/case.rs"]
 mod rubber_cube_2_3_1;
 #[path = "../rubber_explicit/case.rs"]
@@ -76,6 +84,8 @@ mod rubber_load_rates_2_4_3;
 mod rubber_locking;
 #[path = "../settling_and_turning/case.rs"]
 mod settling_and_turning;
+#[path = "../shaft_beam/case.rs"]
+mod shaft_beam;
 #[path = "../shaft_in_two_housings/case.rs"]
 mod shaft_in_two_housings;
 #[path = "../shaft_on_two_bearings/case.rs"]
@@ -104,9 +114,14 @@ pub const CASES: &[Case] = &[
     rotating_load_orbit::CASE,
     statics_independent::CASE,
     shaft_on_two_bearings::CASE,
+    shaft_beam::CASE,
+    ross_comparison::CASE,
+    flexible_shaft_4_3_3::CASE,
+    critical_speed_4_3_4::CASE,
     misalignment_moment::CASE,
     misalignment_on_bushing_3_4_5::CASE,
     dent_3_4_4::CASE,
+    rotor_run_up_4_3_4::CASE,
     settling_and_turning::CASE,
     varying_compliance_statics::CASE,
     varying_compliance_dynamics::CASE,

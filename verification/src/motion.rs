@@ -35,6 +35,9 @@ pub const RACE_INERTIA: (&str, &str, &str) = (
     "0.077 kg",
 );
 
+/// The shipped scene of the rotor of 4.3.4.
+pub const ROTOR_RUN_UP: &str = include_str!("../../scenes/rotor_run_up.toml");
+
 /// An inner race of [`RACE_INERTIA`] under constant loads.
 pub fn race(loads: [f64; 5], rotation: Rotation) -> RaceBody {
     RaceBody {

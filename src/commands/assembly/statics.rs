@@ -126,9 +126,9 @@ pub fn find_equilibrium<'s>(
     if of_one.is_none() {
         moment.solution = readable(&scene.assembly()?, &still, &moment.solution);
     }
-    let StaticAssembly { bodies, bearings, connections, .. } = still;
+    let StaticAssembly { bodies, bearings, connections, shafts, .. } = still;
     // Bores are needed no longer.
-    let assembly = StaticAssembly { bodies, bearings, connections, seats: Vec::new() };
+    let assembly = StaticAssembly { bodies, bearings, connections, shafts, seats: Vec::new() };
     let names = scene.bearings.iter().map(name_of).collect();
     Ok(Found { scene, names, assembly, moment, of_one, remarks, inertia, settled, record })
 }

@@ -30,6 +30,8 @@ pub(super) enum Term {
     BallContact,
     SolidStrain,
     SolidKinetic,
+    BendingStrain,
+    BendingKinetic,
     Seat,
     Work(Ledger),
     Residual,
@@ -84,6 +86,13 @@ impl Recorder {
                 for (body, now) in system.assembly.bodies.iter().zip(&system.bodies) {
                     if body.label.is_some() {
                         self.race(now, 0.0, 1.0);
+                    }
+                }
+                for (index, shaft) in system.assembly.shafts.iter().enumerate() {
+                    for (_, section) in &shaft.watched {
+                        let [_, y, z] =
+                            system.section_now(&simulation.state, index, section).motion.position;
+                        self.values.extend([y, z]);
                     }
                 }
             }
@@ -305,6 +314,12 @@ fn add_columns(
             let own = RACE_COLUMNS.map(|(name, unit)| Column::new(format!("{label}_{name}"), unit));
             columns.extend(own);
         }
+        for shaft in &assembly.shafts {
+            let label = assembly.bodies[shaft.body].label.as_deref().unwrap_or("shaft");
+            let of = |name: &str, axis| Column::new(format!("{label}_{name}_{axis}"), "m");
+            columns
+                .extend(shaft.watched.iter().flat_map(|(name, _)| [of(name, "y"), of(name, "z")]));
+        }
     }
     if group == ChannelGroup::Forces {
         let labels = assembly.connections.iter().filter_map(|joint| joint.label.as_ref());
@@ -406,6 +421,7 @@ fn terms(assembly: &Assembly) -> Vec<Term> {
     let on_foundation = on_foundation || !assembly.connections.is_empty();
     // With them the damping of solids.
     let solids = !assembly.solids.is_empty();
+    let bends = !assembly.shafts.is_empty();
     let terms = [
         (Term::Kinetic, true),
         (Term::Contact, true),
@@ -415,11 +431,13 @@ fn terms(assembly: &Assembly) -> Vec<Term> {
         (Term::BallContact, meet),
         (Term::SolidStrain, solids),
         (Term::SolidKinetic, solids),
+        (Term::BendingStrain, bends),
+        (Term::BendingKinetic, bends),
         (Term::Seat, solids),
         (Term::Work(Ledger::Traction), traction),
         (Term::Work(Ledger::ContactDamping), damping),
         (Term::Work(Ledger::CageFriction), cage),
-        (Term::Work(Ledger::Foundation), on_foundation || solids),
+        (Term::Work(Ledger::Foundation), on_foundation || solids || bends),
         (Term::Work(Ledger::BallFriction), meet),
         (Term::Work(Ledger::Drives), true),
         (Term::Residual, true),
@@ -437,6 +455,8 @@ fn term_name(term: Term) -> &'static str {
         Term::BallContact => "energy_ball_contact",
         Term::SolidStrain => "energy_housing_strain",
         Term::SolidKinetic => "energy_housing_kinetic",
+        Term::BendingStrain => "energy_bending_strain",
+        Term::BendingKinetic => "energy_bending_kinetic",
         Term::Seat => "energy_seat",
         Term::Work(Ledger::Traction) => "work_traction",
         Term::Work(Ledger::ContactDamping) => "work_contact_damping",
@@ -458,6 +478,8 @@ fn energy_term(term: Term, snapshot: &Snapshot) -> f64 {
         Term::BallContact => snapshot.energy.ball_contact,
         Term::SolidStrain => snapshot.energy.solid_strain,
         Term::SolidKinetic => snapshot.energy.solid_kinetic,
+        Term::BendingStrain => snapshot.energy.bending_strain,
+        Term::BendingKinetic => snapshot.energy.bending_kinetic,
         Term::Seat => snapshot.energy.seat,
         Term::Work(entry) => snapshot.ledger[entry as usize],
         Term::Residual => snapshot.residual,

@@ -32,6 +32,9 @@ pub struct BearingEntry {
     /// Of reduced solids: kinetic, strain, seats, J.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub first_energy_of_solids: Option<[f64; 3]>,
+    /// Of bending of shafts: kinetic, strain, J.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub first_energy_of_bending: Option<[f64; 2]>,
     pub largest_contact_energy: f64,
     /// See [`ContactTurnover`]: sum and last, J.
     pub contact_turnover: [f64; 2],
@@ -115,6 +118,8 @@ impl BearingEntry {
             ],
             first_energy_of_solids: Some([energy.solid_kinetic, energy.solid_strain, energy.seat])
                 .filter(|of| *of != [0.0; 3]),
+            first_energy_of_bending: Some([energy.bending_kinetic, energy.bending_strain])
+                .filter(|of| *of != [0.0; 2]),
             largest_contact_energy: checkpoint.largest_contact_energy,
             contact_turnover: [checkpoint.contact_turnover.sum, checkpoint.contact_turnover.last],
             work: checkpoint.work.clone().counts().map(|count| *count),
@@ -135,6 +140,7 @@ impl BearingEntry {
         let energy = [self.step_size, self.largest_contact_energy].into_iter();
         let energy = energy.chain(self.first_energy).chain(self.contact_turnover);
         let energy = energy.chain(self.first_energy_of_solids.into_iter().flatten());
+        let energy = energy.chain(self.first_energy_of_bending.into_iter().flatten());
         vec![
             ("an extreme", self.extremes.clone()),
             ("a size of the error control", self.control.into_iter().flatten().collect()),
@@ -173,6 +179,7 @@ impl BearingEntry {
         let [oscillation, decay] = self.step_watch.stiffest;
         let [kinetic, contact, cage_contact, gravity, foundation, ball_contact] = self.first_energy;
         let [solid_kinetic, solid_strain, seat] = self.first_energy_of_solids.unwrap_or_default();
+        let [bending_kinetic, bending_strain] = self.first_energy_of_bending.unwrap_or_default();
         let mut work = Work::default();
         for (count, kept) in work.counts().into_iter().zip(self.work) {
             *count = kept;
@@ -211,6 +218,8 @@ impl BearingEntry {
                 ball_contact,
                 solid_kinetic,
                 solid_strain,
+                bending_kinetic,
+                bending_strain,
                 seat,
             },
             largest_contact_energy: self.largest_contact_energy,

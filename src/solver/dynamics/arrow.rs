@@ -14,6 +14,7 @@ use super::elimination::{
     Block, Dense, ZERO, add_product, factor_lanes, solve_columns, solve_lanes, total,
 };
 use super::linearised::{BallBlock, Hub, Lane, Linearised, from_basis, to_basis};
+use super::linearised_shafts::Bending;
 use super::reduced_solid::Surface;
 use super::state::{LANES, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use super::system::System;
@@ -37,6 +38,8 @@ pub struct Arrow {
     /// Which of them are not zero.
     coupled: Vec<[bool; HUBS]>,
     schur: Dense,
+    /// Where bodies bend.
+    bending: Option<Bending>,
     balls: Vec<[Lane; 6]>,
     /// Of all hubs and then all shapes: right-hand side and rates; what the hubs have moved.
     hubs: Vec<f64>,
@@ -70,6 +73,7 @@ impl Arrow {
             eliminated: vec![[[[ZERO; 6]; 6]; HUBS]; blocks],
             coupled: vec![[false; HUBS]; blocks],
             schur: Dense::new(size),
+            bending: (!linearised.shafts.is_empty()).then(|| Bending::new(linearised, size)),
             balls: vec![[ZERO; 6]; blocks],
             hubs: vec![0.0; size],
             moved: vec![[0.0; 6]; hubs],
@@ -92,7 +96,10 @@ impl Arrow {
         for (index, block) in linearised.blocks.iter().enumerate() {
             self.factor_block(index, block);
         }
-        self.schur.factor();
+        match &mut self.bending {
+            Some(bending) => bending.factor(linearised, scale, &mut self.schur),
+            None => self.schur.factor(),
+        }
     }
 
     fn factor_block(&mut self, block: usize, of: &BallBlock) {
@@ -183,15 +190,19 @@ impl Arrow {
     ) {
         w.copy_from_slice(r);
         let scale = self.scale;
-        let Arrow { ball, factors, eliminated, coupled, schur, balls, hubs, moved, seats, .. } =
-            self;
-        for (index, hub) in linearised.hubs.iter().enumerate() {
+        let Arrow { ball, factors, eliminated, coupled, balls, hubs, moved, seats, .. } = self;
+        let bodies = linearised.bodies();
+        hubs[6 * bodies..6 * linearised.hubs.len()].fill(0.0);
+        for (index, hub) in linearised.hubs[..bodies].iter().enumerate() {
             moved[index] = displacement(hub, at, r);
             let rate = to_basis(hub, vector(r, hub.at + VELOCITY), vector(r, hub.at + SPIN));
             for i in 0..6 {
                 hubs[6 * index + i] =
                     hub.inertia[i] * rate[i] - scale * hub.stiffness[i] * moved[index][i];
             }
+        }
+        if let Some(bending) = &self.bending {
+            bending.displace(linearised, r, moved);
         }
         joint_forces(linearised, scale, moved, hubs);
         relaxing_forces(linearised, scale, r, hubs);
@@ -232,7 +243,10 @@ impl Arrow {
             }
             solve_lanes(&factors[index], right);
         }
-        schur.solve(hubs);
+        match &mut self.bending {
+            Some(bending) => bending.solve(linearised, scale, r, hubs, w),
+            None => self.schur.solve(hubs),
+        }
         let rates: &[[f64; 6]] = hubs.as_chunks().0;
         for (moved, rate) in moved.iter_mut().zip(rates) {
             for i in 0..6 {
@@ -291,7 +305,7 @@ impl Arrow {
         if let Some(set) = sets.first() {
             w[set.layout.ledger_entry(Ledger::Drives)] += scale * power;
         }
-        for (hub, rate) in linearised.hubs.iter().zip(rates) {
+        for (hub, rate) in linearised.hubs[..bodies].iter().zip(rates) {
             let (linear, turning) = from_basis(hub, rate);
             let q = [0, 1, 2, 3].map(|i| at[hub.at + ORIENTATION + i]);
             let turned = quaternion_rate(q, turning);

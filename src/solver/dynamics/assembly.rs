@@ -1,5 +1,5 @@
 //! What is simulated, as lists: rigid bodies, the bearings that join them, solids reduced to some shapes and the
-//! seats in them, gravity.
+//! seats in them, shafts that bend, gravity.
 //!
 //! A bearing takes hold of its two bodies at a place along each (a [`Mount`]); several may take hold of
 //! one body, as two bearings of a shaft do. The order of the lists is the order of every sum.
@@ -10,6 +10,7 @@ use super::equilibrium::given_speed;
 use super::model::{CageBody, Drive, DynamicProblem, RaceBody, RotatingLoad, Rotation};
 use super::reduced_solid::ReducedSolid;
 use super::seat::Seat;
+use super::shaft::ElasticShaft;
 use crate::ch2_housing::bearing::ball_contact::BallContactLaw;
 use crate::ch2_housing::bearing::cage::CageContacts;
 use crate::ch2_housing::bearing::contact::ContactDamping;
@@ -33,6 +34,8 @@ pub struct Assembly {
     pub solids: Vec<ReducedSolid>,
     /// Rigid bodies in the bores of solids.
     pub seats: Vec<Seat>,
+    /// Bodies that bend, at most one entry each.
+    pub shafts: Vec<ElasticShaft>,
     /// m/s².
     pub gravity: [f64; 3],
 }
@@ -264,12 +267,17 @@ impl Assembly {
         loads.chain(self.seats.iter().map(|seat| &seat.radius))
     }
 
+    /// Loads at places along shafts.
+    fn on_shafts(&self) -> impl Iterator<Item = &Profile> {
+        self.shafts.iter().flat_map(|shaft| &shaft.loads).flat_map(|load| &load.force)
+    }
+
     /// Times after t = 0 at which a load or a given motion has a corner, in order, each once: no
     /// step should cross them.
     pub fn corners(&self) -> Vec<f64> {
         let turning = self.rotating_loads().flat_map(|load| [&load.force, &load.speed]);
         let profiles = self.driven().flat_map(|race| race.loads().chain(race.given()));
-        let profiles = profiles.chain(turning).chain(self.of_solids());
+        let profiles = profiles.chain(turning).chain(self.of_solids()).chain(self.on_shafts());
         let mut corners: Vec<f64> = profiles.flat_map(Profile::corners).collect();
         corners.retain(|time| *time > 0.0 && time.is_finite());
         corners.sort_by(f64::total_cmp);
@@ -295,6 +303,9 @@ impl Assembly {
         for load in later.solids.iter_mut().flat_map(|solid| &mut solid.loads) {
             load.profile = load.profile.from_time(t0);
         }
+        for load in later.shafts.iter_mut().flat_map(|shaft| &mut shaft.loads) {
+            load.force.iter_mut().for_each(|profile| *profile = profile.from_time(t0));
+        }
         for seat in &mut later.seats {
             seat.radius = seat.radius.from_time(t0);
         }
@@ -315,7 +326,9 @@ impl Assembly {
     /// Whether a load or a given motion changes over time; one that turns at a speed of its own does.
     pub fn changes(&self) -> bool {
         let own = self.driven().flat_map(|race| race.loads().chain(race.given()));
-        own.chain(self.of_solids()).any(|profile| !matches!(profile, Profile::Constant(_)))
+        own.chain(self.of_solids())
+            .chain(self.on_shafts())
+            .any(|profile| !matches!(profile, Profile::Constant(_)))
             || self.rotating_loads().next().is_some()
     }
 
@@ -383,6 +396,7 @@ impl From<&DynamicProblem> for Assembly {
             connections: Vec::new(),
             solids: Vec::new(),
             seats: Vec::new(),
+            shafts: Vec::new(),
             gravity: problem.gravity,
         }
     }

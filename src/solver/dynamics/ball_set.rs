@@ -5,6 +5,7 @@ use super::assembly::Bearing;
 use super::contacts::{self, ContactLaws, ContactTable, Driver, Want, Work};
 use super::dents;
 use super::race::{RaceLoads, RaceNow, mounted};
+use super::shaft_holds::{Hold, sitting};
 use super::state::{
     LEDGER, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
 };
@@ -119,8 +120,10 @@ impl BallSet {
     }
 
     /// Takes both races and the cage to where their bodies are.
-    pub fn place(&mut self, bearing: &Bearing, bodies: &[RaceNow]) {
-        self.races = bearing.mounts.map(|mount| mounted(&bodies[mount.body], &mount));
+    pub fn place(&mut self, bearing: &Bearing, holds: &[Option<Hold>; 2], bodies: &[RaceNow]) {
+        for ((race, hold), mount) in self.races.iter_mut().zip(holds).zip(&bearing.mounts) {
+            *race = sitting(hold, &bodies[mount.body], mount);
+        }
         self.cage = bearing.cage.as_ref().map(|cage| bodies[cage.body]);
     }
 

@@ -5,7 +5,7 @@ use super::assembly::{Bearing, Caged};
 use super::ball_set::{BallSet, neighbours};
 use super::failure::SimulationError;
 use super::model::Drive;
-use super::race::{RaceNow, mounted};
+use super::race::RaceNow;
 use super::run::Simulation;
 use super::seat::Seat;
 use super::state::{BODY, POSITION};
@@ -74,8 +74,9 @@ impl Simulation {
     /// The first thing found: body, how far, step and time.
     pub(super) fn watch(&self) -> Result<(), SimulationError> {
         let system = &self.system;
-        for (set, bearing) in system.sets.iter().zip(&system.assembly.bearings) {
-            let outer = self.race(bearing, 1);
+        for (index, (set, bearing)) in system.sets.iter().zip(&system.assembly.bearings).enumerate()
+        {
+            let outer = system.race_of(&self.state, index, 1);
             self.watch_balls(set, bearing, &outer)?;
         }
         for (index, body) in system.assembly.bodies.iter().enumerate() {
@@ -89,25 +90,24 @@ impl Simulation {
                 return Err(self.not_finite(solid.name.clone()));
             }
         }
-        for seat in &system.assembly.seats {
-            self.watch_seat(seat)?;
+        for (shaft, at) in system.assembly.shafts.iter().zip(&system.shafts) {
+            if !self.state[*at..at + shaft.entries()].iter().all(|v| v.is_finite()) {
+                return Err(self.not_finite(system.assembly.bodies[shaft.body].name.clone()));
+            }
         }
-        for (set, bearing) in system.sets.iter().zip(&system.assembly.bearings) {
+        for (index, seat) in system.assembly.seats.iter().enumerate() {
+            self.watch_seat(index, seat)?;
+        }
+        for (index, (set, bearing)) in system.sets.iter().zip(&system.assembly.bearings).enumerate()
+        {
             self.watch_travel(bearing)?;
-            self.watch_races(bearing)?;
+            self.watch_races(index, bearing)?;
             self.watch_depths(set, bearing)?;
             if let Some(cage) = &bearing.cage {
-                self.watch_cage(bearing, cage)?;
+                self.watch_cage(index, bearing, cage)?;
             }
         }
         Ok(())
-    }
-
-    /// A race of a bearing in the present state.
-    fn race(&self, bearing: &Bearing, side: usize) -> RaceNow {
-        let mount = &bearing.mounts[side];
-        let body = self.system.body_state(&self.state, mount.body);
-        mounted(&RaceNow::new(body), mount)
     }
 
     fn not_finite(&self, body: String) -> SimulationError {
@@ -144,8 +144,9 @@ impl Simulation {
 
     /// The inner race against the outer one, in the latter's frame; a tilt counts as what it moves
     /// the race by at the pitch circle.
-    fn watch_races(&self, bearing: &Bearing) -> Result<(), SimulationError> {
-        let [inner, outer] = [0, 1].map(|side| self.race(bearing, side).motion);
+    fn watch_races(&self, index: usize, bearing: &Bearing) -> Result<(), SimulationError> {
+        let [inner, outer] =
+            [0, 1].map(|side| self.system.race_of(&self.state, index, side).motion);
         let axis = outer.axis;
         let (axial, radial) = split(sub(inner.position, outer.position), axis);
         let tilted = bearing.geometry.pitch_radius * norm(cross(axis, inner.axis));
@@ -202,9 +203,10 @@ impl Simulation {
     }
 
     /// A race in its bore: beyond these its nodes no longer stand for what is under it, or it hangs in the wall.
-    fn watch_seat(&self, seat: &Seat) -> Result<(), SimulationError> {
-        let body = self.system.body_state(&self.state, seat.race.body);
-        let race = mounted(&RaceNow::new(body), &seat.race).motion;
+    fn watch_seat(&self, index: usize, seat: &Seat) -> Result<(), SimulationError> {
+        let body = RaceNow::new(self.system.body_state(&self.state, seat.race.body));
+        let hold = &self.system.holds.seats[index];
+        let race = self.system.on_body(hold, &self.state, &body, &seat.race).motion;
         let (along, across) = split(sub(race.position, seat.nominal), race.axis);
         let radius = seat.radius.value(self.time);
         for (way, distance, allowed) in [
@@ -239,8 +241,13 @@ impl Simulation {
     }
 
     /// The cage's ring against both races.
-    fn watch_cage(&self, bearing: &Bearing, cage: &Caged) -> Result<(), SimulationError> {
-        let outer = self.race(bearing, 1).motion;
+    fn watch_cage(
+        &self,
+        index: usize,
+        bearing: &Bearing,
+        cage: &Caged,
+    ) -> Result<(), SimulationError> {
+        let outer = self.system.race_of(&self.state, index, 1).motion;
         let centre = self.system.body_state(&self.state, cage.body).position;
         let (_, distance) = split(sub(centre, outer.position), outer.axis);
         let allowed = cage_room(&bearing.geometry, &cage.contacts);

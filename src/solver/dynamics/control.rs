@@ -7,6 +7,7 @@
 //! below one.
 
 use super::assembly::{Assembly, Bearing};
+use super::shaft::ElasticShaft;
 use super::state::{BODY, LANES, Layout, ORIENTATION, POSITION, Places, SPIN, VELOCITY};
 use super::system::System;
 use crate::ch2_housing::bearing::contact::normal_stiffness;
@@ -104,7 +105,37 @@ fn shapes(assembly: &Assembly, places: &Places) -> Vec<ShapeScale> {
             race,
         }));
     }
+    for (shaft, at) in assembly.shafts.iter().zip(places.shafts(assembly)) {
+        all.extend(of_shaft(assembly, shaft, at));
+    }
     all
+}
+
+/// Of a shaft that bends: by how far its shapes move what holds it.
+fn of_shaft(
+    assembly: &Assembly,
+    shaft: &ElasticShaft,
+    at: usize,
+) -> impl Iterator<Item = ShapeScale> {
+    let count = shaft.count();
+    let mut reach = vec![0.0f64; count];
+    let mounts = assembly.bearings.iter().flat_map(|bearing| bearing.mounts);
+    let mounts = mounts.chain(assembly.connections.iter().flat_map(|of| of.ends));
+    for mount in mounts.filter(|mount| mount.body == shaft.body) {
+        let section = shaft.shapes.section(mount.along);
+        for (reach, deflection) in reach.iter_mut().zip(section.deflection) {
+            *reach = reach.max(deflection.abs());
+        }
+    }
+    let mass = assembly.bodies[shaft.body].inertia().map_or(1.0, |inertia| inertia.mass);
+    let race = Scale { mass, arm: arm(assembly, shaft.body) };
+    let frequencies = shaft.shapes.frequencies.clone();
+    (0..2 * count).map(move |k| ShapeScale {
+        at: [at + k, at + 2 * count + k],
+        reach: reach[k % count],
+        frequency: frequencies[k % count],
+        race,
+    })
 }
 
 /// Maxwell elements of all connections, with the longer arm of the two bodies that they join.

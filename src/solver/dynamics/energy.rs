@@ -24,6 +24,9 @@ pub struct Energy {
     /// Motion and strain of reduced solids.
     pub solid_kinetic: f64,
     pub solid_strain: f64,
+    /// Of bending of shafts.
+    pub bending_kinetic: f64,
+    pub bending_strain: f64,
     /// Stored in contacts of seats.
     pub seat: f64,
 }
@@ -37,6 +40,7 @@ impl Energy {
             + self.foundation
             + self.ball_contact
             + (self.solid_kinetic + self.solid_strain + self.seat)
+            + (self.bending_kinetic + self.bending_strain)
     }
 }
 
@@ -100,6 +104,11 @@ impl System {
             energy.solid_kinetic += of.kinetic;
             energy.solid_strain += of.strain;
             energy.gravity += of.gravity;
+        }
+        for (index, shaft) in assembly.shafts.iter().enumerate() {
+            let of = shaft.energy(self.bent(state, index));
+            energy.bending_kinetic += of.kinetic;
+            energy.bending_strain += of.strain;
         }
         energy.seat = self.seats.iter().map(|seat| seat.contact.energy).sum();
         energy

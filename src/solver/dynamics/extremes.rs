@@ -1,7 +1,6 @@
 //! The largest of what every accepted step has led to, whatever rows are written: of the contacts of an
 //! evaluation that the step makes anyway.
 
-use super::race::{RaceNow, mounted};
 use super::system::System;
 use crate::kinematics::vec3::{dot, norm, sub};
 
@@ -56,9 +55,7 @@ impl Extremes {
     pub fn see(&mut self, system: &System, index: usize, time: f64, state: &[f64]) {
         let (set, bearing) = (&system.sets[index], &system.assembly.bearings[index]);
         let layout = &set.layout;
-        let [inner, outer] = bearing.mounts.map(|mount| {
-            mounted(&RaceNow::new(system.body_state(state, mount.body)), &mount).motion
-        });
+        let [inner, outer] = [0, 1].map(|side| system.race_of(state, index, side).motion);
         let [x, y, z] = inner.position;
         self.farthest.take(norm([x - system.assembly.place_of(bearing), y, z]), 0, time);
         self.apart.take(norm(sub(inner.position, outer.position)), 0, time);

@@ -10,15 +10,17 @@
 //! symmetric and moves its slopes by a part hγ · (turning rate) of themselves. Orbits turn in frames of
 //! their own ([`super::orbit_frame`]). Left out are how the direction of the normal force turns as a
 //! ball leaves its frame's axes, how traction follows the entrainment speed,
-//! the Heathcote moments and gyroscopic moments. A W-method keeps its order without them.
+//! the Heathcote moments and gyroscopic moments, those of bending shafts too. A W-method keeps its order without them.
 
 use super::assembly::{Bearing, Mobility};
 use super::ball_set::{BallSet, guiding_side};
 use super::connection::{self, Connection, MaxwellElement};
 use super::linearised_contacts::{friction, pockets, race_contacts};
+use super::linearised_shafts::{self, SectionHub};
 use super::model::{Drive, RaceBody, Rotation};
-use super::race::{RaceNow, directions, mounted};
-use super::seat::{Seat, SeatNow};
+use super::race::{RaceNow, directions};
+use super::seat::SeatNow;
+use super::shaft_holds::{Hold, sitting};
 use super::state::LANES;
 use super::system::System;
 use crate::ch2_housing::bearing::cage::cage_stiffness;
@@ -158,8 +160,11 @@ pub struct Linearised {
     /// Both ends of the cage of each bearing on its guiding race, two a bearing; then connections.
     pub joints: Vec<Joint>,
     pub relaxing: Vec<Relaxing>,
-    /// Bodies that move, in their order.
+    /// Bodies that move, in their order; then sections of those that bend where something takes hold of them.
     pub hubs: Vec<Hub>,
+    pub sections: Vec<SectionHub>,
+    /// Of bodies that bend; their stiffness and damping count along one direction each.
+    pub shafts: Vec<Shapes>,
     /// Of each body of the assembly.
     pub hub_of: Vec<Option<usize>>,
     pub solids: Vec<Shapes>,
@@ -186,9 +191,18 @@ impl Linearised {
                 Some(hubs.len() - 1)
             })
             .collect();
+        let bodies = hubs.len();
+        let sections = linearised_shafts::sections(system, &hub_of, bodies);
+        hubs.resize(bodies + sections.len(), linearised_shafts::FREE);
+        let mut held = sections.iter().map(|section: &SectionHub| section.hub);
+        let mut hub_at = |hold: &Option<Hold>, body: usize| match hold {
+            Some(_) => held.next(),
+            None => hub_of[body],
+        };
         let (mut blocks, mut joints) = (Vec::new(), Vec::new());
         for (index, (set, bearing)) in system.sets.iter().zip(&assembly.bearings).enumerate() {
-            let races = bearing.mounts.map(|mount| hub_of[mount.body]);
+            let holds = &system.holds.bearings[index];
+            let races = [0, 1].map(|side| hub_at(&holds[side], bearing.mounts[side].body));
             let cage = bearing.cage.as_ref().and_then(|cage| hub_of[cage.body]);
             let contacts =
                 [races[0], races[1], cage].map(|hub| LaneContact { hub, ..LaneContact::default() });
@@ -199,8 +213,9 @@ impl Linearised {
             let hubs = [side.and_then(|side| races[side]), cage];
             joints.extend([Joint { hubs, ..Joint::default() }; 2]);
         }
-        joints.extend(assembly.connections.iter().map(|connection| {
-            let hubs = connection.ends.map(|mount| hub_of[mount.body]);
+        let held_ends = assembly.connections.iter().zip(&system.holds.connections);
+        joints.extend(held_ends.map(|(connection, holds)| {
+            let hubs = [0, 1].map(|end| hub_at(&holds[end], connection.ends[end].body));
             Joint { hubs, count: connection::ROWS, ..Joint::default() }
         }));
         let relaxing = assembly.connections.iter().zip(&system.connections).enumerate();
@@ -218,13 +233,15 @@ impl Linearised {
             first += solid.count();
             shapes
         });
-        let seats = assembly.seats.iter().zip(&system.seats).map(|(seat, now)| SeatJoint {
-            hub: hub_of[seat.race.body],
+        let seated = assembly.seats.iter().zip(&system.seats).zip(&system.holds.seats);
+        let seats = seated.map(|((seat, now), hold)| SeatJoint {
+            hub: hub_at(hold, seat.race.body),
             solid: seat.solid,
             nodes: Vec::with_capacity(now.outward.len()),
         });
         let (solids, seats) = (solids.collect(), seats.collect());
-        Linearised { blocks, joints, relaxing, hubs, hub_of, solids, seats }
+        let shafts = linearised_shafts::shapes(system);
+        Linearised { blocks, joints, relaxing, hubs, sections, shafts, hub_of, solids, seats }
     }
 
     /// Equations of all reduced solids.
@@ -232,9 +249,14 @@ impl Linearised {
         self.solids.iter().map(|solid| solid.stiffness.len()).sum()
     }
 
+    /// Hubs that are bodies.
+    pub fn bodies(&self) -> usize {
+        self.hubs.len() - self.sections.len()
+    }
+
     /// Takes up the contacts that `system` has just evaluated, slopes included.
     pub fn update(&mut self, system: &System, state: &[f64]) {
-        let Linearised { blocks, joints, hubs, hub_of, seats, .. } = self;
+        let Linearised { blocks, joints, hubs, sections, hub_of, seats, .. } = self;
         for ((body, now), hub) in system.assembly.bodies.iter().zip(&system.bodies).zip(hub_of) {
             let Some(hub) = hub.map(|hub| &mut hubs[hub]) else { continue };
             match body.driven() {
@@ -245,13 +267,15 @@ impl Linearised {
                 }
             }
         }
+        linearised_shafts::update(sections, hubs, system);
         for block in blocks {
             let (set, bearing) =
                 (&system.sets[block.bearing], &system.assembly.bearings[block.bearing]);
             for (side, mount) in bearing.mounts.iter().enumerate() {
                 let contact = &mut block.contacts[side];
                 let hub = contact.hub.map(|hub| &hubs[hub]);
-                let centre = system.bodies[mount.body].motion.position;
+                let hold = &system.holds.bearings[block.bearing][side];
+                let centre = centre_of_hub(hold, &system.bodies[mount.body]);
                 race_contacts(set, state, side, block.first, (hub, centre), contact);
             }
             let contact = &mut block.contacts[2];
@@ -260,24 +284,34 @@ impl Linearised {
             }
         }
         let (guides, others) = joints.split_at_mut(2 * system.sets.len());
-        for ((guides, set), bearing) in
-            guides.chunks_mut(2).zip(&system.sets).zip(&system.assembly.bearings)
-        {
-            update_guides(guides, set, bearing, &system.bodies, hubs);
+        for (index, (guides, set)) in guides.chunks_mut(2).zip(&system.sets).enumerate() {
+            let (bearing, holds) =
+                (&system.assembly.bearings[index], &system.holds.bearings[index]);
+            update_guides(guides, set, (bearing, holds), &system.bodies, hubs);
         }
-        for (joint, connection) in others.iter_mut().zip(&system.assembly.connections) {
-            update_connection(joint, connection, &system.bodies, hubs);
+        let held = system.assembly.connections.iter().zip(&system.holds.connections);
+        for (joint, (connection, holds)) in others.iter_mut().zip(held) {
+            update_connection(joint, connection, holds, &system.bodies, hubs);
         }
-        for ((joint, seat), now) in seats.iter_mut().zip(&system.assembly.seats).zip(&system.seats)
-        {
-            update_seat(joint, seat, now, &system.bodies[seat.race.body], hubs);
+        let held = system.assembly.seats.iter().zip(&system.holds.seats);
+        for ((joint, (seat, hold)), now) in seats.iter_mut().zip(held).zip(&system.seats) {
+            // Levers count about the hub's centre, from where the seat may be some way along the shaft.
+            let body = &system.bodies[seat.race.body];
+            let off = match hold {
+                Some(_) => [0.0; 3],
+                None => scale(body.motion.axis, seat.race.along),
+            };
+            update_seat(joint, now, off, hubs);
         }
     }
 }
 
-fn update_seat(joint: &mut SeatJoint, seat: &Seat, now: &SeatNow, body: &RaceNow, hubs: &[Hub]) {
-    // Levers count about the hub's centre, from where the seat may be some way along the shaft.
-    let off = scale(body.motion.axis, seat.race.along);
+/// About what the levers of a hub count: the centre of a section that is held, else of the body.
+fn centre_of_hub(hold: &Option<Hold>, body: &RaceNow) -> Vec3 {
+    hold.as_ref().map_or(body.motion.position, |hold| hold.now.race.motion.position)
+}
+
+fn update_seat(joint: &mut SeatJoint, now: &SeatNow, off: Vec3, hubs: &[Hub]) {
     let hub = joint.hub.map(|hub| &hubs[hub]);
     joint.nodes.clear();
     joint.nodes.extend(now.touching.iter().map(|node| {
@@ -294,13 +328,16 @@ fn update_seat(joint: &mut SeatJoint, seat: &Seat, now: &SeatNow, body: &RaceNow
 fn update_guides(
     guides: &mut [Joint],
     set: &BallSet,
-    bearing: &Bearing,
+    (bearing, holds): (&Bearing, &[Option<Hold>; 2]),
     bodies: &[RaceNow],
     hubs: &[Hub],
 ) {
     let Some(caged) = &bearing.cage else { return };
     let Some(side) = guiding_side(caged.contacts.guidance) else { return };
-    let centres = [bearing.mounts[side].body, caged.body].map(|body| bodies[body].motion.position);
+    let centres = [
+        centre_of_hub(&holds[side], &bodies[bearing.mounts[side].body]),
+        bodies[caged.body].motion.position,
+    ];
     for (guide, contact) in guides.iter_mut().zip(&set.guides) {
         guide.count = if contact.normal_load > 0.0 { 3 } else { 0 };
         if guide.count == 0 {
@@ -324,15 +361,24 @@ fn update_guides(
     }
 }
 
-fn update_connection(joint: &mut Joint, of: &Connection, bodies: &[RaceNow], hubs: &[Hub]) {
-    let ends = of.ends.map(|mount| mounted(&bodies[mount.body], &mount));
+fn update_connection(
+    joint: &mut Joint,
+    of: &Connection,
+    holds: &[Option<Hold>; 2],
+    bodies: &[RaceNow],
+    hubs: &[Hub],
+) {
+    let ends = [0, 1].map(|end| {
+        let mount = &of.ends[end];
+        sitting(&holds[end], &bodies[mount.body], mount)
+    });
     let rows = of.rows([&ends[0], &ends[1]]);
     for (to, row) in joint.rows.iter_mut().zip(rows) {
         (to.stiffness, to.damping) = (row.stiffness, row.damping);
         for (end, [linear, turning]) in row.on.into_iter().enumerate() {
             // Levers count about the hub's centre, from where the section may be some way along the shaft.
-            let body = &bodies[of.ends[end].body];
-            let off = sub(ends[end].motion.position, body.motion.position);
+            let centre = centre_of_hub(&holds[end], &bodies[of.ends[end].body]);
+            let off = sub(ends[end].motion.position, centre);
             to.levers[end] = joint.hubs[end].map_or([0.0; 6], |hub| {
                 on_hub(&hubs[hub], linear, add(turning, cross(off, linear)))
             });

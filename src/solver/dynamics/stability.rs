@@ -240,7 +240,9 @@ pub fn jacobian(system: &mut System, t: f64, state: &[f64]) -> DMatrix<f64> {
     let mut shifted = state.to_vec();
     let mut matrix = DMatrix::zeros(directions.len(), directions.len());
     let radii = system.assembly.bearings.iter().map(|bearing| bearing.geometry.ball_radius);
-    let radius = radii.fold(f64::INFINITY, f64::min);
+    let radius = Some(radii.fold(f64::INFINITY, f64::min)).filter(|radius| radius.is_finite());
+    // Of bodies on springs alone some length serves as well.
+    let radius = radius.unwrap_or(1e-2);
     for (column, direction) in directions.iter().enumerate() {
         let step = direction.step(state, radius);
         for sign in [1.0, -1.0] {
@@ -285,6 +287,11 @@ fn directions(system: &System) -> Vec<Direction> {
             directions.push(Direction::Position(at + shape));
             directions.push(Direction::Rate(at + solid.count() + shape));
         }
+    }
+    for (shaft, at) in system.assembly.shafts.iter().zip(&system.shafts) {
+        let half = 2 * shaft.count();
+        directions.extend((0..half).map(|k| Direction::Position(at + k)));
+        directions.extend((half..2 * half).map(|k| Direction::Rate(at + k)));
     }
     for (connection, at) in system.assembly.connections.iter().zip(&system.connections) {
         directions.extend((0..6 * connection.maxwell().len()).map(|k| Direction::Position(at + k)));

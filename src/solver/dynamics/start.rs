@@ -1,12 +1,14 @@
 //! Where a simulation starts: at equilibrium and rolling, or at rest in nominal positions.
 
 use super::assembly::{Assembly, Bearing};
+use super::contacts::Driver;
 use super::equilibrium::{at_start, given_speed, orbital_speed, race_speeds};
 use super::held::check_held;
 use super::model::Drive;
 use super::quasi_static::{self, Rates};
 use super::race::{self, RaceNow, mounted};
 use super::state::{BODY, BodyState, Layout, Places};
+use super::system::System;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
 use crate::solver::statics::StaticsError;
 use nalgebra::Vector3;
@@ -36,7 +38,50 @@ pub fn at_equilibrium(assembly: &Assembly) -> Result<Vec<f64>, StaticsError> {
         .iter()
         .map(|bearing| bearing.balls.iter().map(|ball| ball.position.into()).collect())
         .collect();
-    Ok(fill(assembly, &bodies, Some(&positions), &rates))
+    let state = fill(assembly, &bodies, Some(&positions), &rates);
+    check_unbent(assembly, &state)?;
+    Ok(state)
+}
+
+/// Bending at a start that passes for none, over the largest overlap.
+const UNBENT: f64 = 1e-4;
+
+/// Equilibrium is that of rigid bodies: nothing may push the shapes of one that bends.
+fn check_unbent(assembly: &Assembly, state: &[f64]) -> Result<(), StaticsError> {
+    if assembly.shafts.is_empty() {
+        return Ok(());
+    }
+    let mut system = System::new(assembly.clone(), Driver::Lanes);
+    let mut rates = vec![0.0; state.len()];
+    system.evaluate(0.0, state, &mut rates);
+    let tables = system.sets.iter().map(|set| &set.table);
+    let overlaps =
+        tables.flat_map(|table| table.active.iter().map(|pair| table.contact[*pair].overlap));
+    let balls = assembly.bearings.iter().map(|bearing| bearing.geometry.ball_radius);
+    let allowed = overlaps.fold(1e-6 * balls.fold(0.0, f64::max), f64::max) * UNBENT;
+    for (shaft, at) in assembly.shafts.iter().zip(&system.shafts) {
+        let count = shaft.count();
+        let frequencies = || shaft.shapes.frequencies.iter().chain(&shaft.shapes.frequencies);
+        let gone: Vec<f64> = rates[at + 2 * count..at + 4 * count]
+            .iter()
+            .zip(frequencies())
+            .map(|(push, w)| push / (w * w))
+            .collect();
+        // The farthest of all stations.
+        let deflection =
+            shaft.shapes.deflection.chunks_exact(count).fold(0.0, |most: f64, shape| {
+                let along =
+                    |gone: &[f64]| -> f64 { shape.iter().zip(gone).map(|(a, b)| a * b).sum() };
+                most.max(libm::hypot(along(&gone[..count]), along(&gone[count..])))
+            });
+        // NaN is too far.
+        let unbent = deflection <= allowed;
+        if !unbent {
+            let body = assembly.bodies[shaft.body].name.clone();
+            return Err(StaticsError::BentAtStart { body, deflection, allowed });
+        }
+    }
+    Ok(())
 }
 
 /// State vector with everything in its nominal position, balls and cages rolling at the given
@@ -63,6 +108,9 @@ fn with_solids(assembly: &Assembly, state: &[f64]) -> Vec<f64> {
     let mut whole = vec![0.0; places.state_len()];
     let bodies = places.body(assembly.bodies.len());
     whole[..bodies].copy_from_slice(&state[..bodies]);
+    for (shaft, at) in assembly.shafts.iter().zip(places.shafts(assembly)) {
+        whole[at..at + shaft.start.len()].copy_from_slice(&shaft.start);
+    }
     for (solid, at) in assembly.solids.iter().zip(places.solids(assembly)) {
         whole[at..at + solid.start.len()].copy_from_slice(&solid.start);
     }

@@ -8,6 +8,7 @@
 use super::assembly::Assembly;
 use super::connection::Connection;
 use super::reduced_solid::ReducedSolid;
+use super::shaft::ElasticShaft;
 use crate::kinematics::vec3::Vec3;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
@@ -20,6 +21,8 @@ pub struct Places {
     of_solids: usize,
     /// Entries of all Maxwell elements of connections.
     of_connections: usize,
+    /// Entries of all shafts that bend.
+    of_shafts: usize,
 }
 
 /// Entries that a connection has in the state: six for each Maxwell element.
@@ -35,6 +38,7 @@ impl Places {
             bodies: assembly.bodies.len(),
             of_solids: assembly.solids.iter().map(|solid| 2 * solid.count()).sum(),
             of_connections: assembly.connections.iter().map(connection_entries).sum(),
+            of_shafts: assembly.shafts.iter().map(ElasticShaft::entries).sum(),
         }
     }
 
@@ -60,13 +64,24 @@ impl Places {
         assembly.connections.iter().map(&mut first).collect()
     }
 
+    /// First entries of each shaft that bends, see [`ElasticShaft::entries`].
+    pub fn shafts(&self, assembly: &Assembly) -> Vec<usize> {
+        let mut next = self.body(self.bodies) + self.of_solids + self.of_connections;
+        let mut first = |shaft: &ElasticShaft| {
+            let at = next;
+            next += shaft.entries();
+            at
+        };
+        assembly.shafts.iter().map(&mut first).collect()
+    }
+
     /// First of the 13 entries of a body.
     pub fn body(&self, body: usize) -> usize {
         self.first_body + BODY * body
     }
 
     pub fn ledger(&self) -> usize {
-        self.body(self.bodies) + self.of_solids + self.of_connections
+        self.body(self.bodies) + self.of_solids + self.of_connections + self.of_shafts
     }
 
     pub fn ledger_entry(&self, entry: Ledger) -> usize {

@@ -1,18 +1,21 @@
 //! The equations of motion: state in, rates out.
 
 use super::assembly::{Assembly, Body, Mobility};
-use super::ball_set::{BallSet, onto_body};
+use super::ball_set::BallSet;
 use super::connection::{Connection, Pull};
 use super::contacts::{Driver, Want, Work};
 use super::model::Rotation;
 use super::race::{self, RaceLoads, RaceNow, mounted};
 use super::reduced_solid::ModalEnergy;
 use super::seat::SeatNow;
+use super::shaft::{Bend, Section};
+use super::shaft_holds::{Hold, Holds, handed_on, sitting};
 use super::state::{
     BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, POSITION, Places, SPIN, VELOCITY,
     quaternion_rate,
 };
 use crate::kinematics::vec3::{Vec3, add, add_scaled, dot};
+use crate::solver::mount::Mount;
 use crate::solver::plan::steps::{BodySteps, Steps};
 use crate::solver::plan::tally::{Ran, Tally};
 use crate::solver::plan::{Item, Stage, motion};
@@ -30,6 +33,9 @@ pub struct System {
     pub solids: Vec<usize>,
     /// First entry of each connection's Maxwell elements in the state.
     pub connections: Vec<usize>,
+    /// First entry of each shaft that bends, and what takes hold of them.
+    pub shafts: Vec<usize>,
+    pub holds: Holds,
     /// Every body as last evaluated.
     pub bodies: Vec<RaceNow>,
     /// What something outside does to a body, about its centre; stays as it is within a step.
@@ -68,6 +74,8 @@ impl System {
             seats: seats.map(|seat| SeatNow::new(seat, &assembly.solids[seat.solid])).collect(),
             solids: places.solids(&assembly),
             connections: places.connections(&assembly),
+            shafts: places.shafts(&assembly),
+            holds: Holds::new(&assembly, &bodies),
             places,
             sets,
             outside: vec![None; bodies.len()],
@@ -100,17 +108,24 @@ impl System {
             let here = self.body_state(state, index);
             self.bodies[index] = race::body_now(&self.assembly.bodies[index], t, here);
         }
-        for (set, bearing) in self.sets.iter_mut().zip(&self.assembly.bearings) {
-            set.place(bearing, &self.bodies);
+        self.holds.place(&self.assembly, &self.shafts, &self.bodies, state);
+        let holds = &self.holds.bearings;
+        for ((set, bearing), holds) in self.sets.iter_mut().zip(&self.assembly.bearings).zip(holds)
+        {
+            set.place(bearing, holds, &self.bodies);
         }
     }
 
     /// What a connection does in a state; call after [`System::evaluate`] at the same state.
     pub fn pull(&self, state: &[f64], connection: usize) -> Pull {
-        let at = self.connections[connection];
+        let (at, holds) = (self.connections[connection], &self.holds.connections[connection]);
         let connection = &self.assembly.connections[connection];
         let elongated = &state[at..at + 6 * connection.maxwell().len()];
-        let ends = connection.ends.map(|mount| mounted(&self.bodies[mount.body], &mount));
+        let end = |i: usize| {
+            let mount = &connection.ends[i];
+            sitting(&holds[i], &self.bodies[mount.body], mount)
+        };
+        let ends = [end(0), end(1)];
         connection.pull([&ends[0], &ends[1]], elongated)
     }
 
@@ -123,18 +138,24 @@ impl System {
     pub fn evaluate_with(&mut self, want: Want, t: f64, state: &[f64], rates: &mut [f64]) {
         self.work.evaluations += 1;
         self.place(t, state);
-        let bearings = &self.assembly.bearings;
         let gravity = self.steps.gravity.then_some(self.assembly.gravity);
         let mut ledger = [0.0; LEDGER];
         self.loads.fill(RaceLoads::default());
-        for ((set, bearing), own) in self.sets.iter_mut().zip(bearings).zip(&mut self.ran.bearings)
+        self.shaft_rates(t, state, rates, &mut ledger);
+        let Assembly { bearings, shafts, .. } = &self.assembly;
+        let bent = (shafts.as_slice(), self.shafts.as_slice());
+        let holds = &self.holds;
+        for (((set, bearing), own), holds) in
+            self.sets.iter_mut().zip(bearings).zip(&mut self.ran.bearings).zip(&holds.bearings)
         {
             let (driver, work) = (self.driver, &mut self.work);
             set.evaluate(bearing, gravity, driver, want, state, rates, &mut ledger, work, own);
             self.ran.whole.add(Stage::Gravity, own.take(Stage::Gravity));
-            for ((mount, race), loads) in bearing.mounts.iter().zip(&set.races).zip(&set.on_races) {
-                let body = &self.bodies[mount.body];
-                self.loads[mount.body].add(&onto_body(mount, race, body, loads));
+            for (side, mount) in bearing.mounts.iter().enumerate() {
+                let sits = (&set.races[side], &self.bodies[mount.body]);
+                let loads = &set.on_races[side];
+                let loads = handed_on((&holds[side], mount), sits, loads, bent, rates);
+                self.loads[mount.body].add(&loads);
             }
             if let Some(cage) = &bearing.cage {
                 self.loads[cage.body].add(&set.on_cage);
@@ -142,8 +163,14 @@ impl System {
         }
         let connections: &[Connection] =
             if self.steps.springs { &self.assembly.connections } else { &[] };
-        for (connection, &at) in connections.iter().zip(&self.connections) {
-            let ends = connection.ends.map(|mount| mounted(&self.bodies[mount.body], &mount));
+        for ((connection, &at), holds) in
+            connections.iter().zip(&self.connections).zip(&holds.connections)
+        {
+            let end = |i: usize| {
+                let mount = &connection.ends[i];
+                sitting(&holds[i], &self.bodies[mount.body], mount)
+            };
+            let ends = [end(0), end(1)];
             let elements = connection.maxwell();
             let elongated = &state[at..at + 6 * elements.len()];
             let pull = connection.pull([&ends[0], &ends[1]], elongated);
@@ -154,9 +181,10 @@ impl System {
                 }
             }
             ledger[Ledger::Foundation as usize] += pull.loss;
-            for ((mount, end), loads) in connection.ends.iter().zip(&ends).zip(&pull.on) {
-                let body = &self.bodies[mount.body];
-                self.loads[mount.body].add(&onto_body(mount, end, body, loads));
+            for (end, mount) in connection.ends.iter().enumerate() {
+                let sits = (&ends[end], &self.bodies[mount.body]);
+                let loads = handed_on((&holds[end], mount), sits, &pull.on[end], bent, rates);
+                self.loads[mount.body].add(&loads);
             }
             self.ran.whole.add(Stage::Springs, 1);
         }
@@ -169,6 +197,32 @@ impl System {
         self.ran.whole.add(Stage::Ledger, 1);
     }
 
+    /// Rates of the shafts that bend, without what holds them.
+    fn shaft_rates(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        rates: &mut [f64],
+        ledger: &mut [f64; LEDGER],
+    ) {
+        let time = t.min(self.latest);
+        for &(index, steps) in &self.steps.shafts {
+            let (shaft, at) = (&self.assembly.shafts[index], self.shafts[index]);
+            let body = &self.assembly.bodies[shaft.body];
+            let acceleration = match body.driven().map(|driven| &driven.rotation) {
+                Some(Rotation::Speed(profile)) => profile.rate(time),
+                Some(Rotation::Torque(_)) | None => 0.0,
+            };
+            let entries = at..at + shaft.entries();
+            let (now, own) = (&self.bodies[shaft.body], &mut self.ran.bodies[shaft.body]);
+            let bent = (now, &state[entries.clone()]);
+            let done = shaft.rates(steps, time, acceleration, bent, &mut rates[entries], own);
+            ledger[Ledger::Foundation as usize] += done.damped;
+            ledger[Ledger::Drives as usize] += done.driven;
+            self.loads[shaft.body].add(&done.on_body);
+        }
+    }
+
     /// Rates of the reduced solids; what their seats do to bodies is summed.
     fn solid_rates(
         &mut self,
@@ -178,7 +232,8 @@ impl System {
         ledger: &mut [f64; LEDGER],
     ) {
         let t = t.min(self.latest);
-        let Assembly { solids, seats, .. } = &self.assembly;
+        let Assembly { solids, seats, shafts, .. } = &self.assembly;
+        let bent = (shafts.as_slice(), self.shafts.as_slice());
         for &(index, steps) in &self.steps.solids {
             let (solid, at) = (&solids[index], self.solids[index]);
             let (gone, speeds) = state[at..at + 2 * solid.count()].split_at(solid.count());
@@ -194,11 +249,14 @@ impl System {
             let (seat, now) = (&seats[index], &mut self.seats[index]);
             let (solid, at) = (&solids[seat.solid], self.solids[seat.solid]);
             let body = &self.bodies[seat.race.body];
-            let race = mounted(body, &seat.race);
+            let hold = &self.holds.seats[index];
+            let race = sitting(hold, body, &seat.race);
             let gone = &state[at..at + solid.count()];
             let pushes = &mut rates[at + solid.count()..at + 2 * solid.count()];
             let loads = now.evaluate(seat, solid, &race, t, gone, pushes);
-            self.loads[seat.race.body].add(&onto_body(&seat.race, &race, body, &loads));
+            let sits = (&race, body);
+            let loads = handed_on((hold, &seat.race), sits, &loads, bent, rates);
+            self.loads[seat.race.body].add(&loads);
             // What lets the race grow works against the contact.
             ledger[Ledger::Drives as usize] += now.contact.radial_load * seat.radius.rate(t);
             self.ran.seats[index].add(Stage::Seat, 1);
@@ -216,6 +274,43 @@ impl System {
     pub fn shapes_of<'s>(&self, state: &'s [f64], solid: usize) -> (&'s [f64], &'s [f64]) {
         let (at, count) = (self.solids[solid], self.assembly.solids[solid].count());
         state[at..at + 2 * count].split_at(count)
+    }
+
+    /// Entries of a shaft that bends.
+    pub fn bent<'s>(&self, state: &'s [f64], shaft: usize) -> &'s [f64] {
+        let at = self.shafts[shaft];
+        &state[at..at + self.assembly.shafts[shaft].entries()]
+    }
+
+    /// A race of a bearing in a state, whatever was evaluated last; given motions are not imposed.
+    pub fn race_of(&self, state: &[f64], bearing: usize, side: usize) -> RaceNow {
+        let mount = &self.assembly.bearings[bearing].mounts[side];
+        let body = RaceNow::new(self.body_state(state, mount.body));
+        self.on_body(&self.holds.bearings[bearing][side], state, &body, mount)
+    }
+
+    /// What sits at a mount of a body, bent as a state has it.
+    pub fn on_body(
+        &self,
+        hold: &Option<Hold>,
+        state: &[f64],
+        body: &RaceNow,
+        mount: &Mount,
+    ) -> RaceNow {
+        match hold {
+            None => mounted(body, mount),
+            Some(hold) => {
+                let bend = Bend::of(self.bent(state, hold.shaft));
+                hold.section.place(body, mount, &bend).race
+            }
+        }
+    }
+
+    /// A section of a shaft that bends, where a state has it; given motions are not imposed.
+    pub fn section_now(&self, state: &[f64], shaft: usize, section: &Section) -> RaceNow {
+        let body = self.assembly.shafts[shaft].body;
+        let now = RaceNow::new(self.body_state(state, body));
+        section.place(&now, &Mount::at_centre(body), &Bend::of(self.bent(state, shaft))).race
     }
 
     /// Energy of a reduced solid in a state.

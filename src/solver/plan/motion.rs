@@ -10,6 +10,7 @@ use crate::solver::dynamics::assembly::{Assembly, BallMeeting, Bearing, Body, GR
 use crate::solver::dynamics::ball_set::neighbours;
 use crate::solver::dynamics::model::{Drive, RaceBody, Rotation};
 use crate::solver::dynamics::run::{Integrator, RunOptions, Start, Stepping};
+use crate::solver::dynamics::shaft::ElasticShaft;
 
 /// A run of an assembly.
 #[derive(Clone, Debug)]
@@ -53,6 +54,7 @@ pub fn evaluation(assembly: &Assembly, cage_left_out: &[Option<&str>]) -> Vec<It
     }
     items.push(springs(assembly));
     items.extend(reduced_solids(assembly));
+    items.extend(assembly.shafts.iter().flat_map(|shaft| bending(shaft, assembly)));
     items.push(gravity(assembly));
     let bodies = || assembly.bodies.iter().enumerate();
     items.extend(bodies().filter_map(|(index, body)| motion(body, Subject::Body(index))));
@@ -146,6 +148,29 @@ pub fn stepped_seat(
     let seat = Item::does(Stage::Seat, Subject::Seat(index), why).named(name);
     let why = format!("on {race}, the mean of each window");
     [seat, Item::does(Stage::Impulses, Subject::Body(body), why).named(name)]
+}
+
+/// A body that bends.
+fn bending(shaft: &ElasticShaft, assembly: &Assembly) -> [Item; 3] {
+    let (body, subject) = (&assembly.bodies[shaft.body], Subject::Body(shaft.body));
+    let (count, natural) = (shaft.count(), shaft.shapes.natural);
+    let why = format!(
+        "{} bends in {count} shapes either way: {natural} natural ones, {} static answers to what holds it",
+        body.name,
+        count - natural
+    );
+    let acting = shaft.loads.len() + shaft.unbalances.len();
+    let damped = shaft.damping != 0.0 || shaft.internal_damping != 0.0;
+    let either = |stage, does, why: String| {
+        Item::new(stage, subject, does, if does { why } else { "none is given".into() })
+    };
+    let own = [
+        Item::does(Stage::Reduced, subject, why).costing(1),
+        either(Stage::Loads, acting > 0, format!("{acting} at places along {}", body.name))
+            .costing(acting as u64),
+        either(Stage::Damping, damped, "of bending, in proportion to mass".into()).costing(1),
+    ];
+    own.map(|item| item.named(body.label.clone()))
 }
 
 fn gravity(assembly: &Assembly) -> Item {

@@ -33,10 +33,14 @@ pub fn items(assembly: &StaticAssembly, solids: Vec<Item>, centrifugal: &str) ->
                 .costing(some as u64)
         }
     });
-    items.push(match assembly.connections.len() {
-        0 => Item::skips(Stage::Springs, Subject::Whole, "none is given"),
-        some => Item::does(Stage::Springs, Subject::Whole, format!("{some} of them"))
-            .costing(some as u64),
+    items.push(match (assembly.connections.len(), assembly.shafts.len()) {
+        (0, 0) => Item::skips(Stage::Springs, Subject::Whole, "none is given"),
+        (some, shafts) => {
+            let and =
+                if shafts == 0 { String::new() } else { format!(", {shafts} elastic shafts") };
+            Item::does(Stage::Springs, Subject::Whole, format!("{some} of them{and}"))
+                .costing((some + shafts) as u64)
+        }
     });
     let flexible = !(solids.is_empty() && assembly.seats.is_empty());
     if !flexible {

@@ -3,6 +3,7 @@
 use super::solid::SolidSteps;
 use super::{Item, Stage, Subject, does};
 use crate::solver::dynamics::assembly::Assembly;
+use crate::solver::dynamics::shaft::{ElasticShaft, ShaftSteps};
 
 /// Of one bearing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +38,8 @@ pub struct Steps {
     /// Reduced solids and the seats in them.
     pub solids: Vec<(usize, SolidSteps)>,
     pub seats: Vec<usize>,
+    /// Shafts that bend.
+    pub shafts: Vec<(usize, ShaftSteps)>,
 }
 
 impl Steps {
@@ -73,6 +76,11 @@ impl Steps {
             };
             of(Stage::Reduced).then_some((index, acting))
         };
+        let shaft = |(index, shaft): (usize, &ElasticShaft)| {
+            let acts = |stage| of(stage, Subject::Body(shaft.body));
+            let acting = ShaftSteps { loads: acts(Stage::Loads), damping: acts(Stage::Damping) };
+            acts(Stage::Reduced).then_some((index, acting))
+        };
         let solids = 0..assembly.solids.len();
         let seats = 0..assembly.seats.len();
         Steps {
@@ -82,6 +90,7 @@ impl Steps {
             bodies: bodies.clone().map(body).collect(),
             moving: bodies.filter(|index| of(Stage::Motion, Subject::Body(*index))).collect(),
             solids: solids.filter_map(solid).collect(),
+            shafts: assembly.shafts.iter().enumerate().filter_map(shaft).collect(),
             seats: seats.filter(|index| of(Stage::Seat, Subject::Seat(*index))).collect(),
         }
     }

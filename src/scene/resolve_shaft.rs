@@ -1,0 +1,149 @@
+//! From the keys of a body that bends to its beam and what acts along it.
+
+use crate::ch4_rotor::disc::Inertia as DiscInertia;
+use crate::scene::assembly::SceneBeam;
+use crate::scene::document::ItemRef;
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::resolve::Reader;
+use crate::scene::resolve_solid::{item_number, item_profile, item_text, missing};
+use crate::solver::profile::Profile;
+use crate::solver::rotor::beam::{Beam, BeamDisc, BeamSegment};
+use crate::solver::shaft_shapes::Kept;
+use std::f64::consts::TAU;
+
+const TABLE: &str = "body.beam";
+
+/// The beam of a body, if it has one. Places count from the body's centre.
+pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError> {
+    let document = reader.document;
+    let Some(first) = document.first_below(TABLE) else { return Ok(None) };
+    let refused = |key: &str, reason: &str, advice: &str| {
+        let (reason, advice) = (reason.into(), advice.into());
+        Err(document.error(key, Problem::Refused { reason, advice }))
+    };
+    for (part, advice) in [
+        ("body.inertia", "leave it out: mass and inertia follow from segments and discs"),
+        ("body.unbalance", "write [[body.NAME.beam.unbalance]] with its place"),
+        ("body.rotating_load", "write [[body.NAME.beam.load]] with its place"),
+    ] {
+        if let Some(given) = document.first_below(part) {
+            return refused(given, "the body bends (`beam`)", advice);
+        }
+        if document.value(part).is_some() {
+            return refused(part, "the body bends (`beam`)", advice);
+        }
+    }
+    let mut number = |key: &str| reader.number(&format!("{TABLE}.{key}")).unwrap_or(0.0);
+    let [youngs_modulus, poisson_ratio, density] =
+        ["youngs_modulus", "poisson_ratio", "density"].map(&mut number);
+    let [below, damping, internal_damping] =
+        ["below", "damping", "internal_damping"].map(&mut number);
+    let absolute = reader.choice("body.beam.damped_motion") == Some("absolute");
+    let segment = |item: ItemRef| {
+        let size = |name, example| required(item, name, example);
+        let inner_diameter = item_number(item, "inner_diameter").unwrap_or(0.0);
+        let outer_diameter = size("outer_diameter", "outer_diameter = \"30 mm\"")?;
+        if inner_diameter >= outer_diameter {
+            let reason = "it is no smaller than the outer diameter".into();
+            let advice = "give a smaller one, or leave it out".into();
+            return Err(item.error("inner_diameter", Problem::Refused { reason, advice }));
+        }
+        let length = size("length", "length = \"400 mm\"")?;
+        let (youngs_modulus, density) = (youngs_modulus, density);
+        Ok(BeamSegment {
+            length,
+            outer_diameter,
+            inner_diameter,
+            density,
+            youngs_modulus,
+            poisson_ratio,
+        })
+    };
+    let segments: Vec<BeamSegment> =
+        document.items("body.beam.segments").map(segment).collect::<Result<_, _>>()?;
+    if segments.is_empty() {
+        return refused(
+            first,
+            "a shaft that bends has segments",
+            "add segments = [{ length = \"400 mm\", outer_diameter = \"30 mm\" }] to [body.NAME.beam]",
+        );
+    }
+    let mut beam = Beam::new(segments);
+    let start = reader.given_number("body.beam.start").unwrap_or_else(|| -0.5 * beam.length());
+    let length = beam.length();
+    let at = |item: ItemRef| -> Result<f64, SceneError> {
+        let at = required(item, "at", "at = \"0 mm\"")?;
+        // As near to its ends as stations are.
+        let room = 1e-9 * length;
+        if start - room <= at && at <= start + length + room {
+            return Ok(at);
+        }
+        let reason = format!(
+            "{:.4} mm is not on the shaft, which goes from {:.4} to {:.4} mm",
+            1e3 * at,
+            1e3 * start,
+            1e3 * (start + length)
+        );
+        let advice = "places count from the body's centre".into();
+        Err(item.error("at", Problem::Refused { reason, advice }))
+    };
+    beam.discs = document
+        .items("body.beam.disc")
+        .map(|item| disc(item, at(item)? - start, density))
+        .collect::<Result<_, SceneError>>()?;
+    let load = |item: ItemRef| {
+        let force = ["x", "y", "z"].map(|axis| item_profile(item, axis));
+        if force.iter().all(Option::is_none) {
+            return Err(missing(item, "z", ", nothing acts", "z = \"-3000 N\""));
+        }
+        Ok((at(item)?, force.map(|force| force.unwrap_or(Profile::ZERO))))
+    };
+    let unbalance = |item: ItemRef| {
+        let size = required(item, "size", "size = \"1e-3 kg m\"")?;
+        Ok((at(item)?, size, item_number(item, "angle").unwrap_or(0.0)))
+    };
+    let watch = |item: ItemRef| Ok((item_text(item, "name", "name = \"mid\"")?, at(item)?));
+    Ok(Some(SceneBeam {
+        start,
+        kept: Kept { below: TAU * below, most: usize::MAX },
+        damping,
+        absolute,
+        internal_damping,
+        loads: document.items("body.beam.load").map(load).collect::<Result<_, _>>()?,
+        unbalances: document
+            .items("body.beam.unbalance")
+            .map(unbalance)
+            .collect::<Result<_, _>>()?,
+        watched: document.items("body.beam.watch").map(watch).collect::<Result<_, SceneError>>()?,
+        beam,
+    }))
+}
+
+fn required(item: ItemRef, name: &str, example: &str) -> Result<f64, SceneError> {
+    item_number(item, name).ok_or_else(|| missing(item, name, "", example))
+}
+
+/// A disc of a given mass, or of a given size and the shaft's density; `at` from the shaft's first end.
+fn disc(item: ItemRef, at: f64, density: f64) -> Result<BeamDisc, SceneError> {
+    let given = |name: &str| item_number(item, name);
+    if let Some(mass) = given("mass") {
+        let size = ["outer_diameter", "inner_diameter", "width"];
+        if let Some(name) = size.into_iter().find(|name| given(name).is_some()) {
+            let advice = format!("keep `mass` or `{name}`");
+            return Err(item.error(name, Problem::Exclusive { rival: "mass".into(), advice }));
+        }
+        let [axial, transverse] = ["axial", "transverse"].map(|name| given(name).unwrap_or(0.0));
+        return Ok(BeamDisc { at, mass, axial, transverse });
+    }
+    let outer = required(item, "outer_diameter", "outer_diameter = \"200 mm\"")?;
+    let width = required(item, "width", "width = \"20 mm\"")?;
+    let inner = given("inner_diameter").unwrap_or(0.0);
+    if inner >= outer {
+        let reason = "it is no smaller than the outer diameter".into();
+        let advice = "give a smaller one, or leave it out".into();
+        return Err(item.error("inner_diameter", Problem::Refused { reason, advice }));
+    }
+    let DiscInertia { mass, axial, transverse } =
+        DiscInertia::of_ring(outer, inner, width, density);
+    Ok(BeamDisc { at, mass, axial, transverse })
+}

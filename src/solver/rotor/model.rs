@@ -1,0 +1,271 @@
+//! A shaft on supports, over its lowest natural motions at rest.
+//!
+//! What turns with the shaft is a body of revolution, so that its matrices stand still in axes that do not turn;
+//! supports and damping stand still too. Damping in the turning shaft itself, which feeds whirl above the critical speed, is not here.
+
+use super::beam::{Beam, BeamError, BeamMatrices, STATION};
+use nalgebra::{DMatrix, DVector, Matrix4};
+use thiserror::Error;
+
+/// What holds the shaft elastically at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Support {
+    /// m from the shaft's first end.
+    pub at: f64,
+    /// Over y, z, turn_y, turn_z; of a bearing the rows and columns of these in its stiffness at equilibrium.
+    pub stiffness: Matrix4<f64>,
+    /// N·s/m, N·s, N·m·s.
+    pub damping: Matrix4<f64>,
+}
+
+/// Coordinates that do not move at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// m from the shaft's first end.
+    pub at: f64,
+    /// y, z, turn_y, turn_z.
+    pub coordinates: [bool; 4],
+}
+
+impl Held {
+    /// In y and z.
+    pub fn pin(at: f64) -> Held {
+        Held { at, coordinates: [true, true, false, false] }
+    }
+
+    pub fn clamp(at: f64) -> Held {
+        Held { at, coordinates: [true; 4] }
+    }
+}
+
+/// A shaft and what holds it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rotor {
+    pub beam: Beam,
+    pub supports: Vec<Support>,
+    pub held: Vec<Held>,
+    /// α of a damping α M that brakes lateral motion in axes that do not turn, 1/s.
+    pub mass_damping: f64,
+    /// Further places with stations, m: of loads and sensors.
+    pub places: Vec<f64>,
+    /// How many shapes are kept; all where there are fewer. Two thirds are natural motions at rest.
+    pub modes: usize,
+}
+
+/// Shapes that are kept where nothing else is said: twelve in each plane.
+pub const MODES: usize = 24;
+
+impl Rotor {
+    /// Without supports.
+    pub fn new(beam: Beam) -> Rotor {
+        let (supports, held, places) = (Vec::new(), Vec::new(), Vec::new());
+        Rotor { beam, supports, held, mass_damping: 0.0, places, modes: MODES }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RotorError {
+    #[error(transparent)]
+    Beam(#[from] BeamError),
+    #[error("support {number} of the shaft: its stiffness or damping is not finite")]
+    Support { number: usize },
+    #[error("the damping of the shaft is {0} 1/s: it has to be 0 or more")]
+    Damping(f64),
+    #[error("every coordinate of the shaft is held: nothing is left that could move")]
+    NothingMoves,
+    #[error("the shaft on its supports falls over: their stiffness is negative along some motion")]
+    Unstable,
+    #[error("the eigenvalues at {speed} rad/s have not been found in {iterations} iterations")]
+    Eigenvalues { speed: f64, iterations: usize },
+    #[error(
+        "the shaft moves freely: its natural motions begin at {frequency:.3e} rad/s; critical speeds are those of a shaft that is held"
+    )]
+    Unheld { frequency: f64 },
+}
+
+/// A rotor over its natural motions at rest, p̈ + (C + Ω G) ṗ + K p = Bᵀ loads, q = B p.
+#[derive(Clone, Debug)]
+pub struct RotorModel {
+    pub matrices: BeamMatrices,
+    /// Each column a natural motion at rest over all coordinates, its modal mass 1.
+    pub basis: DMatrix<f64>,
+    /// rad/s, ascending; zero for rigid motions.
+    pub natural: Vec<f64>,
+    pub damping: DMatrix<f64>,
+    pub gyroscopic: DMatrix<f64>,
+    pub stiffness: DMatrix<f64>,
+    /// Bᵀ M R B, R a quarter turn from Y to Z: ±i on a motion that whirls in circles, forward and backward.
+    pub(super) quarter_turn: DMatrix<f64>,
+}
+
+/// Below this part of the stiffness a frequency counts as that of a rigid motion: what rounding leaves.
+const RIGID: f64 = 1e-12;
+
+impl RotorModel {
+    /// # Errors
+    /// Values that no shaft has, supports that let it fall.
+    pub fn new(rotor: &Rotor) -> Result<RotorModel, RotorError> {
+        let supports = rotor.supports.iter().map(|support| support.at);
+        let held = rotor.held.iter().map(|held| held.at);
+        let places: Vec<f64> = supports.chain(held).chain(rotor.places.iter().copied()).collect();
+        let matrices = rotor.beam.matrices(&places)?;
+        if !(rotor.mass_damping >= 0.0 && rotor.mass_damping.is_finite()) {
+            return Err(RotorError::Damping(rotor.mass_damping));
+        }
+        let mut stiffness = matrices.stiffness.clone();
+        let mut damping = &matrices.mass * rotor.mass_damping;
+        for (index, support) in rotor.supports.iter().enumerate() {
+            let values = support.stiffness.iter().chain(support.damping.iter());
+            if values.into_iter().any(|value| !value.is_finite()) {
+                return Err(RotorError::Support { number: index + 1 });
+            }
+            let first = STATION * station(&matrices, support.at);
+            let mut view = stiffness.fixed_view_mut::<STATION, STATION>(first, first);
+            view += support.stiffness;
+            let mut view = damping.fixed_view_mut::<STATION, STATION>(first, first);
+            view += support.damping;
+        }
+        let free = free_coordinates(&matrices, &rotor.held);
+        let (basis, natural) = natural_motions(&matrices, &stiffness, &free, rotor.modes)?;
+        let project = |matrix: &DMatrix<f64>| basis.transpose() * matrix * &basis;
+        let mut modal_stiffness = project(&stiffness);
+        for rigid in (0..natural.len()).filter(|&i| natural[i] == 0.0) {
+            // Rounding that would oscillate.
+            modal_stiffness.row_mut(rigid).fill(0.0);
+            modal_stiffness.column_mut(rigid).fill(0.0);
+        }
+        let mut turned = DMatrix::zeros(basis.nrows(), basis.ncols());
+        for pair in 0..basis.nrows() / 2 {
+            turned.row_mut(2 * pair).copy_from(&(-basis.row(2 * pair + 1)));
+            turned.row_mut(2 * pair + 1).copy_from(&basis.row(2 * pair));
+        }
+        Ok(RotorModel {
+            damping: project(&damping),
+            gyroscopic: project(&matrices.gyroscopic),
+            stiffness: modal_stiffness,
+            quarter_turn: basis.transpose() * &matrices.mass * turned,
+            matrices,
+            basis,
+            natural,
+        })
+    }
+
+    /// Loads over all coordinates seen by the natural motions.
+    pub fn modal_load(&self, station: usize, load: [f64; STATION]) -> DVector<f64> {
+        let first = STATION * station;
+        let mut modal = DVector::zeros(self.natural.len());
+        for (i, value) in load.into_iter().enumerate() {
+            modal += self.basis.row(first + i).transpose() * value;
+        }
+        modal
+    }
+}
+
+/// The station at a place that was asked for.
+pub(super) fn station(matrices: &BeamMatrices, at: f64) -> usize {
+    matrices.station(at).expect("places that were asked for have stations")
+}
+
+fn free_coordinates(matrices: &BeamMatrices, held: &[Held]) -> Vec<usize> {
+    let mut free = vec![true; matrices.mass.nrows()];
+    for held in held {
+        let first = STATION * station(matrices, held.at);
+        for (i, &is_held) in held.coordinates.iter().enumerate() {
+            free[first + i] &= !is_held;
+        }
+    }
+    (0..free.len()).filter(|&i| free[i]).collect()
+}
+
+/// Shapes of unit modal mass that the rotor's motions are made of, and their frequencies at rest, rad/s: the lowest natural motions,
+/// and for the lowest of these what their gyroscopic moments bend besides, which natural motions alone approach slowly.
+fn natural_motions(
+    matrices: &BeamMatrices,
+    stiffness: &DMatrix<f64>,
+    free: &[usize],
+    modes: usize,
+) -> Result<(DMatrix<f64>, Vec<f64>), RotorError> {
+    if free.is_empty() || modes == 0 {
+        return Err(RotorError::NothingMoves);
+    }
+    let count = free.len();
+    let part =
+        |matrix: &DMatrix<f64>| DMatrix::from_fn(count, count, |i, j| matrix[(free[i], free[j])]);
+    let mass = part(&matrices.mass);
+    let stiffness = part(stiffness);
+    let stiffness = (&stiffness + stiffness.transpose()) * 0.5;
+    let ratios = (0..count).map(|i| stiffness[(i, i)] / mass[(i, i)]);
+    let lightest = ratios.fold(f64::INFINITY, f64::min);
+    let (mut shapes, mut squares) = lowest(&mass, &stiffness, 1e-4 * lightest, modes)?;
+    if modes < count {
+        let corrected = modes / 3;
+        let keep = modes - corrected;
+        let loads = part(&matrices.gyroscopic) * shapes.columns(0, corrected);
+        let shifted = &stiffness + &mass * (1e-4 * lightest);
+        let bent = shifted.cholesky().ok_or(RotorError::Unstable)?.solve(&loads);
+        let mut ritz = DMatrix::zeros(count, modes);
+        ritz.columns_mut(0, keep).copy_from(&shapes.columns(0, keep));
+        let mut at = keep;
+        for column in bent.column_iter() {
+            // Twice: what is left may be small beside what was taken away.
+            let mut column = column.into_owned();
+            let before = column.dot(&(&mass * &column)).sqrt();
+            for _ in 0..2 {
+                let inertia = &mass * &column;
+                let taken = ritz.columns(0, at).tr_mul(&inertia);
+                column -= ritz.columns(0, at) * taken;
+            }
+            let left = column.dot(&(&mass * &column)).sqrt();
+            // Two discs' moments may bend the shaft alike.
+            if left > 1e-9 * before {
+                ritz.set_column(at, &(column / left));
+                at += 1;
+            }
+        }
+        let ritz = ritz.columns(0, at).into_owned();
+        let own_stiffness = ritz.tr_mul(&(&stiffness * &ritz));
+        let own_mass = ritz.tr_mul(&(&mass * &ritz));
+        let (combined, own) = lowest(&own_mass, &own_stiffness, 1e-4 * lightest, at)?;
+        (shapes, squares) = (ritz * combined, own);
+    }
+    let mut basis = DMatrix::zeros(matrices.mass.nrows(), shapes.ncols());
+    for (i, &at) in free.iter().enumerate() {
+        basis.row_mut(at).copy_from(&shapes.row(i));
+    }
+    let noise = RIGID * lightest;
+    if squares.iter().any(|&square| square < -noise) {
+        return Err(RotorError::Unstable);
+    }
+    let natural = squares.iter().map(|&s| if s.abs() <= noise { 0.0 } else { s.sqrt() });
+    Ok((basis, natural.collect()))
+}
+
+/// The `modes` lowest natural motions of unit modal mass and their frequencies' squares.
+///
+/// The inverse problem, M x = μ (K + σM) x: its largest values are the lowest frequencies, which rounding touches least; the
+/// shift σ lets rigid motions in.
+fn lowest(
+    mass: &DMatrix<f64>,
+    stiffness: &DMatrix<f64>,
+    shift: f64,
+    modes: usize,
+) -> Result<(DMatrix<f64>, Vec<f64>), RotorError> {
+    let shifted = stiffness + mass * shift;
+    let factor = shifted.cholesky().ok_or(RotorError::Unstable)?.unpack();
+    let solve = |right: &DMatrix<f64>| factor.solve_lower_triangular(right);
+    let half = solve(mass).ok_or(RotorError::Unstable)?;
+    let inverse = solve(&half.transpose()).ok_or(RotorError::Unstable)?;
+    let eigen = ((&inverse + inverse.transpose()) * 0.5).symmetric_eigen();
+    let mut order: Vec<usize> = (0..mass.nrows()).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    order.truncate(modes);
+    let mut shapes = DMatrix::zeros(mass.nrows(), order.len());
+    let mut squares = Vec::with_capacity(order.len());
+    for (column, &mode) in order.iter().enumerate() {
+        let value = eigen.eigenvalues[mode];
+        squares.push(1.0 / value - shift);
+        let shape = factor.tr_solve_lower_triangular(&eigen.eigenvectors.column(mode));
+        shapes.set_column(column, &(shape.ok_or(RotorError::Unstable)? / value.sqrt()));
+    }
+    Ok((shapes, squares))
+}

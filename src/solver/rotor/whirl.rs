@@ -1,0 +1,176 @@
+//! Motions of a spinning rotor: eigenvalues, direction of whirl, shapes; lines over speeds (Campbell diagram).
+
+use super::beam::STATION;
+use super::model::{RotorError, RotorModel};
+use nalgebra::linalg::Schur;
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// A natural motion at a speed, q = Re(shape · e^{λt}).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Whirl {
+    /// λ, 1/s; its imaginary part is above 0.
+    pub eigenvalue: Complex<f64>,
+    /// From 1 (every point on a circle the way the shaft spins) over 0 (to and fro) to −1 (against it), weighted by inertia.
+    pub direction: f64,
+    /// Over y, z, turn_y, turn_z of each station; its largest deflection, or turn where nothing deflects, is 1.
+    pub shape: Vec<[Complex<f64>; STATION]>,
+    /// Over the rotor's natural motions at rest, of norm 1.
+    modal: DVector<Complex<f64>>,
+}
+
+impl Whirl {
+    /// Damped frequency, rad/s.
+    pub fn frequency(&self) -> f64 {
+        self.eigenvalue.im
+    }
+
+    /// Part of critical damping; below 0 the motion grows.
+    pub fn damping_ratio(&self) -> f64 {
+        -self.eigenvalue.re / self.eigenvalue.norm()
+    }
+
+    /// How alike two motions' shapes are, 0 to 1.
+    pub fn likeness(&self, other: &Whirl) -> f64 {
+        self.modal.dotc(&other.modal).norm_sqr()
+    }
+
+    pub fn is_forward(&self) -> bool {
+        self.direction > 0.0
+    }
+}
+
+/// Whirl over speeds: each line is one motion followed from speed to speed by its shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Campbell {
+    /// rad/s.
+    pub speeds: Vec<f64>,
+    /// Ascending by frequency at the last speed; one motion for each speed.
+    pub lines: Vec<Vec<Whirl>>,
+}
+
+/// Iterations of the eigenvalues' search for each of them; a few are usual.
+const ITERATIONS: usize = 100;
+
+impl RotorModel {
+    /// The lowest `count` oscillating motions at spin `speed` (rad/s about X), ascending by frequency.
+    ///
+    /// # Errors
+    /// Eigenvalues that are not found.
+    pub fn whirls(&self, speed: f64, count: usize) -> Result<Vec<Whirl>, RotorError> {
+        let damping = &self.damping + &self.gyroscopic * speed;
+        let values = self.eigenvalues(speed, &damping)?;
+        let lowest = values.into_iter().take(count).enumerate();
+        Ok(lowest.map(|(number, value)| self.whirl(value, &damping, number)).collect())
+    }
+
+    /// Of (D p, ṗ) with D the natural frequencies: skew-symmetric without damping, so that nothing is badly scaled.
+    fn eigenvalues(
+        &self,
+        speed: f64,
+        damping: &DMatrix<f64>,
+    ) -> Result<Vec<Complex<f64>>, RotorError> {
+        let modes = self.natural.len();
+        let least = self.natural.iter().copied().find(|&natural| natural > 0.0).unwrap_or(1.0);
+        let scale: Vec<f64> =
+            self.natural.iter().map(|natural| natural.max(1e-3 * least)).collect();
+        let mut state = DMatrix::zeros(2 * modes, 2 * modes);
+        for i in 0..modes {
+            state[(i, modes + i)] = scale[i];
+            for j in 0..modes {
+                state[(modes + i, j)] = -self.stiffness[(i, j)] / scale[j];
+                state[(modes + i, modes + j)] = -damping[(i, j)];
+            }
+        }
+        let iterations = ITERATIONS * 2 * modes;
+        let schur = Schur::try_new(state, f64::EPSILON, iterations)
+            .ok_or(RotorError::Eigenvalues { speed, iterations })?;
+        let mut values: Vec<Complex<f64>> = schur
+            .complex_eigenvalues()
+            .iter()
+            .copied()
+            .filter(|value| value.im > ROUNDING * least)
+            .collect();
+        values.sort_by(|a, b| a.im.total_cmp(&b.im));
+        Ok(values)
+    }
+
+    /// Shape of the `number`-th eigenvalue by inverse iteration on λ²I + λ(C + ΩG) + K.
+    fn whirl(&self, value: Complex<f64>, damping: &DMatrix<f64>, number: usize) -> Whirl {
+        let modes = self.natural.len();
+        // So far beside the eigenvalue that the factors exist, so near that two steps leave nothing of the others.
+        let near = value * Complex::new(1.0 + 1e-11, 1e-11);
+        let pencil = DMatrix::from_fn(modes, modes, |i, j| {
+            let inertia = if i == j { near * near } else { Complex::new(0.0, 0.0) };
+            inertia + near * damping[(i, j)] + self.stiffness[(i, j)]
+        });
+        let factors = pencil.lu();
+        // Both directions of whirl are in it; one more than the other, in turns, so that two motions of one frequency (at
+        // rest) are not found as one.
+        let start = DVector::from_fn(modes, |i, _| 1.0 + 0.11 * (i % 7) as f64);
+        let side = if number % 2 == 0 { -0.9 } else { 0.9 };
+        let turned = &self.quarter_turn * &start * side;
+        let mut modal = start.zip_map(&turned, Complex::new);
+        for _ in 0..3 {
+            let Some(next) = factors.solve(&modal) else { break };
+            let norm = next.norm();
+            if !(norm.is_finite() && norm > 0.0) {
+                break;
+            }
+            modal = next.unscale(norm);
+        }
+        self.motion(value, modal)
+    }
+
+    /// A motion of the natural ones' combination `modal`.
+    pub(super) fn motion(&self, eigenvalue: Complex<f64>, modal: DVector<Complex<f64>>) -> Whirl {
+        let turned = self.quarter_turn.map(|value| Complex::new(value, 0.0)) * &modal;
+        let direction = modal.dotc(&turned).im / modal.norm_squared();
+        let coordinates = self.basis.map(|value| Complex::new(value, 0.0)) * &modal;
+        let largest = |from: usize| {
+            let of_station = coordinates.as_slice().chunks_exact(STATION);
+            of_station
+                .flat_map(|at| [at[from], at[from + 1]])
+                .max_by(|a, b| a.norm_sqr().total_cmp(&b.norm_sqr()))
+                .unwrap_or(Complex::new(1.0, 0.0))
+        };
+        let (deflection, turn) = (largest(0), largest(2));
+        let by = if deflection.norm() > 1e-9 * turn.norm() { deflection } else { turn };
+        let shape = coordinates
+            .as_slice()
+            .chunks_exact(STATION)
+            .map(|at| std::array::from_fn(|i| at[i] / by))
+            .collect();
+        Whirl { eigenvalue, direction, shape, modal }
+    }
+
+    /// The `count` lowest motions at the last of `speeds` (rad/s) and the same motions at the others.
+    ///
+    /// # Errors
+    /// Eigenvalues that are not found.
+    pub fn campbell(&self, speeds: &[f64], count: usize) -> Result<Campbell, RotorError> {
+        let mut lines: Vec<Vec<Whirl>> = Vec::new();
+        for &speed in speeds.iter().rev() {
+            if lines.is_empty() {
+                lines = self.whirls(speed, count)?.into_iter().map(|whirl| vec![whirl]).collect();
+                continue;
+            }
+            // Lines cross: a few more than there are lines to choose from.
+            let mut found = self.whirls(speed, 2 * count)?;
+            for line in &mut lines {
+                let last = line.last().expect("a line has begun");
+                let best = (0..found.len())
+                    .max_by(|&a, &b| last.likeness(&found[a]).total_cmp(&last.likeness(&found[b])));
+                let Some(best) = best else { break };
+                line.push(found.remove(best));
+            }
+        }
+        for line in &mut lines {
+            line.reverse();
+        }
+        Ok(Campbell { speeds: speeds.to_vec(), lines })
+    }
+}
+
+/// A frequency below this part of the lowest one with a stiffness is none: what rounding leaves of a rigid motion, whose two
+/// eigenvalues fall together.
+const ROUNDING: f64 = 1e-5;

@@ -1,0 +1,560 @@
+//! Shafts that bend: natural frequencies and whirl against the whole beam, balance, invariance, and the rigid shaft
+//! as their limit.
+
+use crate::common;
+use crate::dynamics;
+use crate::shafts;
+
+use bearing_dynamics::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
+use bearing_dynamics::solver::dynamics::assembly::{Assembly, GROUND, Mobility};
+use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::solver::dynamics::contacts::Driver;
+use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
+use bearing_dynamics::solver::dynamics::run::{
+    Integrator, RunOptions, Simulation, Start, Stepping,
+};
+use bearing_dynamics::solver::dynamics::shaft::{ElasticShaft, Section, ShaftLoad, Unbalance};
+use bearing_dynamics::solver::dynamics::stability::jacobian;
+use bearing_dynamics::solver::dynamics::start;
+use bearing_dynamics::solver::dynamics::state::{SPIN, VELOCITY};
+use bearing_dynamics::solver::dynamics::system::System;
+use bearing_dynamics::solver::mount::Mount;
+use bearing_dynamics::solver::plan::{Stage, Subject};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc, BeamMatrices, BeamSegment, STATION};
+use bearing_dynamics::solver::shaft_shapes::{Kept, free_shaft};
+use bearing_dynamics::solver::statics::StaticsError;
+use common::table_4_1;
+use dynamics::*;
+use nalgebra::{Complex, DMatrix, DVector, Vector3};
+use shafts::{body, seated};
+
+/// 30 mm steel, 400 mm, in two elements, with a disc.
+fn beam(disc: BeamDisc, youngs_modulus: f64) -> Beam {
+    let segment = BeamSegment {
+        length: 0.4,
+        outer_diameter: 30e-3,
+        inner_diameter: 0.0,
+        density: 7850.0,
+        youngs_modulus,
+        poisson_ratio: 0.3,
+    };
+    Beam { discs: vec![disc], longest_element: 0.2001, ..Beam::new(vec![segment]) }
+}
+
+const STEEL: f64 = 210e9;
+const OVERHUNG: BeamDisc = BeamDisc { at: 0.4, mass: 3.0, axial: 0.02, transverse: 0.011 };
+const MIDDLE: BeamDisc = BeamDisc { at: 0.2, mass: 20.0, axial: 0.09, transverse: 0.05 };
+
+const OFF_MIDDLE: BeamDisc = BeamDisc { at: 0.3, ..MIDDLE };
+
+/// An assembly of the shaft alone, turning at `speed` (rad/s), its sections at `holds` (m from its end) asked for.
+fn alone(beam: &Beam, kept: Kept, holds: &[f64], speed: f64) -> Assembly {
+    let holds: Vec<(f64, bool)> = holds.iter().map(|at| (*at, true)).collect();
+    let (rigid, shapes) = free_shaft(beam, kept, &holds, &[]).unwrap();
+    let inertia = Inertia { mass: rigid.mass, axial: rigid.axial, transverse: rigid.transverse };
+    let spinning = race([0.0; 5], Rotation::Speed(Profile::Constant(speed)));
+    let spinning = RaceBody { inertia, ..spinning };
+    Assembly {
+        bodies: vec![
+            body(
+                "the shaft",
+                Mobility::Driven(spinning.into()),
+                [rigid.centre, 0.0, 0.0, 0.0, 0.0],
+            ),
+            body(GROUND, Mobility::Fixed, [0.0; 5]),
+        ],
+        shafts: vec![ElasticShaft { shapes, ..ElasticShaft::default() }],
+        ..Assembly::default()
+    }
+}
+
+/// From the body's centre to `at` from the shaft's end, m.
+fn along(assembly: &Assembly, at: f64) -> f64 {
+    at - assembly.bodies[0].rest[0]
+}
+
+fn section(assembly: &Assembly, at: f64) -> Section {
+    assembly.shafts[0].shapes.section(along(assembly, at))
+}
+
+/// Puts the shaft on springs to the ground at these places (m from its end).
+fn on_springs(assembly: &mut Assembly, places: &[f64], stiffness: [f64; 3]) {
+    for &at in places {
+        let [x, y, z] = stiffness;
+        let law = SpringDashpot { stiffness: [x, y, z, 0.0, 0.0, 0.0], ..Default::default() };
+        let shaft = Mount { along: along(assembly, at), ..Mount::at_centre(0) };
+        let ground = Mount { along: at, ..Mount::at_centre(1) };
+        assembly.connections.push(Connection {
+            name: "a spring".into(),
+            label: None,
+            ends: [ground, shaft],
+            law: Law::SpringDashpot(law),
+        });
+    }
+}
+
+/// The eigenvalue (rad/s) of the motion about its place at rest that is nearest to `frequency`, by inverse iteration.
+fn nearest(motion: &DMatrix<Complex<f64>>, frequency: f64) -> Complex<f64> {
+    let size = motion.nrows();
+    let shift = Complex::new(0.0, frequency * (1.0 + 1e-4));
+    let factors = (motion - DMatrix::identity(size, size) * shift).lu();
+    let mut vector =
+        DVector::from_fn(size, |i, _| Complex::new(1.0 + (i as f64).sin(), (i as f64).cos()));
+    let mut growth = Complex::new(1.0, 0.0);
+    for _ in 0..30 {
+        let next = factors.solve(&vector).unwrap();
+        growth = vector.dotc(&next) / vector.dotc(&vector);
+        vector = &next / Complex::new(next.norm(), 0.0);
+    }
+    shift + growth.inv()
+}
+
+/// Frequencies (rad/s) of the whole beam on springs across it (N/m) at these stations, turning at `speed`, in order: with
+/// z = (√M q̇, Lᵀ q) and K = L Lᵀ the motion is skew-symmetric.
+fn whole(beam: &BeamMatrices, springs: &[f64], stiffness: [f64; 2], speed: f64) -> Vec<f64> {
+    let size = beam.mass.nrows();
+    let mut springy = beam.stiffness.clone();
+    for &at in springs {
+        let first = STATION * beam.station(at).unwrap();
+        for (i, stiffness) in stiffness.into_iter().enumerate() {
+            springy[(first + i, first + i)] += stiffness;
+        }
+    }
+    let mass = beam.mass.clone().cholesky().unwrap().l();
+    let over = |of: &DMatrix<f64>| mass.solve_lower_triangular(of).unwrap();
+    let springs = over(&springy.cholesky().unwrap().l());
+    let gyroscopic = over(&over(&beam.gyroscopic).transpose()).transpose() * speed;
+    let mut skew = DMatrix::zeros(2 * size, 2 * size);
+    skew.view_mut((0, 0), (size, size)).copy_from(&(-gyroscopic));
+    skew.view_mut((0, size), (size, size)).copy_from(&-&springs);
+    skew.view_mut((size, 0), (size, size)).copy_from(&springs.transpose());
+    let squares = (skew.transpose() * &skew).symmetric_eigenvalues();
+    let mut all: Vec<f64> = squares.iter().map(|square| square.sqrt()).collect();
+    all.sort_by(f64::total_cmp);
+    // Each is there twice.
+    all.chunks(2).map(|pair| pair[0]).collect()
+}
+
+/// Shapes and rigid motions together ring at the frequencies of the whole beam, forward and backward whirl apart, also
+/// where the centre of mass lies far from the middle and springs differ across; few shapes and static answers do for
+/// the low ones.
+#[test]
+fn a_spinning_shaft_rings_as_the_whole_beam() {
+    let speed = 10_000.0 * RPM;
+    let holds = [0.0, 0.2];
+    for (disc, stiffness) in [(OVERHUNG, [1e7, 2e7, 9e7]), (OFF_MIDDLE, [1e7, 1e10, 1e10])] {
+        let beam = beam(disc, STEEL);
+        let matrices = beam.matrices(&holds).unwrap();
+        let [_, y, z] = stiffness;
+        let expected = whole(&matrices, &holds, [y, z], speed);
+        // All shapes differ by what the differences of the Jacobian lose, three by what they leave out.
+        for (kept, count, tolerance) in
+            [(Kept::ALL, 6, 1e-7), (Kept { most: 3, ..Kept::ALL }, 4, 1e-4)]
+        {
+            let mut assembly = alone(&beam, kept, &holds, speed);
+            on_springs(&mut assembly, &holds, stiffness);
+            let state = start::nominal(&assembly);
+            let mut system = System::new(assembly.clone(), Driver::Plain);
+            let mut motion = jacobian(&mut system, 0.0, &state);
+            // It counts turns from axes that stand still; against a spinning body they go round.
+            let turn = 9;
+            motion[(turn + 1, turn + 2)] -= speed;
+            motion[(turn + 2, turn + 1)] += speed;
+            let motion = motion.map(|value| Complex::new(value, 0.0));
+            for expected in expected.iter().take(count) {
+                let ours = nearest(&motion, *expected);
+                assert!((ours.im / expected - 1.0).abs() <= tolerance, "{ours} for {expected}");
+                // Nothing damps.
+                assert!(ours.re.abs() <= 1e-4 * expected, "{ours}");
+            }
+            // The planes would ring alike but for the spin.
+            assert!(expected[1] / expected[0] > 1.001, "{:?}", &expected[..2]);
+        }
+    }
+}
+
+/// What a static load bends is exact with one natural shape: the static answers do the rest.
+#[test]
+fn static_answers_make_few_shapes_exact_at_rest() {
+    let beam = beam(MIDDLE, STEEL);
+    let holds = [0.0, 0.2, 0.4];
+    let load = [500.0, -1000.0, 500.0];
+    let matrices = beam.matrices(&holds).unwrap();
+    let deflection = |kept| {
+        let mut assembly = alone(&beam, kept, &holds, 0.0);
+        let mut pushes = vec![0.0; 2 * assembly.shafts[0].count()];
+        let sections = holds.map(|at| section(&assembly, at));
+        for (section, load) in sections.iter().zip(load) {
+            for (k, push) in pushes.iter_mut().enumerate().take(assembly.shafts[0].count()) {
+                *push += load * section.deflection[k];
+            }
+        }
+        let shapes = &mut assembly.shafts[0].shapes;
+        let rest = pushes.iter().zip(&shapes.frequencies).map(|(push, w)| push / (w * w));
+        let rest: Vec<f64> = rest.collect();
+        let at = |i: usize| -> f64 {
+            sections[i].deflection.iter().zip(&rest).map(|(shape, gone)| shape * gone).sum()
+        };
+        at(1) - 0.5 * (at(0) + at(2))
+    };
+    // Held at both ends, pushed in the middle.
+    let coordinates: Vec<usize> = (0..matrices.mass.nrows())
+        .filter(|i| matches!(i % STATION, 0 | 3) && *i != 0 && *i != matrices.mass.nrows() - 4)
+        .collect();
+    let size = coordinates.len();
+    let stiffness =
+        DMatrix::from_fn(size, size, |i, j| matrices.stiffness[(coordinates[i], coordinates[j])]);
+    let middle =
+        coordinates.iter().position(|i| *i == STATION * matrices.station(0.2).unwrap()).unwrap();
+    let mut force = DVector::zeros(size);
+    force[middle] = -1000.0;
+    let expected = stiffness.lu().solve(&force).unwrap()[middle];
+    for most in [0, 1, 5] {
+        let ours = deflection(Kept { most, ..Kept::ALL });
+        assert!((ours / expected - 1.0).abs() <= 1e-9, "{most}: {ours:e} for {expected:e}");
+    }
+}
+
+fn unbalanced(size: f64, assembly: &Assembly, at: f64) -> Unbalance {
+    Unbalance { section: section(assembly, at), size, angle: 0.4 }
+}
+
+fn run(assembly: Assembly, integrator: Integrator, stepping: Stepping, end: f64) -> Simulation {
+    let options =
+        RunOptions { start: Start::Nominal, integrator, stepping, ..RunOptions::default() };
+    let mut simulation = Simulation::new(assembly, options).unwrap();
+    simulation.snapshot().unwrap();
+    while simulation.time < end * (1.0 - 1e-12) {
+        let step = simulation.step_size.min(end - simulation.time);
+        simulation.step_by(step).unwrap();
+    }
+    simulation.snapshot().unwrap();
+    simulation
+}
+
+/// Off the axis at a place, m.
+fn off(simulation: &Simulation, at: f64) -> f64 {
+    let assembly = &simulation.system.assembly;
+    let section = section(assembly, at);
+    let [_, y, z] = simulation.system.section_now(&simulation.state, 0, &section).state.position;
+    y.hypot(z)
+}
+
+/// Far below and above its critical speed a damped rotor answers an unbalance as the linear beam does.
+#[test]
+fn unbalance_response_below_and_above_critical() {
+    let beam = beam(MIDDLE, STEEL);
+    let holds = [0.0, 0.2, 0.4];
+    for (rpm, damping) in [(3000.0, 800.0), (8000.0, 800.0)] {
+        let speed = rpm * RPM;
+        let mut assembly = alone(&beam, Kept { most: 3, ..Kept::ALL }, &holds, speed);
+        on_springs(&mut assembly, &[0.0, 0.4], [1e7, 1e9, 1e9]);
+        assembly.shafts[0].damping = damping;
+        let unbalance = unbalanced(1e-3, &assembly, 0.2);
+        assembly.shafts[0].unbalances.push(unbalance);
+        // (2.7) brakes all motion: bending and, by dashpots to the ground, the rigid part.
+        let Inertia { mass, transverse, .. } = *assembly.bodies[0].inertia().unwrap();
+        assembly.bodies[0].driven_mut().unwrap().foundation_damping =
+            [mass, mass, mass, transverse, transverse].map(|inertia| damping * inertia);
+        // The same equations of small motion: rigid shift and symmetric shapes, in a plane.
+        let shaft = &assembly.shafts[0];
+        let mass = assembly.bodies[0].inertia().unwrap().mass;
+        let sections = [0.0, 0.4, 0.2].map(|at| section(&assembly, at));
+        let size = 2 + shaft.count();
+        let row = |section: &Section| {
+            let rigid = [1.0, section.along];
+            let all = rigid.into_iter().chain(section.deflection.iter().copied());
+            DVector::from_iterator(size, all)
+        };
+        let Inertia { axial, transverse, .. } = *assembly.bodies[0].inertia().unwrap();
+        let mut dynamic = DMatrix::<Complex<f64>>::zeros(size, size);
+        // Forward whirl e^{iΩt}: gyroscopic terms count as −Ω² J beside Ω² M.
+        let turns = |i: usize, j: usize| match (i, j) {
+            (1, 1) => axial,
+            (1, k) | (k, 1) if k > 1 => shaft.shapes.tilt_coupling[k - 2],
+            (i, j) if i > 1 && j > 1 => shaft.shapes.gyroscopic[(i - 2) * shaft.count() + j - 2],
+            _ => 0.0,
+        };
+        for i in 0..size {
+            let own = [mass, transverse].get(i).copied().unwrap_or(1.0);
+            let spring = if i < 2 { 0.0 } else { shaft.shapes.frequencies[i - 2].powi(2) };
+            let damped = damping * own * speed;
+            dynamic[(i, i)] += Complex::new(spring - speed * speed * own, damped);
+            for j in 0..size {
+                dynamic[(i, j)] += speed * speed * turns(i, j);
+            }
+        }
+        for held in &sections[..2] {
+            let row = row(held);
+            dynamic += (&row * row.transpose() * 1e9).map(|value| Complex::new(value, 0.0));
+        }
+        let push = row(&sections[2]) * (1e-3 * speed * speed);
+        let answer = dynamic.lu().solve(&push.map(|value| Complex::new(value, 0.0))).unwrap();
+        let expected = row(&sections[2]).map(|value| Complex::new(value, 0.0)).dot(&answer).norm();
+        let simulation = run(assembly, Integrator::RungeKutta, Stepping::Fixed(4e-6), 0.08);
+        let ours = off(&simulation, 0.2);
+        println!("{rpm} rpm: {ours:e} m, linear {expected:e} m");
+        // What the start has set ringing is down to e^(−32).
+        assert!((ours / expected - 1.0).abs() <= 1e-4, "{ours:e} {expected:e}");
+    }
+}
+
+/// The rotor of 4.3.4 on two bearings, at a speed that rises.
+fn on_bearings(speed: Profile, youngs_modulus: f64) -> Assembly {
+    let beam = beam(MIDDLE, youngs_modulus);
+    let mut assembly = alone(&beam, Kept { most: 4, ..Kept::ALL }, &[0.0, 0.2, 0.4], 0.0);
+    assembly.bodies[0].driven_mut().unwrap().rotation = Rotation::Speed(speed);
+    assembly.bodies[1].rest = [0.0; 5];
+    assembly.bodies.push(body("the other outer race", Mobility::Fixed, [0.4, 0.0, 0.0, 0.0, 0.0]));
+    let ends = [along(&assembly, 0.0), along(&assembly, 0.4)];
+    let geometry = table_4_1(-2e-6);
+    assembly.bearings = vec![
+        seated(geometry, "left", ends[0], false, 1),
+        seated(geometry, "right", ends[1], false, 2),
+    ];
+    assembly
+}
+
+fn rising(to: f64, within: f64) -> Profile {
+    Profile::Ramp { from: 0.0, to, start: 0.0, duration: within }
+}
+
+/// Every integrator goes the same way through the first critical speed.
+#[test]
+fn all_methods_bend_a_shaft_the_same_way() {
+    let mut assembly = on_bearings(rising(6000.0 * RPM, 20e-3), STEEL);
+    let unbalance = unbalanced(5e-4, &assembly, 0.2);
+    assembly.shafts[0].unbalances.push(unbalance);
+    for bearing in &mut assembly.bearings {
+        bearing.traction = CONSTANT;
+    }
+    let end = |integrator, stepping| {
+        let simulation = run(assembly.clone(), integrator, stepping, 20e-3);
+        let counts = (simulation.steps, simulation.system.work.evaluations);
+        println!("{integrator:?}: {counts:?}, {:e} m", off(&simulation, 0.2));
+        off(&simulation, 0.2)
+    };
+    let reference = end(Integrator::DormandPrince, Stepping::Accuracy(1e-5));
+    assert!(reference > 5e-6, "{reference:e}");
+    for (integrator, stepping) in [
+        (Integrator::RungeKutta, Stepping::Fixed(4e-7)),
+        (Integrator::Rosenbrock, Stepping::Accuracy(1e-4)),
+    ] {
+        let ours = end(integrator, stepping);
+        assert!((ours / reference - 1.0).abs() <= 1e-3, "{ours:e} {reference:e}");
+    }
+}
+
+/// The shaft and two rings as free bodies; nothing but balls, and springs between shaft and rings, joins them.
+fn free_together() -> Assembly {
+    let mut assembly = on_bearings(Profile::ZERO, STEEL);
+    let shaft = assembly.bodies[0].driven_mut().unwrap();
+    shaft.rotation = Rotation::Torque(Profile::ZERO);
+    let ring = hollow_cylinder(36e-3, 40e-3, 16e-3, 7850.0);
+    for index in [1, 2] {
+        assembly.bodies[index].mobility =
+            Mobility::Driven(RaceBody { inertia: ring, ..free_race() }.into());
+    }
+    for (ring, at) in [(1, 0.1), (2, 0.35)] {
+        let along = [along(&assembly, at), at - assembly.bodies[ring].rest[0]];
+        let law = SpringDashpot {
+            stiffness: [1e5, 2e6, 3e6, 0.0, 50.0, 80.0],
+            damping: [10.0; 6],
+            ..SpringDashpot::default()
+        };
+        let ends = [0, 1].map(|i| Mount { along: along[i], ..Mount::at_centre([0, ring][i]) });
+        let (name, law) = ("a spring".into(), Law::SpringDashpot(law));
+        assembly.connections.push(Connection { name, label: None, ends, law });
+    }
+    assembly
+}
+
+/// What the shaft gives its bearings and its springs it has lost: momentum to rounding, angular momentum but for what
+/// goes with the square of bending, energy to the error of the steps.
+#[test]
+fn a_free_bending_shaft_keeps_momentum_and_energy() {
+    let assembly = free_together();
+    let mut state = start::nominal(&assembly);
+    let places = bearing_dynamics::solver::dynamics::state::Places::of(&assembly);
+    let at = places.body(0);
+    for (entry, value) in [(VELOCITY + 1, 0.02), (VELOCITY, 0.01), (SPIN, 300.0), (SPIN + 2, 0.3)] {
+        state[at + entry] += value;
+    }
+    let (momentum, angular) = with_bending(&assembly, &state);
+    let options = fixed_step(2e-7, Start::Nominal);
+    let mut simulation = Simulation::from_state(assembly.clone(), options, state, 0.0).unwrap();
+    for _ in 0..20_000 {
+        simulation.step().unwrap();
+    }
+    let (momentum_end, angular_end) = with_bending(&assembly, &simulation.state);
+    let snapshot = simulation.snapshot().unwrap();
+    let bent = snapshot.energy.bending_strain + snapshot.energy.bending_kinetic;
+    let lost = [(momentum_end - momentum).norm() / momentum.norm()];
+    let turned = (angular_end - angular).norm() / angular.norm();
+    println!(
+        "momentum {:e}, angular {turned:e}, residual {:e} J of {:e} J, in bending {bent:e} J",
+        lost[0],
+        snapshot.residual,
+        snapshot.energy.total(),
+    );
+    assert!(lost[0] <= 1e-11);
+    // Tilts and turns of sections are below 1e-3 here: their squares.
+    assert!(turned <= 1e-6, "{turned:e}");
+    assert!(bent > 1e-6, "nothing bends: {bent:e} J");
+    assert!(snapshot.residual.abs() <= 1e-4 * bent, "{:e} of {bent:e} J", snapshot.residual);
+}
+
+/// Momenta of all bodies and, of bending, Ω g·a e₂ + Ω g·b e₃ and the whirl about the axis.
+fn with_bending(assembly: &Assembly, state: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
+    let (momentum, mut angular) = momenta(assembly.clone(), state);
+    let mut system = System::new(assembly.clone(), Driver::Plain);
+    let mut rates = vec![0.0; state.len()];
+    system.evaluate(0.0, state, &mut rates);
+    let (shaft, body) = (&assembly.shafts[0], &system.bodies[0]);
+    let bent = system.bent(state, 0);
+    let count = shaft.count();
+    let spin = Vector3::from(body.motion.spin).dot(&Vector3::from(body.motion.axis));
+    let [e2, e3] = body.tilt_directions.map(Vector3::from);
+    for k in 0..count {
+        let [a, b, u, v] = [0, 1, 2, 3].map(|part| bent[part * count + k]);
+        let tilted = shaft.shapes.tilt_coupling[k] * spin;
+        angular += (e2 * a + e3 * b) * tilted + Vector3::from(body.motion.axis) * (a * v - b * u);
+    }
+    (momentum, angular)
+}
+
+fn loaded(assembly: &mut Assembly, at: f64, [y, z]: [f64; 2]) {
+    let force =
+        [0.0, y, z].map(|force| Profile::Ramp { from: 0.0, to: force, start: 0.0, duration: 2e-3 });
+    let section = section(assembly, at);
+    assembly.shafts[0].loads.push(ShaftLoad { section, force });
+}
+
+/// A shaft that hardly bends moves as the rigid one, whose load acts at the same place.
+#[test]
+fn a_stiff_shaft_moves_as_a_rigid_one() {
+    let speed = Profile::Constant(2000.0 * RPM);
+    let mut stiff = on_bearings(speed, 1e6 * STEEL);
+    let (at, load) = (0.25, [300.0, -800.0]);
+    loaded(&mut stiff, at, load);
+    let mut rigid = stiff.clone();
+    rigid.shafts.clear();
+    let arm = along(&stiff, at);
+    let shaft = rigid.bodies[0].driven_mut().unwrap();
+    let ramp = |to: f64| Profile::Ramp { from: 0.0, to, start: 0.0, duration: 2e-3 };
+    let [y, z] = load;
+    for (drive, load) in shaft.drives.iter_mut().zip([0.0, y, z, -arm * z, arm * y]) {
+        *drive = Drive::Load(ramp(load));
+    }
+    let at_end = |assembly: Assembly| {
+        let simulation = run(assembly, Integrator::Rosenbrock, Stepping::Accuracy(1e-4), 4e-3);
+        let [left, right] =
+            [0, 1].map(|bearing| simulation.system.race_of(&simulation.state, bearing, 0).motion);
+        [left.position[1], left.position[2], right.position[1], right.position[2], left.axis[2]]
+    };
+    let (ours, expected) = (at_end(stiff), at_end(rigid));
+    println!("{ours:?} {expected:?}");
+    for (index, (ours, expected)) in ours.into_iter().zip(expected).enumerate() {
+        // Races go some micrometres, and tilt by them over the span.
+        let scale = if index < 4 { 5e-6 } else { 5e-6 / 0.4 };
+        assert!((ours - expected).abs() <= 2e-3 * scale, "{index}: {ours:e} {expected:e}");
+    }
+}
+
+/// Everything turned about the axis by a ball pitch: so is the answer.
+#[test]
+fn turning_everything_about_the_axis_turns_the_answer() {
+    let turn = std::f64::consts::TAU / 8.0;
+    let (sin, cos) = turn.sin_cos();
+    let answer = |turned: bool| {
+        let mut assembly = on_bearings(Profile::Constant(3000.0 * RPM), STEEL);
+        let [y, z] = [200.0, -500.0];
+        let load = if turned { [cos * y - sin * z, sin * y + cos * z] } else { [y, z] };
+        loaded(&mut assembly, 0.13, load);
+        let mut unbalance = unbalanced(3e-4, &assembly, 0.3);
+        unbalance.angle += if turned { turn } else { 0.0 };
+        assembly.shafts[0].unbalances.push(unbalance);
+        let step = Stepping::Fixed(1e-6);
+        let simulation = run(assembly, Integrator::RungeKutta, step, 4e-3);
+        let section = section(&simulation.system.assembly, 0.2);
+        simulation.system.section_now(&simulation.state, 0, &section).motion
+    };
+    let (plain, turned) = (answer(false), answer(true));
+    let [_, y, z] = plain.position;
+    let expected = [cos * y - sin * z, sin * y + cos * z];
+    let off = y.hypot(z);
+    println!("{off:e} m off, turned {:?}, expected {expected:?}", turned.position);
+    assert!(off > 1e-6);
+    for (i, expected) in expected.into_iter().enumerate() {
+        // Rounding of 4000 steps on springs that keep their energy.
+        assert!((turned.position[1 + i] - expected).abs() <= 1e-9 * off, "{i}");
+    }
+}
+
+/// Damping that spins with the material brakes below the critical speed and drives the whirl above it; the books are
+/// kept of both.
+#[test]
+fn internal_damping_feeds_the_whirl_above_the_critical_speed() {
+    let beam = beam(MIDDLE, STEEL);
+    for (rpm, grows) in [(3000.0, false), (8000.0, true)] {
+        let mut assembly = alone(&beam, Kept { most: 3, ..Kept::ALL }, &[0.0, 0.2, 0.4], rpm * RPM);
+        on_springs(&mut assembly, &[0.0, 0.4], [1e7, 1e9, 1e9]);
+        assembly.shafts[0].internal_damping = 3000.0;
+        let mut state = start::nominal(&assembly);
+        let at = bearing_dynamics::solver::dynamics::state::Places::of(&assembly).body(0);
+        state[at + VELOCITY + 1] = 1e-3;
+        let options = fixed_step(1e-6, Start::Nominal);
+        let mut simulation = Simulation::from_state(assembly, options, state, 0.0).unwrap();
+        let mut largest = [0.0f64; 2];
+        while simulation.time < 0.1 {
+            simulation.step().unwrap();
+            let late = usize::from(simulation.time > 0.05);
+            largest[late] = largest[late].max(off(&simulation, 0.2));
+        }
+        let snapshot = simulation.snapshot().unwrap();
+        println!("{rpm} rpm: {largest:?} m, residual {:e} J", snapshot.residual);
+        assert_eq!(largest[1] > largest[0], grows, "{rpm} rpm: {largest:?}");
+        let turned: f64 = snapshot.ledger.iter().map(|entry| entry.abs()).sum();
+        assert!(snapshot.residual.abs() <= 1e-5 * turned, "{:e}, {turned:e}", snapshot.residual);
+    }
+}
+
+/// Each evaluation does what the plan says, so often.
+#[test]
+fn a_plan_counts_what_bending_does() {
+    let mut assembly = on_bearings(Profile::Constant(100.0), STEEL);
+    loaded(&mut assembly, 0.13, [0.0, -100.0]);
+    assembly.shafts[0].damping = 10.0;
+    let unbalance = unbalanced(3e-4, &assembly, 0.3);
+    assembly.shafts[0].unbalances.push(unbalance);
+    let mut simulation = Simulation::new(assembly, fixed_step(1e-6, Start::Nominal)).unwrap();
+    let before = simulation.system.ran.clone();
+    let evaluations = simulation.system.work.evaluations;
+    for _ in 0..10 {
+        simulation.step().unwrap();
+    }
+    let evaluations = simulation.system.work.evaluations - evaluations;
+    for (stage, each) in [(Stage::Reduced, 1), (Stage::Loads, 2), (Stage::Damping, 1)] {
+        let of = Subject::Body(0);
+        let ran = simulation.system.ran.of(stage, of) - before.of(stage, of);
+        assert_eq!(ran, each * evaluations, "{stage:?}");
+        let items = simulation.system.plan.iter();
+        let mut items = items.filter(|item| item.stage == stage && item.subject == of);
+        assert!(items.any(|item| item.does && item.cost == Some(each)), "{stage:?}");
+    }
+}
+
+/// An equilibrium of rigid bodies is one of a shaft that bends only where nothing bends it.
+#[test]
+fn a_start_that_would_bend_the_shaft_is_refused() {
+    let mut assembly = on_bearings(Profile::Constant(500.0 * RPM), STEEL);
+    // Preloaded all round, so that every ball presses alike.
+    let state = start::at_equilibrium(&assembly).unwrap();
+    assert_eq!(state.len(), start::nominal(&assembly).len());
+    assembly.bodies[0].driven_mut().unwrap().drives[2] = Drive::Load(Profile::Constant(-500.0));
+    let refused = start::at_equilibrium(&assembly).unwrap_err();
+    let StaticsError::BentAtStart { deflection, .. } = &refused else { panic!("{refused}") };
+    // 500 N all along a shaft with 20 kg in its middle: some F L³/(48 E I), 83 um.
+    assert!(*deflection > 3e-5 && *deflection < 1.2e-4, "{refused}");
+}

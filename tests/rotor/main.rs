@@ -1,0 +1,8 @@
+//! Laws of flexible rotors.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod beam;
+mod statics;
+mod whirl;

@@ -1,0 +1,247 @@
+//! Whirl, critical speeds and orbits against closed forms.
+
+use crate::beam::{DENSITY, E, full, steel};
+use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc};
+use bearing_dynamics::solver::rotor::model::{Held, Rotor, RotorError, RotorModel, Support};
+use bearing_dynamics::solver::rotor::unbalance::Unbalance;
+use nalgebra::Matrix4;
+use std::f64::consts::PI;
+
+const LENGTH: f64 = 0.4;
+
+/// Root of `of` between two places where its signs differ.
+fn root(of: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    assert!(of(low) * of(high) < 0.0, "{} {}", of(low), of(high));
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if of(middle) * of(low) > 0.0 { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+fn pinned_shaft() -> Rotor {
+    let mut beam = Beam::new(vec![steel(LENGTH, 0.03, 0.0)]);
+    beam.longest_element = LENGTH / 15.5;
+    let mut rotor = Rotor::new(beam);
+    rotor.held = vec![Held::pin(0.0), Held::pin(LENGTH)];
+    rotor
+}
+
+/// Determinant of a pinned spinning shaft's motion in circles at ω (below 0: backward) with one half wave.
+fn pinned_whirl(waves: f64, spin: f64, omega: f64) -> f64 {
+    let [area, moment, shear] = full(0.03);
+    let k = waves * PI / LENGTH;
+    let [m, i] = [DENSITY * area, DENSITY * moment];
+    let deflection = shear * k * k - m * omega * omega;
+    let turn = E * moment * k * k + shear - i * omega * omega + 2.0 * i * spin * omega;
+    deflection * turn / (shear * shear * k * k) - 1.0
+}
+
+/// A spinning shaft on pins: its motions split into circles forward and backward, and their frequencies solve the quartic
+/// of Timoshenko's beam with the gyroscopic moments of its sections.
+#[test]
+fn a_spinning_shaft_on_pins_whirls_in_circles() {
+    let model = RotorModel::new(&pinned_shaft()).unwrap();
+    for spin in [300.0, 3000.0, 30000.0] {
+        let whirls = model.whirls(spin, 4).unwrap();
+        for whirl in whirls {
+            let sign = whirl.direction.signum();
+            assert!((whirl.direction.abs() - 1.0).abs() <= 1e-9, "{}", whirl.direction);
+            assert_eq!(whirl.is_forward(), sign > 0.0);
+            assert!(whirl.eigenvalue.re.abs() <= 1e-9 * whirl.frequency());
+            let waves = if whirl.frequency() < 5e3 { 1.0 } else { 2.0 };
+            let near = whirl.frequency();
+            let of = |omega: f64| pinned_whirl(waves, spin, sign * omega);
+            let exact = root(of, 0.98 * near, 1.02 * near);
+            assert!((near / exact - 1.0).abs() <= 1e-6, "{spin} {near} {exact}");
+        }
+    }
+    // It spins against Y towards Z: backward becomes forward, nothing else changes.
+    let [with, against] = [3000.0, -3000.0].map(|spin| model.whirls(spin, 4).unwrap());
+    for (with, against) in with.iter().zip(&against) {
+        assert!((with.frequency() / against.frequency() - 1.0).abs() <= 1e-9);
+        assert!((with.direction + against.direction).abs() <= 1e-9);
+    }
+}
+
+const DISC: BeamDisc = BeamDisc { at: LENGTH, mass: 5.0, axial: 0.04, transverse: 0.021 };
+
+/// A clamped shaft that weighs next to nothing, a disc at its free end.
+fn overhung() -> Rotor {
+    let mut shaft = steel(LENGTH, 0.03, 0.0);
+    shaft.density = 1e-3;
+    let mut beam = Beam::new(vec![shaft]);
+    beam.discs.push(DISC);
+    let mut rotor = Rotor::new(beam);
+    rotor.held = vec![Held::clamp(0.0)];
+    rotor
+}
+
+/// Determinant of the disc's motion in circles: stiffness of a cantilever's end against force and moment.
+fn overhung_whirl(spin: f64, omega: f64) -> f64 {
+    let [_, moment, shear] = full(0.03);
+    let [l, bending] = [LENGTH, E * moment];
+    // Flexibility: deflection by force, by moment; turn by moment.
+    let [a, b, c] = [l.powi(3) / (3.0 * bending) + l / shear, l * l / (2.0 * bending), l / bending];
+    let d = a * c - b * b;
+    let deflection = c / d - DISC.mass * omega * omega;
+    let turn = a / d - DISC.transverse * omega * omega + DISC.axial * spin * omega;
+    deflection * turn * d * d - b * b
+}
+
+/// Gyroscopic splitting of an overhung disc, to 1e-6; the axial inertia being the larger, no second forward critical speed.
+#[test]
+fn an_overhung_disc_splits_as_its_determinant_says() {
+    let model = RotorModel::new(&overhung()).unwrap();
+    for spin in [50.0, 400.0, 2000.0] {
+        let whirls = model.whirls(spin, 4).unwrap();
+        let forward = whirls.iter().filter(|whirl| whirl.is_forward()).count();
+        assert_eq!([forward, whirls.len()], [2, 4]);
+        for whirl in whirls {
+            let near = whirl.frequency();
+            let of = |omega: f64| overhung_whirl(spin, whirl.direction.signum() * omega);
+            let exact = root(of, 0.999 * near, 1.001 * near);
+            assert!((near / exact - 1.0).abs() <= 1e-6, "{spin} {near} {exact}");
+        }
+    }
+    let criticals = model.critical_speeds().unwrap();
+    let of_disc: Vec<_> = criticals.iter().filter(|critical| critical.speed < 1e4).collect();
+    let forward: Vec<_> = of_disc.iter().filter(|c| c.whirl.is_forward()).collect();
+    assert_eq!([forward.len(), of_disc.len()], [1, 3]);
+    for critical in &of_disc {
+        let sign = critical.whirl.direction.signum();
+        let of = |speed: f64| overhung_whirl(speed, sign * speed);
+        let exact = root(of, 0.999 * critical.speed, 1.001 * critical.speed);
+        assert!((critical.speed / exact - 1.0).abs() <= 1e-6);
+        // Where the line of the same motion has the frequency of the spin.
+        let along = model.damped_critical_speed(critical).unwrap();
+        assert!((along / critical.speed - 1.0).abs() <= 1e-9, "{along} {}", critical.speed);
+    }
+}
+
+/// Frequencies fall and rise with speed along each line, and none jumps to another where lines cross.
+#[test]
+fn lines_of_the_campbell_diagram_follow_their_motions() {
+    let model = RotorModel::new(&overhung()).unwrap();
+    let speeds: Vec<f64> = (0..50).map(|n| 40.0 * f64::from(n)).collect();
+    let campbell = model.campbell(&speeds, 4).unwrap();
+    assert_eq!(campbell.lines.len(), 4);
+    for line in &campbell.lines {
+        assert_eq!(line.len(), speeds.len());
+        let forward = line[49].is_forward();
+        for pair in line[1..].windows(2) {
+            let rise = pair[1].frequency() - pair[0].frequency();
+            assert_eq!(pair[0].is_forward(), forward);
+            assert_eq!(rise > 0.0, forward, "{rise}");
+        }
+    }
+    // At rest the four lines are two frequencies, each of two motions.
+    let pair = model.whirls(0.0, 2).unwrap();
+    assert!(pair[0].likeness(&pair[1]) <= 0.1);
+    let mut rest: Vec<f64> = campbell.lines.iter().map(|line| line[0].frequency()).collect();
+    rest.sort_by(f64::total_cmp);
+    assert!((rest[0] / rest[1] - 1.0).abs() <= 1e-9 && (rest[2] / rest[3] - 1.0).abs() <= 1e-9);
+}
+
+/// A stiff shaft on two springs with dashpots, different in Y and Z: a rigid body of four coordinates.
+#[test]
+fn a_stiff_shaft_on_springs_moves_as_a_rigid_body() {
+    let mut shaft = steel(LENGTH, 0.03, 0.0);
+    shaft.youngs_modulus *= 1e6;
+    let mut rotor = Rotor::new(Beam::new(vec![shaft]));
+    let [ky, kz, cy, cz] = [1e6, 2.5e6, 40.0, 90.0];
+    let support = |at: f64| Support {
+        at,
+        stiffness: Matrix4::from_diagonal(&[ky, kz, 0.0, 0.0].into()),
+        damping: Matrix4::from_diagonal(&[cy, cz, 0.0, 0.0].into()),
+    };
+    rotor.supports = vec![support(0.0), support(LENGTH)];
+    let model = RotorModel::new(&rotor).unwrap();
+    let [area, ..] = full(0.03);
+    let mass = DENSITY * area * LENGTH;
+    let whirls = model.whirls(500.0, 4).unwrap();
+    // Cylindrical motions know no spin.
+    for (stiffness, damping) in [(2.0 * ky, 2.0 * cy), (2.0 * kz, 2.0 * cz)] {
+        let decay = damping / (2.0 * mass);
+        let exact = (stiffness / mass - decay * decay).sqrt();
+        let found = whirls.iter().map(|whirl| whirl.eigenvalue);
+        let best = found.min_by(|a, b| (a.im - exact).abs().total_cmp(&(b.im - exact).abs()));
+        let best = best.unwrap();
+        assert!((best.im / exact - 1.0).abs() <= 1e-6, "{best} {exact}");
+        assert!((best.re / -decay - 1.0).abs() <= 1e-5, "{best} {decay}");
+    }
+    assert!(whirls.iter().all(|whirl| whirl.damping_ratio() > 0.0));
+    // A support that pushes away.
+    rotor.beam.segments[0].youngs_modulus = E;
+    rotor.supports[0].stiffness = -rotor.supports[0].stiffness * 10.0;
+    assert_eq!(RotorModel::new(&rotor).unwrap_err(), RotorError::Unstable);
+    // None at all: four rigid motions, and bending frequencies of a free shaft.
+    rotor.supports.clear();
+    let free = RotorModel::new(&rotor).unwrap();
+    assert_eq!(free.natural[..4], [0.0; 4]);
+    assert!(free.natural[4] > 0.0);
+    // At rest nothing of a rigid motion oscillates; spinning, the axis goes round about its own direction.
+    assert!(free.whirls(0.0, 2).unwrap()[0].frequency() >= 0.999 * free.natural[4]);
+    let first = &free.whirls(500.0, 1).unwrap()[0];
+    let [area, moment, _] = full(0.03);
+    let transverse = DENSITY * (area * LENGTH.powi(3) / 12.0 + moment * LENGTH);
+    let precession = 2.0 * DENSITY * moment * LENGTH * 500.0 / transverse;
+    assert!((first.frequency() / precession - 1.0).abs() <= 1e-6 && first.is_forward());
+    assert_eq!(free.critical_speeds().unwrap_err(), RotorError::Unheld { frequency: 0.0 });
+}
+
+/// A disc between pins on a shaft without mass: the orbit of a Jeffcott rotor, and its peak.
+#[test]
+fn an_unbalanced_disc_orbits_as_jeffcotts() {
+    let mut shaft = steel(LENGTH, 0.03, 0.0);
+    shaft.density = 1e-3;
+    let mut beam = Beam::new(vec![shaft]);
+    let mass = 20.0;
+    beam.discs.push(BeamDisc { at: 0.5 * LENGTH, mass, axial: 0.0, transverse: 0.0 });
+    let mut rotor = Rotor::new(beam);
+    rotor.held = vec![Held::pin(0.0), Held::pin(LENGTH)];
+    rotor.mass_damping = 100.0;
+    let model = RotorModel::new(&rotor).unwrap();
+    let station = model.matrices.station(0.5 * LENGTH).unwrap();
+    let [_, moment, shear] = full(0.03);
+    let stiffness = 1.0 / (LENGTH.powi(3) / (48.0 * E * moment) + LENGTH / (4.0 * shear));
+    let unbalance = Unbalance { at: 0.5 * LENGTH, moment: 1e-3, angle: 0.4 };
+    let exact = |speed: f64| {
+        let [re, im] = [stiffness - mass * speed * speed, 100.0 * mass * speed];
+        1e-3 * speed * speed / re.hypot(im)
+    };
+    for speed in [100.0, 530.0, 2000.0] {
+        let response = model.response(&[unbalance], speed).unwrap();
+        let orbit = model.orbit(&response, station);
+        let [forward, backward] = orbit.circles();
+        assert!((forward / exact(speed) - 1.0).abs() <= 1e-6, "{forward} {}", exact(speed));
+        assert!(backward <= 1e-9 * forward);
+        // At low speed the heavy side flies out.
+        if speed == 100.0 {
+            let lag = (100.0 * mass * speed).atan2(stiffness - mass * speed * speed);
+            assert!((orbit.y.arg() - (0.4 - lag)).abs() <= 1e-6);
+            assert!((orbit.z.arg() - (0.4 - lag - PI / 2.0)).abs() <= 1e-6);
+        }
+    }
+    let natural = (stiffness / mass).sqrt();
+    let peak = natural / (1.0 - 0.5 * (100.0 / natural).powi(2)).sqrt();
+    let [speed, height] = model.peak(&[unbalance], station, [0.5 * natural, 1.5 * natural]);
+    // A peak is flat: its place is known to the root of the rounding.
+    assert!((speed / peak - 1.0).abs() <= 1e-6, "{speed} {peak}");
+    assert!((height / exact(peak) - 1.0).abs() <= 1e-6);
+}
+
+/// Twelve motions in each plane against all: overhung and heavy, at a speed where its lines have split widely.
+#[test]
+fn few_natural_motions_are_enough() {
+    let mut rotor = overhung();
+    rotor.beam.segments[0].density = DENSITY;
+    let [few, all] = [24, 1000].map(|modes| {
+        let rotor = Rotor { modes, ..rotor.clone() };
+        RotorModel::new(&rotor).unwrap().whirls(2000.0, 6).unwrap()
+    });
+    for (few, all) in few.iter().zip(&all) {
+        let error = few.frequency() / all.frequency() - 1.0;
+        assert!(error.abs() <= 1e-10, "{} {error:e}", all.frequency());
+    }
+}

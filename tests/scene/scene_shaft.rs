@@ -1,0 +1,118 @@
+//! A body of a scene that bends.
+
+use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
+use bearing_dynamics::solver::dynamics::assembly::Assembly;
+
+const BEARINGS: &str = r#"
+[bearing]
+kind = "deep-groove"
+balls = 8
+clearance = { radial = "0 um" }
+ball = { radius = "5.953 mm" }
+inner_race = { radius = "20.047 mm", groove_radius = "6.013 mm" }
+outer_race = { groove_radius = "6.310 mm" }
+[bearing.left]
+inner_at = "-200 mm"
+[bearing.right]
+inner_at = "100 mm"
+[numerics]
+end = "1 ms"
+[body.shaft]
+"#;
+
+fn read(body: &str) -> Result<Assembly, String> {
+    let text = format!("{BEARINGS}{body}");
+    let document =
+        Document::read_str(&text, Format::Toml, "scene.toml").map_err(|e| e.to_string())?;
+    match resolve_subject(&document).map_err(|e| e.to_string())? {
+        Subject::Assembly(scene) => scene.assembly().map_err(|e| e.to_string()),
+        _ => panic!("no bearings"),
+    }
+}
+
+/// A disc at one end moves the body's centre there; bearings, loads and unbalances stay where they are.
+#[test]
+fn the_centre_of_mass_is_the_centre_of_a_body_that_bends() {
+    let beam = r#"speed = "1000 rpm"
+[body.shaft.beam]
+start = "-200 mm"
+damping = "100 1/s"
+segments = [{ length = "300 mm", outer_diameter = "30 mm" }, { length = "100 mm", outer_diameter = "20 mm", inner_diameter = "10 mm" }]
+disc = [{ at = "200 mm", outer_diameter = "200 mm", inner_diameter = "20 mm", width = "20 mm" }]
+load = [{ at = "0 mm", z = "-100 N" }]
+unbalance = [{ at = "200 mm", size = "1e-4 kg m", angle = "90 deg" }]
+watch = [{ name = "disc", at = "200 mm" }]
+"#;
+    let assembly = read(beam).unwrap();
+    let (body, shaft) = (&assembly.bodies[0], &assembly.shafts[0]);
+    let round = |outer: f64, inner: f64, width: f64| {
+        7850.0 * std::f64::consts::PI / 4.0 * (outer * outer - inner * inner) * width
+    };
+    let parts = [
+        (round(30e-3, 0.0, 0.3), -0.05),
+        (round(20e-3, 10e-3, 0.1), 0.15),
+        (round(0.2, 20e-3, 20e-3), 0.2),
+    ];
+    let mass: f64 = parts.iter().map(|(mass, _)| mass).sum();
+    let centre = parts.iter().map(|(mass, at)| mass * at).sum::<f64>() / mass;
+    let inertia = body.inertia().unwrap();
+    assert!((inertia.mass / mass - 1.0).abs() <= 1e-12, "{} {mass}", inertia.mass);
+    assert!((body.rest[0] - centre).abs() <= 1e-12, "{} {centre}", body.rest[0]);
+    // (2.7) brakes all motion.
+    let braked = body.driven().unwrap().foundation_damping;
+    assert!((braked[1] / (100.0 * mass) - 1.0).abs() <= 1e-12, "{braked:?}");
+    assert_eq!(shaft.damping, 100.0);
+    for (along, at) in [
+        (assembly.bearings[0].mounts[0].along, -0.2),
+        (assembly.bearings[1].mounts[0].along, 0.1),
+        (shaft.loads[0].section.along, 0.0),
+        (shaft.unbalances[0].section.along, 0.2),
+        (shaft.watched[0].1.along, 0.2),
+    ] {
+        assert!((centre + along - at).abs() <= 1e-12, "{along} {at}");
+    }
+    assert!((shaft.unbalances[0].angle - std::f64::consts::FRAC_PI_2).abs() <= 1e-15);
+    // Below 5 kHz, and beside them static answers.
+    let hertz = shaft.shapes.hertz();
+    let natural = shaft.shapes.natural;
+    assert!(hertz[..natural].iter().all(|f| *f <= 5e3) && natural < hertz.len(), "{hertz:?}");
+}
+
+#[test]
+fn faults_of_beams_say_what_is_wrong() {
+    let beam = |lines: &str| format!("[body.shaft.beam]\n{lines}\n");
+    let whole = "segments = [{ length = \"400 mm\", outer_diameter = \"30 mm\" }]\n";
+    let cases = [
+        (beam("damping = \"1 1/s\""), "a shaft that bends has segments"),
+        (format!("inertia = {{ mass = \"1 kg\" }}\n{}", beam(whole)), "the body bends (`beam`)"),
+        (format!("unbalance = \"1e-3 kg m\"\n{}", beam(whole)), "the body bends (`beam`)"),
+        (
+            beam(
+                "segments = [{ length = \"400 mm\", outer_diameter = \"30 mm\", inner_diameter = \"30 mm\" }]",
+            ),
+            "no smaller than the outer diameter",
+        ),
+        (
+            beam(&format!("{whole}load = [{{ at = \"201 mm\", z = \"1 N\" }}]")),
+            "201.0000 mm is not on the shaft, which goes from -200.0000 to 200.0000 mm",
+        ),
+        (beam(&format!("{whole}load = [{{ at = \"0 mm\" }}]")), "nothing acts"),
+        (
+            beam(&format!(
+                "{whole}disc = [{{ at = \"0 mm\", mass = \"1 kg\", width = \"1 mm\" }}]"
+            )),
+            "width",
+        ),
+        (beam(&format!("{whole}disc = [{{ at = \"0 mm\" }}]")), "outer_diameter"),
+        (
+            beam(
+                "start = \"0 mm\"\nsegments = [{ length = \"300 mm\", outer_diameter = \"30 mm\" }]",
+            ),
+            "not on the shaft",
+        ),
+    ];
+    for (text, expected) in cases {
+        let error = read(&text).unwrap_err();
+        assert!(error.contains(expected), "{text}: {error}");
+    }
+}

@@ -1,0 +1,189 @@
+//! Eigenvalues over speed and unbalance response of a rotor against ROSS.
+
+use std::process::Command;
+
+use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc, BeamSegment};
+use bearing_dynamics::solver::rotor::model::{Rotor, RotorModel, Support};
+use bearing_dynamics::solver::rotor::unbalance::Unbalance;
+use nalgebra::Matrix4;
+use serde::Deserialize;
+
+use crate::case::{Case, CaseError, Tier};
+use crate::check::Check;
+use crate::context::CaseContext;
+
+pub const CASE: Case = Case {
+    id: "ross_comparison",
+    title: "A rotor on two bearings against ROSS",
+    section: "4.2.2",
+    tier: Tier::Smoke,
+    published: include_str!("published.toml"),
+    run,
+};
+
+const SCRIPT: &str = include_str!("rotor.py");
+const KEPT: &str = include_str!("kept/rotor.json");
+const ROSS: &str = "ROSS 2.3.0, elements of 10 mm";
+
+#[derive(Debug, Deserialize)]
+struct Kept {
+    version: String,
+    /// rad/s.
+    speeds: Vec<f64>,
+    /// Of each speed, real and imaginary parts, ascending by the latter.
+    eigenvalues: Vec<Vec<[f64; 2]>>,
+    response: Vec<Response>,
+}
+
+/// Amplitudes (m) along both lateral axes at all speeds above 0.
+#[derive(Debug, Deserialize)]
+struct Response {
+    at: f64,
+    first: Vec<f64>,
+    second: Vec<f64>,
+}
+
+/// As in `rotor.py`.
+fn model() -> Result<RotorModel, CaseError> {
+    let segments = [(0.05, 0.03, 0.0), (0.2, 0.04, 0.01), (0.15, 0.035, 0.01), (0.1, 0.025, 0.0)];
+    let segments = segments.map(|(length, outer_diameter, inner_diameter)| BeamSegment {
+        length,
+        outer_diameter,
+        inner_diameter,
+        density: 7850.0,
+        youngs_modulus: 210e9,
+        poisson_ratio: 0.3,
+    });
+    let mut beam = Beam::new(segments.to_vec());
+    let discs = [(0.25, 8.0, 0.05, 0.03), (0.5, 3.0, 0.02, 0.011)];
+    let discs = discs.map(|(at, mass, axial, transverse)| BeamDisc { at, mass, axial, transverse });
+    beam.discs = discs.to_vec();
+    let mut rotor = Rotor::new(beam);
+    let bearings = [(0.05, [4e7, 7e7], [500.0, 800.0]), (0.4, [6e7, 9e7], [700.0, 700.0])];
+    let supports = bearings.map(|(at, [ky, kz], [cy, cz])| Support {
+        at,
+        stiffness: Matrix4::from_diagonal(&[ky, kz, 0.0, 0.0].into()),
+        damping: Matrix4::from_diagonal(&[cy, cz, 0.0, 0.0].into()),
+    });
+    rotor.supports = supports.to_vec();
+    Ok(RotorModel::new(&rotor)?)
+}
+
+fn run(context: &mut CaseContext) -> Result<(), CaseError> {
+    let kept: Kept = serde_json::from_str(KEPT)?;
+    rerun(context, &kept)?;
+    let model = model()?;
+    let (mut rows, mut worst) = (Vec::new(), [0.0f64; 2]);
+    for (&speed, theirs) in kept.speeds.iter().zip(&kept.eigenvalues) {
+        let ours = model.whirls(speed, theirs.len())?;
+        if ours.len() != theirs.len() {
+            return Err(CaseError::message(format!("{} motions at {speed} rad/s", ours.len())));
+        }
+        let mut own = 0.0f64;
+        for (ours, &[re, im]) in ours.iter().zip(theirs) {
+            let error = (ours.frequency() / im - 1.0).abs();
+            own = if error.is_nan() { error } else { own.max(error) };
+            worst[1] = worst[1].max((ours.damping_ratio() + re / re.hypot(im)).abs());
+        }
+        worst[0] = worst[0].max(own);
+        rows.push(vec![format!("{speed}"), format!("{own:.1e}")]);
+    }
+    context.table(
+        "lines",
+        "Largest difference of eight damped frequencies",
+        &["speed, rad/s", "relative"],
+        rows,
+    );
+    context.check(
+        Check::new(
+            "frequencies",
+            "largest relative difference of damped frequencies, ten speeds",
+            "1",
+            worst[0],
+        )
+        .independent(0.0, ROSS)
+        .absolute(
+            1e-3,
+            "errors of its elements of two stations, of the second order of their length in shear",
+        ),
+    );
+    context.check(
+        Check::new(
+            "damping_ratios",
+            "largest difference of damping ratios, ten speeds",
+            "1",
+            worst[1],
+        )
+        .independent(0.0, ROSS)
+        .absolute(1e-5, "a thousandth of the ratios, which reach 0.01"),
+    );
+    response(context, &kept, &model)
+}
+
+fn response(context: &mut CaseContext, kept: &Kept, model: &RotorModel) -> Result<(), CaseError> {
+    let unbalance = Unbalance { at: 0.25, moment: 1e-3, angle: 0.0 };
+    for place in &kept.response {
+        let missing = || CaseError::message(format!("no station at {} m", place.at));
+        let station = model.matrices.station(place.at).ok_or_else(missing)?;
+        let largest = place.first.iter().chain(&place.second).copied().fold(0.0, f64::max);
+        let mut worst = 0.0f64;
+        for (n, &speed) in kept.speeds.iter().skip(1).enumerate() {
+            let response = model.response(&[unbalance], speed);
+            let response = response.ok_or_else(|| CaseError::message("undamped resonance"))?;
+            let orbit = model.orbit(&response, station);
+            for (ours, theirs) in
+                [(orbit.y.norm(), place.first[n]), (orbit.z.norm(), place.second[n])]
+            {
+                let error = (ours - theirs).abs() / largest;
+                worst = if error.is_nan() { error } else { worst.max(error) };
+            }
+        }
+        let id = format!("response_{:.0}", place.at * 1e3);
+        let what = format!(
+            "unbalance response at {} mm: largest difference over its largest value",
+            place.at * 1e3
+        );
+        context.check(
+            Check::new(&id, &what, "1", worst)
+                .independent(0.0, ROSS)
+                .absolute(5e-3, "a resonance that lies 0.01 % elsewhere, where its flank is steep"),
+        );
+    }
+    Ok(())
+}
+
+/// ROSS run now against ROSS as kept, where a Python that has it is named.
+fn rerun(context: &mut CaseContext, kept: &Kept) -> Result<(), CaseError> {
+    let Some(python) = std::env::var_os("ROSS_PYTHON") else {
+        let text = format!(
+            "ROSS_PYTHON is not set: compared with the kept output alone (ROSS {}).",
+            kept.version
+        );
+        context.finding("ross", text);
+        return Ok(());
+    };
+    let output = Command::new(python).args(["-c", SCRIPT, "-"]).output()?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let Some(line) = text.lines().last().filter(|_| output.status.success()) else {
+        let said = String::from_utf8_lossy(&output.stderr);
+        return Err(CaseError::message(format!("ROSS ended with {}: {said}", output.status)));
+    };
+    let now: Kept = serde_json::from_str(line)?;
+    let all = |of: &Kept| -> Vec<f64> {
+        let values = of.eigenvalues.iter().flatten().map(|[_, im]| *im);
+        let response = of.response.iter().flat_map(|place| place.first.iter().chain(&place.second));
+        values.chain(response.copied()).collect()
+    };
+    let (now_values, kept_values) = (all(&now), all(kept));
+    let alike = now_values.len() == kept_values.len()
+        && now_values.iter().zip(&kept_values).all(|(a, b)| (a / b - 1.0).abs() <= 1e-9);
+    if !alike {
+        return Err(CaseError::message("ROSS now and as kept differ by more than 1e-9"));
+    }
+    let text = format!(
+        "ROSS was run anew ({}): its output is the kept one ({}) to 1e-9.",
+        now.version, kept.version
+    );
+    context.finding("ross", text);
+    Ok(())
+}
