@@ -64,7 +64,6 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
         .names("spring")
         .map(|name| spring(document, name, (&bodies, &bearings), &mut defaults_used))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut bearings = bearings;
     name_what_holds(&mut bearings, &springs);
     let scene = AssemblyScene { bearings, bodies: resolved, springs, defaults_used };
     refuse_free_bodies(document, &scene)?;

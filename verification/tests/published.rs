@@ -314,6 +314,11 @@ fn each_published_value_stands_on_one_line_of_the_index() {
 /// nothing needs is an error.
 const TYPED: &[(&str, f64, &str)] = &[
     (
+        "rubber_load_rates_2_4_3/case.rs",
+        30.0,
+        "where the run of the scene ends, an input; computed is when the courses come together",
+    ),
+    (
         "cylinder_on_block_table_2_1/case.rs",
         0.134,
         "another program's -27.8 and 13.4 %, not a tilt of Table 3.7",
