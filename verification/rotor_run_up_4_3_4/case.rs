@@ -34,7 +34,7 @@ const RAMP: f64 = 0.2;
 /// Others, s.
 const RAMPS: [f64; 3] = [0.1, 0.5, 1.0];
 /// The ramp, s, that was found to put the peak near the published speed.
-const NEAR_PUBLISHED: f64 = 0.157;
+const NEAR_PUBLISHED: f64 = 0.156;
 /// N/m, in place of pins.
 const PIN: f64 = 1e9;
 const TOP: f64 = 10_000.0;
