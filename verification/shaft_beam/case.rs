@@ -1,6 +1,6 @@
 //! Frequencies and critical speeds of beams against transfer matrices.
 
-use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
+use bearing_dynamics::output::plots;
 use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc, BeamSegment};
 use bearing_dynamics::solver::rotor::model::{Held, Rotor, RotorModel, Support};
 use bearing_dynamics::solver::rotor::whirl::Whirl;
@@ -217,21 +217,8 @@ fn order(context: &mut CaseContext) -> Result<(), CaseError> {
 fn diagram(context: &mut CaseContext) -> Result<(), CaseError> {
     let model = Shaft::overhung().model(0.05)?;
     let speeds: Vec<f64> = (0..50).map(|n| 50.0 * f64::from(n)).collect();
-    let campbell = model.campbell(&speeds, 4)?;
-    let mut curves: Vec<Curve> = Vec::new();
-    for line in &campbell.lines {
-        let turns = if line[49].is_forward() { "forward" } else { "backward" };
-        let points = speeds.iter().zip(line).map(|(speed, whirl)| [*speed, whirl.frequency()]);
-        curves.push(Curve::new(turns, points.collect()));
-    }
-    curves.push(Curve::new("once a turn", vec![[0.0, 0.0], [2450.0, 2450.0]]));
-    let svg = xy(&XyPlot {
-        title: "Overhung disc: frequencies over speed".into(),
-        x: Axis::linear("speed", "rad/s"),
-        y: Axis::linear("frequency", "rad/s"),
-        style: Style::Lines,
-        curves,
-    })?;
+    let lines = model.campbell(&speeds, 4)?;
+    let svg = plots::campbell("Overhung disc: frequencies over speed", &lines)?;
     context.figure(
         "campbell",
         svg,

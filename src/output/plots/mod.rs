@@ -1,5 +1,6 @@
 //! SVG pictures from plain data; every function returns the SVG as text.
 //!
+//! - [`campbell()`]: frequencies of a rotor over its speed
 //! - [`load_zone()`]: balls between the races with an arrow for each load, as in Fig. 4.8
 //! - [`orbit()`]: paths in the Y–Z plane, both axes to the same scale
 //! - [`polar()`]: values over azimuth
@@ -7,6 +8,7 @@
 //!
 //! Drawn for a width of 700 px and more, in the colours of Okabe and Ito that colour-blind readers
 //! can tell apart, with another marker for every curve.
+pub mod campbell;
 mod canvas;
 pub mod load_zone;
 pub mod orbit;
@@ -14,6 +16,7 @@ pub mod polar;
 mod ticks;
 pub mod xy;
 
+pub use campbell::campbell;
 pub use load_zone::{LoadZone, load_zone};
 pub use orbit::{OrbitPlot, orbit};
 pub use polar::{PolarPlot, polar};

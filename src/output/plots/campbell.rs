@@ -1,0 +1,37 @@
+//! Frequencies of a rotor over its speed, with the line on which they meet once a turn.
+
+use super::xy::{Axis, Style, XyPlot, xy};
+use super::{Curve, PlotError};
+use crate::solver::rotor::whirl::Campbell;
+use std::f64::consts::TAU;
+
+/// Campbell diagram in Hz over rpm.
+///
+/// # Errors
+/// As [`xy`].
+pub fn campbell(title: &str, of: &Campbell) -> Result<String, PlotError> {
+    let rpm = |speed: f64| speed * 60.0 / TAU;
+    let mut highest = 0.0f64;
+    let mut curves: Vec<Curve> = Vec::new();
+    for (number, line) in of.lines.iter().enumerate() {
+        let points = of.speeds.iter().zip(line);
+        let points: Vec<[f64; 2]> =
+            points.map(|(&speed, whirl)| [rpm(speed), whirl.frequency() / TAU]).collect();
+        highest = points.iter().fold(highest, |most, point| most.max(point[1]));
+        let turns = match line.last() {
+            Some(whirl) if whirl.is_forward() => "forward",
+            _ => "backward",
+        };
+        curves.push(Curve::new(format!("{} {turns}", number + 1), points));
+    }
+    let last = of.speeds.last().copied().unwrap_or(0.0);
+    let end = last.min(highest * TAU);
+    curves.push(Curve::new("once a turn", vec![[0.0, 0.0], [rpm(end), end / TAU]]));
+    xy(&XyPlot {
+        title: title.into(),
+        x: Axis::linear("speed", "rpm"),
+        y: Axis::linear("frequency", "Hz"),
+        style: Style::Lines,
+        curves,
+    })
+}
