@@ -12,10 +12,16 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::mesh::TetMesh;
 use bearing_dynamics::mesh::quadratic::elevate;
 use bearing_dynamics::mesh::tet_mesh::Elements;
+use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::contacts::Driver;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
+use bearing_dynamics::solver::dynamics::run::{
+    Integrator, RunOptions, Simulation, Start, Stepping,
+};
+use bearing_dynamics::solver::dynamics::shaft::{ElasticShaft, ShaftLoad, Unbalance};
 use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::rotor::beam::{Beam, BeamSegment};
+use bearing_dynamics::solver::shaft_shapes::{Kept, free_shaft};
 use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
 use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
 use bearing_dynamics::solver::solid::rubber::explicit::RubberBody;
@@ -107,6 +113,60 @@ fn full() -> DynamicProblem {
         }),
         unbalance: 1e-4,
         ..problem
+    }
+}
+
+/// The same with an inner race that bends as a shaft does.
+fn bending() -> Assembly {
+    let segment = BeamSegment {
+        length: 0.4,
+        outer_diameter: 30e-3,
+        inner_diameter: 0.0,
+        density: 7850.0,
+        youngs_modulus: 210e9,
+        poisson_ratio: 0.3,
+    };
+    let kept = Kept { most: 3, ..Kept::ALL };
+    let beam = Beam::new(vec![segment]);
+    let (_, shapes) = free_shaft(&beam, kept, &[(0.2, true)], &[]).unwrap();
+    let section = shapes.section(0.1);
+    let mut assembly = full().assembly();
+    assembly.shafts.push(ElasticShaft {
+        damping: 10.0,
+        internal_damping: 1.0,
+        loads: vec![ShaftLoad {
+            section: section.clone(),
+            force: [0.0, 1.0, -2.0].map(Profile::Constant),
+        }],
+        unbalances: vec![Unbalance { section, size: 1e-4, angle: 0.3 }],
+        shapes,
+        ..ElasticShaft::default()
+    });
+    assembly
+}
+
+#[test]
+fn steps_of_a_bending_shaft_allocate_nothing() {
+    for (integrator, stepping) in [
+        (Integrator::RungeKutta, Stepping::Fixed(1e-7)),
+        (Integrator::DormandPrince, Stepping::Accuracy(1e-3)),
+        (Integrator::Rosenbrock, Stepping::Accuracy(1e-3)),
+    ] {
+        let options = RunOptions {
+            integrator,
+            stepping,
+            start: Start::Nominal,
+            energy_limit: f64::INFINITY,
+            ..RunOptions::default()
+        };
+        let mut simulation = Simulation::new(bending(), options).unwrap();
+        simulation.step().unwrap();
+        let count = allocations(|| {
+            for _ in 0..50 {
+                simulation.step().unwrap();
+            }
+        });
+        assert_eq!(count, 0, "{integrator:?}");
     }
 }
 
