@@ -338,7 +338,8 @@ fn table_4_3(context: &mut CaseContext) -> Result<(), CaseError> {
     let mut table = Vec::new();
     for (index, (row, converged)) in rows.iter().zip(&stated).enumerate() {
         let n = index + 1;
-        let quantities: [(&str, &str, &str, fn(&Row) -> f64); 6] = [
+        type Quantity = (&'static str, &'static str, &'static str, fn(&Row) -> f64);
+        let quantities: [Quantity; 6] = [
             ("x", "displacement along X", "µm", |row| row.displacement[0]),
             ("z", "displacement along Z", "µm", |row| row.displacement[1]),
             ("overhung_fx", "axial force on the inner race", "N", |row| row.inner[0]),

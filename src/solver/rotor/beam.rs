@@ -192,7 +192,8 @@ impl Beam {
                 }
             }
         }
-        if !(self.longest_element > 0.0) {
+        let is_length = self.longest_element > 0.0;
+        if !is_length {
             return Err(BeamError::Element(self.longest_element));
         }
         match self.shear_coefficient {

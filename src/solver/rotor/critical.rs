@@ -21,7 +21,8 @@ impl RotorModel {
     /// A shaft that is not held.
     pub fn critical_speeds(&self) -> Result<Vec<Critical>, RotorError> {
         let frequency = self.natural.first().copied().unwrap_or(0.0);
-        if !(frequency > 0.0) {
+        let is_sound = frequency > 0.0;
+        if !is_sound {
             return Err(RotorError::Unheld { frequency });
         }
         let modes = self.natural.len();
@@ -33,7 +34,8 @@ impl RotorModel {
         let eigen = inverse.symmetric_eigen();
         let mut found: Vec<Critical> = Vec::new();
         for (mode, &value) in eigen.eigenvalues.iter().enumerate() {
-            if !(value > 0.0) {
+            let is_speed = value > 0.0;
+            if !is_speed {
                 continue;
             }
             let speed = 1.0 / value.sqrt();

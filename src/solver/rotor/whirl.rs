@@ -107,7 +107,7 @@ impl RotorModel {
         // Both directions of whirl are in it; one more than the other, in turns, so that two motions of one frequency (at
         // rest) are not found as one.
         let start = DVector::from_fn(modes, |i, _| 1.0 + 0.11 * (i % 7) as f64);
-        let side = if number % 2 == 0 { -0.9 } else { 0.9 };
+        let side = if number.is_multiple_of(2) { -0.9 } else { 0.9 };
         let turned = &self.quarter_turn * &start * side;
         let mut modal = start.zip_map(&turned, Complex::new);
         for _ in 0..3 {
