@@ -6,7 +6,7 @@ use bearing_dynamics::solver::dynamics::assembly::OUTER;
 use bearing_dynamics::solver::dynamics::equilibrium::at_start;
 use nalgebra::Complex;
 
-use crate::bushings::{BULK_RATIO, MAXWELL, diluted, shear_over_modulus};
+use crate::bushings::{BULK_RATIO, CREEP_ON_RUBBER, MAXWELL, diluted, shear_over_modulus};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
@@ -26,7 +26,6 @@ pub const CASE: Case = Case {
     run,
 };
 
-const SCENE: &str = include_str!("../../scenes/creep_on_rubber.toml");
 const LOAD: f64 = 250.0;
 /// Of the scene, s: of its ramp and its end.
 const SHIPPED: &str = "duration = \"0.5 s\"";
@@ -65,7 +64,7 @@ impl Rate {
         let duration = format!("duration = \"{} s\"", self.duration);
         let mut all = vec![(SHIPPED, duration.as_str())];
         all.extend(changes);
-        changed_scene(SCENE, &all)
+        changed_scene(CREEP_ON_RUBBER, &all)
     }
 }
 
@@ -114,7 +113,7 @@ fn relaxed(changes: &[(&str, &str)]) -> Result<[f64; 2], CaseError> {
     let given = "{ ramp = [\"0 N\", \"-250 N\"], duration = \"0.5 s\" }";
     let mut all = vec![(given, "\"-250 N\"")];
     all.extend(changes);
-    let found = at_start(&changed_scene(SCENE, &all)?.assembly()?)?;
+    let found = at_start(&changed_scene(CREEP_ON_RUBBER, &all)?.assembly()?)?;
     Ok([OUTER, 0].map(|body| -found.coordinates[body][2]))
 }
 
@@ -307,11 +306,11 @@ fn together(context: &mut CaseContext, courses: &[Course; 3], outer: f64) {
 
 /// What does not relax knows no rate: the same scene with its outer race fixed.
 fn fixed(context: &mut CaseContext, courses: &[Course; 3]) -> Result<(), CaseError> {
-    let cut = SCENE
+    let cut = CREEP_ON_RUBBER
         .find("[spring.mount]")
-        .zip(SCENE.find("[traction]"))
+        .zip(CREEP_ON_RUBBER.find("[traction]"))
         .ok_or_else(|| CaseError::message("no bushing in the scene"))?;
-    let text = SCENE.replace(&SCENE[cut.0..cut.1], "");
+    let text = CREEP_ON_RUBBER.replace(&CREEP_ON_RUBBER[cut.0..cut.1], "");
     let mut reached = Vec::new();
     for rate in &RATES {
         let duration = format!("duration = \"{} s\"", rate.duration);
@@ -364,7 +363,7 @@ fn shares(context: &mut CaseContext) -> Result<(), CaseError> {
         let sudden = format!("duration = \"{} ms\"", 1e3 * SUDDEN);
         let end = format!("end = \"{SUDDEN_END} s\"");
         let scene = changed_scene(
-            SCENE,
+            CREEP_ON_RUBBER,
             &[
                 swap,
                 (SHIPPED, sudden.as_str()),

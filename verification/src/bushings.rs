@@ -58,6 +58,8 @@ pub const BUSHING_RADIAL: &str = include_str!("../../scenes/bushing_radial.toml"
 
 /// The shipped scene of a bearing on a bushing, hit.
 pub const BEARING_ON_BUSHING: &str = include_str!("../../scenes/bearing_on_bushing.toml");
+/// The bearing that creeps on rubber (2.4.3).
+pub const CREEP_ON_RUBBER: &str = include_str!("../../scenes/creep_on_rubber.toml");
 
 /// The shipped scene of a bearing with a dent in its fixed outer race.
 pub const DENTED_RACE: &str = include_str!("../../scenes/dented_race.toml");
