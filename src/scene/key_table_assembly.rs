@@ -95,6 +95,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("spring.bushing.density", DENSITY, Default { value: "1100 kg/m^3", reason: "the source states none; usual for rubber" }, "Density of the rubber; fitted springs have no mass.").hint("of rubber 900 to 1500 kg/m^3"),
     Key::new("spring.bushing.step_fraction", Kind::Number(closed(1e-3, 0.95, "")), Default { value: "0.8", reason: "below the stability limit" }, "Explicit steps over the longest stable one."),
     Key::new("spring.bushing.step", Kind::Quantity(Time, above(0.0, 1e3, "s")), Depends("as long as bodies and rubber may go without each other, unless given"), "Longest implicit step.").hint("shorter than a twentieth of a swing").example_of("50 us"),
+    Key::new("spring.bushing.window_phase", Kind::Number(closed(1e-3, 1.5, "")), Default { value: "0.2", reason: "the exchange is 0.2 % off the frequency of a swing" }, "How far a body may swing on the rubber's sudden stiffness between two exchanges with it, rad: longer windows are cheaper and, in slow motions, as good.").example_of("0.6"),
     Key::new("spring.bushing.cells.around", CELLS, Default { value: "16", reason: "bushings of 3.4.3 answer within 2 % of an axisymmetric computation" }, "Cells of the mesh around half of the bushing."),
     Key::new("spring.bushing.cells.radial", CELLS, Default { value: "4", reason: "as `around`" }, "Cells across the wall, an even number."),
     Key::new("spring.bushing.cells.axial", CELLS, Default { value: "4", reason: "as `around`" }, "Cells along half of the length."),

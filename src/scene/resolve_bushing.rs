@@ -79,7 +79,8 @@ pub(super) fn bushing(
     };
     of.elements = stepping.map(|stepping| {
         let density = reader.number("spring.bushing.density").unwrap_or(1100.0);
-        BushingInElements { density, stepping }
+        let window_phase = reader.number("spring.bushing.window_phase").unwrap_or(0.2);
+        BushingInElements { density, stepping, window_phase }
     });
     Ok(Some((of, spring.law)))
 }

@@ -63,7 +63,7 @@ impl Made {
             solids: Vec::new(),
             seats: Vec::new(),
             bushings: self.bushings.iter().map(BushingElements::part).collect(),
-            options: ExchangeOptions::on_rubber(bearing),
+            options: ExchangeOptions::on_rubber(0.2, bearing),
             threads: 1,
         }))
     }

@@ -10,13 +10,15 @@ use bearing_dynamics::ch2_housing::bearing::hertz::HertzError;
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::output::series::Series;
-use bearing_dynamics::output::session::{Parts, RunRequest, Session, Status};
+use bearing_dynamics::output::session::{HousedParts, Parts, RunRequest, Session, Status};
 use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::scene::bushing_problem::{BushingElements, take_bushings};
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::race::tilts_of;
 use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Stepping};
 use bearing_dynamics::solver::dynamics::state::{BodyState, POSITION, VELOCITY};
+use bearing_dynamics::solver::housing::exchange::ExchangeOptions;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::Condition;
 
@@ -131,9 +133,26 @@ pub fn column(series: &Series, name: &str) -> Result<Vec<f64>, CaseError> {
     Ok(column.ok_or_else(|| CaseError::message(format!("no column {name}")))?.to_vec())
 }
 
-/// Columns of the run of a scene.
+/// Columns of the run of a scene, its bushings as springs or in elements.
 pub fn ran(scene: &AssemblyScene, names: &[&str]) -> Result<Vec<Vec<f64>>, CaseError> {
-    let series = done(scene.assembly()?, &request(scene)?)?.series()?;
+    let (request, mut assembly) = (request(scene)?, scene.assembly()?);
+    let bushings = take_bushings(scene, &mut assembly)?;
+    let series = match scene.window_phase() {
+        None => done(assembly, &request)?.series()?,
+        Some(phase) => {
+            // All together are balanced, not the bearing alone.
+            let bearing = RunOptions { energy_limit: f64::INFINITY, ..request.options };
+            let parts = Parts::Housed(Box::new(HousedParts {
+                assembly,
+                solids: Vec::new(),
+                seats: Vec::new(),
+                bushings: bushings.iter().map(BushingElements::part).collect(),
+                options: ExchangeOptions::on_rubber(phase, bearing),
+                threads: 1,
+            }));
+            done(parts, &request)?.series()?
+        }
+    };
     names.iter().map(|name| column(&series, name)).collect()
 }
 

@@ -108,7 +108,8 @@ fn bushing(of: &BushingOfSpring) -> Result<Value, ResultsError> {
         "fastest": quantity("fastest", *fastest, "Hz")?,
         "cells": { "around": mesh.around, "radial": mesh.radial, "axial": mesh.axial },
     });
-    if let Some(BushingInElements { density, stepping }) = elements {
+    if let Some(BushingInElements { density, stepping, window_phase }) = elements {
+        echo["window_phase"] = json!(window_phase);
         echo["density"] = quantity("density", *density, "kg/m^3")?;
         let (method, key, value) = match stepping {
             BushingStepping::Explicit { fraction } => {

@@ -178,7 +178,7 @@ fn parts<'p>(
             seat_phase: of.window_phase,
             bearing,
         },
-        None => ExchangeOptions::on_rubber(bearing),
+        None => ExchangeOptions::on_rubber(scene.window_phase().unwrap_or(0.2), bearing),
     };
     Ok(HousedParts { assembly, solids, seats, bushings: Vec::new(), options, threads })
 }

@@ -59,9 +59,9 @@ pub struct ExchangeOptions {
 }
 
 impl ExchangeOptions {
-    /// Of bushings without a housing beside them: drift and kick are 0.2 % off the frequency of a swing.
-    pub fn on_rubber(bearing: RunOptions) -> ExchangeOptions {
-        ExchangeOptions { solid_fraction: 1.0, seat_phase: 0.2, bearing }
+    /// Of bushings without a housing beside them, a body swinging on them by so much (rad) in a window.
+    pub fn on_rubber(seat_phase: f64, bearing: RunOptions) -> ExchangeOptions {
+        ExchangeOptions { solid_fraction: 1.0, seat_phase, bearing }
     }
 }
 
