@@ -34,6 +34,18 @@ fn every_scene_of_the_repository_goes_through_every_command() {
     }
 }
 
+/// Of a shaft that bends there is no equilibrium yet: what needs one says so, what does not goes through.
+#[test]
+fn a_scene_of_a_shaft_that_bends_is_one_of_a_run() {
+    let path = scene("rotor_run_up.toml");
+    assert!(done(&["check", &path]).contains("a valid scene"));
+    assert!(done(&["plan", &path]).contains("does  "));
+    for command in ["statics", "modes"] {
+        let said = refused(&[command, &path]);
+        assert!(said.contains("a body that bends is there in a run only"), "{command}: {said}");
+    }
+}
+
 #[test]
 fn help_version_and_schema_are_answers() {
     for arguments in [["--help"], ["-h"], ["help"]] {

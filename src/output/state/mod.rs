@@ -31,7 +31,7 @@ use crate::solver::solid::model::SolidProblem;
 use arrays::{remove_arrays, write_arrays};
 use bearing_entry::BearingEntry;
 use entries::{CourseEntry, ExchangeEntry, SolidEntry};
-use rubber_entry::{RubberEntry, hash_rubber};
+use rubber_entry::{RubberEntry, hash_bushing, hash_rubber};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -150,9 +150,7 @@ pub fn fingerprint(parts: &Parts, request: &RunRequest) -> String {
                 hash_solid(&mut hash, &solid.model.problem);
             }
             hash.update(format!("{:?} {:?}", parts.seats, parts.options));
-            for bushing in &parts.bushings {
-                hash.update(format!("{bushing:?}"));
-            }
+            parts.bushings.iter().for_each(|bushing| hash_bushing(&mut hash, bushing));
         }
         Parts::Course(parts) => {
             parts.models.iter().for_each(|model| hash_solid(&mut hash, &model.problem));

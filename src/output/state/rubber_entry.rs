@@ -3,7 +3,9 @@
 use super::arrays::{arrays_name, table};
 use super::entries::Refused;
 use crate::elements::tet10::POINTS;
+use crate::kinematics::vec3::Vec3;
 use crate::output::session::RubberParts;
+use crate::solver::housing::bonded::{BondedElements, BondedPart};
 use crate::solver::solid::rubber::checkpoint::{Factored, RubberCheckpoint, RubberState};
 use crate::solver::solid::rubber::steps::StepCounts;
 use serde::{Deserialize, Serialize};
@@ -87,15 +89,36 @@ impl RubberEntry {
     }
 }
 
+/// Places of nodes and nodes of elements.
+fn hash_mesh<const N: usize>(hash: &mut Sha256, nodes: &[Vec3], elements: &[[u32; N]]) {
+    for value in nodes.iter().flatten() {
+        hash.update(value.to_bits().to_le_bytes());
+    }
+    for node in elements.as_flattened() {
+        hash.update(node.to_le_bytes());
+    }
+}
+
+/// What decides the bits of a bushing in elements.
+pub(super) fn hash_bushing(hash: &mut Sha256, part: &BondedPart) {
+    match &part.elements {
+        BondedElements::Explicit { body, fraction } => {
+            hash_mesh(hash, &body.nodes, &body.elements);
+            hash.update(format!("{:?} {} {fraction}", body.material, body.density));
+        }
+        BondedElements::Implicit { model, step } => {
+            hash_mesh(hash, &model.problem.nodes, &model.problem.elements);
+            let mass: f64 = model.mass.iter().sum();
+            hash.update(format!("{:?} {mass} {step}", model.problem.material));
+        }
+    }
+    hash.update(format!("{} {:?} {:?}", part.name, part.sleeves, part.spring));
+}
+
 /// What decides the bits of a solid of rubber.
 pub(super) fn hash_rubber(hash: &mut Sha256, parts: &RubberParts) {
     let problem = &parts.setup.model.problem;
-    for value in problem.nodes.iter().flatten() {
-        hash.update(value.to_bits().to_le_bytes());
-    }
-    for node in problem.elements.as_flattened() {
-        hash.update(node.to_le_bytes());
-    }
+    hash_mesh(hash, &problem.nodes, &problem.elements);
     hash.update(format!("{:?} {:?}", problem.material, problem.prescribed));
     hash.update(format!("{:?} {:?}", problem.loads, parts.stepping));
     hash.update(format!("{:?} {:?}", parts.setup.probes, parts.setup.supports));
