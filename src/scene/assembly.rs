@@ -339,9 +339,6 @@ impl AssemblyScene {
     /// # Errors
     /// As [`AssemblyScene::assembly`].
     pub fn statics(&self) -> Result<StaticAssembly<'static>, DynamicsError> {
-        if let Some(body) = self.bodies.iter().find(|body| body.beam.is_some()) {
-            return Err(DynamicsError::BendsInRuns { body: body.name.clone() });
-        }
         let mut still = static_assembly(&self.assembly()?, 0.0, &[]);
         for (bearing, placed) in still.bearings.iter_mut().zip(&self.bearings) {
             let scene = &placed.scene;
@@ -431,7 +428,6 @@ fn bend(all: &mut Assembly, index: usize, of: &SceneBeam) -> Result<(), FreeShaf
         loads: loads.collect(),
         unbalances: unbalances.collect(),
         watched: watched.collect(),
-        start: Vec::new(),
         shapes: shapes.clone(),
     };
     all.shafts.push(shaft);

@@ -29,10 +29,6 @@ pub enum DynamicsError {
     NoEnd,
     #[error("body.{body}.beam: {error}")]
     Beam { body: String, error: FreeShaftError },
-    #[error(
-        "body.{body}.beam: a body that bends is there in a run only. Hint: `bearing run`, or leave `beam` out"
-    )]
-    BendsInRuns { body: String },
 }
 
 /// The bearing in motion of a scene.

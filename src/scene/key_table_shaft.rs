@@ -56,7 +56,7 @@ pub(super) const KEYS: &[Key] = &[
 
 #[rustfmt::skip]
 pub(super) const TABLES: &[Table] = &[
-    table("body.beam", "The body bends: a Timoshenko beam of round segments with rigid discs, which gives it its `inertia`. Bearings and springs take hold of its sections; `load` and `unbalance` stand at a place. Loads on the body's own coordinates and its `foundation` act as weight does, on all its mass, and bend nothing. It neither stretches nor twists. In a run, which starts unbent: loads that would bend it at first need `numerics.start = \"nominal\"`, or grow from nothing.",
+    table("body.beam", "The body bends: a Timoshenko beam of round segments with rigid discs, which gives it its `inertia`. Bearings and springs take hold of its sections; `load` and `unbalance` stand at a place. Loads on the body's own coordinates and its `foundation` act as weight does, on all its mass, and bend nothing. It bends and stretches, and does not twist.",
         "[body.shaft.beam]\nsegments = [{ length = \"400 mm\", outer_diameter = \"30 mm\" }]"),
     list_table("body.beam.segments", "Its segments one after the other, along X.",
         "[[body.shaft.beam.segments]]\nlength = \"400 mm\"\nouter_diameter = \"30 mm\""),

@@ -15,6 +15,7 @@ pub mod clock;
 pub mod dense;
 pub mod dent_table;
 pub mod dynamics;
+pub mod free_shapes;
 pub mod half_space;
 pub mod housing;
 pub mod mount;

@@ -1,13 +1,11 @@
-//! Shapes of bending of a free shaft: natural ones up to a frequency, and beside them its static answers to what
-//! takes hold of it, as far as the natural ones leave these out.
-//!
-//! Both are orthogonal to each other and to the shaft's rigid motions under its mass. A load at a place where something
-//! takes hold is so answered exactly as long as it is slow; of one at frequency f what is missed is about (f/f_cut)² of
-//! the part of the compliance that the natural shapes left out would have had.
+//! Shapes of bending and of stretching of a free shaft: natural ones up to a frequency, and beside them its static answers
+//! to what takes hold of it, as far as the natural ones leave these out ([`FreeBody`]).
 
+use super::free_shapes::{Cut, FreeBody, FreeShapes};
+use crate::ch4_rotor::beam::{NODES, PlaneMatrix};
 use crate::solver::dynamics::shaft::Section;
 use crate::solver::rotor::beam::{Beam, BeamError, BeamMatrices, STATION};
-use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
 /// One plane of bending over [deflection (m), turn of the section (rad)] at each station, SI units. The turn is positive where
@@ -20,6 +18,10 @@ pub struct BendingPlane {
     pub stiffness: DMatrix<f64>,
     /// Inertia about the axis: Ω times it couples the two planes.
     pub axial_inertia: DMatrix<f64>,
+    /// Mass of displacement along the shaft that goes with each station, kg.
+    pub along: Vec<f64>,
+    /// ∫ w′² between neighbouring stations of each element, over its stations.
+    pub shortening: Vec<[PlaneMatrix; NODES - 1]>,
 }
 
 /// Where something takes hold of a shaft: index of the station, and whether it may turn it too.
@@ -40,10 +42,10 @@ pub struct RigidPart {
     pub transverse: f64,
 }
 
-/// Shapes with a mass of 1 kg each, the same along both directions across the shaft.
+/// Shapes with a mass of 1 kg each: of bending, the same along both directions across the shaft, and of stretching.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShaftShapes {
-    /// rad/s.
+    /// Of bending, rad/s.
     pub frequencies: Vec<f64>,
     /// From the centre of mass, m, in order.
     pub stations: Vec<f64>,
@@ -57,25 +59,21 @@ pub struct ShaftShapes {
     /// How many of them are natural ones; the others are static answers.
     pub natural: usize,
     pub cut: Cut,
+    /// Of stretching, rad/s, and displacements along the shaft as those of bending.
+    pub stretch_frequencies: Vec<f64>,
+    pub stretch: Vec<f64>,
+    /// D of each station, row by row: a shaft that bends by a and does not stretch comes nearer to its centre of mass by
+    /// ½ a·D a.
+    pub shortening: Vec<f64>,
 }
-
-/// What the shapes leave out.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Cut {
-    /// Lowest natural frequency that is not among them, rad/s; none where all are.
-    pub above: f64,
-    /// Largest part of the static compliance (beside rigid motion) at a hold that lies above.
-    pub share: f64,
-}
-
-/// Static answers that differ by less than this part of themselves from the others are none of their own.
-const DEPENDENT: f64 = 1e-10;
 
 /// Why a shaft has no shapes.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ShapesError {
     #[error("the mass of the shaft is not positive: {0} kg")]
     Mass(f64),
+    #[error("the shaft has a motion without stiffness that is no rigid one")]
+    Stiffness,
 }
 
 impl From<&BeamMatrices> for BendingPlane {
@@ -96,6 +94,8 @@ impl From<&BeamMatrices> for BendingPlane {
                 let (column, sign) = towards_z(j);
                 sign * beam.gyroscopic[(towards_y(i), column)]
             }),
+            along: beam.axial_mass.column_sum().iter().copied().collect(),
+            shortening: beam.shortening.clone(),
         }
     }
 }
@@ -136,111 +136,15 @@ impl BendingPlane {
         holds: &[Hold],
     ) -> Result<ShaftShapes, ShapesError> {
         let rigid = self.rigid_part();
-        let Some(factor) = Cholesky::new(self.mass.clone()) else {
-            return Err(ShapesError::Mass(rigid.mass));
-        };
-        let (frequencies, all) = self.natural(&factor, &rigid);
-        let kept: usize = frequencies.iter().take(most).filter(|w| **w <= limit).count();
         let answers = |hold: &Hold| {
             let turn = hold.turns.then_some(2 * hold.station + 1);
             [Some(2 * hold.station), turn].into_iter().flatten()
         };
         let rows: Vec<usize> = holds.iter().flat_map(answers).collect();
-        let left_out = frequencies.len() - kept;
-        // Amplitudes of the natural shapes left out in each static answer.
-        let answer = |k: usize, row: usize| {
-            all[(row, kept + k)] / (frequencies[kept + k] * frequencies[kept + k])
-        };
-        let mut answers = DMatrix::from_fn(left_out, rows.len(), |k, j| answer(k, rows[j]));
-        let share = |row: &usize| {
-            let part =
-                |k: usize| all[(*row, k)] * all[(*row, k)] / (frequencies[k] * frequencies[k]);
-            let total: f64 = (0..frequencies.len()).map(part).sum();
-            let beyond: f64 = (kept..frequencies.len()).map(part).sum();
-            if total > 0.0 { beyond / total } else { 0.0 }
-        };
-        let share = rows.iter().map(share).fold(0.0, f64::max);
-        for mut column in answers.column_iter_mut() {
-            let size = column.norm();
-            if size > 0.0 {
-                column /= size;
-            }
-        }
-        let (static_frequencies, combined) = self.independent(&answers, &frequencies[kept..]);
-        let count = kept + static_frequencies.len();
-        let size = 2 * self.stations.len();
-        let mut shapes = DMatrix::zeros(size, count);
-        shapes.columns_mut(0, kept).copy_from(&all.columns(0, kept));
-        shapes.columns_mut(kept, count - kept).copy_from(&(all.columns(kept, left_out) * combined));
-        let above = frequencies.get(kept).copied().unwrap_or(f64::INFINITY);
-        let frequencies: Vec<f64> =
-            frequencies[..kept].iter().chain(&static_frequencies).copied().collect();
-        let cut = Cut { above, share };
-        Ok(self.told(&rigid, frequencies, &shapes, kept, cut))
-    }
-
-    /// All natural shapes beside the rigid motions, in the order of their frequencies (rad/s).
-    fn natural(
-        &self,
-        factor: &Cholesky<f64, nalgebra::Dyn>,
-        rigid: &RigidPart,
-    ) -> (Vec<f64>, DMatrix<f64>) {
-        let lower = factor.l();
-        let solved = |matrix: &DMatrix<f64>| {
-            lower.solve_lower_triangular(matrix).unwrap_or_else(|| matrix.clone())
-        };
-        let scaled = solved(&solved(&self.stiffness).transpose());
-        let symmetric = (&scaled + scaled.transpose()) * 0.5;
-        let eigen = SymmetricEigen::new(symmetric);
-        let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
-        order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
-        // The first two are the rigid motions.
-        let order = &order[2.min(order.len())..];
-        let back = lower.transpose();
-        let mut shapes = DMatrix::zeros(self.mass.nrows(), order.len());
         let motions = self.rigid(rigid.centre);
-        let weights = [rigid.mass, rigid.transverse];
-        let mut frequencies = Vec::with_capacity(order.len());
-        for (column, &index) in order.iter().enumerate() {
-            let own = eigen.eigenvectors.column(index).into_owned();
-            let mut shape = back.solve_upper_triangular(&own).unwrap_or(own);
-            // Rounding leaves some rigid motion in a shape, and its frequency to the square root of its part.
-            for (motion, weight) in motions.iter().zip(weights) {
-                let part = (&self.mass * motion).dot(&shape) / weight;
-                shape -= motion * part;
-            }
-            shape /= (&self.mass * &shape).dot(&shape).sqrt();
-            frequencies.push((&self.stiffness * &shape).dot(&shape).sqrt());
-            shapes.set_column(column, &shape);
-        }
-        (frequencies, shapes)
-    }
-
-    /// Combinations of `answers` (columns of amplitudes of shapes of these frequencies) that are orthogonal under mass and
-    /// stiffness, and their frequencies.
-    fn independent(&self, answers: &DMatrix<f64>, frequencies: &[f64]) -> (Vec<f64>, DMatrix<f64>) {
-        let mass = answers.transpose() * answers;
-        if answers.is_empty() {
-            return (Vec::new(), DMatrix::zeros(answers.nrows(), 0));
-        }
-        let gram = SymmetricEigen::new(mass);
-        let most = gram.eigenvalues.max();
-        let used: Vec<usize> = (0..gram.eigenvalues.len())
-            .filter(|i| gram.eigenvalues[*i] > DEPENDENT * most)
-            .collect();
-        let basis = DMatrix::from_fn(answers.ncols(), used.len(), |i, j| {
-            gram.eigenvectors[(i, used[j])] / gram.eigenvalues[used[j]].sqrt()
-        });
-        let basis = answers * basis;
-        let springs = DVector::from_fn(frequencies.len(), |k, _| frequencies[k] * frequencies[k]);
-        let stiffness = basis.transpose() * DMatrix::from_diagonal(&springs) * &basis;
-        let eigen = SymmetricEigen::new(stiffness);
-        let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
-        order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
-        let frequencies = order.iter().map(|i| eigen.eigenvalues[*i].sqrt()).collect();
-        let chosen =
-            DMatrix::from_fn(order.len(), order.len(), |i, j| eigen.eigenvectors[(i, order[j])]);
-        (frequencies, basis * chosen)
+        let free = FreeBody { mass: &self.mass, stiffness: &self.stiffness, rigid: &motions };
+        let FreeShapes { frequencies, shapes, natural, cut } = free.shapes(limit, most, &rows)?;
+        Ok(self.told(&rigid, frequencies, &shapes, natural, cut))
     }
 
     fn told(
@@ -268,8 +172,27 @@ impl BendingPlane {
             gyroscopic: gyroscopic.transpose().iter().copied().collect(),
             natural,
             cut,
+            shortening: self.shortenings(shapes),
             frequencies,
+            ..ShaftShapes::default()
         }
+    }
+
+    /// D of all stations: ∫ w′² from the first one on, less its mean over the mass.
+    fn shortenings(&self, shapes: &DMatrix<f64>) -> Vec<f64> {
+        let count = shapes.ncols();
+        let mut at = vec![DMatrix::zeros(count, count)];
+        for (element, parts) in self.shortening.iter().enumerate() {
+            let own = shapes.rows(2 * (NODES - 1) * element, 2 * NODES);
+            for part in parts {
+                let last = &at[at.len() - 1];
+                at.push(last + own.transpose() * part * own);
+            }
+        }
+        let mass: f64 = self.along.iter().sum();
+        let all = self.along.iter().zip(&at);
+        let mean = all.fold(DMatrix::zeros(count, count), |sum, (m, at)| sum + at * (m / mass));
+        at.iter().flat_map(|at| (at - &mean).iter().copied().collect::<Vec<f64>>()).collect()
     }
 }
 
@@ -284,18 +207,25 @@ impl ShaftShapes {
         let last = self.stations.len().saturating_sub(1);
         let next = self.stations.partition_point(|x| *x <= along).clamp(1.min(last), last);
         let before = next.saturating_sub(1);
-        let row = |of: &[f64], at: usize| of[at * count..(at + 1) * count].to_vec();
+        let row = |of: &[f64], count: usize, at: usize| of[at * count..(at + 1) * count].to_vec();
         let length = self.stations[next] - self.stations[before];
         let part = if length > 0.0 {
             ((along - self.stations[before]) / length).clamp(0.0, 1.0)
         } else {
             0.0
         };
-        let between = |of: &[f64]| {
-            let both = row(of, before).into_iter().zip(row(of, next));
+        let between = |of: &[f64], count: usize| {
+            let both = row(of, count, before).into_iter().zip(row(of, count, next));
             both.map(|(a, b)| a + part * (b - a)).collect()
         };
-        Section { along, deflection: between(&self.deflection), turn: between(&self.turn) }
+        let stretches = self.stretch_frequencies.len();
+        Section {
+            along,
+            deflection: between(&self.deflection, count),
+            turn: between(&self.turn, count),
+            stretch: between(&self.stretch, stretches),
+            shortening: between(&self.shortening, count * count),
+        }
     }
 
     /// Hz.
@@ -324,6 +254,8 @@ pub struct Kept {
 
 impl Kept {
     pub const ALL: Kept = Kept { below: f64::INFINITY, most: usize::MAX };
+    /// Static answers alone.
+    pub const STATIC: Kept = Kept { below: 0.0, most: 0 };
 }
 
 /// The rigid part and the shapes of a beam; something takes hold of it at `holds` (m from its first end, and
@@ -343,6 +275,15 @@ pub fn free_shaft(
     let held = holds
         .iter()
         .filter_map(|&(at, turns)| matrices.station(at).map(|station| Hold { station, turns }));
-    let shapes = plane.shapes(kept.below, kept.most, &held.collect::<Vec<Hold>>())?;
+    let held: Vec<Hold> = held.collect();
+    let mut shapes = plane.shapes(kept.below, kept.most, &held)?;
+    let even = [DVector::repeat(matrices.stations.len(), 1.0)];
+    let (mass, stiffness) = (&matrices.axial_mass, &matrices.axial_stiffness);
+    // What turns no section pushes along the shaft as well.
+    let rows: Vec<usize> = held.iter().map(|hold| hold.station).collect();
+    let free = FreeBody { mass, stiffness, rigid: &even };
+    let stretch = free.shapes(kept.below, kept.most, &rows)?;
+    shapes.stretch = stretch.shapes.transpose().iter().copied().collect();
+    shapes.stretch_frequencies = stretch.frequencies;
     Ok((plane.rigid_part(), shapes))
 }

@@ -2,16 +2,18 @@
 
 use super::ball::BallContacts;
 use super::dynamics::connection::Connection;
+use super::dynamics::shaft::Section;
 use super::housing::bore_equilibrium::Fit;
 use super::housing::condensed::CondensedBore;
 use super::mount::Mount;
+use super::shaft_shapes::ShaftShapes;
 use super::static_start::ball_contacts;
 use super::statics::Condition;
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::kinematics::Pose;
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::Vector3;
 
 /// Bodies and bearings in one frame.
 #[derive(Clone, Debug, Default)]
@@ -24,16 +26,52 @@ pub struct StaticAssembly<'b> {
     pub shafts: Vec<StaticShaft>,
 }
 
-/// An elastic shaft as the bodies feel it that sit on it: what is between them is eliminated.
+/// Bending and stretching of a body: the amplitudes of its shapes are looked for beside its coordinates. What takes hold
+/// of it does so at [`Place::Section`]s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StaticShaft {
-    /// Bodies that are fixed to it. At zero coordinates each is where the straight shaft has it, so that their axes are the
-    /// shaft's; one that is held as a whole holds the shaft there.
-    pub bodies: Vec<usize>,
-    /// Over x, y, z, tilt_y, tilt_z of each of them, symmetric. N/m, N, N·m/rad.
-    pub stiffness: DMatrix<f64>,
-    /// What loads in between put on them. N, N·m.
-    pub loads: DVector<f64>,
+    /// Whose straight axis the shapes count from; its tilts turn e₂ and e₃ along.
+    pub body: usize,
+    /// Squares of their frequencies along e₂, e₃, and of those along the axis, 1/s²: N/m for a modal mass of 1 kg.
+    pub springs: Vec<f64>,
+    /// Where the search begins; unbent where it is empty.
+    pub start: Vec<f64>,
+}
+
+impl StaticShaft {
+    /// Of a body with these shapes.
+    pub fn new(body: usize, shapes: &ShaftShapes) -> StaticShaft {
+        let ShaftShapes { frequencies, stretch_frequencies, .. } = shapes;
+        let all = frequencies.iter().chain(frequencies).chain(stretch_frequencies);
+        let springs = all.map(|w| w * w).collect();
+        StaticShaft { body, springs, start: Vec::new() }
+    }
+}
+
+/// A section of a body that bends: its five coordinates follow from the body's and the shapes'.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StaticSection {
+    /// Index in [`StaticAssembly::shafts`].
+    pub shaft: usize,
+    pub section: Section,
+    /// Along its coordinates, N and N·m.
+    pub loads: [f64; 5],
+}
+
+impl StaticAssembly<'_> {
+    /// Where what is mounted on a body takes hold: on a section that was made for it, if the body bends.
+    pub fn hold_of(&self, mount: &Mount) -> Mount {
+        let is_there = |body: &StaticBody| match &body.place {
+            Place::Section(of) => {
+                self.shafts[of.shaft].body == mount.body && of.section.along == mount.along
+            }
+            _ => false,
+        };
+        match self.bodies.iter().position(is_there) {
+            Some(body) => Mount { body, along: 0.0, ..*mount },
+            None => *mount,
+        }
+    }
 }
 
 /// A rigid body.
@@ -50,6 +88,8 @@ pub enum Place {
     Held(Pose),
     /// Its coordinates x, y, z (m), tilt_y, tilt_z (rad) are looked for, or given one by one.
     Loaded(Loaded),
+    /// Part of a body that bends.
+    Section(Box<StaticSection>),
 }
 
 /// A body with five coordinates.

@@ -1,11 +1,15 @@
 //! What a search for an equilibrium looks at: bodies, their coordinates and axes, and what was found at one place.
 
 use super::ball::{BallContacts, BallPlane, SettledBall};
+use super::dynamics::shaft::Section;
 use super::plan::{self, statics::StaticSteps};
 use super::race_position::InnerRacePosition;
-use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing};
+use super::static_assembly::{
+    Loaded, Place, StaticAssembly, StaticBearing, StaticSection, StaticShaft,
+};
 use super::static_bearing::planes;
 use super::static_seat::SeatPlace;
+use super::static_shaft::SectionPlace;
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
 use nalgebra::{DMatrix, DVector, Matrix3, SVector, Vector3};
@@ -21,8 +25,13 @@ pub(super) struct Model<'a> {
     pub(super) bearings: Vec<BearingModel>,
     /// Axes of each body's coordinates as each seat sees them from where its race's motion is measured.
     seat_axes: Vec<Pose>,
-    /// First unknown of each body; `None` where it is held.
+    /// First unknown of each body; `None` where it is held. Those of sections follow behind all others: they are none that
+    /// is looked for.
     pub(super) unknowns: Vec<Option<usize>>,
+    /// First amplitude of each shaft that bends.
+    shafts: Vec<usize>,
+    /// Unknowns and what follows from them.
+    pub(super) coordinates: usize,
     /// Metres per unit of each unknown: 1 for lengths, a pitch radius (that of a seat, without a bearing) for tilts.
     pub(super) scale: DVector<f64>,
 }
@@ -52,16 +61,40 @@ fn origin(assembly: &StaticAssembly, bearing: &StaticBearing) -> Vector3<f64> {
             let [x, y, z, ..] = loaded.start.unwrap_or(loaded.rest);
             loaded.axes().point_to_parent(&Vector3::new(x + outer.along, y, z))
         }
+        Place::Section(of) => match &assembly.bodies[assembly.shafts[of.shaft].body].place {
+            Place::Loaded(body) => {
+                let [x, y, z, ..] = body.start.unwrap_or(body.rest);
+                body.axes().point_to_parent(&Vector3::new(x + of.section.along, y, z))
+            }
+            _ => Vector3::zeros(),
+        },
     }
 }
 
-/// Pitch radius of a bearing on the same shaft as a body.
-fn on_shaft_with(assembly: &StaticAssembly, body: usize) -> Option<f64> {
-    let shaft = assembly.shafts.iter().find(|shaft| shaft.bodies.contains(&body))?;
-    let on_it = |bearing: &&StaticBearing| {
-        bearing.mounts.iter().any(|mount| shaft.bodies.contains(&mount.body))
+/// Pitch radius of a bearing on a section of a body.
+fn on_section_of(assembly: &StaticAssembly, body: usize) -> Option<f64> {
+    let is_its = |index: usize| match &assembly.bodies[index].place {
+        Place::Section(of) => assembly.shafts[of.shaft].body == body,
+        _ => false,
     };
+    let on_it = |bearing: &&StaticBearing| bearing.mounts.iter().any(|mount| is_its(mount.body));
     assembly.bearings.iter().find(on_it).map(|bearing| bearing.geometry.pitch_radius)
+}
+
+/// Metres that the sections of a shaft move at most by a unit of each amplitude.
+fn reaches(assembly: &StaticAssembly, shaft: usize) -> Vec<f64> {
+    let of = &assembly.shafts[shaft];
+    let mut reach = vec![0.0f64; of.springs.len()];
+    for body in &assembly.bodies {
+        let Place::Section(place) = &body.place else { continue };
+        if place.shaft == shaft {
+            let Section { deflection, stretch, .. } = &place.section;
+            let all = deflection.iter().chain(deflection).chain(stretch);
+            reach.iter_mut().zip(all).for_each(|(reach, own)| *reach = reach.max(own.abs()));
+        }
+    }
+    // A shape that moves no section stands still at its spring.
+    reach.into_iter().map(|reach| if reach > 0.0 { reach } else { 1.0 }).collect()
 }
 
 impl<'a> Model<'a> {
@@ -70,7 +103,7 @@ impl<'a> Model<'a> {
         let mut scale = Vec::new();
         for (index, body) in assembly.bodies.iter().enumerate() {
             unknowns.push(match body.place {
-                Place::Held(_) => None,
+                Place::Held(_) | Place::Section(_) => None,
                 Place::Loaded(_) => {
                     let sits = |bearing: &&StaticBearing| {
                         bearing.mounts.iter().any(|mount| mount.body == index)
@@ -80,12 +113,24 @@ impl<'a> Model<'a> {
                     let pitch = match (own, seat) {
                         (Some(bearing), _) => bearing.geometry.pitch_radius,
                         (None, Some(seat)) => seat.fit.radius,
-                        (None, None) => on_shaft_with(assembly, index).unwrap_or(1.0),
+                        (None, None) => on_section_of(assembly, index).unwrap_or(1.0),
                     };
                     scale.extend([1.0, 1.0, 1.0, pitch, pitch]);
                     Some(scale.len() - 5)
                 }
             });
+        }
+        let mut shafts = Vec::with_capacity(assembly.shafts.len());
+        for shaft in 0..assembly.shafts.len() {
+            shafts.push(scale.len());
+            scale.extend(reaches(assembly, shaft));
+        }
+        let mut coordinates = scale.len();
+        for (first, body) in unknowns.iter_mut().zip(&assembly.bodies) {
+            if matches!(body.place, Place::Section(_)) {
+                *first = Some(coordinates);
+                coordinates += 5;
+            }
         }
         let plan = plan::statics::items(assembly, Vec::new(), plan::statics::ASKED_FOR);
         let steps = StaticSteps::new(&plan, assembly);
@@ -113,12 +158,61 @@ impl<'a> Model<'a> {
         let seat_axes = assembly.seats.iter().map(|seat| {
             let axes = match &assembly.bodies[seat.mount.body].place {
                 Place::Loaded(loaded) => loaded.axes(),
-                Place::Held(_) => Pose::identity(),
+                Place::Held(_) | Place::Section(_) => Pose::identity(),
             };
             axes.relative_to(&seat.nominal)
         });
         let seat_axes = seat_axes.collect();
-        Model { assembly, steps, bearings, seat_axes, unknowns, scale: DVector::from_vec(scale) }
+        let scale = DVector::from_vec(scale);
+        Model { assembly, steps, bearings, seat_axes, unknowns, shafts, coordinates, scale }
+    }
+
+    /// Puts the coordinates of all sections behind the unknowns that they follow from.
+    pub(super) fn follow(&self, at: &mut DVector<f64>) {
+        if self.coordinates == self.scale.len() {
+            return;
+        }
+        at.resize_vertically_mut(self.coordinates, 0.0);
+        for (body, first) in self.assembly.bodies.iter().zip(&self.unknowns) {
+            if let (Place::Section(of), Some(first)) = (&body.place, first) {
+                let place = self.section_place(of, at);
+                at.fixed_rows_mut::<5>(*first).copy_from(&place.coordinates);
+            }
+        }
+    }
+
+    pub(super) fn section_place(&self, of: &StaticSection, at: &DVector<f64>) -> SectionPlace {
+        let body = self.coordinates(self.assembly.shafts[of.shaft].body, at);
+        SectionPlace::new(of, &body, self.amplitudes(of.shaft, at))
+    }
+
+    pub(super) fn amplitudes<'v>(&self, shaft: usize, at: &'v DVector<f64>) -> &'v [f64] {
+        let first = self.shafts[shaft];
+        &at.as_slice()[first..first + self.assembly.shafts[shaft].springs.len()]
+    }
+
+    /// First unknowns of a section's body and of its shaft.
+    pub(super) fn firsts_of(&self, of: &StaticSection) -> (Option<usize>, usize) {
+        (self.unknowns[self.assembly.shafts[of.shaft].body], self.shafts[of.shaft])
+    }
+
+    /// First coordinate of each section and the loads along them.
+    pub(super) fn section_loads(&self) -> impl Iterator<Item = (usize, &[f64; 5])> {
+        let bodies = self.assembly.bodies.iter().zip(&self.unknowns);
+        bodies.filter_map(|(body, first)| match &body.place {
+            Place::Section(of) => Some(((*first)?, &of.loads)),
+            _ => None,
+        })
+    }
+
+    /// How many unknowns are bodies' coordinates.
+    pub(super) fn bodies_end(&self) -> usize {
+        self.shafts.first().copied().unwrap_or(self.scale.len())
+    }
+
+    /// First amplitude of each shaft.
+    pub(super) fn shafts(&self) -> impl Iterator<Item = (&StaticShaft, usize)> {
+        self.assembly.shafts.iter().zip(self.shafts.iter().copied())
     }
 
     pub(super) fn loaded(&self) -> impl Iterator<Item = (usize, usize, &Loaded)> {
@@ -132,7 +226,9 @@ impl<'a> Model<'a> {
     /// Coordinates of a body.
     pub(super) fn coordinates(&self, body: usize, at: &DVector<f64>) -> Five {
         match (&self.assembly.bodies[body].place, self.unknowns[body]) {
-            (Place::Loaded(_), Some(first)) => at.fixed_rows::<5>(first).into_owned(),
+            (Place::Loaded(_) | Place::Section(_), Some(first)) => {
+                at.fixed_rows::<5>(first).into_owned()
+            }
             (Place::Held(pose), _) => five(pose),
             _ => Five::zeros(),
         }
@@ -143,6 +239,7 @@ impl<'a> Model<'a> {
         match &self.assembly.bodies[body].place {
             Place::Loaded(loaded) => loaded.axes.as_deref(),
             Place::Held(_) => None,
+            Place::Section(of) => self.axes(self.assembly.shafts[of.shaft].body),
         }
     }
 

@@ -13,7 +13,7 @@ use super::static_bearing::add_bearing;
 use super::static_connection::add_connection;
 use super::static_model::{Evaluation, Five, Model};
 use super::static_seat::add_seat;
-use super::static_shaft::add_shaft;
+use super::static_shaft::{add_shaft, onto_unknowns};
 use super::static_start;
 use super::statics::{StaticOptions, StaticsError};
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -76,6 +76,9 @@ impl<'a, 'b> Search<'a, 'b> {
                 }
             }
         }
+        for (shaft, first) in model.shafts() {
+            free[first..first + shaft.springs.len()].fill(true);
+        }
         Search {
             model,
             options,
@@ -106,8 +109,34 @@ impl<'a, 'b> Search<'a, 'b> {
             };
             at.fixed_rows_mut::<5>(first).copy_from(&start);
         }
+        for (shaft, first) in self.model.shafts() {
+            at.rows_mut(first, shaft.start.len()).copy_from_slice(&shaft.start);
+        }
         self.impose(&mut at);
         at
+    }
+
+    /// Coordinates with the unknowns moved on.
+    pub(super) fn moved(&self, from: &DVector<f64>, by: &DVector<f64>) -> DVector<f64> {
+        let mut at = from.clone();
+        let mut unknowns = at.rows_mut(0, by.len());
+        unknowns += by;
+        at
+    }
+
+    /// The same by a step in metres.
+    fn stepped(&self, from: &DVector<f64>, step: &DVector<f64>) -> DVector<f64> {
+        self.moved(from, &step.component_div(&self.model.scale))
+    }
+
+    /// Largest stiffness against one coordinate of a body, or a shift of a section, N/m.
+    fn stiffest(&self, here: &Evaluation) -> f64 {
+        let of_bodies = (0..self.model.bodies_end())
+            .map(|i| here.stiffness[(i, i)] / self.model.scale[i].powi(2));
+        let behind = self.free.len()..self.model.coordinates;
+        let of_sections = behind.step_by(5).flat_map(|first| first..first + 3);
+        let of_sections = of_sections.map(|i| here.stiffness[(i, i)]);
+        of_bodies.chain(of_sections).fold(0.0, f64::max)
     }
 
     /// Takes given coordinates to their values.
@@ -134,6 +163,7 @@ impl<'a, 'b> Search<'a, 'b> {
                 let there = under.axes().point_to_parent(&Vector3::new(x, y, z));
                 loaded.axes().point_to_body(&there)
             }
+            Place::Section(_) => return Five::zeros(),
         };
         let loads = [0, 1, 2, 3, 4].map(|i| loaded.load(i));
         static_start::guess(&bearing.geometry, &bearing.contacts(), &loads, &origin)
@@ -142,7 +172,7 @@ impl<'a, 'b> Search<'a, 'b> {
     /// # Errors
     /// Contact in a bore that does not settle.
     pub(super) fn evaluate(&mut self, at: &DVector<f64>) -> Result<Evaluation, StaticsError> {
-        let count = at.len();
+        let (unknowns, count) = (self.free.len(), self.model.coordinates);
         let bearings = self.model.bearings.len();
         let mut here = self.spare.take().unwrap_or_else(|| Evaluation {
             gradient: DVector::zeros(count),
@@ -152,8 +182,16 @@ impl<'a, 'b> Search<'a, 'b> {
             ..Evaluation::default()
         });
         here.at.clone_from(at);
-        here.energy = -self.loads.dot(at);
-        here.gradient.copy_from(&self.loads);
+        self.model.follow(&mut here.at);
+        here.energy = -self.loads.dot(&here.at.rows(0, unknowns));
+        if count == unknowns {
+            here.gradient.copy_from(&self.loads);
+        } else {
+            here.gradient.resize_vertically_mut(count, 0.0);
+            here.gradient.rows_mut(0, unknowns).copy_from(&self.loads);
+            here.stiffness.resize_mut(count, count, 0.0);
+            self.load_sections(&mut here);
+        }
         here.gradient.neg_mut();
         here.stiffness.fill(0.0);
         here.largest_ball_load = 0.0;
@@ -177,21 +215,30 @@ impl<'a, 'b> Search<'a, 'b> {
             add_connection(self.model, connection, &mut here);
             self.ran.whole.add(Stage::Springs, 1);
         }
-        let shafts: &[_] = if steps.springs { &self.model.assembly.shafts } else { &[] };
-        for shaft in shafts {
-            add_shaft(self.model, shaft, &mut here);
+        for (shaft, first) in self.model.shafts() {
+            add_shaft(shaft, first, &mut here);
             self.ran.whole.add(Stage::Springs, 1);
         }
-        here.stiffest = (0..count)
-            .map(|i| here.stiffness[(i, i)] / self.model.scale[i].powi(2))
-            .fold(0.0, f64::max);
+        here.stiffest = self.stiffest(&here);
         for (index, bore) in self.bores.iter_mut().enumerate().filter(|(i, _)| steps.seats[*i]) {
             add_seat(self.model, index, bore, &mut here)?;
             self.ran.seats[index].add(Stage::Seat, 1);
             self.ran.solids[index].add(Stage::QuasiStatic, 1);
         }
+        if self.model.coordinates > unknowns {
+            onto_unknowns(self.model, &mut here);
+        }
         self.ran.whole.add(Stage::Evaluation, 1);
         Ok(here)
+    }
+
+    /// Work and slope (without its sign) of loads on sections.
+    fn load_sections(&self, here: &mut Evaluation) {
+        for (first, loads) in self.model.section_loads() {
+            let loads = Five::from(*loads);
+            here.energy -= loads.dot(&here.at.fixed_rows::<5>(first));
+            here.gradient.fixed_rows_mut::<5>(first).copy_from(&loads);
+        }
     }
 
     /// Largest unbalanced load over the free coordinates, N.
@@ -210,7 +257,10 @@ impl<'a, 'b> Search<'a, 'b> {
 
     /// Largest load, N.
     pub(super) fn applied(&self) -> f64 {
-        self.loads.component_div(&self.model.scale).amax()
+        // Moments on sections over a metre.
+        let on_sections = self.model.section_loads().flat_map(|(_, loads)| *loads);
+        let largest = self.loads.component_div(&self.model.scale).amax();
+        on_sections.fold(largest, |most, load| most.max(load.abs()))
     }
 
     /// Residual at which to stop, N.
@@ -238,6 +288,11 @@ impl<'a, 'b> Search<'a, 'b> {
             self.model
                 .loaded()
                 .flat_map(|(_, _, body)| coordinates.clone().map(|i| body.load(i).abs()))
+                .chain(
+                    self.model
+                        .section_loads()
+                        .flat_map(|(_, loads)| coordinates.clone().map(|i| loads[i].abs())),
+                )
                 .fold(0.0, f64::max)
         };
         let (force, moment) = (largest(0..3), largest(3..5));
@@ -270,7 +325,7 @@ impl<'a, 'b> Search<'a, 'b> {
             self.iterations += 1;
             let scaled = self.scaled(here);
             let step = self.newton_step(&scaled, radius);
-            let there = self.evaluate(&(&here.at + step.component_div(&self.model.scale)))?;
+            let there = self.evaluate(&self.stepped(&here.at, &step))?;
             let predicted = scaled.change(&step);
             let change = there.energy - here.energy;
             // Near the end the change drowns in rounding, and the unbalanced load decides alone.
@@ -313,7 +368,7 @@ impl<'a, 'b> Search<'a, 'b> {
             return Ok(());
         }
         let step = self.newton_step(&self.scaled(here), self.step_scale());
-        let there = self.evaluate(&(&here.at + step.component_div(&self.model.scale)))?;
+        let there = self.evaluate(&self.stepped(&here.at, &step))?;
         if self.residual(&there) < residual {
             *here = there;
         }

@@ -96,7 +96,7 @@ impl Search<'_, '_> {
                         travel,
                         room: match &body.place {
                             Place::Loaded(loaded) => loaded.room,
-                            Place::Held(_) => 0.0,
+                            Place::Held(_) | Place::Section(_) => 0.0,
                         },
                     });
                 }

@@ -187,12 +187,6 @@ pub enum StaticsError {
         position: [f64; 3],
         tilts: [f64; 2],
     },
-    #[error(
-        "{body} bends, and the loads at the start would bend it by {deflection:.3e} m, against {allowed:.1e} m that pass \
-         for unbent: equilibria of bodies that bend are not solved. Let loads grow from nothing, or start in nominal \
-         positions (numerics.start = \"nominal\")"
-    )]
-    BentAtStart { body: String, deflection: f64, allowed: f64 },
     #[error("the outer race{of} in its bore: {source}")]
     Seat { of: String, source: BoreError },
 }
@@ -205,8 +199,12 @@ pub struct AssemblySolution {
     /// What holds each body that is loaded there, besides its springs: N, N, N, N·m, N·m, conjugate to the
     /// coordinates; zero for bodies that are held as a whole.
     pub loads: Vec<SVector<f64, 5>>,
-    /// ∂loads/∂coordinates over the coordinates of all loaded bodies in their order, SI units.
+    /// Of the shapes of each body that bends, along e₂, e₃ and the axis, m.
+    pub amplitudes: Vec<Vec<f64>>,
+    /// ∂loads/∂coordinates over the coordinates of all loaded bodies in their order, SI units; what bends is in equilibrium.
     pub stiffness: DMatrix<f64>,
+    /// The same over coordinates and then amplitudes, nothing eliminated.
+    pub with_shapes: DMatrix<f64>,
     pub bearings: Vec<BearingState>,
     /// Each race in its bore.
     pub seats: Vec<BoreState>,
@@ -352,10 +350,15 @@ fn unload<'b>(
         let factor = f64::powi(2.0, halvings);
         let mut loaded = assembly.clone();
         for body in &mut loaded.bodies {
-            let Place::Loaded(body) = &mut body.place else { continue };
-            for condition in &mut body.conditions {
-                if let Condition::Load(load) = condition {
-                    *load *= factor;
+            match &mut body.place {
+                Place::Held(_) => {}
+                Place::Section(of) => of.loads = of.loads.map(|load| load * factor),
+                Place::Loaded(body) => {
+                    for condition in &mut body.conditions {
+                        if let Condition::Load(load) = condition {
+                            *load *= factor;
+                        }
+                    }
                 }
             }
         }
@@ -384,7 +387,8 @@ fn solve_directly<'b>(
     let mut search = Search::new(&model, options, bores);
     let mut at = search.start();
     for (body, near) in near.into_iter().flatten().enumerate() {
-        if let Some(first) = model.first_unknown(body) {
+        // Sections follow.
+        if let Some(first) = model.first_unknown(body).filter(|first| *first < at.len()) {
             at.fixed_rows_mut::<5>(first).copy_from(near);
         }
     }
@@ -398,7 +402,7 @@ fn solve_directly<'b>(
     let mut modes = search.modes(&here);
     for _ in 0..5 {
         let Some(direction) = search.falling_direction(&modes) else { break };
-        let [one, other] = [1.0, -1.0].map(|sign| &here.at + &direction * sign);
+        let [one, other] = [1.0, -1.0].map(|sign| search.moved(&here.at, &(&direction * sign)));
         let (one, other) = (search.evaluate(&one)?, search.evaluate(&other)?);
         search.saddles_left += 1;
         // The first of two that are alike.
@@ -420,10 +424,12 @@ fn solution(
     let bodies = 0..model.assembly.bodies.len();
     let held = &here.gradient + &search.loads;
     let loads = bodies.clone().map(|body| match model.first_unknown(body) {
-        Some(first) => held.fixed_rows::<5>(first).into_owned(),
-        None => SVector::zeros(),
+        Some(first) if first < held.len() => held.fixed_rows::<5>(first).into_owned(),
+        _ => SVector::zeros(),
     });
+    let shafts = 0..model.assembly.shafts.len();
     Ok(AssemblySolution {
+        amplitudes: shafts.map(|shaft| model.amplitudes(shaft, &here.at).to_vec()).collect(),
         coordinates: bodies.map(|body| model.coordinates(body, &here.at)).collect(),
         loads: loads.collect(),
         bearings: (0..model.bearings.len()).map(|i| bearing_state(model, &here, i)).collect(),
@@ -434,8 +440,25 @@ fn solution(
         contact_evaluations: search.contact_evaluations,
         ran: std::mem::take(&mut search.ran),
         residual: search.residual(&here),
-        stiffness: here.stiffness,
+        stiffness: of_bodies(&here.stiffness, model.bodies_end()),
+        with_shapes: here.stiffness,
     })
+}
+
+/// Stiffness over the coordinates of bodies, amplitudes in equilibrium.
+fn of_bodies(whole: &DMatrix<f64>, bodies: usize) -> DMatrix<f64> {
+    let shapes = whole.nrows() - bodies;
+    let own = whole.view((0, 0), (bodies, bodies)).into_owned();
+    if shapes == 0 {
+        return own;
+    }
+    let bends = whole.view((bodies, bodies), (shapes, shapes)).into_owned();
+    let cross = whole.view((bodies, 0), (shapes, bodies)).into_owned();
+    // In a stable equilibrium their stiffness is positive.
+    match bends.cholesky() {
+        Some(factor) => own - cross.transpose() * factor.solve(&cross),
+        None => own,
+    }
 }
 
 pub(super) fn check_finite(problem: &StaticProblem) -> Result<(), StaticsError> {

@@ -6,6 +6,7 @@ mod common;
 mod dynamics;
 
 mod bending;
+mod bent_at_rest;
 mod clock_laws;
 mod connections;
 mod dents;

@@ -4,8 +4,9 @@ use bearing_dynamics::ch4_rotor::beam::ShearCoefficient;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::rotor::beam::{Beam, BeamSegment};
+use bearing_dynamics::solver::shaft_shapes::{Kept, free_shaft};
 use bearing_dynamics::solver::static_assembly::{
-    Loaded, Place, StaticAssembly, StaticBearing, StaticBody, StaticShaft,
+    Loaded, Place, StaticAssembly, StaticBearing, StaticBody, StaticSection, StaticShaft,
 };
 use bearing_dynamics::solver::statics::{
     AssemblySolution, Condition, StaticOptions, solve_assembly,
@@ -49,11 +50,19 @@ struct Setup {
     load_at: f64,
     /// rad.
     phase: f64,
+    /// Whether races come nearer to each other as the shaft bends, as they do.
+    shortens: bool,
 }
 
 /// Bearings at the ends, 3000 N at mid-span.
-const MID_SPAN: Setup =
-    Setup { clearance: 0.0, stiffer: 1.0, bearings: [0.0, 0.4], load_at: 0.2, phase: 0.0 };
+const MID_SPAN: Setup = Setup {
+    clearance: 0.0,
+    stiffer: 1.0,
+    bearings: [0.0, 0.4],
+    load_at: 0.2,
+    phase: 0.0,
+    shortens: true,
+};
 /// Bearing 2 moved by 100 mm, 3000 N at the end.
 const OVERHUNG: Setup = Setup { bearings: [0.0, 0.3], load_at: 0.4, ..MID_SPAN };
 
@@ -96,34 +105,32 @@ impl Setup {
         }]);
         beam.shear_coefficient = ShearCoefficient::Given(Setup::kappa());
         let places = [self.bearings[0], self.bearings[1], self.load_at];
-        let matrices = beam.matrices(&places)?;
-        let mut stations = Vec::new();
-        for place in places {
-            stations.push(matrices.station(place).ok_or_else(|| CaseError::message("no station"))?);
+        let holds = places.map(|at| (at, true));
+        let (rigid, mut shapes) = free_shaft(&beam, Kept::STATIC, &holds, &[])?;
+        if !self.shortens {
+            shapes.shortening.fill(0.0);
         }
-        let free = || CaseError::message("the shaft falls apart");
-        let condensed = matrices.condensed(&stations, &[]).ok_or_else(free)?;
-        let mut bodies = Vec::new();
-        for (index, place) in places.into_iter().enumerate() {
-            let mut conditions = [Condition::Load(0.0); 5];
-            if index == 2 {
-                conditions[2] = Condition::Load(-FORCE);
-            }
-            let place = Place::Loaded(Loaded {
-                axes: Some(Box::new(at(place))),
-                conditions,
-                springs: [0.0; 5],
-                rest: [0.0; 5],
-                start: None,
-                room: 5e-3,
-            });
-            bodies.push(StaticBody { name: ["race 1", "race 2", "the load"][index].into(), place });
+        let free = [Condition::Load(0.0); 5];
+        let shaft = Place::Loaded(Loaded {
+            axes: Some(Box::new(at(rigid.centre))),
+            conditions: free,
+            springs: [0.0; 5],
+            rest: [0.0; 5],
+            start: None,
+            room: 5e-3,
+        });
+        let mut bodies: Vec<StaticBody> = Vec::new();
+        for (name, place) in ["race 1", "race 2", "the load"].into_iter().zip(places) {
+            let section = shapes.section(place - rigid.centre);
+            let down = if name == "the load" { -FORCE } else { 0.0 };
+            let loads = [0.0, 0.0, down, 0.0, 0.0];
+            let section = StaticSection { shaft: 0, section, loads };
+            bodies.push(StaticBody { name: name.into(), place: Place::Section(Box::new(section)) });
         }
         let mut held = Vec::new();
         for (index, place) in self.bearings.into_iter().enumerate() {
             let name = format!("outer race {}", index + 1);
             bodies.push(StaticBody { name, place: Place::Held(at(place)) });
-            let free = [Condition::Load(0.0); 5];
             let alone = bearings::problem(&self.lengths(), Hertz::Fit, self.phase, free)?;
             held.push(StaticBearing {
                 name: Some((index + 1).to_string()),
@@ -136,11 +143,16 @@ impl Setup {
                 centrifugal: 0.0,
             });
         }
-        let (stiffness, loads) = (condensed.stiffness, condensed.loads);
-        let shafts = vec![StaticShaft { bodies: vec![0, 1, 2], stiffness, loads }];
+        let shafts = vec![StaticShaft::new(bodies.len(), &shapes)];
+        bodies.push(StaticBody { name: "the shaft".into(), place: shaft });
         let assembly =
             StaticAssembly { bodies, bearings: held, shafts, ..StaticAssembly::default() };
-        Ok(solve_assembly(&assembly, None, &StaticOptions::default())?)
+        let mut found = solve_assembly(&assembly, None, &StaticOptions::default())?;
+        // From where races are on the straight shaft.
+        for (section, place) in found.coordinates.iter_mut().zip(places) {
+            section[0] -= place - rigid.centre;
+        }
+        Ok(found)
     }
 
     fn rows(&self) -> Result<[Row; 2], CaseError> {
@@ -201,7 +213,6 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
 }
 
 fn against_the_oracle(context: &mut CaseContext) -> Result<(), CaseError> {
-    let reason = "slopes by differences find the equilibrium to rounding; both take turns of the shaft as small";
     let mut setups: Vec<(String, String, Setup)> = CLEARANCES
         .iter()
         .map(|&(label, clearance)| {
@@ -217,15 +228,33 @@ fn against_the_oracle(context: &mut CaseContext) -> Result<(), CaseError> {
             let [x, _, z, about_y, _] = races.holds[index];
             let (n, force) = (index + 1, |ours: f64, theirs: f64| (-ours, theirs));
             let own = solution.bearings[index].moments[0].y;
-            for (name, unit, (ours, theirs)) in [
-                ("axial force", "N", force(ours.x, x)),
-                ("vertical force", "N", force(ours.z, z)),
-                ("moment about Y", "N·m", force(own, about_y)),
+            for (name, unit, (ours, theirs), tolerance, reason) in [
+                (
+                    "axial force",
+                    "N",
+                    force(ours.x, x),
+                    5e-4,
+                    "a shear force of 1500 N on sections turned by 4e-3 stretches the rod by some 4 nm, against bearings of 20 N/µm",
+                ),
+                (
+                    "vertical force",
+                    "N",
+                    force(ours.z, z),
+                    2e-6,
+                    "what the axial force of a thousandth of its error turns into over the sag",
+                ),
+                (
+                    "moment about Y",
+                    "N·m",
+                    force(own, about_y),
+                    1e-4,
+                    "that part of the axial force on the grooves, and squares of turns of 4e-3",
+                ),
             ] {
                 let id = format!("{id}_{}_{n}", name.split(' ').next().unwrap_or(name));
                 let check = Check::new(&id, &format!("{name} of bearing {n}, {what}"), unit, ours)
-                    .independent(theirs, "cantilever formulas and an independent bearing")
-                    .relative(1e-8, reason);
+                    .independent(theirs, "a geometrically exact rod and an independent bearing")
+                    .relative(tolerance, reason);
                 context.check(check.golden(GoldenTolerance::REORDERED));
             }
         }
@@ -243,6 +272,7 @@ fn table_4_2(context: &mut CaseContext) -> Result<(), CaseError> {
     let (mut table, mut moments) = (Vec::new(), Vec::new());
     for (label, clearance) in CLEARANCES {
         let [converged, _] = Setup { clearance, ..MID_SPAN }.rows()?;
+        let [straight, _] = Setup { clearance, shortens: false, ..MID_SPAN }.rows()?;
         let [row, _] = Setup { clearance, stiffer: TABLE_4_2, ..MID_SPAN }.rows()?;
         let what = format!("clearance {:.0} µm", clearance * 1e6);
         let (fx, fz, m) = (format!("fx_{label}"), format!("fz_{label}"), format!("m_{label}"));
@@ -271,13 +301,13 @@ fn table_4_2(context: &mut CaseContext) -> Result<(), CaseError> {
         let force = Check::new(&fx, &format!("axial force on the outer race, {what}"), "N", row.outer[0])
             .published(&fx)
             .under("mesh_stiffness_4_2")
-            .relative(0.04, "the source's races sit in housings, whose give the text says makes this force smaller; Table 4.3 has 7 % of it")
+            .relative(0.03, "the source's races sit in housings, whose give the text says makes this force smaller; Table 4.3 has 7 % of it")
             .golden(GoldenTolerance::REORDERED);
         context.check(match label {
             "15" => force.explained(Explanation::new(
                 "The published force hardly falls from −10 to −15 µm, while it falls by 12 to 14 N with each 5 µm before and the moment goes on \
                  rising evenly. An independent equilibrium agrees with ours, where the force goes on falling.",
-                0.0448,
+                0.0835,
                 0.003,
                 &["mid_15_axial_1", "force_goes_on_falling"],
             )),
@@ -289,6 +319,8 @@ fn table_4_2(context: &mut CaseContext) -> Result<(), CaseError> {
             number(converged.outer[1]),
             number(converged.outer[0]),
             number(converged.moments[0]),
+            number(straight.outer[0]),
+            number(straight.moments[0]),
             number(row.outer[0]),
             number(row.moments[0]),
         ]);
@@ -299,6 +331,8 @@ fn table_4_2(context: &mut CaseContext) -> Result<(), CaseError> {
         "Fz, N",
         "Fx, N, as stated",
         "M, N·m, as stated",
+        "Fx, N, without shortening",
+        "M, N·m, without shortening",
         "Fx, N, EI × 1.055",
         "M, N·m, EI × 1.055",
     ];

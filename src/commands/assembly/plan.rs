@@ -211,7 +211,7 @@ pub fn of_one(one: &PlacedBearing, still: &StaticAssembly) -> Fallible<StaticPro
     let problem = static_problem(&one.scene)?;
     Ok(match &still.bodies[0].place {
         Place::Loaded(inner) => StaticProblem { conditions: inner.conditions, ..problem },
-        Place::Held(_) => problem,
+        Place::Held(_) | Place::Section(_) => problem,
     })
 }
 

@@ -7,7 +7,7 @@
 //! below one.
 
 use super::assembly::{Assembly, Bearing};
-use super::shaft::ElasticShaft;
+use super::shaft::{ElasticShaft, Section};
 use super::state::{BODY, LANES, Layout, ORIENTATION, POSITION, Places, SPIN, VELOCITY};
 use super::system::System;
 use crate::ch2_housing::bearing::contact::normal_stiffness;
@@ -117,24 +117,22 @@ fn of_shaft(
     shaft: &ElasticShaft,
     at: usize,
 ) -> impl Iterator<Item = ShapeScale> {
-    let count = shaft.count();
-    let mut reach = vec![0.0f64; count];
+    let mut reach = vec![0.0f64; shaft.amplitudes()];
     let mounts = assembly.bearings.iter().flat_map(|bearing| bearing.mounts);
     let mounts = mounts.chain(assembly.connections.iter().flat_map(|of| of.ends));
     for mount in mounts.filter(|mount| mount.body == shaft.body) {
         let section = shaft.shapes.section(mount.along);
-        for (reach, deflection) in reach.iter_mut().zip(section.deflection) {
-            *reach = reach.max(deflection.abs());
+        let Section { deflection, stretch, .. } = &section;
+        let all = deflection.iter().chain(deflection).chain(stretch);
+        for (reach, moved) in reach.iter_mut().zip(all) {
+            *reach = reach.max(moved.abs());
         }
     }
     let mass = assembly.bodies[shaft.body].inertia().map_or(1.0, |inertia| inertia.mass);
     let race = Scale { mass, arm: arm(assembly, shaft.body) };
-    let frequencies = shaft.shapes.frequencies.clone();
-    (0..2 * count).map(move |k| ShapeScale {
-        at: [at + k, at + 2 * count + k],
-        reach: reach[k % count],
-        frequency: frequencies[k % count],
-        race,
+    let count = reach.len();
+    reach.into_iter().zip(shaft.frequencies()).enumerate().map(move |(k, (reach, frequency))| {
+        ShapeScale { at: [at + k, at + count + k], reach, frequency, race }
     })
 }
 

@@ -7,6 +7,7 @@
 use super::assembly::{Assembly, Bearing, Body};
 use super::bounds::FARTHEST;
 use super::model::{Drive, RaceBody, Rotation};
+use super::static_sections;
 use crate::ch2_housing::bearing::frequencies::ratios;
 use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient};
 use crate::kinematics::Pose;
@@ -52,21 +53,38 @@ pub(super) fn at(
     turned: &[f64],
     near: Option<&Equilibrium>,
 ) -> Result<Equilibrium, StaticsError> {
-    let plain = static_assembly(assembly, t, turned);
+    let mut plain = static_assembly(assembly, t, turned);
     let options = StaticOptions::default();
+    let bend = |still: &mut StaticAssembly, known: &Equilibrium| {
+        let shafts = still.shafts.iter_mut().zip(&known.amplitudes);
+        shafts.for_each(|(shaft, amplitudes)| shaft.start.clone_from(amplitudes));
+    };
+    if let Some(near) = near {
+        bend(&mut plain, near);
+    }
     let mut near = near.map(|near| near.coordinates.clone());
     let mut tilts = near.clone().unwrap_or_else(|| given(&plain));
-    let mut extra = Extra::none(assembly);
-    let follows: Vec<bool> = assembly.bodies.iter().map(|body| unbalanced(body, t)).collect();
+    let mut extra = Extra::none(&plain);
+    let mut follows: Vec<bool> = assembly.bodies.iter().map(|body| unbalanced(body, t)).collect();
+    follows.resize(plain.bodies.len(), false);
+    for (section, _) in static_sections::unbalance_loads(assembly, &plain, t, &tilts) {
+        follows[section] = true;
+    }
     let mut before: Option<Vec<Five>> = None;
     let mut solution = None;
     // An unbalance follows the race's tilts, by at most tilt · F/(k R) of what they were before;
     // traction that holds balls in their orbit changes by its own shift over the pitch radius.
     for _ in 0..20 {
         let mut loaded = plain.clone();
+        let on_sections = static_sections::unbalance_loads(assembly, &plain, t, &tilts);
         for (index, body) in loaded.bodies.iter_mut().enumerate() {
-            let Place::Loaded(place) = &mut body.place else { continue };
             let mut add = extra.loads[index];
+            if let Place::Section(of) = &mut body.place {
+                let unbalances = on_sections.iter().filter(|(section, _)| *section == index);
+                unbalances.for_each(|(_, force)| add += force);
+                of.loads.iter_mut().zip(&add).for_each(|(load, add)| *load += add);
+            }
+            let Place::Loaded(place) = &mut body.place else { continue };
             if follows[index] {
                 let at = &tilts[index];
                 add += unbalance(&assembly.bodies[index], t, [at[3], at[4]]);
@@ -90,8 +108,9 @@ pub(super) fn at(
                 *coordinates = at.into();
             }
         }
+        bend(&mut plain, &found);
         let now = &found.coordinates;
-        let next = Extra::of(assembly, t, &found);
+        let next = Extra::of(assembly, &plain, t, &found);
         let largest = largest_load(&found.bearings);
         // Below what statics itself leaves over.
         let mut settled = next.differs(&extra) <= options.tolerance * largest;
@@ -120,7 +139,7 @@ pub(super) fn at(
 /// Coordinates as far as they are given.
 fn given(assembly: &StaticAssembly) -> Vec<Five> {
     let of = |body: &StaticBody| match &body.place {
-        Place::Held(_) => Five::zeros(),
+        Place::Held(_) | Place::Section(_) => Five::zeros(),
         Place::Loaded(loaded) => Five::from_fn(|i, _| loaded.given(i).unwrap_or(0.0)),
     };
     assembly.bodies.iter().map(of).collect()
@@ -173,12 +192,14 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
         weight: Vector3::from(assembly.gravity) * bearing.ball.mass,
         centrifugal: bearing.ball.mass * orbital_speed(assembly, bearing, t).powi(2),
     });
-    StaticAssembly {
+    let mut still = StaticAssembly {
         bodies: bodies.collect(),
         bearings: bearings.collect(),
         connections: assembly.connections.clone(),
         ..StaticAssembly::default()
-    }
+    };
+    static_sections::add(assembly, t, &mut still);
+    still
 }
 
 /// What is given of a body's coordinates or acts along them at time `t`: its drives, weight, rotating load.
@@ -296,13 +317,19 @@ struct Extra {
 }
 
 impl Extra {
-    fn none(assembly: &Assembly) -> Extra {
-        Extra { loads: vec![Five::zeros(); assembly.bodies.len()] }
+    fn none(still: &StaticAssembly) -> Extra {
+        Extra { loads: vec![Five::zeros(); still.bodies.len()] }
     }
 
-    fn of(assembly: &Assembly, t: f64, solution: &AssemblySolution) -> Extra {
-        let mut extra = Extra::none(assembly);
-        for (bearing, state) in assembly.bearings.iter().zip(&solution.bearings) {
+    fn of(
+        assembly: &Assembly,
+        still: &StaticAssembly,
+        t: f64,
+        solution: &AssemblySolution,
+    ) -> Extra {
+        let mut extra = Extra::none(still);
+        let bearings = assembly.bearings.iter().zip(&still.bearings).zip(&solution.bearings);
+        for ((bearing, StaticBearing { mounts, .. }), state) in bearings {
             let [inner, outer] = race_speeds(assembly, bearing, t);
             let rolls = inner != outer && bearing.traction != TractionLaw::None;
             let moves = !is_held(&assembly.bodies[bearing.mounts[1].body]);
@@ -311,7 +338,7 @@ impl Extra {
             }
             let rolling_speed = 0.5 * ((inner - outer) * bearing.geometry.pitch_radius).abs();
             let grip = coefficient(&bearing.traction, CREEP * rolling_speed, rolling_speed);
-            let outer_body = &solution.coordinates[bearing.mounts[1].body];
+            let outer_body = &solution.coordinates[mounts[1].body];
             let orientation = outer_orientation(assembly, bearing, outer_body);
             for ball in &state.balls {
                 let (sin, cos) = libm::sincos(ball.azimuth);
@@ -319,7 +346,7 @@ impl Extra {
                 if moves {
                     // What statics has put on the outer race in the cage's place.
                     let by_cage = around * ball.cage_force;
-                    extra.add(solution, bearing, 1, &ball.position, &by_cage);
+                    extra.add(solution, mounts[1].body, &ball.position, &by_cage);
                 }
                 let contacts = [&ball.inner, &ball.outer];
                 if !rolls || contacts.iter().any(|contact| contact.normal_load <= 0.0) {
@@ -330,23 +357,21 @@ impl Extra {
                 for (side, contact) in contacts.into_iter().enumerate() {
                     let towards_race = contact.force_on_race / contact.force_on_race.norm();
                     let point = ball.position + towards_race * bearing.geometry.ball_radius;
-                    extra.add(solution, bearing, side, &point, &force);
+                    extra.add(solution, mounts[side].body, &point, &force);
                 }
             }
         }
         extra
     }
 
-    /// Adds a force at a point of one of a bearing's races.
+    /// Adds a force at a point of a static body.
     fn add(
         &mut self,
         solution: &AssemblySolution,
-        bearing: &Bearing,
-        side: usize,
+        body: usize,
         point: &Vector3<f64>,
         force: &Vector3<f64>,
     ) {
-        let body = bearing.mounts[side].body;
         let q = &solution.coordinates[body];
         let moment = (point - Vector3::new(q[0], q[1], q[2])).cross(force);
         let tilted = about(Vector3::y(), q[3]) * about(Vector3::z(), q[4]) * Vector3::z();

@@ -30,7 +30,7 @@ pub struct SectionHub {
     pub body: Option<usize>,
     /// Index of the shaft in the assembly.
     pub shaft: usize,
-    /// Its six velocities, one column for each of its body's that is free, then for each shape along e₂ and e₃.
+    /// Its six velocities, one column for each of its body's that is free, then for each shape along e₂, e₃ and the axis.
     rows: [Vec<f64>; 6],
 }
 
@@ -42,7 +42,7 @@ pub(super) fn sections(
 ) -> Vec<SectionHub> {
     let all = system.holds.all(&system.assembly).enumerate();
     let section = |(number, (hold, mount)): (usize, (&Hold, Mount))| {
-        let columns = 6 + 2 * hold.section.deflection.len();
+        let columns = 6 + 2 * hold.section.deflection.len() + hold.section.stretch.len();
         SectionHub {
             hub: bodies + number,
             body: hub_of[mount.body],
@@ -53,16 +53,15 @@ pub(super) fn sections(
     all.map(section).collect()
 }
 
-/// Equations of the shapes of all shafts, along e₂ and then e₃ of each.
+/// Equations of the shapes of all shafts, along e₂, e₃ and the axis of each.
 pub(super) fn shapes(system: &System) -> Vec<Shapes> {
     let mut first = 0;
     let shafts = system.assembly.shafts.iter().zip(&system.shafts);
     let of = shafts.map(|(shaft, &at)| {
-        let springs = shaft.shapes.frequencies.iter().map(|w| w * w);
-        let stiffness: Vec<f64> = springs.clone().chain(springs).collect();
+        let stiffness: Vec<f64> = shaft.frequencies().map(|w| w * w).collect();
         let damping = shaft.damping + shaft.internal_damping;
         let shapes = Shapes { at, first, stiffness, damping };
-        first += 2 * shaft.count();
+        first += shaft.amplitudes();
         shapes
     });
     of.collect()
@@ -112,6 +111,12 @@ pub(super) fn update(sections: &mut [SectionHub], hubs: &mut [Hub], system: &Sys
                 for (row, value) in section.rows.iter_mut().zip(six) {
                     row[6 + side * count + k] = value;
                 }
+            }
+        }
+        for (k, stretch) in hold.section.stretch.iter().enumerate() {
+            let six = to_basis(&hub, scale(body.motion.axis, *stretch), [0.0; 3]);
+            for (row, value) in section.rows.iter_mut().zip(six) {
+                row[6 + 2 * count + k] = value;
             }
         }
     }

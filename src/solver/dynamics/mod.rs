@@ -42,5 +42,6 @@ pub mod shaft_holds;
 pub mod stability;
 pub mod start;
 pub mod state;
+mod static_sections;
 pub mod step_watch;
 pub mod system;

@@ -36,6 +36,8 @@ pub struct Rates {
     pub bodies: Vec<[f64; 5]>,
     /// Along the outer race's axis and away from it for each ball of each bearing, m/s.
     pub balls: Vec<Vec<[f64; 2]>>,
+    /// Of the amplitudes of each body that bends, m/s.
+    pub shafts: Vec<Vec<f64>>,
 }
 
 impl Rates {
@@ -44,6 +46,7 @@ impl Rates {
         Rates {
             bodies: vec![[0.0; 5]; assembly.bodies.len()],
             balls: balls.map(|count| vec![[0.0; 2]; count]).collect(),
+            shafts: assembly.shafts.iter().map(|of| vec![0.0; of.amplitudes()]).collect(),
         }
     }
 }
@@ -103,6 +106,12 @@ pub fn rates(assembly: &Assembly, now: &Equilibrium) -> Rates {
         bodies: (0..assembly.bodies.len()).map(body).collect(),
         balls: (0..assembly.bearings.len())
             .map(|of| (0..now.bearings[of].balls.len()).map(|index| ball(of, index)).collect())
+            .collect(),
+        shafts: (0..assembly.shafts.len())
+            .map(|of| {
+                let amplitude = |k: usize| rate(all.map(|at| at.amplitudes[of][k]));
+                (0..now.amplitudes[of].len()).map(amplitude).collect()
+            })
             .collect(),
     }
 }

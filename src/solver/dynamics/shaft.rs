@@ -3,17 +3,19 @@
 //!
 //! Shapes stand in axes e₂, e₃ that follow the body's tilt and not its spin, one amplitude along each: a_k and
 //! b_k. A section at x lies off the body's axis by u = Σ w_k (a_k e₂ + b_k e₃), and is turned against the body by
-//! Σ θ_k (a_k e₃ − b_k e₂). With a mass of 1 kg each,
+//! Σ θ_k (a_k e₃ − b_k e₂); shapes of stretching, one amplitude c_k each, move it along the axis, and so does bending, whose
+//! line keeps its length: by −½ (a·D a + b·D b). With a mass of 1 kg each,
 //!
 //! ä + Ω (G ḃ − g ω₂) + α ȧ + ω² a = Q_a,
 //! b̈ − Ω (G ȧ + g ω₃) + α ḃ + ω² b = Q_b,
+//! c̈ + α ċ + ω² c = Q_c,
 //!
 //! Ω the spin, ω₂ and ω₃ the body's tilting, G_kl = ∫ θ_k θ_l dJ and g_k = ∫ θ_k dJ over the inertia J about
 //! the axis; the body feels the moment −Ω (g·ȧ e₂ + g·ḃ e₃). This is exact for shafts of revolution as far as it is linear in
-//! amplitudes: what goes with their square (the angular momentum of a whirl as the axis tilts, the change of the
-//! transverse inertia) is left out, parts of 1e-6 where deflections are a thousandth of the length. Each section spins
+//! amplitudes: what goes with their square but D (the angular momentum of a whirl as the axis tilts, the change of the
+//! transverse inertia, the inertia of the shortening) is left out, parts of 1e-6 where deflections are a thousandth of the length. Each section spins
 //! about its own axis, and what drives the spin turns each by its own axis, so that a rate of the spin moves no shape.
-//! A shaft neither stretches nor twists.
+//! A shaft does not twist.
 //!
 //! Loads on a section, about its displaced centre, act on body and shapes by the transpose of how these move it:
 //! forces sum to those on the body, powers are equal.
@@ -42,8 +44,6 @@ pub struct ElasticShaft {
     pub unbalances: Vec<Unbalance>,
     /// Sections that are recorded, by name.
     pub watched: Vec<(String, Section)>,
-    /// Amplitudes at the start of a run, a and then b, m; nothing is unbent.
-    pub start: Vec<f64>,
 }
 
 /// Shapes at one place along a shaft.
@@ -54,6 +54,10 @@ pub struct Section {
     /// For a unit of each shape: m, rad.
     pub deflection: Vec<f64>,
     pub turn: Vec<f64>,
+    /// For a unit of each shape of stretching, m.
+    pub stretch: Vec<f64>,
+    /// [`ShaftShapes::shortening`], row by row.
+    pub shortening: Vec<f64>,
 }
 
 /// A force at the centre of a section.
@@ -77,17 +81,18 @@ pub struct Unbalance {
 /// How far a shaft is bent and how fast, out of the state.
 #[derive(Clone, Copy, Debug)]
 pub struct Bend<'s> {
-    /// Along e₂ and e₃, m.
-    pub gone: [&'s [f64]; 2],
+    /// Along e₂, e₃ and the axis, m.
+    pub gone: [&'s [f64]; 3],
     /// m/s, in axes that do not turn about the shaft's.
-    pub speed: [&'s [f64]; 2],
+    pub speed: [&'s [f64]; 3],
 }
 
 impl<'s> Bend<'s> {
-    pub fn of(entries: &'s [f64]) -> Bend<'s> {
-        let count = entries.len() / 4;
-        let (gone, speed) = entries.split_at(2 * count);
-        Bend { gone: gone.split_at(count).into(), speed: speed.split_at(count).into() }
+    /// `count` shapes of bending.
+    pub fn of(count: usize, entries: &'s [f64]) -> Bend<'s> {
+        let (gone, speed) = entries.split_at(entries.len() / 2);
+        let parts = |of: &'s [f64]| [&of[..count], &of[count..2 * count], &of[2 * count..]];
+        Bend { gone: parts(gone), speed: parts(speed) }
     }
 }
 
@@ -125,7 +130,7 @@ impl Section {
     /// The section of a bent body, and what sits on it as `mount` says.
     pub fn place(&self, body: &RaceNow, mount: &Mount, bend: &Bend) -> SectionNow {
         let [e2, e3] = body.tilt_directions;
-        let across = |shape: &[f64], of: [&[f64]; 2]| [sum(shape, of[0]), sum(shape, of[1])];
+        let across = |shape: &[f64], of: [&[f64]; 3]| [sum(shape, of[0]), sum(shape, of[1])];
         let lateral = |[a, b]: [f64; 2]| add(scale(e2, a), scale(e3, b));
         let turning = |[a, b]: [f64; 2]| add(scale(e3, a), scale(e2, -b));
         let off = lateral(across(&self.deflection, bend.gone));
@@ -133,12 +138,15 @@ impl Section {
         let turn_rate = turning(across(&self.turn, bend.speed));
         let own = &body.motion;
         let tilting = tilting(body);
-        let arm = add_scaled(off, self.along, own.axis);
+        let (shorter, shortening) = self.shorter(bend);
+        let along = self.along + sum(&self.stretch, bend.gone[2]) - shorter;
+        let arm = add_scaled(off, along, own.axis);
         let mut state = body.state;
         state.position = add(state.position, arm);
-        state.velocity = add(add(state.velocity, cross(tilting, arm)), {
-            lateral(across(&self.deflection, bend.speed))
-        });
+        let shaking = lateral(across(&self.deflection, bend.speed));
+        let stretching = sum(&self.stretch, bend.speed[2]) - shortening;
+        let shaking = add_scaled(shaking, stretching, own.axis);
+        state.velocity = add(add(state.velocity, cross(tilting, arm)), shaking);
         state.orientation = turned_by(turn) * state.orientation;
         let axis = state.axis();
         let bending = add_scaled(turn_rate, 0.5, cross(turn, turn_rate));
@@ -150,11 +158,24 @@ impl Section {
         SectionNow { race: RaceNow::new(state), turn, axis }
     }
 
-    /// What loads on a section do to its body, about the body's centre; adds what they do to shapes (N) to
-    /// `pushes`, along e₂ and then e₃.
+    /// By how much bending takes the section nearer to the body's centre, and how fast, m and m/s.
+    fn shorter(&self, bend: &Bend) -> (f64, f64) {
+        let (mut shorter, mut rate) = (0.0, 0.0);
+        for (gone, speed) in bend.gone.iter().zip(&bend.speed).take(2) {
+            for (k, row) in self.shortening.chunks_exact(gone.len().max(1)).enumerate() {
+                let slope = sum(row, gone);
+                shorter += 0.5 * gone[k] * slope;
+                rate += speed[k] * slope;
+            }
+        }
+        (shorter, rate)
+    }
+
+    /// What loads on a section of a body so bent do to the body, about its centre; adds what they do to shapes (N) to
+    /// `pushes`, along e₂, e₃ and the axis.
     pub fn take(
         &self,
-        body: &RaceNow,
+        (body, bend): (&RaceNow, &Bend),
         now: &SectionNow,
         loads: &RaceLoads,
         pushes: &mut [f64],
@@ -164,14 +185,24 @@ impl Section {
         let on_turn = add_scaled(moment, -0.5, cross(now.turn, moment));
         let force_across = [dot(force, e2), dot(force, e3)];
         let moment_across = [dot(on_turn, e3), -dot(on_turn, e2)];
+        let axis = body.motion.axis;
         let count = self.deflection.len();
-        for (side, pushes) in pushes.chunks_exact_mut(count).enumerate() {
-            for (k, push) in pushes.iter_mut().enumerate() {
-                *push +=
-                    self.deflection[k] * force_across[side] + self.turn[k] * moment_across[side];
+        let (bending, stretching) = pushes.split_at_mut(2 * count);
+        for (k, push) in bending.iter_mut().enumerate() {
+            let (side, k) = (k / count, k % count);
+            *push += self.deflection[k] * force_across[side] + self.turn[k] * moment_across[side];
+        }
+        let pull = dot(force, axis);
+        if pull != 0.0 {
+            for (k, row) in self.shortening.chunks_exact(count.max(1)).enumerate() {
+                for (side, gone) in bend.gone.iter().enumerate().take(2) {
+                    bending[side * count + k] -= pull * sum(row, gone);
+                }
             }
         }
-        let axis = body.motion.axis;
+        for (push, stretch) in stretching.iter_mut().zip(&self.stretch) {
+            *push += stretch * pull;
+        }
         let arm = sub(now.race.motion.position, body.motion.position);
         let about_centre = add(moment, cross(arm, force));
         // The spin is driven about the section's own axis.
@@ -197,14 +228,25 @@ pub struct ShaftSteps {
 }
 
 impl ElasticShaft {
-    /// Shapes along one direction.
+    /// Shapes of bending along one direction.
     pub fn count(&self) -> usize {
         self.shapes.frequencies.len()
     }
 
-    /// In the state: a, b, and how fast.
+    /// a, b and c.
+    pub fn amplitudes(&self) -> usize {
+        2 * self.count() + self.shapes.stretch_frequencies.len()
+    }
+
+    /// Of the springs of a, b and c, rad/s.
+    pub fn frequencies(&self) -> impl Iterator<Item = f64> {
+        let ShaftShapes { frequencies, stretch_frequencies, .. } = &self.shapes;
+        frequencies.iter().chain(frequencies).chain(stretch_frequencies).copied()
+    }
+
+    /// In the state: amplitudes, and how fast.
     pub fn entries(&self) -> usize {
-        4 * self.count()
+        2 * self.amplitudes()
     }
 
     /// Rates of the amplitudes under springs, gyroscopic moments, damping, loads and unbalances; what holds the shaft
@@ -218,8 +260,8 @@ impl ElasticShaft {
         rates: &mut [f64],
         ran: &mut Tally,
     ) -> ShaftRates {
-        let bend = Bend::of(entries);
         let count = self.count();
+        let bend = Bend::of(count, entries);
         let [e2, e3] = body.tilt_directions;
         let own = &body.motion;
         let spin = dot(own.spin, own.axis);
@@ -227,20 +269,25 @@ impl ElasticShaft {
         // e₂ and e₃ turn about the axis by ξ̇ sin λ.
         let twist = tilting[0] * own.axis[1] / body.cos_lambda;
         let mut done = ShaftRates::default();
-        let (going, pushed) = rates.split_at_mut(2 * count);
+        let (going, pushed) = rates.split_at_mut(self.amplitudes());
         for k in 0..count {
             let [a, b] = [bend.gone[0][k], bend.gone[1][k]];
             let [u, v] = [bend.speed[0][k], bend.speed[1][k]];
             going[k] = u + twist * b;
             going[count + k] = v - twist * a;
             let row = &self.shapes.gyroscopic[k * count..(k + 1) * count];
-            let [across_u, across_v] = bend.speed.map(|speed| sum(row, speed));
+            let [across_u, across_v] = [0, 1].map(|side| sum(row, bend.speed[side]));
             let tilt = self.shapes.tilt_coupling[k];
             let stiffness = self.shapes.frequencies[k] * self.shapes.frequencies[k];
             pushed[k] = twist * v - stiffness * a - spin * (across_v - tilt * tilting[0]);
             pushed[count + k] = -twist * u - stiffness * b + spin * (across_u + tilt * tilting[1]);
         }
-        let [along, across] = bend.speed.map(|speed| spin * sum(&self.shapes.tilt_coupling, speed));
+        for (k, frequency) in self.shapes.stretch_frequencies.iter().enumerate() {
+            going[2 * count + k] = bend.speed[2][k];
+            pushed[2 * count + k] = -(frequency * frequency) * bend.gone[2][k];
+        }
+        let coupling = &self.shapes.tilt_coupling;
+        let [along, across] = [0, 1].map(|side| spin * sum(coupling, bend.speed[side]));
         done.on_body.moment = add(scale(e2, -along), scale(e3, -across));
         ran.add(Stage::Reduced, 1);
         if steps.damping {
@@ -270,6 +317,11 @@ impl ElasticShaft {
             done.damped += inside[0] * own[0] + inside[1] * own[1];
             done.damped -= self.damping * (u * u + v * v);
         }
+        let along = self.damping + self.internal_damping;
+        for (push, speed) in pushed[2 * count..].iter_mut().zip(bend.speed[2]) {
+            *push -= along * speed;
+            done.damped -= along * speed * speed;
+        }
         done.on_body.moment = add_scaled(done.on_body.moment, moment, axis);
     }
 
@@ -287,7 +339,7 @@ impl ElasticShaft {
             let force = force(&now);
             done.driven += dot(force, now.race.motion.velocity);
             let loads = RaceLoads { force, moment: [0.0; 3] };
-            done.on_body.add(&section.take(body, &now, &loads, pushed));
+            done.on_body.add(&section.take((body, bend), &now, &loads, pushed));
         };
         for load in &self.loads {
             push(&load.section, &|_| [0, 1, 2].map(|i| load.force[i].value(t)));
@@ -308,14 +360,11 @@ impl ElasticShaft {
 
     /// Of its bending alone; its rigid motion is the body's.
     pub fn energy(&self, entries: &[f64]) -> ModalEnergy {
-        let bend = Bend::of(entries);
+        let (gone, speed) = entries.split_at(self.amplitudes());
         let mut energy = ModalEnergy::default();
-        for side in 0..2 {
-            let both = bend.gone[side].iter().zip(bend.speed[side]);
-            for ((gone, speed), frequency) in both.zip(&self.shapes.frequencies) {
-                energy.kinetic += 0.5 * speed * speed;
-                energy.strain += 0.5 * (frequency * gone) * (frequency * gone);
-            }
+        for ((gone, speed), frequency) in gone.iter().zip(speed).zip(self.frequencies()) {
+            energy.kinetic += 0.5 * speed * speed;
+            energy.strain += 0.5 * (frequency * gone) * (frequency * gone);
         }
         energy
     }

@@ -31,7 +31,11 @@ impl Holds {
             let shaft = assembly.shafts.iter().position(|shaft| shaft.body == mount.body)?;
             let section = assembly.shafts[shaft].shapes.section(mount.along);
             let unbent = vec![0.0; assembly.shafts[shaft].entries()];
-            let now = section.place(&bodies[mount.body], mount, &Bend::of(&unbent));
+            let now = section.place(
+                &bodies[mount.body],
+                mount,
+                &Bend::of(section.deflection.len(), &unbent),
+            );
             Some(Hold { shaft, section, now })
         };
         Holds {
@@ -84,12 +88,12 @@ impl Holds {
 impl ElasticShaft {
     /// How it is bent in a state, its entries from `at` on.
     pub fn bend<'s>(&self, at: usize, state: &'s [f64]) -> Bend<'s> {
-        Bend::of(&state[at..at + self.entries()])
+        Bend::of(self.count(), &state[at..at + self.entries()])
     }
 
     /// Rates of its speeds among those of the whole state.
     pub fn pushes<'r>(&self, at: usize, rates: &'r mut [f64]) -> &'r mut [f64] {
-        &mut rates[at + 2 * self.count()..at + self.entries()]
+        &mut rates[at + self.amplitudes()..at + self.entries()]
     }
 }
 
@@ -98,19 +102,23 @@ pub fn sitting(hold: &Option<Hold>, body: &RaceNow, mount: &Mount) -> RaceNow {
     hold.as_ref().map_or_else(|| mounted(body, mount), |hold| hold.now.race)
 }
 
+/// Shafts, where each begins in the state, and the state.
+pub type Bent<'b> = (&'b [ElasticShaft], &'b [usize], &'b [f64]);
+
 /// Loads at a mount as its body feels them; shapes get theirs.
 pub fn handed_on(
     (hold, mount): (&Option<Hold>, &Mount),
     (sits, body): (&RaceNow, &RaceNow),
     loads: &RaceLoads,
-    (shafts, at): (&[ElasticShaft], &[usize]),
+    (shafts, at, state): Bent,
     rates: &mut [f64],
 ) -> RaceLoads {
     match hold {
         None => onto_body(mount, sits, body, loads),
         Some(hold) => {
-            let pushes = shafts[hold.shaft].pushes(at[hold.shaft], rates);
-            hold.section.take(body, &hold.now, loads, pushes)
+            let (shaft, at) = (&shafts[hold.shaft], at[hold.shaft]);
+            let bend = shaft.bend(at, state);
+            hold.section.take((body, &bend), &hold.now, loads, shaft.pushes(at, rates))
         }
     }
 }

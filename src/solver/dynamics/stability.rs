@@ -289,7 +289,7 @@ fn directions(system: &System) -> Vec<Direction> {
         }
     }
     for (shaft, at) in system.assembly.shafts.iter().zip(&system.shafts) {
-        let half = 2 * shaft.count();
+        let half = shaft.amplitudes();
         directions.extend((0..half).map(|k| Direction::Position(at + k)));
         directions.extend((half..2 * half).map(|k| Direction::Rate(at + k)));
     }

@@ -1,14 +1,13 @@
 //! Where a simulation starts: at equilibrium and rolling, or at rest in nominal positions.
 
 use super::assembly::{Assembly, Bearing};
-use super::contacts::Driver;
 use super::equilibrium::{at_start, given_speed, orbital_speed, race_speeds};
 use super::held::check_held;
 use super::model::Drive;
 use super::quasi_static::{self, Rates};
-use super::race::{self, RaceNow, mounted};
+use super::race::{self, RaceNow};
+use super::shaft_holds::{Holds, sitting};
 use super::state::{BODY, BodyState, Layout, Places};
-use super::system::System;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
 use crate::solver::statics::StaticsError;
 use nalgebra::Vector3;
@@ -38,50 +37,7 @@ pub fn at_equilibrium(assembly: &Assembly) -> Result<Vec<f64>, StaticsError> {
         .iter()
         .map(|bearing| bearing.balls.iter().map(|ball| ball.position.into()).collect())
         .collect();
-    let state = fill(assembly, &bodies, Some(&positions), &rates);
-    check_unbent(assembly, &state)?;
-    Ok(state)
-}
-
-/// Bending at a start that passes for none, over the largest overlap.
-const UNBENT: f64 = 1e-4;
-
-/// Equilibrium is that of rigid bodies: nothing may push the shapes of one that bends.
-fn check_unbent(assembly: &Assembly, state: &[f64]) -> Result<(), StaticsError> {
-    if assembly.shafts.is_empty() {
-        return Ok(());
-    }
-    let mut system = System::new(assembly.clone(), Driver::Lanes);
-    let mut rates = vec![0.0; state.len()];
-    system.evaluate(0.0, state, &mut rates);
-    let tables = system.sets.iter().map(|set| &set.table);
-    let overlaps =
-        tables.flat_map(|table| table.active.iter().map(|pair| table.contact[*pair].overlap));
-    let balls = assembly.bearings.iter().map(|bearing| bearing.geometry.ball_radius);
-    let allowed = overlaps.fold(1e-6 * balls.fold(0.0, f64::max), f64::max) * UNBENT;
-    for (shaft, at) in assembly.shafts.iter().zip(&system.shafts) {
-        let count = shaft.count();
-        let frequencies = || shaft.shapes.frequencies.iter().chain(&shaft.shapes.frequencies);
-        let gone: Vec<f64> = rates[at + 2 * count..at + 4 * count]
-            .iter()
-            .zip(frequencies())
-            .map(|(push, w)| push / (w * w))
-            .collect();
-        // The farthest of all stations.
-        let deflection =
-            shaft.shapes.deflection.chunks_exact(count).fold(0.0, |most: f64, shape| {
-                let along =
-                    |gone: &[f64]| -> f64 { shape.iter().zip(gone).map(|(a, b)| a * b).sum() };
-                most.max(libm::hypot(along(&gone[..count]), along(&gone[count..])))
-            });
-        // NaN is too far.
-        let unbent = deflection <= allowed;
-        if !unbent {
-            let body = assembly.bodies[shaft.body].name.clone();
-            return Err(StaticsError::BentAtStart { body, deflection, allowed });
-        }
-    }
-    Ok(())
+    Ok(fill(assembly, &bodies, Some((&positions, &now.amplitudes)), &rates))
 }
 
 /// State vector with everything in its nominal position, balls and cages rolling at the given
@@ -108,8 +64,9 @@ fn with_solids(assembly: &Assembly, state: &[f64]) -> Vec<f64> {
     let mut whole = vec![0.0; places.state_len()];
     let bodies = places.body(assembly.bodies.len());
     whole[..bodies].copy_from_slice(&state[..bodies]);
-    for (shaft, at) in assembly.shafts.iter().zip(places.shafts(assembly)) {
-        whole[at..at + shaft.start.len()].copy_from_slice(&shaft.start);
+    let bent = Places::of(&assembly.with_seats_held()).shafts(assembly);
+    for ((shaft, from), to) in assembly.shafts.iter().zip(bent).zip(places.shafts(assembly)) {
+        whole[to..to + shaft.entries()].copy_from_slice(&state[from..from + shaft.entries()]);
     }
     for (solid, at) in assembly.solids.iter().zip(places.solids(assembly)) {
         whole[at..at + solid.start.len()].copy_from_slice(&solid.start);
@@ -130,11 +87,12 @@ fn on_pitch_circle(bearing: &Bearing, outer: &RaceNow) -> Vec<Vec3> {
     (0..g.ball_count).map(position).collect()
 }
 
-/// The state with bodies at these coordinates; balls stand on their pitch circles where no `positions` are given.
+/// The state with bodies at these coordinates; balls stand on their pitch circles and shafts are straight where no
+/// positions and amplitudes are given.
 fn fill(
     assembly: &Assembly,
     bodies: &[[f64; 5]],
-    positions: Option<&[Vec<Vec3>]>,
+    known: Option<(&[Vec<Vec3>], &[Vec<f64>])>,
     rates: &Rates,
 ) -> Vec<f64> {
     let places = Places::of(assembly);
@@ -148,12 +106,25 @@ fn fill(
         write(&mut state, places.body(index), &moved);
         now.push(RaceNow::new(moved));
     }
+    let shafts = places.shafts(assembly);
+    for (index, (shaft, at)) in assembly.shafts.iter().zip(&shafts).enumerate() {
+        let (gone, speed) = state[*at..*at + shaft.entries()].split_at_mut(shaft.amplitudes());
+        if let Some((_, amplitudes)) = known {
+            gone.copy_from_slice(&amplitudes[index]);
+        }
+        speed.copy_from_slice(&rates.shafts[index]);
+    }
+    let mut holds = Holds::new(assembly, &now);
+    holds.place(assembly, &shafts, &now, &state);
     for (index, (bearing, layout)) in assembly.bearings.iter().zip(Layout::of(assembly)).enumerate()
     {
-        let [inner, outer] = bearing.mounts.map(|mount| mounted(&now[mount.body], &mount));
+        let [inner, outer] = [0, 1].map(|side| {
+            let mount = &bearing.mounts[side];
+            sitting(&holds.bearings[index][side], &now[mount.body], mount)
+        });
         let orbital_speed = orbital_speed(assembly, bearing, 0.0);
         let at_rest = on_pitch_circle(bearing, &outer);
-        let positions = positions.map_or(&at_rest, |positions| &positions[index]);
+        let positions = known.map_or(&at_rest, |(positions, _)| &positions[index]);
         // What turns with the outer race's tilts and not about its axis.
         let axis = outer.motion.axis;
         let [_, outer_speed] = race_speeds(assembly, bearing, 0.0);

@@ -8,7 +8,7 @@ use super::model::Rotation;
 use super::race::{self, RaceLoads, RaceNow, mounted};
 use super::reduced_solid::ModalEnergy;
 use super::seat::SeatNow;
-use super::shaft::{Bend, Section};
+use super::shaft::Section;
 use super::shaft_holds::{Hold, Holds, handed_on, sitting};
 use super::state::{
     BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, POSITION, Places, SPIN, VELOCITY,
@@ -143,7 +143,7 @@ impl System {
         self.loads.fill(RaceLoads::default());
         self.shaft_rates(t, state, rates, &mut ledger);
         let Assembly { bearings, shafts, .. } = &self.assembly;
-        let bent = (shafts.as_slice(), self.shafts.as_slice());
+        let bent = (shafts.as_slice(), self.shafts.as_slice(), state);
         let holds = &self.holds;
         for (((set, bearing), own), holds) in
             self.sets.iter_mut().zip(bearings).zip(&mut self.ran.bearings).zip(&holds.bearings)
@@ -233,7 +233,7 @@ impl System {
     ) {
         let t = t.min(self.latest);
         let Assembly { solids, seats, shafts, .. } = &self.assembly;
-        let bent = (shafts.as_slice(), self.shafts.as_slice());
+        let bent = (shafts.as_slice(), self.shafts.as_slice(), state);
         for &(index, steps) in &self.steps.solids {
             let (solid, at) = (&solids[index], self.solids[index]);
             let (gone, speeds) = state[at..at + 2 * solid.count()].split_at(solid.count());
@@ -300,7 +300,8 @@ impl System {
         match hold {
             None => mounted(body, mount),
             Some(hold) => {
-                let bend = Bend::of(self.bent(state, hold.shaft));
+                let shaft = &self.assembly.shafts[hold.shaft];
+                let bend = shaft.bend(self.shafts[hold.shaft], state);
                 hold.section.place(body, mount, &bend).race
             }
         }
@@ -308,9 +309,9 @@ impl System {
 
     /// A section of a shaft that bends, where a state has it; given motions are not imposed.
     pub fn section_now(&self, state: &[f64], shaft: usize, section: &Section) -> RaceNow {
-        let body = self.assembly.shafts[shaft].body;
-        let now = RaceNow::new(self.body_state(state, body));
-        section.place(&now, &Mount::at_centre(body), &Bend::of(self.bent(state, shaft))).race
+        let (of, at) = (&self.assembly.shafts[shaft], self.shafts[shaft]);
+        let now = RaceNow::new(self.body_state(state, of.body));
+        section.place(&now, &Mount::at_centre(of.body), &of.bend(at, state)).race
     }
 
     /// Energy of a reduced solid in a state.

@@ -60,16 +60,20 @@ pub fn put_in_equilibrium(
         .collect();
     let found = {
         let mut still = static_assembly(assembly, 0.0, &[]);
-        still.seats.extend(assembly.seats.iter().zip(&*housings).map(|(seat, housing)| {
-            StaticSeat {
+        let seats: Vec<StaticSeat> = assembly
+            .seats
+            .iter()
+            .zip(&*housings)
+            .map(|(seat, housing)| StaticSeat {
                 name: seat.label.clone(),
-                mount: seat.race,
+                mount: still.hold_of(&seat.race),
                 nominal: housing.bore.reach.nominal,
                 bore: housing.bore,
                 penalty: housing.penalty,
                 fit: housing.fit,
-            }
-        }));
+            })
+            .collect();
+        still.seats = seats;
         solve_assembly(&still, None, &StaticOptions::default())
     };
     for (housing, (compliance, own)) in housings.iter_mut().zip(as_it_was) {

@@ -95,7 +95,14 @@ fn of_bearing(bearing: &StaticBearing, subject: Subject, centrifugal: &str) -> V
 
 fn equilibrium(assembly: &StaticAssembly) -> Item {
     let (stage, subject) = (Stage::Equilibrium, Subject::Whole);
+    let shapes: usize = assembly.shafts.iter().map(|shaft| shaft.springs.len()).sum();
     match free_coordinates(assembly) {
+        (free, bodies) if shapes > 0 => {
+            let why = format!(
+                "{free} free coordinates of {bodies} bodies and {shapes} amplitudes of what bends in one search"
+            );
+            Item::does(stage, subject, why)
+        }
         (0, _) => Item::skips(stage, subject, "all coordinates are given: one evaluation"),
         (free, 1) => Item::does(stage, subject, format!("{free} of 5 coordinates are free")),
         (free, bodies) => {
@@ -107,7 +114,7 @@ fn equilibrium(assembly: &StaticAssembly) -> Item {
 
 fn loaded<'s>(assembly: &'s StaticAssembly) -> impl Iterator<Item = &'s Loaded> {
     assembly.bodies.iter().filter_map(|body| match &body.place {
-        Place::Held(_) => None,
+        Place::Held(_) | Place::Section(_) => None,
         Place::Loaded(loaded) => Some(loaded),
     })
 }

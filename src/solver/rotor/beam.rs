@@ -66,6 +66,8 @@ pub struct BeamMatrices {
     /// Over x of each station.
     pub axial_mass: DMatrix<f64>,
     pub axial_stiffness: DMatrix<f64>,
+    /// Over deflection and turn in one plane of all stations of an element, for each element: [`Element::shortening`].
+    pub shortening: Vec<[PlaneMatrix; NODES - 1]>,
 }
 
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -129,6 +131,7 @@ impl Beam {
             gyroscopic: lateral(),
             axial_mass: DMatrix::zeros(count, count),
             axial_stiffness: DMatrix::zeros(count, count),
+            shortening: Vec::with_capacity(segments.len()),
             stations,
         };
         for (number, &segment) in segments.iter().enumerate() {
@@ -285,6 +288,7 @@ impl BeamMatrices {
         view += stiffness;
         let mut view = self.axial_mass.fixed_view_mut::<NODES, NODES>(first, first);
         view += mass;
+        self.shortening.push(element.shortening());
     }
 
     fn add_disc(&mut self, station: usize, disc: &BeamDisc) {

@@ -1,9 +1,8 @@
 //! A flexible shaft as a beam of stations, and its linear vibrations.
 //!
-//! [`beam`] makes matrices of a shaft, [`condensed`] what few stations feel of it at rest; [`model`] puts it on supports and keeps its lowest natural motions; [`whirl`] has its motions
-//! at a speed and over speeds, [`critical`] the speeds that an unbalance excites, [`unbalance`] the orbits that it forces.
+//! [`beam`] makes matrices of a shaft; [`model`] puts it on supports and keeps its lowest natural motions; [`whirl`] has its
+//! motions at a speed and over speeds, [`critical`] the speeds that an unbalance excites, [`unbalance`] the orbits that it forces.
 pub mod beam;
-pub mod condensed;
 pub mod critical;
 pub mod model;
 pub mod unbalance;

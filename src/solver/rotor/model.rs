@@ -4,6 +4,7 @@
 //! supports and damping stand still too. Damping in the turning shaft itself, which feeds whirl above the critical speed, is not here.
 
 use super::beam::{Beam, BeamError, BeamMatrices, STATION};
+use crate::solver::free_shapes::lowest;
 use nalgebra::{DMatrix, DVector, Matrix4};
 use thiserror::Error;
 
@@ -196,7 +197,8 @@ fn natural_motions(
     let stiffness = (&stiffness + stiffness.transpose()) * 0.5;
     let ratios = (0..count).map(|i| stiffness[(i, i)] / mass[(i, i)]);
     let lightest = ratios.fold(f64::INFINITY, f64::min);
-    let (mut shapes, mut squares) = lowest(&mass, &stiffness, 1e-4 * lightest, modes)?;
+    let (mut shapes, mut squares) =
+        lowest(&mass, &stiffness, 1e-4 * lightest, modes).ok_or(RotorError::Unstable)?;
     if modes < count {
         let corrected = modes / 3;
         let keep = modes - corrected;
@@ -225,7 +227,8 @@ fn natural_motions(
         let ritz = ritz.columns(0, at).into_owned();
         let own_stiffness = ritz.tr_mul(&(&stiffness * &ritz));
         let own_mass = ritz.tr_mul(&(&mass * &ritz));
-        let (combined, own) = lowest(&own_mass, &own_stiffness, 1e-4 * lightest, at)?;
+        let (combined, own) =
+            lowest(&own_mass, &own_stiffness, 1e-4 * lightest, at).ok_or(RotorError::Unstable)?;
         (shapes, squares) = (ritz * combined, own);
     }
     let mut basis = DMatrix::zeros(matrices.mass.nrows(), shapes.ncols());
@@ -238,34 +241,4 @@ fn natural_motions(
     }
     let natural = squares.iter().map(|&s| if s.abs() <= noise { 0.0 } else { s.sqrt() });
     Ok((basis, natural.collect()))
-}
-
-/// The `modes` lowest natural motions of unit modal mass and their frequencies' squares.
-///
-/// The inverse problem, M x = μ (K + σM) x: its largest values are the lowest frequencies, which rounding touches least; the
-/// shift σ lets rigid motions in.
-fn lowest(
-    mass: &DMatrix<f64>,
-    stiffness: &DMatrix<f64>,
-    shift: f64,
-    modes: usize,
-) -> Result<(DMatrix<f64>, Vec<f64>), RotorError> {
-    let shifted = stiffness + mass * shift;
-    let factor = shifted.cholesky().ok_or(RotorError::Unstable)?.unpack();
-    let solve = |right: &DMatrix<f64>| factor.solve_lower_triangular(right);
-    let half = solve(mass).ok_or(RotorError::Unstable)?;
-    let inverse = solve(&half.transpose()).ok_or(RotorError::Unstable)?;
-    let eigen = ((&inverse + inverse.transpose()) * 0.5).symmetric_eigen();
-    let mut order: Vec<usize> = (0..mass.nrows()).collect();
-    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-    order.truncate(modes);
-    let mut shapes = DMatrix::zeros(mass.nrows(), order.len());
-    let mut squares = Vec::with_capacity(order.len());
-    for (column, &mode) in order.iter().enumerate() {
-        let value = eigen.eigenvalues[mode];
-        squares.push(1.0 / value - shift);
-        let shape = factor.tr_solve_lower_triangular(&eigen.eigenvectors.column(mode));
-        shapes.set_column(column, &(shape.ok_or(RotorError::Unstable)? / value.sqrt()));
-    }
-    Ok((shapes, squares))
 }

@@ -1,0 +1,98 @@
+//! Bodies that bend, in the static problem of an assembly: a section for each mount, load and unbalance on them.
+
+use super::assembly::Assembly;
+use super::equilibrium::{given_angle, given_speed};
+use super::shaft::{ElasticShaft, Section, Unbalance};
+use crate::kinematics::euler::{about, quaternion};
+use crate::solver::static_assembly::{
+    Place, StaticAssembly, StaticBody, StaticSection, StaticShaft,
+};
+use nalgebra::{SVector, Vector3};
+
+type Five = SVector<f64, 5>;
+
+/// Adds shapes and sections at time `t` and mounts bearings and connections on these. Forces of unbalances are left out
+/// ([`unbalance_loads`] adds them).
+pub(super) fn add(assembly: &Assembly, t: f64, still: &mut StaticAssembly) {
+    for (index, shaft) in assembly.shafts.iter().enumerate() {
+        still.shafts.push(StaticShaft::new(shaft.body, &shaft.shapes));
+        let of_bearings = assembly.bearings.iter().flat_map(|bearing| bearing.mounts);
+        let of_connections = assembly.connections.iter().flat_map(|joint| joint.ends);
+        let of_seats = assembly.seats.iter().map(|seat| seat.race);
+        for mount in of_bearings.chain(of_connections).chain(of_seats) {
+            if mount.body == shaft.body && still.hold_of(&mount) == mount {
+                let section = shaft.shapes.section(mount.along);
+                still.bodies.push(body(assembly, (index, shaft), section, [0.0; 5]));
+            }
+        }
+        for load in &shaft.loads {
+            let [x, y, z] = [0, 1, 2].map(|i| load.force[i].value(t));
+            let loads = [x, y, z, 0.0, 0.0];
+            still.bodies.push(body(assembly, (index, shaft), load.section.clone(), loads));
+        }
+        for unbalance in &shaft.unbalances {
+            still.bodies.push(body(assembly, (index, shaft), unbalance.section.clone(), [0.0; 5]));
+        }
+    }
+    let mut bearings = std::mem::take(&mut still.bearings);
+    let mut connections = std::mem::take(&mut still.connections);
+    let mounts = bearings.iter_mut().flat_map(|bearing| &mut bearing.mounts);
+    let mounts = mounts.chain(connections.iter_mut().flat_map(|joint| &mut joint.ends));
+    mounts.for_each(|mount| *mount = still.hold_of(mount));
+    (still.bearings, still.connections) = (bearings, connections);
+}
+
+fn body(
+    assembly: &Assembly,
+    (index, shaft): (usize, &ElasticShaft),
+    section: Section,
+    loads: [f64; 5],
+) -> StaticBody {
+    let of = &assembly.bodies[shaft.body].name;
+    let name = format!("{of} {:.1} mm from its centre", 1e3 * section.along);
+    StaticBody {
+        name,
+        place: Place::Section(Box::new(StaticSection { shaft: index, section, loads })),
+    }
+}
+
+/// Static bodies that carry unbalances, each with its unbalance and the body that spins; in their order.
+fn unbalanced<'a>(
+    assembly: &'a Assembly,
+    still: &StaticAssembly,
+) -> Vec<(usize, &'a Unbalance, usize)> {
+    let mut all = Vec::new();
+    for (index, shaft) in assembly.shafts.iter().enumerate() {
+        let its = |(_, body): &(usize, &StaticBody)| match &body.place {
+            Place::Section(of) => of.shaft == index,
+            _ => false,
+        };
+        let sections: Vec<usize> =
+            still.bodies.iter().enumerate().filter(its).map(|of| of.0).collect();
+        // They were added last.
+        let first = sections.len() - shaft.unbalances.len();
+        let own = sections[first..].iter().zip(&shaft.unbalances);
+        all.extend(own.map(|(&body, unbalance)| (body, unbalance, shaft.body)));
+    }
+    all
+}
+
+/// Centrifugal forces of unbalances on sections at time `t`, each over the coordinates of its static body, where the
+/// sections have these tilts.
+pub(super) fn unbalance_loads(
+    assembly: &Assembly,
+    still: &StaticAssembly,
+    t: f64,
+    at: &[Five],
+) -> Vec<(usize, Five)> {
+    let load = |(body, unbalance, spins): (usize, &Unbalance, usize)| {
+        let spins = &assembly.bodies[spins];
+        let speed = given_speed(spins, t);
+        let size = unbalance.size * speed * speed;
+        let angle = unbalance.angle + given_angle(spins, t);
+        let turned = about(Vector3::x(), angle) * Vector3::y();
+        let along = quaternion(0.0, at[body][3], at[body][4]) * turned * size;
+        (size != 0.0).then(|| (body, Five::from([along.x, along.y, along.z, 0.0, 0.0])))
+    };
+    unbalanced(assembly, still).into_iter().filter_map(load).collect()
+}
