@@ -55,6 +55,7 @@ pub fn render_assembly(
         stiffness(&mut text, |i, j| solution.stiffness[(5 * place + i, 5 * place + j)]);
         text.push('\n');
     }
+    sections(&mut text, assembly, solution);
     if loaded.len() > 1 {
         text += "stiffness is that of each body with all others held; summary.json has what is between them\n\n";
     }
@@ -86,6 +87,28 @@ pub fn render_assembly(
         let _ = writeln!(text, "note: {remark}");
     }
     text
+}
+
+/// Sections of bodies that bend, a line each.
+fn sections(text: &mut String, assembly: &StaticAssembly, solution: &AssemblySolution) {
+    let bodies = assembly.bodies.iter().zip(&solution.coordinates);
+    let all: Vec<_> = bodies.filter(|(body, _)| matches!(body.place, Place::Section(_))).collect();
+    if all.is_empty() {
+        return;
+    }
+    let head = ["x, um", "y, um", "z, um", "tilt_y, deg", "tilt_z, deg"];
+    let _ = write!(text, "{:<34}", "section");
+    head.iter().for_each(|name| text.push_str(&format!("{name:>16}")));
+    text.push('\n');
+    for (body, q) in all {
+        let _ = write!(text, "{:<34}", body.name);
+        for i in 0..5 {
+            let value = if i < 3 { 1e6 * q[i] } else { q[i].to_degrees() };
+            let _ = write!(text, "{:>16}", fixed(value, 6));
+        }
+        text.push('\n');
+    }
+    text.push('\n');
 }
 
 fn race(text: &mut String, solution: &StaticSolution) {

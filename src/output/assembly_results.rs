@@ -36,7 +36,13 @@ pub fn readable(
 ) -> AssemblySolution {
     let mut read = solution.clone();
     for (body, coordinates) in read.coordinates.iter_mut().enumerate() {
-        coordinates[0] -= moving.origin_of(body);
+        coordinates[0] -= match &assembly.bodies[body].place {
+            Place::Section(of) => {
+                let body = moving.shafts[of.shaft].body;
+                moving.bodies[body].rest[0] + of.section.along
+            }
+            _ => moving.origin_of(body),
+        };
         for coordinate in coordinates.iter_mut().filter(|q| q.abs() <= NOTHING) {
             *coordinate = 0.0;
         }
@@ -115,6 +121,10 @@ pub fn summary(solved: &Solved, record: &RunRecord) -> Result<Value, ResultsErro
         }
     }
     summary.insert("bodies".into(), Value::Object(bodies));
+    let sections = sections(solved)?;
+    if !sections.is_empty() {
+        summary.insert("sections".into(), json!(sections));
+    }
     summary.insert("stiffness".into(), stiffness(solved)?);
     let mut bearings = Map::new();
     for (name, state) in solved.names.iter().zip(&solution.bearings) {
@@ -123,6 +133,25 @@ pub fn summary(solved: &Solved, record: &RunRecord) -> Result<Value, ResultsErro
     summary.insert("bearings".into(), Value::Object(bearings));
     insert_record(&mut summary, record)?;
     Ok(Value::Object(summary))
+}
+
+/// Sections of bodies that bend: how far each has gone from where the straight body at its given place has it.
+fn sections(solved: &Solved) -> Result<Vec<Value>, ResultsError> {
+    let mut all = Vec::new();
+    for (index, body) in solved.assembly.bodies.iter().enumerate() {
+        if !matches!(body.place, Place::Section(_)) {
+            continue;
+        }
+        let mut part = Map::new();
+        part.insert("section".into(), json!(body.name));
+        for (i, name) in COORDINATE_NAMES.iter().enumerate() {
+            let unit = if i < 3 { "m" } else { "rad" };
+            let value = quantity(name, solved.solution.coordinates[index][i], unit)?;
+            part.insert((*name).into(), value);
+        }
+        all.push(Value::Object(part));
+    }
+    Ok(all)
 }
 
 /// "the outer race of bearing left" as a key.

@@ -3,6 +3,7 @@
 use crate::output::assembly_results::key;
 use crate::output::results::{ResultsError, RunRecord, insert_record, quantity, write_results};
 use crate::output::series::{Column, Series};
+use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::housing::inertia::{Mode, MovingBody};
 use crate::solver::static_assembly::StaticAssembly;
 use crate::solver::statics::COORDINATE_NAMES;
@@ -17,12 +18,21 @@ pub fn frequency(mode: &Mode) -> f64 {
 }
 
 /// Names of the coordinates of what takes part: `shaft_z`.
-pub fn names(still: &StaticAssembly, bodies: &[MovingBody]) -> Vec<String> {
+pub fn names(still: &StaticAssembly, bodies: &[MovingBody], moving: &Assembly) -> Vec<String> {
     let of = |of: &MovingBody| {
         let body = key(&still.bodies[of.body].name);
         COORDINATE_NAMES.map(|name| format!("{body}_{name}"))
     };
-    bodies.iter().flat_map(of).collect()
+    let mut names: Vec<String> = bodies.iter().flat_map(of).collect();
+    for shaft in &moving.shafts {
+        let body = key(&moving.bodies[shaft.body].name);
+        for along in ["y", "z"] {
+            names.extend((1..=shaft.count()).map(|k| format!("{body}_bending_{k}_{along}")));
+        }
+        let stretches = shaft.amplitudes() - 2 * shaft.count();
+        names.extend((1..=stretches).map(|k| format!("{body}_stretch_{k}")));
+    }
+    names
 }
 
 /// Writes summary and table and returns the files. Shapes are of unit modal mass: m and rad over √kg.

@@ -37,3 +37,4 @@ mod static_start;
 pub mod static_tables;
 mod static_verdict;
 pub mod statics;
+pub mod vibrations;

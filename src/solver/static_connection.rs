@@ -1,48 +1,76 @@
 //! Springs between bodies in an equilibrium: dashpots push nothing, Maxwell elements have relaxed.
 
-use super::dynamics::connection::Connection;
-use super::dynamics::race;
+use super::dynamics::connection::{Connection, Row};
+use super::dynamics::race::{self, RaceNow};
 use super::static_model::{Evaluation, Five, Model};
+use crate::kinematics::Pose;
 use crate::kinematics::vec3::{Vec3, add, cross, sub};
-use nalgebra::Vector3;
+use nalgebra::{DMatrix, Vector3};
 
-/// Energy, force and stiffness of springs between two bodies.
-pub(super) fn add_connection(model: &Model, connection: &Connection, here: &mut Evaluation) {
-    let bodies = connection.ends.map(|mount| {
-        let race = match model.axes(mount.body) {
-            None => race::fixed(&model.coordinates(mount.body, &here.at).into()),
-            Some(_) => race::standing(&model.pose(mount.body, &here.at)),
-        };
-        (race, model.tilt_axes(mount.body, &here.at), model.axes(mount.body))
-    });
-    let ends = [0, 1].map(|end| race::mounted(&bodies[end].0, &connection.ends[end]));
-    let ends = [&ends[0], &ends[1]];
-    let pull = connection.pull(ends, &[]);
-    here.energy += pull.energy;
-    // Of a force at a section along its body's coordinates.
-    let conjugate = |end: usize, force: Vec3, moment: Vec3| {
-        let (body, [e2, e3], axes) = &bodies[end];
-        let arm = sub(ends[end].motion.position, body.motion.position);
+/// Where a connection holds its bodies.
+struct Joined<'m> {
+    bodies: [(RaceNow, [Vector3<f64>; 2], Option<&'m Pose>); 2],
+    ends: [RaceNow; 2],
+    firsts: [Option<usize>; 2],
+}
+
+impl<'m> Joined<'m> {
+    fn new(model: &'m Model, connection: &Connection, here: &Evaluation) -> Joined<'m> {
+        let bodies = connection.ends.map(|mount| {
+            let race = match model.axes(mount.body) {
+                None => race::fixed(&model.coordinates(mount.body, &here.at).into()),
+                Some(_) => race::standing(&model.pose(mount.body, &here.at)),
+            };
+            (race, model.tilt_axes(mount.body, &here.at), model.axes(mount.body))
+        });
+        let ends = [0, 1].map(|end| race::mounted(&bodies[end].0, &connection.ends[end]));
+        let firsts = connection.ends.map(|mount| model.unknowns[mount.body]);
+        Joined { bodies, ends, firsts }
+    }
+
+    /// Of a force at a section along its body's coordinates.
+    fn conjugate(&self, end: usize, force: Vec3, moment: Vec3) -> Five {
+        let (body, [e2, e3], axes) = &self.bodies[end];
+        let arm = sub(self.ends[end].motion.position, body.motion.position);
         let moment = Vector3::from(add(moment, cross(arm, force)));
         let force = Vector3::from(force);
         let force = axes.map_or(force, |a| a.orientation.inverse_transform_vector(&force));
         Five::from([force[0], force[1], force[2], moment.dot(e2), moment.dot(e3)])
-    };
-    let firsts = connection.ends.map(|mount| model.unknowns[mount.body]);
-    for end in 0..2 {
-        let Some(first) = firsts[end] else { continue };
-        let loads = &pull.on[end];
-        let mut rows = here.gradient.fixed_rows_mut::<5>(first);
-        rows -= conjugate(end, loads.force, loads.moment);
     }
-    for row in connection.rows(ends).iter().filter(|row| row.stiffness != 0.0) {
-        let levers = [0, 1].map(|end| conjugate(end, row.on[end][0], row.on[end][1]));
-        for (a, one) in firsts.into_iter().enumerate() {
-            for (b, other) in firsts.into_iter().enumerate() {
-                let (Some(one), Some(other)) = (one, other) else { continue };
-                let mut block = here.stiffness.fixed_view_mut::<5, 5>(one, other);
-                block += levers[a] * levers[b].transpose() * row.stiffness;
+
+    /// Adds what each row does with this size of it.
+    fn add_rows(&self, rows: &[Row], size: impl Fn(&Row) -> f64, to: &mut DMatrix<f64>) {
+        for row in rows.iter().filter(|row| size(row) != 0.0) {
+            let levers = [0, 1].map(|end| self.conjugate(end, row.on[end][0], row.on[end][1]));
+            for (a, one) in self.firsts.into_iter().enumerate() {
+                for (b, other) in self.firsts.into_iter().enumerate() {
+                    let (Some(one), Some(other)) = (one, other) else { continue };
+                    let mut block = to.fixed_view_mut::<5, 5>(one, other);
+                    block += levers[a] * levers[b].transpose() * size(row);
+                }
             }
         }
     }
+}
+
+/// Energy, force and stiffness of springs between two bodies.
+pub(super) fn add_connection(model: &Model, connection: &Connection, here: &mut Evaluation) {
+    let joined = Joined::new(model, connection, here);
+    let ends = [&joined.ends[0], &joined.ends[1]];
+    let pull = connection.pull(ends, &[]);
+    here.energy += pull.energy;
+    for end in 0..2 {
+        let Some(first) = joined.firsts[end] else { continue };
+        let loads = &pull.on[end];
+        let mut rows = here.gradient.fixed_rows_mut::<5>(first);
+        rows -= joined.conjugate(end, loads.force, loads.moment);
+    }
+    joined.add_rows(&connection.rows(ends), |row| row.stiffness, &mut here.stiffness);
+}
+
+/// Its dashpots, where the stiffness is.
+pub(super) fn add_damping(model: &Model, connection: &Connection, here: &mut Evaluation) {
+    let joined = Joined::new(model, connection, here);
+    let rows = connection.rows([&joined.ends[0], &joined.ends[1]]);
+    joined.add_rows(&rows, |row| row.damping, &mut here.stiffness);
 }

@@ -13,7 +13,7 @@ use super::static_bearing::add_bearing;
 use super::static_connection::add_connection;
 use super::static_model::{Evaluation, Five, Model};
 use super::static_seat::add_seat;
-use super::static_shaft::{add_shaft, onto_unknowns};
+use super::static_shaft::{add_curvature, add_shaft, onto_unknowns, sections};
 use super::static_start;
 use super::statics::{StaticOptions, StaticsError};
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -226,7 +226,9 @@ impl<'a, 'b> Search<'a, 'b> {
             self.ran.solids[index].add(Stage::QuasiStatic, 1);
         }
         if self.model.coordinates > unknowns {
-            onto_unknowns(self.model, &mut here);
+            let moved = sections(self.model, &here.at);
+            add_curvature(self.model, &moved, &mut here);
+            onto_unknowns(self.model, &moved, &mut here);
         }
         self.ran.whole.add(Stage::Evaluation, 1);
         Ok(here)
@@ -249,10 +251,15 @@ impl<'a, 'b> Search<'a, 'b> {
             .fold(0.0, f64::max)
     }
 
-    /// Largest pitch radius, m.
+    /// Largest pitch radius, or distance of a section from its body's centre, m.
     fn reach(&self) -> f64 {
-        let bearings = self.model.assembly.bearings.iter();
-        bearings.fold(0.0, |most: f64, bearing| most.max(bearing.geometry.pitch_radius))
+        let StaticAssembly { bearings, bodies, .. } = self.model.assembly;
+        let along = bodies.iter().filter_map(|body| match &body.place {
+            Place::Section(of) => Some(of.section.along.abs()),
+            _ => None,
+        });
+        let pitch = bearings.iter().map(|bearing| bearing.geometry.pitch_radius);
+        pitch.chain(along).fold(0.0, f64::max)
     }
 
     /// Largest load, N.

@@ -8,7 +8,7 @@ use super::race_position::InnerRacePosition;
 use super::static_assembly::{Place, StaticSection, StaticShaft};
 use super::static_model::{Evaluation, Five, Model};
 use crate::kinematics::euler::quaternion;
-use nalgebra::{DMatrix, Dyn, Matrix2, Matrix3, OMatrix, U5, Vector3};
+use nalgebra::{DMatrix, DVector, Dyn, Matrix2, Matrix3, OMatrix, U5, Vector3};
 
 /// One section where its shaft is now.
 pub(super) struct SectionPlace {
@@ -191,35 +191,63 @@ pub(super) fn add_shaft(shaft: &StaticShaft, first: usize, here: &mut Evaluation
     }
 }
 
-/// Takes slope and stiffness over sections, behind the unknowns, to the unknowns.
-pub(super) fn onto_unknowns(model: &Model, here: &mut Evaluation) {
-    let unknowns = model.scale.len();
-    let mut moved = Vec::new();
-    for (body, of) in model.assembly.bodies.iter().enumerate() {
-        let (Place::Section(of), Some(own)) = (&of.place, model.unknowns[body]) else { continue };
-        let firsts = model.firsts_of(of);
+/// How a section follows the unknowns.
+pub(super) struct Moved {
+    /// First of its own coordinates, behind the unknowns.
+    own: usize,
+    pub(super) motion: OMatrix<f64, U5, Dyn>,
+    /// Columns of the motion, and the unknown of each.
+    pub(super) columns: Vec<(usize, usize)>,
+}
+
+/// All sections, in the order of their bodies.
+pub(super) fn sections(model: &Model, at: &DVector<f64>) -> Vec<Moved> {
+    let follow = |(own, of): (usize, &StaticSection)| {
+        let place = model.section_place(of, at);
+        let (motion, _) = place.motion(&place.slopes(of));
+        let columns = columns(model.firsts_of(of), motion.ncols()).collect();
+        Moved { own, motion, columns }
+    };
+    all_sections(model).map(follow).collect()
+}
+
+fn all_sections<'m>(model: &'m Model) -> impl Iterator<Item = (usize, &'m StaticSection)> {
+    let bodies = model.assembly.bodies.iter().zip(&model.unknowns);
+    bodies.filter_map(|(body, first)| match (&body.place, first) {
+        (Place::Section(of), Some(first)) => Some((*first, of.as_ref())),
+        _ => None,
+    })
+}
+
+/// What the curvature of places of sections makes of the slopes there.
+pub(super) fn add_curvature(model: &Model, moved: &[Moved], here: &mut Evaluation) {
+    for (Moved { own, columns, .. }, (_, of)) in moved.iter().zip(all_sections(model)) {
         let place = model.section_place(of, &here.at);
         let slopes = place.slopes(of);
         let (motion, tilts) = place.motion(&slopes);
-        let gradient: Five = here.gradient.fixed_rows::<5>(own).into_owned();
+        let gradient: Five = here.gradient.fixed_rows::<5>(*own).into_owned();
         let curved = place.curvature(of, &gradient, &slopes, (&motion, &tilts));
-        let columns: Vec<(usize, usize)> = columns(firsts, motion.ncols()).collect();
-        for &(i, to) in &columns {
-            here.gradient[to] += motion.column(i).dot(&gradient);
-            for &(j, and) in &columns {
+        for &(i, to) in columns {
+            for &(j, and) in columns {
                 here.stiffness[(to, and)] += curved[(i, j)];
             }
         }
-        moved.push((own, motion, columns));
     }
-    for (own, motion, columns) in &moved {
+}
+
+/// Takes slope and stiffness over sections, behind the unknowns, to the unknowns.
+pub(super) fn onto_unknowns(model: &Model, moved: &[Moved], here: &mut Evaluation) {
+    let unknowns = model.scale.len();
+    for Moved { own, motion, columns } in moved {
+        let gradient: Five = here.gradient.fixed_rows::<5>(*own).into_owned();
         let block = here.stiffness.columns(*own, 5).into_owned();
         for &(j, to) in columns {
+            here.gradient[to] += motion.column(j).dot(&gradient);
             let mut column = here.stiffness.column_mut(to);
             column += &block * motion.column(j);
         }
     }
-    for (own, motion, columns) in &moved {
+    for Moved { own, motion, columns } in moved {
         let block = here.stiffness.rows(*own, 5).into_owned();
         for &(i, to) in columns {
             let mut row = here.stiffness.row_mut(to);

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod assemblies;
 mod beam;
 mod statics;
 mod whirl;

@@ -203,7 +203,7 @@ fn an_unbalanced_disc_orbits_as_jeffcotts() {
     rotor.held = vec![Held::pin(0.0), Held::pin(LENGTH)];
     rotor.mass_damping = 100.0;
     let model = RotorModel::new(&rotor).unwrap();
-    let station = model.matrices.station(0.5 * LENGTH).unwrap();
+    let station = model.station(0.5 * LENGTH).unwrap();
     let [_, moment, shear] = full(0.03);
     let stiffness = 1.0 / (LENGTH.powi(3) / (48.0 * E * moment) + LENGTH / (4.0 * shear));
     let unbalance = Unbalance { at: 0.5 * LENGTH, moment: 1e-3, angle: 0.4 };

@@ -91,8 +91,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     let modal_mass = -oracle * oracle / slope;
     let offset = UNBALANCE / modal_mass;
     let damped = model(DAMPING)?;
-    let station =
-        damped.matrices.station(0.5 * LENGTH).ok_or_else(|| CaseError::message("no station"))?;
+    let station = damped.station(0.5 * LENGTH).ok_or_else(|| CaseError::message("no station"))?;
     let unbalance = Unbalance { at: 0.5 * LENGTH, moment: UNBALANCE, angle: 0.0 };
     let [speed, height] = damped.peak(&[unbalance], station, [0.8 * critical, 1.2 * critical]);
     // The peak of e Ω²/|ω² − Ω² + iαΩ|.

@@ -124,7 +124,7 @@ fn response(context: &mut CaseContext, kept: &Kept, model: &RotorModel) -> Resul
     let unbalance = Unbalance { at: 0.25, moment: 1e-3, angle: 0.0 };
     for place in &kept.response {
         let missing = || CaseError::message(format!("no station at {} m", place.at));
-        let station = model.matrices.station(place.at).ok_or_else(missing)?;
+        let station = model.station(place.at).ok_or_else(missing)?;
         let largest = place.first.iter().chain(&place.second).copied().fold(0.0, f64::max);
         let mut worst = 0.0f64;
         for (n, &speed) in kept.speeds.iter().skip(1).enumerate() {

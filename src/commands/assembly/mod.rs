@@ -9,6 +9,7 @@ pub mod modes;
 pub mod plan;
 pub mod shapes;
 pub mod statics;
+mod whirl;
 
 use super::echo_run;
 use bearing_dynamics::output::results::RunRecord;

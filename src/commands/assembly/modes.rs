@@ -4,7 +4,8 @@
 //! (Rayleigh), so that frequencies are upper bounds, near the truth while its own modes are higher.
 
 use super::housings::{self, Equilibrium};
-use super::{plan, record};
+use super::whirl::Spinning;
+use super::{Fallible, plan, record};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::remarks::at_rest;
@@ -12,8 +13,11 @@ use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
-use bearing_dynamics::solver::housing::inertia::{MovingBody, housing_mass, modes};
+use bearing_dynamics::solver::dynamics::model::Rotation;
+use bearing_dynamics::solver::housing::inertia::{HousingMass, MovingBody, housing_mass, modes};
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly, StaticBody};
+use bearing_dynamics::solver::statics::AssemblySolution;
+use bearing_dynamics::solver::vibrations::whirling;
 use serde_json::json;
 use std::fmt::Write;
 use std::time::Instant;
@@ -39,12 +43,13 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
             masses.extend(race.map(|race| housing_mass(bore, race)));
         }
     }
-    let found = modes(&moment.solution.stiffness, &bodies, &masses);
+    let solution = &moment.solution;
+    let found = modes(&solution.with_shapes, &bodies, &masses);
     if found.is_empty() {
         let hint = "give it: body.NAME.inertia";
         return Err(format!("{}: a body has no mass. Hint: {hint}", path.display()).into());
     }
-    let names = names(still, &bodies);
+    let names = names(still, &bodies, &assembly);
     let mut text = "mode        frequency, Hz  moves most\n".to_string();
     for (index, mode) in found.iter().enumerate() {
         let most = &names[moves_most(mode)];
@@ -52,6 +57,11 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     }
     say(&text)?;
     let mut remarks: Vec<String> = at_rest(scene).collect();
+    let spinning = spinning(&assembly, still, solution, &bodies, &masses)?;
+    if let Some(spinning) = &spinning {
+        say(&spinning.text())?;
+        remarks.extend(spinning.remarks());
+    }
     if found.iter().any(|mode| frequency(mode) == 0.0) {
         remarks.push(
             "a frequency of zero is of a motion that no contact and no spring brings back".into(),
@@ -65,7 +75,11 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         );
     }
     remarks.push(
-        "about the equilibrium at t = 0, nothing turning; balls are springs without mass".into(),
+        match spinning {
+            None => "about the equilibrium at t = 0, nothing turning; balls are springs without mass",
+            Some(_) => "about the equilibrium at t = 0, modes with nothing turning; balls are springs without mass and contacts do not damp",
+        }
+        .into(),
     );
     if !housings.is_empty() {
         remarks.push(
@@ -79,9 +93,30 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let mut record = record(scene, plan::of_statics(scene, &housings)?, seconds)?;
     record.ran.clone_from(&moment.solution.ran);
     record.sections.push(("remarks".into(), json!(remarks)));
-    let written = write(&folder, &names, &found, &record)?;
+    let mut written = Vec::new();
+    if let Some(spinning) = &spinning {
+        record.sections.push(("rotor".into(), spinning.section()));
+        let title = scene.common().title.as_deref().unwrap_or("Campbell diagram");
+        written.extend(spinning.write(&folder, title)?);
+    }
+    written.extend(write(&folder, &names, &found, &record)?);
     say(&format!("wrote {} files to {}\n", written.len(), folder.display()))?;
     Ok(Outcome::Done)
+}
+
+/// Whirl, where a body that moves spins.
+fn spinning(
+    assembly: &Assembly,
+    still: &StaticAssembly,
+    solution: &AssemblySolution,
+    bodies: &[MovingBody],
+    masses: &[HousingMass],
+) -> Fallible<Option<Spinning>> {
+    let turns = |of: &MovingBody| matches!(assembly.bodies[of.body].driven().map(|race| &race.rotation), Some(Rotation::Speed(speed)) if !speed.is_zero());
+    if !bodies.iter().any(turns) {
+        return Ok(None);
+    }
+    Ok(Some(Spinning::new(whirling(assembly, still, solution, bodies, masses)?)?))
 }
 
 /// The bodies that loads move.

@@ -2,8 +2,9 @@
 
 use super::assembly::Assembly;
 use super::equilibrium::{given_angle, given_speed};
-use super::shaft::{ElasticShaft, Section, Unbalance};
+use super::shaft::{Section, Unbalance};
 use crate::kinematics::euler::{about, quaternion};
+use crate::solver::mount::Mount;
 use crate::solver::static_assembly::{
     Place, StaticAssembly, StaticBody, StaticSection, StaticShaft,
 };
@@ -16,22 +17,25 @@ type Five = SVector<f64, 5>;
 pub(super) fn add(assembly: &Assembly, t: f64, still: &mut StaticAssembly) {
     for (index, shaft) in assembly.shafts.iter().enumerate() {
         still.shafts.push(StaticShaft::new(shaft.body, &shaft.shapes));
-        let of_bearings = assembly.bearings.iter().flat_map(|bearing| bearing.mounts);
-        let of_connections = assembly.connections.iter().flat_map(|joint| joint.ends);
-        let of_seats = assembly.seats.iter().map(|seat| seat.race);
-        for mount in of_bearings.chain(of_connections).chain(of_seats) {
+        let place = |at: &str, section: Section, loads: [f64; 5]| StaticBody {
+            name: format!("{} at {at}", assembly.bodies[shaft.body].name),
+            place: Place::Section(Box::new(StaticSection { shaft: index, section, loads })),
+        };
+        for (at, mount) in mounts(assembly) {
             if mount.body == shaft.body && still.hold_of(&mount) == mount {
                 let section = shaft.shapes.section(mount.along);
-                still.bodies.push(body(assembly, (index, shaft), section, [0.0; 5]));
+                still.bodies.push(place(&at, section, [0.0; 5]));
             }
+        }
+        for (at, section) in &shaft.watched {
+            still.bodies.push(place(at, section.clone(), [0.0; 5]));
         }
         for load in &shaft.loads {
             let [x, y, z] = [0, 1, 2].map(|i| load.force[i].value(t));
-            let loads = [x, y, z, 0.0, 0.0];
-            still.bodies.push(body(assembly, (index, shaft), load.section.clone(), loads));
+            still.bodies.push(place("its load", load.section.clone(), [x, y, z, 0.0, 0.0]));
         }
         for unbalance in &shaft.unbalances {
-            still.bodies.push(body(assembly, (index, shaft), unbalance.section.clone(), [0.0; 5]));
+            still.bodies.push(place("its unbalance", unbalance.section.clone(), [0.0; 5]));
         }
     }
     let mut bearings = std::mem::take(&mut still.bearings);
@@ -42,18 +46,17 @@ pub(super) fn add(assembly: &Assembly, t: f64, still: &mut StaticAssembly) {
     (still.bearings, still.connections) = (bearings, connections);
 }
 
-fn body(
-    assembly: &Assembly,
-    (index, shaft): (usize, &ElasticShaft),
-    section: Section,
-    loads: [f64; 5],
-) -> StaticBody {
-    let of = &assembly.bodies[shaft.body].name;
-    let name = format!("{of} {:.1} mm from its centre", 1e3 * section.along);
-    StaticBody {
-        name,
-        place: Place::Section(Box::new(StaticSection { shaft: index, section, loads })),
-    }
+/// Of bearings, connections and seats, with what is there.
+fn mounts(assembly: &Assembly) -> impl Iterator<Item = (String, Mount)> {
+    let bearings = assembly.bearings.iter().flat_map(|of| {
+        let name = of.name.as_ref().map_or("the bearing".into(), |name| format!("bearing {name}"));
+        of.mounts.map(|mount| (name.clone(), mount))
+    });
+    let connections = &assembly.connections;
+    let connections =
+        connections.iter().flat_map(|of| of.ends.map(|mount| (of.name.clone(), mount)));
+    let seats = assembly.seats.iter().map(|seat| ("its seat".into(), seat.race));
+    bearings.chain(connections).chain(seats)
 }
 
 /// Static bodies that carry unbalances, each with its unbalance and the body that spins; in their order.

@@ -61,13 +61,8 @@ pub struct Mode {
     pub housings: Vec<f64>,
 }
 
-/// Natural motions about an equilibrium with this stiffness over the coordinates of the bodies, slowest first. None of
-/// a mass matrix that is not positive.
-pub fn modes(
-    stiffness: &DMatrix<f64>,
-    bodies: &[MovingBody],
-    housings: &[HousingMass],
-) -> Vec<Mode> {
+/// Over the five coordinates of each body.
+pub fn mass_matrix(bodies: &[MovingBody], housings: &[HousingMass]) -> DMatrix<f64> {
     let count = 5 * bodies.len();
     let mut mass = DMatrix::<f64>::zeros(count, count);
     for (of, MovingBody { inertia, .. }) in bodies.iter().enumerate() {
@@ -79,7 +74,23 @@ pub fn modes(
         let mut block = mass.fixed_view_mut::<4, 4>(5 * race + 1, 5 * race + 1);
         block += own;
     }
-    let kept: Vec<usize> = (0..count).filter(|&i| bodies[i / 5].free[i % 5]).collect();
+    mass
+}
+
+/// Natural motions about an equilibrium with this stiffness over the coordinates of the bodies, and amplitudes of shapes
+/// behind them, slowest first. None of
+/// a mass matrix that is not positive.
+pub fn modes(
+    stiffness: &DMatrix<f64>,
+    bodies: &[MovingBody],
+    housings: &[HousingMass],
+) -> Vec<Mode> {
+    let of_bodies = mass_matrix(bodies, housings);
+    let (own, count) = (of_bodies.nrows(), stiffness.nrows());
+    // Shapes have a mass of 1 kg.
+    let mut mass = DMatrix::identity(count, count);
+    mass.view_mut((0, 0), (own, own)).copy_from(&of_bodies);
+    let kept: Vec<usize> = (0..count).filter(|&i| i >= own || bodies[i / 5].free[i % 5]).collect();
     let picked = |of: &DMatrix<f64>| of.select_rows(&kept).select_columns(&kept);
     let (stiffness, mass) = (picked(stiffness), picked(&mass));
     let Some(factor) = mass.clone().cholesky() else { return Vec::new() };

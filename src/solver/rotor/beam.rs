@@ -260,9 +260,7 @@ fn element_places(first: usize) -> [ElementPlaces; 2] {
 impl BeamMatrices {
     /// The station that stands at a place (m along X), if one does.
     pub fn station(&self, at: f64) -> Option<usize> {
-        let length = self.stations.last()?;
-        let next = self.stations.partition_point(|&x| x < at - NEAR * length);
-        (self.stations.get(next)? - at <= NEAR * length).then_some(next)
+        station_at(&self.stations, at)
     }
 
     /// Its coordinates in the matrices.
@@ -317,6 +315,13 @@ impl BeamMatrices {
         }
         motions
     }
+}
+
+/// Of places in order, the one at `at`.
+pub(super) fn station_at(stations: &[f64], at: f64) -> Option<usize> {
+    let length = stations.last()? - stations.first()?;
+    let next = stations.partition_point(|&x| x < at - NEAR * length);
+    (stations.get(next)? - at <= NEAR * length).then_some(next)
 }
 
 fn add(

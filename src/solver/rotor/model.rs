@@ -3,7 +3,7 @@
 //! What turns with the shaft is a body of revolution, so that its matrices stand still in axes that do not turn;
 //! supports and damping stand still too. Damping in the turning shaft itself, which feeds whirl above the critical speed, is not here.
 
-use super::beam::{Beam, BeamError, BeamMatrices, STATION};
+use super::beam::{Beam, BeamError, BeamMatrices, STATION, station_at};
 use crate::solver::free_shapes::lowest;
 use nalgebra::{DMatrix, DVector, Matrix4};
 use thiserror::Error;
@@ -84,17 +84,36 @@ pub enum RotorError {
     Unheld { frequency: f64 },
 }
 
-/// A rotor over its natural motions at rest, p̈ + (C + Ω G) ṗ + K p = Bᵀ loads, q = B p.
+/// Small motions about an equilibrium, M q̈ + (C + Ω G) q̇ + (K + Ω S) q = loads. SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vibrations {
+    pub mass: DMatrix<f64>,
+    pub stiffness: DMatrix<f64>,
+    pub damping: DMatrix<f64>,
+    /// G, per rad/s of spin; skew.
+    pub gyroscopic: DMatrix<f64>,
+    /// S, per rad/s of spin: damping that turns along.
+    pub circulating: DMatrix<f64>,
+    /// Coordinates that a quarter turn from Y to Z takes the first one to the second one, the second one to less the first.
+    pub pairs: Vec<[usize; 2]>,
+    /// Coordinates that may move.
+    pub free: Vec<usize>,
+}
+
+/// What turns over its natural motions at rest, p̈ + (C + Ω G) ṗ + (K + Ω S) p = Bᵀ loads, q = B p.
 #[derive(Clone, Debug)]
 pub struct RotorModel {
-    pub matrices: BeamMatrices,
-    /// Each column a natural motion at rest over all coordinates, its modal mass 1.
+    /// Places along the shaft at which motions are told, m.
+    pub stations: Vec<f64>,
+    /// Each column a natural motion at rest, its modal mass 1, over y, z, turn_y, turn_z of all stations.
     pub basis: DMatrix<f64>,
     /// rad/s, ascending; zero for rigid motions.
     pub natural: Vec<f64>,
     pub damping: DMatrix<f64>,
     pub gyroscopic: DMatrix<f64>,
     pub stiffness: DMatrix<f64>,
+    /// S.
+    pub circulating: DMatrix<f64>,
     /// Bᵀ M R B, R a quarter turn from Y to Z: ±i on a motion that whirls in circles, forward and backward.
     pub(super) quarter_turn: DMatrix<f64>,
 }
@@ -127,28 +146,64 @@ impl RotorModel {
             view += support.damping;
         }
         let free = free_coordinates(&matrices, &rotor.held);
-        let (basis, natural) = natural_motions(&matrices, &stiffness, &free, rotor.modes)?;
+        let size = matrices.mass.nrows();
+        let pairs = (0..size / 2).map(|pair| [2 * pair, 2 * pair + 1]).collect();
+        let vibrations = Vibrations {
+            mass: matrices.mass,
+            stiffness,
+            damping,
+            gyroscopic: matrices.gyroscopic,
+            circulating: DMatrix::zeros(size, size),
+            pairs,
+            free,
+        };
+        RotorModel::of(&vibrations, rotor.modes, matrices.stations, None)
+    }
+
+    /// Of any motions that `modes` shapes are kept of; `sections` are y, z, turn_y, turn_z at each of the `stations` for a unit
+    /// of each coordinate, [`None`] where they are the coordinates.
+    ///
+    /// # Errors
+    /// Nothing that moves, an equilibrium that is none.
+    pub fn of(
+        vibrations: &Vibrations,
+        modes: usize,
+        stations: Vec<f64>,
+        sections: Option<&DMatrix<f64>>,
+    ) -> Result<RotorModel, RotorError> {
+        let (basis, natural) = natural_motions(vibrations, modes)?;
+        let Vibrations { mass, stiffness, damping, gyroscopic, circulating, pairs, .. } =
+            vibrations;
         let project = |matrix: &DMatrix<f64>| basis.transpose() * matrix * &basis;
-        let mut modal_stiffness = project(&stiffness);
+        let mut modal_stiffness = project(stiffness);
         for rigid in (0..natural.len()).filter(|&i| natural[i] == 0.0) {
             // Rounding that would oscillate.
             modal_stiffness.row_mut(rigid).fill(0.0);
             modal_stiffness.column_mut(rigid).fill(0.0);
         }
         let mut turned = DMatrix::zeros(basis.nrows(), basis.ncols());
-        for pair in 0..basis.nrows() / 2 {
-            turned.row_mut(2 * pair).copy_from(&(-basis.row(2 * pair + 1)));
-            turned.row_mut(2 * pair + 1).copy_from(&basis.row(2 * pair));
+        for &[first, second] in pairs {
+            turned.row_mut(first).copy_from(&(-basis.row(second)));
+            turned.row_mut(second).copy_from(&basis.row(first));
         }
         Ok(RotorModel {
-            damping: project(&damping),
-            gyroscopic: project(&matrices.gyroscopic),
+            stations,
+            damping: project(damping),
+            gyroscopic: project(gyroscopic),
+            circulating: project(circulating),
             stiffness: modal_stiffness,
-            quarter_turn: basis.transpose() * &matrices.mass * turned,
-            matrices,
-            basis,
+            quarter_turn: basis.transpose() * mass * turned,
+            basis: match sections {
+                Some(sections) => sections * &basis,
+                None => basis,
+            },
             natural,
         })
+    }
+
+    /// The station that stands at a place (m), if one does.
+    pub fn station(&self, at: f64) -> Option<usize> {
+        station_at(&self.stations, at)
     }
 
     /// Loads over all coordinates seen by the natural motions.
@@ -180,29 +235,26 @@ fn free_coordinates(matrices: &BeamMatrices, held: &[Held]) -> Vec<usize> {
 
 /// Shapes of unit modal mass that the rotor's motions are made of, and their frequencies at rest, rad/s: the lowest natural motions,
 /// and for the lowest of these what their gyroscopic moments bend besides, which natural motions alone approach slowly.
-fn natural_motions(
-    matrices: &BeamMatrices,
-    stiffness: &DMatrix<f64>,
-    free: &[usize],
-    modes: usize,
-) -> Result<(DMatrix<f64>, Vec<f64>), RotorError> {
+fn natural_motions(of: &Vibrations, modes: usize) -> Result<(DMatrix<f64>, Vec<f64>), RotorError> {
+    let free = &of.free;
     if free.is_empty() || modes == 0 {
         return Err(RotorError::NothingMoves);
     }
     let count = free.len();
     let part =
         |matrix: &DMatrix<f64>| DMatrix::from_fn(count, count, |i, j| matrix[(free[i], free[j])]);
-    let mass = part(&matrices.mass);
-    let stiffness = part(stiffness);
+    let mass = part(&of.mass);
+    let stiffness = part(&of.stiffness);
     let stiffness = (&stiffness + stiffness.transpose()) * 0.5;
-    let ratios = (0..count).map(|i| stiffness[(i, i)] / mass[(i, i)]);
+    // Of what is held at all.
+    let ratios = (0..count).map(|i| stiffness[(i, i)] / mass[(i, i)]).filter(|ratio| *ratio > 0.0);
     let lightest = ratios.fold(f64::INFINITY, f64::min);
     let (mut shapes, mut squares) =
         lowest(&mass, &stiffness, 1e-4 * lightest, modes).ok_or(RotorError::Unstable)?;
     if modes < count {
         let corrected = modes / 3;
         let keep = modes - corrected;
-        let loads = part(&matrices.gyroscopic) * shapes.columns(0, corrected);
+        let loads = part(&of.gyroscopic) * shapes.columns(0, corrected);
         let shifted = &stiffness + &mass * (1e-4 * lightest);
         let bent = shifted.cholesky().ok_or(RotorError::Unstable)?.solve(&loads);
         let mut ritz = DMatrix::zeros(count, modes);
@@ -231,7 +283,7 @@ fn natural_motions(
             lowest(&own_mass, &own_stiffness, 1e-4 * lightest, at).ok_or(RotorError::Unstable)?;
         (shapes, squares) = (ritz * combined, own);
     }
-    let mut basis = DMatrix::zeros(matrices.mass.nrows(), shapes.ncols());
+    let mut basis = DMatrix::zeros(of.mass.nrows(), shapes.ncols());
     for (i, &at) in free.iter().enumerate() {
         basis.row_mut(at).copy_from(&shapes.row(i));
     }

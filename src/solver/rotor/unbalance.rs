@@ -1,7 +1,7 @@
 //! Orbits that unbalances force at steady speed.
 
 use super::beam::STATION;
-use super::model::{RotorModel, station};
+use super::model::RotorModel;
 use crate::ch4_rotor::disc::unbalance_force;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -46,7 +46,7 @@ impl RotorModel {
         let modes = self.natural.len();
         let mut load = DVector::from_element(modes, Complex::new(0.0, 0.0));
         for unbalance in unbalances {
-            let at = station(&self.matrices, unbalance.at);
+            let at = self.station(unbalance.at).expect("unbalances sit at stations");
             // A force that turns: its part along Y, and a quarter turn later along Z.
             let quarter = std::f64::consts::FRAC_PI_2;
             for (angle, part) in [(unbalance.angle, 0), (unbalance.angle + quarter, 1)] {
@@ -62,7 +62,7 @@ impl RotorModel {
         let dynamic = DMatrix::from_fn(modes, modes, |i, j| {
             let inertia = if i == j { spin * spin } else { Complex::new(0.0, 0.0) };
             let rate = self.damping[(i, j)] + speed * self.gyroscopic[(i, j)];
-            inertia + spin * rate + self.stiffness[(i, j)]
+            inertia + spin * rate + self.stiffness[(i, j)] + speed * self.circulating[(i, j)]
         });
         dynamic.lu().solve(&load)
     }

@@ -12,6 +12,8 @@ pub struct Whirl {
     pub eigenvalue: Complex<f64>,
     /// From 1 (every point on a circle the way the shaft spins) over 0 (to and fro) to −1 (against it), weighted by inertia.
     pub direction: f64,
+    /// Part of the motion, by inertia, that is across the axis: 0 of a shaft that swings along it.
+    pub across: f64,
     /// Over y, z, turn_y, turn_z of each station; its largest deflection, or turn where nothing deflects, is 1.
     pub shape: Vec<[Complex<f64>; STATION]>,
     /// Over the rotor's natural motions at rest, of norm 1.
@@ -58,9 +60,11 @@ impl RotorModel {
     /// Eigenvalues that are not found.
     pub fn whirls(&self, speed: f64, count: usize) -> Result<Vec<Whirl>, RotorError> {
         let damping = &self.damping + &self.gyroscopic * speed;
-        let values = self.eigenvalues(speed, &damping)?;
+        let stiffness = &self.stiffness + &self.circulating * speed;
+        let values = self.eigenvalues(speed, &damping, &stiffness)?;
         let lowest = values.into_iter().take(count).enumerate();
-        Ok(lowest.map(|(number, value)| self.whirl(value, &damping, number)).collect())
+        let both = [&damping, &stiffness];
+        Ok(lowest.map(|(number, value)| self.whirl(value, both, number)).collect())
     }
 
     /// Of (D p, ṗ) with D the natural frequencies: skew-symmetric without damping, so that nothing is badly scaled.
@@ -68,6 +72,7 @@ impl RotorModel {
         &self,
         speed: f64,
         damping: &DMatrix<f64>,
+        stiffness: &DMatrix<f64>,
     ) -> Result<Vec<Complex<f64>>, RotorError> {
         let modes = self.natural.len();
         let least = self.natural.iter().copied().find(|&natural| natural > 0.0).unwrap_or(1.0);
@@ -77,13 +82,16 @@ impl RotorModel {
         for i in 0..modes {
             state[(i, modes + i)] = scale[i];
             for j in 0..modes {
-                state[(modes + i, j)] = -self.stiffness[(i, j)] / scale[j];
+                state[(modes + i, j)] = -stiffness[(i, j)] / scale[j];
                 state[(modes + i, modes + j)] = -damping[(i, j)];
             }
         }
         let iterations = ITERATIONS * 2 * modes;
-        let schur = Schur::try_new(state, f64::EPSILON, iterations)
-            .ok_or(RotorError::Eigenvalues { speed, iterations })?;
+        // Motions that nothing brings back fall together at zero, where the last digit may not settle.
+        let schur = [1.0, 1e3, 1e6]
+            .into_iter()
+            .find_map(|times| Schur::try_new(state.clone(), times * f64::EPSILON, iterations));
+        let schur = schur.ok_or(RotorError::Eigenvalues { speed, iterations })?;
         let mut values: Vec<Complex<f64>> = schur
             .complex_eigenvalues()
             .iter()
@@ -94,14 +102,19 @@ impl RotorModel {
         Ok(values)
     }
 
-    /// Shape of the `number`-th eigenvalue by inverse iteration on λ²I + λ(C + ΩG) + K.
-    fn whirl(&self, value: Complex<f64>, damping: &DMatrix<f64>, number: usize) -> Whirl {
+    /// Shape of the `number`-th eigenvalue by inverse iteration on λ²I + λ(C + ΩG) + K + ΩS.
+    fn whirl(
+        &self,
+        value: Complex<f64>,
+        [damping, stiffness]: [&DMatrix<f64>; 2],
+        number: usize,
+    ) -> Whirl {
         let modes = self.natural.len();
         // So far beside the eigenvalue that the factors exist, so near that two steps leave nothing of the others.
         let near = value * Complex::new(1.0 + 1e-11, 1e-11);
         let pencil = DMatrix::from_fn(modes, modes, |i, j| {
             let inertia = if i == j { near * near } else { Complex::new(0.0, 0.0) };
-            inertia + near * damping[(i, j)] + self.stiffness[(i, j)]
+            inertia + near * damping[(i, j)] + stiffness[(i, j)]
         });
         let factors = pencil.lu();
         // Both directions of whirl are in it; one more than the other, in turns, so that two motions of one frequency (at
@@ -140,7 +153,8 @@ impl RotorModel {
             .chunks_exact(STATION)
             .map(|at| std::array::from_fn(|i| at[i] / by))
             .collect();
-        Whirl { eigenvalue, direction, shape, modal }
+        let across = turned.norm() / modal.norm();
+        Whirl { eigenvalue, direction, across, shape, modal }
     }
 
     /// The `count` lowest motions at the last of `speeds` (rad/s) and the same motions at the others.

@@ -1,0 +1,175 @@
+//! What `bearing modes` says of bodies that spin: whirl at the scene's speed, critical speeds, a Campbell diagram.
+
+use super::Fallible;
+use bearing_dynamics::output::atomic::write_atomic;
+use bearing_dynamics::output::plots::campbell;
+use bearing_dynamics::output::series::{Column, Series};
+use bearing_dynamics::solver::rotor::critical::Critical;
+use bearing_dynamics::solver::rotor::whirl::{Campbell, Whirl};
+use bearing_dynamics::solver::vibrations::Whirling;
+use ndarray::Array2;
+use serde_json::{Value, json};
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// Speeds of the diagram, from rest on.
+const SPEEDS: usize = 51;
+/// Times the scene's speed up to which motions are in the diagram; the two lowest always are.
+const FAR: f64 = 3.0;
+/// Motions that are followed.
+const LINES: usize = 8;
+
+/// Motions of what spins.
+pub struct Spinning {
+    pub whirling: Whirling,
+    /// At the scene's speed.
+    whirls: Vec<Whirl>,
+    /// Up to twice that speed.
+    critical: Vec<Critical>,
+    campbell: Campbell,
+}
+
+fn rpm(speed: f64) -> f64 {
+    speed * 60.0 / TAU
+}
+
+/// Whether a motion is across the axis in the main.
+fn is_whirl(whirl: &Whirl) -> bool {
+    whirl.across > 0.5
+}
+
+fn turns(whirl: &Whirl) -> &'static str {
+    match whirl.direction {
+        d if d > 0.5 => "forward",
+        d if d < -0.5 => "backward",
+        _ => "to and fro",
+    }
+}
+
+impl Spinning {
+    pub fn new(whirling: Whirling) -> Fallible<Spinning> {
+        let top = whirling.top_speed;
+        let model = &whirling.model;
+        let speeds: Vec<f64> = (0..SPEEDS).map(|i| top * i as f64 / (SPEEDS - 1) as f64).collect();
+        let mut whirls = model.whirls(top, 2 * LINES)?;
+        whirls.retain(is_whirl);
+        whirls.truncate(LINES);
+        // What nothing holds has no critical speeds.
+        let critical = model.critical_speeds().unwrap_or_default();
+        let within = |of: &Critical| of.speed <= 2.0 * top.abs() && is_whirl(&of.whirl);
+        let critical = critical.into_iter().filter(within).collect();
+        let mut campbell = model.campbell(&speeds, LINES)?;
+        campbell.lines.retain(|line| line.iter().all(is_whirl));
+        let first = campbell.lines.len().min(2);
+        let near =
+            |line: &Vec<Whirl>| line.iter().any(|whirl| whirl.frequency() <= FAR * top.abs());
+        let shown = campbell.lines.iter().enumerate().filter(|(i, line)| *i < first || near(line));
+        campbell.lines = shown.map(|(_, line)| line.clone()).collect();
+        Ok(Spinning { whirls, critical, campbell, whirling })
+    }
+
+    /// The place that a motion moves most.
+    fn most<'s>(&'s self, whirl: &Whirl) -> &'s str {
+        let size = |place: &usize| {
+            let [y, z, ..] = whirl.shape[*place];
+            y.norm_sqr() + z.norm_sqr()
+        };
+        let all = 0..whirl.shape.len();
+        let most = all.max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0);
+        let name = &self.whirling.places[most];
+        name.strip_prefix("the ").unwrap_or(name)
+    }
+
+    pub fn text(&self) -> String {
+        let mut text = format!(
+            "\nwhirl at {:.1} rpm\nmode        frequency, Hz  damping ratio  direction  moves most\n",
+            rpm(self.whirling.top_speed)
+        );
+        for (index, whirl) in self.whirls.iter().enumerate() {
+            let _ = writeln!(
+                text,
+                "{:>4} {:>20.6} {:>14.6}  {:<9}  {}",
+                index + 1,
+                whirl.frequency() / TAU,
+                whirl.damping_ratio(),
+                turns(whirl),
+                self.most(whirl)
+            );
+        }
+        let _ = writeln!(text, "\ncritical speeds up to twice that, without damping");
+        if self.critical.is_empty() {
+            let _ = writeln!(text, "none");
+        }
+        for of in &self.critical {
+            let _ = writeln!(
+                text,
+                "{:>25.3} rpm  {:<9}  {}",
+                rpm(of.speed),
+                turns(&of.whirl),
+                self.most(&of.whirl)
+            );
+        }
+        text
+    }
+
+    /// What grows, if anything does.
+    pub fn remarks(&self) -> Vec<String> {
+        let grows = self.whirls.iter().filter(|whirl| whirl.damping_ratio() < -1e-9);
+        grows
+            .map(|whirl| {
+                format!(
+                    "the whirl of {:.3} Hz grows at {:.1} rpm: damping that turns with the shaft feeds it above its critical speed",
+                    whirl.frequency() / TAU,
+                    rpm(self.whirling.top_speed)
+                )
+            })
+            .collect()
+    }
+
+    pub fn section(&self) -> Value {
+        let whirl = |whirl: &Whirl| {
+            json!({
+                "frequency": { "value": whirl.frequency() / TAU, "unit": "Hz" },
+                "damping_ratio": { "value": whirl.damping_ratio(), "unit": "1" },
+                "direction": { "value": whirl.direction, "unit": "1" },
+                "moves_most": self.most(whirl),
+            })
+        };
+        let critical = |of: &Critical| {
+            json!({
+                "speed": { "value": of.speed, "unit": "rad/s" },
+                "direction": { "value": of.whirl.direction, "unit": "1" },
+                "moves_most": self.most(&of.whirl),
+            })
+        };
+        json!({
+            "speed": { "value": self.whirling.top_speed, "unit": "rad/s" },
+            "whirl": self.whirls.iter().map(whirl).collect::<Vec<_>>(),
+            "critical_speeds": self.critical.iter().map(critical).collect::<Vec<_>>(),
+        })
+    }
+
+    /// The diagram as picture and as table.
+    pub fn write(&self, folder: &Path, title: &str) -> Fallible<[PathBuf; 2]> {
+        let picture = folder.join("campbell.svg");
+        write_atomic(&picture, campbell(title, &self.campbell)?.as_bytes())?;
+        let mut columns = vec![Column::new("speed", "rad/s")];
+        columns.extend((1..=self.campbell.lines.len()).flat_map(|line| {
+            [
+                Column::new(format!("frequency_{line}"), "Hz"),
+                Column::new(format!("direction_{line}"), "1"),
+                Column::new(format!("damping_ratio_{line}"), "1"),
+            ]
+        }));
+        let value = |(row, column): (usize, usize)| {
+            let Some(column) = column.checked_sub(1) else { return self.campbell.speeds[row] };
+            let whirl = &self.campbell.lines[column / 3][row];
+            [whirl.frequency() / TAU, whirl.direction, whirl.damping_ratio()][column % 3]
+        };
+        let data = Array2::from_shape_fn((self.campbell.speeds.len(), columns.len()), value);
+        let table = folder.join("campbell.csv");
+        Series::new(columns, data)?.write_csv(&table)?;
+        Ok([picture, table])
+    }
+}

@@ -1,0 +1,187 @@
+//! Small motions of an assembly about its equilibrium, what spins spinning: stiffness is that of the search for
+//! equilibria, nothing of it by differences.
+//!
+//! Balls are springs without mass, a condensed housing takes part with the mass of its shapes under its race.
+//! Axes do not spin with the bodies, which are of revolution: M, C, G and K stand still. With spin Ω about X a body of axial inertia
+//! J makes moments J Ω against the rates of its tilts; its shapes have those of [`super::dynamics::shaft`].
+
+use super::dynamics::assembly::{Assembly, Body};
+use super::dynamics::model::Rotation;
+use super::dynamics::shaft::ElasticShaft;
+use super::housing::inertia::{HousingMass, MovingBody, mass_matrix};
+use super::rotor::beam::STATION;
+use super::rotor::model::{RotorError, RotorModel, Vibrations};
+use super::static_assembly::{Place, StaticAssembly};
+use super::static_connection::add_damping;
+use super::static_model::{Evaluation, Model};
+use super::static_shaft::{Moved, onto_unknowns, sections};
+use super::statics::AssemblySolution;
+use nalgebra::{DMatrix, DVector};
+
+/// Shapes that motions are made of: with those of two bearings and a shaft between them all that whirl below some kHz.
+const MODES: usize = 36;
+
+/// What vibrates, and where its motions are told.
+pub struct Whirling {
+    pub model: RotorModel,
+    /// Bodies, then sections of bodies that bend; the model's stations number them.
+    pub places: Vec<String>,
+    /// The largest given speed of a body (rad/s), of which the others turn at a fixed part.
+    pub top_speed: f64,
+}
+
+/// Speed that is given at the end of all that changes, rad/s.
+fn final_speed(assembly: &Assembly, body: &Body) -> f64 {
+    let last = assembly.corners().last().copied().unwrap_or(0.0);
+    match body.driven().map(|race| &race.rotation) {
+        Some(Rotation::Speed(profile)) => {
+            profile.value(profile.corners().last().copied().unwrap_or(last).max(last))
+        }
+        Some(Rotation::Torque(_)) | None => 0.0,
+    }
+}
+
+/// Small motions about `found`, the equilibrium of `still`; the bodies that take part, in the order of its unknowns.
+///
+/// # Errors
+/// Nothing that moves, a body without mass, an equilibrium that is none.
+pub fn whirling(
+    assembly: &Assembly,
+    still: &StaticAssembly,
+    found: &AssemblySolution,
+    bodies: &[MovingBody],
+    housings: &[HousingMass],
+) -> Result<Whirling, RotorError> {
+    let top_speed = assembly
+        .bodies
+        .iter()
+        .map(|body| final_speed(assembly, body))
+        .fold(0.0, |top: f64, speed| if speed.abs() > top.abs() { speed } else { top });
+    let model = Model::new(still);
+    let size = model.scale.len();
+    let here = placed(&model, found);
+    let moved = sections(&model, &here.at);
+    let mut mass = DMatrix::identity(size, size);
+    let own = mass_matrix(bodies, housings);
+    mass.view_mut((0, 0), (own.nrows(), own.ncols())).copy_from(&own);
+    let mut all = Vibrations {
+        stiffness: found.with_shapes.clone(),
+        damping: DMatrix::zeros(size, size),
+        gyroscopic: DMatrix::zeros(size, size),
+        circulating: DMatrix::zeros(size, size),
+        pairs: Vec::new(),
+        free: (0..size).filter(|&i| i >= 5 * bodies.len() || bodies[i / 5].free[i % 5]).collect(),
+        mass,
+    };
+    for (index, of) in bodies.iter().enumerate() {
+        let first = 5 * index;
+        all.pairs.extend([[first + 1, first + 2], [first + 3, first + 4]]);
+        let body = &assembly.bodies[of.body];
+        let ratio = if top_speed == 0.0 { 0.0 } else { final_speed(assembly, body) / top_speed };
+        let spin = ratio * of.inertia.axial;
+        all.gyroscopic[(first + 3, first + 4)] += spin;
+        all.gyroscopic[(first + 4, first + 3)] -= spin;
+        if let Some(race) = body.driven() {
+            for (i, damping) in race.foundation_damping.iter().enumerate() {
+                all.damping[(first + i, first + i)] += damping;
+            }
+        }
+    }
+    for ((_, first), shaft) in model.shafts().zip(&assembly.shafts) {
+        let body = bodies.iter().position(|of| of.body == shaft.body);
+        let speed = final_speed(assembly, &assembly.bodies[shaft.body]);
+        let ratio = if top_speed == 0.0 { 0.0 } else { speed / top_speed };
+        bending(&mut all, shaft, (body.map(|body| 5 * body), first), ratio);
+    }
+    all.damping += dashpots(&model, &here, &moved);
+    let (places, rows) = told(&model, still, &moved);
+    let stations = (0..places.len()).map(|place| place as f64).collect();
+    let model = RotorModel::of(&all, MODES, stations, Some(&rows))?;
+    Ok(Whirling { model, places, top_speed })
+}
+
+/// Everything where an equilibrium has it.
+fn placed(model: &Model, found: &AssemblySolution) -> Evaluation {
+    let mut at = DVector::zeros(model.scale.len());
+    for (body, first, _) in model.loaded() {
+        at.fixed_rows_mut::<5>(first).copy_from(&found.coordinates[body]);
+    }
+    for ((_, first), amplitudes) in model.shafts().zip(&found.amplitudes) {
+        at.rows_mut(first, amplitudes.len()).copy_from_slice(amplitudes);
+    }
+    model.follow(&mut at);
+    let count = model.coordinates;
+    Evaluation {
+        at,
+        gradient: DVector::zeros(count),
+        stiffness: DMatrix::zeros(count, count),
+        ..Evaluation::default()
+    }
+}
+
+/// Gyroscopic moments and damping of a shaft's shapes.
+fn bending(
+    all: &mut Vibrations,
+    shaft: &ElasticShaft,
+    (body, first): (Option<usize>, usize),
+    ratio: f64,
+) {
+    let count = shaft.count();
+    for k in 0..count {
+        let (a, b) = (first + k, first + count + k);
+        all.pairs.push([a, b]);
+        for l in 0..count {
+            let turns = ratio * shaft.shapes.gyroscopic[k * count + l];
+            all.gyroscopic[(a, first + count + l)] += turns;
+            all.gyroscopic[(b, first + l)] -= turns;
+        }
+        if let Some(body) = body {
+            let tilts = ratio * shaft.shapes.tilt_coupling[k];
+            for (shape, tilt) in [(a, body + 3), (b, body + 4)] {
+                all.gyroscopic[(shape, tilt)] -= tilts;
+                all.gyroscopic[(tilt, shape)] += tilts;
+            }
+        }
+        // −c (q̇ − Ω × q).
+        all.circulating[(a, b)] += ratio * shaft.internal_damping;
+        all.circulating[(b, a)] -= ratio * shaft.internal_damping;
+    }
+    for i in first..first + shaft.amplitudes() {
+        all.damping[(i, i)] += shaft.damping + shaft.internal_damping;
+    }
+}
+
+/// Dashpots of connections over the unknowns.
+fn dashpots(model: &Model, here: &Evaluation, moved: &[Moved]) -> DMatrix<f64> {
+    let mut here = here.clone();
+    for connection in &model.assembly.connections {
+        add_damping(model, connection, &mut here);
+    }
+    onto_unknowns(model, moved, &mut here);
+    here.stiffness
+}
+
+/// Names of bodies that are loaded and of sections, and y, z and tilts of each for a unit of every unknown.
+fn told(model: &Model, still: &StaticAssembly, moved: &[Moved]) -> (Vec<String>, DMatrix<f64>) {
+    let size = model.scale.len();
+    let mut places = Vec::new();
+    let mut rows: Vec<DMatrix<f64>> = Vec::new();
+    for (body, first, _) in model.loaded() {
+        places.push(still.bodies[body].name.clone());
+        rows.push(DMatrix::from_fn(STATION, size, |i, j| f64::from(j == first + 1 + i)));
+    }
+    let sections = still.bodies.iter().filter(|body| matches!(body.place, Place::Section(_)));
+    for (body, moved) in sections.zip(moved) {
+        places.push(body.name.clone());
+        let mut row = DMatrix::zeros(STATION, size);
+        for &(column, to) in &moved.columns {
+            for i in 0..STATION {
+                row[(i, to)] = moved.motion[(1 + i, column)];
+            }
+        }
+        rows.push(row);
+    }
+    let whole =
+        DMatrix::from_fn(STATION * rows.len(), size, |i, j| rows[i / STATION][(i % STATION, j)]);
+    (places, whole)
+}
