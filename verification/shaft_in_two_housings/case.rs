@@ -1,7 +1,5 @@
 //! A rigid shaft on two bearings in two housings, by equilibria, in shapes and in explicit steps.
 
-mod parts;
-
 use std::f64::consts::TAU;
 use std::time::Instant;
 
@@ -17,10 +15,10 @@ use bearing_dynamics::solver::housing::course_search::CourseSearch;
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
-use crate::housings::assumptions;
+use crate::housed_shaft::Shaft;
+use crate::housings::{SHAFT_IN_TWO_HOUSINGS, assumptions};
 use crate::motion::{column, done};
 use crate::solids::largest;
-use parts::Shaft;
 
 pub const CASE: Case = Case {
     id: "shaft_in_two_housings",
@@ -100,14 +98,17 @@ fn statics(context: &mut CaseContext) -> Result<(), CaseError> {
         ("end = \"2 ms\"", "end = \"3 ms\""),
         ("output_interval = \"5 us\"", "output_interval = \"1 ms\""),
     ];
-    let shaft = Shaft::new(&slow)?;
+    let shaft = Shaft::new(SHAFT_IN_TWO_HOUSINGS, &slow)?;
     let bores = shaft.bores()?;
     let session = done(shaft.quasi_static(&bores)?, &shaft.request()?)?;
     let series = session.series()?;
     let mut apart = 0.0f64;
     for (row, load) in LOADS.iter().enumerate() {
         let constant = format!("z = {{ load = \"{load} N\" }}");
-        let still = Shaft::new(&[&[(BLOW, constant.as_str())], &slow[1..]].concat())?;
+        let still = Shaft::new(
+            SHAFT_IN_TWO_HOUSINGS,
+            &[&[(BLOW, constant.as_str())], &slow[1..]].concat(),
+        )?;
         let course = still.course(&bores)?;
         let mut lists = still.scene.statics()?;
         course.seats.iter().for_each(|seat| seat.add_to(&mut lists, 0.0));
@@ -146,18 +147,19 @@ fn blow(context: &mut CaseContext) -> Result<(), CaseError> {
             ("output_interval = \"5 us\"", "output_interval = \"50 us\""),
         ]
     };
-    let shaft = Shaft::new(&with("method = \"quasi-static\""))?;
+    let shaft = Shaft::new(SHAFT_IN_TWO_HOUSINGS, &with("method = \"quasi-static\""))?;
     let bores = shaft.bores()?;
     let start = Instant::now();
     let session = done(shaft.quasi_static(&bores)?, &shaft.request()?)?;
     let course = Way::new(&session, start)?;
     let estimates = estimates(&shaft, &bores)?;
 
-    let shaft = Shaft::new(&with("method = \"reduced\""))?;
+    let shaft = Shaft::new(SHAFT_IN_TWO_HOUSINGS, &with("method = \"reduced\""))?;
     let start = Instant::now();
     let shapes = Way::new(&done(shaft.reduced()?, &shaft.request()?)?, start)?;
 
-    let shaft = Shaft::new(&with("method = \"explicit\"\nstart = \"equilibrium\""))?;
+    let shaft =
+        Shaft::new(SHAFT_IN_TWO_HOUSINGS, &with("method = \"explicit\"\nstart = \"equilibrium\""))?;
     let start = Instant::now();
     let parts = Parts::Housed(Box::new(shaft.explicit(1)?));
     let before = momentum_at_start(&shaft)?;
@@ -333,7 +335,7 @@ fn threads(context: &mut CaseContext, words: &[(&str, &str)]) -> Result<(), Case
     let mut short = words.to_vec();
     short.retain(|(from, _)| !from.starts_with("end"));
     short.push(("end = \"2 ms\"", "end = \"0.3 ms\""));
-    let shaft = Shaft::new(&short)?;
+    let shaft = Shaft::new(SHAFT_IN_TWO_HOUSINGS, &short)?;
     let bits = |threads: usize| -> Result<Vec<u64>, CaseError> {
         let parts = Parts::Housed(Box::new(shaft.explicit(threads)?));
         let series = done(parts, &shaft.request()?)?.series()?;

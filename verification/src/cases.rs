@@ -72,6 +72,8 @@ mod rod_wave;
 mod ross_comparison;
 #[path = "../rotating_load_orbit/case.rs"]
 mod rotating_load_orbit;
+#[path = "../rotor_in_housings_4_3/case.rs"]
+mod rotor_in_housings_4_3;
 #[path = "../rotor_run_up_4_3_4/case.rs"]
 mod rotor_run_up_4_3_4;
 #[path = "../rubber_cube_2_3_1/case.rs"]
@@ -121,6 +123,7 @@ pub const CASES: &[Case] = &[
     misalignment_moment::CASE,
     misalignment_on_bushing_3_4_5::CASE,
     dent_3_4_4::CASE,
+    rotor_in_housings_4_3::CASE,
     rotor_run_up_4_3_4::CASE,
     settling_and_turning::CASE,
     varying_compliance_statics::CASE,

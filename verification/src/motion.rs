@@ -38,6 +38,7 @@ pub const RACE_INERTIA: (&str, &str, &str) = (
 );
 
 /// The shipped scene of the rotor of 4.3.4.
+pub const ROTOR_IN_PILLOW_BLOCKS: &str = include_str!("../../scenes/rotor_in_pillow_blocks.toml");
 pub const ROTOR_RUN_UP: &str = include_str!("../../scenes/rotor_run_up.toml");
 
 /// An inner race of [`RACE_INERTIA`] under constant loads.

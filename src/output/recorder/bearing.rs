@@ -12,6 +12,7 @@ use crate::solver::dynamics::assembly::{Assembly, BallMeeting, Bearing};
 use crate::solver::dynamics::ball_set::BallSet;
 use crate::solver::dynamics::race::{RaceLoads, RaceNow, tilts_of};
 use crate::solver::dynamics::run::{Simulation, Snapshot};
+use crate::solver::dynamics::shaft::ElasticShaft;
 use crate::solver::dynamics::state::{Ledger, POSITION, SPIN, VELOCITY};
 use crate::solver::mount::Mount;
 use crate::solver::plan::Stage;
@@ -314,17 +315,23 @@ fn add_columns(
             let own = RACE_COLUMNS.map(|(name, unit)| Column::new(format!("{label}_{name}"), unit));
             columns.extend(own);
         }
-        for shaft in &assembly.shafts {
-            let label = assembly.bodies[shaft.body].label.as_deref().unwrap_or("shaft");
-            let of = |name: &str, axis| Column::new(format!("{label}_{name}_{axis}"), "m");
-            columns
-                .extend(shaft.watched.iter().flat_map(|(name, _)| [of(name, "y"), of(name, "z")]));
-        }
+        columns.extend(watched_columns(assembly));
     }
     if group == ChannelGroup::Forces {
         let labels = assembly.connections.iter().filter_map(|joint| joint.label.as_ref());
         columns.extend(labels.flat_map(|label| connection_columns(label)));
     }
+}
+
+/// Of sections of bodies that bend.
+pub(super) fn watched_columns(assembly: &Assembly) -> Vec<Column> {
+    let of_shaft = |shaft: &ElasticShaft| {
+        let label = assembly.bodies[shaft.body].label.as_deref().unwrap_or("shaft");
+        let of = |name: &str, axis| Column::new(format!("{label}_{name}_{axis}"), "m");
+        let names = shaft.watched.iter();
+        names.flat_map(|(name, _)| [of(name, "y"), of(name, "z")]).collect::<Vec<_>>()
+    };
+    assembly.shafts.iter().flat_map(of_shaft).collect()
 }
 
 /// Load on the second body of a connection with this label.

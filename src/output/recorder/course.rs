@@ -4,6 +4,7 @@ use super::Recorder;
 use super::seat::{SeatRow, prefix, seat_columns};
 use crate::output::series::Column;
 use crate::solver::housing::course::{Course, CourseProblem};
+use crate::solver::mount::Mount;
 
 /// Of the bearings, the bodies besides them, and the housings; with the loads of balls or without.
 pub(super) fn columns(problem: &CourseProblem, with_loads: bool) -> Vec<Column> {
@@ -20,6 +21,7 @@ pub(super) fn columns(problem: &CourseProblem, with_loads: bool) -> Vec<Column> 
         place(format!("{}{}", bearings[bearing].prefix(), RACES[side]));
     }
     problem.assembly.bodies.iter().filter_map(|body| body.label.clone()).for_each(place);
+    columns.extend(super::bearing::watched_columns(&problem.assembly));
     for bearing in bearings {
         for race in RACES {
             let name = |axis| format!("{}contact_force_on_{race}_{axis}", bearing.prefix());
@@ -71,6 +73,13 @@ impl Recorder {
         for (index, body) in problem.assembly.bodies.iter().enumerate() {
             if body.label.is_some() {
                 self.values.extend(place(found.place(&problem.assembly, index)));
+            }
+        }
+        for (index, shaft) in problem.assembly.shafts.iter().enumerate() {
+            for (_, section) in &shaft.watched {
+                let at = problem.section(found, index, section, &Mount::at_centre(shaft.body));
+                let [_, y, z] = at.state.position;
+                self.values.extend([y, z]);
             }
         }
         for force in found.bearings.iter().flat_map(|bearing| &bearing.forces) {

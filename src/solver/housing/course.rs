@@ -14,7 +14,8 @@ use crate::kinematics::vec3::{Vec3, scale};
 use crate::solver::dynamics::assembly::{Assembly, Body};
 use crate::solver::dynamics::equilibrium::{conditions, orbital_angle, static_assembly};
 use crate::solver::dynamics::model::Drive;
-use crate::solver::dynamics::race::{fixed, mounted, tilts_of};
+use crate::solver::dynamics::race::{RaceNow, fixed, mounted, tilts_of};
+use crate::solver::dynamics::shaft::{Bend, Section};
 use crate::solver::mount::Mount;
 use crate::solver::plan::Stage;
 use crate::solver::plan::tally::Ran;
@@ -172,8 +173,15 @@ impl<'b> CourseProblem<'b> {
         let of = &self.assembly.bearings[bearing];
         let mount = &of.mounts[side];
         let mut at = found.place(&self.assembly, mount.body);
-        if !mount.is_direct() {
-            let race = mounted(&fixed(&at), mount);
+        let shaft = self.assembly.shafts.iter().position(|shaft| shaft.body == mount.body);
+        if shaft.is_some() || !mount.is_direct() {
+            let race = match shaft {
+                Some(shaft) => {
+                    let section = self.assembly.shafts[shaft].shapes.section(mount.along);
+                    self.section(found, shaft, &section, mount)
+                }
+                None => mounted(&fixed(&at), mount),
+            };
             // In the scene's axes, whichever way round it is put in.
             let axis = scale(race.motion.axis, if mount.reversed { -1.0 } else { 1.0 });
             let ([x, y, z], [tilt_y, tilt_z]) = (race.state.position, tilts_of(axis));
@@ -181,6 +189,21 @@ impl<'b> CourseProblem<'b> {
         }
         at[0] -= self.assembly.place_of(of);
         at
+    }
+
+    /// A section of a body that bends, and what sits there as `mount` says.
+    pub fn section(
+        &self,
+        found: &AssemblySolution,
+        shaft: usize,
+        section: &Section,
+        mount: &Mount,
+    ) -> RaceNow {
+        let of = &self.assembly.shafts[shaft];
+        let mut entries = found.amplitudes[shaft].clone();
+        entries.resize(of.entries(), 0.0);
+        let body = fixed(&found.place(&self.assembly, of.body));
+        section.place(&body, mount, &Bend::of(of.count(), &entries)).race
     }
 
     /// Whether a race of a bearing may move.

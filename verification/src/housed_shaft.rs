@@ -1,4 +1,4 @@
-//! From the shipped scene, with words changed, to what a session moves in each of three ways.
+//! From a shipped scene of a shaft in housings, with words changed, to its equilibrium and what a session moves in each of three ways.
 
 use bearing_dynamics::output::session::{CourseParts, HousedParts, Parts, RunRequest};
 use bearing_dynamics::scene::assembly::AssemblyScene;
@@ -10,6 +10,7 @@ use bearing_dynamics::solver::dynamics::equilibrium::static_assembly;
 use bearing_dynamics::solver::dynamics::run::{RunOptions, Start};
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
 use bearing_dynamics::solver::housing::course::{CourseProblem, CourseSeat};
+use bearing_dynamics::solver::housing::course_search::CourseSearch;
 use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, SolidPart};
 use bearing_dynamics::solver::housing::reduce::{LEFT_OUT, ReduceOptions, pressed, reduce};
 use bearing_dynamics::solver::housing::reduced_start::{
@@ -17,10 +18,11 @@ use bearing_dynamics::solver::housing::reduced_start::{
 };
 use bearing_dynamics::solver::housing::seat::Seat;
 use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::statics::{StaticOptions, solve_assembly};
+use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::static_assembly::StaticAssembly;
+use bearing_dynamics::solver::statics::{AssemblySolution, StaticOptions, solve_assembly};
 
 use crate::case::CaseError;
-use crate::housings::SHAFT_IN_TWO_HOUSINGS;
 use crate::motion;
 
 /// Natural shapes of the housings up to this, Hz, and the force that shapes are made for, N.
@@ -39,9 +41,9 @@ pub struct Shaft {
 }
 
 impl Shaft {
-    /// The shipped scene with these words changed.
-    pub fn new(changes: &[(&str, &str)]) -> Result<Shaft, CaseError> {
-        let scene = motion::changed_scene(SHAFT_IN_TWO_HOUSINGS, changes)?;
+    /// A shipped scene with these words changed.
+    pub fn new(shipped: &str, changes: &[(&str, &str)]) -> Result<Shaft, CaseError> {
+        let scene = motion::changed_scene(shipped, changes)?;
         let mut housings = Vec::new();
         for scene in scene.bearings.iter().filter_map(|placed| placed.housed()) {
             let built = build_housing(&scene)?;
@@ -73,6 +75,22 @@ impl Shaft {
         };
         let seats = self.housings.iter().zip(bores).enumerate().map(seat).collect();
         Ok(CourseProblem { assembly: self.scene.assembly()?, seats })
+    }
+
+    /// Everything at rest under the loads at t = 0, races grown into their fits.
+    pub fn statics(
+        &self,
+        bores: &[CondensedBore],
+    ) -> Result<(StaticAssembly<'static>, AssemblySolution), CaseError> {
+        let course = self.course(bores)?;
+        let still = self.scene.statics()?;
+        let mut lists: StaticAssembly = still.clone();
+        for (of, mut seat) in self.housings.iter().zip(course.seats.clone()) {
+            seat.radius = Profile::Constant(of.setup.fit(&of.scene).radius);
+            seat.add_to(&mut lists, 0.0);
+        }
+        let found = CourseSearch::of(&course.seats).solve(&lists)?;
+        Ok((still, found))
     }
 
     pub fn quasi_static<'b>(&'b self, bores: &'b [CondensedBore]) -> Result<Parts<'b>, CaseError> {
