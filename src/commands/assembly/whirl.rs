@@ -60,7 +60,9 @@ impl Spinning {
         let within = |of: &Critical| of.speed <= 2.0 * top.abs() && is_whirl(&of.whirl);
         let critical = critical.into_iter().filter(within).collect();
         let mut campbell = model.campbell(&speeds, LINES)?;
-        campbell.lines.retain(|line| line.iter().all(is_whirl));
+        // Where a motion along the axis crosses one across it, the two are one for a while.
+        let across = |line: &Vec<Whirl>| line.iter().filter(|whirl| is_whirl(whirl)).count();
+        campbell.lines.retain(|line| 2 * across(line) > line.len());
         let first = campbell.lines.len().min(2);
         let near =
             |line: &Vec<Whirl>| line.iter().any(|whirl| whirl.frequency() <= FAR * top.abs());

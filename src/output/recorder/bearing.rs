@@ -84,9 +84,10 @@ impl Recorder {
                 self.bearing(group, simulation, (set, bearing), before, at);
             }
             if group == ChannelGroup::Races {
-                for (body, now) in system.assembly.bodies.iter().zip(&system.bodies) {
+                let bodies = system.assembly.bodies.iter().zip(&system.bodies);
+                for (index, (body, now)) in bodies.enumerate() {
                     if body.label.is_some() {
-                        self.race(now, 0.0, 1.0);
+                        self.race(now, system.assembly.origin_of(index), 1.0);
                     }
                 }
                 for (index, shaft) in system.assembly.shafts.iter().enumerate() {

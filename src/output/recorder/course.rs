@@ -72,7 +72,9 @@ impl Recorder {
         }
         for (index, body) in problem.assembly.bodies.iter().enumerate() {
             if body.label.is_some() {
-                self.values.extend(place(found.place(&problem.assembly, index)));
+                let mut at = found.place(&problem.assembly, index);
+                at[0] -= problem.assembly.origin_of(index);
+                self.values.extend(place(at));
             }
         }
         for (index, shaft) in problem.assembly.shafts.iter().enumerate() {

@@ -249,6 +249,8 @@ impl Assembly {
         let sits = |bearing: &&Bearing| bearing.mounts.iter().any(|mount| mount.body == body);
         match self.bearings.iter().find(sits) {
             Some(bearing) if self.bodies[body].label.is_none() => self.place_of(bearing),
+            // One that bends stands where its mass has its centre.
+            _ if self.shafts.iter().any(|shaft| shaft.body == body) => self.bodies[body].rest[0],
             _ => 0.0,
         }
     }
