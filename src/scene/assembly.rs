@@ -187,8 +187,8 @@ pub struct BushingInElements {
 pub enum BushingStepping {
     /// Four-node elements, by this part of the longest stable step.
     Explicit { fraction: f64 },
-    /// Ten-node elements, by at most so many seconds.
-    Implicit { step: f64 },
+    /// Ten-node elements, by at most so many seconds, or as long as bodies and rubber go without each other.
+    Implicit { step: Option<f64> },
 }
 
 impl AssemblyScene {

@@ -35,7 +35,7 @@ pub enum Solved {
     /// Four-node elements of the same corners, by this part of the longest stable step.
     Explicit { body: Box<RubberBody>, fraction: f64 },
     /// By at most so many seconds.
-    Implicit { step: f64 },
+    Implicit { step: Option<f64> },
 }
 
 /// What bushings in elements cannot be made of.
@@ -58,11 +58,15 @@ pub fn take_bushings(
     let mut found = Vec::new();
     let mut kept = Vec::with_capacity(assembly.connections.len());
     let connections = std::mem::take(&mut assembly.connections);
-    for (spring, connection) in scene.springs.iter().zip(connections) {
-        let of = spring.bushing.as_deref();
-        match of.and_then(|of| Some((of, of.elements?))) {
+    for connection in connections {
+        let spring = scene.springs.iter().find(|of| connection.label.as_ref() == Some(&of.name));
+        let in_elements = spring.and_then(|spring| {
+            let of = spring.bushing.as_deref()?;
+            Some((spring, of, of.elements?))
+        });
+        match in_elements {
             None => kept.push(connection),
-            Some((of, elements)) => {
+            Some((spring, of, elements)) => {
                 let made = made(scene, spring, (of, elements), connection);
                 let name = spring.name.clone();
                 let made = made.map_err(|reason| BushingError { name, reason })?;
@@ -186,7 +190,7 @@ impl BushingElements {
     ///
     /// # Errors
     /// As [`RubberBody::implicit`].
-    pub fn in_implicit_steps(&self, step: f64) -> Result<BushingElements, RubberError> {
+    pub fn in_implicit_steps(&self, step: Option<f64>) -> Result<BushingElements, RubberError> {
         let mut same = BushingElements { solved: Solved::Implicit { step }, ..self.clone() };
         if let Solved::Explicit { body, .. } = &self.solved {
             same.model = body.implicit()?;

@@ -72,8 +72,7 @@ pub(super) fn bushing(
             Some(BushingStepping::Explicit { fraction })
         }
         Some("implicit") => {
-            let step = reader.given_number("spring.bushing.step").unwrap_or(f64::MAX);
-            Some(BushingStepping::Implicit { step })
+            Some(BushingStepping::Implicit { step: reader.given_number("spring.bushing.step") })
         }
         _ => None,
     };
