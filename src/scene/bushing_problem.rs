@@ -27,6 +27,7 @@ pub struct BushingElements {
     pub solved: Solved,
     sleeves: [Sleeve; 2],
     spring: Connection,
+    window_phase: f64,
 }
 
 /// How the elements of a bushing are stepped.
@@ -130,7 +131,8 @@ fn made(
         }
     };
     let (name, spring) = (spring.name.clone(), connection);
-    Ok(BushingElements { name, model, solved, sleeves, spring })
+    let window_phase = elements.window_phase;
+    Ok(BushingElements { name, model, solved, sleeves, spring, window_phase })
 }
 
 /// Every component of the nodes of a sleeve; bodies say where they are.
@@ -183,7 +185,8 @@ impl BushingElements {
             }
         };
         let (name, sleeves) = (self.name.clone(), self.sleeves.clone());
-        BondedPart { name, sleeves, spring: self.spring.clone(), elements }
+        let (spring, window_phase) = (self.spring.clone(), self.window_phase);
+        BondedPart { name, sleeves, spring, elements, window_phase }
     }
 
     /// The same elements in implicit steps of at most so many seconds: what explicit steps are held against.

@@ -9,7 +9,7 @@ use bearing_dynamics::scene::bushing_problem::{BushingElements, take_bushings};
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
 use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::run::RunOptions;
-use bearing_dynamics::solver::housing::exchange::ExchangeOptions;
+use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions};
 use bearing_dynamics::solver::profile::Profile;
 
 const SHIPPED: &str = include_str!("../../scenes/bearing_on_bushing.toml");
@@ -75,7 +75,7 @@ impl Made {
             solids: Vec::new(),
             seats: Vec::new(),
             bushings: self.bushings.iter().map(BushingElements::part).collect(),
-            options: ExchangeOptions::on_rubber(0.2, bearing),
+            options: ExchangeOptions::on_rubber(bearing),
             threads: 1,
         }))
     }
@@ -158,6 +158,21 @@ fn the_ledger_of_bearing_and_rubber_closes() {
             assert!(beyond >= adds[0] && beyond <= adds[1], "{method} {blow}: {beyond}");
         }
     }
+}
+
+/// Each bushing says how long windows may be.
+#[test]
+fn windows_follow_the_phase_of_the_bushing() {
+    let window = |phase: &str| {
+        let own = format!("length = \"20 mm\"\nwindow_phase = {phase}\ntable");
+        let made =
+            Made::of(&changed("explicit", COARSE, ("length = \"20 mm\"\ntable", &own)), 2e-4);
+        let Parts::Housed(parts) = made.parts() else { panic!("no bushing") };
+        let HousedParts { assembly, bushings, options, .. } = *parts;
+        let (solids, seats) = (Vec::new(), Vec::new());
+        Exchange::with_bushings(assembly, solids, seats, bushings, &options).unwrap().window
+    };
+    assert!((window("0.3") / window("0.1") - 3.0).abs() <= 1e-9);
 }
 
 /// A third of the nodes of a sleeve pull at their body twice: at small strain too the ledger ends such a run.

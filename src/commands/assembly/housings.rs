@@ -172,14 +172,11 @@ fn parts<'p>(
     }
     // All together are balanced, not the bearings alone.
     let bearing = RunOptions { energy_limit: f64::INFINITY, ..run.options };
-    // One window for all: the shortest that any of them asks for.
-    let of_housings = first.map(|of| of.window_phase);
-    let seat_phase = of_housings.into_iter().chain(scene.window_phase()).reduce(f64::min);
-    let options = ExchangeOptions {
-        solid_fraction: first.map_or(1.0, |of| of.step_fraction),
-        seat_phase: seat_phase.ok_or("no housing and no bushing to exchange impulses with")?,
+    let options = first.map_or(ExchangeOptions::on_rubber(bearing), |of| ExchangeOptions {
+        solid_fraction: of.step_fraction,
+        seat_phase: of.window_phase,
         bearing,
-    };
+    });
     Ok(HousedParts { assembly, solids, seats, bushings: Vec::new(), options, threads })
 }
 

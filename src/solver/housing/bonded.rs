@@ -34,6 +34,8 @@ pub struct BondedPart<'p> {
     /// The springs that it is like, whose equilibrium a run starts from: with the relaxed stiffness of the elements.
     pub spring: Connection,
     pub elements: BondedElements<'p>,
+    /// How far a body may swing on it in a window, rad.
+    pub window_phase: f64,
 }
 
 /// Nodes of a bushing that a body carries.
@@ -129,6 +131,7 @@ pub struct BondedBushing<'p> {
     pub(super) most: Option<f64>,
     /// Against a sudden shift (N/m) and turn (N·m/rad) of a body.
     pub(super) stiffness: [f64; 2],
+    pub(super) window_phase: f64,
 }
 
 /// What a bushing does to the body of a sleeve.
@@ -295,9 +298,17 @@ impl<'p> BondedBushing<'p> {
                 (BondedRubber::Explicit(Box::new(solid)), Some(step))
             }
         };
-        let (name, stiffness) = (part.name, sudden_stiffness(&part.spring));
-        let (steps, step) = (1, 0.0);
-        Ok(BondedBushing { name, sleeves, second, rubber, steps, step, most, stiffness })
+        Ok(BondedBushing {
+            stiffness: sudden_stiffness(&part.spring),
+            window_phase: part.window_phase,
+            name: part.name,
+            steps: 1,
+            step: 0.0,
+            sleeves,
+            second,
+            rubber,
+            most,
+        })
     }
 
     /// Loads of the rubber at rest, as if they had lasted.

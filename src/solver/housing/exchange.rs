@@ -48,15 +48,15 @@ impl SolidPart {
 pub struct ExchangeOptions {
     /// Steps of the solids, as a fraction of their stability limit with the contact closed.
     pub solid_fraction: f64,
-    /// Windows, as ωH of a body on all of its seats; stable below 2.
+    /// Windows, as ωH of a body on all of its seats; stable below 2. Bushings have phases of their own.
     pub seat_phase: f64,
     pub bearing: RunOptions,
 }
 
 impl ExchangeOptions {
-    /// Of bushings without a housing beside them, a body swinging on them by so much (rad) in a window.
-    pub fn on_rubber(seat_phase: f64, bearing: RunOptions) -> ExchangeOptions {
-        ExchangeOptions { solid_fraction: 1.0, seat_phase, bearing }
+    /// Of bushings without a housing beside them.
+    pub fn on_rubber(bearing: RunOptions) -> ExchangeOptions {
+        ExchangeOptions { solid_fraction: 1.0, seat_phase: 1.0, bearing }
     }
 }
 
