@@ -148,6 +148,18 @@ fn the_ledger_of_bearing_and_rubber_closes() {
             let part = session.watch.largest_residual / session.watch.turned_over;
             // A tenth of what a run allows that does not say.
             assert!(part <= 1e-3, "{method} {blow}: {part}");
+            // Its columns sum up to what is unaccounted for: every joule has a name.
+            let names = ["strain", "maxwell", "kinetic", "dissipated", "finite_strain"];
+            let mut sum = column(&session, "energy_residual");
+            for name in names.map(|of| format!("mount_energy_{of}")).iter().map(String::as_str) {
+                sum.iter_mut().zip(column(&session, name)).for_each(|(sum, of)| *sum += of);
+            }
+            let work = column(&session, "mount_work_on_bodies");
+            let residual = column(&session, "energy_coupled_residual");
+            for ((sum, work), residual) in sum.iter().zip(work).zip(residual) {
+                let off = (sum + work - residual).abs();
+                assert!(off <= 1e-9 * session.watch.turned_over, "{method} {blow}: {off}");
+            }
             let lost = column(&session, "mount_energy_dissipated");
             let all = *lost.last().unwrap();
             assert!(all > 0.01, "{method} {blow}: {lost:?}");

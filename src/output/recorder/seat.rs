@@ -155,7 +155,8 @@ impl Recorder {
             let RaceLoads { force, moment } = of.loads[bushing.second];
             values.extend(force.into_iter().chain(moment));
             values.extend([of.network, of.springs, of.kinetic]);
-            values.extend([of.dissipated, of.beyond, of.work]);
+            // Up to where the rubber has the bodies, so that the columns sum up to the residual.
+            values.extend([of.dissipated, of.beyond, of.work + of.to_come]);
         }
         values.push(residual);
         values.extend(housed.seats().flat_map(|seat| seat.impulse));
