@@ -7,10 +7,11 @@ use bearing_dynamics::scene::bushing_reach::{PART, reach};
 use bearing_dynamics::solver::clock::{to_digits, told};
 use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
 
-/// How far a bushing may move before the springs that stand for it stop holding; one line for each.
+/// How far a bushing may move before the springs that stand for it stop holding; one line for each that is not solved in
+/// elements.
 pub fn of_bushings(scene: &AssemblyScene) -> Vec<String> {
     let said = |spring: &Spring| {
-        let of = spring.bushing.as_ref()?;
+        let of = spring.bushing.as_ref().filter(|of| of.elements.is_none())?;
         let part = 100.0 * PART;
         Some(match reach(of) {
             Ok(all) => {

@@ -249,7 +249,17 @@ pub fn at_rest(scene: &AssemblyScene) -> impl Iterator<Item = String> {
             (false, false) => None,
         }
     });
-    springs.chain(foundations)
+    let in_elements = scene
+        .springs
+        .iter()
+        .filter(|spring| spring.bushing.as_deref().is_some_and(|of| of.elements.is_some()));
+    let in_elements = in_elements.map(|spring| {
+        format!(
+            "bushing {}: its fitted springs stand for its elements here; a run starts where the elements are in equilibrium",
+            spring.name
+        )
+    });
+    springs.chain(foundations).chain(in_elements)
 }
 
 /// With the name of the bearing that they are about.

@@ -187,8 +187,8 @@ pub struct BushingInElements {
 pub enum BushingStepping {
     /// Four-node elements, by this part of the longest stable step.
     Explicit { fraction: f64 },
-    /// Ten-node elements, by at most so many seconds.
-    Implicit { step: f64 },
+    /// Ten-node elements, by at most so many seconds, or as long as bodies and rubber go without each other.
+    Implicit { step: Option<f64> },
 }
 
 impl AssemblyScene {
@@ -238,16 +238,10 @@ impl AssemblyScene {
         housings.next().map(|housing| housing.settings.method)
     }
 
-    /// How far bodies may swing on bushings in elements between two exchanges with them, rad; `None` where there are no
-    /// such bushings.
-    pub fn window_phase(&self) -> Option<f64> {
-        let bushings = self.springs.iter().filter_map(|spring| spring.bushing.as_deref());
-        bushings.filter_map(|of| Some(of.elements?.window_phase)).reduce(f64::min)
-    }
-
     /// Whether elements of rubber move beside the bearings.
     pub fn has_bushings_in_elements(&self) -> bool {
-        self.window_phase().is_some()
+        let mut bushings = self.springs.iter().filter_map(|spring| spring.bushing.as_deref());
+        bushings.any(|of| of.elements.is_some())
     }
 
     pub fn run(&self) -> Option<&RunSettings> {

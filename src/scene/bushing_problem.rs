@@ -27,6 +27,7 @@ pub struct BushingElements {
     pub solved: Solved,
     sleeves: [Sleeve; 2],
     spring: Connection,
+    window_phase: f64,
 }
 
 /// How the elements of a bushing are stepped.
@@ -35,7 +36,7 @@ pub enum Solved {
     /// Four-node elements of the same corners, by this part of the longest stable step.
     Explicit { body: Box<RubberBody>, fraction: f64 },
     /// By at most so many seconds.
-    Implicit { step: f64 },
+    Implicit { step: Option<f64> },
 }
 
 /// What bushings in elements cannot be made of.
@@ -58,11 +59,15 @@ pub fn take_bushings(
     let mut found = Vec::new();
     let mut kept = Vec::with_capacity(assembly.connections.len());
     let connections = std::mem::take(&mut assembly.connections);
-    for (spring, connection) in scene.springs.iter().zip(connections) {
-        let of = spring.bushing.as_deref();
-        match of.and_then(|of| Some((of, of.elements?))) {
+    for connection in connections {
+        let spring = scene.springs.iter().find(|of| connection.label.as_ref() == Some(&of.name));
+        let in_elements = spring.and_then(|spring| {
+            let of = spring.bushing.as_deref()?;
+            Some((spring, of, of.elements?))
+        });
+        match in_elements {
             None => kept.push(connection),
-            Some((of, elements)) => {
+            Some((spring, of, elements)) => {
                 let made = made(scene, spring, (of, elements), connection);
                 let name = spring.name.clone();
                 let made = made.map_err(|reason| BushingError { name, reason })?;
@@ -126,7 +131,8 @@ fn made(
         }
     };
     let (name, spring) = (spring.name.clone(), connection);
-    Ok(BushingElements { name, model, solved, sleeves, spring })
+    let window_phase = elements.window_phase;
+    Ok(BushingElements { name, model, solved, sleeves, spring, window_phase })
 }
 
 /// Every component of the nodes of a sleeve; bodies say where they are.
@@ -179,14 +185,15 @@ impl BushingElements {
             }
         };
         let (name, sleeves) = (self.name.clone(), self.sleeves.clone());
-        BondedPart { name, sleeves, spring: self.spring.clone(), elements }
+        let (spring, window_phase) = (self.spring.clone(), self.window_phase);
+        BondedPart { name, sleeves, spring, elements, window_phase }
     }
 
     /// The same elements in implicit steps of at most so many seconds: what explicit steps are held against.
     ///
     /// # Errors
     /// As [`RubberBody::implicit`].
-    pub fn in_implicit_steps(&self, step: f64) -> Result<BushingElements, RubberError> {
+    pub fn in_implicit_steps(&self, step: Option<f64>) -> Result<BushingElements, RubberError> {
         let mut same = BushingElements { solved: Solved::Implicit { step }, ..self.clone() };
         if let Solved::Explicit { body, .. } = &self.solved {
             same.model = body.implicit()?;

@@ -5,6 +5,7 @@ use crate::mesh::generate::{Bushing, BushingMesh, Part, bushing as mesh_of};
 use crate::scene::assembly::{BushingInElements, BushingOfSpring, BushingStepping};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::Reader;
+use crate::scene::resolve_contact::refuse_strangers;
 use crate::scene::resolve_rubber::rubber;
 use crate::solver::dynamics::connection::SpringDashpot;
 use crate::solver::solid::rubber::prony::{BushingSpring, bushing_spring};
@@ -66,14 +67,15 @@ pub(super) fn bushing(
     let spring = fitted(&of)
         .map_err(|(key, error)| refused(key, error, "check its dimensions, cells and rubber"))?;
     of.misses = spring.misses;
-    let stepping = match reader.choice("spring.bushing.method") {
-        Some("explicit") => {
+    let method = reader.choice("spring.bushing.method").unwrap_or("reduced");
+    refuse_strangers(reader, ("method", method), OF_METHODS)?;
+    let stepping = match method {
+        "explicit" => {
             let fraction = reader.number("spring.bushing.step_fraction").unwrap_or(0.8);
             Some(BushingStepping::Explicit { fraction })
         }
-        Some("implicit") => {
-            let step = reader.given_number("spring.bushing.step").unwrap_or(f64::MAX);
-            Some(BushingStepping::Implicit { step })
+        "implicit" => {
+            Some(BushingStepping::Implicit { step: reader.given_number("spring.bushing.step") })
         }
         _ => None,
     };
@@ -84,6 +86,14 @@ pub(super) fn bushing(
     });
     Ok(Some((of, spring.law)))
 }
+
+/// Keys that not every method uses, and which do.
+const OF_METHODS: &[(&str, &[&str])] = &[
+    ("spring.bushing.density", &["explicit", "implicit"]),
+    ("spring.bushing.window_phase", &["explicit", "implicit"]),
+    ("spring.bushing.step_fraction", &["explicit"]),
+    ("spring.bushing.step", &["implicit"]),
+];
 
 /// Bushings that were fitted last: a sweep reads one scene many times, and a fit takes a second.
 static FITTED: Mutex<Vec<(BushingOfSpring, BushingSpring)>> = Mutex::new(Vec::new());

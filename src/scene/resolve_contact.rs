@@ -27,17 +27,21 @@ const DAMPING_KEYS: &[(&str, &[&str])] = &[
     ("contact_damping.slowest", &["lankarani-nikravesh"]),
 ];
 
-/// A key of another law than the chosen one would have no effect.
-fn refuse_strangers(
+/// A key of another law or method than the chosen one would have no effect.
+pub(super) fn refuse_strangers(
     reader: &Reader,
-    law: &str,
+    (what, chosen): (&str, &str),
     keys: &[(&str, &[&str])],
 ) -> Result<(), SceneError> {
-    for (key, laws) in keys {
-        if law != "none" && reader.is_given(key) && !laws.contains(&law) {
-            let own: Vec<String> = laws.iter().map(|law| format!("`law = \"{law}\"`")).collect();
+    for (key, users) in keys {
+        if chosen != "none" && reader.is_given(key) && !users.contains(&chosen) {
+            let own = users.iter().map(|user| format!("`{what} = \"{user}\"`"));
+            let own: Vec<String> = own.collect();
             let advice = format!("leave it out, or choose {}", own.join(" or "));
-            let reason = "the chosen law does not use it";
+            let reason = match what {
+                "law" => "the chosen law does not use it",
+                _ => "the chosen method does not use it",
+            };
             return Err(reader.document.error(key, Problem::NotApplicable { reason, advice }));
         }
     }
@@ -46,7 +50,7 @@ fn refuse_strangers(
 
 pub(crate) fn traction(reader: &mut Reader) -> Result<TractionLaw, SceneError> {
     let law = reader.choice("traction.law").unwrap_or("slide-to-roll");
-    refuse_strangers(reader, law, TRACTION_KEYS)?;
+    refuse_strangers(reader, ("law", law), TRACTION_KEYS)?;
     let because = format!(" with `law = \"{law}\"`");
     Ok(match law {
         "constant" => TractionLaw::Constant {
@@ -127,7 +131,7 @@ fn points(reader: &Reader, because: &str) -> Result<Vec<[f64; 2]>, SceneError> {
 
 pub(crate) fn damping(reader: &mut Reader) -> Result<ContactDamping, SceneError> {
     let law = reader.choice("contact_damping.law").unwrap_or("none");
-    refuse_strangers(reader, law, DAMPING_KEYS)?;
+    refuse_strangers(reader, ("law", law), DAMPING_KEYS)?;
     let because = format!(" with `law = \"{law}\"`");
     Ok(match law {
         "hunt-crossley" => ContactDamping::HuntCrossley {

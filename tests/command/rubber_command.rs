@@ -149,15 +149,17 @@ fn a_run_has_the_forces_of_the_steps_and_relaxes_to_statics() {
         assert!((held[row] + taken[row] - put_in[row]).abs() <= 1e-12 * put_in[20], "{row}");
         assert!(taken[row] >= 0.0, "{row}");
     }
-    // Of that springs hold a part and dashpots took another, and the ledger closes but for the length of steps
-    // (accuracy 1e-3) and strains of 6 %, whose dashpots small strain does not describe to better than a tenth.
-    let [springs, lost, residual] =
-        ["energy_maxwell", "energy_dissipated", "energy_residual"].map(|name| column(&out, name));
+    // Of that springs hold a part and dashpots took another; strains of 6 % add a tenth of their own, and the ledger closes
+    // but for the length of steps (accuracy 1e-3).
+    let [springs, lost, beyond, residual] =
+        ["energy_maxwell", "energy_dissipated", "energy_finite_strain", "energy_residual"]
+            .map(|name| column(&out, name));
     for row in 0..forces.len() {
-        let sum = held[row] + springs[row] + lost[row] - put_in[row];
+        let sum = held[row] + springs[row] + lost[row] + beyond[row] - put_in[row];
+        assert!(beyond[row].abs() <= 0.1 * taken[20], "{row}: {}", beyond[row]);
         assert!((residual[row] - sum).abs() <= 1e-12 * put_in[20], "{row}");
         assert!(
-            residual[row].abs() <= 0.1 * taken[20],
+            residual[row].abs() <= 0.01 * taken[20],
             "{row}: {} of {}",
             residual[row],
             taken[20]

@@ -373,6 +373,38 @@ fn a_run_says_where_it_took_a_bushing_beyond_its_springs() {
     );
 }
 
+/// In elements a bushing has no springs to say of how far they hold; an equilibrium, which takes them nevertheless, says so.
+/// Beside a housing the steps of all are told once.
+#[test]
+fn a_bushing_in_elements_is_told_as_such() {
+    let place = Place::new();
+    let cells = "cells = { around = 6, radial = 2, axial = 2 }";
+    let elements = format!("table = \"3.1\"\nmethod = \"explicit\"\n{cells}");
+    let shipped = include_str!("../../scenes/bearing_on_bushing.toml");
+    assert!(shipped.contains("table = \"3.1\""));
+    let scene = place.scene("elements.toml", &shipped.replace("table = \"3.1\"", &elements));
+    let scene = scene.to_str().unwrap();
+    let plan = said_by(&bearing(&["plan", scene]));
+    assert!(plan.contains("of the bushing mount and steps of the bearing"), "{plan}");
+    assert!(!plan.contains("springs of bushing mount are off"), "{plan}");
+    for command in ["statics", "modes"] {
+        let said = said_by(&bearing(&[command, scene]));
+        assert!(
+            said.contains("bushing mount: its fitted springs stand for its elements here"),
+            "{said}"
+        );
+    }
+    let spring = format!(
+        "[spring.mount]\nfrom = \"ground\"\nto = \"inner_race\"\n\n[spring.mount.bushing]\n\
+         inner_diameter = \"30 mm\"\nouter_diameter = \"50 mm\"\nlength = \"20 mm\"\n{elements}\n\n[numerics]"
+    );
+    let housed = include_str!("../../scenes/housing_impact.toml");
+    let scene = place.scene("both.toml", &housed.replace("[numerics]", &spring));
+    let plan = said_by(&bearing(&["plan", scene.to_str().unwrap()]));
+    let steps: Vec<&str> = plan.lines().filter(|line| line.contains("windows of")).collect();
+    assert!(matches!(steps[..], [one] if one.contains("of the bushing mount")), "{plan}");
+}
+
 fn said_by(output: &Output) -> String {
     assert_eq!(code(output), 0, "{}", stderr(output));
     said(output)

@@ -105,6 +105,11 @@ fn what_cannot_be_is_told() {
             "at most 1500",
         ),
         ([("table = \"3.1\"", "table = \"3.1\"\ncells = { radial = 3 }")], "even"),
+        ([("table = \"3.1\"", "table = \"3.1\"\nwindow_phase = 0.5")], "`method = \"explicit\"`"),
+        (
+            [("table = \"3.1\"", "table = \"3.1\"\nmethod = \"implicit\"\nstep_fraction = 0.5")],
+            "the chosen method does not use it",
+        ),
         ([("to = \"outer_race\"", "to = \"outer_rac\"")], "no body"),
         ([("to = \"outer_race\"", "to = \"right.outer_race\"")], "no body"),
         (

@@ -84,7 +84,7 @@ fn scene(held: Held, tilt: bool) -> Result<AssemblyScene, CaseError> {
         ("output_interval = \"0.1 ms\"", "output_interval = \"0.5 ms\""),
         (
             "plots = [\"series\", \"orbit\"]",
-            "plots = [\"series\"]\nchannels = [\"orbits\", \"loads\", \"slip\"]",
+            "plots = [\"series\"]\nchannels = [\"races\", \"orbits\", \"loads\", \"slip\"]",
         ),
     ];
     if held != Held::Fixed {
@@ -107,6 +107,8 @@ struct Map {
     load: Vec<f64>,
     slip: Vec<f64>,
     spin: Vec<f64>,
+    /// Tilt of the inner race against the outer one about Z, its mean, rad.
+    turned: f64,
 }
 
 impl Map {
@@ -118,13 +120,19 @@ impl Map {
             "ball_1_outer_slip_rolling",
             "ball_1_outer_slip_transverse",
             "ball_1_outer_spin",
+            "inner_tilt_z",
         ];
+        let of_outer = scene.bearings[0].scene.dynamics.outer.is_some();
+        let names: Vec<&str> =
+            names.into_iter().chain(of_outer.then_some("outer_tilt_z")).collect();
         let columns = ran(scene, &names)?;
         let from = columns[0].iter().position(|t| *t >= FROM).unwrap_or(0);
         let rows = from..columns[0].len();
-        let [_, angle, load, along, across, spin] = &columns[..] else {
-            return Err(CaseError::message("six columns"));
+        let [_, angle, load, along, across, spin, inner, outer @ ..] = &columns[..] else {
+            return Err(CaseError::message("seven columns"));
         };
+        let mean = |of: &Vec<f64>| of[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
+        let outer: f64 = outer.iter().map(mean).sum();
         let pick = |of: &Vec<f64>| of[rows.clone()].to_vec();
         Ok(Map {
             // The unit of angles in results.
@@ -132,6 +140,7 @@ impl Map {
             load: pick(load),
             slip: rows.clone().map(|row| along[row].hypot(across[row])).collect(),
             spin: pick(spin).iter().map(|x| x.abs()).collect(),
+            turned: (mean(inner) - outer).to_radians(),
         })
     }
 
@@ -184,18 +193,26 @@ fn shared_tilt() -> f64 {
     let (mut low, mut high) = (0.0, TILT.to_radians());
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        let moment = tilted(0.0, middle).1;
+        let moment = tilted(0.0, [Known::Value(middle), Known::Load(0.0)]).1;
         if moment < k * (TILT.to_radians() - middle) { low = middle } else { high = middle }
     }
     low
 }
 
-/// Balls of a bearing tilted by so much, at a ball phase, and the moment that holds it.
-fn tilted(phase: f64, tilt: f64) -> (Vec<OracleBall>, f64) {
+/// Balls of a bearing tilted so about Y and Z, at a ball phase, and the moment about Y that holds it.
+fn tilted(phase: f64, [about_y, about_z]: [Known; 2]) -> (Vec<OracleBall>, f64) {
     let bearing: OracleBearing = TABLE_3_5.bearing(TABLE_3_5.stiffness(fitted), phase);
     let free = Known::Load(0.0);
-    let found = bearing.solve(&[free, free, free, Known::Value(tilt), free], None);
+    let found = bearing.solve(&[free, free, free, about_y, about_z], None);
     (bearing.evaluate(&found.coordinates).2, found.loads[3])
+}
+
+/// Every so many rows a bearing is solved with a ball there.
+const EVERY: usize = 4;
+
+/// The ball of a bearing tilted so at the azimuth of every fourth row.
+fn around(map: &Map, tilts: [Known; 2]) -> Vec<OracleBall> {
+    map.azimuth.iter().step_by(EVERY).map(|azimuth| tilted(*azimuth, tilts).0[0]).collect()
 }
 
 /// Spin against the outer race, rad/s, of a ball that rolls where its spin moments balance.
@@ -248,15 +265,15 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
 }
 
 /// Load and spin around against the independent statics with a ball at the azimuth of each row. Traction, which that leaves
-/// out, makes both lag behind the ball's place: they are held by their root mean square around.
+/// out, tilts the race about Z too, by some 2.5° of the tilt about Y at any speed, and turns the map by as much: loads are held place by place
+/// against a bearing with that tilt. The spin's root mean square is held: the ball's axis lags.
 fn loads(context: &mut CaseContext, fixed: &Map, bushing: &Map) {
     let shared = shared_tilt();
     for (id, text, map, tilt) in [
         ("fixed", "outer race fixed", fixed, TILT.to_radians()),
         ("bushing", "in a bushing", bushing, shared),
     ] {
-        let balls: Vec<OracleBall> =
-            map.azimuth.iter().step_by(4).map(|azimuth| tilted(*azimuth, tilt).0[0]).collect();
+        let balls: Vec<OracleBall> = around(map, [Known::Value(tilt), Known::Load(0.0)]);
         let load: Vec<f64> = balls.iter().map(|ball| ball.outer.load).collect();
         context.check(
             Check::new(
@@ -274,6 +291,21 @@ fn loads(context: &mut CaseContext, fixed: &Map, bushing: &Map) {
                 "half of a ball's centrifugal force of 1.9 N; the bushing's mesh; traction",
             )
             .golden(GoldenTolerance::MIXED),
+        );
+        let turned = around(map, [Known::Value(tilt), Known::Value(map.turned)]);
+        let apart = map.load.iter().step_by(EVERY).zip(&turned);
+        let apart = largest(apart.map(|(load, ball)| (load - ball.outer.load).abs()));
+        context.check(
+            Check::new(
+                &format!("places_{id}"),
+                &format!(
+                    "largest difference of a ball's load at any place, over its largest, {text}"
+                ),
+                "1",
+                apart / largest(map.load.iter().copied()),
+            )
+            .independent(0.0, "independent statics with the run's own tilt about Z")
+            .absolute(0.01, "as the root mean square; the tilt about Z is a mean"),
         );
         let spin: Vec<f64> = balls.iter().map(spin_of).collect();
         context.check(

@@ -138,9 +138,9 @@ pub fn column(series: &Series, name: &str) -> Result<Vec<f64>, CaseError> {
 pub fn ran(scene: &AssemblyScene, names: &[&str]) -> Result<Vec<Vec<f64>>, CaseError> {
     let (request, mut assembly) = (request(scene)?, scene.assembly()?);
     let bushings = take_bushings(scene, &mut assembly)?;
-    let series = match scene.window_phase() {
-        None => done(assembly, &request)?.series()?,
-        Some(phase) => {
+    let series = match bushings.is_empty() {
+        true => done(assembly, &request)?.series()?,
+        false => {
             // All together are balanced, not the bearing alone.
             let bearing = RunOptions { energy_limit: f64::INFINITY, ..request.options };
             let parts = Parts::Housed(Box::new(HousedParts {
@@ -148,7 +148,7 @@ pub fn ran(scene: &AssemblyScene, names: &[&str]) -> Result<Vec<Vec<f64>>, CaseE
                 solids: Vec::new(),
                 seats: Vec::new(),
                 bushings: bushings.iter().map(BushingElements::part).collect(),
-                options: ExchangeOptions::on_rubber(phase, bearing),
+                options: ExchangeOptions::on_rubber(bearing),
                 threads: 1,
             }));
             done(parts, &request)?.series()?

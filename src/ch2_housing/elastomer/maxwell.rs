@@ -180,6 +180,28 @@ impl DashpotFactors {
     }
 }
 
+/// The stress of all elements at a point, Pa.
+#[inline(always)]
+pub fn summed<T: Number>(history: &[Sym3<T>]) -> Sym3<T> {
+    let none = [T::of(0.0); 6];
+    history.iter().fold(none, |sum, h| std::array::from_fn(|i| sum[i] + h[i]))
+}
+
+/// What the elements' stresses, ΣHⱼ `before` and `after` a step (Pa), do in it beyond what springs and dashpots account
+/// for at small strain, J/m³: ½ (ΣH + ΣH′):(ΔE − ΔDEV S/(2 μ₀)). At small strain ΔDEV S is 2 μ₀ ΔE but for a change of volume,
+/// on which no H works, and nothing is left. At finite strain the law has no energy of H alone, and this is the rest of its power.
+#[inline]
+pub fn beyond_small_strain<T: Number>(
+    [before, after]: [&Sym3<T>; 2],
+    strain: &Sym3<T>,
+    change: &Sym3<T>,
+    shear_modulus: f64,
+) -> T {
+    let less = T::of(0.5 / shear_modulus);
+    let mean: Sym3<T> = std::array::from_fn(|i| T::of(0.5) * (before[i] + after[i]));
+    double_dot(&mean, strain) - less * double_dot(&mean, change)
+}
+
 /// Storage and loss of the deviatoric stiffness over the network's, at `pulsation` rad/s, infinity being a
 /// sudden change: 1 + Σ γ iωτ/(1 + iωτ).
 pub fn complex_factor(elements: &[Maxwell], pulsation: f64) -> [f64; 2] {

@@ -115,10 +115,12 @@ fn bushing(of: &BushingOfSpring) -> Result<Value, ResultsError> {
             BushingStepping::Explicit { fraction } => {
                 ("explicit", "step_fraction", json!(fraction))
             }
-            BushingStepping::Implicit { step } if *step < f64::MAX => {
+            BushingStepping::Implicit { step: Some(step) } => {
                 ("implicit", "step", quantity("step", *step, "s")?)
             }
-            BushingStepping::Implicit { .. } => ("implicit", "step", json!("as the windows are")),
+            BushingStepping::Implicit { step: None } => {
+                ("implicit", "step", json!("as the windows are"))
+            }
         };
         (echo["method"], echo[key]) = (json!(method), value);
     }

@@ -172,14 +172,11 @@ fn parts<'p>(
     }
     // All together are balanced, not the bearings alone.
     let bearing = RunOptions { energy_limit: f64::INFINITY, ..run.options };
-    let options = match first {
-        Some(of) => ExchangeOptions {
-            solid_fraction: of.step_fraction,
-            seat_phase: of.window_phase,
-            bearing,
-        },
-        None => ExchangeOptions::on_rubber(scene.window_phase().unwrap_or(0.2), bearing),
-    };
+    let options = first.map_or(ExchangeOptions::on_rubber(bearing), |of| ExchangeOptions {
+        solid_fraction: of.step_fraction,
+        seat_phase: of.window_phase,
+        bearing,
+    });
     Ok(HousedParts { assembly, solids, seats, bushings: Vec::new(), options, threads })
 }
 

@@ -73,7 +73,9 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
     if !housings.is_empty() {
         notes.extend(equilibrium_notes(scene, &housings)?);
     }
-    if let (Some(settings), false) = (scene.run(), housings.is_empty()) {
+    // With bushings in elements the steps of all have been told.
+    let told = housings.is_empty() || scene.has_bushings_in_elements();
+    if let (Some(settings), false) = (scene.run(), told) {
         notes.push(explicit_note(scene, &housings, settings));
     }
     if scene.common().rigid_housing {
@@ -102,9 +104,10 @@ fn of_steps(
     let bushings = take_bushings(scene, &mut assembly)?;
     // Races without their housings or bushings would have nothing to hold them.
     let alone = bushings.is_empty() && (housings.is_empty() || reduced.is_some());
-    let (request, choice) = match alone || bushings.is_empty() {
-        true => planned_request(scene, settings, &assembly, None),
-        false => (run::request(scene.common(), settings), None),
+    let (request, choice) = if bushings.is_empty() {
+        planned_request(scene, settings, &assembly, None)
+    } else {
+        (run::request(scene.common(), settings), None)
     };
     let items = stages(scene, (housings, &bushings), &assembly, &request, choice.as_ref());
     let mut notes = Vec::new();

@@ -97,10 +97,11 @@ fn of_supports(session: &Session, table: &RunTable, lines: &mut Lines) {
     if let Some(lost) = lost.last() {
         lines.push(("held or lost by Maxwell".into(), format!("{lost:.6} J at the end")));
         let last = |name: &str| table.all(name).and_then(|all| all.last().copied()).unwrap_or(0.0);
-        let [springs, dashpots, rest] =
-            ["energy_maxwell", "energy_dissipated", "energy_residual"].map(last);
+        let of = ["maxwell", "dissipated", "finite_strain", "residual"];
+        let [springs, dashpots, beyond, rest] = of.map(|of| last(&format!("energy_{of}")));
         let said = format!(
-            "{springs:.6} J in springs, {dashpots:.6} J taken by dashpots, {rest:.3e} J unaccounted for"
+            "{springs:.6} J in springs, {dashpots:.6} J taken by dashpots; {beyond:.3e} J by finite strain, {rest:.3e} J \
+             unaccounted for"
         );
         lines.push(("as of small strain".into(), said));
     }

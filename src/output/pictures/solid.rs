@@ -29,6 +29,7 @@ pub fn series_plots(
         ("energy_viscous", "held or lost in Maxwell elements"),
         ("energy_maxwell", "held in their springs"),
         ("energy_dissipated", "taken by their dashpots"),
+        ("energy_finite_strain", "taken by finite strain"),
     ];
     let mut plots = Vec::new();
     let curves = over_time(table, &energies, 1.0);

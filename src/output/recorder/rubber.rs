@@ -10,14 +10,15 @@ use crate::solver::solid::rubber::measures::{RubberLedger, point_stresses};
 use crate::solver::solid::rubber::steps::RubberSolid;
 
 pub(super) fn columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column> {
-    // The third is held in the Maxwell elements or lost in them; of that, by the law of small strain, the two
-    // behind it, and what they leave.
+    // The third is held in the Maxwell elements or lost in them; of that, by the law of small strain, the two behind it, what
+    // finite strain adds, and what all leave.
     let names = [
         "energy_strain",
         "work_external",
         "energy_viscous",
         "energy_maxwell",
         "energy_dissipated",
+        "energy_finite_strain",
         "energy_residual",
     ];
     let mut columns = names.map(|name| Column::new(name, "J")).to_vec();
@@ -48,9 +49,9 @@ impl Recorder {
         let stresses = point_stresses(model, state).map_err(cannot_be)?;
         let largest = state.displacement.iter().map(length).fold(0.0, f64::max);
         let stress = stresses.as_flattened().iter().map(von_mises).fold(0.0, f64::max);
-        let RubberLedger { network, springs, dissipated, work } = ledger;
+        let RubberLedger { network, springs, dissipated, beyond, work } = ledger;
         self.values.extend([state.time, network, work, work - network]);
-        self.values.extend([springs, dissipated, ledger.residual(), largest, stress]);
+        self.values.extend([springs, dissipated, beyond, ledger.residual(), largest, stress]);
         for probe in &self.probes {
             self.values.extend(mean(&state.displacement, &probe.nodes));
         }

@@ -106,9 +106,16 @@ pub(super) fn explicit_columns(parts: &HousedParts) -> Vec<Column> {
     columns
 }
 
-/// What a bushing in elements holds and has lost; of the Maxwell elements by the law of small strain.
-const OF_BUSHING: [&str; 5] =
-    ["energy_strain", "energy_maxwell", "energy_kinetic", "energy_dissipated", "work_on_bodies"];
+/// What a bushing in elements holds and has lost; of the Maxwell elements by the law of small strain, and what finite
+/// strain adds.
+const OF_BUSHING: [&str; 6] = [
+    "energy_strain",
+    "energy_maxwell",
+    "energy_kinetic",
+    "energy_dissipated",
+    "energy_finite_strain",
+    "work_on_bodies",
+];
 
 impl Recorder {
     /// Adds a row of bearings and housings in explicit steps.
@@ -147,7 +154,9 @@ impl Recorder {
         for (of, bushing) in snapshot.bushings.iter().zip(&housed.bushings) {
             let RaceLoads { force, moment } = of.loads[bushing.second];
             values.extend(force.into_iter().chain(moment));
-            values.extend([of.network, of.springs, of.kinetic, of.dissipated, of.work]);
+            values.extend([of.network, of.springs, of.kinetic]);
+            // Up to where the rubber has the bodies, so that the columns sum up to the residual.
+            values.extend([of.dissipated, of.beyond, of.work + of.to_come]);
         }
         values.push(residual);
         values.extend(housed.seats().flat_map(|seat| seat.impulse));

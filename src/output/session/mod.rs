@@ -60,9 +60,9 @@ pub enum SessionError {
     )]
     Energy { residual: f64, turned_over: f64, limit: f64, time: f64, step: u64 },
     #[error(
-        "{residual:.3e} J of bearing and housing are unaccounted for at t = {at} s, window {window}, \
+        "{residual:.3e} J of bearing and housing or bushings are unaccounted for at t = {at} s, window {window}, \
          more than {limit} of the {turned_over:.3e} J turned over; take shorter steps \
-         (housing.step_fraction, housing.window_phase, numerics.step)", at = rounded(*time)
+         (step_fraction and window_phase of [housing] or of the bushing, numerics.step)", at = rounded(*time)
     )]
     EnergyOfBoth { residual: f64, turned_over: f64, limit: f64, time: f64, window: u64 },
     #[error(

@@ -25,6 +25,9 @@ pub struct RubberEntry {
     /// Put in and taken by dashpots so far, J.
     pub work: f64,
     pub dissipated: f64,
+    /// What the stresses of the Maxwell elements did beyond the law of small strain, J.
+    #[serde(default)]
+    pub beyond: f64,
     /// Steps accepted and undone, iterations and factorisations.
     pub counts: [u64; 4],
     /// Gain of the step that the factors at hand are of.
@@ -42,6 +45,7 @@ impl RubberEntry {
             scale: kept.scale,
             work: kept.state.work,
             dissipated: kept.state.dissipated,
+            beyond: kept.state.beyond,
             counts: [accepted, undone, kept.iterations as u64, kept.factorisations as u64],
             factored: kept.factored.as_ref().map(|factored| factored.gain),
         }
@@ -49,7 +53,7 @@ impl RubberEntry {
 
     pub(super) fn numbers(&self) -> Vec<f64> {
         let gain = self.factored.into_iter();
-        [self.last, self.next, self.scale, self.work, self.dissipated]
+        [self.last, self.next, self.scale, self.work, self.dissipated, self.beyond]
             .into_iter()
             .chain(gain)
             .collect()
@@ -72,6 +76,7 @@ impl RubberEntry {
                 last: self.last,
                 work: self.work,
                 dissipated: self.dissipated,
+                beyond: self.beyond,
                 ..RubberState::default()
             },
             next: self.next,
@@ -109,7 +114,7 @@ pub(super) fn hash_bushing(hash: &mut Sha256, part: &BondedPart) {
         BondedElements::Implicit { model, step } => {
             hash_mesh(hash, &model.problem.nodes, &model.problem.elements);
             let mass: f64 = model.mass.iter().sum();
-            hash.update(format!("{:?} {mass} {step}", model.problem.material));
+            hash.update(format!("{:?} {mass} {step:?}", model.problem.material));
         }
     }
     hash.update(format!("{} {:?} {:?}", part.name, part.sleeves, part.spring));

@@ -4,16 +4,19 @@
 //! with is summed over a window and given to the bodies, as of a seat.
 
 use super::seat::{carried_on, mean_over, work_on_way};
-use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
+use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, scale, sub};
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::connection::{Connection, Law};
 use crate::solver::dynamics::race::RaceLoads;
 use crate::solver::dynamics::run::Simulation;
 use crate::solver::dynamics::state::BodyState;
 use crate::solver::plan::tally::Tally;
+use crate::solver::profile::Profile;
 use crate::solver::solid::explicit::ExplicitSolid;
+use crate::solver::solid::model::Prescribed;
 use crate::solver::solid::rubber::error::RubberError;
 use crate::solver::solid::rubber::explicit::RubberBody;
+use crate::solver::solid::rubber::harmonic::complex_stiffness;
 use crate::solver::solid::rubber::measures::RubberLedger;
 use crate::solver::solid::rubber::model::RubberModel;
 use crate::solver::solid::rubber::sleeve::SleeveMotion;
@@ -31,6 +34,8 @@ pub struct BondedPart<'p> {
     /// The springs that it is like, whose equilibrium a run starts from: with the relaxed stiffness of the elements.
     pub spring: Connection,
     pub elements: BondedElements<'p>,
+    /// How far a body may swing on it in a window, rad.
+    pub window_phase: f64,
 }
 
 /// Nodes of a bushing that a body carries.
@@ -52,28 +57,33 @@ impl BondedPart<'_> {
     /// # Errors
     /// Rubber without an equilibrium.
     pub(super) fn measure(&mut self) -> Result<(), RubberError> {
-        const BY: f64 = 1e-6;
-        let own;
-        let model = match self.elements {
-            BondedElements::Implicit { model, .. } => model,
-            BondedElements::Explicit { body, .. } => {
-                own = body.implicit()?;
-                &own
-            }
+        // The first vector is the answer already.
+        const SETTLED: f64 = 1e-6;
+        let mut model = match self.elements {
+            BondedElements::Implicit { model, .. } => model.clone(),
+            BondedElements::Explicit { body, .. } => body.implicit()?,
         };
-        let mut solid = RubberSolid::new(model, StepOptions::default())?;
         let [outer, inner] = &self.sleeves;
         let second = usize::from(inner.body == self.spring.ends[1].body);
         let along = self.spring.ends[second].along;
         let mut stiffness = [0.0; 4];
         for (motion, stiffness) in SleeveMotion::ALL.into_iter().zip(&mut stiffness) {
-            let arms = inner.arms.iter().map(|arm| [arm[0] - along, arm[1], arm[2]]);
-            let ways: Vec<Vec3> = arms.map(|arm| motion.displacement(arm)).collect();
-            let moved = inner.nodes.iter().zip(&ways).map(|(node, way)| (*node, scale(*way, BY)));
-            solid.rest_with(outer.nodes.iter().map(|node| (*node, [0.0; 3])).chain(moved))?;
-            let forces = &solid.state().forces;
-            let pulls = inner.nodes.iter().zip(&ways);
-            *stiffness = -pulls.map(|(n, way)| dot(forces[*n as usize], *way)).sum::<f64>() / BY;
+            let held = |node: &u32| (*node, [0.0; 3]);
+            let moved = inner
+                .nodes
+                .iter()
+                .zip(&inner.arms)
+                .map(|(node, [x, y, z])| (*node, motion.displacement([x - along, *y, *z])));
+            let ways = outer.nodes.iter().map(held).chain(moved);
+            let component = |(node, way): (u32, Vec3)| {
+                [0, 1, 2].map(|axis| Prescribed {
+                    node,
+                    axis,
+                    profile: Profile::Constant(way[axis]),
+                })
+            };
+            model.problem.prescribed = ways.flat_map(component).collect();
+            *stiffness = complex_stiffness(&model, 0.0, &[0.0], SETTLED)?[0].storage;
         }
         let [radial, axial, torsional, conical] = stiffness;
         if let Law::SpringDashpot(law) = &mut self.spring.law {
@@ -97,8 +107,8 @@ impl BondedPart<'_> {
 pub enum BondedElements<'p> {
     /// Four-node elements in explicit steps (3.12) of so large a part of the longest one.
     Explicit { body: &'p RubberBody, fraction: f64 },
-    /// Implicit steps of at most so many seconds.
-    Implicit { model: &'p RubberModel, step: f64 },
+    /// Implicit steps of at most so many seconds, if windows are longer.
+    Implicit { model: &'p RubberModel, step: Option<f64> },
 }
 
 /// The rubber on its way.
@@ -117,10 +127,11 @@ pub struct BondedBushing<'p> {
     /// In a window, and how long, s.
     pub steps: usize,
     pub step: f64,
-    /// The longest step that the rubber takes, s.
-    pub(super) most: f64,
+    /// The longest step that the rubber takes, s; without one a window is a step.
+    pub(super) most: Option<f64>,
     /// Against a sudden shift (N/m) and turn (N·m/rad) of a body.
     pub(super) stiffness: [f64; 2],
+    pub(super) window_phase: f64,
 }
 
 /// What a bushing does to the body of a sleeve.
@@ -147,6 +158,8 @@ pub struct BondedSnapshot {
     pub network: f64,
     pub springs: f64,
     pub dissipated: f64,
+    /// What the stresses of the Maxwell elements did beyond that law.
+    pub beyond: f64,
     pub kinetic: f64,
     /// On both bodies since the start, and on the way to where the rubber has them, half a step off.
     pub work: f64,
@@ -282,12 +295,20 @@ impl<'p> BondedBushing<'p> {
                 let still = vec![[0.0; 3]; body.nodes.len()];
                 let solid = ExplicitSolid::of_carried_rubber(body, fraction, still)?;
                 let step = solid.step_size;
-                (BondedRubber::Explicit(Box::new(solid)), step)
+                (BondedRubber::Explicit(Box::new(solid)), Some(step))
             }
         };
-        let (name, stiffness) = (part.name, sudden_stiffness(&part.spring));
-        let (steps, step) = (1, most);
-        Ok(BondedBushing { name, sleeves, second, rubber, steps, step, most, stiffness })
+        Ok(BondedBushing {
+            stiffness: sudden_stiffness(&part.spring),
+            window_phase: part.window_phase,
+            name: part.name,
+            steps: 1,
+            step: 0.0,
+            sleeves,
+            second,
+            rubber,
+            most,
+        })
     }
 
     /// Loads of the rubber at rest, as if they had lasted.
@@ -313,7 +334,8 @@ impl<'p> BondedBushing<'p> {
 
     /// In windows of so many s, before the first one.
     pub(super) fn step_in(&mut self, window: f64) {
-        self.steps = ((window / self.most * (1.0 - 1e-12)).ceil() as usize).max(1);
+        let of = |most: f64| ((window / most * (1.0 - 1e-12)).ceil() as usize).max(1);
+        self.steps = self.most.map_or(1, of);
         self.step = window / self.steps as f64;
         if let BondedRubber::Explicit(solid) = &mut self.rubber {
             solid.step_size = self.step;
@@ -423,17 +445,20 @@ impl<'p> BondedBushing<'p> {
             BondedRubber::Explicit(solid) => {
                 let energy = solid.ledger().energy;
                 let of = solid.rubber().map(|rubber| rubber.maxwell_ledger(&solid.displacement));
-                let [springs, dissipated] = of.unwrap_or_default();
+                let [springs, dissipated, beyond] = of.unwrap_or_default();
                 let (network, kinetic) = (energy.strain, energy.kinetic);
-                BondedSnapshot { network, springs, dissipated, kinetic, ..Default::default() }
+                let held = BondedSnapshot { network, springs, kinetic, ..Default::default() };
+                BondedSnapshot { dissipated, beyond, ..held }
             }
             BondedRubber::Implicit(solid) => {
                 // It is a state that was found; one that is none makes the ledger end the run.
                 let ledger = RubberLedger::of(solid.model(), solid.state());
                 let unknown = RubberLedger { network: f64::NAN, ..RubberLedger::default() };
-                let RubberLedger { network, springs, dissipated, .. } = ledger.unwrap_or(unknown);
+                let found = ledger.unwrap_or(unknown);
+                let RubberLedger { network, springs, dissipated, beyond, .. } = found;
                 let kinetic = solid.kinetic_energy();
-                BondedSnapshot { network, springs, dissipated, kinetic, ..Default::default() }
+                let held = BondedSnapshot { network, springs, kinetic, ..Default::default() };
+                BondedSnapshot { dissipated, beyond, ..held }
             }
         };
         for (now, load) in self.sleeves.iter().zip(&mut found.loads) {

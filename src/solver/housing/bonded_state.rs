@@ -10,8 +10,8 @@ use crate::solver::solid::rubber::steps::StepCounts;
 use crate::solver::solid::tet4_blocks::{LANES, Node};
 
 /// Of [`BondedBushing::numbers`] what stands before the nodes.
-const OF_IMPLICIT: usize = 12;
-const OF_EXPLICIT: usize = 3;
+const OF_IMPLICIT: usize = 13;
+const OF_EXPLICIT: usize = 4;
 const OF_SLEEVE: usize = 19;
 
 impl BondedPart<'_> {
@@ -21,7 +21,7 @@ impl BondedPart<'_> {
         match &self.elements {
             BondedElements::Explicit { body, .. } => {
                 let blocks = body.elements.len().div_ceil(LANES);
-                let memory = 6 * LANES * blocks * (body.material.maxwell.len() + 1);
+                let memory = 6 * LANES * blocks * (body.material.maxwell.len() + 2);
                 count == sleeves + OF_EXPLICIT + 6 * body.nodes.len() + memory
             }
             BondedElements::Implicit { model, .. } => {
@@ -41,12 +41,12 @@ impl BondedPart<'_> {
 impl BondedBushing<'_> {
     /// Everything that its steps to come follow from.
     pub fn numbers(&self) -> Vec<f64> {
-        let mut all = vec![self.most];
+        let mut all = vec![self.most.unwrap_or(0.0)];
         self.sleeves.iter().for_each(|now| all.extend(of_sleeve(now)));
         match &self.rubber {
             BondedRubber::Explicit(solid) => {
                 let kept = solid.checkpoint();
-                all.extend([kept.time, kept.steps as f64, kept.dissipated]);
+                all.extend([kept.time, kept.steps as f64, kept.dissipated, kept.beyond]);
                 for part in [&kept.displacement, &kept.rate] {
                     all.extend(part.iter().flat_map(|v| [v[0], v[1], v[2]]));
                 }
@@ -54,8 +54,8 @@ impl BondedBushing<'_> {
             }
             BondedRubber::Implicit(solid) => {
                 let kept = solid.checkpoint();
-                let RubberState { time, last, work, dissipated, speed, acceleration, .. } =
-                    &kept.state;
+                let RubberState { speed, acceleration, .. } = &kept.state;
+                let RubberState { time, last, work, dissipated, beyond, .. } = &kept.state;
                 let StepCounts { accepted, undone } = kept.counts;
                 let counts = [accepted, undone, kept.iterations as u64, kept.factorisations as u64];
                 let factored = kept.factored.as_ref();
@@ -65,6 +65,7 @@ impl BondedBushing<'_> {
                     *last,
                     *work,
                     *dissipated,
+                    *beyond,
                     kept.next,
                     kept.scale,
                     gain,
@@ -84,7 +85,7 @@ impl BondedBushing<'_> {
     #[must_use]
     pub fn restore(&mut self, window: f64, numbers: &[f64]) -> Option<()> {
         let mut rest = numbers;
-        self.most = rest.split_off(..1)?[0];
+        self.most = Some(rest.split_off(..1)?[0]).filter(|most| *most > 0.0);
         self.step_in(window);
         for now in &mut self.sleeves {
             let own = rest.split_off(..OF_SLEEVE)?;
@@ -99,7 +100,7 @@ impl BondedBushing<'_> {
         match &mut self.rubber {
             BondedRubber::Explicit(solid) => {
                 let nodes = solid.displacement.len();
-                let [time, steps, dissipated] = *rest.split_off(..OF_EXPLICIT)? else {
+                let [time, steps, dissipated, beyond] = *rest.split_off(..OF_EXPLICIT)? else {
                     return None;
                 };
                 let mut next = || -> Option<Vec<Node>> {
@@ -118,17 +119,19 @@ impl BondedBushing<'_> {
                     work: solid.work,
                     memory,
                     dissipated,
+                    beyond,
                 });
             }
             BondedRubber::Implicit(solid) => {
                 let problem = &solid.model().problem;
                 let (nodes, points) = (problem.nodes.len(), POINTS * problem.elements.len());
                 let sizes = [nodes, points, problem.material.maxwell.len()];
-                let [time, last, work, dissipated, next, scale, gain, inertia, ref counts @ ..] =
+                let [time, last, work, dissipated, beyond, ref after @ ..] =
                     *rest.split_off(..OF_IMPLICIT)?
                 else {
                     return None;
                 };
+                let [next, scale, gain, inertia, ref counts @ ..] = *after else { return None };
                 let [accepted, undone, iterations, factorisations] = *counts else { return None };
                 let mut nodal = || -> Option<Vec<Vec3>> {
                     Some(rest.split_off(..3 * nodes)?.as_chunks::<3>().0.to_vec())
@@ -141,6 +144,7 @@ impl BondedBushing<'_> {
                         last,
                         work,
                         dissipated,
+                        beyond,
                         speed,
                         acceleration,
                         ..RubberState::default()

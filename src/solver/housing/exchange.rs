@@ -8,25 +8,20 @@
 //! too, with the other sign. Drift, kick, drift: of second order, and an elastic contact between the two
 //! neither makes nor loses energy in the long run. Within a window no solid knows of another.
 
-use super::bonded::{BondedBushing, BondedPart, BondedSnapshot};
-use super::exchange_window::{check, divided, longest_window};
-use super::seat::{Lost, Seat, SeatSnapshot, SeatState};
-use super::stepped::{SolidSnapshot, SteppedSolid, seated};
+use super::bonded::{BondedBushing, BondedSnapshot};
+use super::exchange_start::is_alone;
+use super::seat::{Lost, SeatSnapshot, SeatState};
+use super::stepped::{SolidSnapshot, SteppedSolid};
 use crate::ch2_housing::bore_contact::{ContactNode, Penalty};
 use crate::kinematics::vec3::Vec3;
-use crate::solver::dynamics::assembly::{Assembly, Body};
-use crate::solver::dynamics::race::{self, RaceLoads};
+use crate::solver::dynamics::race::RaceLoads;
 use crate::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Snapshot};
-use crate::solver::dynamics::start;
-use crate::solver::dynamics::state::{BODY, BodyState, Ledger, Places};
+use crate::solver::dynamics::state::Ledger;
 use crate::solver::plan::Stage;
 use crate::solver::plan::tally::{Ran, Tally};
-use crate::solver::solid::contact::closed_limit;
 use crate::solver::solid::energy::SolidLedger;
-use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, padded};
 use crate::solver::solid::model::{SolidError, SolidModel};
 use crate::solver::solid::rubber::error::RubberError;
-use crate::solver::solid::step_limit::step_limit;
 use crate::solver::solid::team::Crew;
 use crate::solver::statics::StaticsError;
 use thiserror::Error;
@@ -53,15 +48,15 @@ impl SolidPart {
 pub struct ExchangeOptions {
     /// Steps of the solids, as a fraction of their stability limit with the contact closed.
     pub solid_fraction: f64,
-    /// Windows, as ωH of a body on all of its seats; stable below 2.
+    /// Windows, as ωH of a body on all of its seats; stable below 2. Bushings have phases of their own.
     pub seat_phase: f64,
     pub bearing: RunOptions,
 }
 
 impl ExchangeOptions {
-    /// Of bushings without a housing beside them, a body swinging on them by so much (rad) in a window.
-    pub fn on_rubber(seat_phase: f64, bearing: RunOptions) -> ExchangeOptions {
-        ExchangeOptions { solid_fraction: 1.0, seat_phase, bearing }
+    /// Of bushings without a housing beside them.
+    pub fn on_rubber(bearing: RunOptions) -> ExchangeOptions {
+        ExchangeOptions { solid_fraction: 1.0, seat_phase: 1.0, bearing }
     }
 }
 
@@ -139,96 +134,6 @@ pub struct ExchangeSnapshot {
 }
 
 impl<'p> Exchange<'p> {
-    /// Starts with the bodies that sit in solids where they rest, the others in equilibrium with them there
-    /// and the bearings rolling, the solids still and displaced as they are given.
-    ///
-    /// # Errors
-    /// No equilibrium, a fixed race or one on a foundation, options out of range.
-    ///
-    /// # Panics
-    /// If a seat names a body or a solid that is not there.
-    pub fn new(
-        assembly: impl Into<Assembly>,
-        solids: Vec<SolidPart>,
-        seats: Vec<Seat>,
-        options: &ExchangeOptions,
-    ) -> Result<Exchange<'p>, ExchangeError> {
-        Exchange::with_bushings(assembly, solids, seats, Vec::new(), options)
-    }
-
-    /// The same with bushings between bodies: where these and the rest are in equilibrium on springs as stiff as the
-    /// relaxed rubber in its elements.
-    ///
-    /// # Errors
-    /// As [`Exchange::new`]; rubber without an equilibrium.
-    ///
-    /// # Panics
-    /// If a seat or a bushing names a body or a solid that is not there.
-    pub fn with_bushings(
-        assembly: impl Into<Assembly>,
-        solids: Vec<SolidPart>,
-        seats: Vec<Seat>,
-        bushings: Vec<BondedPart<'p>>,
-        options: &ExchangeOptions,
-    ) -> Result<Exchange<'p>, ExchangeError> {
-        let assembly = assembly.into();
-        check(&assembly, &seats, options)?;
-        let method = ExplicitMethod::CentralDifferences;
-        let mut solids: Vec<SteppedSolid> = solids
-            .into_iter()
-            .map(|SolidPart { name, model, displacement }| {
-                let displacement = padded(displacement);
-                let limit = step_limit(&model, &displacement, method);
-                let mut solid = ExplicitSolid::at_rest(model, method, limit.step, limit);
-                solid.displacement = displacement;
-                SteppedSolid { name, solid, steps: 1, seats: Vec::new() }
-            })
-            .collect();
-        let seats = seated(&assembly, &mut solids, seats);
-        let mut bushings = bushings;
-        let state = held_start(&assembly, &seats, &bushings)?;
-        let mut simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
-        if bushings.iter().any(|part| part.is_moved(&simulation)) {
-            for part in &mut bushings {
-                let measured = part.measure();
-                let named = |source| ExchangeError::Bushing { name: part.name.clone(), source };
-                measured.map_err(named)?;
-            }
-            let assembly = simulation.system.assembly;
-            let state = held_start(&assembly, &seats, &bushings)?;
-            simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
-        }
-        let mut on_rubber = Vec::with_capacity(bushings.len());
-        for part in bushings {
-            let name = part.name.clone();
-            let bushing = BondedBushing::new(part, &simulation);
-            on_rubber.push(bushing.map_err(|source| ExchangeError::Bushing { name, source })?);
-        }
-        let assembly = &simulation.system.assembly;
-        let longest = longest_window(assembly, &seats, &on_rubber, options.seat_phase)?;
-        let steps: Vec<f64> = solids
-            .iter()
-            .map(|SteppedSolid { solid, seats, .. }| {
-                // With every node of every seat closed.
-                let closed = seats.iter().fold(solid.limit, |limit, seat| {
-                    closed_limit(&solid.model, &seat.seat.nodes, seat.seat.penalty, &limit)
-                });
-                (options.solid_fraction * closed.step).min(longest)
-            })
-            .collect();
-        let elements: Vec<usize> =
-            solids.iter().map(|part| part.solid.model.problem.elements.len()).collect();
-        // The bodies' own steps divide the windows or are divided by them.
-        let (window, steps) = divided(&elements, &steps, longest);
-        for (part, steps) in solids.iter_mut().zip(steps) {
-            part.steps = steps;
-        }
-        let mut exchange = Exchange::of(simulation, solids, on_rubber, window);
-        exchange.simulation.system.ran.whole.add(Stage::StartEquilibrium, 1);
-        exchange.begin()?;
-        Ok(exchange)
-    }
-
     /// Before its first window.
     pub(super) fn of(
         simulation: Simulation,
@@ -266,7 +171,7 @@ impl<'p> Exchange<'p> {
     }
 
     /// Steps of the windows as they are now; contact and balance count from the present state.
-    fn begin(&mut self) -> Result<(), ExchangeError> {
+    pub(super) fn begin(&mut self) -> Result<(), ExchangeError> {
         for part in &mut self.solids {
             part.step_in(self.window);
             for seat in &mut part.seats {
@@ -468,7 +373,7 @@ impl<'p> Exchange<'p> {
                 - of_solids(|solid| solid.ledger.external_work)
                 - of_solids(|solid| solid.ledger.damping_work)
                 - of_seats(|seat| seat.growth_work)
-                + of_bushings(|of| of.work + of.to_come + of.held() + of.dissipated);
+                + of_bushings(|of| of.work + of.to_come + of.held() + of.dissipated + of.beyond);
         let work: f64 = bodies.ledger.iter().map(|entry| entry.abs()).sum();
         let turned_over = bodies.energy.contact
             + held
@@ -479,43 +384,4 @@ impl<'p> Exchange<'p> {
             + of_bushings(|of| of.held() + of.dissipated);
         Ok(ExchangeSnapshot { simulation: bodies, solids, bushings, residual, turned_over })
     }
-}
-
-/// Whether one seat is all that pushes or brakes the bodies of an assembly from outside.
-fn is_alone(assembly: &Assembly, solids: &[SteppedSolid], bushings: &[BondedBushing]) -> bool {
-    let mut brakes =
-        assembly.bodies.iter().filter_map(Body::driven).flat_map(|b| b.foundation_damping);
-    let seats: usize = solids.iter().map(|part| part.seats.len()).sum();
-    seats == 1
-        && bushings.is_empty()
-        && assembly.connections.is_empty()
-        && brakes.all(|damping| damping == 0.0)
-}
-
-/// State of an assembly in equilibrium whose bodies in solids are held where they rest, those on bushings on the
-/// springs that these are like.
-fn held_start(
-    assembly: &Assembly,
-    seats: &[Seat],
-    bushings: &[BondedPart],
-) -> Result<Vec<f64>, StaticsError> {
-    let mut held = assembly.clone();
-    held.connections.extend(bushings.iter().map(|part| part.spring.clone()));
-    for seat in seats {
-        held.bodies[seat.mount.body].hold();
-    }
-    let mut state = start::at_equilibrium(&held)?;
-    let [own, with_springs] = [assembly, &held].map(|of| Places::of(of).ledger());
-    state.drain(own..with_springs);
-    for seat in seats {
-        let body = seat.mount.body;
-        if held.bodies[body].driven().is_some() {
-            // It turns, and balls roll with it.
-            continue;
-        }
-        let still: BodyState = race::fixed(&assembly.bodies[body].rest).state;
-        let at = Places::of(&held).body(body);
-        state[at..at + BODY].copy_from_slice(&still.to_array());
-    }
-    Ok(state)
 }

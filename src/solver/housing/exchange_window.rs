@@ -5,7 +5,8 @@ use super::exchange::{ExchangeError, ExchangeOptions};
 use super::seat::Seat;
 use crate::solver::dynamics::assembly::Assembly;
 
-/// The longest window for which no body goes further on its seats and bushings than `phase`, s.
+/// The longest window for which no body goes further on its seats than `phase` and on its bushings than their own, s:
+/// of both together, stiffnesses over squares of phases count.
 pub(super) fn longest_window(
     assembly: &Assembly,
     seats: &[Seat],
@@ -28,8 +29,9 @@ pub(super) fn longest_window(
         let sleeves =
             |bushing: &&BondedBushing| bushing.sleeves.iter().any(|now| now.sleeve.body == index);
         for bushing in bushings.iter().filter(sleeves) {
-            let [shift, tilt] = bushing.stiffness;
-            sums = [sums[0] + shift, sums[1] + tilt];
+            let ([shift, tilt], weight) = (bushing.stiffness, phase / bushing.window_phase);
+            let weight = weight * weight;
+            sums = [sums[0] + weight * shift, sums[1] + weight * tilt];
         }
         let Some(inertia) = body.inertia() else { continue };
         most = most.max((sums[0] / inertia.mass).max(sums[1] / inertia.transverse));

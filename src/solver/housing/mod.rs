@@ -20,6 +20,7 @@ pub mod course;
 pub mod course_inertia;
 pub mod course_search;
 pub mod exchange;
+mod exchange_start;
 mod exchange_window;
 pub mod housed;
 pub mod inertia;

@@ -18,8 +18,9 @@ pub struct SolidCheckpoint {
     pub work: SolidWork,
     /// Stresses that rubber remembers, Pa; none of an elastic solid.
     pub memory: Vec<f64>,
-    /// What its dashpots have taken, where that is counted, J.
+    /// What its dashpots have taken, and what its stresses did beyond the law of small strain, where that is counted, J.
     pub dissipated: f64,
+    pub beyond: f64,
 }
 
 impl ExplicitSolid {
@@ -41,6 +42,7 @@ impl ExplicitSolid {
         if let Some(rubber) = &self.rubber {
             checkpoint.memory = rubber.memory();
             checkpoint.dissipated = rubber.dissipated;
+            checkpoint.beyond = rubber.beyond;
         }
     }
 
@@ -63,6 +65,7 @@ impl ExplicitSolid {
         if let Some(rubber) = &mut self.rubber {
             rubber.remember(&checkpoint.memory);
             rubber.dissipated = checkpoint.dissipated;
+            rubber.beyond = checkpoint.beyond;
         }
     }
 }

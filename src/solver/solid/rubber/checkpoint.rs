@@ -28,6 +28,8 @@ pub struct RubberState {
     pub work: f64,
     /// What the dashpots have taken so far by the law of small strain, J.
     pub dissipated: f64,
+    /// What the stresses of the Maxwell elements did beyond that law, J.
+    pub beyond: f64,
     /// Of the nodes, m/s and m/s², where they have inertia.
     pub speed: Vec<Vec3>,
     pub acceleration: Vec<Vec3>,

@@ -5,7 +5,7 @@ use super::model::{RubberModel, RubberProblem, supports};
 use super::relaxed::{RelaxedError, relaxed};
 use super::sleeve::SleeveMotion;
 use crate::ch2_housing::elastomer::Elastomer;
-use crate::kinematics::vec3::{Vec3, add, sub};
+use crate::kinematics::vec3::{add, dot};
 use crate::mesh::generate::Bushing;
 use crate::mesh::{Elements, TetMesh};
 use crate::solver::profile::Profile;
@@ -57,17 +57,6 @@ fn lever(motion: SleeveMotion, body: &Bushing) -> f64 {
     }
 }
 
-/// Where a motion by `amount` (m, rad) takes a place of the sleeve.
-fn moved(motion: SleeveMotion, amount: f64, [x, y, z]: Vec3) -> Vec3 {
-    let (sin, cos) = (libm::sin(amount), libm::cos(amount));
-    match motion {
-        SleeveMotion::Radial => [x, y, z + amount],
-        SleeveMotion::Axial => [x + amount, y, z],
-        SleeveMotion::Torsional => [x, cos * y - sin * z, sin * y + cos * z],
-        SleeveMotion::Conical => [cos * x + sin * z, y, cos * z - sin * x],
-    }
-}
-
 /// Relaxed force or moment over the motion, N/m or N·m/rad.
 fn stiffness(
     mesh: &TetMesh,
@@ -83,7 +72,7 @@ fn stiffness(
     let mut prescribed = supports(mesh, &[("outer", [HELD; 3])]);
     for &node in inner {
         let place = mesh.nodes[node as usize];
-        let by = sub(moved(motion, amount, place), place);
+        let by = motion.displacement_by(amount, place);
         let of = |axis: usize| Prescribed { node, axis, profile: Profile::Constant(by[axis]) };
         prescribed.extend([0, 1, 2].map(of));
     }
@@ -97,14 +86,8 @@ fn stiffness(
     let found = relaxed(&model, 0.0)?;
     let pushes = inner.iter().map(|&node| {
         let node = node as usize;
-        let force = found.reactions[node];
-        let [x, y, z] = add(mesh.nodes[node], found.state.displacement[node]);
-        match motion {
-            SleeveMotion::Radial => force[2],
-            SleeveMotion::Axial => force[0],
-            SleeveMotion::Torsional => y * force[2] - z * force[1],
-            SleeveMotion::Conical => z * force[0] - x * force[2],
-        }
+        let place = add(mesh.nodes[node], found.state.displacement[node]);
+        dot(found.reactions[node], motion.displacement(place))
     });
     Ok(pushes.sum::<f64>() / amount)
 }

@@ -47,7 +47,7 @@ pub fn maxwell_energy(model: &RubberModel, state: &RubberState) -> f64 {
 }
 
 /// What became of the work of loads and supports, J. What Maxwell elements hold and have lost is known at
-/// small strain alone; the rest is what strain and length of steps leave of it.
+/// small strain alone; what their stresses do beyond that is named, and the rest is what the length of steps leaves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RubberLedger {
     /// Held by the network.
@@ -56,6 +56,8 @@ pub struct RubberLedger {
     pub springs: f64,
     /// Taken by their dashpots.
     pub dissipated: f64,
+    /// What the stresses of the Maxwell elements did beyond both.
+    pub beyond: f64,
     pub work: f64,
 }
 
@@ -67,13 +69,14 @@ impl RubberLedger {
             network: network_energy(model, &state.displacement)?,
             springs: maxwell_energy(model, state),
             dissipated: state.dissipated,
+            beyond: state.beyond,
             work: state.work,
         })
     }
 
     /// What is held and was taken, less what was put in.
     pub fn residual(&self) -> f64 {
-        self.network + self.springs + self.dissipated - self.work
+        self.network + self.springs + self.dissipated + self.beyond - self.work
     }
 }
 

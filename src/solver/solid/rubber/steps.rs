@@ -11,12 +11,13 @@ use super::model::{Moment, RubberModel};
 use super::newton::{Convergence, Search, Stop};
 use super::tangent::StepLaw;
 use crate::ch2_housing::elastomer::maxwell::{
-    DashpotFactors, StepFactors, carried, commit, curvature_error,
+    DashpotFactors, StepFactors, beyond_small_strain, carried, commit, curvature_error, summed,
 };
 use crate::elements::tet10::POINTS;
-use crate::kinematics::strain::{Sym3, double_dot};
+use crate::kinematics::strain::{Sym3, double_dot, green_lagrange};
 use crate::kinematics::vec3::{Vec3, dot};
 use crate::solver::plan::{Stage, tally::Tally};
+use crate::solver::solid::model::corners;
 
 /// How long steps are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -446,9 +447,18 @@ impl<'a> RubberSolid<'a> {
         {
             let change: Sym3 = std::array::from_fn(|i| new[i] - old[i]);
             let history = &mut state.history[terms * at..terms * (at + 1)];
-            let volume = model.tets[at / POINTS].points[at % POINTS].volume;
+            let (index, nodes) = (at / POINTS, &model.problem.elements[at / POINTS]);
+            let point = &model.tets[index].points[at % POINTS];
+            let [from, to] = [&state.displacement, &self.search.displacement].map(|displaced| {
+                green_lagrange(&point.displacement_gradient(&corners(displaced, nodes)))
+            });
+            let strain = std::array::from_fn(|i| to[i] - from[i]);
+            let volume = point.volume;
             state.dissipated += volume * self.dashpots.energy(history, &change, shear_modulus);
+            let before = summed(history);
             commit(history, &change, &self.factors);
+            let sums = [&before, &summed(history)];
+            state.beyond += volume * beyond_small_strain(sums, &strain, &change, shear_modulus);
             state.rate[at] = change.map(|c| per * c);
             *old = *new;
         }

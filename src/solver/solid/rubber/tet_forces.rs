@@ -6,7 +6,9 @@
 
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::ch2_housing::elastomer::five_terms::FiveTerms;
-use crate::ch2_housing::elastomer::maxwell::{DashpotFactors, StepFactors, commit, spring_energy};
+use crate::ch2_housing::elastomer::maxwell::{
+    DashpotFactors, StepFactors, beyond_small_strain, commit, spring_energy, summed,
+};
 use crate::elements::tet4::{Tet4, relative};
 use crate::elements::tet4_nodal;
 use crate::kinematics::number::Number;
@@ -49,10 +51,13 @@ pub struct RubberForces {
     factors: StepFactors,
     /// Where the dashpots' take is counted, which costs a step some of its speed.
     dashpots: Option<DashpotFactors>,
-    /// What they have taken since, by the law of small strain, J.
+    /// What they have taken since, by the law of small strain, and what the elements' stresses did beyond it, J.
     pub dissipated: f64,
+    pub beyond: f64,
     /// Of each block DEV S, then Hⱼ, Pa.
     memory: Vec<[Lanes; 6]>,
+    /// Of each block the strain then; empty where nothing is counted.
+    strains: Vec<[Lanes; 6]>,
     /// Undeformed volume around each node, a quarter of each element there, m³.
     volumes: Vec<f64>,
     /// Mean stress at each node, Pa.
@@ -84,6 +89,8 @@ impl RubberForces {
             factors: StepFactors::sudden(&material.maxwell),
             dashpots: None,
             dissipated: 0.0,
+            beyond: 0.0,
+            strains: Vec::new(),
             means: vec![0.0; nodes],
             step: 0.0,
             lowest: 0.0,
@@ -105,41 +112,47 @@ impl RubberForces {
         }
     }
 
-    /// From now on counts what the dashpots take.
+    /// From where it rests next on counts what the dashpots take.
     pub fn count_dissipation(&mut self) {
         let mut dashpots = DashpotFactors::default();
         dashpots.set(&self.material.maxwell, self.step);
         self.dashpots = Some(dashpots);
+        self.strains = vec![[Lanes::of(0.0); 6]; self.blocks.len()];
     }
 
-    /// Energy in the springs of the Maxwell elements, and what the dashpots have taken since that is counted, by the law of
-    /// small strain, J: in a state one step ahead of what is remembered, as explicit steps leave it.
-    pub fn maxwell_ledger(&self, displacement: &[Node]) -> [f64; 2] {
+    /// Energy in the springs of the Maxwell elements, what the dashpots have taken since that is counted, both by the law of
+    /// small strain, and what the elements' stresses did beyond it, J: in a state one step ahead of what is remembered, as
+    /// explicit steps leave it.
+    pub fn maxwell_ledger(&self, displacement: &[Node]) -> [f64; 3] {
         let material = &self.material;
         let (terms, shear_modulus) = (material.maxwell.len(), material.network.shear_modulus());
         let mut dashpots = DashpotFactors::default();
         dashpots.set(&material.maxwell, self.step);
-        let (mut springs, mut taken) = (0.0, self.dissipated);
+        let (mut springs, mut taken, mut beyond) = (0.0, self.dissipated, self.beyond);
         let mut history = vec![[0.0; 6]; terms];
-        let remembered = self.memory.chunks_exact(terms + 1);
-        for (block, memory) in self.blocks.iter().zip(remembered) {
+        let remembered = self.memory.chunks_exact(terms + 1).zip(&self.strains);
+        for (block, (memory, strained)) in self.blocks.iter().zip(remembered) {
             for (lane, nodes) in block.nodes.iter().enumerate() {
                 let tet = block.element_of(lane);
                 let strain =
                     green_lagrange(&tet.displacement_gradient(&apart(nodes, displacement)));
                 let own = material.network.isochoric_stress(&strain).unwrap_or([f64::NAN; 6]);
                 let of_lane = |part: &Sym3<Lanes>| part.map(|lanes| lanes.as_array()[lane]);
-                let before = of_lane(&memory[0]);
+                let [before, strained] = [&memory[0], strained].map(of_lane);
                 let change: Sym3 = std::array::from_fn(|i| own[i] - before[i]);
+                let strain = std::array::from_fn(|i| strain[i] - strained[i]);
                 for (to, from) in history.iter_mut().zip(&memory[1..]) {
                     *to = of_lane(from);
                 }
                 taken += tet.volume * dashpots.energy(&history, &change, shear_modulus);
+                let held = summed(&history);
                 commit(&mut history, &change, &self.factors);
+                let sums = [&held, &summed(&history)];
+                beyond += tet.volume * beyond_small_strain(sums, &strain, &change, shear_modulus);
                 springs += tet.volume * spring_energy(&material.maxwell, &history, shear_modulus);
             }
         }
-        [springs, taken]
+        [springs, taken, beyond]
     }
 
     /// About the side of the smallest element, m.
@@ -210,10 +223,14 @@ impl RubberForces {
         self.memory.fill(zero);
         let network = &self.material.network;
         let terms = self.material.maxwell.len() + 1;
-        for (block, memory) in self.blocks.iter().zip(self.memory.chunks_exact_mut(terms)) {
+        let all = self.blocks.iter().zip(self.memory.chunks_exact_mut(terms)).enumerate();
+        for (index, (block, memory)) in all {
             for (lane, nodes) in block.nodes.iter().enumerate() {
                 let h = block.element_of(lane).displacement_gradient(&apart(nodes, displacement));
                 let e = green_lagrange(&h);
+                if let Some(strained) = self.strains.get_mut(index) {
+                    strained.iter_mut().zip(e).for_each(|(to, e)| to.as_mut_array()[lane] = e);
+                }
                 let s = match self.chain {
                     Some(chain) => chain.isochoric_stress(&e),
                     None => network.isochoric_stress(&e).unwrap_or([f64::NAN; 6]),
@@ -292,23 +309,34 @@ impl RubberForces {
         let network = self.material.network;
         let around = self.mean_stress == MeanStress::AroundNodes;
         let mut lowest = Lanes::of(f64::INFINITY);
-        let mut taken = Lanes::of(0.0);
+        let [mut taken, mut beyond] = [Lanes::of(0.0); 2];
+        let mut strains = self.strains.iter_mut();
         let shear_modulus = network.shear_modulus();
         // One bound for all, so that it is checked once.
         let displacement = &displacement[..forces.len()];
         let means = &self.means[..forces.len()];
         for (block, memory) in self.blocks.iter().zip(self.memory.chunks_exact_mut(terms)) {
             let h = block.element.displacement_gradient(&block.relative(displacement));
-            let own = law(&green_lagrange(&h));
+            let strain = green_lagrange(&h);
+            let own = law(&strain);
             let total = match history {
-                History::Commit => {
-                    if let Some(dashpots) = &self.dashpots {
+                History::Commit => match (&self.dashpots, strains.next()) {
+                    (Some(dashpots), Some(strained)) => {
                         let change = std::array::from_fn(|i| own[i] - memory[0][i]);
                         let density = dashpots.energy(&memory[1..], &change, shear_modulus);
                         taken += block.element.volume * density;
+                        let by = std::array::from_fn(|i| strain[i] - strained[i]);
+                        *strained = strain;
+                        let before = summed(&memory[1..]);
+                        let sum = remember(memory, own, &self.factors);
+                        let after = std::array::from_fn(|i| sum[i] - own[i]);
+                        let sums = [&before, &after];
+                        let density = beyond_small_strain(sums, &by, &change, shear_modulus);
+                        beyond += block.element.volume * density;
+                        sum
                     }
-                    remember(memory, own, &self.factors)
-                }
+                    _ => remember(memory, own, &self.factors),
+                },
                 History::Look => foresee(memory, own, &self.factors),
                 History::Scaled(factor) => scaled(own, factor),
             };
@@ -329,6 +357,7 @@ impl RubberForces {
         }
         self.lowest = lowest.to_array().into_iter().fold(self.lowest, f64::min);
         self.dissipated += taken.to_array().iter().sum::<f64>();
+        self.beyond += beyond.to_array().iter().sum::<f64>();
     }
 
     /// Whether at the last evaluation no element was turned inside out or stretched beyond its material.
@@ -336,9 +365,15 @@ impl RubberForces {
         self.lowest > -1.0
     }
 
-    /// DEV S and Hⱼ of every element, one after the other, Pa: what a run needs to go on.
+    /// DEV S and Hⱼ of every element, one after the other (Pa), and strains where they are counted with: what a run needs
+    /// to go on.
     pub fn memory(&self) -> Vec<f64> {
-        self.memory.iter().flatten().flat_map(|lanes| lanes.to_array()).collect()
+        self.memory
+            .iter()
+            .chain(&self.strains)
+            .flatten()
+            .flat_map(|lanes| lanes.to_array())
+            .collect()
     }
 
     /// Puts back what [`RubberForces::memory`] gave.
@@ -346,8 +381,10 @@ impl RubberForces {
     /// # Panics
     /// If it has another length.
     pub fn remember(&mut self, values: &[f64]) {
-        assert_eq!(values.len(), 6 * LANES * self.memory.len(), "of another body");
-        for (to, from) in self.memory.iter_mut().flatten().zip(values.chunks_exact(LANES)) {
+        let count = self.memory.len() + self.strains.len();
+        assert_eq!(values.len(), 6 * LANES * count, "of another body");
+        let all = self.memory.iter_mut().chain(&mut self.strains);
+        for (to, from) in all.flatten().zip(values.chunks_exact(LANES)) {
             to.as_mut_array().copy_from_slice(from);
         }
     }

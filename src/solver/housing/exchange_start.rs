@@ -1,0 +1,152 @@
+//! How an exchange starts: where bodies, solids and bushings are in equilibrium, and in what windows they go on.
+
+use super::bonded::{BondedBushing, BondedPart};
+use super::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
+use super::exchange_window::{check, divided, longest_window};
+use super::seat::Seat;
+use super::stepped::{SteppedSolid, seated};
+use crate::solver::dynamics::assembly::{Assembly, Body};
+use crate::solver::dynamics::race;
+use crate::solver::dynamics::run::Simulation;
+use crate::solver::dynamics::start;
+use crate::solver::dynamics::state::{BODY, BodyState, Places};
+use crate::solver::plan::Stage;
+use crate::solver::solid::contact::closed_limit;
+use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, padded};
+use crate::solver::solid::step_limit::step_limit;
+use crate::solver::statics::StaticsError;
+
+impl<'p> Exchange<'p> {
+    /// Starts with the bodies that sit in solids where they rest, the others in equilibrium with them there
+    /// and the bearings rolling, the solids still and displaced as they are given.
+    ///
+    /// # Errors
+    /// No equilibrium, a fixed race or one on a foundation, options out of range.
+    ///
+    /// # Panics
+    /// If a seat names a body or a solid that is not there.
+    pub fn new(
+        assembly: impl Into<Assembly>,
+        solids: Vec<SolidPart>,
+        seats: Vec<Seat>,
+        options: &ExchangeOptions,
+    ) -> Result<Exchange<'p>, ExchangeError> {
+        Exchange::with_bushings(assembly, solids, seats, Vec::new(), options)
+    }
+
+    /// The same with bushings between bodies: where these and the rest are in equilibrium on springs as stiff as the
+    /// relaxed rubber in its elements.
+    ///
+    /// # Errors
+    /// As [`Exchange::new`]; rubber without an equilibrium.
+    ///
+    /// # Panics
+    /// If a seat or a bushing names a body or a solid that is not there.
+    pub fn with_bushings(
+        assembly: impl Into<Assembly>,
+        solids: Vec<SolidPart>,
+        seats: Vec<Seat>,
+        bushings: Vec<BondedPart<'p>>,
+        options: &ExchangeOptions,
+    ) -> Result<Exchange<'p>, ExchangeError> {
+        let assembly = assembly.into();
+        check(&assembly, &seats, options)?;
+        let method = ExplicitMethod::CentralDifferences;
+        let mut solids: Vec<SteppedSolid> = solids
+            .into_iter()
+            .map(|SolidPart { name, model, displacement }| {
+                let displacement = padded(displacement);
+                let limit = step_limit(&model, &displacement, method);
+                let mut solid = ExplicitSolid::at_rest(model, method, limit.step, limit);
+                solid.displacement = displacement;
+                SteppedSolid { name, solid, steps: 1, seats: Vec::new() }
+            })
+            .collect();
+        let seats = seated(&assembly, &mut solids, seats);
+        let mut bushings = bushings;
+        let state = held_start(&assembly, &seats, &bushings)?;
+        let mut simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
+        if bushings.iter().any(|part| part.is_moved(&simulation)) {
+            for part in &mut bushings {
+                let measured = part.measure();
+                let named = |source| ExchangeError::Bushing { name: part.name.clone(), source };
+                measured.map_err(named)?;
+            }
+            let assembly = simulation.system.assembly;
+            let state = held_start(&assembly, &seats, &bushings)?;
+            simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
+        }
+        let mut on_rubber = Vec::with_capacity(bushings.len());
+        for part in bushings {
+            let name = part.name.clone();
+            let bushing = BondedBushing::new(part, &simulation);
+            on_rubber.push(bushing.map_err(|source| ExchangeError::Bushing { name, source })?);
+        }
+        let assembly = &simulation.system.assembly;
+        let longest = longest_window(assembly, &seats, &on_rubber, options.seat_phase)?;
+        let steps: Vec<f64> = solids
+            .iter()
+            .map(|SteppedSolid { solid, seats, .. }| {
+                // With every node of every seat closed.
+                let closed = seats.iter().fold(solid.limit, |limit, seat| {
+                    closed_limit(&solid.model, &seat.seat.nodes, seat.seat.penalty, &limit)
+                });
+                (options.solid_fraction * closed.step).min(longest)
+            })
+            .collect();
+        let elements: Vec<usize> =
+            solids.iter().map(|part| part.solid.model.problem.elements.len()).collect();
+        // The bodies' own steps divide the windows or are divided by them.
+        let (window, steps) = divided(&elements, &steps, longest);
+        for (part, steps) in solids.iter_mut().zip(steps) {
+            part.steps = steps;
+        }
+        let mut exchange = Exchange::of(simulation, solids, on_rubber, window);
+        exchange.simulation.system.ran.whole.add(Stage::StartEquilibrium, 1);
+        exchange.begin()?;
+        Ok(exchange)
+    }
+}
+
+/// Whether one seat is all that pushes or brakes the bodies of an assembly from outside.
+pub(super) fn is_alone(
+    assembly: &Assembly,
+    solids: &[SteppedSolid],
+    bushings: &[BondedBushing],
+) -> bool {
+    let mut brakes =
+        assembly.bodies.iter().filter_map(Body::driven).flat_map(|b| b.foundation_damping);
+    let seats: usize = solids.iter().map(|part| part.seats.len()).sum();
+    seats == 1
+        && bushings.is_empty()
+        && assembly.connections.is_empty()
+        && brakes.all(|damping| damping == 0.0)
+}
+
+/// State of an assembly in equilibrium whose bodies in solids are held where they rest, those on bushings on the
+/// springs that these are like.
+fn held_start(
+    assembly: &Assembly,
+    seats: &[Seat],
+    bushings: &[BondedPart],
+) -> Result<Vec<f64>, StaticsError> {
+    let mut held = assembly.clone();
+    held.connections.extend(bushings.iter().map(|part| part.spring.clone()));
+    for seat in seats {
+        held.bodies[seat.mount.body].hold();
+    }
+    let mut state = start::at_equilibrium(&held)?;
+    let [own, with_springs] = [assembly, &held].map(|of| Places::of(of).ledger());
+    state.drain(own..with_springs);
+    for seat in seats {
+        let body = seat.mount.body;
+        if held.bodies[body].driven().is_some() {
+            // It turns, and balls roll with it.
+            continue;
+        }
+        let still: BodyState = race::fixed(&assembly.bodies[body].rest).state;
+        let at = Places::of(&held).body(body);
+        state[at..at + BODY].copy_from_slice(&still.to_array());
+    }
+    Ok(state)
+}
