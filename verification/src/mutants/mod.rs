@@ -146,7 +146,7 @@ fn number(
         let Err(messages) = workshop.compiles()? else { return Ok(()) };
         let blamed = switched.blamed(&messages);
         if blamed.is_empty() {
-            return Err(format!("the sources do not build:\n{messages}"));
+            return Err(format!("the sources do not build:\n{}", switch::rendered(&messages)));
         }
         barred.extend(blamed);
     }

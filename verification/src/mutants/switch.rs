@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use serde_json::Value;
 use syn::visit::{self, Visit};
 
 use super::list::Mutant;
@@ -98,12 +99,7 @@ impl Switched {
     /// Faults of the functions that a compiler's messages (JSON, one a line) find errors in.
     pub fn blamed(&self, messages: &str) -> Vec<String> {
         let mut ids = Vec::new();
-        for message in messages.lines().filter_map(|line| serde_json::from_str(line).ok()) {
-            let message: &serde_json::Value = &message;
-            let message = &message["message"];
-            if message["level"] != "error" {
-                continue;
-            }
+        for message in errors(messages) {
             for span in message["spans"].as_array().into_iter().flatten() {
                 let at = span["byte_start"].as_u64().unwrap_or(0) as usize;
                 let here = |place: &&Place| {
@@ -116,15 +112,35 @@ impl Switched {
     }
 }
 
+/// The compiler's messages of errors, as it would say them.
+pub fn rendered(messages: &str) -> String {
+    errors(messages).filter_map(|message| Some(message["rendered"].as_str()?.to_owned())).collect()
+}
+
+fn errors(messages: &str) -> impl Iterator<Item = Value> + '_ {
+    let read = |line: &str| serde_json::from_str::<Value>(line).ok();
+    let of = messages.lines().filter_map(read).map(|mut message| message["message"].take());
+    of.filter(|message| message["level"] == "error")
+}
+
 /// A function's body with a fault that stands in it.
 fn wrong_body(right: &str, body: &Range<usize>, mutant: &Mutant) -> Result<Option<String>, String> {
     mutant.seeded(right)?;
-    let start = right.find(&mutant.find).unwrap_or(0);
-    let end = start + mutant.find.len();
+    // What a fault changes may be less than the text that shows its place.
+    let (find, replace) = (mutant.find.as_str(), mutant.replace.as_str());
+    let same = |(a, b): &(char, char)| a == b;
+    let alike = |(a, _): (char, char)| a.len_utf8();
+    let before: usize = find.chars().zip(replace.chars()).take_while(same).map(alike).sum();
+    let (find, replace) = (&find[before..], &replace[before..]);
+    let pairs = find.chars().rev().zip(replace.chars().rev());
+    let after: usize = pairs.take_while(same).map(alike).sum();
+    let start = right.find(&mutant.find).unwrap_or(0) + before;
+    let end = start + find.len() - after;
+    let replace = &replace[..replace.len() - after];
     if start < body.start || end > body.end {
         return Ok(None);
     }
-    let wrong = format!("{}{}{}", &right[body.start..start], mutant.replace, &right[end..body.end]);
+    let wrong = format!("{}{}{}", &right[body.start..start], replace, &right[end..body.end]);
     // What ends this function and begins another is no body.
     Ok(syn::parse_str::<syn::Block>(&format!("{{{wrong}}}")).is_ok().then_some(wrong))
 }
