@@ -246,7 +246,9 @@ impl Workshop {
         let arguments: &[&str] = match check {
             Check::Test { name, .. } => &["test", "--no-run", "--test", binary_of(name)],
             Check::Lib { .. } => &["test", "--no-run", "--lib"],
-            Check::Case { .. } => &["build", "--package", "verification", "--bin", "verify"],
+            // Beside a test, as it would be for that: packages that both need are then of the same
+            // features, and the library is not built twice.
+            Check::Case { .. } => &["test", "--no-run", "--workspace", "--test", "smoke"],
         };
         self.cargo(arguments, "json-render-diagnostics")
     }
