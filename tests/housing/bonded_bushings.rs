@@ -1,5 +1,6 @@
 //! Bushings in elements beside a bearing: the shipped scene with `method` explicit or implicit.
 
+use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::output::session::{HousedParts, Motion, Parts, RunRequest, Session, Status};
 use bearing_dynamics::output::state::{self, StateRecord, Stopped};
 use bearing_dynamics::scene::assembly::AssemblyScene;
@@ -186,20 +187,25 @@ fn the_mass_of_the_rubber_is_shared_out() {
     for method in ["explicit", "implicit"] {
         let of = scene(method, COARSE, "0 N");
         let (bare, made) = (of.assembly().unwrap(), Made::of(&of, 1e-5));
-        let mass = |body: usize| {
-            let of = |a: &bearing_dynamics::solver::dynamics::assembly::Assembly| {
-                a.bodies[body].inertia().copied()
-            };
-            of(&made.assembly).unwrap().mass - of(&bare).unwrap().mass
+        let added = |body: usize| {
+            let [with, without] =
+                [&made.assembly, &bare].map(|of| *of.bodies[body].inertia().unwrap());
+            let of = |part: fn(&Inertia) -> f64| part(&with) - part(&without);
+            [of(|all| all.mass), of(|all| all.axial), of(|all| all.transverse)]
         };
-        let carried = mass(bare.bearings[0].mounts[1].body);
+        let [carried, axial, transverse] = added(bare.bearings[0].mounts[1].body);
         let ring = |inner: f64, outer: f64| {
             1100.0 * std::f64::consts::PI * (outer * outer - inner * inner) * 0.02
         };
         // The nodes of the inner sleeve have the rubber next to it: two cells across, the first reaching to the middle.
         let [next, all] = [ring(0.0355, 0.0405), ring(0.0355, 0.0455)];
         assert!(carried > 0.1 * next && carried < 0.6 * next, "{carried} of {next} of {all}");
-        assert_eq!(mass(bare.bearings[0].mounts[0].body), 0.0);
+        // All of them are at the sleeve's radius, or on chords of it; along the axis between spread out and at both ends.
+        let around = axial / (carried * 0.0355 * 0.0355);
+        assert!(around > 0.9 && around < 1.0 + 1e-12, "{around}");
+        let along = (transverse - 0.5 * axial) / (carried * 0.02 * 0.02);
+        assert!(along > 1.0 / 12.0 && along < 1.0 / 4.0, "{along}");
+        assert_eq!(added(bare.bearings[0].mounts[0].body), [0.0; 3]);
     }
 }
 
