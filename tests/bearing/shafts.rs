@@ -155,32 +155,29 @@ fn where_a_shaft_has_its_centre_changes_nothing() {
 /// Velocities against differences of places, of a body that moves, tilts and spins.
 #[test]
 fn what_sits_on_a_body_moves_as_that_place_of_it() {
+    const STEP: f64 = 1e-6;
     let mut body = BodyState::at_rest([1e-3, -2e-3, 3e-3]);
     body.orientation = UnitQuaternion::from_euler_angles(0.3, -0.2, 0.1);
     (body.velocity, body.spin) = ([0.5, -0.3, 0.2], [90.0, 4.0, -7.0]);
+    let [place, own] = [body.position, body.axis()].map(Vector3::from);
+    let [velocity, spin] = [body.velocity, body.spin].map(Vector3::from);
     let at = |t: f64| {
-        let mut moved = body;
-        for i in 0..3 {
-            moved.position[i] += t * body.velocity[i];
-        }
-        moved.orientation = UnitQuaternion::new(Vector3::from(body.spin) * t) * body.orientation;
-        RaceNow::new(moved)
+        let position = (place + velocity * t).into();
+        let orientation = UnitQuaternion::new(spin * t) * body.orientation;
+        RaceNow::new(BodyState { position, orientation, ..body })
     };
-    const STEP: f64 = 1e-6;
     for (along, reversed) in [(0.0, true), (40e-3, false), (-30e-3, true)] {
         let mount = Mount { body: 0, along, reversed };
         let [before, now, after] = [-STEP, 0.0, STEP].map(|t| mounted(&at(t), &mount));
-        let (found, axis) = (now.state, now.motion.axis);
-        let side = if reversed { -1.0 } else { 1.0 };
-        for i in 0..3 {
-            let speed = (after.state.position[i] - before.state.position[i]) / (2.0 * STEP);
-            // Differences: (ω t)² of some m/s, and rounding of mm over a step.
-            assert!((found.velocity[i] - speed).abs() <= 1e-7, "{along}: {i}");
-            assert!((side * axis[i] - body.axis()[i]).abs() <= 1e-15, "{reversed}: {i}");
-            let off = found.position[i] - body.position[i];
-            assert!((off - along * body.axis()[i]).abs() <= 1e-17, "{along}: {i}");
-        }
-        assert_eq!(found.spin, body.spin);
+        let [before, there, after] =
+            [&before, &now, &after].map(|now| Vector3::from(now.state.position));
+        // (ω t)² of some m/s, and rounding of mm over a step.
+        let speed = (after - before) / (2.0 * STEP);
+        assert!((Vector3::from(now.state.velocity) - speed).norm() <= 1e-7, "{along}");
+        assert!((there - place - own * along).norm() <= 1e-17, "{along}");
+        let axis = Vector3::from(now.motion.axis) * if reversed { -1.0 } else { 1.0 };
+        assert!((axis - own).norm() <= 1e-15, "{reversed}");
+        assert_eq!(now.state.spin, body.spin);
     }
 }
 
