@@ -299,6 +299,32 @@ fn unbalance_response_below_and_above_critical() {
     }
 }
 
+/// The force of a mass that goes round faster and faster: minus mass times acceleration, outwards and backwards.
+#[test]
+fn an_unbalance_pushes_as_its_mass_is_accelerated() {
+    const SIZE: f64 = 2e-3;
+    let (t, faster) = (0.02, 5e3);
+    let mut assembly = alone(&beam(MIDDLE, STEEL), Kept { most: 2, ..Kept::ALL }, &[0.1], 0.0);
+    assembly.bodies[0].driven_mut().unwrap().rotation = Rotation::Speed(rising(0.1 * faster, 0.1));
+    let unbalance = unbalanced(SIZE, &assembly, 0.1);
+    let angle = unbalance.angle;
+    assembly.shafts[0].unbalances.push(unbalance);
+    let mut state = start::nominal(&assembly);
+    let mut system = System::new(assembly.clone(), Driver::Plain);
+    let at = system.places.body(0);
+    state[at + SPIN] = faster * t;
+    let mut rates = vec![0.0; state.len()];
+    system.evaluate(t, &state, &mut rates);
+    let mass = assembly.bodies[0].inertia().unwrap().mass;
+    let (sin, cos) = angle.sin_cos();
+    let squared = (faster * t) * (faster * t);
+    let expected = [cos * squared + sin * faster, sin * squared - cos * faster];
+    for (i, expected) in expected.into_iter().enumerate() {
+        let found = mass * rates[at + VELOCITY + 1 + i];
+        assert!((found - SIZE * expected).abs() <= 1e-12 * SIZE * squared, "{found} {expected}");
+    }
+}
+
 /// The rotor of 4.3.4 on two bearings, at a speed that rises.
 pub fn on_bearings(speed: Profile, youngs_modulus: f64) -> Assembly {
     let beam = beam(MIDDLE, youngs_modulus);

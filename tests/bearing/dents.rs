@@ -157,6 +157,24 @@ fn the_table_says_what_the_half_space_does() {
     }
 }
 
+/// Half a wave deep and a whole one high: without a step or a kink where pit, shoulder and surface meet.
+#[test]
+fn a_dent_is_smooth_from_its_pit_to_the_surface_around_it() {
+    let shape = DentShape { shoulder_height: 4e-6, shoulder_width: 100e-6, ..pit(WIDE, 25e-6) };
+    let course = [(0.0, 25.0), (125.0, 12.5), (250.0, 0.0), (275.0, -2.0), (300.0, -4.0)];
+    for (r, depth) in course.into_iter().chain([(325.0, -2.0), (350.0, 0.0), (400.0, 0.0)]) {
+        let error = shape.depth_at(1e-6 * r) - 1e-6 * depth;
+        assert!(error.abs() <= 1e-19, "{r} um: {error}");
+    }
+    assert_eq!(shape.reach(), 350e-6);
+    const NEAR: f64 = 1e-9;
+    for r in [NEAR, 250e-6, 300e-6, 350e-6] {
+        let slope = (shape.depth_at(r + NEAR) - shape.depth_at(r - NEAR)) / (2.0 * NEAR);
+        // Curvatures of up to 8e3 1/m; elsewhere slopes are 0.1.
+        assert!(slope.abs() <= 8e3 * NEAR, "{r}: {slope}");
+    }
+}
+
 /// 3/2 far away and under a load that fills the dent; larger over a wider one; smaller on a shoulder.
 #[test]
 fn the_exponent_follows_load_shape_and_distance() {

@@ -16,6 +16,7 @@ use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::kinematics::vec3::{Vec3, add, cross, dot, scale};
 use bearing_dynamics::solver::dynamics::arrow::Arrow;
+use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::contacts::{Driver, Want};
 use bearing_dynamics::solver::dynamics::linearised::{Hub, Linearised};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
@@ -85,8 +86,8 @@ struct Point {
     linearised: Linearised,
 }
 
-fn linearised(problem: &DynamicProblem, state: Vec<f64>) -> Point {
-    let mut system = System::new(problem.clone(), Driver::Lanes);
+fn linearised(of: impl Into<Assembly>, state: Vec<f64>) -> Point {
+    let mut system = System::new(of, Driver::Lanes);
     let mut rates = vec![0.0; state.len()];
     system.evaluate_with(Want::ForcesAndSlopes, 0.0, &state, &mut rates);
     let mut linearised = Linearised::new(&system);
@@ -320,6 +321,40 @@ fn slopes_of_traction_are_those_of_the_contacts() {
             let limits: Vec<_> = limits.chain(sums.map(|part| (part, sum))).collect();
             left.check(&format!("{index} {scale}"), &limits);
         }
+    }
+}
+
+/// The race of a shaft whose centre is 70 mm away along its axis: levers count from there.
+#[test]
+fn a_race_away_from_the_centre_of_its_shaft_has_levers_about_it() {
+    const ALONG: f64 = 70e-3;
+    let limits = [
+        (Part::Normal, 1e-4),
+        (Part::Force(0), 1e-2),
+        (Part::Tilt(0), 1e-2),
+        (Part::Rolling, 2e-3),
+        (Part::Transverse, 2e-3),
+    ];
+    for (kind, push, traction, scale, limits) in [
+        ("displacements", DISPLACEMENTS, TractionLaw::None, 1e-6, &limits[..3]),
+        ("velocities", VELOCITIES, CONSTANT, 1e-8, &limits[..]),
+    ] {
+        let mut noise = Noise(1);
+        let mut problem = DynamicProblem { traction, ..light(SLOW) };
+        problem.damping = ContactDamping::HuntCrossley { alpha: 0.2 };
+        let mut state = shaken(&problem, 1e-3, &mut noise);
+        problem.inner.rotation = Rotation::Torque(Profile::ZERO);
+        let mut assembly = problem.assembly();
+        assembly.bearings[0].mounts[0].along = ALONG;
+        let at = Layout::new(problem.geometry.ball_count, false).inner();
+        let mut body = BodyState::from_slice(&state[at..at + 13]);
+        let back = body.axis().map(|part| -ALONG * part);
+        body.position = add(body.position, back);
+        body.velocity = add(body.velocity, cross(body.spin, back));
+        state[at..at + 13].copy_from_slice(&body.to_array());
+        let mut point = linearised(assembly, state);
+        let r = point.push(push, &mut noise);
+        point.left_over(scale, &r).check(kind, limits);
     }
 }
 

@@ -10,6 +10,7 @@ use bearing_dynamics::solver::dynamics::assembly::{Assembly, Bearing, Body, Mobi
 use bearing_dynamics::solver::dynamics::contacts::Driver;
 use bearing_dynamics::solver::dynamics::equilibrium::{at_start, static_assembly};
 use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
+use bearing_dynamics::solver::dynamics::race::{RaceNow, mounted};
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, Start, Stepping,
 };
@@ -21,7 +22,7 @@ use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::{StaticOptions, solve_assembly};
 use common::{table_4_1, table_5_3};
 use dynamics::*;
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
 
 pub fn body(name: &str, mobility: Mobility, rest: [f64; 5]) -> Body {
@@ -148,6 +149,35 @@ fn where_a_shaft_has_its_centre_changes_nothing() {
         // Positions 70 mm out are rounded at 1e-17 m, some 1e-12 of an overlap, and steps adapt to that.
         assert!((near[i] - far[i]).abs() <= 1e-5 * 500.0, "{i}: {} {}", near[i], far[i]);
         assert!((near_moment[i] - far_moment[i]).abs() <= 1e-5, "{i}");
+    }
+}
+
+/// Velocities against differences of places, of a body that moves, tilts and spins.
+#[test]
+fn what_sits_on_a_body_moves_as_that_place_of_it() {
+    const STEP: f64 = 1e-6;
+    let mut body = BodyState::at_rest([1e-3, -2e-3, 3e-3]);
+    body.orientation = UnitQuaternion::from_euler_angles(0.3, -0.2, 0.1);
+    (body.velocity, body.spin) = ([0.5, -0.3, 0.2], [90.0, 4.0, -7.0]);
+    let [place, own] = [body.position, body.axis()].map(Vector3::from);
+    let [velocity, spin] = [body.velocity, body.spin].map(Vector3::from);
+    let at = |t: f64| {
+        let position = (place + velocity * t).into();
+        let orientation = UnitQuaternion::new(spin * t) * body.orientation;
+        RaceNow::new(BodyState { position, orientation, ..body })
+    };
+    for (along, reversed) in [(0.0, true), (40e-3, false), (-30e-3, true)] {
+        let mount = Mount { body: 0, along, reversed };
+        let [before, now, after] = [-STEP, 0.0, STEP].map(|t| mounted(&at(t), &mount));
+        let [before, there, after] =
+            [&before, &now, &after].map(|now| Vector3::from(now.state.position));
+        // (ω t)² of some m/s, and rounding of mm over a step.
+        let speed = (after - before) / (2.0 * STEP);
+        assert!((Vector3::from(now.state.velocity) - speed).norm() <= 1e-7, "{along}");
+        assert!((there - place - own * along).norm() <= 1e-17, "{along}");
+        let axis = Vector3::from(now.motion.axis) * if reversed { -1.0 } else { 1.0 };
+        assert!((axis - own).norm() <= 1e-15, "{reversed}");
+        assert_eq!(now.state.spin, body.spin);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The plan of a run: what each scene computes, what it leaves out, and why.
 
-use crate::command_line_common::{done, read, scene as scene_file, write};
+use crate::command_line_common::{DEEP_GROOVE, done, read, scene as scene_file, write};
 use crate::run_common;
 
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
@@ -289,6 +289,31 @@ fn the_plan_chooses_the_method_that_takes_less_work() {
     assert_eq!(choice.integrator, Integrator::Rosenbrock, "{}", choice.reason());
     let choice = choose(&rattling().assembly(), &wanted);
     assert_eq!(choice.integrator, Integrator::DormandPrince, "{}", choice.reason());
+}
+
+/// Below, a little above and far above the limit that the plan itself tells.
+#[test]
+fn a_given_step_is_held_against_the_largest_stable_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = |step: &str| {
+        let numerics = "integrator = \"rk4\"\nend = \"10 us\"\noutput_interval = \"1 us\"";
+        let text = format!("{DEEP_GROOVE}[numerics]\n{numerics}\n{step}");
+        done(&["plan", &write(folder.path(), "scene.toml", &text)])
+    };
+    const LIMIT: &str = "of the largest stable one at the start, ";
+    let chosen = said("");
+    let (_, limit) = chosen.split_once(LIMIT).unwrap();
+    let limit: f64 = limit.split(' ').next().unwrap().parse().unwrap();
+    for (part, verdict) in [
+        (0.5, "): stable at the start; "),
+        (1.05, "): WARNING: longer than stable; "),
+        (1.2, "): WARNING: too long, the run will be refused; "),
+    ] {
+        let said = said(&format!("step = \"{:e} s\"\n", part * limit));
+        let line = said.lines().find(|line| line.starts_with("notes given step")).unwrap();
+        assert!(line.contains(&format!("is {part:.3} {LIMIT}")), "{line}");
+        assert!(line.contains(verdict), "{line}");
+    }
 }
 
 /// Lines of a plan that are items: mark, name and reason.

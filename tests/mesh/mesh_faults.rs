@@ -7,7 +7,7 @@ use bearing_dynamics::mesh::measure::{total_area, total_volume, volume};
 use bearing_dynamics::mesh::numbering::{bandwidth, reverse_cuthill_mckee};
 use bearing_dynamics::mesh::quadratic::elevate;
 use bearing_dynamics::mesh::quality::quality;
-use bearing_dynamics::mesh::repair::{Repair, Repaired, repair};
+use bearing_dynamics::mesh::repair::{Repair, Repaired, coincident_nodes, repair};
 use bearing_dynamics::mesh::select::{Region, nodes_in};
 use bearing_dynamics::mesh::topology::{node_elements, node_neighbours, surface};
 use bearing_dynamics::mesh::{Elements, Fault, MeshError, Surface, TetMesh};
@@ -185,6 +185,23 @@ fn duplicate_and_unreferenced_nodes() {
     assert_eq!(only_merged.nodes.len(), 47);
     let error = repair(mesh, &Repair { merge_duplicates: Some(0.06), ..wanted }).unwrap_err();
     assert!(error.to_string().contains("would collapse"), "{error}");
+}
+
+/// Along every axis, wherever two nodes lie among the cells that the search goes through.
+#[test]
+fn nodes_are_one_up_to_the_tolerance_and_no_farther() {
+    const TOLERANCE: f64 = 1e-6;
+    for k in 0..40 {
+        let at = [0.37, -0.9, 1.3].map(|part| part * f64::from(k) * TOLERANCE);
+        for (axis, side) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0), (2, 1.0), (2, -1.0)] {
+            for (part, first) in [(0.99, 0), (1.01, 1), (5.0, 1)] {
+                let mut other = at;
+                other[axis] += side * part * TOLERANCE;
+                let found = coincident_nodes(&[at, other], TOLERANCE);
+                assert_eq!(found, [0, first], "{part} from {at:?} along {axis}");
+            }
+        }
+    }
 }
 
 #[test]

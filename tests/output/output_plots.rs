@@ -172,6 +172,36 @@ fn polar_curves_over_azimuth() {
     assert_svg(&polar(&polar_plot(vec![ball_curve("none", 0.0)])).unwrap(), &["none"]);
 }
 
+/// Where the first circle with `fill` in it is drawn.
+fn circle(svg: &str, fill: &str) -> [f64; 2] {
+    let mut circles = svg.split("<circle ").skip(1).map(|rest| rest.split("/>").next().unwrap());
+    let circle = circles.find(|circle| circle.contains(fill)).unwrap();
+    ["cx=\"", "cy=\""].map(|name| {
+        let (_, value) = circle.split_once(name).unwrap();
+        value.split('"').next().unwrap().parse().unwrap()
+    })
+}
+
+/// Seen against the axial direction: Y to the right, Z up.
+#[test]
+fn azimuths_go_from_y_to_z_as_they_are_seen() {
+    for degrees in [0.0f64, 60.0, 90.0, 200.0, 300.0] {
+        let (azimuth, mut zone) = (degrees.to_radians(), zone());
+        zone.balls = vec![LoadZoneBall { azimuth, loaded: true, outer_load: 100.0 }];
+        let curve = Curve::separate("a ball", vec![[azimuth, 100.0]]);
+        let polar = polar(&polar_plot(vec![curve])).unwrap();
+        let ball = circle(&load_zone(&zone).unwrap(), "fill=\"#D53C28\"");
+        for (at, middle) in [(ball, [450.0, 400.0]), (circle(&polar, "fill"), [450.0, 375.0])] {
+            let (y, z) = (at[0] - middle[0], middle[1] - at[1]);
+            let radius = y.hypot(z);
+            assert!(radius > 100.0, "{degrees}: {at:?}");
+            // Whole pixels.
+            assert!((y - radius * azimuth.cos()).abs() <= 1.0, "{degrees}: {at:?}");
+            assert!((z - radius * azimuth.sin()).abs() <= 1.0, "{degrees}: {at:?}");
+        }
+    }
+}
+
 #[test]
 fn load_zone_draws_each_ball_and_states_the_scale() {
     let zone = zone();

@@ -1,6 +1,6 @@
 //! A shaft of stations against beams that have closed forms.
 
-use bearing_dynamics::ch4_rotor::beam::ShearCoefficient;
+use bearing_dynamics::ch4_rotor::beam::{Section, ShearCoefficient};
 use bearing_dynamics::solver::rotor::beam::{
     Beam, BeamDisc, BeamError, BeamMatrices, BeamSegment, STATION,
 };
@@ -205,5 +205,33 @@ fn stations_stand_where_they_are_asked_for() {
         let mut beam = beam.clone();
         fault(&mut beam);
         assert!(beam.matrices(&[]).is_err());
+    }
+}
+
+/// Full sections and thin tubes as the papers have them, and rings between: both formulas are quotients of
+/// polynomials in both diameters that do not tell these apart.
+#[test]
+fn shear_coefficients_of_full_sections_rings_and_tubes() {
+    let of = |law: ShearCoefficient, outer_diameter: f64, inner_diameter: f64, nu: f64| {
+        law.of(&Section { outer_diameter, inner_diameter }, nu)
+    };
+    for nu in [0.0, 0.2, 0.3, 0.5] {
+        let one = 1.0 + nu;
+        for (law, full, tube) in [
+            (ShearCoefficient::Cowper, 6.0 * one / (7.0 + 6.0 * nu), 2.0 * one / (4.0 + 3.0 * nu)),
+            (
+                ShearCoefficient::Hutchinson,
+                6.0 * one * one / (7.0 + 12.0 * nu + 4.0 * nu * nu),
+                one / (2.0 + nu),
+            ),
+        ] {
+            assert!((of(law, 0.03, 0.0, nu) - full).abs() <= 1e-15, "{law:?} {nu}");
+            assert!((of(law, 0.03, 0.03, nu) - tube).abs() <= 1e-15, "{law:?} {nu}");
+            for inner in [0.01, 0.02, 0.029] {
+                let (ring, turned) = (of(law, 0.03, inner, nu), of(law, inner, 0.03, nu));
+                assert!((ring - turned).abs() <= 1e-14, "{law:?} {nu}: {ring} {turned}");
+                assert!(ring > tube && ring < full, "{law:?} {nu}: {ring}");
+            }
+        }
     }
 }

@@ -466,3 +466,22 @@ fn what_rubber_cannot_bear_is_named() {
         let Some(SolidError::Material { .. }) = failure else { panic!("{failure:?}") };
     }
 }
+
+/// The recursion itself, under a strain that changes its sign with every step until it only repeats itself.
+#[test]
+fn the_factor_of_an_alternating_strain_is_that_of_the_recursion() {
+    let elements = [(0.4, 1e-3), (0.7, 2e-4)].map(|(gamma, tau)| Maxwell { gamma, tau });
+    for dt in [1e-5, 3e-4, 1e-3] {
+        let mut factors = StepFactors::default();
+        factors.set(&elements, dt).unwrap();
+        let mut history = vec![[0.0; 6]; elements.len()];
+        let mut sign = 1.0;
+        for _ in 0..4000 {
+            sign = -sign;
+            commit(&mut history, &[2.0 * sign, 0.0, 0.0, 0.0, 0.0, 0.0], &factors);
+        }
+        let found = 1.0 + history.iter().map(|part| part[0] / sign).sum::<f64>();
+        let expected = alternating_factor(&elements, dt);
+        assert!((found / expected - 1.0).abs() <= 1e-12, "{dt}: {found} {expected}");
+    }
+}

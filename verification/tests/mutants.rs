@@ -114,6 +114,109 @@ fn a_fault_is_caught_and_a_harmless_change_survives() {
     assert!(said.contains("wrong_factor … caught"), "{said}");
 }
 
+/// Functions of all kinds that a fault may stand in; each test holds one of them.
+const KINDS: &str = "pub const HALF: f64 = 0.5;
+pub struct Sum(pub f64);
+impl Sum {
+    pub fn add(&mut self, (a, b): (f64, f64)) -> &mut Self {
+        if a < 0.0 {
+            return self;
+        }
+        self.0 += a * HALF;
+        self.0 += b;
+        self
+    }
+    pub fn into_parts<T: From<f64>>(self, parts: impl Fn(f64) -> f64) -> Vec<T> {
+        let of = |x: f64| T::from(parts(x) + 1.0);
+        vec![of(self.0)]
+    }
+}
+impl std::fmt::Display for Sum {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, \"{} m\", self.0)
+    }
+}
+pub trait Twice {
+    fn value(&self) -> f64;
+    fn twice(&self) -> f64 {
+        2.0 * self.value()
+    }
+}
+impl Twice for f64 {
+    fn value(&self) -> f64 {
+        *self
+    }
+}
+pub const fn three() -> f64 {
+    3.0
+}
+pub fn falling(n: usize) -> impl Iterator<Item = usize> {
+    (0..n).map(move |i| n - i)
+}
+pub fn outer(x: f64) -> f64 {
+    fn inner(x: f64) -> f64 {
+        x - 1.0
+    }
+    inner(x) * x
+}
+";
+
+const TESTS_OF_KINDS: &str = "use small::*;
+#[test]
+fn kinds() {
+    let mut sum = Sum(0.0);
+    sum.add((2.0, 3.0)).add((-1.0, 7.0));
+    assert_eq!((sum.0, sum.to_string().as_str()), (4.0, \"4 m\"));
+    assert_eq!(sum.into_parts::<f64>(|x| 2.0 * x), [9.0]);
+    assert_eq!((1.5.twice(), three(), outer(3.0)), (3.0, 3.0, 6.0));
+    assert_eq!(falling(2).collect::<Vec<_>>(), [2, 1]);
+}
+";
+
+#[test]
+fn a_fault_in_a_function_of_any_kind_is_switched_or_built_alone() {
+    // What is wrong in the one build, and what cannot be there: constants, what is computed when it is
+    // compiled, and values of a type without a name.
+    let switched = [
+        ("early_return", "a < 0.0", "a < -2.0"),
+        ("first_of_two", "a * HALF", "a / HALF"),
+        ("second_of_two", "+= b", "-= b"),
+        ("in_a_closure", "parts(x) + 1.0", "parts(x) - 1.0"),
+        ("of_a_trait", "{} m", "{} mm"),
+        ("by_default", "2.0 * self.value()", "self.value()"),
+        ("within_another", "x - 1.0", "x + 1.0"),
+    ];
+    let alone = [
+        ("a_constant", "= 0.5", "= 0.25"),
+        ("when_compiled", "    3.0", "    4.0"),
+        ("without_a_name", "n - i", "n + i"),
+        ("a_signature", "(a, b): (f64, f64)", "(b, a): (f64, f64)"),
+    ];
+    let entry = |(id, find, replace): (&str, &str, &str)| {
+        format!(
+            "[[mutant]]\nid = \"{id}\"\nfile = \"src/lib.rs\"\nfind = '{find}'\nreplace = '{replace}'\n\
+             breaks = \"it\"\ncaught_by = [\"--test laws kinds\"]\n"
+        )
+    };
+    // In the body of a function that has faults, and none itself.
+    let same = entry(("same", "inner(x) * x", "x * inner(x)"));
+    let texts: Vec<String> = switched.into_iter().chain(alone).map(entry).chain([same]).collect();
+    let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+    let folder = crate_with(&texts);
+    fs::write(folder.path().join("src/lib.rs"), KINDS).unwrap();
+    fs::write(folder.path().join("tests/laws.rs"), TESTS_OF_KINDS).unwrap();
+    let (code, said) = mutants(folder.path(), &[]);
+    assert_eq!(code, Some(1), "{said}");
+    let line = |id: &str| said.lines().find(|line| line.contains(&format!(" {id} … "))).unwrap();
+    for (ids, built_alone) in [(&switched[..], false), (&alone[..], true)] {
+        for (id, ..) in ids {
+            assert!(line(id).contains("… caught by --test laws kinds"), "{said}");
+            assert_eq!(line(id).contains("built alone"), built_alone, "{said}");
+        }
+    }
+    assert!(line("same").contains("SURVIVED") && !line("same").contains("alone"), "{said}");
+}
+
 #[test]
 fn a_list_that_proves_nothing_is_refused() {
     let gone = WRONG_FACTOR.replace("2.0 * x", "2.0 * y");

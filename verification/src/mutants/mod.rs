@@ -5,15 +5,17 @@
 
 pub mod list;
 pub mod report;
+pub mod switch;
 pub mod workshop;
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use list::{Check, List, Mutant};
 use report::{Outcome, Proof, Results, Verdict};
+use switch::Switched;
 use workshop::{Ran, Sources, Workshop};
 
 /// What became of a run.
@@ -32,12 +34,18 @@ fn patience(without_fault: f64) -> Duration {
     Duration::from_secs_f64(60.0 + 10.0 * without_fault.max(0.0)).min(LONGEST)
 }
 
-/// Faults that the same program is to catch, with their keys.
-type Group<'a> = Vec<(&'a Mutant, String)>;
+/// A fault to judge.
+struct Task<'a> {
+    mutant: &'a Mutant,
+    /// Of what its verdict rests on.
+    key: String,
+    /// Sets it off in the one build; 0 where it has to be built alone.
+    number: usize,
+}
 
 /// What the workers share.
 struct Work<'a> {
-    groups: VecDeque<Group<'a>>,
+    tasks: VecDeque<Task<'a>>,
     results: Results,
     done: usize,
     /// The first one ends the run.
@@ -48,13 +56,13 @@ struct Work<'a> {
 struct Frame<'a> {
     list: &'a List,
     sources: &'a Sources,
+    workshop: &'a Workshop,
     folder: &'a Path,
     todo: usize,
 }
 
-/// Runs the mutants of the repository at `root`, or only those named, side by side on `jobs`
-/// processors: each worker has a copy of the sources and a folder of what is built from it, and takes
-/// all faults that one program is to catch, so that this program is built from nothing only once.
+/// Runs the mutants of the repository at `root`, or only those named: first all that one build holds
+/// behind switches, side by side on `jobs` processors, then the others, each with a build of its own.
 ///
 /// # Errors
 /// In words: a list that is not sound, a fault that no longer applies or does not build, a check
@@ -74,102 +82,117 @@ pub fn run(root: &Path, only: &[String], jobs: usize) -> Result<Tally, String> {
     let folder = std::path::absolute(root.join("target/mutants")).map_err(|e| e.to_string())?;
     let mut results = Results::read(&folder);
     results.outcomes.retain(|outcome| list.mutants.iter().any(|m| m.id == outcome.id));
-    let todo: Group = selected
+    let key = |mutant: &Mutant| sources.key(&mutant.caught_by, &mutant.text());
+    let mut tasks: Vec<Task> = selected
         .iter()
-        .map(|mutant| (*mutant, sources.key(&mutant.caught_by, &mutant.text())))
-        .filter(|(mutant, key)| !results.holds(&mutant.id, key))
+        .map(|mutant| Task { mutant, key: key(mutant), number: 0 })
+        .filter(|task| !results.holds(&task.mutant.id, &task.key))
         .collect();
-    let frame = Frame { list: &list, sources: &sources, folder: &folder, todo: todo.len() };
-    let groups = grouped(todo);
-    let workers = jobs.clamp(1, groups.len().max(1));
-    let work = Mutex::new(Work { groups, results, done: 0, error: None });
-    std::thread::scope(|scope| {
-        for worker in 0..workers {
-            let (frame, work) = (&frame, &work);
-            scope.spawn(move || {
-                if let Err(error) = run_groups(frame, work, worker, (jobs / workers).max(1)) {
-                    lock(work).error.get_or_insert(error);
-                }
-            });
+    let todo = tasks.len();
+    let workshop = Workshop::new(&folder, jobs)?;
+    number(&workshop, &sources, &list.mutants, &mut tasks)?;
+    // Program by program: the next one is built when the verdicts of the last one are kept.
+    tasks.sort_by_key(|task| task.mutant.caught_by.first().map(Check::program));
+    let (switched, alone): (VecDeque<_>, VecDeque<_>) =
+        tasks.into_iter().partition(|task| task.number != 0);
+    let frame =
+        Frame { list: &list, sources: &sources, workshop: &workshop, folder: &folder, todo };
+    let mut work = Mutex::new(Work { tasks: switched, results, done: 0, error: None });
+    for (workers, next) in [(jobs, alone), (1, VecDeque::new())] {
+        std::thread::scope(|scope| {
+            for place in 0..workers {
+                let (frame, work) = (&frame, &work);
+                scope.spawn(move || {
+                    if let Err(error) = work_off(frame, work, place) {
+                        lock(work).error.get_or_insert(error);
+                    }
+                });
+            }
+        });
+        let shared = work.get_mut().unwrap_or_else(PoisonError::into_inner);
+        if let Some(error) = shared.error.take() {
+            return Err(error);
         }
-    });
-    let work = work.into_inner().unwrap_or_else(PoisonError::into_inner);
-    if let Some(error) = work.error {
-        return Err(error);
+        if !next.is_empty() {
+            workshop.fill(&sources)?;
+        }
+        shared.tasks = next;
     }
-    work.results.write(&folder, &list)?;
-    let verdict = |mutant: &Mutant| work.results.verdict(&mutant.id);
-    let survived = selected.iter().filter(|m| verdict(m) == Some(&Verdict::Survived)).count();
+    let results = &lock(&work).results;
+    results.write(&folder, &list)?;
+    let survives = |m: &&&Mutant| results.verdict(&m.id) == Some(&Verdict::Survived);
+    let survived = selected.iter().filter(survives).count();
     Ok(Tally { caught: selected.len() - survived, survived })
 }
 
-/// By the program of the check named first; the largest groups first, so that workers end together.
-fn grouped(todo: Group) -> VecDeque<Group> {
-    let mut by_program: BTreeMap<String, Group> = BTreeMap::new();
-    for (mutant, key) in todo {
-        let program = mutant.caught_by.first().map(Check::program).unwrap_or_default();
-        by_program.entry(program).or_default().push((mutant, key));
+/// Numbers the tasks whose faults stand behind switches in the workshop's copy. A function in which the
+/// compiler takes no switch is left as it is.
+fn number(
+    workshop: &Workshop,
+    sources: &Sources,
+    mutants: &[Mutant],
+    tasks: &mut [Task],
+) -> Result<(), String> {
+    let mut barred = Vec::new();
+    loop {
+        let switched = Switched::new(sources, mutants, &barred)?;
+        for task in &mut *tasks {
+            task.number = switched.numbers.get(&task.mutant.id).copied().unwrap_or(0);
+        }
+        if tasks.iter().all(|task| task.number == 0) {
+            return workshop.fill(sources);
+        }
+        workshop.fill(&switched.sources)?;
+        let Err(messages) = workshop.compiles()? else { return Ok(()) };
+        let blamed = switched.blamed(&messages);
+        if blamed.is_empty() {
+            return Err(format!("the sources do not build:\n{}", switch::rendered(&messages)));
+        }
+        barred.extend(blamed);
     }
-    let mut groups: Vec<Group> = by_program.into_values().collect();
-    // File by file: putting one fault right and the next one in then changes a single module.
-    groups.iter_mut().for_each(|group| group.sort_by(|a, b| a.0.file.cmp(&b.0.file)));
-    groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
-    groups.into()
 }
 
 fn lock<'a, 'b>(work: &'a Mutex<Work<'b>>) -> MutexGuard<'a, Work<'b>> {
     work.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A worker's whole work: group after group, until none is left or something went wrong.
-fn run_groups(
-    frame: &Frame,
-    work: &Mutex<Work>,
-    worker: usize,
-    processors: usize,
-) -> Result<(), String> {
-    let place = match worker {
-        0 => frame.folder.to_path_buf(),
-        other => frame.folder.join(format!("worker-{}", other + 1)),
-    };
-    let workshop = Workshop::new(frame.sources, &place, processors)?;
+/// A worker's whole work: task after task, until none is left or something went wrong.
+fn work_off(frame: &Frame, work: &Mutex<Work>, place: usize) -> Result<(), String> {
     loop {
         let mut shared = lock(work);
-        let group = if shared.error.is_none() { shared.groups.pop_front() } else { None };
+        let task = if shared.error.is_none() { shared.tasks.pop_front() } else { None };
         drop(shared);
-        let Some(group) = group else { return Ok(()) };
-        prove_checks(frame, &workshop, work, &group)?;
-        for (mutant, key) in &group {
-            if lock(work).error.is_some() {
-                return Ok(());
-            }
-            let clock = Instant::now();
-            let verdict = judge(frame, &workshop, work, mutant)?;
-            let seconds = clock.elapsed().as_secs_f64();
-            let mut shared = lock(work);
-            shared.done += 1;
-            let (done, todo, id, words) = (shared.done, frame.todo, &mutant.id, verdict.words());
-            eprintln!("mutant {done}/{todo} {id} … {words} ({seconds:.0} s)");
-            shared.results.keep(Outcome { id: id.clone(), key: key.clone(), verdict, seconds });
-            shared.results.write(frame.folder, frame.list)?;
-        }
+        let Some(Task { mutant, key, number }) = task else { return Ok(()) };
+        prove_checks(frame, work, place, mutant)?;
+        let clock = Instant::now();
+        let fault = (number == 0).then(|| frame.workshop.seed(mutant)).transpose()?;
+        let verdict = judge(frame, work, place, mutant, number)?;
+        drop(fault);
+        let seconds = clock.elapsed().as_secs_f64();
+        let mut shared = lock(work);
+        shared.done += 1;
+        let (done, todo, id, words) = (shared.done, frame.todo, &mutant.id, verdict.words());
+        let how = if number == 0 { ", built alone" } else { "" };
+        eprintln!("mutant {done}/{todo} {id} … {words} ({seconds:.0} s{how})");
+        shared.results.keep(Outcome { id: id.clone(), key, verdict, seconds });
+        shared.results.write(frame.folder, frame.list)?;
     }
 }
 
 /// A check that fails anyway catches nothing, and neither does one that runs no test.
 fn prove_checks(
     frame: &Frame,
-    workshop: &Workshop,
     work: &Mutex<Work>,
-    group: &Group,
+    place: usize,
+    mutant: &Mutant,
 ) -> Result<(), String> {
-    for check in group.iter().flat_map(|(mutant, _)| &mutant.caught_by) {
+    for check in &mutant.caught_by {
         let key = frame.sources.key(std::slice::from_ref(check), "");
         if lock(work).results.proof(&key).is_some() {
             continue;
         }
         eprintln!("without any fault: {check}");
-        let (ran, seconds) = workshop.run(check, LONGEST)?;
+        let (ran, seconds) = frame.workshop.run(check, 0, place, LONGEST)?;
         match ran {
             Ran::Passed { tests: 0 } => return Err(format!("`{check}` runs no test")),
             Ran::Passed { .. } => {
@@ -189,18 +212,19 @@ fn prove_checks(
 
 fn judge(
     frame: &Frame,
-    workshop: &Workshop,
     work: &Mutex<Work>,
+    place: usize,
     mutant: &Mutant,
+    number: usize,
 ) -> Result<Verdict, String> {
-    let _fault = workshop.seed(mutant)?;
     let named = mutant.caught_by.iter().map(|check| (check, true));
     let others = frame.list.fallback.iter().map(|check| (check, false));
     for (check, expected) in named.chain(others) {
         let by = check.to_string();
         let key = frame.sources.key(std::slice::from_ref(check), "");
         let proof = lock(work).results.proof(&key).map(|proof| proof.seconds);
-        match workshop.run(check, proof.map_or(LONGEST, patience))?.0 {
+        let patience = proof.map_or(LONGEST, patience);
+        match frame.workshop.run(check, number, place, patience)?.0 {
             Ran::Passed { .. } => {}
             Ran::Failed if expected => return Ok(Verdict::Caught { by }),
             Ran::TimedOut if expected => return Ok(Verdict::Caught { by: by + " (never ends)" }),

@@ -2,13 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use sha2::{Digest, Sha256};
 
 use super::list::{Check, Mutant, binary_of};
+use super::switch;
 
 /// What a check came to.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,12 +26,14 @@ pub enum Ran {
 }
 
 /// Contents of every file of a repository, by its path from the root.
-pub struct Sources(BTreeMap<String, Vec<u8>>);
+pub struct Sources(pub BTreeMap<String, Vec<u8>>);
 
 /// A folder with a copy of the sources (`tree`), what is built from it (`target`) and what is run there.
 pub struct Workshop {
     folder: PathBuf,
     processors: usize,
+    /// Built from what the copy holds now, by what cargo calls them.
+    programs: Mutex<BTreeMap<String, PathBuf>>,
 }
 
 /// A fault in the copy; dropping it puts the right text back.
@@ -92,14 +97,22 @@ impl Sources {
 }
 
 impl Workshop {
-    /// Copies the sources into `folder`; files that are the same already keep their age, so that
+    /// # Errors
+    /// In words, when the folder cannot be made.
+    pub fn new(folder: &Path, processors: usize) -> Result<Workshop, String> {
+        let tree = folder.join("tree");
+        fs::create_dir_all(&tree).map_err(|error| said(&tree, &error))?;
+        Ok(Workshop { folder: folder.to_path_buf(), processors, programs: Mutex::default() })
+    }
+
+    /// Makes the copy one of these sources; files that are the same already keep their age, so that
     /// builds go on from the last ones.
     ///
     /// # Errors
     /// In words, when files cannot be read or written.
-    pub fn new(sources: &Sources, folder: &Path, processors: usize) -> Result<Workshop, String> {
-        let tree = folder.join("tree");
-        fs::create_dir_all(&tree).map_err(|error| said(&tree, &error))?;
+    pub fn fill(&self, sources: &Sources) -> Result<(), String> {
+        self.programs().clear();
+        let tree = self.folder.join("tree");
         let Sources(copied) = Sources::read(&tree)?;
         for gone in copied.keys().filter(|name| !sources.0.contains_key(*name)) {
             fs::remove_file(tree.join(gone)).map_err(|error| said(&tree.join(gone), &error))?;
@@ -112,7 +125,11 @@ impl Workshop {
                     .map_err(|error| said(&path, &error))?;
             }
         }
-        Ok(Workshop { folder: folder.to_path_buf(), processors })
+        Ok(())
+    }
+
+    fn programs(&self) -> MutexGuard<'_, BTreeMap<String, PathBuf>> {
+        self.programs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Puts a fault into the copy.
@@ -123,45 +140,55 @@ impl Workshop {
         let path = self.folder.join("tree").join(&mutant.file);
         let right = fs::read_to_string(&path).map_err(|error| said(&path, &error))?;
         let wrong = mutant.seeded(&right)?;
+        self.programs().clear();
         let fault = Fault { path, right };
         fs::write(&fault.path, wrong).map_err(|error| said(&fault.path, &error))?;
         Ok(fault)
     }
 
-    /// Builds what a check needs and runs it, for as long as patience lasts; with the seconds that it
-    /// ran.
+    /// Builds what a check needs and runs it with the fault of a number (0: none) at one of several
+    /// places, for as long as patience lasts; with the seconds that it ran.
     ///
     /// # Errors
     /// When cargo or the check cannot be started at all.
-    pub fn run(&self, check: &Check, patience: Duration) -> Result<(Ran, f64), String> {
+    pub fn run(
+        &self,
+        check: &Check,
+        number: usize,
+        place: usize,
+        patience: Duration,
+    ) -> Result<(Ran, f64), String> {
         let program = match self.build(check)? {
             Ok(program) => program,
             Err(compiler) => return Ok((Ran::DoesNotBuild(compiler), 0.0)),
         };
         let clock = Instant::now();
         let mut command = Command::new(&program);
-        command.current_dir(self.folder.join("tree"));
+        command.current_dir(self.folder.join("tree")).env(switch::VARIABLE, number.to_string());
         match check {
             Check::Case { id } => {
-                let out = self.folder.join("verify");
+                let out = self.folder.join(format!("verify-{place}"));
                 let golden = self.folder.join("tree/golden");
-                command.args(["--case", id, "--out"]).arg(out).arg("--golden").arg(golden);
+                // A cache knows the sources, not which of their faults is set off.
+                command.args(["--case", id, "--no-cache", "--out"]).arg(out);
+                command.arg("--golden").arg(golden);
             }
             Check::Test { name, filter } => {
                 let module = name.split_once('/').map(|(_, module)| format!("{module}::"));
-                let wanted = filter.clone().or(module);
-                command.args(wanted).arg(format!("--test-threads={}", self.processors));
+                command.args(filter.clone().or(module)).arg("--test-threads=1");
             }
             Check::Lib { filter } => {
-                command.args(filter).arg(format!("--test-threads={}", self.processors));
+                command.args(filter).arg("--test-threads=1");
             }
         }
         // The same random cases every time, and no snapshot is touched.
         command.env("PROPTEST_RNG_SEED", "20").env("INSTA_UPDATE", "no");
-        let log = self.folder.join("check.log");
+        let log = self.folder.join(format!("check-{place}.log"));
         let file = fs::File::create(&log).map_err(|error| said(&log, &error))?;
         let other = file.try_clone().map_err(|error| said(&log, &error))?;
-        let child = command.stdin(Stdio::null()).stdout(file).stderr(other).spawn();
+        // A group of its own, to be stopped with all that it has started.
+        command.process_group(0).stdin(Stdio::null()).stdout(file).stderr(other);
+        let child = command.spawn();
         let passed = wait(child.map_err(|error| said(&program, &error))?, patience)?;
         let ran = match passed {
             None => Ran::TimedOut,
@@ -171,11 +198,26 @@ impl Workshop {
         Ok((ran, clock.elapsed().as_secs_f64()))
     }
 
+    /// Builds library and command as the copy has them and as tests want them; the compiler's messages where
+    /// they do not build.
+    ///
+    /// # Errors
+    /// When cargo cannot be started at all.
+    pub fn compiles(&self) -> Result<Result<(), String>, String> {
+        let output = self.cargo(&["test", "--no-run", "--lib", "--bins"], "json")?;
+        let messages = || String::from_utf8_lossy(&output.stdout).into_owned();
+        Ok(if output.status.success() { Ok(()) } else { Err(messages()) })
+    }
+
     /// The program of a check, or what the compiler said.
     ///
     /// An interrupted build can leave parts behind that no longer fit together: one that cannot be
     /// linked is made once more from nothing before the sources are blamed.
     fn build(&self, check: &Check) -> Result<Result<PathBuf, String>, String> {
+        let mut programs = self.programs();
+        if let Some(program) = programs.get(&check.program()) {
+            return Ok(Ok(program.clone()));
+        }
         let mut output = self.compile(check)?;
         let errors = String::from_utf8_lossy(&output.stderr);
         if !output.status.success() && errors.contains("error: linking with") {
@@ -191,32 +233,35 @@ impl Workshop {
             Check::Lib { .. } => ("lib", ""),
             Check::Case { .. } => ("bin", "verify"),
         };
-        String::from_utf8_lossy(&output.stdout)
+        let program = String::from_utf8_lossy(&output.stdout)
             .lines()
             .filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok())
             .find_map(|message| executable(&message, wanted))
-            .map(Ok)
-            .ok_or_else(|| format!("cargo built nothing to run for `{check}`"))
+            .ok_or_else(|| format!("cargo built nothing to run for `{check}`"))?;
+        programs.insert(check.program(), program.clone());
+        Ok(Ok(program))
     }
 
     fn compile(&self, check: &Check) -> Result<Output, String> {
-        let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
-        let mut command = Command::new(cargo);
-        match check {
-            Check::Test { name, .. } => {
-                command.args(["test", "--no-run", "--test", binary_of(name)])
-            }
-            Check::Lib { .. } => command.args(["test", "--no-run", "--lib"]),
-            Check::Case { .. } => {
-                command.args(["build", "--package", "verification", "--bin", "verify"])
-            }
+        let arguments: &[&str] = match check {
+            Check::Test { name, .. } => &["test", "--no-run", "--test", binary_of(name)],
+            Check::Lib { .. } => &["test", "--no-run", "--lib"],
+            // Beside a test, as it would be for that: packages that both need are then of the same
+            // features, and the library is not built twice.
+            Check::Case { .. } => &["test", "--no-run", "--workspace", "--test", "smoke"],
         };
-        command
+        self.cargo(arguments, "json-render-diagnostics")
+    }
+
+    fn cargo(&self, arguments: &[&str], messages: &str) -> Result<Output, String> {
+        let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+        Command::new(cargo)
+            .args(arguments)
             .current_dir(self.folder.join("tree"))
-            .args(["--release", "--message-format=json-render-diagnostics", "--quiet"])
+            .args(["--release", "--quiet"])
+            .arg(format!("--message-format={messages}"))
             .arg(format!("--jobs={}", self.processors))
-            // One fault changes one module: what the others compiled to is kept, and little is optimised,
-            // since the same sums come of it and a fault costs more to build than to run.
+            // Little is optimised: the same sums come of it, and most checks take less than their build.
             .env("CARGO_TARGET_DIR", self.folder.join("target"))
             .env("CARGO_INCREMENTAL", "1")
             .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1")
@@ -243,7 +288,9 @@ fn wait(mut child: Child, patience: Duration) -> Result<Option<bool>, String> {
             return Ok(Some(status.success()));
         }
         if clock.elapsed() > patience {
-            child.kill().and_then(|()| child.wait()).map_err(|error| error.to_string())?;
+            let group = format!("-{}", child.id());
+            let killed = Command::new("kill").args(["-KILL", "--", &group]).status();
+            killed.and_then(|_| child.wait()).map_err(|error| error.to_string())?;
             return Ok(None);
         }
         std::thread::sleep(Duration::from_millis(20));
