@@ -1,5 +1,5 @@
 //! Shapes of bending and of stretching of a free shaft: natural ones up to a frequency, and beside them its static answers
-//! to what takes hold of it, as far as the natural ones leave these out ([`FreeBody`]).
+//! to what takes hold of it, as far as the natural ones leave these out ([`super::free_shapes`]).
 
 use super::free_shapes::{Cut, FreeBody, FreeShapes};
 use crate::ch4_rotor::beam::{NODES, PlaneMatrix};

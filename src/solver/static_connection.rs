@@ -7,9 +7,12 @@ use crate::kinematics::Pose;
 use crate::kinematics::vec3::{Vec3, add, cross, sub};
 use nalgebra::{DMatrix, Vector3};
 
+/// A body, about what its tilts turn it, and the axes of its coordinates.
+type End<'m> = (RaceNow, [Vector3<f64>; 2], Option<&'m Pose>);
+
 /// Where a connection holds its bodies.
 struct Joined<'m> {
-    bodies: [(RaceNow, [Vector3<f64>; 2], Option<&'m Pose>); 2],
+    bodies: [End<'m>; 2],
     ends: [RaceNow; 2],
     firsts: [Option<usize>; 2],
 }

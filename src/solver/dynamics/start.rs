@@ -87,14 +87,12 @@ fn on_pitch_circle(bearing: &Bearing, outer: &RaceNow) -> Vec<Vec3> {
     (0..g.ball_count).map(position).collect()
 }
 
+/// Positions of the balls of each bearing, amplitudes of each shaft.
+type Known<'k> = (&'k [Vec<Vec3>], &'k [Vec<f64>]);
+
 /// The state with bodies at these coordinates; balls stand on their pitch circles and shafts are straight where no
 /// positions and amplitudes are given.
-fn fill(
-    assembly: &Assembly,
-    bodies: &[[f64; 5]],
-    known: Option<(&[Vec<Vec3>], &[Vec<f64>])>,
-    rates: &Rates,
-) -> Vec<f64> {
+fn fill(assembly: &Assembly, bodies: &[[f64; 5]], known: Option<Known>, rates: &Rates) -> Vec<f64> {
     let places = Places::of(assembly);
     let mut state = vec![0.0; places.state_len()];
     let write = |state: &mut [f64], at: usize, body: &BodyState| {
