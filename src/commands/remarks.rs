@@ -7,11 +7,12 @@ use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing, Spring, Sp
 use bearing_dynamics::scene::statics::{ball_mass, orbital_speed};
 use bearing_dynamics::solver::clock::told;
 use bearing_dynamics::solver::dynamics::assembly::Bearing;
+use bearing_dynamics::solver::dynamics::bounds::FARTHEST_BENT;
 use bearing_dynamics::solver::dynamics::extremes::{Extreme, Extremes};
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::dynamics::run::Simulation;
 use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::static_assembly::StaticAssembly;
+use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
 use bearing_dynamics::solver::statics::{
     AssemblySolution, BallState, ContactState, Determinacy, StaticProblem, StaticSolution,
 };
@@ -98,6 +99,7 @@ pub fn of_assembly(
             free_directions.len()
         ));
     }
+    remarks.extend(bent_far(assembly, solution));
     if solution.saddles_left > 0 {
         remarks.push(
             "an unstable position was left for one beside it; its mirror image is an equilibrium too".into(),
@@ -115,6 +117,25 @@ pub fn of_assembly(
         remarks.extend(named(placed, of_balls(&placed.scene, &still)));
     }
     remarks
+}
+
+/// The section that is turned most against its body, where that is more than small bending stands for.
+fn bent_far(assembly: &StaticAssembly, solution: &AssemblySolution) -> Option<String> {
+    let turned = |body: usize| {
+        let Place::Section(of) = &assembly.bodies[body].place else { return None };
+        let [own, whole] = [body, assembly.shafts[of.shaft].body].map(|i| solution.coordinates[i]);
+        Some((libm::hypot(own[3] - whole[3], own[4] - whole[4]), &assembly.bodies[body].name))
+    };
+    let all = (0..assembly.bodies.len()).filter_map(turned);
+    let (turn, section) = all.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (turn > FARTHEST_BENT).then(|| {
+        format!(
+            "the section of {section} is turned by {:.1} deg against its body: bending is of small turns, up to {:.0} deg, a run \
+             would end here; check loads and their units",
+            turn.to_degrees(),
+            FARTHEST_BENT.to_degrees()
+        )
+    })
 }
 
 fn norm(of: [f64; 3]) -> f64 {

@@ -36,6 +36,8 @@ pub struct StaticShaft {
     pub springs: Vec<f64>,
     /// Where the search begins; unbent where it is empty.
     pub start: Vec<f64>,
+    /// Along the amplitudes, N; none where it is empty.
+    pub loads: Vec<f64>,
 }
 
 impl StaticShaft {
@@ -44,7 +46,7 @@ impl StaticShaft {
         let ShaftShapes { frequencies, stretch_frequencies, .. } = shapes;
         let all = frequencies.iter().chain(frequencies).chain(stretch_frequencies);
         let springs = all.map(|w| w * w).collect();
-        StaticShaft { body, springs, start: Vec::new() }
+        StaticShaft { body, springs, start: Vec::new(), loads: Vec::new() }
     }
 }
 

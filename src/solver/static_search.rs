@@ -78,6 +78,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         for (shaft, first) in model.shafts() {
             free[first..first + shaft.springs.len()].fill(true);
+            loads.rows_mut(first, shaft.loads.len()).copy_from_slice(&shaft.loads);
         }
         Search {
             model,
@@ -227,7 +228,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         if self.model.coordinates > unknowns {
             let moved = sections(self.model, &here.at);
-            add_curvature(self.model, &moved, &mut here);
+            add_curvature(&moved, &mut here);
             onto_unknowns(self.model, &moved, &mut here);
         }
         self.ran.whole.add(Stage::Evaluation, 1);

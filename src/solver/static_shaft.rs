@@ -192,21 +192,26 @@ pub(super) fn add_shaft(shaft: &StaticShaft, first: usize, here: &mut Evaluation
 }
 
 /// How a section follows the unknowns.
-pub(super) struct Moved {
+pub(super) struct Moved<'m> {
+    of: &'m StaticSection,
     /// First of its own coordinates, behind the unknowns.
     own: usize,
+    place: SectionPlace,
+    slopes: [Vec<Vector3<f64>>; 2],
     pub(super) motion: OMatrix<f64, U5, Dyn>,
+    tilts: Tilts,
     /// Columns of the motion, and the unknown of each.
     pub(super) columns: Vec<(usize, usize)>,
 }
 
 /// All sections, in the order of their bodies.
-pub(super) fn sections(model: &Model, at: &DVector<f64>) -> Vec<Moved> {
-    let follow = |(own, of): (usize, &StaticSection)| {
+pub(super) fn sections<'m>(model: &'m Model, at: &DVector<f64>) -> Vec<Moved<'m>> {
+    let follow = |(own, of): (usize, &'m StaticSection)| {
         let place = model.section_place(of, at);
-        let (motion, _) = place.motion(&place.slopes(of));
+        let slopes = place.slopes(of);
+        let (motion, tilts) = place.motion(&slopes);
         let columns = columns(model.firsts_of(of), motion.ncols()).collect();
-        Moved { own, motion, columns }
+        Moved { of, own, place, slopes, motion, tilts, columns }
     };
     all_sections(model).map(follow).collect()
 }
@@ -220,13 +225,10 @@ fn all_sections<'m>(model: &'m Model) -> impl Iterator<Item = (usize, &'m Static
 }
 
 /// What the curvature of places of sections makes of the slopes there.
-pub(super) fn add_curvature(model: &Model, moved: &[Moved], here: &mut Evaluation) {
-    for (Moved { own, columns, .. }, (_, of)) in moved.iter().zip(all_sections(model)) {
-        let place = model.section_place(of, &here.at);
-        let slopes = place.slopes(of);
-        let (motion, tilts) = place.motion(&slopes);
+pub(super) fn add_curvature(moved: &[Moved], here: &mut Evaluation) {
+    for Moved { of, own, place, slopes, motion, tilts, columns } in moved {
         let gradient: Five = here.gradient.fixed_rows::<5>(*own).into_owned();
-        let curved = place.curvature(of, &gradient, &slopes, (&motion, &tilts));
+        let curved = place.curvature(of, &gradient, slopes, (motion, tilts));
         for &(i, to) in columns {
             for &(j, and) in columns {
                 here.stiffness[(to, and)] += curved[(i, j)];
@@ -238,7 +240,7 @@ pub(super) fn add_curvature(model: &Model, moved: &[Moved], here: &mut Evaluatio
 /// Takes slope and stiffness over sections, behind the unknowns, to the unknowns.
 pub(super) fn onto_unknowns(model: &Model, moved: &[Moved], here: &mut Evaluation) {
     let unknowns = model.scale.len();
-    for Moved { own, motion, columns } in moved {
+    for Moved { own, motion, columns, .. } in moved {
         let gradient: Five = here.gradient.fixed_rows::<5>(*own).into_owned();
         let block = here.stiffness.columns(*own, 5).into_owned();
         for &(j, to) in columns {
@@ -247,7 +249,7 @@ pub(super) fn onto_unknowns(model: &Model, moved: &[Moved], here: &mut Evaluatio
             column += &block * motion.column(j);
         }
     }
-    for Moved { own, motion, columns } in moved {
+    for Moved { own, motion, columns, .. } in moved {
         let block = here.stiffness.rows(*own, 5).into_owned();
         for &(i, to) in columns {
             let mut row = here.stiffness.row_mut(to);

@@ -188,7 +188,20 @@ fn a_stiff_shaft_on_springs_moves_as_a_rigid_body() {
     let transverse = DENSITY * (area * LENGTH.powi(3) / 12.0 + moment * LENGTH);
     let precession = 2.0 * DENSITY * moment * LENGTH * 500.0 / transverse;
     assert!((first.frequency() / precession - 1.0).abs() <= 1e-6 && first.is_forward());
-    assert_eq!(free.critical_speeds().unwrap_err(), RotorError::Unheld { frequency: 0.0 });
+    // Critical speeds are those on springs too soft to matter, but for the rigid motions on these.
+    rotor.modes = 60;
+    let bending = RotorModel::new(&rotor).unwrap().critical_speeds().unwrap();
+    let soft = Matrix4::from_diagonal(&[1.0, 1.0, 0.1, 0.1].into());
+    rotor.supports = vec![Support { at: 0.5 * LENGTH, stiffness: soft, damping: Matrix4::zeros() }];
+    let held = RotorModel::new(&rotor).unwrap().critical_speeds().unwrap();
+    let held: Vec<_> = held.iter().filter(|of| of.speed > 100.0).collect();
+    assert!(bending.len() >= 8);
+    for (free, held) in bending.iter().zip(held).take(8) {
+        // 1 N/m over the shaft's stiffness of bending, some 1e7.
+        let apart = (free.speed / held.speed - 1.0).abs();
+        assert!(apart <= 1e-6, "{} {}", free.speed, held.speed);
+        assert!((free.whirl.direction - held.whirl.direction).abs() <= 1e-6);
+    }
 }
 
 /// A disc between pins on a shaft without mass: the orbit of a Jeffcott rotor, and its peak.

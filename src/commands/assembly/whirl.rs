@@ -5,6 +5,7 @@ use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::plots::campbell;
 use bearing_dynamics::output::series::{Column, Series};
 use bearing_dynamics::solver::rotor::critical::Critical;
+use bearing_dynamics::solver::rotor::model::RotorError;
 use bearing_dynamics::solver::rotor::whirl::{Campbell, Whirl};
 use bearing_dynamics::solver::vibrations::Whirling;
 use ndarray::Array2;
@@ -19,14 +20,17 @@ const SPEEDS: usize = 51;
 const FAR: f64 = 3.0;
 /// Motions that are followed.
 const LINES: usize = 8;
+/// Part of a motion's inertia across the axis from which on it is told; what has less swings along the axis, which no unbalance
+/// excites.
+const ACROSS: f64 = 0.01;
 
 /// Motions of what spins.
 pub struct Spinning {
     pub whirling: Whirling,
     /// At the scene's speed.
     whirls: Vec<Whirl>,
-    /// Up to twice that speed.
-    critical: Vec<Critical>,
+    /// Up to twice that speed, or why there are none.
+    critical: Result<Vec<Critical>, RotorError>,
     campbell: Campbell,
 }
 
@@ -34,9 +38,13 @@ fn rpm(speed: f64) -> f64 {
     speed * 60.0 / TAU
 }
 
-/// Whether a motion is across the axis in the main.
 fn is_whirl(whirl: &Whirl) -> bool {
-    whirl.across > 0.5
+    whirl.across > ACROSS
+}
+
+/// After what a line says, where that is not plain whirl.
+fn kind(whirl: &Whirl) -> &'static str {
+    if whirl.across < 0.5 { ", mostly along the axis" } else { "" }
 }
 
 fn turns(whirl: &Whirl) -> &'static str {
@@ -55,10 +63,9 @@ impl Spinning {
         let mut whirls = model.whirls(top, 2 * LINES)?;
         whirls.retain(is_whirl);
         whirls.truncate(LINES);
-        // What nothing holds has no critical speeds.
-        let critical = model.critical_speeds().unwrap_or_default();
         let within = |of: &Critical| of.speed <= 2.0 * top.abs() && is_whirl(&of.whirl);
-        let critical = critical.into_iter().filter(within).collect();
+        let critical = model.critical_speeds();
+        let critical = critical.map(|all| all.into_iter().filter(within).collect());
         let mut campbell = model.campbell(&speeds, LINES)?;
         // Where a motion along the axis crosses one across it, the two are one for a while.
         let across = |line: &Vec<Whirl>| line.iter().filter(|whirl| is_whirl(whirl)).count();
@@ -91,34 +98,44 @@ impl Spinning {
         for (index, whirl) in self.whirls.iter().enumerate() {
             let _ = writeln!(
                 text,
-                "{:>4} {:>20.6} {:>14.6}  {:<9}  {}",
+                "{:>4} {:>20.6} {:>14.6}  {:<9}  {}{}",
                 index + 1,
                 whirl.frequency() / TAU,
                 whirl.damping_ratio(),
                 turns(whirl),
-                self.most(whirl)
+                self.most(whirl),
+                kind(whirl)
             );
         }
         let _ = writeln!(text, "\ncritical speeds up to twice that, without damping");
-        if self.critical.is_empty() {
-            let _ = writeln!(text, "none");
-        }
-        for of in &self.critical {
-            let _ = writeln!(
-                text,
-                "{:>25.3} rpm  {:<9}  {}",
-                rpm(of.speed),
-                turns(&of.whirl),
-                self.most(&of.whirl)
-            );
+        match &self.critical {
+            Err(why) => {
+                let _ = writeln!(text, "not told: {why}");
+            }
+            Ok(none) if none.is_empty() => text.push_str("none\n"),
+            Ok(all) => all.iter().for_each(|of| {
+                let _ = writeln!(
+                    text,
+                    "{:>25.3} rpm  {:<9}  {}{}",
+                    rpm(of.speed),
+                    turns(&of.whirl),
+                    self.most(&of.whirl),
+                    kind(&of.whirl)
+                );
+            }),
         }
         text
     }
 
     /// What grows, if anything does.
     pub fn remarks(&self) -> Vec<String> {
+        let loose = self.whirling.model.is_loose().then(|| {
+            "nothing holds what spins across its axis in this equilibrium, as bearings without load are no springs: whirl and critical \
+             speeds are those of a free rotor; give it its weight (gravity), a load or preload, or run it up"
+                .to_string()
+        });
         let grows = self.whirls.iter().filter(|whirl| whirl.damping_ratio() < -1e-9);
-        grows
+        let grows = grows
             .map(|whirl| {
                 format!(
                     "the whirl of {:.3} Hz grows at {:.1} rpm: damping that turns with the shaft feeds it above its critical speed",
@@ -126,7 +143,8 @@ impl Spinning {
                     rpm(self.whirling.top_speed)
                 )
             })
-            .collect()
+            ;
+        loose.into_iter().chain(grows).collect()
     }
 
     pub fn section(&self) -> Value {
@@ -135,6 +153,7 @@ impl Spinning {
                 "frequency": { "value": whirl.frequency() / TAU, "unit": "Hz" },
                 "damping_ratio": { "value": whirl.damping_ratio(), "unit": "1" },
                 "direction": { "value": whirl.direction, "unit": "1" },
+                "across": { "value": whirl.across, "unit": "1" },
                 "moves_most": self.most(whirl),
             })
         };
@@ -142,14 +161,19 @@ impl Spinning {
             json!({
                 "speed": { "value": of.speed, "unit": "rad/s" },
                 "direction": { "value": of.whirl.direction, "unit": "1" },
+                "across": { "value": of.whirl.across, "unit": "1" },
                 "moves_most": self.most(&of.whirl),
             })
         };
-        json!({
+        let mut section = json!({
             "speed": { "value": self.whirling.top_speed, "unit": "rad/s" },
             "whirl": self.whirls.iter().map(whirl).collect::<Vec<_>>(),
-            "critical_speeds": self.critical.iter().map(critical).collect::<Vec<_>>(),
-        })
+        });
+        match &self.critical {
+            Ok(all) => section["critical_speeds"] = all.iter().map(critical).collect(),
+            Err(why) => section["no_critical_speeds"] = json!(why.to_string()),
+        }
+        section
     }
 
     /// The diagram as picture and as table.

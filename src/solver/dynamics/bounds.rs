@@ -57,6 +57,10 @@ const FARTHEST_IN_BORE: f64 = 0.1;
 /// radius: as much. A seat of nodes holds tilts to thousandths.
 const FARTHEST_TILT: f64 = 0.1;
 
+/// How far a section may turn against its body, rad: bending is of first order in turns but where it shortens, and by then it is
+/// wrong by θ²/2, half a percent.
+pub const FARTHEST_BENT: f64 = 0.1;
+
 /// How deep a cage may lie in balls or its guide at a start in equilibrium where no contact of a race is deeper, in ball radii.
 const CAGE_AT_START: f64 = 1e-3;
 
@@ -95,6 +99,7 @@ impl Simulation {
                 return Err(self.not_finite(system.assembly.bodies[shaft.body].name.clone()));
             }
         }
+        self.watch_bending()?;
         for (index, seat) in system.assembly.seats.iter().enumerate() {
             self.watch_seat(index, seat)?;
         }
@@ -112,6 +117,27 @@ impl Simulation {
 
     fn not_finite(&self, body: String) -> SimulationError {
         SimulationError::NotFinite { body, time: self.time, step: self.steps }
+    }
+
+    /// Bodies that bend, where something takes hold of them, as evaluated last.
+    fn watch_bending(&self) -> Result<(), SimulationError> {
+        let assembly = &self.system.assembly;
+        for (hold, mount) in self.system.holds.all(assembly) {
+            let turn = norm(hold.now.turn);
+            // NaN is too far.
+            if turn <= FARTHEST_BENT {
+                continue;
+            }
+            return Err(SimulationError::BentTooFar {
+                body: assembly.bodies[mount.body].name.clone(),
+                along: mount.along,
+                turn,
+                allowed: FARTHEST_BENT,
+                time: self.time,
+                step: self.steps,
+            });
+        }
+        Ok(())
     }
 
     fn watch_balls(

@@ -1,8 +1,8 @@
 //! Where bodies and balls of an assembly stand still: the place that a motion starts from and settles into.
 //!
 //! One search over the coordinates of all bodies ([`solve_assembly`]). Loads that follow the place they
-//! act at (an unbalance, the traction that holds rolling balls in their orbits) are taken as they are at the
-//! last place until they change no more.
+//! act at (an unbalance, the traction that holds rolling balls in their orbits, damping inside a bent shaft that
+//! spins) are taken as they are at the last place until they change no more.
 
 use super::assembly::{Assembly, Bearing, Body};
 use super::bounds::FARTHEST;
@@ -70,12 +70,17 @@ pub(super) fn at(
     for (section, _) in static_sections::unbalance_loads(assembly, &plain, t, &tilts) {
         follows[section] = true;
     }
+    let mut dragged: Vec<Vec<f64>> = vec![Vec::new(); plain.shafts.len()];
     let mut before: Option<Vec<Five>> = None;
     let mut solution = None;
     // An unbalance follows the race's tilts, by at most tilt · F/(k R) of what they were before;
-    // traction that holds balls in their orbit changes by its own shift over the pitch radius.
+    // traction that holds balls in their orbit changes by its own shift over the pitch radius; what damping inside drags a shaft
+    // by is a part cΩ/ω² of what bends it.
     for _ in 0..20 {
         let mut loaded = plain.clone();
+        for (shaft, dragged) in loaded.shafts.iter_mut().zip(&dragged) {
+            shaft.loads.clone_from(dragged);
+        }
         let on_sections = static_sections::unbalance_loads(assembly, &plain, t, &tilts);
         for (index, body) in loaded.bodies.iter_mut().enumerate() {
             let mut add = extra.loads[index];
@@ -114,6 +119,22 @@ pub(super) fn at(
         let largest = largest_load(&found.bearings);
         // Below what statics itself leaves over.
         let mut settled = next.differs(&extra) <= options.tolerance * largest;
+        for ((of, shaft), (dragged, amplitudes)) in assembly
+            .shafts
+            .iter()
+            .zip(&plain.shafts)
+            .zip(dragged.iter_mut().zip(&found.amplitudes))
+            .filter(|((of, _), _)| of.internal_damping != 0.0)
+        {
+            let spin = given_speed(&assembly.bodies[of.body], t);
+            let next = of.dragged(spin, amplitudes);
+            let most = |of: &mut dyn Iterator<Item = f64>| of.fold(0.0, |m: f64, x| m.max(x.abs()));
+            let bends = most(&mut amplitudes.iter().zip(&shaft.springs).map(|(a, w)| a * w));
+            let old = dragged.iter().copied().chain(std::iter::repeat(0.0));
+            let changed = most(&mut next.iter().zip(old).map(|(new, old)| new - old));
+            settled &= changed <= options.tolerance * bends;
+            *dragged = next;
+        }
         if follows.contains(&true) {
             let change = |a: &[Five]| {
                 let tilts = a.iter().zip(now).zip(&follows).filter(|(_, follows)| **follows);

@@ -132,6 +132,12 @@ pub enum SimulationError {
     )]
     TiltedInSeat { body: String, seat: String, tilt: f64, allowed: f64, time: f64, step: u64 },
     #[error(
+        "{body} bends too far for small bending at t = {at} s, step {step}: its section {along} m from its centre is turned by \
+         {turn:.3e} rad against it, more than {allowed} rad; check loads, unbalance, speed and their units",
+        at = told(*time)
+    )]
+    BentTooFar { body: String, along: f64, turn: f64, allowed: f64, time: f64, step: u64 },
+    #[error(
         "energy is lost or made: {residual:.3e} J of {turned_over:.3e} J are unaccounted for at \
          t = {at} s, step {step} (limit {limit}); take a smaller step or accuracy (numerics.step, \
          numerics.accuracy), or allow more (numerics.energy_limit)",

@@ -2,7 +2,8 @@
 //! own, without mass, whose six velocities follow from those of its body and of the shapes.
 //!
 //! Balls and joints are eliminated into sections as into bodies; the small matrix over bodies, sections and solids is then taken
-//! to bodies, solids and shapes of bending by that dependence.
+//! to bodies, solids and shapes of bending by that dependence. What is of second order in bending, the
+//! shortening, is not in the matrix, as any may be left out: the method is of third order with every matrix.
 
 use super::elimination::Dense;
 use super::linearised::{Hub, Linearised, Shapes, to_basis};

@@ -325,6 +325,17 @@ impl ElasticShaft {
         done.on_body.moment = add_scaled(done.on_body.moment, moment, axis);
     }
 
+    /// What damping inside pushes the amplitudes with while the shaft spins and its axis stands still, bent: across the bend, as a
+    /// fibre is stretched and pressed in turns, N.
+    pub fn dragged(&self, spin: f64, amplitudes: &[f64]) -> Vec<f64> {
+        let count = self.count();
+        let drag = self.internal_damping * spin;
+        let (a, rest) = amplitudes.split_at(count);
+        let towards_2 = rest[..count].iter().map(|b| -drag * b);
+        let towards_3 = a.iter().map(|a| drag * a);
+        towards_2.chain(towards_3).chain(rest[count..].iter().map(|_| 0.0)).collect()
+    }
+
     fn load(
         &self,
         t: f64,

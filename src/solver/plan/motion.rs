@@ -11,6 +11,7 @@ use crate::solver::dynamics::ball_set::neighbours;
 use crate::solver::dynamics::model::{Drive, RaceBody, Rotation};
 use crate::solver::dynamics::run::{Integrator, RunOptions, Start, Stepping};
 use crate::solver::dynamics::shaft::ElasticShaft;
+use std::f64::consts::TAU;
 
 /// A run of an assembly.
 #[derive(Clone, Debug)]
@@ -154,8 +155,17 @@ pub fn stepped_seat(
 fn bending(shaft: &ElasticShaft, assembly: &Assembly) -> [Item; 3] {
     let (body, subject) = (&assembly.bodies[shaft.body], Subject::Body(shaft.body));
     let (count, natural) = (shaft.count(), shaft.shapes.natural);
+    let cut = &shaft.shapes.cut;
+    let beyond = match cut.above.is_finite() {
+        true => format!(
+            "; left out are natural ones from {:.0} Hz on, which have up to {:.1e} of its static compliance at a hold",
+            cut.above / TAU,
+            cut.share
+        ),
+        false => String::new(),
+    };
     let why = format!(
-        "{} bends in {count} shapes either way: {natural} natural ones, {} static answers to what holds it",
+        "{} bends in {count} shapes either way: {natural} natural ones, {} static answers to what holds it{beyond}",
         body.name,
         count - natural
     );

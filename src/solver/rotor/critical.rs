@@ -2,7 +2,7 @@
 
 use super::model::{RotorError, RotorModel};
 use super::whirl::Whirl;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// A speed at which a motion has the frequency of the spin.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,22 +14,38 @@ pub struct Critical {
 }
 
 impl RotorModel {
-    /// All critical speeds without damping, ascending. Motions e^{iΩt} at spin Ω are K p = Ω² (1 − iG) p, a
-    /// Hermitian problem: nothing is looked for along lines, none is missed.
+    /// All critical speeds without damping, ascending. Motions e^{iΩt} at spin Ω are K p = Ω² A p with A = 1 − iG, a
+    /// Hermitian problem: nothing is looked for along lines, none is missed. Rigid motions z, which nothing holds, go along so
+    /// that no load is left on them, A_zz p_z = −A_zb p_b, and leave A_bb − A_bz A_zz⁻¹ A_zb of the others.
     ///
     /// # Errors
-    /// A shaft that is not held.
+    /// A shaft none of whose motions is held, or one that nothing holds and whose inertia about its axis is that across it, which whirls
+    /// once a turn at every speed.
     pub fn critical_speeds(&self) -> Result<Vec<Critical>, RotorError> {
-        let frequency = self.natural.first().copied().unwrap_or(0.0);
-        let is_sound = frequency > 0.0;
-        if !is_sound {
-            return Err(RotorError::Unheld { frequency });
-        }
+        let rigid = self.natural.iter().filter(|&&natural| natural == 0.0).count();
         let modes = self.natural.len();
+        let held = modes - rigid;
+        if held == 0 {
+            return Err(RotorError::Unheld);
+        }
+        let turning = DMatrix::from_fn(modes, modes, |i, j| {
+            Complex::new(if i == j { 1.0 } else { 0.0 }, -self.gyroscopic[(i, j)])
+        });
+        let (across, own) = (turning.view((0, rigid), (rigid, held)), rigid..modes);
+        let mut follows = turning.view((0, 0), (rigid, rigid)).into_owned();
+        if rigid > 0 {
+            let values = follows.clone().symmetric_eigenvalues();
+            if values.iter().any(|value| value.abs() <= SPHERE) {
+                return Err(RotorError::Sphere);
+            }
+            follows = -follows.lu().solve(&across).ok_or(RotorError::Sphere)?;
+        } else {
+            follows = DMatrix::zeros(0, held);
+        }
+        let inertia = turning.view((rigid, rigid), (held, held)) + across.adjoint() * &follows;
         // The symmetric part of the stiffness is diagonal here, its entries the natural frequencies' squares.
-        let inverse = DMatrix::from_fn(modes, modes, |i, j| {
-            let inertia = if i == j { 1.0 } else { 0.0 };
-            Complex::new(inertia, -self.gyroscopic[(i, j)]) / (self.natural[i] * self.natural[j])
+        let inverse = DMatrix::from_fn(held, held, |i, j| {
+            inertia[(i, j)] / (self.natural[rigid + i] * self.natural[rigid + j])
         });
         let eigen = inverse.symmetric_eigen();
         let mut found: Vec<Critical> = Vec::new();
@@ -40,7 +56,10 @@ impl RotorModel {
             }
             let speed = 1.0 / value.sqrt();
             let shape = eigen.eigenvectors.column(mode);
-            let mut modal = shape.map_with_location(|i, _, x| x / self.natural[i]);
+            let bent = shape.map_with_location(|i, _, x| x / self.natural[rigid + i]);
+            let mut modal = DVector::zeros(modes);
+            modal.rows_mut(0, rigid).copy_from(&(&follows * &bent));
+            modal.rows_range_mut(own.clone()).copy_from(&bent);
             let norm = modal.norm();
             modal.unscale_mut(norm);
             found.push(Critical { speed, whirl: self.motion(Complex::new(0.0, speed), modal) });
@@ -78,3 +97,5 @@ impl RotorModel {
 
 /// Steps of a secant; six are usual.
 const SECANTS: usize = 40;
+/// 1 − J/I of a rigid motion below this is none: rounding of inertias that are the same.
+const SPHERE: f64 = 1e-9;

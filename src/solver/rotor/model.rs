@@ -78,10 +78,12 @@ pub enum RotorError {
     Unstable,
     #[error("the eigenvalues at {speed} rad/s have not been found in {iterations} iterations")]
     Eigenvalues { speed: f64, iterations: usize },
+    #[error("nothing holds or bends: a rigid shaft that moves freely has no critical speed")]
+    Unheld,
     #[error(
-        "the shaft moves freely: its natural motions begin at {frequency:.3e} rad/s; critical speeds are those of a shaft that is held"
+        "nothing holds a motion whose inertia about the axis is that across it: it whirls once a turn at every speed"
     )]
-    Unheld { frequency: f64 },
+    Sphere,
 }
 
 /// Small motions about an equilibrium, M q̈ + (C + Ω G) q̇ + (K + Ω S) q = loads. SI units.
@@ -199,6 +201,12 @@ impl RotorModel {
             },
             natural,
         })
+    }
+
+    /// Whether nothing brings back a motion across the axis.
+    pub fn is_loose(&self) -> bool {
+        let rigid = self.natural.iter().take_while(|&&natural| natural == 0.0).count();
+        self.quarter_turn.columns(0, rigid).amax() > 0.01
     }
 
     /// The station that stands at a place (m), if one does.
