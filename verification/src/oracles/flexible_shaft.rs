@@ -14,6 +14,9 @@ pub struct Stiffness {
     pub bending: f64,
     pub shear: f64,
     pub stretch: f64,
+    /// Whether the part of the force along X stretches the rod, and not the part along each section's own axis: tells what leaving out
+    /// the difference does.
+    pub pulled_along_x: bool,
 }
 
 /// Force and moment at the end of the shaft or between: place from the first bearing (m), x, y, z, about Y, about Z.
@@ -83,8 +86,9 @@ impl Cut {
 
     fn slope(&self, rod: &Stiffness) -> Cut {
         let [axis, across, own] = self.directions;
+        let pull = if rod.pulled_along_x { self.force[0] } else { dot(self.force, axis) };
         let strain = [
-            1.0 + dot(self.force, axis) / rod.stretch,
+            1.0 + pull / rod.stretch,
             dot(self.force, across) / rod.shear,
             dot(self.force, own) / rod.shear,
         ];
