@@ -83,6 +83,7 @@ pub fn output(scene: &Scene) -> Echo {
         RunPlot::Spectrum => "spectrum",
         RunPlot::Series => "series",
         RunPlot::SlipSpin => "slip-spin",
+        RunPlot::RunUp => "run-up",
     };
     // Loads over azimuth are drawn of either.
     let polar = scene.plots.iter().filter(|plot| **plot == Plot::Polar).map(of_statics);

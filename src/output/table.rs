@@ -4,6 +4,7 @@ use crate::output::series::{Series, SeriesError};
 use crate::output::session::Session;
 use crate::output::spectrum::{Spectrum, spectrum};
 use crate::solver::clock::to_digits;
+use crate::solver::dynamics::assembly::Assembly;
 use std::ops::Range;
 
 /// All rows of a run, and which of them means and spectra are taken over.
@@ -16,7 +17,7 @@ pub struct RunTable {
     pub window: Range<usize>,
     /// Before the names of columns of each bearing: nothing where there is one only.
     pub bearings: Vec<String>,
-    /// Races, cages and other bodies that may have columns.
+    /// Races, cages, other bodies and sections of those that bend, as far as they may have columns.
     pub bodies: Vec<Moving>,
 }
 
@@ -27,18 +28,37 @@ pub struct Moving {
     pub column: String,
     /// "left inner race".
     pub title: String,
+    /// Column of the speed that it spins at.
+    pub speed: String,
 }
 
-/// Bodies of the bearings with these prefixes, then those with labels.
-fn moving(bearings: &[String], labels: impl Iterator<Item = String>) -> Vec<Moving> {
+impl Moving {
+    fn of(column: String, title: String) -> Moving {
+        let speed = format!("{column}_speed");
+        Moving { column, title, speed }
+    }
+}
+
+/// Bodies of the bearings with these prefixes, then those with labels, then sections that are watched.
+fn moving(bearings: &[String], assembly: Option<&Assembly>) -> Vec<Moving> {
     let mut bodies = Vec::new();
     for prefix in bearings {
         for (part, title) in [("inner", "inner race"), ("outer", "outer race"), ("cage", "cage")] {
             let title = format!("{}{title}", prefix.replace('_', " "));
-            bodies.push(Moving { column: format!("{prefix}{part}"), title });
+            bodies.push(Moving::of(format!("{prefix}{part}"), title));
         }
     }
-    bodies.extend(labels.map(|label| Moving { column: label.clone(), title: label }));
+    let Some(assembly) = assembly else { return bodies };
+    let labels = assembly.bodies.iter().filter_map(|body| body.label.clone());
+    bodies.extend(labels.map(|label| Moving::of(label.clone(), label)));
+    for shaft in &assembly.shafts {
+        let Some(label) = &assembly.bodies[shaft.body].label else { continue };
+        bodies.extend(shaft.watched.iter().map(|(name, _)| Moving {
+            column: format!("{label}_{name}"),
+            title: format!("{label} at {name}"),
+            speed: format!("{label}_speed"),
+        }));
+    }
     bodies
 }
 
@@ -66,8 +86,7 @@ impl RunTable {
             Some(assembly) => assembly.bearings.iter().map(|bearing| bearing.prefix()).collect(),
             None => vec![String::new()],
         };
-        let labels = assembly.into_iter().flat_map(|assembly| &assembly.bodies);
-        let bodies = moving(&bearings, labels.filter_map(|body| body.label.clone()));
+        let bodies = moving(&bearings, assembly);
         Ok(RunTable { series, interval, window: start..end, bearings, bodies })
     }
 

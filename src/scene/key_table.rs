@@ -13,7 +13,7 @@ pub const DENTED: &[&str] = &["outer", "inner"];
 pub const GUIDANCE: &[&str] = &["outer-race", "inner-race", "balls"];
 /// The first three are drawn by statics, the others by a run.
 pub const PLOTS: &[&str] =
-    &["load-zone", "polar", "moment-tilt", "orbit", "spectrum", "series", "slip-spin"];
+    &["load-zone", "polar", "moment-tilt", "orbit", "spectrum", "series", "slip-spin", "run-up"];
 
 pub(super) const RADIUS: Kind = Kind::Quantity(Length, open(0.0, 10_000.0, "mm"));
 const CLEARANCE: Kind = Kind::Quantity(Length, closed(-10_000.0, 10_000.0, "um"));
@@ -190,7 +190,7 @@ pub(super) const KEYS: &[Key] = &[
 
     Key::new("output.plots", Kind::Choices(PLOTS),
         Depends("`load-zone`, `polar`; of a run `orbit`, `series`, `polar`; of a solid `series`, `spectrum`"),
-        "Plots to draw; `[]` for none. Statics draws `load-zone`, `polar` and `moment-tilt` (in a housing `load-zone` only; equilibria over time have no `polar` and no `slip-spin`), a run `polar` and the others."),
+        "Plots to draw; `[]` for none. Statics draws `load-zone`, `polar` and `moment-tilt` (in a housing `load-zone` only; equilibria over time have no `polar`, `slip-spin` and `run-up`), a run `polar` and the others; `run-up` is how far what changes its speed is off its axis, over that speed."),
 ];
 
 const MATERIAL_EXAMPLE: &str =

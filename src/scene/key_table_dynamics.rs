@@ -216,8 +216,8 @@ pub(super) const KEYS: &[Key] = &[
         "Time integration: classical Runge-Kutta; Dormand and Prince's explicit method of fifth order; a linearly implicit one that traction and contacts do not bind. The latter two take an `accuracy`."),
 
     Key::new("output.channels", Kind::Choices(CHANNELS),
-        Default { value: "races, cage, orbits, loads, pockets, forces, energy", reason: "all but `slip`, which has six columns a ball" },
-        "Groups of columns of `series.csv`; `energy` is always among them."),
+        Default { value: "races, cage, orbits, loads, pockets, forces, energy", reason: "all but `slip`, which has six columns a ball, and `moments`" },
+        "Groups of columns of `series.csv`; `energy` is always among them. `moments` are those of the balls on each race about its centre, `forces` their sums."),
     quantity("output.window_start", Kind::Quantity(Time, closed(0.0, 1e4, "s")), Depends("the middle of the run"),
         "Time from which means and spectra are taken.").example_of("0.05 s"),
 ];

@@ -282,6 +282,7 @@ impl<'d> Reader<'d> {
                 "orbit" => run_plots.push(RunPlot::Orbit),
                 "spectrum" => run_plots.push(RunPlot::Spectrum),
                 "series" => run_plots.push(RunPlot::Series),
+                "run-up" => run_plots.push(RunPlot::RunUp),
                 _ => run_plots.push(RunPlot::SlipSpin),
             }
         }

@@ -404,13 +404,13 @@ fn output(
         Plot::Polar => steps,
         Plot::MomentTilt => false,
     };
-    let in_run = |plot: &RunPlot| steps || *plot != RunPlot::SlipSpin;
+    let in_run = |plot: &RunPlot| steps || !matches!(plot, RunPlot::SlipSpin | RunPlot::RunUp);
     let all = bearing.plots.iter().all(drawn) && bearing.dynamics.plots.iter().all(in_run);
     if reader.is_given("output.plots") && !all {
         let reason = "in a housing statics draws `load-zone`, equilibria over time `orbit`, \
                       `series` and `spectrum`";
-        let advice = "leave the others out, or write method = \"explicit\" in [housing] for `polar` \
-                      and `slip-spin`";
+        let advice = "leave the others out, or write method = \"explicit\" in [housing] for `polar`, \
+                      `slip-spin` and `run-up`";
         return not_applicable(document, "output.plots", reason, advice);
     }
     bearing.plots.retain(drawn);

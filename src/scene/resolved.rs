@@ -94,6 +94,7 @@ pub enum RunPlot {
     Spectrum,
     Series,
     SlipSpin,
+    RunUp,
 }
 
 /// The cage in a run.

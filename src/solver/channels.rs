@@ -17,12 +17,14 @@ pub enum ChannelGroup {
     Slip,
     /// Sum of contact forces on each race.
     Forces,
+    /// Moment of contact forces on each race about its centre.
+    Moments,
     /// Energies, work and losses since the start, and what is unaccounted for.
     Energy,
 }
 
 impl ChannelGroup {
-    pub const ALL: [ChannelGroup; 8] = [
+    pub const ALL: [ChannelGroup; 9] = [
         ChannelGroup::Races,
         ChannelGroup::Cage,
         ChannelGroup::Orbits,
@@ -30,10 +32,11 @@ impl ChannelGroup {
         ChannelGroup::Pockets,
         ChannelGroup::Slip,
         ChannelGroup::Forces,
+        ChannelGroup::Moments,
         ChannelGroup::Energy,
     ];
 
-    /// All but the slip: six columns a ball, for those who ask.
+    /// All but the slip, six columns a ball, and moments: for those who ask.
     pub const DEFAULT: [ChannelGroup; 7] = [
         ChannelGroup::Races,
         ChannelGroup::Cage,
@@ -54,6 +57,7 @@ impl ChannelGroup {
             ChannelGroup::Pockets => "pockets",
             ChannelGroup::Slip => "slip",
             ChannelGroup::Forces => "forces",
+            ChannelGroup::Moments => "moments",
             ChannelGroup::Energy => "energy",
         }
     }

@@ -5,5 +5,6 @@ mod common;
 
 mod assemblies;
 mod beam;
+mod run_ups;
 mod statics;
 mod whirl;

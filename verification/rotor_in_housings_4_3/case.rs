@@ -123,6 +123,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     );
     table_4_3(context)?;
     axial_give(context)?;
+    seats(context)?;
     compliance(context)
 }
 
@@ -306,6 +307,94 @@ fn axial_give(context: &mut CaseContext) -> Result<(), CaseError> {
             "the outer race follows the inner one better, and the axial force decreases",
         )
         .at_most(0.02, "far above rounding")
+        .golden(GoldenTolerance::MIXED),
+    );
+    Ok(())
+}
+
+/// 4.3.2: load at mid-span, three fits of the housings: how much of the bore carries, how stiff it is sideways, and how far
+/// race 1 goes sideways as balls pass.
+fn seats(context: &mut CaseContext) -> Result<(), CaseError> {
+    let (mut table, mut all) = (Vec::new(), Vec::new());
+    for (_, clearance, fit) in COLUMNS {
+        let changes: [Change; 2] = [(FIT, fit), FINER];
+        let shaft = Shaft::new(ROTOR_IN_PILLOW_BLOCKS, &changes)?;
+        let bores = shaft.bores()?;
+        let (_, found) = shaft.statics(&bores)?;
+        let state = &found.seats[0];
+        let areas = bores[0].nodes.iter().zip(&state.loads);
+        let (whole, carries) = areas.fold((0.0, 0.0), |(whole, carries), (node, load)| {
+            (whole + node.area, carries + if *load > 0.0 { node.area } else { 0.0 })
+        });
+        let passing: [Change; 4] = [
+            (FIT, fit),
+            ("method = \"reduced\"", "method = \"quasi-static\""),
+            ("end = \"2 ms\"", "end = \"20 ms\""),
+            ("output_interval = \"20 us\"", "output_interval = \"0.5 ms\""),
+        ];
+        let shaft = Shaft::new(ROTOR_IN_PILLOW_BLOCKS, &passing)?;
+        let bores = shaft.bores()?;
+        let settled = done(shaft.quasi_static(&bores)?, &shaft.request()?)?.series()?;
+        let y = column(&settled, "left_inner_y")?;
+        let swing = largest(y.iter().copied()) + largest(y.iter().map(|y| -y));
+        let of = [
+            carries / whole,
+            1e-6 * state.stiffness[(0, 0)],
+            1e-6 * state.stiffness[(1, 1)],
+            1e9 * swing,
+        ];
+        let digits = [3, 1, 1, 1].iter().zip(of).map(|(digits, value)| format!("{value:.digits$}"));
+        table.push([format!("{clearance:+.0}")].into_iter().chain(digits).collect());
+        all.push(of);
+    }
+    let columns = [
+        "clearance, µm",
+        "part of the bore that carries",
+        "stiffness along Y, N/µm",
+        "along Z, N/µm",
+        "swing of race 1 along Y, nm",
+    ];
+    context.table("seats", "Seat 1 under 3000 N at mid-span, from equilibria", &columns, table);
+    let steps = |i: usize| largest(all.windows(2).map(|pair| pair[1][i] / pair[0][i]));
+    for (id, i, what, sentence) in [
+        (
+            "seat_shrinks",
+            0,
+            "part of the bore that carries",
+            "a clearance fit is a less conformal contact: a small area carries",
+        ),
+        (
+            "seat_softens",
+            1,
+            "stiffness of the seat along Y",
+            "the support's stiffness along Y is significantly reduced",
+        ),
+    ] {
+        context.check(
+            Check::new(
+                id,
+                &format!("{what}, largest ratio to that with 5 µm less clearance"),
+                "1",
+                steps(i),
+            )
+            .stated(1.0, "4.3.2", sentence)
+            .at_most(0.1, "a tenth, with each step of the clearance")
+            .golden(GoldenTolerance::MIXED),
+        );
+    }
+    context.check(
+        Check::new(
+            "sideways",
+            "swing of race 1 along Y with +5 µm over that with −5 µm, as balls pass",
+            "1",
+            all[2][3] / all[0][3],
+        )
+        .stated(
+            1.0,
+            "4.3.2",
+            "not supported along Y, the varying compliance can become unstable there",
+        )
+        .at_least(0.1, "a tenth")
         .golden(GoldenTolerance::MIXED),
     );
     Ok(())

@@ -3,7 +3,6 @@
 use std::time::Instant;
 
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
 use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::solver::dynamics::run::{
@@ -15,7 +14,7 @@ use crate::bearings::{self, DEEP_GROOVE, Hertz};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::{Check, Explanation};
 use crate::context::CaseContext;
-use crate::motion::{ROTOR_RUN_UP, RPM};
+use crate::motion::{ROTOR_RUN_UP, RPM, changed_scene};
 use crate::oracles::run_up::{Balls, Peak, RunUp, Support};
 
 pub const CASE: Case = Case {
@@ -31,8 +30,13 @@ pub const CASE: Case = Case {
 const UNBALANCES: [&str; 3] = ["1e-3", "5e-4", "1e-4"];
 /// Ramp of the scene, s.
 const RAMP: f64 = 0.2;
-/// Others, s.
-const RAMPS: [f64; 3] = [0.1, 0.5, 1.0];
+/// Others, s, the slowest with the part of it that is followed: far past its peak.
+const RAMPS: [(f64, f64); 4] = [(0.1, 1.0), (0.5, 1.0), (1.0, 0.7), (5.0, 0.6)];
+/// Constant speeds about the peak of the steady whirl, rpm.
+const STEADY: [f64; 5] = [4900.0, 5000.0, 5100.0, 5200.0, 5300.0];
+/// s within which a start dies out by e^-10, and the last part of it, two turns, that is looked at.
+const SETTLES: f64 = 0.2;
+const LOOKED_AT: f64 = 0.024;
 /// The ramp, s, that was found to put the peak near the published speed.
 const NEAR_PUBLISHED: f64 = 0.156;
 /// N/m, in place of pins.
@@ -40,27 +44,59 @@ const PIN: f64 = 1e9;
 const TOP: f64 = 10_000.0;
 /// Steps of the oracle, s.
 const STEP: f64 = 1e-5;
+const EXPLICIT: (Integrator, Stepping) = (Integrator::DormandPrince, Stepping::Accuracy(1e-4));
 /// Peak of the scene over the published speed, less one.
 const GAP: f64 = -0.0294;
 
 /// The shipped scene with another ramp (s) and unbalance (kg·m).
 fn rotor(ramp: f64, unbalance: &str) -> Result<Assembly, CaseError> {
-    let mut text = ROTOR_RUN_UP.to_string();
-    let changes = [
-        ("duration = \"0.2 s\"", format!("duration = \"{ramp} s\"")),
-        ("size = \"1e-3 kg m\"", format!("size = \"{unbalance} kg m\"")),
-    ];
-    for (from, to) in changes {
-        if !text.contains(from) {
-            return Err(CaseError::message(format!("no {from:?} in the scene")));
+    let ramp = format!("duration = \"{ramp} s\"");
+    changed(&[("duration = \"0.2 s\"", &ramp)], unbalance)
+}
+
+fn changed(changes: &[(&str, &str)], unbalance: &str) -> Result<Assembly, CaseError> {
+    let size = format!("size = \"{unbalance} kg m\"");
+    let own = [("size = \"1e-3 kg m\"", size.as_str())];
+    Ok(changed_scene(ROTOR_RUN_UP, &[changes, &own].concat())?.assembly()?)
+}
+
+/// The largest deflection of the middle, m, in the end at a constant speed, rpm: by the program and by the oracle.
+fn steady(speed: f64, unbalance: &str) -> Result<[f64; 2], CaseError> {
+    let ramp =
+        "speed = { ramp = [\"0 rpm\", \"10000 rpm\"], start = \"0 s\", duration = \"0.2 s\" }";
+    let constant = format!("speed = \"{speed} rpm\"");
+    let assembly = changed(&[(ramp, &constant)], unbalance)?;
+    let (integrator, stepping) = EXPLICIT;
+    let ours = run_up(assembly, integrator, stepping, SETTLES, SETTLES - LOOKED_AT)?;
+    let mut theirs = oracle(1e-6, unbalance, balls());
+    theirs.top_speed = speed * RPM;
+    let (mut step, mut height) = (0.0, 0.0f64);
+    theirs.history(SETTLES, |_, _, middle| {
+        step += STEP;
+        if step > SETTLES - LOOKED_AT {
+            height = height.max(middle);
         }
-        text = text.replace(from, &to);
+    });
+    Ok([ours.peak.height, height])
+}
+
+/// Place and height of the top of the parabola of fourth order through five points of even distance.
+fn top(heights: [f64; 5]) -> [f64; 2] {
+    let [a, b, c, d, e] = heights;
+    // Coefficients over −2 … 2.
+    let first = (a - 8.0 * b + 8.0 * d - e) / 12.0;
+    let second = (-a + 16.0 * b - 30.0 * c + 16.0 * d - e) / 24.0;
+    let third = (-a + 2.0 * b - 2.0 * d + e) / 12.0;
+    let fourth = (a - 4.0 * b + 6.0 * c - 4.0 * d + e) / 24.0;
+    let slope = |x: f64| first + x * (2.0 * second + x * (3.0 * third + x * 4.0 * fourth));
+    let (mut low, mut high) = (-2.0, 2.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if slope(middle) > 0.0 { low = middle } else { high = middle }
     }
-    let document = Document::read_str(&text, Format::Toml, "rotor_run_up.toml")?;
-    let Subject::Assembly(scene) = resolve_subject(&document)? else {
-        return Err(CaseError::message("no bearings in the scene"));
-    };
-    Ok(scene.assembly()?)
+    let x = low;
+    let height = c + x * (first + x * (second + x * (third + x * fourth)));
+    [STEADY[2] + (STEADY[3] - STEADY[2]) * x, height]
 }
 
 /// The same with springs across in place of its bearings, a soft one along.
@@ -88,11 +124,13 @@ struct Done {
     residual: f64,
 }
 
+/// To `end` s, looked at from `from` s on.
 fn run_up(
     assembly: Assembly,
     integrator: Integrator,
     stepping: Stepping,
     end: f64,
+    from: f64,
 ) -> Result<Done, CaseError> {
     let started = Instant::now();
     let options =
@@ -107,7 +145,7 @@ fn run_up(
         let now = simulation.system.section_now(&simulation.state, 0, &section).motion;
         let speed = simulation.body(0).spin[0];
         let height = now.position[1].hypot(now.position[2]);
-        if height > done.peak.height {
+        if height > done.peak.height && simulation.time >= from {
             done.peak = Peak { speed, height };
         }
         if simulation.time >= next {
@@ -200,9 +238,8 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         "Without friction, cage and gravity: balls stay where they are as the races turn; fixed outer races, no clearance.",
         "scenes/rotor_run_up.toml",
     );
-    let explicit = (Integrator::DormandPrince, Stepping::Accuracy(1e-4));
     let linear =
-        run_up(pinned(RAMP, "1e-3")?, Integrator::RungeKutta, Stepping::Fixed(4e-6), RAMP)?;
+        run_up(pinned(RAMP, "1e-3")?, Integrator::RungeKutta, Stepping::Fixed(4e-6), RAMP, 0.0)?;
     let linear_oracle = oracle(RAMP, "1e-3", Support::Spring(PIN)).peak(RAMP);
     let origin = "half a Timoshenko beam in polynomials, Newmark's rule";
     let what = "pinned rotor, linear";
@@ -212,7 +249,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     let mut heights = Vec::new();
     let mut scene_peak = Peak::default();
     for unbalance in UNBALANCES {
-        let ours = run_up(rotor(RAMP, unbalance)?, explicit.0, explicit.1, RAMP)?;
+        let ours = run_up(rotor(RAMP, unbalance)?, EXPLICIT.0, EXPLICIT.1, RAMP, 0.0)?;
         let other = oracle(RAMP, unbalance, balls()).peak(RAMP);
         let what = format!("unbalance of {unbalance} kg·m");
         let origin = "half a Timoshenko beam on balls without mass, Newmark's rule";
@@ -238,15 +275,20 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             scene_peak = ours.peak;
         }
     }
-    for ramp in RAMPS {
-        let ours = run_up(rotor(ramp, UNBALANCES[0])?, explicit.0, explicit.1, ramp)?;
-        let other = oracle(ramp, UNBALANCES[0], balls()).peak(ramp);
-        let id = format!("ramp_{}", ramp.to_string().replace('.', "p"));
-        let origin = "half a Timoshenko beam on balls without mass, Newmark's rule";
-        let what = format!("ramp of {ramp} s");
-        held(context, &id, &what, (&ours.peak, &other), (5e-3, 1e-2), origin);
-        rows.push(row(ramp, UNBALANCES[0], &ours, &other));
+    for (ramp, part) in RAMPS {
+        for unbalance in UNBALANCES {
+            let end = part * ramp;
+            let ours = run_up(rotor(ramp, unbalance)?, EXPLICIT.0, EXPLICIT.1, end, 0.0)?;
+            let other = oracle(ramp, unbalance, balls()).peak(end);
+            let digits = |text: &str| text.replace('.', "p").replace("e-", "em");
+            let id = format!("ramp_{}_{}", digits(&ramp.to_string()), digits(unbalance));
+            let origin = "half a Timoshenko beam on balls without mass, Newmark's rule";
+            let what = format!("ramp of {ramp} s, unbalance of {unbalance} kg·m");
+            held(context, &id, &what, (&ours.peak, &other), (5e-3, 1e-2), origin);
+            rows.push(row(ramp, unbalance, &ours, &other));
+        }
     }
+    steady_peaks(context)?;
     context.table(
         "ramps",
         "Peak of the rotor's middle over ramp and unbalance",
@@ -262,7 +304,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         rows,
     );
     let ramp = NEAR_PUBLISHED;
-    let ours = run_up(rotor(ramp, UNBALANCES[0])?, explicit.0, explicit.1, ramp)?;
+    let ours = run_up(rotor(ramp, UNBALANCES[0])?, EXPLICIT.0, EXPLICIT.1, ramp, 0.0)?;
     let other = oracle(ramp, UNBALANCES[0], balls()).peak(ramp);
     context.finding(
         "ramp_of_the_published_speed",
@@ -318,6 +360,64 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         curves,
     })?;
     context.figure("deflection", svg, "As in Fig. 4.19: three unbalances.");
+    Ok(())
+}
+
+/// The whirl that stays at constant speeds, and the speed of its largest deflection for each unbalance.
+fn steady_peaks(context: &mut CaseContext) -> Result<(), CaseError> {
+    let origin = "half a Timoshenko beam on balls without mass, Newmark's rule";
+    let (mut rows, mut curves, mut speeds) = (Vec::new(), Vec::new(), Vec::new());
+    for unbalance in UNBALANCES {
+        let mut heights = [[0.0; 5]; 2];
+        for (index, speed) in STEADY.into_iter().enumerate() {
+            let [ours, theirs] = steady(speed, unbalance)?;
+            (heights[0][index], heights[1][index]) = (ours, theirs);
+            rows.push(vec![
+                unbalance.into(),
+                format!("{speed:.0}"),
+                format!("{:.3}", 1e6 * ours),
+                format!("{:.3}", 1e6 * theirs),
+            ]);
+        }
+        let size: f64 = unbalance.parse().unwrap_or(f64::NAN);
+        let points = STEADY.iter().zip(&heights[0]).map(|(x, y)| [*x, 1e3 * y / size]);
+        curves.push(Curve::new(format!("{unbalance} kg m"), points.collect()));
+        let [ours, theirs] = heights.map(top);
+        speeds.push(ours[0]);
+        let peak = |[speed, height]: [f64; 2]| Peak { speed: speed * RPM, height };
+        held(
+            context,
+            &format!("steady_{}", unbalance.replace("e-", "em")),
+            &format!("steady whirl, unbalance of {unbalance} kg·m"),
+            (&peak(ours), &peak(theirs)),
+            (1e-3, 5e-3),
+            origin,
+        );
+    }
+    context.check(
+        Check::new(
+            "steady_rises",
+            "least rise of the steady peak's speed from one unbalance to the next larger one",
+            "rpm",
+            (speeds[0] - speeds[1]).min(speeds[1] - speeds[2]),
+        )
+        .closed_form(0.0, "Hertz contacts are stiffer under larger loads")
+        .at_least(5.0, "far above what five speeds leave of a peak"),
+    );
+    context.table(
+        "steady",
+        "Largest deflection of the middle in the steady whirl",
+        &["unbalance, kg·m", "speed, rpm", "deflection, µm", "oracle, µm"],
+        rows,
+    );
+    let svg = xy(&XyPlot {
+        title: "Steady whirl of the rotor's middle over its unbalance".into(),
+        x: Axis::linear("speed", "rpm"),
+        y: Axis::linear("deflection over unbalance", "mm per kg m"),
+        style: Style::Lines,
+        curves,
+    })?;
+    context.figure("steady_whirl", svg, "Five speeds for each unbalance.");
     Ok(())
 }
 

@@ -74,6 +74,8 @@ mod ross_comparison;
 mod rotating_load_orbit;
 #[path = "../rotor_in_housings_4_3/case.rs"]
 mod rotor_in_housings_4_3;
+#[path = "../rotor_resonance_4_3_4/case.rs"]
+mod rotor_resonance_4_3_4;
 #[path = "../rotor_run_up_4_3_4/case.rs"]
 mod rotor_run_up_4_3_4;
 #[path = "../rubber_cube_2_3_1/case.rs"]
@@ -124,6 +126,7 @@ pub const CASES: &[Case] = &[
     misalignment_on_bushing_3_4_5::CASE,
     dent_3_4_4::CASE,
     rotor_in_housings_4_3::CASE,
+    rotor_resonance_4_3_4::CASE,
     rotor_run_up_4_3_4::CASE,
     settling_and_turning::CASE,
     varying_compliance_statics::CASE,

@@ -25,7 +25,7 @@ use bearing_dynamics::solver::statics::{AssemblySolution, StaticOptions, solve_a
 use crate::case::CaseError;
 use crate::motion;
 
-/// Natural shapes of the housings up to this, Hz, and the force that shapes are made for, N.
+/// Natural shapes of the housings up to this, Hz, unless their scene says other, and the force that shapes are made for, N.
 const MODES_TO: f64 = 70e3;
 const FORCE: f64 = 1300.0;
 
@@ -107,7 +107,8 @@ impl Shaft {
         {
             let penalty = scene.housing.penalty;
             let loads = pressed(bore, penalty, &setup.fit(scene), FORCE)?;
-            let options = ReduceOptions { modes_to: MODES_TO, left_out: LEFT_OUT };
+            let modes_to = scene.housing.modes_to.unwrap_or(MODES_TO);
+            let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
             let reduction = reduce(&setup.model, bore, penalty, &loads, &options)?;
             let body = assembly.bearings[bearing].mounts[1].body;
             add_housing(&mut assembly, body, &reduction, bore, setup.radius(scene), penalty);

@@ -353,6 +353,9 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
     if plots.contains(&RunPlot::SlipSpin) {
         channels.extend([ChannelGroup::Slip, ChannelGroup::Orbits]);
     }
+    if plots.contains(&RunPlot::RunUp) {
+        channels.push(ChannelGroup::Races);
+    }
     channels.sort();
     channels.dedup();
     RunRequest {

@@ -343,6 +343,7 @@ fn asked(scene: &Scene) -> Vec<Picture> {
         RunPlot::Spectrum => Picture::Spectrum,
         RunPlot::Series => Picture::Series,
         RunPlot::SlipSpin => Picture::SlipSpin,
+        RunPlot::RunUp => Picture::RunUp,
     });
     let polar = scene.plots.contains(&Plot::Polar).then_some(Picture::Polar);
     of_run.chain(polar).collect()

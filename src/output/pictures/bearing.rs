@@ -20,12 +20,16 @@ pub enum Picture {
     SlipSpin,
     /// Normal load over ball azimuth, as in Fig. 3.31.
     Polar,
+    /// How far races, bodies and sections are off the axis over the speed that they turn at, as in Fig. 4.19.
+    RunUp,
 }
 
 /// Points that a curve is thinned to: two a pixel.
 pub(super) const POINTS: usize = 1500;
 /// Degrees of azimuth over which the loads of all balls are averaged for the polar plot.
 const SECTOR: usize = 3;
+/// A speed that changes by less than this part of it is held.
+const STEADY: f64 = 0.05;
 /// Bins below this part of the highest are not drawn: rounding.
 const SPECTRUM_FLOOR: f64 = 1e-9;
 
@@ -45,6 +49,7 @@ pub fn draw(
         Picture::Spectrum => spectra(title, table),
         Picture::SlipSpin => each_bearing(title, table, slip_spin),
         Picture::Polar => each_bearing(title, table, loads_over_azimuth),
+        Picture::RunUp => run_ups(title, table),
     }
 }
 
@@ -69,7 +74,7 @@ pub(super) fn over_time(table: &RunTable, channels: &[(&str, &str)], scale: f64)
 fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
     let displacement = ["x", "y", "z"];
     let mut drawn = Vec::new();
-    for Moving { column: body, title: name } in &table.bodies {
+    for Moving { column: body, title: name, .. } in &table.bodies {
         let channels = displacement.map(|axis| (format!("{body}_{axis}"), axis));
         let channels = channels.each_ref().map(|(channel, axis)| (channel.as_str(), *axis));
         let curves = over_time(table, &channels, 1e6);
@@ -114,7 +119,7 @@ pub(super) fn add_series(
 
 fn orbits(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
     let mut drawn = Vec::new();
-    for Moving { column: body, title: name } in &table.bodies {
+    for Moving { column: body, title: name, .. } in &table.bodies {
         let path = [format!("{body}_y"), format!("{body}_z")];
         let (Some(y), Some(z)) = (table.windowed(&path[0]), table.windowed(&path[1])) else {
             continue;
@@ -135,12 +140,39 @@ fn orbits(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
     Ok(drawn)
 }
 
+/// Of whatever changes its speed by more than [`STEADY`].
+fn run_ups(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
+    let mut drawn = Vec::new();
+    for Moving { column: body, title: name, speed } in &table.bodies {
+        let (y, z) = (table.all(&format!("{body}_y")), table.all(&format!("{body}_z")));
+        let (Some(y), Some(z), Some(speed)) = (y, z, table.all(speed)) else { continue };
+        let ends = |of: fn(f64, f64) -> f64| speed.iter().copied().reduce(of).unwrap_or(0.0);
+        let (low, high) = (ends(f64::min), ends(f64::max));
+        let changes = high - low > STEADY * high.abs().max(low.abs());
+        if !changes {
+            continue;
+        }
+        let rpm = 60.0 / std::f64::consts::TAU;
+        let points = speed.iter().zip(y.iter().zip(&z));
+        let points = points.map(|(speed, (y, z))| point(rpm * speed, 1e6 * libm::hypot(*y, *z)));
+        let svg = xy(&XyPlot {
+            title: format!("{title}: run-up of the {name}"),
+            x: Axis::linear("speed", "rpm"),
+            y: Axis::linear("distance from the axis", "um"),
+            style: Style::Lines,
+            curves: vec![Curve::new(name.clone(), thin(points.collect(), POINTS))],
+        })?;
+        drawn.push((format!("run_up_{}.svg", name.replace(' ', "_")), svg));
+    }
+    Ok(drawn)
+}
+
 fn spectra(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
     let spectra = table.spectra();
     let Some((_, first)) = spectra.first() else { return Ok(Vec::new()) };
     let axis = format!("frequency ({WINDOW} window, bin {} Hz)", to_digits(first.bin_width, 4));
     let mut drawn = Vec::new();
-    for Moving { column: body, title: name } in &table.bodies {
+    for Moving { column: body, title: name, .. } in &table.bodies {
         let mut curves = Vec::new();
         for (channel, spectrum) in &spectra {
             let own = channel.strip_prefix(body.as_str()).and_then(|c| c.strip_prefix('_'));

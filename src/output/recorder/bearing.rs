@@ -152,6 +152,11 @@ impl Recorder {
                     self.values.extend(loads.force);
                 }
             }
+            ChannelGroup::Moments => {
+                for loads in &set.on_races {
+                    self.values.extend(loads.moment);
+                }
+            }
             ChannelGroup::Pockets | ChannelGroup::Energy => {}
         }
     }
@@ -408,6 +413,13 @@ fn bearing_columns(
             for race in ["inner", "outer"] {
                 for axis in AXES {
                     add(format!("contact_force_on_{race}_{axis}"), "N");
+                }
+            }
+        }
+        ChannelGroup::Moments => {
+            for race in ["inner", "outer"] {
+                for axis in AXES {
+                    add(format!("contact_moment_on_{race}_{axis}"), "N m");
                 }
             }
         }

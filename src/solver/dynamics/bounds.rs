@@ -119,18 +119,23 @@ impl Simulation {
         SimulationError::NotFinite { body, time: self.time, step: self.steps }
     }
 
-    /// Bodies that bend, where something takes hold of them, as evaluated last.
+    /// Bodies that bend, where something takes hold of them, acts on them or is watched.
     fn watch_bending(&self) -> Result<(), SimulationError> {
-        let assembly = &self.system.assembly;
-        for (hold, mount) in self.system.holds.all(assembly) {
-            let turn = norm(hold.now.turn);
+        let system = &self.system;
+        let assembly = &system.assembly;
+        let held = system.holds.all(assembly).map(|(hold, _)| (hold.shaft, &hold.section));
+        let shafts = assembly.shafts.iter().enumerate();
+        let own = shafts.flat_map(|(index, shaft)| shaft.sections().map(move |of| (index, of)));
+        for (index, section) in held.chain(own) {
+            let shaft = &assembly.shafts[index];
+            let turn = section.turned(&shaft.bend(system.shafts[index], &self.state));
             // NaN is too far.
             if turn <= FARTHEST_BENT {
                 continue;
             }
             return Err(SimulationError::BentTooFar {
-                body: assembly.bodies[mount.body].name.clone(),
-                along: mount.along,
+                body: assembly.bodies[shaft.body].name.clone(),
+                along: section.along,
                 turn,
                 allowed: FARTHEST_BENT,
                 time: self.time,

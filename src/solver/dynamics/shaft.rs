@@ -158,6 +158,11 @@ impl Section {
         SectionNow { race: RaceNow::new(state), turn, axis }
     }
 
+    /// Against its body, rad.
+    pub fn turned(&self, bend: &Bend) -> f64 {
+        libm::hypot(sum(&self.turn, bend.gone[0]), sum(&self.turn, bend.gone[1]))
+    }
+
     /// By how much bending takes the section nearer to the body's centre, and how fast, m and m/s.
     fn shorter(&self, bend: &Bend) -> (f64, f64) {
         let (mut shorter, mut rate) = (0.0, 0.0);
@@ -236,6 +241,13 @@ impl ElasticShaft {
     /// a, b and c.
     pub fn amplitudes(&self) -> usize {
         2 * self.count() + self.shapes.stretch_frequencies.len()
+    }
+
+    /// Sections where something acts or that are watched.
+    pub fn sections(&self) -> impl Iterator<Item = &Section> {
+        let loads = self.loads.iter().map(|load| &load.section);
+        let unbalances = self.unbalances.iter().map(|unbalance| &unbalance.section);
+        loads.chain(unbalances).chain(self.watched.iter().map(|(_, section)| section))
     }
 
     /// Of the springs of a, b and c, rad/s.

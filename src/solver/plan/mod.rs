@@ -70,6 +70,7 @@ pub enum Stage {
     PocketsChannels,
     SlipChannels,
     ForcesChannels,
+    MomentsChannels,
     EnergyChannels,
 }
 
@@ -125,6 +126,7 @@ impl Stage {
         Stage::PocketsChannels,
         Stage::SlipChannels,
         Stage::ForcesChannels,
+        Stage::MomentsChannels,
         Stage::EnergyChannels,
     ];
 
@@ -178,6 +180,7 @@ impl Stage {
             Stage::PocketsChannels => "channels: pockets",
             Stage::SlipChannels => "channels: slip",
             Stage::ForcesChannels => "channels: forces",
+            Stage::MomentsChannels => "channels: moments",
             Stage::EnergyChannels => "channels: energy",
         }
     }
@@ -192,6 +195,7 @@ impl Stage {
             ChannelGroup::Pockets => Stage::PocketsChannels,
             ChannelGroup::Slip => Stage::SlipChannels,
             ChannelGroup::Forces => Stage::ForcesChannels,
+            ChannelGroup::Moments => Stage::MomentsChannels,
             ChannelGroup::Energy => Stage::EnergyChannels,
         }
     }

@@ -1,0 +1,113 @@
+//! Run-ups that try a bent shaft: right, or a typed error.
+
+use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
+use bearing_dynamics::solver::dynamics::failure::SimulationError;
+use bearing_dynamics::solver::dynamics::run::Simulation;
+
+const SHIPPED: &str = include_str!("../../scenes/rotor_run_up.toml");
+const DAMPING: &str = "damping = \"100 1/s\"                      # of all motion, as (2.7)\n";
+const CLEARANCE: &str = "clearance = { radial = \"0 um\" }";
+
+/// Largest deflection of the middle, m, and the largest energy unaccounted for over what was turned over.
+struct Passage {
+    peak: f64,
+    residual: f64,
+}
+
+/// The shipped run-up with these words changed, in coarse steps.
+fn run_up(changes: &[(&str, &str)]) -> Result<Passage, SimulationError> {
+    let mut text = SHIPPED.replace("end = \"0.2 s\"", "end = \"0.2 s\"\naccuracy = 0.01");
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    let document = Document::read_str(&text, Format::Toml, "run_up.toml").unwrap();
+    let Subject::Assembly(scene) = resolve_subject(&document).unwrap() else { panic!("bearings") };
+    let run = scene.run().unwrap();
+    let mut simulation = Simulation::new(scene.assembly().unwrap(), run.options)?;
+    let (_, middle) = simulation.system.assembly.shafts[0].watched[0].clone();
+    let mut passage = Passage { peak: 0.0, residual: 0.0 };
+    let (mut stored, mut rows) = (0.0f64, 0.0);
+    while simulation.time < run.end * (1.0 - 1e-12) {
+        simulation.step_by(simulation.step_size.min(run.end - simulation.time))?;
+        let now = simulation.system.section_now(&simulation.state, 0, &middle).state.position;
+        passage.peak = passage.peak.max(now[1].hypot(now[2]));
+        if simulation.time >= rows * 1e-3 {
+            rows += 1.0;
+            let now = simulation.snapshot()?;
+            let work: f64 = now.ledger.iter().map(|entry| entry.abs()).sum();
+            stored = stored.max(work + now.energy.bending_strain + now.energy.contact);
+            passage.residual = passage.residual.max(now.residual.abs());
+        }
+    }
+    passage.residual /= stored;
+    Ok(passage)
+}
+
+/// Without damping the peak is higher, and the books stay closed.
+#[test]
+fn a_rotor_without_damping_passes_its_critical_speed() {
+    let damped = run_up(&[]).unwrap();
+    let free = run_up(&[(DAMPING, "")]).unwrap();
+    println!("{:e} {:e} m, {:e} {:e}", damped.peak, free.peak, damped.residual, free.residual);
+    assert!(free.peak >= 1.1 * damped.peak && free.peak <= 4.0 * damped.peak, "{:e}", free.peak);
+    // Steps of an accuracy of 1e-2.
+    assert!(damped.residual <= 1e-2 && free.residual <= 1e-2, "{:e}", free.residual);
+}
+
+/// A hundredth and a hundred times the disc: far above its critical speed the heavy one turns about its centre of mass,
+/// its unbalance over its mass off the axis.
+#[test]
+fn light_and_heavy_discs_pass() {
+    for (mass, low, high) in [("0.2 kg", 1e-4, 2e-2), ("2000 kg", 1e-7, 2e-6)] {
+        let disc = format!("mass = \"{mass}\"");
+        let passage = run_up(&[("mass = \"20 kg\"", &disc)]).unwrap();
+        println!("{mass}: {:e} m, {:e}", passage.peak, passage.residual);
+        assert!(passage.peak >= low && passage.peak <= high, "{mass}: {:e}", passage.peak);
+        assert!(passage.residual <= 1e-2, "{mass}: {:e}", passage.residual);
+    }
+}
+
+/// With 50 um of clearance balls are lost and struck again.
+#[test]
+fn lost_contact_is_passed() {
+    let passage = run_up(&[(CLEARANCE, "clearance = { radial = \"50 um\" }")]).unwrap();
+    println!("{:e} m, {:e}", passage.peak, passage.residual);
+    assert!(passage.peak >= 5e-5 && passage.peak <= 1e-3, "{:e}", passage.peak);
+    assert!(passage.residual <= 0.05, "{:e}", passage.residual);
+}
+
+#[test]
+fn overhung_discs_and_unequal_bearings_pass() {
+    let overhung = [
+        ("inner_at = \"200 mm\"", "inner_at = \"100 mm\""),
+        ("disc = [{ at = \"0 mm\"", "disc = [{ at = \"200 mm\""),
+        (
+            "unbalance = [{ at = \"0 mm\", size = \"1e-3",
+            "unbalance = [{ at = \"200 mm\", size = \"1e-4",
+        ),
+    ];
+    let unequal = [("inner_at = \"200 mm\"", "inner_at = \"200 mm\"\nballs = 6")];
+    for (name, changes) in [("overhung", &overhung[..]), ("unequal", &unequal[..])] {
+        let passage = run_up(changes).unwrap();
+        println!("{name}: {:e} m, {:e}", passage.peak, passage.residual);
+        assert!(passage.peak >= 1e-6 && passage.peak <= 1e-3, "{name}: {:e}", passage.peak);
+        assert!(passage.residual <= 1e-2, "{name}: {:e}", passage.residual);
+    }
+}
+
+/// 1000 N at the overhung end of a shaft of a third of the diameter bend it beyond what its theory stands for.
+#[test]
+fn a_shaft_that_bends_too_far_ends_the_run() {
+    let unbalance = "unbalance = [{ at = \"0 mm\", size = \"1e-3 kg m\" }]";
+    let thin = [
+        ("outer_diameter = \"30 mm\"", "outer_diameter = \"10 mm\""),
+        ("inner_at = \"200 mm\"", "inner_at = \"0 mm\""),
+        (unbalance, "load = [{ at = \"200 mm\", z = \"-1000 N\" }]"),
+    ];
+    match run_up(&thin) {
+        Err(SimulationError::BentTooFar { turn, allowed, .. }) => assert!(turn > allowed),
+        Err(other) => panic!("{other}"),
+        Ok(passage) => panic!("{:e} m", passage.peak),
+    }
+}
