@@ -171,6 +171,12 @@ fn bending(shaft: &ElasticShaft, assembly: &Assembly) -> [Item; 3] {
     );
     let acting = shaft.loads.len() + shaft.unbalances.len();
     let damped = shaft.damping != 0.0 || shaft.internal_damping != 0.0;
+    let damping = match shaft.internal_damping != 0.0 {
+        true => {
+            "of bending, in proportion to mass; inside the shaft too, where it feeds whirl above a critical speed: `bearing modes` tells"
+        }
+        false => "of bending, in proportion to mass",
+    };
     let either = |stage, does, why: String| {
         Item::new(stage, subject, does, if does { why } else { "none is given".into() })
     };
@@ -178,7 +184,7 @@ fn bending(shaft: &ElasticShaft, assembly: &Assembly) -> [Item; 3] {
         Item::does(Stage::Reduced, subject, why).costing(1),
         either(Stage::Loads, acting > 0, format!("{acting} at places along {}", body.name))
             .costing(acting as u64),
-        either(Stage::Damping, damped, "of bending, in proportion to mass".into()).costing(1),
+        either(Stage::Damping, damped, damping.into()).costing(1),
     ];
     own.map(|item| item.named(body.label.clone()))
 }
