@@ -11,7 +11,9 @@
 //!
 //! A force that goes with load times stretch is no gradient. Pressing harder on a stretched spring stores
 //! energy in it that no motion along the surface has put there, and easing it takes some out: what two surfaces do to
-//! each other is what is stored and lost, less that ([`Pull::load_work`]).
+//! each other is what is stored and lost, less that ([`Pull::load_work`]). Where long springs hold a race against a
+//! torque, whose radial motion changes their loads, this pushes it on in circles: a share c of what slips makes its swing grow by
+//! about ½ μ c of the swing's own rate. Springs as stiff as the contact know of no load until they slip.
 
 use crate::kinematics::vec3::{Vec3, add, add_scaled, dot, scale, sub};
 
@@ -26,9 +28,9 @@ pub struct BoreFriction {
 
 /// Friction coefficient of slipping in 4.2.4.2.
 pub const COEFFICIENT: f64 = 0.6;
-/// Stretch at which slip begins, m. The source states none: at its contact stiffness by area, this makes a spring as
-/// stiff as the contact under 42 MPa.
-pub const STRETCH: f64 = 1e-7;
+/// Stretch at which slip begins, m. The source states none, but that the way is to be as short as can be: at its
+/// contact stiffness by area springs are as stiff as the contact from 4.2 MPa on.
+pub const STRETCH: f64 = 1e-8;
 
 /// The spring of a node: its history. All components are along the race's own axes, so that a motion of both
 /// bodies together is none to it.

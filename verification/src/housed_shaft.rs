@@ -152,6 +152,7 @@ impl Shaft {
                 radius: setup.radius(scene),
                 width: setup.width,
                 penalty: scene.housing.penalty,
+                friction: scene.housing.friction,
                 nodes: setup.nodes.clone(),
                 reach: f64::INFINITY,
             });
