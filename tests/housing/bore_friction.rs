@@ -288,7 +288,7 @@ fn what_friction_gives_the_ring_it_takes_from_the_race() {
             worst = if part <= worst { worst } else { part };
         }
     }
-    println!("momenta {largest:e?}, {slid} nodes slid, residual {worst:.1e}");
+    println!("momenta {:e} {:e}, {slid} nodes slid, residual {worst:.1e}", largest[0], largest[1]);
     assert!(handed > 0.1 * before.0.norm() && slid > 0, "{handed:e} {slid}");
     assert!(largest.iter().all(|error| *error <= 1e-9), "{largest:?}");
     // Thrown about between race and ring: with windows four times as long, 7e-3, and 1.4e-2 without friction.
