@@ -13,7 +13,7 @@
 //! energy in it that no motion along the surface has put there, and easing it takes some out: what two surfaces do to
 //! each other is what is stored and lost, less that ([`Pull::load_work`]). Where long springs hold a race against a
 //! torque, whose radial motion changes their loads, this pushes it on in circles: a share c of what slips makes its swing grow by
-//! about ½ μ c of the swing's own rate. Springs as stiff as the contact know of no load until they slip.
+//! up to ½ μ c of the swing's own rate. Springs as stiff as the contact know of no load until they slip.
 
 use crate::kinematics::vec3::{Vec3, add, add_scaled, dot, scale, sub};
 

@@ -88,23 +88,24 @@ fn friction(
     reader: &mut Reader,
     method: HousingMethod,
 ) -> Result<Option<BoreFriction>, SceneError> {
-    const KEYS: [&str; 2] = ["housing.friction.coefficient", "housing.friction.stretch"];
-    let Some(given) = KEYS.into_iter().find(|key| reader.is_given(key)) else { return Ok(None) };
+    let [law, coefficient, stretch] =
+        ["law", "coefficient", "stretch"].map(|key| format!("housing.friction.{key}"));
+    if reader.choice_if_given(&law) != Some("stick-slip") {
+        let Some(key) = [coefficient, stretch].into_iter().find(|key| reader.is_given(key)) else {
+            return Ok(None);
+        };
+        let reason = "without a law the bore is smooth";
+        let advice = "write law = \"stick-slip\" beside it, or leave it out";
+        return not_applicable(reader.document, &key, reason, advice);
+    }
     if method != HousingMethod::Explicit {
         let reason = "the springs of friction have a history, which only steps of `explicit` know";
         let advice = "leave `friction` out, or write method = \"explicit\"";
-        return not_applicable(reader.document, given, reason, advice);
+        return not_applicable(reader.document, &law, reason, advice);
     }
-    let [coefficient, stretch] = KEYS;
-    let coefficient = reader.given_number(coefficient).unwrap_or_else(|| {
-        reader.note(coefficient, &plain(COEFFICIENT), "the source's");
-        COEFFICIENT
-    });
-    if coefficient == 0.0 {
-        return Ok(None);
-    }
-    let stretch = reader.number(stretch).unwrap_or(STRETCH);
-    Ok(Some(BoreFriction { coefficient, stretch }))
+    let coefficient = reader.number(&coefficient).unwrap_or(COEFFICIENT);
+    let stretch = reader.number(&stretch).unwrap_or(STRETCH);
+    Ok((coefficient != 0.0).then_some(BoreFriction { coefficient, stretch }))
 }
 
 /// The race must be free to move, and nothing else may hold it; what turns needs friction to hold it.
@@ -115,7 +116,7 @@ fn refuse_motion(document: &Document, reader: &Reader, rough: bool) -> Result<()
         Some("6-dof") if rough => {}
         Some("6-dof") => {
             let reason = "the seat has no friction, so nothing would keep the race from turning";
-            let advice = "write motion = \"5-dof\", or give housing.friction.coefficient";
+            let advice = "write motion = \"5-dof\", or friction.law = \"stick-slip\" in [housing]";
             return not_applicable(document, key, reason, advice);
         }
         _ => {
@@ -212,14 +213,15 @@ fn settings(
         reader.note("housing.width", &value, reason);
         length
     });
-    let axial = match friction {
-        Some(_) if !reader.is_given("housing.axial") => {
-            reader.note("housing.axial", "free", "friction holds the race along its axis");
-            Axial::Free
-        }
-        _ if reader.choice("housing.axial") == Some("free") => Axial::Free,
-        _ => Axial::Held,
+    let (unless_given, reason) = match friction {
+        Some(_) => ("free", "friction holds the race along its axis"),
+        None => ("held", "a shoulder or ring beside the bore; the bore has no friction"),
     };
+    let axial = reader.choice_if_given("housing.axial").unwrap_or_else(|| {
+        reader.note("housing.axial", unless_given, reason);
+        unless_given
+    });
+    let axial = if axial == "free" { Axial::Free } else { Axial::Held };
     let penalty = match document.value("housing.contact.stiffness") {
         Some(Checked::Either(0, stiffness)) => Penalty::PerArea(*stiffness),
         Some(Checked::Either(_, stiffness)) => Penalty::PerNode(*stiffness),

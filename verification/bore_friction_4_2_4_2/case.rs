@@ -162,7 +162,7 @@ const ROTOR: [Change; 6] = [
     ("motion = \"5-dof\"", "motion = \"6-dof\""),
     (
         "method = \"reduced\"",
-        "method = \"explicit\"\nstart = \"equilibrium\"\nfriction = { coefficient = 0.6 }",
+        "method = \"explicit\"\nstart = \"equilibrium\"\nfriction = { law = \"stick-slip\" }",
     ),
     ("fit = { radial = \"2.5 um\" }              # interference", "fit = { radial = \"0 um\" }"),
     ("generate = \"housing-c\"", "generate = \"housing-d\""),
@@ -172,7 +172,7 @@ const ROTOR: [Change; 6] = [
     ),
     ("order = 2", "order = 1"),
 ];
-const FRICTION: &str = "\nfriction = { coefficient = 0.6 }";
+const FRICTION: &str = "\nfriction = { law = \"stick-slip\" }";
 
 /// What balls and friction do to a race along its axis in the second half of a run, N, and how far it has gone, µm.
 struct Held {
@@ -209,7 +209,8 @@ fn of_rotor(changes: &[Change]) -> Result<Held, CaseError> {
 fn rotor(context: &mut CaseContext) -> Result<(), CaseError> {
     let held = of_rotor(&[("motion = \"6-dof\"", "motion = \"5-dof\""), (FRICTION, "")])?;
     let rough = of_rotor(&[])?;
-    let smoother = of_rotor(&[("coefficient = 0.6", "coefficient = 0.1")])?;
+    let smoother =
+        of_rotor(&[("law = \"stick-slip\"", "law = \"stick-slip\", coefficient = 0.1")])?;
     let rows = [("held beside the bore", &held), ("0.6", &rough), ("0.1", &smoother)];
     let cells = |(name, of): (&str, &Held)| {
         let mut row = vec![name.to_string()];
