@@ -29,8 +29,8 @@ pub struct BoreFriction {
 /// Friction coefficient of slipping in 4.2.4.2.
 pub const COEFFICIENT: f64 = 0.6;
 /// Stretch at which slip begins, m. The source states none, but that the way is to be as short as can be: at its
-/// contact stiffness by area springs are as stiff as the contact from 4.2 MPa on.
-pub const STRETCH: f64 = 1e-8;
+/// contact stiffness by area springs are as stiff as the contact from 0.042 MPa on.
+pub const STRETCH: f64 = 1e-10;
 
 /// The spring of a node: its history. All components are along the race's own axes, so that a motion of both
 /// bodies together is none to it.

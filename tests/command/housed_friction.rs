@@ -27,7 +27,7 @@ fn a_rough_bore_holds_its_race_and_tells_of_it() {
     let place = Place::new();
     let scene = place.scene("scene.toml", &rough(GIVEN, "2 ms"));
     let said = succeed(command("check", &scene, &[]));
-    for part in ["friction in the bore", "coefficient 0.6, slips from 0.01 um on", "free"] {
+    for part in ["friction in the bore", "coefficient 0.6, slips from 0.1 nm on", "free"] {
         assert!(said.contains(part), "{part}: {said}");
     }
     assert!(
@@ -39,10 +39,11 @@ fn a_rough_bore_holds_its_race_and_tells_of_it() {
     let out = place.path("out");
     succeed(into_folder("run", &scene, &out, &[]));
     let of = |name: &str| column(&out.join("series.csv"), name);
-    // The race slips until balls and load press it down, and stays then.
+    // The race slips until balls and load press it down, and stays then but for its swing.
     let along = of("outer_x");
     let rows = along.len();
-    assert!((along[rows - 1] - along[rows / 2]).abs() <= 1e-8, "{along:?}");
+    let off = along[rows / 4..].iter().map(|at| (at - along[rows - 1]).abs()).fold(0.0, f64::max);
+    assert!(along[rows - 1] > 1e-8 && off <= 1e-9, "{along:?}");
     let half = &of("friction_force_on_outer_x")[rows / 2..];
     let mean = half.iter().sum::<f64>() / half.len() as f64;
     // Held against 30 N; it swings on its springs.

@@ -40,7 +40,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         "friction_springs",
         "The source attaches \"a large penalty\" to the springs of friction and prints no number: a spring slips from a given stretch on, and is never stiffer \
          than the contact along its normal, so that steps need not be shorter.",
-        "0.01 µm; 2 µm where it is to be seen",
+        "0.1 nm; 2 µm where it is to be seen",
     );
     pressed(context)?;
     rotor(context)

@@ -214,7 +214,7 @@ fn housing(housing: &HousingSettings) -> Result<Value, ResultsError> {
     if let Some(BoreFriction { coefficient, stretch }) = housing.friction {
         let friction = json!({
             "coefficient": quantity("coefficient", coefficient, "1")?,
-            "stretch": quantity("stretch", 1e6 * stretch, "um")?,
+            "stretch": quantity("stretch", stretch, "m")?,
         });
         echo.insert("friction".into(), friction);
     }

@@ -247,10 +247,10 @@ impl Housing {
         };
         line("outer race, axially", axial.into());
         if let Some(BoreFriction { coefficient, stretch }) = housing.friction {
-            let um = rounded(1e6 * stretch);
+            let nm = rounded(1e9 * stretch);
             line(
                 "friction in the bore",
-                format!("coefficient {coefficient}, slips from {um} um on"),
+                format!("coefficient {coefficient}, slips from {nm} nm on"),
             );
         }
         lines

@@ -153,8 +153,8 @@ pub fn stepped_seat(
     let impulses = Item::does(Stage::Impulses, Subject::Body(body), why).named(name);
     let friction = friction.map(|BoreFriction { coefficient, stretch }| {
         let why = format!(
-            "a spring at every node that touches, which slips at {coefficient} of the normal load, stretched by {} um or more",
-            rounded(1e6 * stretch)
+            "a spring at every node that touches, which slips at {coefficient} of the normal load, stretched by {} nm or more",
+            rounded(1e9 * stretch)
         );
         Item::does(Stage::BoreFriction, Subject::Seat(index), why).named(name)
     });
