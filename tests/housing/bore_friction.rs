@@ -425,6 +425,37 @@ fn a_motion_of_both_together_stretches_nothing() {
     assert!((here.1 / there.1 - 1.0).abs() <= 1e-8);
 }
 
+/// A race that becomes too small to touch: what its springs held has gone with the load that held them.
+#[test]
+fn a_spring_that_is_let_go_takes_nothing_along() {
+    let (_, nodes) = rigid();
+    let mut friction = SeatFriction::new(SOFT, nodes.len());
+    let count = nodes.iter().map(|node| node.node as usize + 1).max().unwrap();
+    let mut push = |radius: f64, along: f64| {
+        let displacement = vec![[along, 0.0, 0.0, 0.0]; count];
+        let mut forces = vec![[0.0; 4]; count];
+        let pressed = Pressed {
+            cylinder: &Cylinder { radius, width: 1.2 * WIDTH },
+            frame: &Frame::new(&Pose::identity()),
+            penalty: Penalty::PerArea(STIFFNESS),
+            nodes: &nodes,
+            displacement: &displacement,
+        };
+        let contact = friction.push(&pressed, &mut forces);
+        (contact.touching, friction.sum)
+    };
+    push(RADIUS + TIGHT, 0.0);
+    let (touching, held) = push(RADIUS + TIGHT, 5e-8);
+    assert!(touching == nodes.len() && held.stored > 0.0 && held.slipping == 0);
+    let (touching, gone) = push(RADIUS - TIGHT, 5e-8);
+    assert_eq!((touching, gone.stored, gone.heat), (0, 0.0, 0.0));
+    // The sums over the nodes are in the same order.
+    assert!((gone.load_work + held.stored).abs() <= 1e-12 * held.stored, "{gone:?} {held:?}");
+    // Touching again it begins anew.
+    let (_, anew) = push(RADIUS + TIGHT, 9e-8);
+    assert_eq!((anew.stored, anew.force), (0.0, [0.0; 3]));
+}
+
 /// As stiff as springs become, steps and windows next to their limits: a race that swings and turns in its bore keeps
 /// its energy.
 #[test]

@@ -8,6 +8,7 @@ use bearing_dynamics::output::session::Parts;
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
+use crate::golden::GoldenTolerance;
 use crate::housed_shaft::Shaft;
 use crate::motion::{ROTOR_IN_PILLOW_BLOCKS, column, done};
 use crate::oracles::bore_friction::Bore;
@@ -96,7 +97,8 @@ fn pressed(context: &mut CaseContext) -> Result<(), CaseError> {
             1e6 * along[last],
         )
         .independent(1e6 * PUSHED / bore.stick_stiffness(sink), "Σ μ N over the stretch of slip")
-        .relative(1e-3, GIVES_WAY),
+        .relative(1e-3, GIVES_WAY)
+        .golden(GoldenTolerance::REORDERED),
     );
     let stiffness = (row_at(&times, 3e-3)..=last).map(|row| -friction[row] / along[row]);
     let off = largest(stiffness.map(|k| (k / bore.stick_stiffness(sink) - 1.0).abs()));
@@ -146,7 +148,8 @@ fn pressed(context: &mut CaseContext) -> Result<(), CaseError> {
     context.check(
         Check::new("heat", "heat of a cycle of ±10 µm", "mJ", 1e3 * (heat[to] - heat[from]))
             .independent(1e3 * bore.loop_area(sink, 10e-6), "4 μ Σ N (A − s)")
-            .relative(1e-3, GIVES_WAY),
+            .relative(1e-3, GIVES_WAY)
+            .golden(GoldenTolerance::REORDERED),
     );
     let residual = largest(column(&series, "energy_coupled_residual")?.into_iter().map(f64::abs));
     context.check(
@@ -236,7 +239,8 @@ fn rotor(context: &mut CaseContext) -> Result<(), CaseError> {
             Check::new(&format!("held_{}", n + 1), "axial force of the tilted race, held by friction", "N", ours)
                 .consistency(reference, "the same race held along its axis")
                 .relative(0.005, "races go 0.3 µm apart until friction holds them, where balls lose 2 N a micrometre")
-                .under("friction_springs"),
+                .under("friction_springs")
+.golden(GoldenTolerance::MIXED),
         );
     }
     context.check(
