@@ -19,6 +19,18 @@ use crate::solver::profile::Profile;
 use crate::solver::rotor::beam::Beam;
 use crate::solver::shaft_shapes::{FreeShaftError, Kept, RigidPart, free_shaft};
 use crate::solver::static_assembly::StaticAssembly;
+use thiserror::Error;
+
+/// An equilibrium is asked for where a bore has friction.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error(
+    "housing{of}.friction: refused: what friction holds depends on how the race came to its place, and an equilibrium \
+     knows nothing of that. Hint: `bearing run` takes it along; leave `friction` out for an equilibrium of smooth bores"
+)]
+pub struct RoughBore {
+    /// ".left", of a housing with a name.
+    of: String,
+}
 
 /// Bearings and what they sit on, SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -236,6 +248,19 @@ impl AssemblyScene {
     pub fn housing_method(&self) -> Option<HousingMethod> {
         let mut housings = self.bearings.iter().filter_map(|placed| placed.housing.as_ref());
         housings.next().map(|housing| housing.settings.method)
+    }
+
+    /// That no bore has friction, of which an equilibrium knows nothing.
+    ///
+    /// # Errors
+    /// The first bore that has.
+    pub fn check_smooth(&self) -> Result<(), RoughBore> {
+        let rough = |placed: &&PlacedBearing| {
+            placed.housing.as_ref().is_some_and(|of| of.settings.friction.is_some())
+        };
+        let Some(rough) = self.bearings.iter().find(rough) else { return Ok(()) };
+        let of = rough.name.as_ref().map_or(String::new(), |name| format!(".{name}"));
+        Err(RoughBore { of })
     }
 
     /// Whether elements of rubber move beside the bearings.

@@ -1,6 +1,7 @@
 //! A scene with a bearing in a flexible housing, resolved; the housing's mesh is not read.
 
 use crate::ch2_housing::bore_contact::Penalty;
+use crate::ch4_rotor::bore_friction::BoreFriction;
 use crate::scene::resolved::{DefaultUsed, Scene};
 use crate::scene::solid::SolidScene;
 use crate::solver::housing::bore_equilibrium::Axial;
@@ -40,6 +41,8 @@ pub struct HousingSettings {
     pub width: Option<f64>,
     pub axial: Axial,
     pub penalty: Penalty,
+    /// `None`: the bore is smooth.
+    pub friction: Option<BoreFriction>,
     /// Steps of the housing over their limit, and phase of the seat in a window.
     pub step_fraction: f64,
     pub window_phase: f64,

@@ -8,6 +8,7 @@ use Need::{Default, Depends, Optional};
 pub const METHODS: &[&str] = &["quasi-static", "explicit", "reduced", "rigid"];
 pub const STARTS: &[&str] = &["undeformed", "equilibrium"];
 pub const AXIAL: &[&str] = &["held", "free"];
+pub const FRICTION_LAWS: &[&str] = &["none", "stick-slip"];
 
 const FIT: Kind = Kind::Quantity(Length, closed(-10_000.0, 10_000.0, "um"));
 const FIT_NEED: Need =
@@ -33,10 +34,16 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("housing.start", Kind::Choice(STARTS), Default { value: "undeformed", reason: "the source's explicit runs start so" },
         "`explicit`: what a run starts from: an undeformed housing into which the fit grows, or the equilibrium of all under the loads at the start, found with the housing condensed."),
     Key::new("housing.width", RADIUS, Depends("`bearing.length`; without it the bore's own"), "Width of the outer race in its seat; nodes of the bore beside it are not touched.").hint("a positive width, along the axis; check the unit").example_of("20 mm"),
-    Key::new("housing.axial", Kind::Choice(AXIAL), Default { value: "held", reason: "a shoulder or ring beside the bore; the bore has no friction" },
-        "What takes an axial force on the outer race: something beside the bore, or nothing."),
+    Key::new("housing.axial", Kind::Choice(AXIAL), Depends("`held`; with friction `free`"),
+        "What takes an axial force on the outer race: something beside the bore, such as a shoulder or a ring, or nothing but friction."),
     Key::new("housing.contact.stiffness", CONTACT_STIFFNESS, Default { value: "2.5e14 N/m^3", reason: "the source's 2.5e8 N/m at nodes of 1 mm^2" },
         "Penalty stiffness (2.19): by area (N/m^3), so that pressure does not depend on the mesh, or for each node (N/m), as printed.").hint("the source has 2.5e8 N/m a node for steel").example_of("\"2.5e14 N/m^3\""),
+    Key::new("housing.friction.law", Kind::Choice(FRICTION_LAWS), Depends("`none`: a smooth bore"),
+        "`explicit`: whether bore and outer race stick and slip (4.2.4.2)."),
+    Key::new("housing.friction.coefficient", Kind::Number(closed(0.0, 10.0, "")), Default { value: "0.6", reason: "the source's" },
+        "`stick-slip`: coefficient at which the bore slips on the outer race. Zero is no friction.").hint("the source has 0.6").example_of("0.6"),
+    Key::new("housing.friction.stretch", Kind::Quantity(Length, above(0.0, 1e3, "um")), Default { value: "0.1 nm", reason: "the source says \"a large penalty\" alone; from 0.17 nm of penetration on springs are as stiff as the contact" },
+        "`stick-slip`: how far a node of the bore moves along the outer race, against a spring, until it slips: up to there the coefficient grows with the stretch. No spring is stiffer than the contact along its normal, so that deeper nodes slip later.").hint("a part of a micrometre; the shorter, the stiffer the grip").example_of("0.1 nm"),
     Key::new("housing.modes_to", Kind::Quantity(Frequency, above(0.0, 1e9, "Hz")), Depends("twice the natural frequency of a ball between its races under the largest load"),
         "`reduced`: natural shapes of the housing up to this frequency move; what is stiffer follows statically, and by a few shapes of its own.").example_of("40 kHz"),
     Key::new("housing.step_fraction", Kind::Number(above(0.0, 1.0, "")), Default { value: "0.8", reason: "a part of the largest stable step of the housing in contact" },
@@ -52,4 +59,5 @@ pub(super) const TABLES: &[Table] = &[
     table("housing.fit", "Interference of the outer race in the bore. It must say what it is: `radial` or `diametral`.",
         "fit = { radial = \"5 um\" } or { diametral = \"10 um\" }"),
     table("housing.contact", "Contact between outer race and bore.", "contact = { stiffness = \"2.5e14 N/m^3\" }"),
+    table("housing.friction", "Stick and slip between outer race and bore, in explicit steps.", "friction = { law = \"stick-slip\" }"),
 ];

@@ -287,6 +287,10 @@ A scene with a bearing, `[solid]` and `[housing]` goes to `check`, `plan`, `stat
 in a surface of the solid about X; contact is (2.16) to (2.19), without friction, so that something beside the bore holds the race
 along its axis unless `axial = \"free\"`. The solid is held, and has no velocity, spin, probes or modes here.
 
+**Friction.** `friction = { law = \"stick-slip\" }` in `[housing]` with `method = \"explicit\"` attaches a spring to each node of the bore (4.2.4.2), which slips at `coefficient` times
+the normal load. It then holds the race along its axis (`axial` is `free` unless given), and about it where `motion = \"6-dof\"`. Long springs (`stretch`) under a torque make a race whirl: see
+decision 47.
+
 **Methods.** `quasi-static` condenses the linear housing onto its bore and solves one equilibrium of bearing and bore a row, balls
 going round as in pure rolling; traction, cage, damping and inertia are left out, and `plan` and `run` say what inertia would
 change. It takes constant loads on outer race and solid, and no torque or unbalance. `explicit` moves both in steps of their own that exchange

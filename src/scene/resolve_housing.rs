@@ -1,6 +1,7 @@
 //! From the given keys to a bearing in a housing: defaults, and what must hold between keys.
 
 use crate::ch2_housing::bore_contact::Penalty;
+use crate::ch4_rotor::bore_friction::{BoreFriction, COEFFICIENT, STRETCH};
 use crate::scene::assembly::PlacedHousing;
 use crate::scene::document::{Assumption, Document};
 use crate::scene::error::{Problem, SceneError};
@@ -55,10 +56,11 @@ pub(crate) fn in_housing(
         let example = "a [solid.mesh] table, or method = \"rigid\" to [housing]".to_string();
         return Err(document.error("solid", Problem::Missing { because, example }));
     }
-    refuse_motion(document, &reader)?;
+    let friction = friction(&mut reader, method)?;
+    refuse_motion(document, &reader, friction.is_some())?;
     let solid = housing_solid(document)?;
     let end = bearing.dynamics.run.as_ref().map(|run| run.end);
-    let housing = settings(&mut reader, &bearing, method, end)?;
+    let housing = settings(&mut reader, &bearing, method, (friction, end))?;
     match method {
         HousingMethod::QuasiStatic => refuse_inertia(document, &bearing)?,
         HousingMethod::Reduced => refuse_start(document, &bearing)?,
@@ -81,14 +83,41 @@ fn not_applicable<T>(
     Err(document.error(key, problem))
 }
 
-/// The race must be free to move, and nothing else may hold it.
-fn refuse_motion(document: &Document, reader: &Reader) -> Result<(), SceneError> {
+/// What the bore's friction is; `None` where there is none, or none that could push.
+fn friction(
+    reader: &mut Reader,
+    method: HousingMethod,
+) -> Result<Option<BoreFriction>, SceneError> {
+    let [law, coefficient, stretch] =
+        ["law", "coefficient", "stretch"].map(|key| format!("housing.friction.{key}"));
+    if reader.choice_if_given(&law) != Some("stick-slip") {
+        let Some(key) = [coefficient, stretch].into_iter().find(|key| reader.is_given(key)) else {
+            return Ok(None);
+        };
+        let reason = "without a law the bore is smooth";
+        let advice = "write law = \"stick-slip\" beside it, or leave it out";
+        return not_applicable(reader.document, &key, reason, advice);
+    }
+    if method != HousingMethod::Explicit {
+        let reason = "the springs of friction have a history, which only steps of `explicit` know";
+        let advice = "leave `friction` out, or write method = \"explicit\"";
+        return not_applicable(reader.document, &law, reason, advice);
+    }
+    let coefficient = reader.number(&coefficient).unwrap_or(COEFFICIENT);
+    let stretch = reader.number(&stretch).unwrap_or(STRETCH);
+    Ok((coefficient != 0.0).then_some(BoreFriction { coefficient, stretch }))
+}
+
+/// The race must be free to move, and nothing else may hold it; what turns needs friction to hold it.
+fn refuse_motion(document: &Document, reader: &Reader, rough: bool) -> Result<(), SceneError> {
     let key = "outer_race.motion";
     match reader.choice_if_given(key) {
         Some("5-dof") => {}
+        Some("6-dof") if rough => {}
         Some("6-dof") => {
             let reason = "the seat has no friction, so nothing would keep the race from turning";
-            return not_applicable(document, key, reason, "write motion = \"5-dof\"");
+            let advice = "write motion = \"5-dof\", or friction.law = \"stick-slip\" in [housing]";
+            return not_applicable(document, key, reason, advice);
         }
         _ => {
             let reason = "a fixed outer race does not move in its housing";
@@ -155,7 +184,7 @@ fn settings(
     reader: &mut Reader,
     bearing: &Scene,
     method: HousingMethod,
-    end: Option<f64>,
+    (friction, end): (Option<BoreFriction>, Option<f64>),
 ) -> Result<HousingSettings, SceneError> {
     let document = reader.document;
     let bore = text(document, "housing.bore").unwrap_or_else(|| {
@@ -184,10 +213,15 @@ fn settings(
         reader.note("housing.width", &value, reason);
         length
     });
-    let axial = match reader.choice("housing.axial") {
-        Some("free") => Axial::Free,
-        _ => Axial::Held,
+    let (unless_given, reason) = match friction {
+        Some(_) => ("free", "friction holds the race along its axis"),
+        None => ("held", "a shoulder or ring beside the bore; the bore has no friction"),
     };
+    let axial = reader.choice_if_given("housing.axial").unwrap_or_else(|| {
+        reader.note("housing.axial", unless_given, reason);
+        unless_given
+    });
+    let axial = if axial == "free" { Axial::Free } else { Axial::Held };
     let penalty = match document.value("housing.contact.stiffness") {
         Some(Checked::Either(0, stiffness)) => Penalty::PerArea(*stiffness),
         Some(Checked::Either(_, stiffness)) => Penalty::PerNode(*stiffness),
@@ -245,6 +279,7 @@ fn settings(
         width,
         axial,
         penalty,
+        friction,
         step_fraction,
         window_phase,
         modes_to,

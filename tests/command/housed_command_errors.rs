@@ -30,6 +30,40 @@ fn cases() -> Vec<Case> {
             &["outer_race.motion", "no friction", "5-dof"],
         ),
         (
+            "friction where equilibria follow each other",
+            changed("fit.radial = \"1 um\"", "friction.law = \"stick-slip\""),
+            &["housing.friction.law", "history", "method = \"explicit\""],
+        ),
+        (
+            "friction of a housing in shapes",
+            changed("fit.radial = \"1 um\"", "method = \"reduced\"\nfriction.law = \"stick-slip\""),
+            &["housing.friction.law", "history", "leave `friction` out"],
+        ),
+        (
+            "a coefficient of a smooth bore",
+            changed("fit.radial = \"1 um\"", "method = \"explicit\"\nfriction.coefficient = 0.6"),
+            &["housing.friction.coefficient", "smooth", "stick-slip"],
+        ),
+        (
+            "friction that pushes",
+            changed("fit.radial = \"1 um\"", "method = \"explicit\"\nfriction.coefficient = -0.6"),
+            &["housing.friction.coefficient", "-0.6", "from 0 to 10"],
+        ),
+        (
+            "a grip of no length",
+            changed("fit.radial = \"1 um\"", "method = \"explicit\"\nfriction.stretch = \"0 um\""),
+            &["housing.friction.stretch", "more than 0 um"],
+        ),
+        (
+            "a race that may turn in a bore whose friction is none",
+            changed(
+                "fit.radial = \"1 um\"",
+                "method = \"explicit\"\nfriction = { law = \"stick-slip\", coefficient = 0 }",
+            )
+            .replace("motion = \"5-dof\"", "motion = \"6-dof\""),
+            &["outer_race.motion", "no friction", "friction.law"],
+        ),
+        (
             "foundation and housing",
             changed("[traction]", "foundation.stiffness.y = \"1e8 N/m\"\n[traction]"),
             &["outer_race.foundation", "not in both"],

@@ -37,6 +37,7 @@ mod housed_command_errors;
 mod housed_command_numbers;
 mod housed_command_resume;
 mod housed_command_sweep;
+mod housed_friction;
 mod housed_reduced;
 mod rubber_command;
 mod run_command;

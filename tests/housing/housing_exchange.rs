@@ -28,12 +28,12 @@ use dynamics::*;
 use nalgebra::Vector3;
 
 /// Outside of the outer race in Table 2.2: raceway 31.953 mm, 3.574 mm thick; 20 mm deep.
-const RADIUS: f64 = 35.527e-3;
-const WIDTH: f64 = 20e-3;
-const WALL: f64 = 15e-3;
+pub const RADIUS: f64 = 35.527e-3;
+pub const WIDTH: f64 = 20e-3;
+pub const WALL: f64 = 15e-3;
 
 /// A ring around the race, as wide as the race, its outside held or free.
-fn housing(held: bool, damping: f64) -> (SolidModel, Vec<ContactNode>) {
+pub fn housing(held: bool, damping: f64) -> (SolidModel, Vec<ContactNode>) {
     let shape = Ring { inner_radius: RADIUS, outer_radius: RADIUS + WALL, width: WIDTH };
     let cells = RingMesh { around: 32, radial: 3, axial: 3, radial_growth: 1.3 };
     let mesh = ring(&shape, &cells).unwrap().mesh;
@@ -61,7 +61,7 @@ fn housing(held: bool, damping: f64) -> (SolidModel, Vec<ContactNode>) {
 }
 
 /// The outer race as a body that does not turn about its axis.
-fn outer_race() -> RaceBody {
+pub fn outer_race() -> RaceBody {
     RaceBody {
         inertia: inertia::hollow_cylinder(32e-3, RADIUS, WIDTH, 7850.0),
         ..race([0.0; 5], Rotation::Speed(Profile::ZERO))
@@ -69,11 +69,11 @@ fn outer_race() -> RaceBody {
 }
 
 /// Table 2.2's bearing with a little interference between balls and races.
-fn mounted(loads: [f64; 5]) -> DynamicProblem {
+pub fn mounted(loads: [f64; 5]) -> DynamicProblem {
     DynamicProblem { outer: Some(outer_race()), ..bearing(table_4_1(-5e-6), loads, 0.0) }
 }
 
-fn seat(nodes: Vec<ContactNode>, reach: f64) -> Seat {
+pub fn seat(nodes: Vec<ContactNode>, reach: f64) -> Seat {
     Seat {
         name: None,
         mount: Mount::at_centre(OUTER),
@@ -81,12 +81,13 @@ fn seat(nodes: Vec<ContactNode>, reach: f64) -> Seat {
         radius: Profile::Constant(RADIUS),
         width: WIDTH,
         penalty: Penalty::default(),
+        friction: None,
         nodes,
         reach,
     }
 }
 
-fn rated(solid_fraction: f64, seat_phase: f64, step: f64) -> ExchangeOptions {
+pub fn rated(solid_fraction: f64, seat_phase: f64, step: f64) -> ExchangeOptions {
     let bearing = RunOptions {
         integrator: Integrator::RungeKutta,
         stepping: Stepping::Fixed(step),
@@ -96,11 +97,11 @@ fn rated(solid_fraction: f64, seat_phase: f64, step: f64) -> ExchangeOptions {
     ExchangeOptions { solid_fraction, seat_phase, bearing }
 }
 
-fn options() -> ExchangeOptions {
+pub fn options() -> ExchangeOptions {
     rated(0.8, 0.25, 2e-6)
 }
 
-fn joined(
+pub fn joined(
     problem: DynamicProblem,
     model: SolidModel,
     seat: Seat,
@@ -109,7 +110,7 @@ fn joined(
     Exchange::new(problem, vec![SolidPart::undeformed(None, model)], vec![seat], options)
 }
 
-fn only<'h>(housed: &'h Exchange<'_>) -> &'h SeatState {
+pub fn only<'h>(housed: &'h Exchange<'_>) -> &'h SeatState {
     &housed.solids[0].seats[0]
 }
 
@@ -128,7 +129,7 @@ fn start_with(
     joined(problem, model, seat(nodes, reach), options).unwrap()
 }
 
-fn total_momentum(housed: &mut Exchange) -> Vector3<f64> {
+pub fn total_momentum(housed: &mut Exchange) -> Vector3<f64> {
     let bearing = momenta(housed.simulation.system.assembly.clone(), &housed.simulation.state).0;
     // Between kicks the rates of central differences are those of the bearing's time.
     let mut sum = bearing;
@@ -165,7 +166,7 @@ fn what_the_housing_gets_the_race_gets() {
 }
 
 /// Of races, balls and housing about the origin, a point that stands still.
-fn total_angular_momentum(housed: &Exchange) -> Vector3<f64> {
+pub fn total_angular_momentum(housed: &Exchange) -> Vector3<f64> {
     let mut sum = momenta(housed.simulation.system.assembly.clone(), &housed.simulation.state).1;
     // Places half a step ahead of the rates: along them, which is no lever.
     let model = &housed.solids[0].solid.model;
@@ -208,7 +209,7 @@ fn a_tilting_race_turns_the_housing_as_much_as_it_is_held_back() {
 }
 
 /// A blow of ten times the load, 1 ms long.
-fn blow(problem: DynamicProblem) -> DynamicProblem {
+pub fn blow(problem: DynamicProblem) -> DynamicProblem {
     let mut struck = problem;
     struck.inner.drives[2] =
         Drive::Load(Profile::HalfSine { base: -250.0, peak: -2500.0, start: 1e-4, duration: 1e-3 });

@@ -8,6 +8,8 @@ mod dynamics;
 mod housing_common;
 
 mod bonded_bushings;
+mod bore_friction;
+mod bore_friction_law;
 mod housing_assembly;
 mod housing_bore;
 mod housing_exchange;

@@ -103,6 +103,7 @@ fn fitted(housing: &Housing, solid: usize, mount: Mount) -> (SolidPart, Seat) {
         radius: Profile::Constant(RADIUS),
         width: WIDTH,
         penalty: Penalty::PerArea(housing.times[2] * steel),
+        friction: None,
         nodes,
         reach: f64::INFINITY,
     };

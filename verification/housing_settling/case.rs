@@ -99,6 +99,7 @@ fn settle(letter: char, cells: [usize; 3], order: Order) -> Result<Settled, Case
         radius: Profile::Constant(BORE_RADIUS),
         width: WIDTH,
         penalty: Penalty::default(),
+        friction: None,
         nodes: housings::bore_nodes(&mesh)?,
         reach: f64::INFINITY,
     };

@@ -305,6 +305,7 @@ fn explicit(
         radius: Profile::Constant(BORE_RADIUS + TIGHT),
         width: WIDTH,
         penalty: Penalty::default(),
+        friction: None,
         nodes: housings::bore_nodes(&whole.mesh)?,
         reach: f64::INFINITY,
     };

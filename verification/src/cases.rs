@@ -12,6 +12,8 @@ mod axial_load_closed_form;
 mod bearing_conservation;
 #[path = "../bearing_on_bushing_3_4_3/case.rs"]
 mod bearing_on_bushing_3_4_3;
+#[path = "../bore_friction_4_2_4_2/case.rs"]
+mod bore_friction_4_2_4_2;
 #[path = "../bushing_bulging_3_4_2/case.rs"]
 mod bushing_bulging_3_4_2;
 #[path = "../bushing_geometries_3_4_2/case.rs"]
@@ -125,6 +127,7 @@ pub const CASES: &[Case] = &[
     misalignment_moment::CASE,
     misalignment_on_bushing_3_4_5::CASE,
     dent_3_4_4::CASE,
+    bore_friction_4_2_4_2::CASE,
     rotor_in_housings_4_3::CASE,
     rotor_resonance_4_3_4::CASE,
     rotor_run_up_4_3_4::CASE,

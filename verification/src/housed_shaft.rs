@@ -1,5 +1,6 @@
 //! From a shipped scene of a shaft in housings, with words changed, to its equilibrium and what a session moves in each of three ways.
 
+use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::session::{CourseParts, HousedParts, Parts, RunRequest};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::housing::HousedScene;
@@ -136,23 +137,44 @@ impl Shaft {
         let mut still = static_assembly(&assembly, 0.0, &[]);
         course.seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
         let found = solve_assembly(&still, None, &StaticOptions::default())?;
-        let (mut solids, mut seats) = (Vec::new(), Vec::new());
-        for (index, of) in course.seats.iter().enumerate() {
-            let Housing { scene, setup } = &self.housings[index];
+        let mut displacements = Vec::new();
+        for (of, state) in course.seats.iter().zip(&found.seats) {
             let body = of.body(&assembly);
             assembly.bodies[body].rest = found.coordinates[body].into();
-            solids.push(SolidPart {
-                name: of.name.clone(),
-                model: setup.model.clone(),
-                displacement: of.bore.displacement(&found.seats[index].loads),
+            displacements.push(of.bore.displacement(&state.loads));
+        }
+        self.parts(assembly, displacements, threads)
+    }
+
+    /// From undeformed housings, races in their first places.
+    pub fn undeformed(&self, threads: usize) -> Result<HousedParts<'static>, CaseError> {
+        self.parts(self.scene.assembly()?, Vec::new(), threads)
+    }
+
+    fn parts(
+        &self,
+        assembly: Assembly,
+        displacements: Vec<Vec<Vec3>>,
+        threads: usize,
+    ) -> Result<HousedParts<'static>, CaseError> {
+        let mut displacements = displacements.into_iter();
+        let (mut solids, mut seats) = (Vec::new(), Vec::new());
+        for (index, Housing { scene, setup }) in self.housings.iter().enumerate() {
+            let name = self.name(index);
+            solids.push(match displacements.next() {
+                Some(displacement) => {
+                    SolidPart { name: name.clone(), model: setup.model.clone(), displacement }
+                }
+                None => SolidPart::undeformed(name.clone(), setup.model.clone()),
             });
             seats.push(Seat {
-                name: of.name.clone(),
-                mount: Mount::at_centre(body),
+                name,
+                mount: Mount::at_centre(assembly.bearings[index].mounts[1].body),
                 solid: index,
                 radius: setup.radius(scene),
                 width: setup.width,
                 penalty: scene.housing.penalty,
+                friction: scene.housing.friction,
                 nodes: setup.nodes.clone(),
                 reach: f64::INFINITY,
             });

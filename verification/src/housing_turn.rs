@@ -126,6 +126,7 @@ pub fn seat(mesh: &TetMesh) -> Result<Seat, CaseError> {
         radius: Profile::Constant(BORE_RADIUS),
         width: WIDTH,
         penalty: Penalty::default(),
+        friction: None,
         nodes: housings::bore_nodes(mesh)?,
         reach: f64::INFINITY,
     })

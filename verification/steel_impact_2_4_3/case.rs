@@ -98,6 +98,7 @@ fn run_with([young, damping]: [f64; 2]) -> Result<History, CaseError> {
         radius: Profile::Constant(fit.radius),
         width: WIDTH,
         penalty: Penalty::default(),
+        friction: None,
         nodes: bore_nodes(&mesh)?,
         reach: f64::INFINITY,
     };

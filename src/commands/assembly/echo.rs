@@ -4,6 +4,7 @@ use super::housing::method;
 use super::{Fallible, name_of};
 use crate::commands::{echo as bearing_echo, echo_run, solid};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::ch4_rotor::bore_friction::BoreFriction;
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::RunSettings;
 use bearing_dynamics::scene::assembly::{
@@ -210,6 +211,13 @@ fn housing(housing: &HousingSettings) -> Result<Value, ResultsError> {
         Penalty::PerNode(stiffness) => quantity("stiffness", stiffness, "N/m")?,
     };
     echo.insert("contact".into(), json!({ "stiffness": stiffness }));
+    if let Some(BoreFriction { coefficient, stretch }) = housing.friction {
+        let friction = json!({
+            "coefficient": quantity("coefficient", coefficient, "1")?,
+            "stretch": quantity("stretch", stretch, "m")?,
+        });
+        echo.insert("friction".into(), friction);
+    }
     if housing.method == HousingMethod::Explicit {
         for (name, value) in
             [("step_fraction", housing.step_fraction), ("window_phase", housing.window_phase)]

@@ -5,6 +5,7 @@ use crate::commands::memory::watched;
 use crate::commands::placed;
 use crate::commands::solid::mesh_notes;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::ch4_rotor::bore_friction::BoreFriction;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
@@ -12,6 +13,7 @@ use bearing_dynamics::scene::housing_problem::{
     HousingSetup, check_constant, check_supports, setup,
 };
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
+use bearing_dynamics::solver::clock::rounded;
 use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
 use bearing_dynamics::solver::housing::condensed::{
     CondensedBore, Sizes, condense_over, cost, sizes,
@@ -154,6 +156,7 @@ impl Housing {
             radius: self.setup.radius(&self.scene),
             width: self.setup.width,
             penalty: self.scene.housing.penalty,
+            friction: self.scene.housing.friction,
             nodes: self.setup.nodes.clone(),
             reach: REACH * self.setup.bore_radius,
         }
@@ -243,6 +246,13 @@ impl Housing {
             Axial::Free => "free",
         };
         line("outer race, axially", axial.into());
+        if let Some(BoreFriction { coefficient, stretch }) = housing.friction {
+            let nm = rounded(1e9 * stretch);
+            line(
+                "friction in the bore",
+                format!("coefficient {coefficient}, slips from {nm} nm on"),
+            );
+        }
         lines
     }
 }

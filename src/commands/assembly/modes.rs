@@ -24,6 +24,7 @@ use std::time::Instant;
 
 pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let Asked { path, document, .. } = asked;
+    scene.check_smooth()?;
     let folder = asked.folder(Writes::Modes)?;
     let housings = housings::prepare(document, scene)?;
     let start = Instant::now();

@@ -51,7 +51,10 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         _ => None,
     };
     let (items, mut notes) = match (scene.run(), method) {
-        (None, _) => (of_statics(scene, &housings)?, Vec::new()),
+        (None, _) => {
+            scene.check_smooth()?;
+            (of_statics(scene, &housings)?, Vec::new())
+        }
         (Some(settings), Some(HousingMethod::QuasiStatic)) => {
             (of_course(scene, &housings, settings)?, Vec::new())
         }
@@ -150,7 +153,8 @@ pub fn stages(
         if is_explicit {
             let body = assembly.bearings[housing.bearing].mounts[1].body;
             let seat = (body, housing.name.as_deref());
-            solids.extend(motion::stepped_seat(assembly, index, seat));
+            let friction = housing.scene.housing.friction.as_ref();
+            solids.extend(motion::stepped_seat(assembly, index, seat, friction));
         }
     }
     for (index, bushing) in bushings.iter().enumerate() {

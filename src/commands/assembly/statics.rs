@@ -56,6 +56,7 @@ pub fn find_equilibrium<'s>(
     scene: &'s AssemblyScene,
     read: f64,
 ) -> Fallible<Found<'s>> {
+    scene.check_smooth()?;
     let housings = housings::prepare(document, scene)?;
     let start = Instant::now();
     let bores = housings::condensed(&housings)?;

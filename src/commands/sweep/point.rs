@@ -39,6 +39,7 @@ fn solve_scene(
     neighbour: Option<&[SVector<f64, 5>]>,
     kept: &mut Kept,
 ) -> Result<Solved, Box<dyn Error>> {
+    scene.check_smooth()?;
     *kept = std::mem::take(kept).take(scene)?;
     let (housings, bores) = kept.parts();
     let Equilibrium { still, moment, .. } = equilibrium(scene, grown(housings, bores), neighbour)?;

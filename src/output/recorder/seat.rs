@@ -10,6 +10,8 @@ use crate::solver::housing::bonded::BondedPart;
 use crate::solver::housing::bore_equilibrium::BoreState;
 use crate::solver::housing::condensed::CondensedBore;
 use crate::solver::housing::exchange::{Exchange, ExchangeError};
+use crate::solver::housing::seat::Seat;
+use crate::solver::housing::seat_friction::FrictionSum;
 use crate::solver::solid::explicit::ExplicitSolid;
 use crate::solver::solid::model::SolidError;
 use crate::solver::solid::stress::first_inverted;
@@ -70,6 +72,26 @@ pub fn seat_columns(prefix: &str) -> Vec<Column> {
     columns
 }
 
+/// Of the friction of one seat, whose force and moment are part of the housing's.
+fn friction_columns(prefix: &str) -> Vec<Column> {
+    let mut columns = Vec::new();
+    for (what, unit) in [("force", "N"), ("moment", "N m")] {
+        let name = |axis| format!("{prefix}friction_{what}_on_outer_{axis}");
+        columns.extend(["x", "y", "z"].map(|axis| Column::new(name(axis), unit)));
+    }
+    columns.push(Column::new(format!("{prefix}bore_nodes_slipping"), "1"));
+    for name in ["energy_friction", "heat_friction", "work_friction_load"] {
+        columns.push(Column::new(format!("{prefix}{name}"), "J"));
+    }
+    columns
+}
+
+/// In the order of [`friction_columns`].
+fn friction_values(sum: &FrictionSum) -> [f64; 10] {
+    let ([x, y, z], [a, b, c]) = (sum.force, sum.moment);
+    [x, y, z, a, b, c, sum.slipping as f64, sum.stored, sum.heat, sum.load_work]
+}
+
 /// "left_", before the names of columns; nothing for the only one.
 pub fn prefix(name: &Option<String>) -> String {
     name.as_ref().map_or(String::new(), |name| format!("{name}_"))
@@ -80,9 +102,10 @@ pub fn prefix(name: &Option<String>) -> String {
 pub(super) fn explicit_columns(parts: &HousedParts) -> Vec<Column> {
     let HousedParts { solids, seats, bushings, .. } = parts;
     let of_solids: Vec<String> = solids.iter().map(|solid| prefix(&solid.name)).collect();
-    let by_solid =
-        (0..solids.len()).flat_map(|index| seats.iter().filter(move |s| s.solid == index));
-    let of_seats: Vec<String> = by_solid.map(|seat| prefix(&seat.name)).collect();
+    let by_solid: Vec<&Seat> = (0..solids.len())
+        .flat_map(|index| seats.iter().filter(move |s| s.solid == index))
+        .collect();
+    let of_seats: Vec<String> = by_solid.iter().map(|seat| prefix(&seat.name)).collect();
     let mut columns: Vec<Column> = of_seats.iter().flat_map(|seat| seat_columns(seat)).collect();
     let mut energies = |prefixes: &[String], names: &[&str]| {
         for prefix in prefixes {
@@ -103,6 +126,8 @@ pub(super) fn explicit_columns(parts: &HousedParts) -> Vec<Column> {
         let name = |axis| format!("{seat}housing_impulse_on_outer_{axis}");
         columns.extend(["x", "y", "z"].map(|axis| Column::new(name(axis), "N s")));
     }
+    let rough = by_solid.iter().filter(|seat| seat.friction.is_some());
+    columns.extend(rough.flat_map(|seat| friction_columns(&prefix(&seat.name))));
     columns
 }
 
@@ -160,6 +185,8 @@ impl Recorder {
         }
         values.push(residual);
         values.extend(housed.seats().flat_map(|seat| seat.impulse));
+        let rough = housed.seats().zip(seats()).filter(|(seat, _)| seat.friction.is_some());
+        values.extend(rough.flat_map(|(_, now)| friction_values(&now.friction)));
         Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! Arrays of a state that are too long for text: `state-N.npy`, a row a node.
 
-use super::{StateError, entries::Refused};
+use super::{StateError, entries::Refused, friction_entry};
 use crate::output::atomic::write_atomic;
 use crate::output::series::Series;
 use crate::output::session::Checkpoint;
@@ -37,6 +37,7 @@ pub(super) fn write_arrays(
             if !kept.bushings.is_empty() {
                 write_table(folder, &bushings_name(kept.exchanges), 1, kept.bushings.concat())?;
             }
+            friction_entry::write(folder, kept)?;
             (WIDTH, kept.solids.iter().flat_map(|part| of_nodes(&part.solid)).collect())
         }
         Checkpoint::Course(kept) => {
@@ -55,7 +56,7 @@ pub(super) fn write_arrays(
     Ok(Some(name))
 }
 
-fn write_table(
+pub(super) fn write_table(
     folder: &Path,
     name: &str,
     width: usize,

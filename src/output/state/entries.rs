@@ -3,6 +3,7 @@
 use super::{
     StateFile,
     arrays::{arrays_name, bushings_name, read_arrays, read_touching, table},
+    friction_entry::{self, FrictionEntry},
 };
 use crate::output::series::SeriesError;
 use crate::output::session::{Checkpoint, HousedParts, Parts};
@@ -96,6 +97,8 @@ pub struct ExchangeEntry {
     /// File with the numbers of all bushings in one column, and how many each has.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub bushings: Option<(String, Vec<usize>)>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub friction: Option<FrictionEntry>,
     /// What the ledger of all held at the start, J.
     pub first: f64,
 }
@@ -164,13 +167,15 @@ impl ExchangeEntry {
             steps_per_window: windows.solids.iter().map(|(steps, _)| *steps).collect(),
             seats: kept.solids.iter().map(seats).collect(),
             bushings: (!lengths.is_empty()).then(|| (file(), lengths)),
+            friction: FrictionEntry::of(kept),
             first: kept.first,
         }
     }
 
     pub(super) fn numbers(&self) -> Vec<f64> {
         let of = |seat: &SeatEntry| seat.impulse.into_iter().chain(seat.growth).chain([seat.work]);
-        self.seats.iter().flatten().flat_map(of).chain([self.first]).collect()
+        let friction = self.friction.iter().flat_map(FrictionEntry::numbers);
+        self.seats.iter().flatten().flat_map(of).chain([self.first]).chain(friction).collect()
     }
 }
 
@@ -193,6 +198,7 @@ impl SeatEntry {
             growth: Growth { work, radius, load },
             tested: self.tested,
             sorts: self.sorts,
+            friction: None,
         }
     }
 }
@@ -301,6 +307,8 @@ fn exchange(
             seats: seats.iter().map(SeatEntry::checkpoint).collect(),
         });
     }
+    let mut seats: Vec<_> = solids.iter_mut().flat_map(|part| &mut part.seats).collect();
+    friction_entry::read(folder, exchange.friction.as_ref(), parts, &mut seats)?;
     let limits = file.solids.iter().map(|entry| entry.limit.to_limit());
     let windows = Windows {
         window: file.step,

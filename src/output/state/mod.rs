@@ -8,6 +8,7 @@
 pub mod arrays;
 pub mod bearing_entry;
 pub mod entries;
+pub mod friction_entry;
 pub mod rubber_entry;
 
 pub use crate::output::journal::{SERIES, STATE, Stopped};
@@ -149,7 +150,9 @@ pub fn fingerprint(parts: &Parts, request: &RunRequest) -> String {
                 hash.update(format!("{:?}", solid.name));
                 hash_solid(&mut hash, &solid.model.problem);
             }
-            hash.update(format!("{:?} {:?}", parts.seats, parts.options));
+            // A smooth bore is what it was when there was no friction.
+            let seats = format!("{:?}", parts.seats).replace(", friction: None", "");
+            hash.update(format!("{seats} {:?}", parts.options));
             parts.bushings.iter().for_each(|bushing| hash_bushing(&mut hash, bushing));
         }
         Parts::Course(parts) => {

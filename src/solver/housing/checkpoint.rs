@@ -4,6 +4,7 @@
 use super::bonded::{BondedBushing, BondedPart};
 use super::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
 use super::seat::{Growth, Seat};
+use super::seat_friction::NodeSpring;
 use super::stepped::{SteppedSolid, seated};
 use crate::kinematics::vec3::Vec3;
 use crate::solver::dynamics::assembly::Assembly;
@@ -32,7 +33,7 @@ pub struct SteppedCheckpoint {
     pub seats: Vec<SeatCheckpoint>,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SeatCheckpoint {
     /// On the race since the start, N·s.
     pub impulse: Vec3,
@@ -41,6 +42,17 @@ pub struct SeatCheckpoint {
     pub growth: Growth,
     pub tested: u64,
     pub sorts: u64,
+    pub friction: Option<FrictionCheckpoint>,
+}
+
+/// What the friction of a seat remembers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrictionCheckpoint {
+    /// Of nodes that touched in the last step, ascending.
+    pub springs: Vec<NodeSpring>,
+    /// Since the start, J; see [`FrictionSum`](super::seat_friction::FrictionSum).
+    pub heat: f64,
+    pub load_work: f64,
 }
 
 /// Sizes that were chosen at the start and stay.
@@ -68,6 +80,11 @@ impl<'p> Exchange<'p> {
                 growth: seat.growth,
                 tested: seat.tested,
                 sorts: seat.sorts,
+                friction: seat.friction.as_ref().map(|of| FrictionCheckpoint {
+                    springs: of.springs.clone(),
+                    heat: of.sum.heat,
+                    load_work: of.sum.load_work,
+                }),
             }));
         }
         checkpoint.bushings = self.bushings.iter().map(BondedBushing::numbers).collect();
@@ -133,6 +150,11 @@ impl<'p> Exchange<'p> {
                 seat.growth = kept.growth;
                 seat.tested = kept.tested;
                 seat.sorts = kept.sorts;
+                assert_eq!(seat.friction.is_some(), kept.friction.is_some());
+                if let (Some(of), Some(kept)) = (&mut seat.friction, &kept.friction) {
+                    of.springs.clone_from(&kept.springs);
+                    (of.sum.heat, of.sum.load_work) = (kept.heat, kept.load_work);
+                }
             }
         }
         Ok(exchange)

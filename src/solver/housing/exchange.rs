@@ -216,6 +216,7 @@ impl<'p> Exchange<'p> {
         ran.seats = self.seats().map(|_| Tally::default()).collect();
         for (tally, seat) in ran.seats.iter_mut().zip(self.seats()) {
             tally.add(Stage::Seat, seat.presses);
+            tally.add(Stage::BoreFriction, seat.friction.as_ref().map_or(0, |of| of.pulls));
         }
         ran
     }
@@ -225,7 +226,7 @@ impl<'p> Exchange<'p> {
         self.simulation.system.ran.clear();
         for part in &mut self.solids {
             part.solid.ran = Tally::default();
-            part.seats.iter_mut().for_each(|seat| seat.presses = 0);
+            part.seats.iter_mut().for_each(SeatState::forget_ran);
         }
         self.bushings.iter_mut().for_each(BondedBushing::forget_ran);
     }
@@ -366,13 +367,15 @@ impl<'p> Exchange<'p> {
         let held = of_solids(|solid| {
             let SolidLedger { energy, .. } = solid.ledger;
             let seats: f64 = solid.seats.iter().map(|seat| seat.contact.energy).sum();
-            energy.strain + energy.kinetic + seats
+            let springs: f64 = solid.seats.iter().map(|seat| seat.friction.stored).sum();
+            energy.strain + energy.kinetic + seats + springs
         });
         let residual =
             bodies.residual + of_seats(|seat| seat.work) + of_seats(|seat| seat.to_come) + held
                 - of_solids(|solid| solid.ledger.external_work)
                 - of_solids(|solid| solid.ledger.damping_work)
                 - of_seats(|seat| seat.growth_work)
+                + of_seats(|seat| seat.friction.heat - seat.friction.load_work)
                 + of_bushings(|of| of.work + of.to_come + of.held() + of.dissipated + of.beyond);
         let work: f64 = bodies.ledger.iter().map(|entry| entry.abs()).sum();
         let turned_over = bodies.energy.contact
@@ -381,6 +384,7 @@ impl<'p> Exchange<'p> {
             + of_solids(|solid| solid.ledger.external_work.abs())
             + of_solids(|solid| solid.ledger.damping_work.abs())
             + of_seats(|seat| seat.growth_work.abs())
+            + of_seats(|seat| seat.friction.heat + seat.friction.load_work.abs())
             + of_bushings(|of| of.held() + of.dissipated);
         Ok(ExchangeSnapshot { simulation: bodies, solids, bushings, residual, turned_over })
     }

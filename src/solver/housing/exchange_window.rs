@@ -4,6 +4,7 @@ use super::bonded::BondedBushing;
 use super::exchange::{ExchangeError, ExchangeOptions};
 use super::seat::Seat;
 use crate::solver::dynamics::assembly::Assembly;
+use crate::solver::dynamics::model::Rotation;
 
 /// The longest window for which no body goes further on its seats than `phase` and on its bushings than their own, s:
 /// of both together, stiffnesses over squares of phases count.
@@ -19,12 +20,15 @@ pub(super) fn longest_window(
     let mut most = 0.0f64;
     for (index, body) in assembly.bodies.iter().enumerate() {
         let mut sums = [0.0; 2];
+        let mut about_axis = 0.0;
+        let [x, y, z, ..] = body.rest;
         for seat in seats.iter().filter(|seat| seat.mount.body == index) {
-            let [shift, tilt] = seat.stiffness(body.rest[0]);
+            let [shift, tilt, turn] = seat.stiffness([x, y, z]);
             if shift.is_nan() || shift <= 0.0 {
                 return Err(ExchangeError::NoSeat { seat: seat.suffix() });
             }
             sums = [sums[0] + shift, sums[1] + tilt];
+            about_axis += turn;
         }
         let sleeves =
             |bushing: &&BondedBushing| bushing.sleeves.iter().any(|now| now.sleeve.body == index);
@@ -35,6 +39,10 @@ pub(super) fn longest_window(
         }
         let Some(inertia) = body.inertia() else { continue };
         most = most.max((sums[0] / inertia.mass).max(sums[1] / inertia.transverse));
+        // Nothing but friction turns a race in its bore back; one whose speed is given does not mind.
+        if body.driven().is_none_or(|race| matches!(race.rotation, Rotation::Torque(_))) {
+            most = most.max(about_axis / inertia.axial);
+        }
     }
     Ok(phase / most.sqrt())
 }

@@ -28,4 +28,5 @@ pub mod quasi_static;
 pub mod reduce;
 pub mod reduced_start;
 pub mod seat;
+pub mod seat_friction;
 pub mod stepped;

@@ -2,9 +2,11 @@
 //! to race and solid, and what it has done since the start.
 
 use super::condensed::{is_under, rim};
+use super::seat_friction::{FrictionSum, Pressed, SeatFriction};
 use crate::ch2_housing::bore_contact::{
     ContactNode, ContactSum, Cylinder, Frame, Penalty, contact, split_by_reach,
 };
+use crate::ch4_rotor::bore_friction::BoreFriction;
 use crate::kinematics::Pose;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, dot, norm, scale, sub};
 use crate::solver::dynamics::assembly::Body;
@@ -32,6 +34,8 @@ pub struct Seat {
     /// Of the race, m.
     pub width: f64,
     pub penalty: Penalty,
+    /// `None`: the bore is smooth.
+    pub friction: Option<BoreFriction>,
     /// From [`contact_nodes`](crate::ch2_housing::bore_contact::contact_nodes).
     pub nodes: Vec<ContactNode>,
     /// Nodes farther than this from touching are not tested until something has moved half as far,
@@ -77,16 +81,24 @@ impl Seat {
         rim(self.nodes.iter().map(|node| node.area), width)
     }
 
-    /// ΣK for a shift of a body at `centre` (m, along X), N/m, and ΣKx² for its tilt, N·m/rad, all nodes
-    /// touching.
-    pub(super) fn stiffness(&self, centre: f64) -> [f64; 2] {
-        let mut sums = [0.0; 2];
+    /// ΣK for a shift of a body at rest at `centre` (m), N/m, Σ for its tilt and for its turn about its axis, N·m/rad, all nodes
+    /// touching and no spring of the friction slipping.
+    pub(super) fn stiffness(&self, centre: Vec3) -> [f64; 3] {
+        let mut sums = [0.0; 3];
+        let (mut about_y, mut about_z) = (0.0, 0.0);
         for node in &self.nodes {
-            let along = node.place[0] - centre;
+            let [along, across, up] = sub(node.place, centre);
             let stiffness = self.penalty.of_node(node.area);
             sums[0] += stiffness;
             sums[1] += stiffness * along * along;
+            if let Some(friction) = &self.friction {
+                let tangential = friction.stiffest(stiffness);
+                about_y += tangential * up * up;
+                about_z += tangential * across * across;
+            }
         }
+        sums[1] += f64::max(about_y, about_z);
+        sums[2] = about_y + about_z;
         sums
     }
 
@@ -139,8 +151,9 @@ pub struct SeatState {
     pub seat: Seat,
     /// How far a node may slide over the rim and still be touched, m.
     pub rim: f64,
-    /// Of the contact as last evaluated.
+    /// Of the contact as last evaluated, its friction included.
     pub contact: ContactSum,
+    pub friction: Option<SeatFriction>,
     /// On the race since the start, N·s.
     pub impulse: Vec3,
     /// On its body since the start, J.
@@ -166,7 +179,9 @@ pub struct SeatState {
 /// A seat at one time, for the ledger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SeatSnapshot {
+    /// With its friction, whose springs are not in its energy.
     pub contact: ContactSum,
+    pub friction: FrictionSum,
     /// On its body since the start, J.
     pub work: f64,
     /// What the contact does to the race up to where the solid's displacements are, J.
@@ -189,9 +204,14 @@ impl SeatState {
         let from = race::fixed(&body.rest).state;
         let first = seat.frame_after(&from, 0.0);
         let cylinder = seat.cylinder(0.0, rim);
+        let friction = seat.friction.map(|law| {
+            seat.nodes.sort_by_key(|node| node.node);
+            SeatFriction::new(law, seat.nodes.len())
+        });
         SeatState {
             rim,
             contact: ContactSum::default(),
+            friction,
             impulse: [0.0; 3],
             work: 0.0,
             growth: Growth { radius: cylinder.radius, ..Growth::default() },
@@ -236,8 +256,14 @@ impl SeatState {
     ) {
         let [body, race] = self.seat.carried(&self.from, after);
         let cylinder = self.seat.cylinder(t, self.rim);
-        let penalty = self.seat.penalty;
-        let sum = press(&cylinder, &frame(&race), penalty, &self.near, displacement, forces);
+        let (frame, nodes, penalty) = (&frame(&race), &self.near, self.seat.penalty);
+        let sum = match &mut self.friction {
+            None => press(&cylinder, frame, penalty, nodes, displacement, forces),
+            Some(friction) => {
+                let cylinder = &cylinder;
+                friction.push(&Pressed { cylinder, frame, penalty, nodes, displacement }, forces)
+            }
+        };
         self.growth = self.growth.to(cylinder.radius, sum.radial_load);
         self.tested += sum.tested as u64;
         self.presses += 1;
@@ -310,6 +336,12 @@ impl SeatState {
         Ok(())
     }
 
+    /// Counts anew.
+    pub(super) fn forget_ran(&mut self) {
+        self.presses = 0;
+        self.friction.iter_mut().for_each(|friction| friction.pulls = 0);
+    }
+
     /// Nodes that are tested, and nodes out of reach.
     pub fn counts(&self) -> (usize, usize) {
         (self.near.len(), self.far.len())
@@ -340,12 +372,22 @@ impl SeatState {
     ) -> SeatSnapshot {
         let cylinder = self.seat.cylinder(t, self.rim);
         let there = self.seat.frame_after(body, ahead);
-        let penalty = self.seat.penalty;
-        let contact = press(&cylinder, &there, penalty, &self.near, displacement, forces);
+        let (frame, nodes, penalty) = (&there, &self.near, self.seat.penalty);
+        let (contact, friction) = match &self.friction {
+            None => {
+                let contact = press(&cylinder, frame, penalty, nodes, displacement, forces);
+                (contact, FrictionSum::default())
+            }
+            Some(friction) => {
+                let cylinder = &cylinder;
+                friction.look(&Pressed { cylinder, frame, penalty, nodes, displacement }, forces)
+            }
+        };
         let race = mounted(&RaceNow::new(*body), &self.seat.mount).state;
         let power = dot(contact.force, race.velocity) + dot(contact.moment, race.spin);
         SeatSnapshot {
             contact,
+            friction,
             work: self.work,
             to_come: ahead * power,
             growth_work: self.growth.to(cylinder.radius, contact.radial_load).work,

@@ -4,7 +4,9 @@ use super::{Item, Stage, Subject};
 use crate::ch2_housing::bearing::cage::{Guidance, Pocket};
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::TractionLaw;
+use crate::ch4_rotor::bore_friction::BoreFriction;
 use crate::solver::channels::ChannelGroup;
+use crate::solver::clock::rounded;
 use crate::solver::dent_table::Fineness;
 use crate::solver::dynamics::assembly::{Assembly, BallMeeting, Bearing, Body, GROUND, Mobility};
 use crate::solver::dynamics::ball_set::neighbours;
@@ -143,12 +145,21 @@ pub fn stepped_seat(
     assembly: &Assembly,
     index: usize,
     (body, name): (usize, Option<&str>),
-) -> [Item; 2] {
+    friction: Option<&BoreFriction>,
+) -> impl Iterator<Item = Item> {
     let race = &assembly.bodies[body].name;
     let why = format!("{race} in its bore, in every step of the housing");
     let seat = Item::does(Stage::Seat, Subject::Seat(index), why).named(name);
     let why = format!("on {race}, the mean of each window");
-    [seat, Item::does(Stage::Impulses, Subject::Body(body), why).named(name)]
+    let impulses = Item::does(Stage::Impulses, Subject::Body(body), why).named(name);
+    let friction = friction.map(|BoreFriction { coefficient, stretch }| {
+        let why = format!(
+            "a spring at every node that touches, which slips at {coefficient} of the normal load, stretched by {} nm or more",
+            rounded(1e9 * stretch)
+        );
+        Item::does(Stage::BoreFriction, Subject::Seat(index), why).named(name)
+    });
+    [seat].into_iter().chain(friction).chain([impulses])
 }
 
 /// A body that bends.

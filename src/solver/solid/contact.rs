@@ -6,7 +6,7 @@ use super::model::{SolidError, SolidModel};
 use super::step_limit::SolidStepLimit;
 use super::tet4_blocks::Node;
 use crate::ch2_housing::bore_contact::{
-    ContactNode, ContactSum, Cylinder, Frame, Penalty, contact, split_by_reach,
+    ContactNode, ContactSum, Cylinder, Frame, Penalty, Touch, contact, split_by_reach,
 };
 use crate::kinematics::Pose;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, dot, norm, sub};
@@ -86,11 +86,31 @@ pub fn press(
     displacement: &[Node],
     forces: &mut [Node],
 ) -> ContactSum {
+    press_and(cylinder, frame, penalty, nodes, displacement, forces, |_, _, _| None)
+}
+
+/// The same with a further force (N) on nodes that touch, if there is one: `also` is given the node, its contact and how
+/// stiff that is (N/m).
+pub fn press_and(
+    cylinder: &Cylinder,
+    frame: &Frame,
+    penalty: Penalty,
+    nodes: &[ContactNode],
+    displacement: &[Node],
+    forces: &mut [Node],
+    mut also: impl FnMut(&ContactNode, &Touch, f64) -> Option<Vec3>,
+) -> ContactSum {
     let moved = |n: u32| moved(displacement, n);
-    contact(cylinder, frame, penalty, nodes, moved, |node, _, _, force| {
+    contact(cylinder, frame, penalty, nodes, moved, |node, touch, stiffness, force| {
+        let further = also(node, touch, stiffness);
         let sum = &mut forces[node.node as usize];
         for i in 0..3 {
             sum[i] += force[i];
+        }
+        if let Some(further) = further {
+            for i in 0..3 {
+                sum[i] += further[i];
+            }
         }
     })
 }

@@ -6,6 +6,7 @@
 
 pub mod bonded_bushing;
 pub mod bonded_disc;
+pub mod bore_friction;
 pub mod creep;
 pub mod dense;
 pub mod elastic;

@@ -1,0 +1,98 @@
+//! Springs of the friction in bores, as a state keeps them: `state-N.friction.npy`, a row a node that touches.
+
+use super::StateError;
+use super::arrays::{table, write_table};
+use super::entries::Refused;
+use crate::ch4_rotor::bore_friction::Spring;
+use crate::output::session::HousedParts;
+use crate::solver::housing::checkpoint::{ExchangeCheckpoint, FrictionCheckpoint, SeatCheckpoint};
+use crate::solver::housing::seat_friction::NodeSpring;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Node, where on the race its spring ends (m), how far it is stretched (m), N/m.
+const WIDTH: usize = 8;
+
+/// See [`FrictionCheckpoint`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FrictionEntry {
+    /// File with the springs of all seats, those of one behind the other's.
+    pub arrays: String,
+    /// Of each seat with friction, in the order of the seats: springs, J of heat and of what the normal load has stored.
+    pub seats: Vec<(usize, [f64; 2])>,
+}
+
+fn name(windows: u64) -> String {
+    format!("state-{windows}.friction.npy")
+}
+
+fn kept(checkpoint: &ExchangeCheckpoint) -> impl Iterator<Item = &FrictionCheckpoint> {
+    let seats = checkpoint.solids.iter().flat_map(|solid| &solid.seats);
+    seats.filter_map(|seat| seat.friction.as_ref())
+}
+
+pub(super) fn write(folder: &Path, checkpoint: &ExchangeCheckpoint) -> Result<(), StateError> {
+    let row = |(node, spring): &NodeSpring| -> [f64; WIDTH] {
+        let ([a, b, c], [x, y, z]) = (spring.anchor, spring.stretch);
+        [f64::from(*node), a, b, c, x, y, z, spring.stiffness]
+    };
+    let rows: Vec<f64> = kept(checkpoint).flat_map(|of| &of.springs).flat_map(row).collect();
+    if kept(checkpoint).next().is_none() {
+        return Ok(());
+    }
+    write_table(folder, &name(checkpoint.exchanges), WIDTH, rows)
+}
+
+impl FrictionEntry {
+    /// `None` where every bore is smooth.
+    pub(super) fn of(checkpoint: &ExchangeCheckpoint) -> Option<FrictionEntry> {
+        let of = |seat: &FrictionCheckpoint| (seat.springs.len(), [seat.heat, seat.load_work]);
+        let seats: Vec<_> = kept(checkpoint).map(of).collect();
+        let arrays = name(checkpoint.exchanges);
+        (!seats.is_empty()).then_some(FrictionEntry { arrays, seats })
+    }
+
+    pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
+        self.seats.iter().flat_map(|(_, energies)| *energies)
+    }
+}
+
+/// Puts what `entry` keeps into the seats that have friction: those of each solid, in the order of the solids.
+pub(super) fn read(
+    folder: &Path,
+    entry: Option<&FrictionEntry>,
+    parts: &HousedParts,
+    seats: &mut [&mut SeatCheckpoint],
+) -> Result<(), Refused> {
+    const OTHERS: Refused =
+        Refused::Damaged("its bores have other friction than those of the scene");
+    let by_solid = (0..parts.solids.len())
+        .flat_map(|solid| parts.seats.iter().filter(move |seat| seat.solid == solid));
+    let rough = seats.iter_mut().zip(by_solid).filter(|(_, seat)| seat.friction.is_some());
+    let rough: Vec<_> = rough.collect();
+    let Some(FrictionEntry { arrays, seats }) = entry else {
+        return if rough.is_empty() { Ok(()) } else { Err(OTHERS) };
+    };
+    if seats.len() != rough.len() {
+        return Err(OTHERS);
+    }
+    let rows = table(folder, arrays, (seats.iter().map(|(springs, _)| springs).sum(), WIDTH))?;
+    let mut rows = rows.data().rows().into_iter();
+    for ((kept, seat), (springs, [heat, load_work])) in rough.into_iter().zip(seats) {
+        let mut list: Vec<NodeSpring> = Vec::with_capacity(*springs);
+        for row in rows.by_ref().take(*springs) {
+            let known = seat.nodes.iter().find(|node| f64::from(node.node) == row[0]);
+            let follows = |node: u32| list.last().is_none_or(|(last, _)| *last < node);
+            let Some(node) = known.map(|node| node.node).filter(|node| follows(*node)) else {
+                return Err(Refused::Damaged("a spring of the friction is at no node of its bore"));
+            };
+            let vector = |from: usize| [row[from], row[from + 1], row[from + 2]];
+            let (anchor, stretch, stiffness) = (vector(1), vector(4), row[7]);
+            list.push((node, Spring { anchor, stretch, stiffness }));
+        }
+        let (heat, load_work) = (*heat, *load_work);
+        kept.friction = Some(FrictionCheckpoint { springs: list, heat, load_work });
+    }
+    Ok(())
+}
