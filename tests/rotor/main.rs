@@ -5,5 +5,6 @@ mod common;
 
 mod assemblies;
 mod beam;
+mod solid_shaft;
 mod statics;
 mod whirl;

@@ -4,6 +4,8 @@
 //! motions at a speed and over speeds, [`critical`] the speeds that an unbalance excites, [`unbalance`] the orbits that it forces.
 pub mod beam;
 pub mod critical;
+pub mod meshed;
 pub mod model;
+pub mod solid;
 pub mod unbalance;
 pub mod whirl;
