@@ -57,9 +57,9 @@ impl RotorSection {
     /// Forces on the nodes (N) that do the work of a force (N) and a moment (N·m) on [`RotorSection::motion`].
     pub fn forces(&self, force: Vec3, moment: Vec3) -> impl Iterator<Item = (u32, Vec3)> + '_ {
         let couple = times(&self.spread, moment);
-        self.nodes.iter().map(move |(node, part, arm)| {
-            (*node, scale(add(force, cross(couple, *arm)), *part))
-        })
+        self.nodes
+            .iter()
+            .map(move |(node, part, arm)| (*node, scale(add(force, cross(couple, *arm)), *part)))
     }
 }
 

@@ -203,13 +203,7 @@ pub(super) fn check_around(around: usize, radial: usize) -> Result<(), MeshError
 
 /// A core of `side` × `side` cells whose border bulges half way to a circle, and four blocks from
 /// its sides to the rim.
-pub(super) fn disc(
-    cells: &mut Hexahedra,
-    radius: f64,
-    side: usize,
-    radial: usize,
-    x: &[f64],
-) {
+pub(super) fn disc(cells: &mut Hexahedra, radius: f64, side: usize, radial: usize, x: &[f64]) {
     /// Radius of the core's corners over the shaft's.
     const CORE: f64 = 0.55;
     /// How far the core's border bulges from a square (0) to a circle (1).

@@ -325,7 +325,9 @@ impl BeamMatrices {
     }
 
     fn add_element(&mut self, first: usize, element: &Element) {
-        let dense = |matrix: PlaneMatrix| DMatrix::from_iterator(2 * NODES, 2 * NODES, matrix.iter().copied());
+        let dense = |matrix: PlaneMatrix| {
+            DMatrix::from_iterator(2 * NODES, 2 * NODES, matrix.iter().copied())
+        };
         let rotary = element.rotary_mass();
         let plane = PlaneMatrices {
             mass: dense(element.translational_mass() + rotary),

@@ -71,8 +71,8 @@ impl Beam {
         if self.segments.iter().any(|segment| of(segment) != of(&self.segments[0])) {
             return Err(SolidShaftError::Materials.into());
         }
-        let material = LinearElastic::new(youngs_modulus, poisson_ratio)
-            .map_err(|_| BeamError::Segment {
+        let material =
+            LinearElastic::new(youngs_modulus, poisson_ratio).map_err(|_| BeamError::Segment {
                 number: 1,
                 what: "Poisson ratio",
                 value: poisson_ratio,

@@ -15,9 +15,9 @@ use crate::ch4_rotor::beam::{NODES, shortening};
 use crate::ch4_rotor::section::RotorSection;
 use crate::elements::{tet4::Tet4, tet10};
 use crate::kinematics::vec3::{Vec3, cross, dot, sub};
+use crate::mesh::MeshError;
 use crate::mesh::tet_mesh::{Elements, Face, TetMesh};
 use crate::mesh::vector_area::vector_areas;
-use crate::mesh::MeshError;
 use crate::solver::free_shapes::lowest;
 use crate::solver::profile::Profile;
 use crate::solver::rotor::beam::{BeamMatrices, PlaneMatrices};
@@ -96,7 +96,7 @@ pub fn section(mesh: &TetMesh, at: f64) -> Result<RotorSection, SolidShaftError>
 struct Body<'m> {
     problem: &'m SolidProblem,
     sections: &'m [RotorSection],
-    /// Of the lumped masses, m: its rigid rotations are about here.
+    /// Its centre of mass, m: rigid rotations are about here.
     origin: Vec3,
     factor: Factor,
     unknowns: Unknowns,
@@ -196,25 +196,7 @@ impl<'m> Body<'m> {
         held.prescribed = pins(&problem.nodes);
         held.loads.clear();
         let model = SolidModel::new(held)?;
-        let total: f64 = model.mass.iter().sum();
-        let mut origin = [0.0; 3];
-        for (place, mass) in problem.nodes.iter().zip(&model.mass) {
-            origin = [0, 1, 2].map(|i: usize| origin[i] + place[i] * mass / total);
-        }
-        // ∫ρy², ∫ρz² and ∫ρyz about the centre: of a body of revolution the first two are one, the third none.
-        let (mut yy, mut zz, mut yz) = (0.0, 0.0, 0.0);
-        for (place, mass) in problem.nodes.iter().zip(&model.mass) {
-            let [_, y, z] = sub(*place, origin);
-            yy += mass * y * y;
-            zz += mass * z * z;
-            yz += mass * y * z;
-        }
-        let radius = ((yy + zz) / total).sqrt();
-        let off = origin[1].hypot(origin[2]);
-        if off > CENTRED * radius {
-            return Err(SolidShaftError::OffAxis { at: origin[0], off });
-        }
-        not_round("its inertia", (yy - zz).hypot(2.0 * yz) / (0.5 * (yy + zz)))?;
+        let origin = centre_of_round(problem)?;
         let unknowns = Unknowns::new(&model);
         let mut matrix = pattern(&model.problem, &unknowns);
         stiffness(&model, &unknowns, &vec![NONE; problem.nodes.len()], &mut matrix);
@@ -234,10 +216,7 @@ impl<'m> Body<'m> {
     }
 
     fn rigid(&self, [velocity, spin]: [Vec3; 2]) -> DVector<f64> {
-        let nodes = &self.problem.nodes;
-        DVector::from_fn(3 * nodes.len(), |row, _| {
-            velocity[row % 3] + cross(spin, sub(nodes[row / 3], self.origin))[row % 3]
-        })
+        rigid(&self.problem.nodes, self.origin, [velocity, spin])
     }
 
     /// Displacements of all nodes under loads on stations, the pins held.
@@ -317,9 +296,8 @@ impl<'m> Body<'m> {
         // λ and the rigid parts for a unit of each coordinate.
         let loads =
             DMatrix::from_fn(count, count, |i, j| found[(i, j)] * unit[i] * unit[j] / softest);
-        let shifts = DMatrix::from_fn(free, count, |i, j| {
-            found[(count + i, j)] * unit[count + i] * unit[j]
-        });
+        let shifts =
+            DMatrix::from_fn(free, count, |i, j| found[(count + i, j)] * unit[count + i] * unit[j]);
         let mut fields = answers * &loads + rigid * shifts;
         // Rigid motions out of the plane are free, as the pins had them: a body of revolution has none of them.
         let others = AXES.map(|axis| [[axis, NONE], [NONE, axis]]).into_iter().flatten();
@@ -329,49 +307,83 @@ impl<'m> Body<'m> {
         });
         let others: Vec<DVector<f64>> = others.map(|motion| self.rigid(motion)).collect();
         let others = DMatrix::from_columns(&others);
-        let swept = self.momenta(&others);
-        let inertia = swept.tr_mul(&others).try_inverse().unwrap_or_else(|| others.tr_mul(&others) * f64::NAN);
+        let swept = momenta(self.problem, &others);
+        let inertia = swept
+            .tr_mul(&others)
+            .try_inverse()
+            .unwrap_or_else(|| others.tr_mul(&others) * f64::NAN);
         fields -= &others * (inertia * swept.tr_mul(&fields));
-        let momenta = self.momenta(&fields);
+        let momenta = momenta(self.problem, &fields);
         Condensed { momenta, fields, stiffness: symmetric(&loads) }
     }
+}
 
-    /// Consistent masses times displacements.
-    fn momenta(&self, fields: &DMatrix<f64>) -> DMatrix<f64> {
-        let SolidProblem { nodes, density, elements, .. } = self.problem;
-        // Of each element, row by row.
-        let mut shares: Vec<f64> = Vec::new();
-        match elements {
-            Elements::Linear(list) => {
-                for element in list {
-                    let tet = Tet4::new(&corners(nodes, element));
-                    let tet = tet.expect("elements were checked when the model was made");
-                    let all = (0..16).map(|i| tet.consistent_mass(*density, i / 4, i % 4));
-                    shares.extend(all);
-                }
-            }
-            Elements::Quadratic(list) => {
-                for element in list {
-                    let own = tet10::consistent_mass(&corners(nodes, element), *density);
-                    shares.extend(own.iter().flatten());
-                }
+/// Displacements of all nodes of a body that moves and turns about `origin`.
+fn rigid(nodes: &[Vec3], origin: Vec3, [velocity, spin]: [Vec3; 2]) -> DVector<f64> {
+    DVector::from_fn(3 * nodes.len(), |row, _| {
+        velocity[row % 3] + cross(spin, sub(nodes[row / 3], origin))[row % 3]
+    })
+}
+
+/// The centre of mass of a body whose mass is spread as that of one of revolution about X.
+fn centre_of_round(problem: &SolidProblem) -> Result<Vec3, SolidShaftError> {
+    let motions = AXES.map(|axis| [[axis, NONE], [NONE, axis]]).into_iter().flatten();
+    let motions: Vec<DVector<f64>> =
+        motions.map(|motion| rigid(&problem.nodes, NONE, motion)).collect();
+    let motions = DMatrix::from_columns(&motions);
+    // Over shift and turn along X, Y and Z.
+    let inertia = motions.tr_mul(&momenta(problem, &motions));
+    let mass = inertia[(0, 0)];
+    // Momentum along Y of a turn about X is −z, and so on round.
+    let centre = [inertia[(4, 3)], inertia[(0, 5)], inertia[(2, 1)]].map(|moment| -moment / mass);
+    // ∫ρ(y² − z²), 2∫ρyz and ∫ρ(y² + z²) about the axis through the centre.
+    let [_, y, z] = centre;
+    let unlike = inertia[(5, 5)] - inertia[(3, 3)] - mass * (y * y - z * z);
+    let oblique = -2.0 * inertia[(3, 5)] - 2.0 * mass * y * z;
+    let about = inertia[(1, 1)] - mass * (y * y + z * z);
+    let off = y.hypot(z);
+    if off > CENTRED * (about / mass).sqrt() {
+        return Err(SolidShaftError::OffAxis { at: centre[0], off });
+    }
+    not_round("its inertia", 2.0 * unlike.hypot(oblique) / about)?;
+    Ok(centre)
+}
+
+/// Consistent masses times displacements.
+fn momenta(problem: &SolidProblem, fields: &DMatrix<f64>) -> DMatrix<f64> {
+    let SolidProblem { nodes, density, elements, .. } = problem;
+    // Of each element, row by row.
+    let mut shares: Vec<f64> = Vec::new();
+    match elements {
+        Elements::Linear(list) => {
+            for element in list {
+                let tet = Tet4::new(&corners(nodes, element));
+                let tet = tet.expect("elements were checked when the model was made");
+                let all = (0..16).map(|i| tet.consistent_mass(*density, i / 4, i % 4));
+                shares.extend(all);
             }
         }
-        let mut momenta = DMatrix::zeros(fields.nrows(), fields.ncols());
-        for (mut to, from) in momenta.column_iter_mut().zip(fields.column_iter()) {
-            let mut shares = shares.iter();
-            for element in 0..elements.len() {
-                for a in elements.nodes(element) {
-                    for (b, share) in elements.nodes(element).iter().zip(shares.by_ref()) {
-                        for i in 0..3 {
-                            to[3 * *a as usize + i] += share * from[3 * *b as usize + i];
-                        }
+        Elements::Quadratic(list) => {
+            for element in list {
+                let own = tet10::consistent_mass(&corners(nodes, element), *density);
+                shares.extend(own.iter().flatten());
+            }
+        }
+    }
+    let mut momenta = DMatrix::zeros(fields.nrows(), fields.ncols());
+    for (mut to, from) in momenta.column_iter_mut().zip(fields.column_iter()) {
+        let mut shares = shares.iter();
+        for element in 0..elements.len() {
+            for a in elements.nodes(element) {
+                for (b, share) in elements.nodes(element).iter().zip(shares.by_ref()) {
+                    for i in 0..3 {
+                        to[3 * *a as usize + i] += share * from[3 * *b as usize + i];
                     }
                 }
             }
         }
-        momenta
     }
+    momenta
 }
 
 /// Six components that hold a body and strain nothing: a node, the farthest from it along X, and the farthest from the axis
