@@ -92,6 +92,8 @@ mod shaft_beam;
 mod shaft_in_two_housings;
 #[path = "../shaft_on_two_bearings/case.rs"]
 mod shaft_on_two_bearings;
+#[path = "../shaft_solid_4_2_2/case.rs"]
+mod shaft_solid_4_2_2;
 #[path = "../slip_and_spin_3_4_5/case.rs"]
 mod slip_and_spin_3_4_5;
 #[path = "../solid_elements/case.rs"]
@@ -117,6 +119,7 @@ pub const CASES: &[Case] = &[
     statics_independent::CASE,
     shaft_on_two_bearings::CASE,
     shaft_beam::CASE,
+    shaft_solid_4_2_2::CASE,
     ross_comparison::CASE,
     flexible_shaft_4_3_3::CASE,
     critical_speed_4_3_4::CASE,
