@@ -46,6 +46,8 @@ mod dent_3_4_4;
 mod flexible_shaft_4_3_3;
 #[path = "../free_ring_modes/case.rs"]
 mod free_ring_modes;
+#[path = "../free_spin_4_2_2/case.rs"]
+mod free_spin_4_2_2;
 #[path = "../hertz_elliptic/case.rs"]
 mod hertz_elliptic;
 #[path = "../housing_equilibrium/case.rs"]
@@ -120,6 +122,7 @@ pub const CASES: &[Case] = &[
     shaft_on_two_bearings::CASE,
     shaft_beam::CASE,
     shaft_solid_4_2_2::CASE,
+    free_spin_4_2_2::CASE,
     ross_comparison::CASE,
     flexible_shaft_4_3_3::CASE,
     critical_speed_4_3_4::CASE,
