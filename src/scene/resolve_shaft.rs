@@ -124,17 +124,22 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
 
 /// Cells, where the segments are tetrahedra.
 fn mesh(reader: &mut Reader) -> Result<Option<ShaftMesh>, SceneError> {
-    if reader.document.first_below("body.beam.mesh").is_none() {
-        return Ok(None);
-    }
-    let order = reader.required_number("body.beam.mesh.order", "")?;
+    let document = reader.document;
+    let Some(first) = document.first_below("body.beam.mesh") else { return Ok(None) };
+    let refused = |key: &str, reason: &str, advice: &str| {
+        let (reason, advice) = (reason.into(), advice.into());
+        document.error(key, Problem::Refused { reason, advice })
+    };
+    let order = reader.given_number("body.beam.mesh.order").ok_or_else(|| {
+        let advice =
+            "add order = 2 to [body.NAME.beam.mesh], or 1 for elements as the source has them";
+        refused(first, "a mesh has elements of an order", advice)
+    })?;
     let mut cells = |key: &str| reader.number(key).unwrap_or(1.0) as usize;
     let (around, radial) = (cells("body.beam.mesh.around"), cells("body.beam.mesh.radial"));
     if !around.is_multiple_of(8) {
-        let (reason, advice) =
-            ("the mesh has quarters of two parts".into(), "give a multiple of 8".into());
-        let wrong = Problem::Refused { reason, advice };
-        return Err(reader.document.error("body.beam.mesh.around", wrong));
+        let reason = "the core of the mesh has four sides of two cells or more";
+        return Err(refused("body.beam.mesh.around", reason, "give a multiple of 8"));
     }
     let longest_layer = reader.given_number("body.beam.mesh.longest_layer");
     Ok(Some(ShaftMesh {

@@ -104,7 +104,7 @@ fn faults_of_beams_say_what_is_wrong() {
             "width",
         ),
         (beam(&format!("{whole}disc = [{{ at = \"0 mm\" }}]")), "outer_diameter"),
-        (beam(&format!("{whole}mesh = {{ around = 16 }}")), "body.shaft.beam.mesh.order"),
+        (beam(&format!("{whole}mesh = {{ around = 16 }}")), "add order = 2"),
         (beam(&format!("{whole}mesh = {{ order = 2, around = 12 }}")), "multiple of 8"),
         (beam(&format!("{whole}mesh = {{ order = 3 }}")), "order"),
         (
