@@ -22,7 +22,7 @@ const CUT: [(&str, &str, &str); 9] = [
     ("dented_on_bushing", "60 ms", "10 ms"),
     ("rotating_load_orbit", "1.3 s", "50 ms"),
     ("settling", "0.2 s", "50 ms"),
-    ("spinning_disc", "12 ms", "0.4 ms"),
+    ("spinning_disc", "12 ms", "1 ms"),
     ("varying_compliance_run", "0.4 s", "50 ms"),
 ];
 
