@@ -148,20 +148,6 @@ impl Element {
         matrices
     }
 
-    /// ∫ w′² between each station and the next, m: half of it is by how much the two come nearer to each other along the
-    /// axis as the shaft bends and does not stretch.
-    pub fn shortening(&self) -> [PlaneMatrix; NODES - 1] {
-        let part = 1.0 / (NODES - 1) as f64;
-        std::array::from_fn(|interval| {
-            let mut sum = PlaneMatrix::zeros();
-            for (place, weight) in GAUSS {
-                let slope = Shapes::at((interval as f64 + place) * part, self.length).slope;
-                sum += slope * slope.transpose() * (weight * part * self.length);
-            }
-            sum
-        })
-    }
-
     fn integral(&self, of: impl Fn(&Shapes) -> PlaneMatrix) -> PlaneMatrix {
         let mut sum = PlaneMatrix::zeros();
         for (place, weight) in GAUSS {
@@ -169,6 +155,20 @@ impl Element {
         }
         sum
     }
+}
+
+/// ∫ w′² between each station of an element of `length` (m) and the next, m: half of it is by how much the two come nearer
+/// to each other along the axis as the shaft bends and does not stretch.
+pub fn shortening(length: f64) -> [PlaneMatrix; NODES - 1] {
+    let part = 1.0 / (NODES - 1) as f64;
+    std::array::from_fn(|interval| {
+        let mut sum = PlaneMatrix::zeros();
+        for (place, weight) in GAUSS {
+            let slope = Shapes::at((interval as f64 + place) * part, length).slope;
+            sum += slope * slope.transpose() * (weight * part * length);
+        }
+        sum
+    })
 }
 
 /// What a unit of each coordinate does at one place.

@@ -3,3 +3,4 @@
 pub mod beam;
 pub mod bore_friction;
 pub mod disc;
+pub mod section;

@@ -2,8 +2,11 @@
 
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
+use bearing_dynamics::mesh::Order;
 use bearing_dynamics::scene::Scene;
-use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing, Spring, SpringAt};
+use bearing_dynamics::scene::assembly::{
+    AssemblyScene, PlacedBearing, SceneBody, Spring, SpringAt,
+};
 use bearing_dynamics::scene::statics::{ball_mass, orbital_speed};
 use bearing_dynamics::solver::clock::told;
 use bearing_dynamics::solver::dynamics::assembly::Bearing;
@@ -189,6 +192,20 @@ pub fn of_run(scene: &AssemblyScene, simulation: &Simulation) -> Vec<String> {
         named(placed, of_moving(&placed.scene, bearing, extremes))
     });
     of_springs(scene).into_iter().chain(each.flatten()).collect()
+}
+
+/// Shafts of tetrahedra.
+pub fn of_shafts(scene: &AssemblyScene) -> Vec<String> {
+    let said = |body: &SceneBody| {
+        let mesh = body.beam.as_ref()?.beam.mesh?;
+        let nodes = if mesh.order == Order::Linear { "four" } else { "ten" };
+        Some(format!(
+            "the segments of body.{} are {nodes}-node tetrahedra ({} cells around, {} in the ring about the core), condensed onto \
+             its sections; it moves in shapes, no element takes steps",
+            body.name, mesh.around, mesh.radial
+        ))
+    };
+    scene.bodies.iter().filter_map(said).collect()
 }
 
 /// Springs whose axes turn with the body that they begin at, and that are not the same along all of them.

@@ -19,6 +19,8 @@ const BORE: Kind = Kind::Quantity(
 const POISSON: Kind =
     Kind::Number(Range { low: 0.0, high: 0.5, low_included: true, high_included: false, unit: "" });
 const BRAKE: Kind = Kind::Quantity(Rate, closed(0.0, 1e9, "1/s"));
+const AROUND: Kind = Kind::Integer { low: 8, high: 1000 };
+const RADIAL: Kind = Kind::Integer { low: 1, high: 100 };
 const OF_DISC: Need = Depends("with `mass`: 0 unless given");
 const OF_RING: Need = Depends("`outer_diameter` and `width`, or `mass`");
 
@@ -36,6 +38,10 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("body.beam.segments.length", SIZE, Required, "Length along the axis.").hint(SIZE_HINT).example_of("400 mm"),
     Key::new("body.beam.segments.outer_diameter", SIZE, Required, "Outer diameter.").hint(SIZE_HINT).example_of("30 mm"),
     Key::new("body.beam.segments.inner_diameter", BORE, Depends("0 unless given: full"), "Diameter of the bore.").hint(SIZE_HINT).example_of("10 mm"),
+    Key::new("body.beam.mesh.order", Kind::Integer { low: 1, high: 2 }, Depends("required with `[body.NAME.beam.mesh]`"), "Elements of 4 nodes (1, the source's, too stiff in bending) or of 10 (2).").hint("1 for four-node, 2 for ten-node tetrahedra").example_of("2"),
+    Key::new("body.beam.mesh.longest_layer", SIZE, Depends("one layer of cells from station to station unless given"), "No layer of cells is longer than this along the axis. Stations are 32 intervals along the shaft, more where something takes hold of it.").hint(SIZE_HINT).example_of("5 mm"),
+    Key::new("body.beam.mesh.around", AROUND, Default { value: "16", reason: "ten-node elements follow the circle to 1e-4" }, "Cells around: a multiple of 8."),
+    Key::new("body.beam.mesh.radial", RADIAL, Default { value: "1", reason: "ten-node elements bend without more" }, "Cells in the ring about the square core of the innermost radius; rings outside it get cells of that size."),
     Key::new("body.beam.disc.at", PLACE, Required, "Where its centre sits.").hint(PLACE_HINT).example_of("0 mm"),
     Key::new("body.beam.disc.mass", MASS, OF_RING, "Mass of the disc, or of a race that sits there.").hint(MASS_HINT).example_of("20 kg"),
     Key::new("body.beam.disc.axial", INERTIA, OF_DISC, "Its moment of inertia about the axis.").hint(INERTIA_HINT).example_of("0.1 kg m^2"),
@@ -60,6 +66,8 @@ pub(super) const TABLES: &[Table] = &[
         "[body.shaft.beam]\nsegments = [{ length = \"400 mm\", outer_diameter = \"30 mm\" }]"),
     list_table("body.beam.segments", "Its segments one after the other, along X.",
         "[[body.shaft.beam.segments]]\nlength = \"400 mm\"\nouter_diameter = \"30 mm\""),
+    table("body.beam.mesh", "The segments are tetrahedra in the place of beam theory: a mesh of one material, made from their dimensions and reduced to its stations, with gyroscopic terms as a body of revolution has them. Everything else about the body stays.",
+        "[body.shaft.beam.mesh]\norder = 2"),
     list_table("body.beam.disc", "Rigid discs on it, any number; inner races count as one each.",
         "[[body.shaft.beam.disc]]\nat = \"0 mm\"\nmass = \"20 kg\""),
     list_table("body.beam.load", "Forces on sections.",

@@ -1,6 +1,7 @@
 //! From the keys of a body that bends to its beam and what acts along it.
 
 use crate::ch4_rotor::disc::Inertia as DiscInertia;
+use crate::mesh::Order;
 use crate::scene::assembly::SceneBeam;
 use crate::scene::document::ItemRef;
 use crate::scene::error::{Problem, SceneError};
@@ -8,6 +9,7 @@ use crate::scene::resolve::Reader;
 use crate::scene::resolve_solid::{item_number, item_profile, item_text, missing};
 use crate::solver::profile::Profile;
 use crate::solver::rotor::beam::{Beam, BeamDisc, BeamSegment};
+use crate::solver::rotor::meshed::ShaftMesh;
 use crate::solver::shaft_shapes::Kept;
 use std::f64::consts::TAU;
 
@@ -69,6 +71,7 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
         );
     }
     let mut beam = Beam::new(segments);
+    beam.mesh = mesh(reader)?;
     let start = reader.given_number("body.beam.start").unwrap_or_else(|| -0.5 * beam.length());
     let length = beam.length();
     let at = |item: ItemRef| -> Result<f64, SceneError> {
@@ -116,6 +119,34 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
             .collect::<Result<_, _>>()?,
         watched: document.items("body.beam.watch").map(watch).collect::<Result<_, SceneError>>()?,
         beam,
+    }))
+}
+
+/// Cells, where the segments are tetrahedra.
+fn mesh(reader: &mut Reader) -> Result<Option<ShaftMesh>, SceneError> {
+    let document = reader.document;
+    let Some(first) = document.first_below("body.beam.mesh") else { return Ok(None) };
+    let refused = |key: &str, reason: &str, advice: &str| {
+        let (reason, advice) = (reason.into(), advice.into());
+        document.error(key, Problem::Refused { reason, advice })
+    };
+    let order = reader.given_number("body.beam.mesh.order").ok_or_else(|| {
+        let advice =
+            "add order = 2 to [body.NAME.beam.mesh], or 1 for elements as the source has them";
+        refused(first, "a mesh has elements of an order", advice)
+    })?;
+    let mut cells = |key: &str| reader.number(key).unwrap_or(1.0) as usize;
+    let (around, radial) = (cells("body.beam.mesh.around"), cells("body.beam.mesh.radial"));
+    if !around.is_multiple_of(8) {
+        let reason = "the core of the mesh has four sides of two cells or more";
+        return Err(refused("body.beam.mesh.around", reason, "give a multiple of 8"));
+    }
+    let longest_layer = reader.given_number("body.beam.mesh.longest_layer");
+    Ok(Some(ShaftMesh {
+        order: if order < 1.5 { Order::Linear } else { Order::Quadratic },
+        longest_layer: longest_layer.unwrap_or(f64::INFINITY),
+        around,
+        radial,
     }))
 }
 

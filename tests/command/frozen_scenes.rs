@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 /// Ends of runs that are cut so that all scenes take some seconds together.
-const CUT: [(&str, &str, &str); 8] = [
+const CUT: [(&str, &str, &str); 9] = [
     ("cage_600rpm", "3.12144 s", "5 ms"),
     ("impact", "60 ms", "6 ms"),
     ("bar_impact", "0.4 ms", "0.05 ms"),
@@ -22,11 +22,12 @@ const CUT: [(&str, &str, &str); 8] = [
     ("dented_on_bushing", "60 ms", "10 ms"),
     ("rotating_load_orbit", "1.3 s", "50 ms"),
     ("settling", "0.2 s", "50 ms"),
+    ("spinning_disc", "12 ms", "1 ms"),
     ("varying_compliance_run", "0.4 s", "50 ms"),
 ];
 
 /// What asks for the equilibrium or the modes of a solid.
-const FACTORED: [&str; 8] = [
+const FACTORED: [&str; 9] = [
     "bushing_radial",
     "cage_modes",
     "cantilever",
@@ -34,6 +35,7 @@ const FACTORED: [&str; 8] = [
     "housing_c_tet10",
     "interference_fit",
     "ring_modes",
+    "rotor_of_tetrahedra",
     "shaft_in_two_housings",
 ];
 

@@ -6,5 +6,6 @@ mod common;
 mod assemblies;
 mod beam;
 mod run_ups;
+mod solid_shaft;
 mod statics;
 mod whirl;

@@ -48,6 +48,8 @@ mod dent_3_4_4;
 mod flexible_shaft_4_3_3;
 #[path = "../free_ring_modes/case.rs"]
 mod free_ring_modes;
+#[path = "../free_spin_4_2_2/case.rs"]
+mod free_spin_4_2_2;
 #[path = "../hertz_elliptic/case.rs"]
 mod hertz_elliptic;
 #[path = "../housing_equilibrium/case.rs"]
@@ -96,6 +98,8 @@ mod shaft_beam;
 mod shaft_in_two_housings;
 #[path = "../shaft_on_two_bearings/case.rs"]
 mod shaft_on_two_bearings;
+#[path = "../shaft_solid_4_2_2/case.rs"]
+mod shaft_solid_4_2_2;
 #[path = "../slip_and_spin_3_4_5/case.rs"]
 mod slip_and_spin_3_4_5;
 #[path = "../solid_elements/case.rs"]
@@ -121,6 +125,8 @@ pub const CASES: &[Case] = &[
     statics_independent::CASE,
     shaft_on_two_bearings::CASE,
     shaft_beam::CASE,
+    shaft_solid_4_2_2::CASE,
+    free_spin_4_2_2::CASE,
     ross_comparison::CASE,
     flexible_shaft_4_3_3::CASE,
     critical_speed_4_3_4::CASE,

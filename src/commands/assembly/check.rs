@@ -5,7 +5,7 @@ use super::housing::Housing;
 use super::{defaults, housings, lines};
 use crate::commands::check::{Line, say_json, say_lines};
 use crate::commands::echo::through;
-use crate::commands::remarks::{of_springs, turning_races};
+use crate::commands::remarks::{of_shafts, of_springs, turning_races};
 use crate::commands::run::{planned_request, request};
 use crate::commands::{CommandResult, echo_run};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
@@ -81,6 +81,7 @@ fn of_scene(scene: &AssemblyScene, housings: &[Housing], line: &mut Line) {
     }
     if scene.one().is_none() {
         lines(scene).into_iter().for_each(|(label, said)| line(&label, said));
+        of_shafts(scene).into_iter().for_each(|said| line("note", said));
         of_springs(scene).into_iter().for_each(|said| line("note", said));
     }
     for (label, value) in of_run(scene, housings) {

@@ -8,7 +8,7 @@ use super::{Fallible, housings, still};
 use crate::commands::bushing_remarks::of_bushings;
 use crate::commands::plan::say_plan;
 use crate::commands::plan_step::{note, refused, step_lines};
-use crate::commands::remarks::{of_springs, turning_races};
+use crate::commands::remarks::{of_shafts, of_springs, turning_races};
 use crate::commands::run::{self, planned_request};
 use crate::commands::{CommandResult, Outcome, memory};
 use bearing_dynamics::output::session::{HousedParts, RunRequest, table_size};
@@ -60,6 +60,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         }
         (Some(settings), _) => of_steps(scene, &housings, reduced.as_ref(), settings)?,
     };
+    notes.extend(of_shafts(scene).iter().map(|said| note("shaft", said)));
     notes.extend(of_springs(scene).iter().map(|said| note("spring", said)));
     notes.extend(of_bushings(scene).iter().map(|said| note("bushing", said)));
     notes.extend(turning_races(scene).map(|said| note("outer race", &said)));

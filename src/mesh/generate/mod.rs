@@ -10,12 +10,14 @@ mod hexahedra;
 mod housing;
 mod outline;
 mod solids;
+mod stepped;
 
 pub use bushing::{Bushing, BushingMesh, Part, bushing};
 pub use cage::{Cage, CageMesh, RailRelief};
 pub use grading::{graded, uniform};
 pub use housing::{Housing, HousingMesh, PillowBlock};
 pub use solids::{ContactBlock, Ring, RingMesh, bar, block, contact_block, ring, shaft};
+pub use stepped::{ShaftStep, stepped_shaft};
 
 use crate::mesh::error::{MeshError, six_digits};
 use crate::mesh::quadratic::{Elevated, elevate};

@@ -166,12 +166,7 @@ pub fn shaft(
 ) -> Result<Solid, MeshError> {
     between("radius of the shaft", radius, 0.0, f64::INFINITY)?;
     between("longest layer", longest, 0.0, f64::INFINITY)?;
-    divisions("cells around the shaft", around, 8)?;
-    divisions("radial cells", radial, 1)?;
-    if !around.is_multiple_of(8) {
-        let (what, allowed) = ("cells around the shaft", "the multiples of 8".to_string());
-        return Err(MeshError::Dimension { what, value: around as f64, unit: "", allowed });
-    }
+    check_around(around, radial)?;
     divisions("stations of the shaft", stations.len(), 2)?;
     let mut runs = Vec::new();
     for pair in stations.windows(2) {
@@ -196,9 +191,19 @@ pub fn shaft(
     Ok(solid)
 }
 
+pub(super) fn check_around(around: usize, radial: usize) -> Result<(), MeshError> {
+    divisions("cells around the shaft", around, 8)?;
+    divisions("radial cells", radial, 1)?;
+    if around.is_multiple_of(8) {
+        return Ok(());
+    }
+    let (what, allowed) = ("cells around the shaft", "the multiples of 8".to_string());
+    Err(MeshError::Dimension { what, value: around as f64, unit: "", allowed })
+}
+
 /// A core of `side` × `side` cells whose border bulges half way to a circle, and four blocks from
 /// its sides to the rim.
-fn disc(cells: &mut Hexahedra, radius: f64, side: usize, radial: usize, x: &[f64]) {
+pub(super) fn disc(cells: &mut Hexahedra, radius: f64, side: usize, radial: usize, x: &[f64]) {
     /// Radius of the core's corners over the shaft's.
     const CORE: f64 = 0.55;
     /// How far the core's border bulges from a square (0) to a circle (1).

@@ -2,9 +2,12 @@
 //!
 //! X is the axis, Z up. The lateral coordinates of a station are y, z (m) and the turns about Y and Z (rad), right-handed:
 //! where the shaft only bends, turn_z = dy/dx and turn_y = −dz/dx. With spin Ω about X their motion is
-//! M q̈ + Ω G q̇ + K q = loads (N, N, N·m, N·m); stretch along the axis is a bar, apart from them.
+//! M q̈ + Ω G q̇ + K q = loads (N, N, N·m, N·m); stretch along the axis is a bar, apart from them. The same matrices come from
+//! tetrahedra that are condensed onto the stations ([`super::solid`]), where a shaft has a mesh.
 
-use crate::ch4_rotor::beam::{Element, NODES, PlaneMatrix, Section, ShearCoefficient};
+use super::meshed::{ShaftMesh, stations as within};
+use super::solid::SolidShaftError;
+use crate::ch4_rotor::beam::{Element, NODES, PlaneMatrix, Section, ShearCoefficient, shortening};
 use crate::ch4_rotor::disc;
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
@@ -51,6 +54,8 @@ pub struct Beam {
     /// No element is longer than this, m.
     pub longest_element: f64,
     pub shear_coefficient: ShearCoefficient,
+    /// Segments as tetrahedra in the place of beam theory.
+    pub mesh: Option<ShaftMesh>,
 }
 
 /// A shaft over its stations.
@@ -66,8 +71,18 @@ pub struct BeamMatrices {
     /// Over x of each station.
     pub axial_mass: DMatrix<f64>,
     pub axial_stiffness: DMatrix<f64>,
-    /// Over deflection and turn in one plane of all stations of an element, for each element: [`Element::shortening`].
+    /// Over deflection and turn in one plane of all stations of an element, for each element: [`shortening`].
     pub shortening: Vec<[PlaneMatrix; NODES - 1]>,
+}
+
+/// Of bending in one plane, over the deflection (m) and the turn of the section towards it (rad) at each station; of a shaft
+/// of revolution both planes are alike.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlaneMatrices {
+    pub mass: DMatrix<f64>,
+    pub stiffness: DMatrix<f64>,
+    /// Inertia about the axis that the turns tilt: Ω times it couples the planes.
+    pub axial_inertia: DMatrix<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -86,6 +101,8 @@ pub enum BeamError {
     OffShaft { at: f64, length: f64 },
     #[error("the shaft would have {0} elements, at most 500 are solved")]
     Elements(f64),
+    #[error(transparent)]
+    Solid(#[from] SolidShaftError),
 }
 
 /// Above this a dense solution is not what one wants.
@@ -100,6 +117,7 @@ impl Beam {
             discs: Vec::new(),
             longest_element: length / ELEMENTS * (1.0 + 1e-9),
             shear_coefficient: ShearCoefficient::default(),
+            mesh: None,
         }
     }
 
@@ -119,25 +137,20 @@ impl Beam {
         let (ends, segments) = self.elements(at)?;
         let mut stations = vec![0.0];
         for end in ends.windows(2) {
-            let part = |n: usize| n as f64 / (NODES - 1) as f64;
-            stations.extend((1..NODES - 1).map(|n| end[0] + (end[1] - end[0]) * part(n)));
-            stations.push(end[1]);
+            stations.extend(within(end[0], end[1]).split_off(1));
         }
-        let count = stations.len();
-        let lateral = || DMatrix::zeros(STATION * count, STATION * count);
-        let mut matrices = BeamMatrices {
-            mass: lateral(),
-            stiffness: lateral(),
-            gyroscopic: lateral(),
-            axial_mass: DMatrix::zeros(count, count),
-            axial_stiffness: DMatrix::zeros(count, count),
-            shortening: Vec::with_capacity(segments.len()),
-            stations,
+        let mut matrices = match &self.mesh {
+            Some(mesh) => self.tetrahedra(mesh, &ends, &segments, stations)?,
+            None => {
+                let mut matrices = BeamMatrices::empty(stations);
+                for (number, &segment) in segments.iter().enumerate() {
+                    let length = ends[number + 1] - ends[number];
+                    let element = self.element(&self.segments[segment], length);
+                    matrices.add_element((NODES - 1) * number, &element);
+                }
+                matrices
+            }
         };
-        for (number, &segment) in segments.iter().enumerate() {
-            let element = self.element(&self.segments[segment], ends[number + 1] - ends[number]);
-            matrices.add_element((NODES - 1) * number, &element);
-        }
         for disc in &self.discs {
             let station = matrices.station(disc.at).expect("discs have stations");
             matrices.add_disc(station, disc);
@@ -248,12 +261,11 @@ const NEAR: f64 = 1e-9;
 /// Coordinates of a station that bend in the plane of Y, and of Z; factors from (deflection, turn of the section towards it).
 const PLANES: [([usize; 2], [f64; 2]); 2] = [([0, 3], [1.0, 1.0]), ([1, 2], [1.0, -1.0])];
 
-type ElementPlaces = [(usize, f64); 2 * NODES];
-
-/// Where the coordinates of an element that begins at a station stand, and their signs, in each plane.
-fn element_places(first: usize) -> [ElementPlaces; 2] {
+/// Where the coordinates of `count` stations from the `first` on stand, and their signs, in each plane.
+fn places(first: usize, count: usize) -> [Vec<(usize, f64)>; 2] {
     PLANES.map(|(coordinates, signs)| {
-        std::array::from_fn(|i| (STATION * (first + i / 2) + coordinates[i % 2], signs[i % 2]))
+        let place = |i: usize| (STATION * (first + i / 2) + coordinates[i % 2], signs[i % 2]);
+        (0..2 * count).map(place).collect()
     })
 }
 
@@ -268,25 +280,67 @@ impl BeamMatrices {
         STATION * station..STATION * (station + 1)
     }
 
-    fn add_element(&mut self, first: usize, element: &Element) {
-        let rotary = element.rotary_mass();
-        let mass = element.translational_mass() + rotary;
-        let stiffness = element.stiffness();
-        let planes = element_places(first);
+    fn empty(stations: Vec<f64>) -> BeamMatrices {
+        let count = stations.len();
+        let lateral = || DMatrix::zeros(STATION * count, STATION * count);
+        BeamMatrices {
+            mass: lateral(),
+            stiffness: lateral(),
+            gyroscopic: lateral(),
+            axial_mass: DMatrix::zeros(count, count),
+            axial_stiffness: DMatrix::zeros(count, count),
+            shortening: Vec::new(),
+            stations,
+        }
+    }
+
+    /// Of a shaft of revolution; `axial` are mass and stiffness along the axis.
+    pub(super) fn of_planes(
+        stations: Vec<f64>,
+        plane: &PlaneMatrices,
+        axial: [DMatrix<f64>; 2],
+        shortening: Vec<[PlaneMatrix; NODES - 1]>,
+    ) -> BeamMatrices {
+        let count = stations.len();
+        let [axial_mass, axial_stiffness] = axial;
+        let mut matrices = BeamMatrices {
+            axial_mass,
+            axial_stiffness,
+            shortening,
+            ..BeamMatrices::empty(stations)
+        };
+        matrices.add_planes(0, count, plane);
+        matrices
+    }
+
+    fn add_planes(&mut self, first: usize, count: usize, plane: &PlaneMatrices) {
+        let planes = places(first, count);
         for places in &planes {
-            add(&mut self.mass, places, places, &mass);
-            add(&mut self.stiffness, places, places, &stiffness);
+            add(&mut self.mass, places, places, (1.0, &plane.mass));
+            add(&mut self.stiffness, places, places, (1.0, &plane.stiffness));
         }
         // ∫ 2ρI (s_y ṡ_z − s_z ṡ_y): the turns towards Y and Z of round sections.
-        let gyroscopic = rotary * 2.0;
-        add(&mut self.gyroscopic, &planes[0], &planes[1], &gyroscopic);
-        add(&mut self.gyroscopic, &planes[1], &planes[0], &-gyroscopic);
+        add(&mut self.gyroscopic, &planes[0], &planes[1], (1.0, &plane.axial_inertia));
+        add(&mut self.gyroscopic, &planes[1], &planes[0], (-1.0, &plane.axial_inertia));
+    }
+
+    fn add_element(&mut self, first: usize, element: &Element) {
+        let dense = |matrix: PlaneMatrix| {
+            DMatrix::from_iterator(2 * NODES, 2 * NODES, matrix.iter().copied())
+        };
+        let rotary = element.rotary_mass();
+        let plane = PlaneMatrices {
+            mass: dense(element.translational_mass() + rotary),
+            stiffness: dense(element.stiffness()),
+            axial_inertia: dense(rotary * 2.0),
+        };
+        self.add_planes(first, NODES, &plane);
         let [stiffness, mass] = element.bar();
         let mut view = self.axial_stiffness.fixed_view_mut::<NODES, NODES>(first, first);
         view += stiffness;
         let mut view = self.axial_mass.fixed_view_mut::<NODES, NODES>(first, first);
         view += mass;
-        self.shortening.push(element.shortening());
+        self.shortening.push(shortening(element.length));
     }
 
     fn add_disc(&mut self, station: usize, disc: &BeamDisc) {
@@ -326,13 +380,13 @@ pub(super) fn station_at(stations: &[f64], at: f64) -> Option<usize> {
 
 fn add(
     to: &mut DMatrix<f64>,
-    rows: &ElementPlaces,
-    columns: &ElementPlaces,
-    element: &PlaneMatrix,
+    rows: &[(usize, f64)],
+    columns: &[(usize, f64)],
+    (factor, of): (f64, &DMatrix<f64>),
 ) {
     for (i, &(row, row_sign)) in rows.iter().enumerate() {
         for (j, &(column, column_sign)) in columns.iter().enumerate() {
-            to[(row, column)] += row_sign * column_sign * element[(i, j)];
+            to[(row, column)] += row_sign * column_sign * factor * of[(i, j)];
         }
     }
 }
