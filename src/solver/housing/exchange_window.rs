@@ -27,8 +27,8 @@ pub(super) fn longest_window(
             if shift.is_nan() || shift <= 0.0 {
                 return Err(ExchangeError::NoSeat { seat: seat.suffix() });
             }
-            sums = [sums[0] + shift, sums[1] + tilt];
             about_axis += turn;
+            sums = [sums[0] + shift, sums[1] + tilt];
         }
         let sleeves =
             |bushing: &&BondedBushing| bushing.sleeves.iter().any(|now| now.sleeve.body == index);
