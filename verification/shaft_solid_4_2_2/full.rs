@@ -68,8 +68,8 @@ pub fn sag(mesh: &TetMesh) -> Result<f64, CaseError> {
 /// Frequencies (Hz, ascending, each direction) below `limit` Hz of the whole shaft whose end sections may turn but not move across the
 /// axis in the mean: subspace iteration on the whole solid, every iterate put right by forces on these sections.
 pub fn pinned(mesh: &TetMesh, limit: f64) -> Result<Vec<f64>, CaseError> {
-    const VECTORS: usize = 14;
-    const ROUNDS: usize = 25;
+    const VECTORS: usize = 12;
+    const ROUNDS: usize = 16;
     let model = SolidModel::new(free_body(mesh, STEEL))?;
     let unknowns = Unknowns::new(&model);
     let size = unknowns.count;

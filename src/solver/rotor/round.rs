@@ -38,11 +38,11 @@ pub(super) fn centre_of_round(problem: &SolidProblem) -> Result<Vec3, SolidShaft
     let unlike = inertia[(5, 5)] - inertia[(3, 3)] - mass * (y * y - z * z);
     let oblique = -2.0 * inertia[(3, 5)] - 2.0 * mass * y * z;
     let about = inertia[(1, 1)] - mass * (y * y + z * z);
-    let off = y.hypot(z);
+    let off = libm::hypot(y, z);
     if off > CENTRED * (about / mass).sqrt() {
         return Err(SolidShaftError::OffAxis { at: centre[0], off });
     }
-    not_round("its inertia", 2.0 * unlike.hypot(oblique) / about)?;
+    not_round("its inertia", 2.0 * libm::hypot(unlike, oblique) / about)?;
     Ok(centre)
 }
 

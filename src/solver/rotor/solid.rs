@@ -80,7 +80,7 @@ pub fn section(mesh: &TetMesh, at: f64) -> Result<RotorSection, SolidShaftError>
         [one, other] => one.or(other),
     };
     let section = found.ok_or(SolidShaftError::NoLayer { at })?;
-    let off = section.centre[1].hypot(section.centre[2]);
+    let off = libm::hypot(section.centre[1], section.centre[2]);
     if off > CENTRED * section.area.sqrt() {
         return Err(SolidShaftError::OffAxis { at, off });
     }
@@ -309,7 +309,7 @@ fn pins(nodes: &[Vec3]) -> Vec<Prescribed> {
     };
     let third = best(&|place| {
         let [y, z] = away(place);
-        y.hypot(z)
+        libm::hypot(y, z)
     });
     // Across its distance.
     let [y, z] = away(&nodes[third]);
