@@ -4,6 +4,9 @@
 use crate::kinematics::strain::{Mat3, times};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 
+/// Spread of nodes about an axis below this part of that about another is rounding.
+const ON_A_LINE: f64 = 1e-9;
+
 /// Nodes in one plane across the rotor, and what part of its area each carries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RotorSection {
@@ -36,8 +39,11 @@ impl RotorSection {
                 }
             }
         }
-        let spread = nalgebra::Matrix3::from_fn(|i, j| sum[i][j]).try_inverse()?;
-        let is_sound = area > 0.0 && spread.iter().all(|value| value.is_finite());
+        let sum = nalgebra::Matrix3::from_fn(|i, j| sum[i][j]);
+        // About the line that nodes are on nothing turns them.
+        let about = sum.symmetric_eigenvalues();
+        let spread = sum.try_inverse()?;
+        let is_sound = area > 0.0 && about.min() > ON_A_LINE * about.max();
         let spread = [0, 1, 2].map(|i: usize| [0, 1, 2].map(|j: usize| spread[(i, j)]));
         is_sound.then_some(RotorSection { centre, area, nodes, spread })
     }

@@ -147,7 +147,7 @@ fn turning(
     Ok(())
 }
 
-fn inertia(inertia: &Inertia) -> Echo {
+pub fn inertia(inertia: &Inertia) -> Echo {
     Ok(json!({
         "mass": quantity("mass", inertia.mass, "kg")?,
         "axial": quantity("axial", inertia.axial, "kg m^2")?,

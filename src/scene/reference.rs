@@ -284,7 +284,7 @@ A step beyond the stability limit is refused with the element that sets it.
 
 ## A bearing in a housing
 A scene with a bearing, `[solid]` and `[housing]` goes to `check`, `plan`, `statics` and `run`. The outer race (`motion = \"5-dof\"`) sits
-in a surface of the solid about X; contact is (2.16) to (2.19), without friction, so that something beside the bore holds the race
+in a surface of the solid about X; contact is (2.16) to (2.19), without friction unless it is asked for, so that something beside the bore holds the race
 along its axis unless `axial = \"free\"`. The solid is held, and has no velocity, spin, probes or modes here.
 
 **Friction.** `friction = { law = \"stick-slip\" }` in `[housing]` with `method = \"explicit\"` attaches a spring to each node of the bore (4.2.4.2), which slips at `coefficient` times

@@ -14,7 +14,7 @@ use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_bushing::bushing;
 use crate::scene::resolve_dynamics::{check_inertia, foundation, rotating_load, rotation};
 use crate::scene::resolve_housing::in_housing;
-use crate::scene::resolve_shaft::beam;
+use crate::scene::resolve_shaft::{beam, refuse_places_off_shafts};
 use crate::scene::resolve_solid::{item_number, missing};
 use crate::scene::resolved::{DefaultUsed, Scene};
 use crate::scene::scopes::no_such;
@@ -60,6 +60,7 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
         .iter()
         .map(|name| body(document, name, ball, needs_mass, &mut defaults_used))
         .collect::<Result<Vec<_>, _>>()?;
+    refuse_places_off_shafts(document, &bearings, &resolved)?;
     let springs = document
         .names("spring")
         .map(|name| spring(document, name, (&bodies, &bearings), &mut defaults_used))

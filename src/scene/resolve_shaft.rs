@@ -2,11 +2,12 @@
 
 use crate::ch4_rotor::disc::Inertia as DiscInertia;
 use crate::mesh::Order;
-use crate::scene::assembly::SceneBeam;
-use crate::scene::document::ItemRef;
+use crate::scene::assembly::{Carrier, PlacedBearing, SceneBeam, SceneBody};
+use crate::scene::document::{Document, ItemRef};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::Reader;
 use crate::scene::resolve_solid::{item_number, item_profile, item_text, missing};
+use crate::scene::scopes::unfit;
 use crate::solver::profile::Profile;
 use crate::solver::rotor::beam::{Beam, BeamDisc, BeamSegment};
 use crate::solver::rotor::meshed::ShaftMesh;
@@ -105,7 +106,25 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
         let size = required(item, "size", "size = \"1e-3 kg m\"")?;
         Ok((at(item)?, size, item_number(item, "angle").unwrap_or(0.0)))
     };
-    let watch = |item: ItemRef| Ok((item_text(item, "name", "name = \"mid\"")?, at(item)?));
+    let mut names: Vec<String> = Vec::new();
+    let mut watch = |item: ItemRef| {
+        let name = item_text(item, "name", "name = \"mid\"")?;
+        let twice = names.contains(&name);
+        let reason = match name.as_str() {
+            "velocity" | "tilt" => Some("columns of the body have this name"),
+            _ if twice => Some("another section has this name"),
+            _ => None,
+        };
+        let problem = reason.map(|reason| {
+            let (reason, advice) = (reason.into(), "choose another name, such as mid".into());
+            Problem::Refused { reason, advice }
+        });
+        if let Some(problem) = unfit(&name).or(problem) {
+            return Err(item.error("name", problem));
+        }
+        names.push(name.clone());
+        Ok((name, at(item)?))
+    };
     Ok(Some(SceneBeam {
         start,
         kept: Kept { below: TAU * below, most: usize::MAX },
@@ -117,9 +136,49 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
             .items("body.beam.unbalance")
             .map(unbalance)
             .collect::<Result<_, _>>()?,
-        watched: document.items("body.beam.watch").map(watch).collect::<Result<_, SceneError>>()?,
+        watched: document
+            .items("body.beam.watch")
+            .map(&mut watch)
+            .collect::<Result<_, SceneError>>()?,
         beam,
     }))
+}
+
+/// Races sit on the shafts that carry them.
+///
+/// # Errors
+/// The first that sits beside its shaft.
+pub(super) fn refuse_places_off_shafts(
+    document: &Document,
+    bearings: &[PlacedBearing],
+    bodies: &[SceneBody],
+) -> Result<(), SceneError> {
+    for placed in bearings {
+        for (carrier, key) in placed.carriers.into_iter().zip(["inner_at", "outer_at"]) {
+            let Carrier::Body { index, at } = carrier else { continue };
+            let Some(beam) = &bodies[index].beam else { continue };
+            let end = beam.start + beam.beam.length();
+            let room = 1e-9 * beam.beam.length();
+            if beam.start - room <= at && at <= end + room {
+                continue;
+            }
+            let reason = format!(
+                "{:.4} mm is not on body {}, which goes from {:.4} to {:.4} mm",
+                1e3 * at,
+                bodies[index].name,
+                1e3 * beam.start,
+                1e3 * end
+            );
+            let problem =
+                Problem::Refused { reason, advice: "places count from the body's centre".into() };
+            let key = format!("bearing.{key}");
+            return Err(match &placed.name {
+                Some(name) => document.scoped(name).error(&key, problem),
+                None => document.error(&key, problem),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Cells, where the segments are tetrahedra.

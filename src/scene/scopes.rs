@@ -176,8 +176,8 @@ impl Layer {
     }
 }
 
-/// What is wrong with a name.
-fn unfit(name: &str) -> Option<Problem> {
+/// What is wrong with a name that stands in names of columns and files.
+pub(super) fn unfit(name: &str) -> Option<Problem> {
     const RESERVED: [&str; 5] = ["inner_race", "outer_race", "ground", "inner", "outer"];
     let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let begins = name.starts_with(|c: char| c.is_ascii_alphabetic());

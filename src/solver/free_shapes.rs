@@ -109,6 +109,10 @@ impl FreeBody<'_> {
             frequencies.push((self.stiffness * &shape).dot(&shape).sqrt());
             shapes.set_column(column - first, &shape);
         }
+        let told = |frequency: &f64| frequency.is_finite() && *frequency > 0.0;
+        if !frequencies.iter().all(told) {
+            return Err(ShapesError::Range);
+        }
         Ok((frequencies, shapes))
     }
 }
@@ -154,6 +158,9 @@ fn independent(answers: &DMatrix<f64>, frequencies: &[f64]) -> (Vec<f64>, DMatri
     let most = gram.eigenvalues.max();
     let used: Vec<usize> =
         (0..gram.eigenvalues.len()).filter(|i| gram.eigenvalues[*i] > DEPENDENT * most).collect();
+    if used.is_empty() {
+        return (Vec::new(), DMatrix::zeros(answers.nrows(), 0));
+    }
     let basis = DMatrix::from_fn(answers.ncols(), used.len(), |i, j| {
         gram.eigenvectors[(i, used[j])] / gram.eigenvalues[used[j]].sqrt()
     });

@@ -72,6 +72,11 @@ pub struct ShaftShapes {
 pub enum ShapesError {
     #[error("the mass of the shaft is not positive: {0} kg")]
     Mass(f64),
+    #[error(
+        "stiffnesses and inertias along the shaft are too far apart to tell its natural shapes; check sizes of segments and discs \
+         and their units"
+    )]
+    Range,
     #[error("the shaft has a motion without stiffness that is no rigid one")]
     Stiffness,
 }

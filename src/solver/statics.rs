@@ -157,6 +157,11 @@ pub enum StaticsError {
     )]
     NoEquilibrium { body: String, coordinate: &'static str, travel: f64, room: f64 },
     #[error(
+        "the damping inside {body} (internal_damping) drags it at this speed as hard as it springs back: rounds over its pull do not \
+         settle; take less of it, a lower speed at the start, or start in nominal positions (numerics.start = \"nominal\")"
+    )]
+    Dragged { body: String },
+    #[error(
         "nothing holds {body} along {coordinate}: no spring, no given coordinate of it or of the races it is \
          joined to, while the loads there add up to {load:.3e} N at t = {at} s: hold the coordinate by a \
          displacement or a spring, balance the loads, or start a motion in nominal positions \

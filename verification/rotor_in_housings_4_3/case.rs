@@ -355,47 +355,55 @@ fn seats(context: &mut CaseContext) -> Result<(), CaseError> {
         "swing of race 1 along Y, nm",
     ];
     context.table("seats", "Seat 1 under 3000 N at mid-span, from equilibria", &columns, table);
-    let steps = |i: usize| largest(all.windows(2).map(|pair| pair[1][i] / pair[0][i]));
-    for (id, i, what, sentence) in [
+    for (id, i, what, sentence, most) in [
         (
             "seat_shrinks",
             0,
             "part of the bore that carries",
             "a clearance fit is a less conformal contact: a small area carries",
+            0.8,
         ),
         (
             "seat_softens",
             1,
             "stiffness of the seat along Y",
             "the support's stiffness along Y is significantly reduced",
+            0.5,
         ),
     ] {
+        let fall = largest(all.windows(2).map(|pair| pair[1][i] / pair[0][i]));
+        context.check(
+            Check::new(
+                &format!("{id}_each"),
+                &format!("{what}, largest ratio to that with 5 µm less clearance"),
+                "1",
+                fall,
+            )
+            .stated(1.0, "4.3.2", sentence)
+            .at_most(0.05, "far above what the search leaves open"),
+        );
         context.check(
             Check::new(
                 id,
-                &format!("{what}, largest ratio to that with 5 µm less clearance"),
+                &format!("{what} with +5 µm over that with −5 µm"),
                 "1",
-                steps(i),
+                all[2][i] / all[0][i],
             )
             .stated(1.0, "4.3.2", sentence)
-            .at_most(0.1, "a tenth, with each step of the clearance")
+            .at_most(most, "a small part; of a stiffness no more than half of it is left")
             .golden(GoldenTolerance::MIXED),
         );
     }
-    context.check(
-        Check::new(
-            "sideways",
-            "swing of race 1 along Y with +5 µm over that with −5 µm, as balls pass",
-            "1",
-            all[2][3] / all[0][3],
-        )
-        .stated(
-            1.0,
-            "4.3.2",
-            "not supported along Y, the varying compliance can become unstable there",
-        )
-        .at_least(0.1, "a tenth")
-        .golden(GoldenTolerance::MIXED),
+    context.finding(
+        "sideways",
+        format!(
+            "As balls pass, race 1 swings sideways by {:.0}, {:.0} and {:.0} nm through equilibria with −5, 0 and +5 µm: the soft seat alone adds {:.1} %. The text's \
+             instability along Y would be one of the motion.",
+            all[0][3],
+            all[1][3],
+            all[2][3],
+            100.0 * (all[2][3] / all[0][3] - 1.0)
+        ),
     );
     Ok(())
 }

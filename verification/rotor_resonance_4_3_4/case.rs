@@ -7,7 +7,6 @@ use bearing_dynamics::solver::statics::{StaticOptions, solve_assembly};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
-use crate::golden::GoldenTolerance;
 use crate::housed_shaft::Shaft;
 use crate::motion::{
     ROTOR_IN_PILLOW_BLOCKS, ROTOR_RUN_UP, RPM, changed_scene, column, done, request,
@@ -139,27 +138,16 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
 
 fn ways(context: &mut CaseContext, in_blocks: &Done, on_fixed: &Done) -> Result<(), CaseError> {
     let (housed, fixed) = (in_blocks.farthest(), on_fixed.farthest());
-    let directions = [("minus_y", "−Y"), ("plus_y", "+Y"), ("minus_z", "−Z"), ("plus_z", "+Z")];
-    for (i, (id, along)) in directions.into_iter().enumerate() {
-        let check = Check::new(
-            &format!("farther_{id}"),
-            &format!(
-                "farthest way of inner race 1 along {along} in housings, over that with fixed outer races"
-            ),
-            "1",
-            housed[i] / fixed[i],
-        );
-        let check = if id == "minus_z" {
-            check
-                .stated(1.0, "4.3.4", "nearly the same along −Z, where the foot is stiff")
-                .absolute(0.03, "a third of what the other directions gain, and 2 % of the steps")
-        } else {
-            check
-                .stated(1.0, "4.3.4", "significantly larger along +Z, +Y and −Y")
-                .at_least(0.05, "twice what the steps leave open")
-        };
-        context.check(check.golden(GoldenTolerance::MIXED.floor(0.02)));
-    }
+    let gains = [0, 1, 2, 3].map(|i| 100.0 * (housed[i] / fixed[i] - 1.0));
+    // Single rows of a motion that chatters: at other accuracies they move by up to 7 %.
+    context.finding(
+        "farther",
+        format!(
+            "In housings inner race 1 goes farther than with fixed races by {:.0} % along −Y, {:.0} % along +Y, {:.0} % along −Z and {:.0} % along +Z. Each is one row \
+             of a motion that chatters without damping, and moves by up to 7 % with the accuracy of the steps; what the housings give, by the checks, is resolved.",
+            gains[0], gains[1], gains[2], gains[3]
+        ),
+    );
     for (id, axis, of) in
         [("race_z", "z", [&in_blocks.z, &on_fixed.z]), ("race_y", "y", [&in_blocks.y, &on_fixed.y])]
     {
@@ -182,16 +170,29 @@ fn ways(context: &mut CaseContext, in_blocks: &Done, on_fixed: &Done) -> Result<
     Ok(())
 }
 
-/// The block answers a turning force far below its own frequencies as at rest.
-fn give(context: &mut CaseContext, in_blocks: &Done) -> Result<(), CaseError> {
+/// Way of outer race 1 over the force that the balls push the block with, mean of the rows at resonance in which it hardly pushes
+/// aside, m/N, along −Y, +Y, −Z and +Z, and how many rows.
+fn gives(in_blocks: &Done) -> Result<[(f64, usize); 4], CaseError> {
     let of = |name: &str| column(&in_blocks.series, &format!("left_{name}"));
-    let (outer, force) = (of("outer_z")?, of("housing_force_on_outer_z")?);
-    let aside = of("housing_force_on_outer_y")?;
-    // Rows in which the bearing pushes the block's top, and hardly its sides.
-    let upwards = |row: &usize| force[*row] <= -500.0 && aside[*row].abs() <= -0.1 * force[*row];
-    let rows: Vec<usize> = (0..force.len()).filter(upwards).collect();
-    let sum = |of: &[f64]| rows.iter().map(|row| of[*row]).sum::<f64>();
-    let gives = sum(&outer) / -sum(&force);
+    let way = [of("outer_y")?, of("outer_z")?];
+    let force = [of("housing_force_on_outer_y")?, of("housing_force_on_outer_z")?];
+    Ok([(0, -1.0), (0, 1.0), (1, -1.0), (1, 1.0)].map(|(axis, sign): (usize, f64)| {
+        let (mut sums, mut rows) = ([0.0; 2], 0);
+        for row in 0..way[0].len() {
+            let pushed = -sign * force[axis][row];
+            if pushed >= 500.0 && force[1 - axis][row].abs() <= 0.1 * pushed {
+                sums[0] += sign * way[axis][row];
+                sums[1] += pushed;
+                rows += 1;
+            }
+        }
+        (sums[0] / sums[1], rows)
+    }))
+}
+
+/// The block answers a turning force far below its own frequencies as at rest, and its foot is stiffer than its top and sides.
+fn give(context: &mut CaseContext, in_blocks: &Done) -> Result<(), CaseError> {
+    let [minus_y, plus_y, minus_z, plus_z] = gives(in_blocks)?;
     let changes: [Change; 2] = [
         ("z = \"-3000 N\"", "z = \"2000 N\""),
         ("fit = { radial = \"2.5 um\" }", "fit = { radial = \"0 um\" }"),
@@ -202,13 +203,33 @@ fn give(context: &mut CaseContext, in_blocks: &Done) -> Result<(), CaseError> {
     context.check(
         Check::new(
             "give",
-            &format!("way of outer race 1 along +Z over the force on the block's top, mean of {} rows at resonance", rows.len()),
+            &format!(
+                "way of outer race 1 along +Z over the force on the block's top, mean of {} rows at resonance",
+                plus_z.1
+            ),
             "µm/kN",
-            1e9 * gives,
+            1e9 * plus_z.0,
         )
         .consistency(1e9 * still, "an equilibrium under 1000 N upwards")
         .relative(0.05, "forces up to 6° aside, and the block's own vibrations, whose mean counts"),
     );
+    for (id, along, (other, rows)) in
+        [("plus_z", "+Z", plus_z), ("plus_y", "+Y", plus_y), ("minus_y", "−Y", minus_y)]
+    {
+        context.check(
+            Check::new(
+                &format!("softer_{id}"),
+                &format!(
+                    "give of housing 1 along {along} over that along −Z at resonance, means of {rows} and {} rows",
+                    minus_z.1
+                ),
+                "1",
+                other / minus_z.0,
+            )
+            .stated(1.0, "4.3.4", "the support stiffness is large along −Z, where the block stands on the ground, and reduced in the other directions")
+            .at_least(1.0, "twice as soft; the block's shape decides how far above"),
+        );
+    }
     Ok(())
 }
 
@@ -228,7 +249,7 @@ fn moments(context: &mut CaseContext, in_blocks: &Done, on_fixed: &Done) -> Resu
             "4.3.4",
             "the rotor deflection at resonance causes the reaction moment to increase",
         )
-        .relative(0.05, "the deflection, within some turns of its peak, is flat"),
+        .relative(0.08, "one row among those of a moment that chatters; five turns about the peak, where the deflection is flat to 3 %"),
     );
     let at = |done: &Done| done.moment_between(5500.0, 6500.0);
     context.check(
@@ -240,16 +261,6 @@ fn moments(context: &mut CaseContext, in_blocks: &Done, on_fixed: &Done) -> Resu
         )
         .stated(1.0, "4.3.4", "the reaction moment increases at resonance")
         .at_least(5.0, "far above one"),
-    );
-    context.check(
-        Check::new(
-            "moment_falls",
-            "moment of bearing 1 with no clearance over that with −5 µm, both on fixed races, 5500 to 6500 rpm",
-            "1",
-            at(on_fixed) / at(&tight),
-        )
-        .stated(1.0, "4.3.4", "the moment is reduced as the clearance grows")
-        .at_most(0.2, "as statics has it: 3.2 for 4.9 N m at 1000 N"),
     );
     let moment = |radial: &str| -> Result<f64, CaseError> {
         let clearance = format!("clearance = {{ radial = \"{radial} um\" }}");
@@ -266,16 +277,42 @@ fn moments(context: &mut CaseContext, in_blocks: &Done, on_fixed: &Done) -> Resu
         let found = solve_assembly(&scene.statics()?, None, &StaticOptions::default())?;
         Ok(found.bearings[0].moments[0].norm())
     };
-    let [none, some] = [moment("0")?, moment("5")?];
+    let [stiff, none, some] = [moment("-5")?, moment("0")?, moment("5")?];
+    for (id, what, ratio, still) in [
+        (
+            "moment_to_none",
+            "from −5 µm to no clearance, fixed races",
+            at(on_fixed) / at(&tight),
+            none / stiff,
+        ),
+        (
+            "moment_to_five",
+            "from no clearance to +5 µm, in housings",
+            at(&loose) / at(in_blocks),
+            some / none,
+        ),
+    ] {
+        context.check(
+            Check::new(
+                id,
+                &format!("moment of bearing 1 between 5500 and 6500 rpm, ratio {what}"),
+                "1",
+                ratio,
+            )
+            .consistency(still, "equilibria with 1000 N on each bearing")
+            .relative(
+                0.1,
+                "loads between 700 and 1100 N, and 6 % that the accuracy of the steps leaves open",
+            ),
+        );
+    }
     context.finding(
         "moment_with_clearance",
         format!(
-            "From no clearance to +5 µm the moment in housings between 5500 and 6500 rpm goes from {:.2} to {:.2} N·m, its largest value from {:.2} to {:.2}. The text \
-             says that a positive clearance reduces it; an equilibrium with 1000 N on each bearing has {none:.2} and {some:.2} N·m.",
+            "The text says that a positive clearance reduces the moment. From no clearance to +5 µm ours in housings between 5500 and 6500 rpm goes from {:.2} to {:.2} N·m, \
+             as equilibria have it ({none:.2} and {some:.2} N·m under 1000 N); what falls is the step from an interference of 5 µm ({stiff:.2} N·m). Fig. 4.23 is lost, and with it what it compares.",
             at(in_blocks),
             at(&loose),
-            largest(in_blocks.moment.iter().copied()),
-            largest(loose.moment.iter().copied()),
         ),
     );
     let curve = |name: &str, done: &Done| {

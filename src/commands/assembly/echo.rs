@@ -9,12 +9,13 @@ use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::RunSettings;
 use bearing_dynamics::scene::assembly::{
     AssemblyScene, BushingInElements, BushingOfSpring, BushingStepping, Carrier, PlacedBearing,
-    PlacedHousing, SIX, Spring, SpringAt, SpringEnd,
+    PlacedHousing, SIX, SceneBeam, Spring, SpringAt, SpringEnd,
 };
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{FitSize, HousingMethod, HousingSettings};
 use bearing_dynamics::solver::dynamics::connection::MaxwellElement;
 use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
+use bearing_dynamics::solver::rotor::beam::{BeamDisc, BeamSegment};
 use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
 use serde_json::{Map, Value, json};
 
@@ -55,11 +56,65 @@ pub fn echo(scene: &AssemblyScene) -> Fallible<Value> {
         bearings.insert(name_of(placed).into(), own);
     }
     echo.insert("bearings".into(), Value::Object(bearings));
-    let bodies = scene.bodies.iter().map(|body| Ok((body.name.clone(), echo_run::body(body)?)));
-    echo.insert("bodies".into(), Value::Object(bodies.collect::<Result<_, ResultsError>>()?));
+    let mut bodies = Map::new();
+    let bends = scene.bodies.iter().any(|body| body.beam.is_some());
+    let whole = if bends { Some(scene.assembly()?) } else { None };
+    for (index, body) in scene.bodies.iter().enumerate() {
+        let mut own = echo_run::body(body)?;
+        if let (Some(of), Some(whole)) = (&body.beam, &whole) {
+            own["beam"] = shaft(of)?;
+            let race = whole.bodies[index].driven();
+            own["inertia"] = race.map(|race| echo_run::inertia(&race.inertia)).transpose()?.into();
+            own["centre_of_mass"] = quantity("place", 1e3 * whole.bodies[index].rest[0], "mm")?;
+        }
+        bodies.insert(body.name.clone(), own);
+    }
+    echo.insert("bodies".into(), Value::Object(bodies));
     let springs = scene.springs.iter().map(|s| Ok((s.name.clone(), spring(scene, s)?)));
     echo.insert("springs".into(), Value::Object(springs.collect::<Result<_, ResultsError>>()?));
     Ok(Value::Object(echo))
+}
+
+/// A body that bends; places count from its centre.
+fn shaft(of: &SceneBeam) -> Result<Value, ResultsError> {
+    let millimetres = |name: &str, metres: f64| quantity(name, 1e3 * metres, "mm");
+    let place = |at: f64| millimetres("at", at);
+    let segment = |of: &BeamSegment| -> Result<Value, ResultsError> {
+        Ok(json!({
+            "length": millimetres("length", of.length)?,
+            "outer_diameter": millimetres("outer_diameter", of.outer_diameter)?,
+            "inner_diameter": millimetres("inner_diameter", of.inner_diameter)?,
+            "youngs_modulus": quantity("youngs_modulus", 1e-9 * of.youngs_modulus, "GPa")?,
+            "density": quantity("density", of.density, "kg/m^3")?,
+        }))
+    };
+    let disc = |disc: &BeamDisc| -> Result<Value, ResultsError> {
+        Ok(json!({
+            "at": place(of.start + disc.at)?,
+            "mass": quantity("mass", disc.mass, "kg")?,
+            "axial": quantity("axial", disc.axial, "kg m^2")?,
+            "transverse": quantity("transverse", disc.transverse, "kg m^2")?,
+        }))
+    };
+    let unbalance = |&(at, size, angle): &(f64, f64, f64)| -> Result<Value, ResultsError> {
+        Ok(json!({
+            "at": place(at)?,
+            "size": quantity("size", size, "kg m")?,
+            "angle": quantity("angle", angle.to_degrees(), "deg")?,
+        }))
+    };
+    let list = |all: Vec<Result<Value, ResultsError>>| -> Result<Value, ResultsError> {
+        Ok(Value::Array(all.into_iter().collect::<Result<_, _>>()?))
+    };
+    Ok(json!({
+        "start": millimetres("start", of.start)?,
+        "segments": list(of.beam.segments.iter().map(segment).collect())?,
+        "discs": list(of.beam.discs.iter().map(disc).collect())?,
+        "loads": list(of.loads.iter().map(|(at, _)| place(*at)).collect())?,
+        "unbalances": list(of.unbalances.iter().map(unbalance).collect())?,
+        "damping": quantity("damping", of.damping, "1/s")?,
+        "internal_damping": quantity("internal_damping", of.internal_damping, "1/s")?,
+    }))
 }
 
 fn spring(scene: &AssemblyScene, spring: &Spring) -> Result<Value, ResultsError> {

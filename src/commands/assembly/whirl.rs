@@ -47,14 +47,6 @@ fn kind(whirl: &Whirl) -> &'static str {
     if whirl.across < 0.5 { ", mostly along the axis" } else { "" }
 }
 
-fn turns(whirl: &Whirl) -> &'static str {
-    match whirl.direction {
-        d if d > 0.5 => "forward",
-        d if d < -0.5 => "backward",
-        _ => "to and fro",
-    }
-}
-
 impl Spinning {
     pub fn new(whirling: Whirling) -> Fallible<Spinning> {
         let top = whirling.top_speed;
@@ -102,7 +94,7 @@ impl Spinning {
                 index + 1,
                 whirl.frequency() / TAU,
                 whirl.damping_ratio(),
-                turns(whirl),
+                whirl.turns(),
                 self.most(whirl),
                 kind(whirl)
             );
@@ -118,7 +110,7 @@ impl Spinning {
                     text,
                     "{:>25.3} rpm  {:<9}  {}{}",
                     rpm(of.speed),
-                    turns(&of.whirl),
+                    of.whirl.turns(),
                     self.most(&of.whirl),
                     kind(&of.whirl)
                 );

@@ -18,10 +18,7 @@ pub fn campbell(title: &str, of: &Campbell) -> Result<String, PlotError> {
         let points: Vec<[f64; 2]> =
             points.map(|(&speed, whirl)| [rpm(speed), whirl.frequency() / TAU]).collect();
         highest = points.iter().fold(highest, |most, point| most.max(point[1]));
-        let turns = match line.last() {
-            Some(whirl) if whirl.is_forward() => "forward",
-            _ => "backward",
-        };
+        let turns = line.last().map_or("", |whirl| whirl.turns());
         curves.push(Curve::new(format!("{} {turns}", number + 1), points));
     }
     let last = of.speeds.last().copied().unwrap_or(0.0);

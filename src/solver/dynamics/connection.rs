@@ -8,7 +8,7 @@
 use super::race::{RaceLoads, RaceNow};
 use crate::kinematics::vec3::{Vec3, add, cross, dot, sub};
 use crate::solver::mount::Mount;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// A connection and what it joins.
 #[derive(Clone, Debug, PartialEq)]
@@ -153,31 +153,31 @@ impl Connection {
     }
 }
 
-/// Rotation vector of the second end against the first, in the first one's axes, rad (below half a turn).
-fn turn_between(ends: [&RaceNow; 2]) -> Vector3<f64> {
+/// How the second end is turned against the first, in the first one's axes, rad, and how that changes with an angular
+/// velocity in these axes.
+///
+/// Turns about Y and Z are those by the shortest way that take the first axis X to the second (its length the angle between
+/// them), the turn about X is the [`twist`] that is left: a shaft that spins turns about X alone, however far.
+fn turn_between(ends: [&RaceNow; 2]) -> (Vector3<f64>, Matrix3<f64>) {
     let [first, second] = ends.map(|end| end.state.orientation);
-    let relative = first.inverse() * second;
-    let (part, cos) = (relative.imag(), relative.w);
-    let sin = part.norm();
-    // The nearer way round; of no turn twice the imaginary part.
-    let (part, cos) = if cos < 0.0 { (-part, -cos) } else { (part, cos) };
-    let angle = 2.0 * libm::atan2(sin, cos);
-    if sin > 0.0 { part * (angle / sin) } else { part * 2.0 }
-}
-
-/// How a rotation vector changes with an angular velocity in the first end's axes: the inverse of the
-/// left Jacobian of rotations.
-fn turn_rate(turn: &Vector3<f64>) -> Matrix3<f64> {
-    let angle = turn.norm();
-    let spin = turn.cross_matrix();
-    // (1 − θ/2 cot θ/2)/θ², whose series serves small turns.
-    let factor = if angle < 1e-2 {
-        (1.0 + angle * angle / 60.0) / 12.0
+    let (angle, along) = twist_in_first(first.inverse() * second);
+    let axis = first.inverse() * (second * Vector3::x());
+    let (x, y, z) = (axis.x, axis.y, axis.z);
+    let square = y * y + z * z;
+    let sine = square.sqrt();
+    let tilt = libm::atan2(sine, x);
+    // θ/sin θ, and its slope over θ, over sin θ; series serve small tilts.
+    let (factor, slope) = if tilt < 1e-2 {
+        (1.0 + square / 6.0 * (1.0 + 0.45 * square), (1.0 + 0.4 * square) / 3.0)
     } else {
-        let half = 0.5 * angle;
-        (1.0 - half * libm::cos(half) / libm::sin(half)) / (angle * angle)
+        (tilt / sine, (sine - tilt * x) / (sine * square))
     };
-    Matrix3::identity() - spin * 0.5 + spin * spin * factor
+    // Of the axis under an angular velocity.
+    let swept = -axis.cross_matrix();
+    let [by_x, by_y, by_z] = [0, 1, 2].map(|i| swept.row(i).into_owned());
+    let grows = ((by_y * y + by_z * z) * x - by_x * square) * slope;
+    let rates = [along.transpose(), -(by_z * factor + grows * z), by_y * factor + grows * y];
+    (Vector3::new(angle, -factor * z, factor * y), Matrix3::from_rows(&rates))
 }
 
 /// Axes of the first end in inertial ones.
@@ -199,8 +199,7 @@ fn spring_dashpot(law: &SpringDashpot, ends: [&RaceNow; 2], elongated: &[f64]) -
     let axes = axes(ends);
     let arm = sub(ends[1].motion.position, ends[0].motion.position);
     let (speed, turning) = rates(ends, &axes);
-    let turn = turn_between(ends);
-    let turn_rate = turn_rate(&turn);
+    let (turn, turn_rate) = turn_between(ends);
     let turned = turn_rate * turning;
     let mut pull = Pull::default();
     let (mut force, mut moment) = ([0.0; 3], Vector3::zeros());
@@ -250,15 +249,19 @@ fn spring_dashpot_rows(law: &SpringDashpot, ends: [&RaceNow; 2]) -> [Row; ROWS] 
 }
 
 /// Twist of the second end about the first one's axis, rad, and the direction (inertial axes) along which
-/// relative spin makes it: with q the relative rotation φ = 2 atan(q_x/q_w).
+/// relative spin makes it.
 fn twist(ends: [&RaceNow; 2]) -> (f64, Vec3) {
     let [first, second] = ends.map(|end| end.state.orientation);
-    let q = first.inverse() * second;
+    let (angle, along) = twist_in_first(first.inverse() * second);
+    (angle, (first * along).into())
+}
+
+/// The same of a relative rotation q, the direction in the first end's axes: φ = 2 atan(q_x/q_w).
+fn twist_in_first(q: UnitQuaternion<f64>) -> (f64, Vector3<f64>) {
     let (w, x, y, z) = (q.w, q.i, q.j, q.k);
     let size = w * w + x * x;
     let angle = if w < 0.0 { libm::atan2(-x, -w) } else { libm::atan2(x, w) };
-    let along = Vector3::new(1.0, (w * z + x * y) / size, (x * z - w * y) / size);
-    (2.0 * angle, (first * along).into())
+    (2.0 * angle, Vector3::new(1.0, (w * z + x * y) / size, (x * z - w * y) / size))
 }
 
 fn torsion(law: &Torsion, ends: [&RaceNow; 2]) -> Pull {

@@ -12,6 +12,7 @@ use crate::ch2_housing::bearing::frequencies::ratios;
 use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient};
 use crate::kinematics::Pose;
 use crate::kinematics::euler::{about, quaternion};
+use crate::solver::mount::Mount;
 use crate::solver::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing, StaticBody};
 use crate::solver::static_tables::BearingState;
 use crate::solver::statics::{
@@ -73,10 +74,12 @@ pub(super) fn at(
     let mut dragged: Vec<Vec<f64>> = vec![Vec::new(); plain.shafts.len()];
     let mut before: Option<Vec<Five>> = None;
     let mut solution = None;
+    let mut unsettled = None;
     // An unbalance follows the race's tilts, by at most tilt · F/(k R) of what they were before;
     // traction that holds balls in their orbit changes by its own shift over the pitch radius; what damping inside drags a shaft
     // by is a part cΩ/ω² of what bends it.
-    for _ in 0..20 {
+    let drags = assembly.shafts.iter().any(|shaft| shaft.internal_damping != 0.0);
+    for _ in 0..if drags { DRAGGED_ROUNDS } else { ROUNDS } {
         let mut loaded = plain.clone();
         for (shaft, dragged) in loaded.shafts.iter_mut().zip(&dragged) {
             shaft.loads.clone_from(dragged);
@@ -119,6 +122,7 @@ pub(super) fn at(
         let largest = largest_load(&found.bearings);
         // Below what statics itself leaves over.
         let mut settled = next.differs(&extra) <= options.tolerance * largest;
+        unsettled = None;
         for ((of, shaft), (dragged, amplitudes)) in assembly
             .shafts
             .iter()
@@ -132,7 +136,9 @@ pub(super) fn at(
             let bends = most(&mut amplitudes.iter().zip(&shaft.springs).map(|(a, w)| a * w));
             let old = dragged.iter().copied().chain(std::iter::repeat(0.0));
             let changed = most(&mut next.iter().zip(old).map(|(new, old)| new - old));
-            settled &= changed <= options.tolerance * bends;
+            let still = changed <= options.tolerance * bends;
+            unsettled = (!still).then_some(of.body).or(unsettled);
+            settled &= still;
             *dragged = next;
         }
         if follows.contains(&true) {
@@ -153,7 +159,11 @@ pub(super) fn at(
             break;
         }
     }
-    // Twenty rounds at most are made, and one at least.
+    if let Some(body) = unsettled {
+        let body = assembly.bodies[body].name.clone();
+        return Err(StaticsError::Dragged { body });
+    }
+    // So many rounds at most are made, and one at least.
     solution.ok_or(StaticsError::NotFinite { what: "rounds", value: f64::NAN })
 }
 
@@ -190,6 +200,8 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
                 // A race alone against one that is held is looked for where its load would take it.
                 let alone = !carries_outer(index)
                     && assembly.bearings.len() == 1
+                    && rest[0] == 0.0
+                    && assembly.bearings[0].mounts.iter().all(Mount::is_direct)
                     && is_held(&assembly.bodies[assembly.bearings[0].mounts[1].body]);
                 Place::Loaded(Loaded {
                     axes: None,
@@ -322,6 +334,11 @@ fn unbalance(body: &Body, t: f64, [xi, lambda]: [f64; 2]) -> Five {
     let along = about(Vector3::y(), xi) * about(Vector3::z(), lambda) * turned;
     Five::from([size * along.x, size * along.y, size * along.z, 0.0, 0.0])
 }
+
+/// Rounds of loads that follow the place they act at, and with damping inside shafts, whose pull may be a good part of what bends
+/// them.
+const ROUNDS: usize = 20;
+const DRAGGED_ROUNDS: usize = 60;
 
 /// Largest slip of rolling contacts over their rolling speed.
 const CREEP: f64 = 0.01;

@@ -42,7 +42,7 @@ pub fn items(run: Planned) -> Vec<Item> {
 
 /// Of what has no flexible solid.
 pub fn no_solids() -> Item {
-    let why = "the scene has none: no mesh, no element stage";
+    let why = "the scene has no solid: no element stage";
     Item::skips(Stage::FlexibleBodies, Subject::Whole, why)
 }
 
@@ -74,13 +74,19 @@ pub fn evaluation(assembly: &Assembly, cage_left_out: &[Option<&str>]) -> Vec<It
             false => found,
         }
     };
-    items.extend(each(Stage::Foundation, "no spring or dashpot to the ground", "under", &|body| {
+    let ground = "springs or dashpots to the ground under";
+    items.extend(each(Stage::Foundation, "no spring or dashpot to the ground", ground, &|body| {
         body.driven().is_some_and(stands_on_ground)
     }));
     items.extend(each(Stage::RotatingLoad, "none is given", "given; on", &|body| {
         body.driven().is_some() && body.rotating_load.is_some()
     }));
-    items.extend(each(Stage::Unbalance, "none is given", "given; of", &|body| {
+    let along_shafts = assembly.shafts.iter().any(|shaft| !shaft.unbalances.is_empty());
+    let none = match along_shafts {
+        true => "those along shafts that bend are among their loads",
+        false => "none is given",
+    };
+    items.extend(each(Stage::Unbalance, none, "given; of", &|body| {
         body.driven().is_some() && body.unbalance != 0.0
     }));
     let kept = "work and losses, in every evaluation";
@@ -180,7 +186,9 @@ fn bending(shaft: &ElasticShaft, assembly: &Assembly) -> [Item; 3] {
         body.name,
         count - natural
     );
-    let acting = shaft.loads.len() + shaft.unbalances.len();
+    let (loads, unbalances) = (shaft.loads.len(), shaft.unbalances.len());
+    let acting = loads + unbalances;
+    let along = format!("{loads} forces and {unbalances} unbalances at places along {}", body.name);
     let damped = shaft.damping != 0.0 || shaft.internal_damping != 0.0;
     let damping = match shaft.internal_damping != 0.0 {
         true => {
@@ -193,8 +201,7 @@ fn bending(shaft: &ElasticShaft, assembly: &Assembly) -> [Item; 3] {
     };
     let own = [
         Item::does(Stage::Reduced, subject, why).costing(1),
-        either(Stage::Loads, acting > 0, format!("{acting} at places along {}", body.name))
-            .costing(acting as u64),
+        either(Stage::Loads, acting > 0, along).costing(acting as u64),
         either(Stage::Damping, damped, damping.into()).costing(1),
     ];
     own.map(|item| item.named(body.label.clone()))

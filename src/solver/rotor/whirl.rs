@@ -39,6 +39,15 @@ impl Whirl {
     pub fn is_forward(&self) -> bool {
         self.direction > 0.0
     }
+
+    /// In a word: forward, backward, or to and fro.
+    pub fn turns(&self) -> &'static str {
+        match self.direction {
+            d if d > 0.5 => "forward",
+            d if d < -0.5 => "backward",
+            _ => "to and fro",
+        }
+    }
 }
 
 /// Whirl over speeds: each line is one motion followed from speed to speed by its shape.
