@@ -111,7 +111,7 @@ fn faults_of_beams_say_what_is_wrong() {
             beam(
                 "start = \"0 mm\"\nsegments = [{ length = \"300 mm\", outer_diameter = \"30 mm\" }]",
             ),
-            "not on the shaft",
+            "is not on body shaft",
         ),
     ];
     for (text, expected) in cases {
