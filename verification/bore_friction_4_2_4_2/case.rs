@@ -10,7 +10,7 @@ use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
 use crate::housed_shaft::Shaft;
-use crate::motion::{ROTOR_IN_PILLOW_BLOCKS, column, done};
+use crate::motion::{RACE_IN_ROUGH_BORE, ROTOR_IN_PILLOW_BLOCKS, column, done};
 use crate::oracles::bore_friction::Bore;
 use crate::solids::largest;
 
@@ -23,7 +23,6 @@ pub const CASE: Case = Case {
     run,
 };
 
-const PRESSED: &str = include_str!("../../scenes/race_in_rough_bore.toml");
 /// Of that scene: N, N/m of each node, m.
 const LOAD: f64 = 200.0;
 const NODE_STIFFNESS: f64 = 1e7;
@@ -49,7 +48,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
 
 /// Columns of a run of the pressed race, and where its bore's nodes are.
 fn of_pressed(changes: &[Change]) -> Result<(Series, Bore), CaseError> {
-    let scene = Shaft::new(PRESSED, changes)?;
+    let scene = Shaft::new(RACE_IN_ROUGH_BORE, changes)?;
     let nodes = &scene.housings[0].setup.nodes;
     let azimuth = |[_, y, z]: [f64; 3]| z.atan2(y);
     let bore = Bore {

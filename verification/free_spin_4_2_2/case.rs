@@ -17,6 +17,7 @@ use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
+use crate::motion::SPINNING_DISC;
 use crate::solids::{STEEL, Vec3, free_body, largest, mesh_of, name_of};
 
 pub const CASE: Case = Case {
@@ -28,7 +29,6 @@ pub const CASE: Case = Case {
     run,
 };
 
-const SCENE: &str = include_str!("../../scenes/spinning_disc.toml");
 /// m.
 const RADIUS: f64 = 0.1;
 /// rad/s.
@@ -160,8 +160,8 @@ impl Spun {
         let coarse = "cells = { along = 1, around = 24, radial = 3 }";
         let finer =
             format!("cells = {{ along = 1, around = {}, radial = {} }}", 24 * times, 3 * times);
-        let text = SCENE.replace(coarse, &finer);
-        if times > 1 && text == SCENE {
+        let text = SPINNING_DISC.replace(coarse, &finer);
+        if times > 1 && text == SPINNING_DISC {
             return Err(CaseError::message("the scene has other cells"));
         }
         let document = Document::read_str(&text, Format::Toml, "spinning_disc.toml")?;

@@ -37,9 +37,11 @@ pub const RACE_INERTIA: (&str, &str, &str) = (
     "0.077 kg",
 );
 
-/// The shipped scene of the rotor of 4.3.4.
+/// Shipped scenes of chapter 4.
 pub const ROTOR_IN_PILLOW_BLOCKS: &str = include_str!("../../scenes/rotor_in_pillow_blocks.toml");
 pub const ROTOR_RUN_UP: &str = include_str!("../../scenes/rotor_run_up.toml");
+pub const RACE_IN_ROUGH_BORE: &str = include_str!("../../scenes/race_in_rough_bore.toml");
+pub const SPINNING_DISC: &str = include_str!("../../scenes/spinning_disc.toml");
 
 /// An inner race of [`RACE_INERTIA`] under constant loads.
 pub fn race(loads: [f64; 5], rotation: Rotation) -> RaceBody {
