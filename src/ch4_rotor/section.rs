@@ -1,8 +1,9 @@
 //! A section of a rotor of finite elements as what sits on it feels it (4.2.3): how far its nodes move and turn in the mean, and
-//! the same mean by which forces and moments on it come to its nodes.
+//! the same mean by which forces and moments on it come to its nodes; of small displacements, and of a rotor that spins.
 
 use crate::kinematics::strain::{Mat3, times};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
+use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 /// Spread of nodes about an axis below this part of that about another is rounding.
 const ON_A_LINE: f64 = 1e-9;
@@ -12,6 +13,8 @@ const ON_A_LINE: f64 = 1e-9;
 pub struct RotorSection {
     /// Of its area, undeformed, m.
     pub centre: Vec3,
+    /// The point that moves and that loads act on, from there, m: none unless [`RotorSection::about`] says other.
+    point: Vec3,
     /// m².
     pub area: f64,
     /// Node, its part of the area (all: 1), and where it is from the centre, m.
@@ -45,7 +48,14 @@ impl RotorSection {
         let spread = sum.try_inverse()?;
         let is_sound = area > 0.0 && about.min() > ON_A_LINE * about.max();
         let spread = [0, 1, 2].map(|i: usize| [0, 1, 2].map(|j: usize| spread[(i, j)]));
-        is_sound.then_some(RotorSection { centre, area, nodes, spread })
+        is_sound.then_some(RotorSection { centre, point: [0.0; 3], area, nodes, spread })
+    }
+
+    /// The same as seen by what sits at a point (m) that goes with the section: faces of ten-node elements have their area's centre a
+    /// little beside the axis.
+    #[must_use]
+    pub fn about(self, point: Vec3) -> RotorSection {
+        RotorSection { point: sub(point, self.centre), ..self }
     }
 
     /// Mean displacement (m) and rotation (rad): the small one that fits the displacements of the nodes best, by least squares
@@ -57,21 +67,132 @@ impl RotorSection {
             mean = add_scaled(mean, *part, of);
             swept = add_scaled(swept, *part, cross(*arm, of));
         }
-        [mean, times(&self.spread, swept)]
+        let rotation = times(&self.spread, swept);
+        [add(mean, cross(rotation, self.point)), rotation]
     }
 
     /// Forces on the nodes (N) that do the work of a force (N) and a moment (N·m) on [`RotorSection::motion`].
     pub fn forces(&self, force: Vec3, moment: Vec3) -> impl Iterator<Item = (u32, Vec3)> + '_ {
-        let couple = times(&self.spread, moment);
+        let couple = times(&self.spread, add(moment, cross(self.point, force)));
         self.nodes
             .iter()
             .map(move |(node, part, arm)| (*node, scale(add(force, cross(couple, *arm)), *part)))
     }
 }
 
+/// A section of a rotor that has moved and turned any way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SectionPlace {
+    /// Of its point, m.
+    pub centre: Vec3,
+    /// From the undeformed section to this one: the rotation that fits best, by least squares weighted by area.
+    pub orientation: UnitQuaternion<f64>,
+    /// m/s.
+    pub velocity: Vec3,
+    /// Rate of the orientation, rad/s, inertial axes.
+    pub spin: Vec3,
+    /// From a moment on the section to the vector whose product with an arm is a force for its part of the area, 1/m².
+    couple: Mat3,
+}
+
+impl RotorSection {
+    /// Where the nodes are (displacements, m) and how fast they move (m/s).
+    ///
+    /// The rotation R makes Σ part (R x) × y vanish, x and y the arms of a node undeformed and now; how fast it turns follows from
+    /// the same sum: S ω = Σ part (R x) × ẏ with S = tr A − A, A = Σ part y (R x)ᵀ, which is symmetric there.
+    pub fn place(
+        &self,
+        displacement: impl Fn(u32) -> Vec3,
+        rate: impl Fn(u32) -> Vec3,
+    ) -> SectionPlace {
+        let (mut mean, mut velocity) = ([0.0; 3], [0.0; 3]);
+        for (node, part, _) in &self.nodes {
+            mean = add_scaled(mean, *part, displacement(*node));
+            velocity = add_scaled(velocity, *part, rate(*node));
+        }
+        // Σ part y xᵀ and, of the undeformed section, Σ part x xᵀ.
+        let (mut moved, mut plane) = (Matrix3::zeros(), Matrix3::zeros());
+        for (node, part, arm) in &self.nodes {
+            let x = Vector3::from(*arm);
+            let y = Vector3::from(add(*arm, sub(displacement(*node), mean)));
+            moved += y * x.transpose() * *part;
+            plane += x * x.transpose() * *part;
+        }
+        let orientation = rotation_of(&moved, &plane);
+        let turn = orientation.to_rotation_matrix();
+        let along = moved * turn.transpose();
+        let couple = stiff(&along).try_inverse().unwrap_or_else(Matrix3::zeros);
+        let mut swept = Vector3::zeros();
+        for (node, part, arm) in &self.nodes {
+            let arm = turn * Vector3::from(*arm);
+            swept += arm.cross(&Vector3::from(rate(*node))) * *part;
+        }
+        let spin: Vec3 = (couple * swept).into();
+        let arm: Vec3 = (turn * Vector3::from(self.point)).into();
+        SectionPlace {
+            centre: add(add(self.centre, mean), arm),
+            orientation,
+            velocity: add(velocity, cross(spin, arm)),
+            spin,
+            couple: [0, 1, 2].map(|i: usize| [0, 1, 2].map(|j: usize| couple[(i, j)])),
+        }
+    }
+
+    /// Forces on the nodes (N) of a force (N) and a moment (N·m) on the section where it is: of the same power, force and moment.
+    pub fn forces_at(
+        &self,
+        place: &SectionPlace,
+        force: Vec3,
+        moment: Vec3,
+    ) -> impl Iterator<Item = (u32, Vec3)> + '_ {
+        let turn = place.orientation.to_rotation_matrix();
+        let arm: Vec3 = (turn * Vector3::from(self.point)).into();
+        let couple = times(&place.couple, add(moment, cross(arm, force)));
+        self.nodes.iter().map(move |(node, part, arm)| {
+            let arm: Vec3 = (turn * Vector3::from(*arm)).into();
+            (*node, scale(add(force, cross(couple, arm)), *part))
+        })
+    }
+}
+
+/// tr A − A, A made symmetric: how the sum of products answers a turn.
+fn stiff(along: &Matrix3<f64>) -> Matrix3<f64> {
+    Matrix3::identity() * along.trace() - (along + along.transpose()) * 0.5
+}
+
+/// The rotation that takes x to y best, out of Σ part y xᵀ and Σ part x xᵀ, nodes across the axis X.
+///
+/// Of a section that has only turned the two columns across the axis are it already; a strained one takes Newton steps, which
+/// square what is missed.
+fn rotation_of(moved: &Matrix3<f64>, plane: &Matrix3<f64>) -> UnitQuaternion<f64> {
+    const STEPS: usize = 3;
+    let [yy, yz, zz] = [plane[(1, 1)], plane[(1, 2)], plane[(2, 2)]];
+    let per = 1.0 / (yy * zz - yz * yz);
+    let (by_y, by_z) = (moved.column(1), moved.column(2));
+    let across = (by_y * zz - by_z * yz) * per;
+    let up = (by_z * yy - by_y * yz) * per;
+    let axis = across.cross(&up).normalize();
+    let across = (across - axis * axis.dot(&across)).normalize();
+    let columns = Matrix3::from_columns(&[axis, across, axis.cross(&across)]);
+    let mut turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(columns));
+    for _ in 0..STEPS {
+        let along = moved * turn.to_rotation_matrix().transpose();
+        let left = Vector3::new(
+            along[(2, 1)] - along[(1, 2)],
+            along[(0, 2)] - along[(2, 0)],
+            along[(1, 0)] - along[(0, 1)],
+        );
+        let Some(inverse) = stiff(&along).try_inverse() else { break };
+        let by = inverse * left * 0.5;
+        turn = UnitQuaternion::new_normalize(Quaternion::new(1.0, by.x, by.y, by.z)) * turn;
+    }
+    turn
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kinematics::vec3::norm;
 
     /// Any four nodes of unequal areas: a rigid motion is found exactly, and loads do the work of what they stand for on any
     /// displacements, rigid or not.
@@ -84,10 +205,13 @@ mod tests {
             (2, [0.1, 0.015, 0.015], 0.0),
         ];
         let section = RotorSection::new(&nodes).unwrap();
+        let aside = [0.0, 4e-3, -7e-3];
+        let section = section.clone().about(add(section.centre, aside));
         let place = |node: u32| nodes.iter().find(|(n, ..)| *n == node).unwrap().1;
         let [shift, turn] = [[1e-3, -2e-3, 5e-4], [0.02, -0.01, 0.03]];
         let rigid = |n: u32| add(shift, cross(turn, sub(place(n), section.centre)));
         let [mean, rotation] = section.motion(rigid);
+        let shift = add(shift, cross(turn, aside));
         for i in 0..3 {
             assert!((mean[i] - shift[i]).abs() <= 1e-17 && (rotation[i] - turn[i]).abs() <= 1e-15);
         }
@@ -99,5 +223,66 @@ mod tests {
         assert!((work - expected).abs() <= 1e-12 * expected.abs(), "{work} {expected}");
         // On one line there is no rotation about it.
         assert_eq!(RotorSection::new(&nodes[..2]), None);
+    }
+
+    /// Nodes across the axis that have moved, turned by more than a turn's half and been strained by a thousandth: the rotation is
+    /// where the squares are least, its rate is that of differences, and loads keep power, force and moment.
+    #[test]
+    fn a_section_that_spins_has_the_rotation_that_fits_best() {
+        let nodes: [(u32, Vec3, f64); 5] = [
+            (0, [0.1, 0.012, 0.0], 2.0),
+            (1, [0.1, -0.004, 0.01], 1.0),
+            (2, [0.1, 0.0, -0.013], 0.5),
+            (3, [0.1, 0.006, 0.009], 0.7),
+            (4, [0.1, -0.011, -0.002], 1.3),
+        ];
+        let section = RotorSection::new(&nodes).unwrap();
+        let beside = add(section.centre, [0.0, 3e-3, -1e-3]);
+        let section = section.about(beside);
+        let at = |node: u32| nodes[node as usize].1;
+        // Where a node is at a time: spun about an axis that moves, and strained.
+        let now = |node: u32, t: f64| -> Vec3 {
+            let (x, n) = (sub(at(node), section.centre), f64::from(node));
+            let along = x[0] + 1e-5 * (n + t);
+            let across = x[1] * (1.0 + 1e-3 * n * (1.0 + t));
+            let strained = Vector3::new(along, across, x[2] - 1e-3 * x[1] * t + 1e-6 * n * n);
+            let turn =
+                UnitQuaternion::from_scaled_axis(Vector3::new(4.0 + 30.0 * t, 0.1, -0.2 * t));
+            add((turn * strained).into(), [0.1 + t, 2e-3, -3.0 * t])
+        };
+        let h = 1e-6;
+        let rate = |node: u32| scale(sub(now(node, h), now(node, -h)), 0.5 / h);
+        let placed = |t: f64| section.place(|node| sub(now(node, t), at(node)), rate);
+        let place = placed(0.0);
+        let arm: Vec3 = (place.orientation * Vector3::from(section.point)).into();
+        let mean = sub(place.centre, arm);
+        let squares = |turn: UnitQuaternion<f64>| -> f64 {
+            let off = |node: u32, arm: &Vec3| {
+                let there: Vec3 = (turn * Vector3::from(*arm)).into();
+                sub(sub(now(node, 0.0), mean), there)
+            };
+            section.nodes.iter().map(|(node, part, arm)| part * norm(off(*node, arm)).powi(2)).sum()
+        };
+        let least = squares(place.orientation);
+        for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+            for by in [1e-4, -1e-4] {
+                let turned = UnitQuaternion::from_scaled_axis(axis * by) * place.orientation;
+                assert!(squares(turned) > least, "{axis} {by}");
+            }
+        }
+        let spin = Vector3::from(place.spin);
+        let turned = (placed(h).orientation * placed(-h).orientation.inverse()).scaled_axis();
+        // Rounding of 1e-16 over h, and h² of a turn of 30 rad/s.
+        assert!((turned / (2.0 * h) - spin).norm() <= 1e-8 * spin.norm(), "{spin} {turned}");
+        let [force, moment] = [[3.0, -1.0, 2.0], [0.1, 0.2, -0.4]];
+        let (mut power, mut sum, mut about) = (0.0, [0.0; 3], [0.0; 3]);
+        for (node, of) in section.forces_at(&place, force, moment) {
+            power += dot(of, rate(node));
+            sum = add(sum, of);
+            about = add(about, cross(sub(now(node, 0.0), place.centre), of));
+        }
+        let expected = dot(force, place.velocity) + dot(moment, place.spin);
+        assert!((power - expected).abs() <= 1e-12 * expected.abs(), "{power} {expected}");
+        assert!(norm(sub(sum, force)) <= 1e-14 && norm(sub(about, moment)) <= 1e-14, "{about:?}");
     }
 }

@@ -130,6 +130,17 @@ pub struct SceneBeam {
     /// Where, kg·m, and rad from Y towards Z.
     pub unbalances: Vec<(f64, f64, f64)>,
     pub watched: Vec<(String, f64)>,
+    /// Where a run steps its elements themselves.
+    pub in_elements: Option<RaceJoint>,
+}
+
+/// What joins a race, or a disc, to its section of a shaft in elements (4.2.3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RaceJoint {
+    /// N/m.
+    pub stiffness: f64,
+    /// N·s/m.
+    pub damping: f64,
 }
 
 /// Displacements and turns along and about the axes of a spring's first body.
@@ -267,6 +278,12 @@ impl AssemblyScene {
     pub fn has_bushings_in_elements(&self) -> bool {
         let mut bushings = self.springs.iter().filter_map(|spring| spring.bushing.as_deref());
         bushings.any(|of| of.elements.is_some())
+    }
+
+    /// Whether elements of a shaft move beside the bearings.
+    pub fn has_shafts_in_elements(&self) -> bool {
+        let mut beams = self.bodies.iter().filter_map(|body| body.beam.as_deref());
+        beams.any(|beam| beam.in_elements.is_some())
     }
 
     pub fn run(&self) -> Option<&RunSettings> {

@@ -4,7 +4,9 @@ use crate::scene::key_table::{DENSITY, DENSITY_HINT, FORCE, LOAD_HINT, STEEL_DEN
 use crate::scene::key_table_dynamics::{INERTIA, INERTIA_HINT, MASS, MASS_HINT};
 use crate::scene::key_table_solid::DAMPED_MOTIONS;
 use crate::scene::keys::{Key, Kind, Need, Range, Table, closed, list_table, open, table};
-use crate::scene::units::Dimension::{Angle, Frequency, Length, Rate, Stress, Unbalance};
+use crate::scene::units::Dimension::{
+    Angle, Damping, Frequency, Length, Rate, Stiffness, Stress, Unbalance,
+};
 use Need::{Default, Depends, Optional, Required};
 
 const PLACE: Kind = Kind::Quantity(Length, closed(-1e5, 1e5, "mm"));
@@ -20,6 +22,7 @@ const POISSON: Kind =
     Kind::Number(Range { low: 0.0, high: 0.5, low_included: true, high_included: false, unit: "" });
 const BRAKE: Kind = Kind::Quantity(Rate, closed(0.0, 1e9, "1/s"));
 const AROUND: Kind = Kind::Integer { low: 8, high: 1000 };
+const MESH_METHODS: &[&str] = &["reduced", "explicit"];
 const RADIAL: Kind = Kind::Integer { low: 1, high: 100 };
 const OF_DISC: Need = Depends("with `mass`: 0 unless given");
 const OF_RING: Need = Depends("`outer_diameter` and `width`, or `mass`");
@@ -42,6 +45,9 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("body.beam.mesh.longest_layer", SIZE, Depends("one layer of cells from station to station unless given"), "No layer of cells is longer than this along the axis. Stations are 32 intervals along the shaft, more where something takes hold of it.").hint(SIZE_HINT).example_of("5 mm"),
     Key::new("body.beam.mesh.around", AROUND, Default { value: "16", reason: "ten-node elements follow the circle to 1e-4" }, "Cells around: a multiple of 8."),
     Key::new("body.beam.mesh.radial", RADIAL, Default { value: "1", reason: "ten-node elements bend without more" }, "Cells in the ring about the square core of the innermost radius; rings outside it get cells of that size."),
+    Key::new("body.beam.mesh.method", Kind::Choice(MESH_METHODS), Default { value: "reduced", reason: "seconds in the place of minutes, within 0.1 % below 2 kHz" }, "How the elements are solved in a run: reduced to the stations, or all of them in explicit steps as in the source (4.2.2). Equilibria and `modes` are those of the reduced mesh either way."),
+    Key::new("body.beam.mesh.race_stiffness", Kind::Quantity(Stiffness, closed(1.0, 1e13, "N/m")), Default { value: "2e9 N/m", reason: "as the source (4.2.3)" }, "With `method = \"explicit\"`: spring between the centre of a race, or of a disc, and that of its section, along each axis; against turns it has as much on an arm of the shaft's diameter.").hint("the source has 2e9 N/m"),
+    Key::new("body.beam.mesh.race_damping", Kind::Quantity(Damping, closed(0.0, 1e9, "N s/m")), Default { value: "200 N s/m", reason: "small, as the source asks for: a hundredth of critical for a race of 50 g" }, "Dashpot beside that spring, against turns on the same arm.").hint("the source names a small one without a figure"),
     Key::new("body.beam.disc.at", PLACE, Required, "Where its centre sits.").hint(PLACE_HINT).example_of("0 mm"),
     Key::new("body.beam.disc.mass", MASS, OF_RING, "Mass of the disc, or of a race that sits there.").hint(MASS_HINT).example_of("20 kg"),
     Key::new("body.beam.disc.axial", INERTIA, OF_DISC, "Its moment of inertia about the axis.").hint(INERTIA_HINT).example_of("0.1 kg m^2"),

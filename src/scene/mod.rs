@@ -55,6 +55,7 @@ pub mod resolved;
 pub mod rubber_problem;
 pub mod schema;
 mod scopes;
+pub mod shaft_problem;
 pub mod solid;
 pub mod solid_mesh;
 pub mod solid_problem;

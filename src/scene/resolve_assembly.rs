@@ -14,7 +14,7 @@ use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_bushing::bushing;
 use crate::scene::resolve_dynamics::{check_inertia, foundation, rotating_load, rotation};
 use crate::scene::resolve_housing::in_housing;
-use crate::scene::resolve_shaft::{beam, refuse_places_off_shafts};
+use crate::scene::resolve_shaft::{beam, refuse_places_off_shafts, refuse_springs_on_elements};
 use crate::scene::resolve_solid::{item_number, missing};
 use crate::scene::resolved::{DefaultUsed, Scene};
 use crate::scene::scopes::no_such;
@@ -68,6 +68,7 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
     name_what_holds(&mut bearings, &springs);
     let scene = AssemblyScene { bearings, bodies: resolved, springs, defaults_used };
     refuse_free_bodies(document, &scene)?;
+    refuse_springs_on_elements(document, &scene)?;
     if scene.housing_method() == Some(HousingMethod::QuasiStatic) {
         refuse_inertia(document, &scene)?;
     }

@@ -2,7 +2,9 @@
 
 use crate::ch4_rotor::disc::Inertia as DiscInertia;
 use crate::mesh::Order;
-use crate::scene::assembly::{Carrier, PlacedBearing, SceneBeam, SceneBody};
+use crate::scene::assembly::{
+    AssemblyScene, Carrier, PlacedBearing, RaceJoint, SceneBeam, SceneBody, SpringAt,
+};
 use crate::scene::document::{Document, ItemRef};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::Reader;
@@ -73,6 +75,7 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
     }
     let mut beam = Beam::new(segments);
     beam.mesh = mesh(reader)?;
+    let in_elements = in_elements(reader)?;
     let start = reader.given_number("body.beam.start").unwrap_or_else(|| -0.5 * beam.length());
     let length = beam.length();
     let at = |item: ItemRef| -> Result<f64, SceneError> {
@@ -141,6 +144,7 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
             .map(&mut watch)
             .collect::<Result<_, SceneError>>()?,
         beam,
+        in_elements,
     }))
 }
 
@@ -207,6 +211,105 @@ fn mesh(reader: &mut Reader) -> Result<Option<ShaftMesh>, SceneError> {
         around,
         radial,
     }))
+}
+
+/// What joins races to sections, where a run steps the elements themselves.
+fn in_elements(reader: &mut Reader) -> Result<Option<RaceJoint>, SceneError> {
+    const JOINT: [&str; 2] = ["body.beam.mesh.race_stiffness", "body.beam.mesh.race_damping"];
+    let document = reader.document;
+    let refused = |key: &str, reason: &str, advice: &str| {
+        let (reason, advice) = (reason.into(), advice.into());
+        Err(document.error(key, Problem::Refused { reason, advice }))
+    };
+    let is_meshed = document.first_below("body.beam.mesh").is_some();
+    if !is_meshed || reader.choice("body.beam.mesh.method") != Some("explicit") {
+        return match JOINT.into_iter().find(|key| reader.is_given(key)) {
+            Some(key) => refused(
+                key,
+                "races sit on the sections themselves of a shaft that is reduced",
+                "write method = \"explicit\" in [body.NAME.beam.mesh], or leave it out",
+            ),
+            None => Ok(None),
+        };
+    }
+    for (key, reason, advice) in [
+        (
+            "body.beam.below",
+            "elements in explicit steps have all of their frequencies",
+            "leave it out",
+        ),
+        ("body.torque", "a shaft in explicit steps turns at a given speed", "write `speed`"),
+    ] {
+        if document.value(key).is_some() {
+            return refused(key, reason, advice);
+        }
+    }
+    if document.value("body.speed").is_none() {
+        let advice = "write speed = \"1000 rpm\" in [body.NAME]";
+        return refused(
+            "body.beam.mesh.method",
+            "elements in explicit steps turn at a given speed",
+            advice,
+        );
+    }
+    // Its body is the elements: there is no rigid one to push or hold.
+    for part in ["x", "y", "z", "tilt_y", "tilt_z", "foundation"] {
+        let part = format!("body.{part}");
+        let given =
+            document.first_below(&part).or_else(|| document.value(&part).map(|_| &part[..]));
+        if let Some(key) = given {
+            let reason = "the shaft is its elements, which loads meet at sections";
+            return refused(
+                key,
+                reason,
+                "write load = [{ at = \"0 mm\", z = \"-300 N\" }] in [body.NAME.beam]",
+            );
+        }
+    }
+    let number = |key: &str| reader.given_number(key).unwrap_or(0.0);
+    let (damping, internal) = (number("body.beam.damping"), number("body.beam.internal_damping"));
+    if damping > 0.0 && internal > 0.0 {
+        let advice = "keep one of them, or write method = \"reduced\" in [body.NAME.beam.mesh]";
+        return refused("body.beam.internal_damping", "elements have `damping` as well", advice);
+    }
+    if damping > 0.0
+        && document.value("body.beam.damped_motion").is_some_and(|_| {
+            reader.choice_if_given("body.beam.damped_motion") == Some("relative-to-rigid")
+        })
+    {
+        let reason = "elements know motion in the room and motion against the spinning shaft";
+        let advice = "leave it out, or write `internal_damping`";
+        return refused("body.beam.damped_motion", reason, advice);
+    }
+    let [stiffness, damping] = JOINT.map(|key| reader.number(key).unwrap_or(0.0));
+    Ok(Some(RaceJoint { stiffness, damping }))
+}
+
+/// Nothing but bearings takes hold of a shaft in elements.
+///
+/// # Errors
+/// The first spring that does.
+pub(super) fn refuse_springs_on_elements(
+    document: &Document,
+    scene: &AssemblyScene,
+) -> Result<(), SceneError> {
+    for spring in &scene.springs {
+        for (end, key) in spring.ends.iter().zip(["spring.from", "spring.to"]) {
+            let SpringAt::Body(index) = end.at else { continue };
+            let of = &scene.bodies[index];
+            if of.beam.as_ref().is_none_or(|beam| beam.in_elements.is_none()) {
+                continue;
+            }
+            let reason = format!(
+                "body {} is elements in explicit steps, which bearings alone take hold of",
+                of.name
+            );
+            let advice = "write method = \"reduced\" in [body.NAME.beam.mesh]".into();
+            let problem = Problem::Refused { reason, advice };
+            return Err(document.scoped(&spring.name).error(key, problem));
+        }
+    }
+    Ok(())
 }
 
 fn required(item: ItemRef, name: &str, example: &str) -> Result<f64, SceneError> {

@@ -110,7 +110,7 @@ fn settle(letter: char, cells: [usize; 3], order: Order) -> Result<Settled, Case
     let clock = Instant::now();
     let mut housed = Exchange::new(
         problem,
-        vec![SolidPart { name: None, model, displacement }],
+        vec![SolidPart::displaced(None, model, displacement)],
         vec![seat],
         &options,
     )?;

@@ -316,7 +316,7 @@ fn explicit(
     };
     let displacement = whole.bore.displacement(&start.loads);
     let watch = Stopwatch::start();
-    let solid = SolidPart { name: None, model: whole.model.clone(), displacement };
+    let solid = SolidPart::displaced(None, whole.model.clone(), displacement);
     let mut housed = Exchange::new(problem, vec![solid], vec![seat], &options)?;
     let windows = housed.divide(INTERVAL)?;
     let place = |housed: &Exchange| {

@@ -163,7 +163,7 @@ impl Shaft {
             let name = self.name(index);
             solids.push(match displacements.next() {
                 Some(displacement) => {
-                    SolidPart { name: name.clone(), model: setup.model.clone(), displacement }
+                    SolidPart::displaced(name.clone(), setup.model.clone(), displacement)
                 }
                 None => SolidPart::undeformed(name.clone(), setup.model.clone()),
             });

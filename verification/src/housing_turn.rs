@@ -163,7 +163,7 @@ pub fn explicit(
     let seat = Seat { radius, ..seat(mesh)? };
     let mut housed = Exchange::new(
         problem,
-        vec![SolidPart { name: None, model, displacement }],
+        vec![SolidPart::displaced(None, model, displacement)],
         vec![seat],
         &options(),
     )?;

@@ -110,7 +110,7 @@ fn run_with([young, damping]: [f64; 2]) -> Result<History, CaseError> {
     let displacement = bore.displacement(&fitted.loads);
     let mut housed = Exchange::new(
         problem,
-        vec![SolidPart { name: None, model, displacement }],
+        vec![SolidPart::displaced(None, model, displacement)],
         vec![seat],
         &options,
     )?;

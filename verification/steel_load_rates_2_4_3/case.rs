@@ -115,7 +115,7 @@ fn moved(
     let options = housing_turn::options();
     let mut housed = Exchange::new(
         problem,
-        vec![SolidPart { name: None, model: model.clone(), displacement }],
+        vec![SolidPart::displaced(None, model.clone(), displacement)],
         vec![seat],
         &options,
     )?;

@@ -7,11 +7,12 @@ use bearing_dynamics::output::session::HousedParts;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::about::About;
 use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::scene::bushing_problem::BushingElements;
 use bearing_dynamics::scene::housing::HousingMethod;
+use bearing_dynamics::scene::shaft_problem::ShaftElements;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
 use bearing_dynamics::solver::dynamics::equilibrium::{conditions, static_assembly};
 use bearing_dynamics::solver::dynamics::run::RunOptions;
-use bearing_dynamics::solver::housing::bonded::BondedPart;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::course::{CourseProblem, CourseSeat, Moment};
 use bearing_dynamics::solver::housing::course_search::CourseSearch;
@@ -48,12 +49,26 @@ pub fn refuse(document: &Document, scene: &AssemblyScene, housings: &[Housing]) 
     if method == Some(HousingMethod::QuasiStatic) {
         refuse_steps(document)?;
     }
-    if scene.has_bushings_in_elements() && method.is_some_and(|of| of != HousingMethod::Explicit) {
+    let in_elements = [
+        (scene.has_bushings_in_elements(), "a bushing", "the bushing's table"),
+        (scene.has_shafts_in_elements(), "a shaft", "[body.NAME.beam.mesh]"),
+    ];
+    if let Some((_, what, table)) = in_elements.into_iter().find(|(is, ..)| *is)
+        && method.is_some_and(|of| of != HousingMethod::Explicit)
+    {
         let place = document.place_of(&About::key("housing.method"));
         return Err(format!(
-            "{place}: housing.method: refused: a bushing of the scene is solved in elements, beside which housings move \
-             in explicit steps only. Hint: write method = \"explicit\" in [housing], or method = \"reduced\" in the \
-             bushing's table"
+            "{place}: housing.method: refused: {what} of the scene is solved in elements, beside which housings move in \
+             explicit steps only. Hint: write method = \"explicit\" in [housing], or method = \"reduced\" in {table}"
+        )
+        .into());
+    }
+    let from_equilibrium = |of: &Housing| of.scene.housing.from_equilibrium;
+    if scene.has_shafts_in_elements() && housings.iter().any(from_equilibrium) {
+        let place = document.place_of(&About::key("housing.start"));
+        return Err(format!(
+            "{place}: housing.start: refused: a shaft of the scene is solved in elements, which start straight. Hint: \
+             leave `start` out, or write method = \"reduced\" in [body.NAME.beam.mesh]"
         )
         .into());
     }
@@ -129,17 +144,18 @@ pub fn equilibrium<'b>(
     Ok(Equilibrium { still, moment, in_bores: Some((course, search)) })
 }
 
-/// Bodies, bearings, solids, seats and bushings for steps of their own.
+/// Bodies, bearings, solids, seats, bushings and shafts for steps of their own.
 pub fn explicit<'p>(
     scene: &AssemblyScene,
     mut assembly: Assembly,
     housings: &[Housing],
-    bushings: Vec<BondedPart<'p>>,
+    (bushings, shafts): (&'p [BushingElements], &[ShaftElements]),
     threads: usize,
 ) -> Fallible<HousedParts<'p>> {
     let start = start_of_steps(&mut assembly, housings)?;
-    let parts = parts(scene, assembly, housings, start, threads)?;
-    Ok(HousedParts { bushings, ..parts })
+    let mut parts = parts(scene, assembly, housings, start, threads)?;
+    parts.solids.extend(shafts.iter().map(|shaft| shaft.part.clone()));
+    Ok(HousedParts { bushings: bushings.iter().map(BushingElements::part).collect(), ..parts })
 }
 
 /// The same from undeformed housings, whatever the scene says.
@@ -166,13 +182,13 @@ fn parts<'p>(
         seats.push(housing.seat(assembly.bearings[housing.bearing].mounts[1].body, index));
         let (name, model) = (housing.name.clone(), housing.setup.model.clone());
         solids.push(match start.next() {
-            Some(displacement) => SolidPart { name, model, displacement },
+            Some(displacement) => SolidPart::displaced(name, model, displacement),
             None => SolidPart::undeformed(name, model),
         });
     }
     // All together are balanced, not the bearings alone.
     let bearing = RunOptions { energy_limit: f64::INFINITY, ..run.options };
-    let options = first.map_or(ExchangeOptions::on_rubber(bearing), |of| ExchangeOptions {
+    let options = first.map_or(ExchangeOptions::without_housings(bearing), |of| ExchangeOptions {
         solid_fraction: of.step_fraction,
         seat_phase: of.window_phase,
         bearing,

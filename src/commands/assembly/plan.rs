@@ -15,6 +15,7 @@ use bearing_dynamics::output::session::{HousedParts, RunRequest, table_size};
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
 use bearing_dynamics::scene::bushing_problem::{BushingElements, take_bushings};
 use bearing_dynamics::scene::housing::HousingMethod;
+use bearing_dynamics::scene::shaft_problem::{ShaftElements, take_shafts};
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{CageInRun, Document, RunSettings};
 use bearing_dynamics::solver::clock::{rounded, to_digits, whole_number};
@@ -27,7 +28,7 @@ use bearing_dynamics::solver::housing::condensed::Sizes;
 use bearing_dynamics::solver::housing::stepped::SteppedSolid;
 use bearing_dynamics::solver::plan::motion::{self, Planned};
 use bearing_dynamics::solver::plan::rubber;
-use bearing_dynamics::solver::plan::solid::Method;
+use bearing_dynamics::solver::plan::solid::{Method, stepped_shaft};
 use bearing_dynamics::solver::plan::statics::{self, ASKED_FOR};
 use bearing_dynamics::solver::plan::{Item, Stage, Subject};
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
@@ -77,8 +78,9 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
     if !housings.is_empty() {
         notes.extend(equilibrium_notes(scene, &housings)?);
     }
-    // With bushings in elements the steps of all have been told.
-    let told = housings.is_empty() || scene.has_bushings_in_elements();
+    // With bushings or shafts in elements the steps of all have been told.
+    let in_elements = scene.has_bushings_in_elements() || scene.has_shafts_in_elements();
+    let told = housings.is_empty() || in_elements;
     if let (Some(settings), false) = (scene.run(), told) {
         notes.push(explicit_note(scene, &housings, settings));
     }
@@ -106,31 +108,36 @@ fn of_steps(
         None => scene.assembly()?,
     };
     let bushings = take_bushings(scene, &mut assembly)?;
+    let shafts = take_shafts(scene, &mut assembly)?;
+    let elements = (&bushings[..], &shafts[..]);
+    let in_elements = !(bushings.is_empty() && shafts.is_empty());
     // Races without their housings or bushings would have nothing to hold them.
-    let alone = bushings.is_empty() && (housings.is_empty() || reduced.is_some());
-    let (request, choice) = if bushings.is_empty() {
-        planned_request(scene, settings, &assembly, None)
-    } else {
+    let alone = !in_elements && (housings.is_empty() || reduced.is_some());
+    let (request, choice) = if in_elements {
         (run::request(scene.common(), settings), None)
+    } else {
+        planned_request(scene, settings, &assembly, None)
     };
-    let items = stages(scene, (housings, &bushings), &assembly, &request, choice.as_ref());
+    let items = stages(scene, (housings, elements), &assembly, &request, choice.as_ref());
     let mut notes = Vec::new();
     if alone {
         notes.extend(step_lines(&assembly, &request));
     }
-    if !bushings.is_empty() {
-        let parts = bushings.iter().map(BushingElements::part).collect();
-        let parts = housings::explicit(scene, assembly.clone(), housings, parts, 1)?;
+    if in_elements {
+        let parts = housings::explicit(scene, assembly.clone(), housings, elements, 1)?;
         notes.push(note("step", &windows_text(parts, settings)?));
     }
     notes.push(size_line(&assembly, &request));
     Ok((items, notes))
 }
 
+/// Bushings and shafts in elements.
+pub type Elements<'e> = (&'e [BushingElements], &'e [ShaftElements]);
+
 /// Items of a run in steps.
 pub fn stages(
     scene: &AssemblyScene,
-    (housings, bushings): (&[Housing], &[BushingElements]),
+    (housings, (bushings, shafts)): (&[Housing], Elements),
     assembly: &Assembly,
     request: &RunRequest,
     choice: Option<&Choice>,
@@ -142,7 +149,7 @@ pub fn stages(
     let left_out: Vec<Option<String>> = scene.bearings.iter().map(left_out).collect();
     let left_out: Vec<Option<&str>> = left_out.iter().map(Option::as_deref).collect();
     let mut options = request.options;
-    if !(housings.is_empty() && bushings.is_empty()) {
+    if !(housings.is_empty() && bushings.is_empty() && shafts.is_empty()) {
         // Bearings roll in equilibrium with races that are held where they sit in their housings.
         options.start = Start::Equilibrium;
     }
@@ -158,8 +165,13 @@ pub fn stages(
             solids.extend(motion::stepped_seat(assembly, index, seat, friction));
         }
     }
+    for (index, shaft) in shafts.iter().enumerate() {
+        let of = (&shaft.name[..], &shaft.part);
+        solids.extend(stepped_shaft(assembly, housings.len() + index, of, &shaft.mesh_text()));
+    }
     for (index, bushing) in bushings.iter().enumerate() {
-        solids.extend(rubber::bonded(&bushing.planned(housings.len() + index)));
+        let index = housings.len() + shafts.len() + index;
+        solids.extend(rubber::bonded(&bushing.planned(index)));
     }
     let mut items = motion::items(Planned {
         assembly,
@@ -310,7 +322,8 @@ fn windows_text(parts: HousedParts, run: &RunSettings) -> Result<String, Box<dyn
     let steps = |part: &SteppedSolid| {
         let of = part.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
         let limit = part.solid.limit.step;
-        format!("{} of the housing{of} (limit {limit:.3e} s)", steps_of(part.steps))
+        let what = if part.shaft.is_some() { "shaft" } else { "housing" };
+        format!("{} of the {what}{of} (limit {limit:.3e} s)", steps_of(part.steps))
     };
     let mut solids: Vec<String> = housed.solids.iter().map(steps).collect();
     let of_bushing =

@@ -14,6 +14,7 @@ use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::bushing_problem::{BushingElements, take_bushings};
 use bearing_dynamics::scene::dynamics::DynamicsError;
 use bearing_dynamics::scene::housing::HousingMethod;
+use bearing_dynamics::scene::shaft_problem::{ShaftElements, take_shafts};
 use bearing_dynamics::scene::solid::{Law, RubberScene, RunSteps, SolidRun};
 use bearing_dynamics::scene::solid_mesh::BuiltMesh;
 use bearing_dynamics::scene::{Document, RunPlot, RunSettings, Scene, SolidScene, Subject};
@@ -37,10 +38,11 @@ pub(super) enum Prepared<'s> {
     Bearings {
         scene: &'s AssemblyScene,
         settings: RunSettings,
-        /// With the housings that are reduced, without the springs of bushings in elements.
+        /// With the housings that are reduced, without springs of bushings and shafts in elements.
         assembly: Box<Assembly>,
         housings: Vec<Housing>,
         bushings: Vec<BushingElements>,
+        shafts: Vec<ShaftElements>,
         way: Way,
     },
     Solid {
@@ -63,7 +65,7 @@ pub(super) enum Prepared<'s> {
 pub(super) enum Way {
     /// In steps, all housings rigid.
     Rigid,
-    /// Bearings, and housings or bushings, in steps of their own.
+    /// Bearings, and housings, bushings or shafts, in steps of their own.
     Explicit,
     Reduced(Box<Shapes>),
     /// Through equilibria; and the wall time that condensing took, s.
@@ -126,7 +128,7 @@ impl<'s> Prepared<'s> {
         let settings = scene.run().cloned().ok_or(NO_END)?;
         let housings = housings::prepare(document, scene)?;
         housings::refuse(document, scene, &housings)?;
-        let in_elements = scene.has_bushings_in_elements();
+        let in_elements = scene.has_bushings_in_elements() || scene.has_shafts_in_elements();
         let way = match scene.housing_method() {
             None if in_elements => Way::Explicit,
             None => Way::Rigid,
@@ -143,18 +145,25 @@ impl<'s> Prepared<'s> {
             _ => scene.assembly()?,
         });
         let bushings = take_bushings(scene, &mut assembly)?;
-        Ok(Prepared::Bearings { scene, settings, assembly, housings, bushings, way })
+        let shafts = take_shafts(scene, &mut assembly)?;
+        Ok(Prepared::Bearings { scene, settings, assembly, housings, bushings, shafts, way })
     }
 
     /// What moves.
     pub fn parts(&self, threads: usize) -> Fallible<Parts<'_>> {
         Ok(match self {
             Prepared::Bearings {
-                scene, assembly, housings, bushings, way: Way::Explicit, ..
+                scene,
+                assembly,
+                housings,
+                bushings,
+                shafts,
+                way: Way::Explicit,
+                ..
             } => {
-                let bushings = bushings.iter().map(BushingElements::part).collect();
                 let assembly = (**assembly).clone();
-                let parts = housings::explicit(scene, assembly, housings, bushings, threads)?;
+                let elements = (&bushings[..], &shafts[..]);
+                let parts = housings::explicit(scene, assembly, housings, elements, threads)?;
                 Parts::Housed(Box::new(parts))
             }
             Prepared::Bearings { scene, housings, way: Way::Course(bores, _), .. } => {
@@ -313,12 +322,15 @@ impl<'s> Prepared<'s> {
         seconds: Vec<(String, f64)>,
     ) -> Fallible<RunRecord> {
         match self {
-            Prepared::Bearings { scene, settings, assembly, housings, bushings, way } => {
+            Prepared::Bearings { scene, settings, assembly, housings, bushings, shafts, way } => {
                 // With housings a run that is extended has the bytes of an unbroken one.
                 let choice = choice.filter(|_| housings.is_empty());
                 let planned = match way {
                     Way::Course(..) => plan::of_course(scene, housings, settings)?,
-                    _ => plan::stages(scene, (housings, bushings), assembly, request, choice),
+                    _ => {
+                        let elements = (&bushings[..], &shafts[..]);
+                        plan::stages(scene, (housings, elements), assembly, request, choice)
+                    }
                 };
                 let mut record = assembly::record(scene, planned, seconds)?;
                 record.ran.whole.add(Stage::IntegratorChoice, u64::from(choice.is_some()));

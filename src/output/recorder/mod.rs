@@ -4,6 +4,7 @@ mod bearing;
 mod course;
 mod rubber;
 pub mod seat;
+mod shaft;
 mod solid;
 
 pub use solid::{length, mean, probe_columns, sum};

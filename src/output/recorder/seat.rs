@@ -1,6 +1,6 @@
 //! Columns of a seat in a housing, the same whichever way it is solved, and of housings in explicit steps.
 
-use super::{Recorder, bearing::connection_columns, solid::check_finite};
+use super::{Recorder, bearing::connection_columns, shaft, solid::check_finite};
 use crate::ch2_housing::bore_contact::ContactSum;
 use crate::kinematics::vec3::Vec3;
 use crate::output::series::Column;
@@ -101,7 +101,8 @@ pub fn prefix(name: &Option<String>) -> String {
 /// springs, and their energies.
 pub(super) fn explicit_columns(parts: &HousedParts) -> Vec<Column> {
     let HousedParts { solids, seats, bushings, .. } = parts;
-    let of_solids: Vec<String> = solids.iter().map(|solid| prefix(&solid.name)).collect();
+    let housings = solids.iter().filter(|solid| solid.shaft.is_none());
+    let of_solids: Vec<String> = housings.map(|solid| prefix(&solid.name)).collect();
     let by_solid: Vec<&Seat> = (0..solids.len())
         .flat_map(|index| seats.iter().filter(move |s| s.solid == index))
         .collect();
@@ -121,6 +122,7 @@ pub(super) fn explicit_columns(parts: &HousedParts) -> Vec<Column> {
         let energies = OF_BUSHING.map(|of| Column::new(format!("{name}_{of}"), "J"));
         columns.extend(energies);
     }
+    columns.extend(solids.iter().flat_map(shaft::columns));
     columns.push(Column::new("energy_coupled_residual", "J"));
     for seat in &of_seats {
         let name = |axis| format!("{seat}housing_impulse_on_outer_{axis}");
@@ -168,7 +170,9 @@ impl Recorder {
         }
         self.record(&housed.simulation, &snapshot.simulation);
         // In the order of [`explicit_columns`].
-        let solids = || snapshot.solids.iter().map(|solid| &solid.ledger);
+        let parts = || housed.solids.iter().zip(&snapshot.solids);
+        let housings = || parts().filter(|(part, _)| part.shaft.is_none());
+        let solids = || housings().map(|(_, solid)| &solid.ledger);
         let seats = || snapshot.solids.iter().flat_map(|solid| &solid.seats);
         let values = &mut self.values;
         seats().for_each(|seat| values.extend(SeatRow::of_contact(&seat.contact).values()));
@@ -183,6 +187,8 @@ impl Recorder {
             // Up to where the rubber has the bodies, so that the columns sum up to the residual.
             values.extend([of.dissipated, of.beyond, of.work + of.to_come]);
         }
+        parts().for_each(|(part, now)| self.record_shaft(part, now));
+        let values = &mut self.values;
         values.push(residual);
         values.extend(housed.seats().flat_map(|seat| seat.impulse));
         let rough = housed.seats().zip(seats()).filter(|(seat, _)| seat.friction.is_some());

@@ -99,6 +99,9 @@ pub struct ExchangeEntry {
     pub bushings: Option<(String, Vec<usize>)>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub friction: Option<FrictionEntry>,
+    /// Of each solid that is a shaft: work and heat of its joints, work of its unbalances, J; of others none.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub shafts: Vec<Vec<f64>>,
     /// What the ledger of all held at the start, J.
     pub first: f64,
 }
@@ -161,6 +164,7 @@ impl SolidEntry {
 impl ExchangeEntry {
     pub(super) fn of(kept: &ExchangeCheckpoint, windows: &Windows) -> ExchangeEntry {
         let lengths: Vec<usize> = kept.bushings.iter().map(Vec::len).collect();
+        let shafts: Vec<Vec<f64>> = kept.solids.iter().map(|part| part.shaft.clone()).collect();
         let file = || bushings_name(kept.exchanges);
         let seats = |part: &SteppedCheckpoint| part.seats.iter().map(SeatEntry::of).collect();
         ExchangeEntry {
@@ -168,6 +172,7 @@ impl ExchangeEntry {
             seats: kept.solids.iter().map(seats).collect(),
             bushings: (!lengths.is_empty()).then(|| (file(), lengths)),
             friction: FrictionEntry::of(kept),
+            shafts: if shafts.iter().all(Vec::is_empty) { Vec::new() } else { shafts },
             first: kept.first,
         }
     }
@@ -175,7 +180,9 @@ impl ExchangeEntry {
     pub(super) fn numbers(&self) -> Vec<f64> {
         let of = |seat: &SeatEntry| seat.impulse.into_iter().chain(seat.growth).chain([seat.work]);
         let friction = self.friction.iter().flat_map(FrictionEntry::numbers);
-        self.seats.iter().flatten().flat_map(of).chain([self.first]).chain(friction).collect()
+        let shafts = self.shafts.iter().flatten().copied();
+        let seats = self.seats.iter().flatten().flat_map(of);
+        seats.chain([self.first]).chain(friction).chain(shafts).collect()
     }
 }
 
@@ -300,11 +307,17 @@ fn exchange(
         if seats.len() != parts.seats.iter().filter(|seat| seat.solid == index).count() {
             return Err(LACKS);
         }
+        let shaft = exchange.shafts.get(index).cloned().unwrap_or_default();
+        let joints = parts.solids[index].shaft.as_ref().map(|of| of.joints.len());
+        if shaft.len() != joints.map_or(0, |joints| 2 * joints + 1) {
+            return Err(LACKS);
+        }
         let from: usize = nodes[..index].iter().sum();
         let rows = from..from + nodes[index];
         solids.push(SteppedCheckpoint {
             solid: entry.checkpoint(folder, nodes.iter().sum(), rows)?,
             seats: seats.iter().map(SeatEntry::checkpoint).collect(),
+            shaft,
         });
     }
     let mut seats: Vec<_> = solids.iter_mut().flat_map(|part| &mut part.seats).collect();

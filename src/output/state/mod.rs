@@ -149,6 +149,9 @@ pub fn fingerprint(parts: &Parts, request: &RunRequest) -> String {
             for solid in &parts.solids {
                 hash.update(format!("{:?}", solid.name));
                 hash_solid(&mut hash, &solid.model.problem);
+                if let Some(shaft) = &solid.shaft {
+                    hash.update(format!("{shaft:?}"));
+                }
             }
             // A smooth bore is what it was when there was no friction.
             let seats = format!("{:?}", parts.seats).replace(", friction: None", "");

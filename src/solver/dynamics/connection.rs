@@ -195,7 +195,8 @@ fn rates(ends: [&RaceNow; 2], axes: &[Vec3; 3]) -> (Vec3, Vector3<f64>) {
     (along(sub(second.velocity, carried)), along(sub(second.spin, first.spin)).into())
 }
 
-fn spring_dashpot(law: &SpringDashpot, ends: [&RaceNow; 2], elongated: &[f64]) -> Pull {
+/// See [`Connection::pull`].
+pub fn spring_dashpot(law: &SpringDashpot, ends: [&RaceNow; 2], elongated: &[f64]) -> Pull {
     let axes = axes(ends);
     let arm = sub(ends[1].motion.position, ends[0].motion.position);
     let (speed, turning) = rates(ends, &axes);

@@ -6,6 +6,7 @@ use super::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
 use super::seat::{Growth, Seat};
 use super::seat_friction::NodeSpring;
 use super::stepped::{SteppedSolid, seated};
+use super::stepped_shaft::SteppedShaft;
 use crate::kinematics::vec3::Vec3;
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::checkpoint::Checkpoint;
@@ -31,6 +32,8 @@ pub struct ExchangeCheckpoint {
 pub struct SteppedCheckpoint {
     pub solid: SolidCheckpoint,
     pub seats: Vec<SeatCheckpoint>,
+    /// Of a shaft [`SteppedShaft::numbers`]; of other solids none.
+    pub shaft: Vec<f64>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -86,6 +89,7 @@ impl<'p> Exchange<'p> {
                     load_work: of.sum.load_work,
                 }),
             }));
+            kept.shaft = part.shaft.as_ref().map_or(Vec::new(), |shaft| shaft.numbers());
         }
         checkpoint.bushings = self.bushings.iter().map(BondedBushing::numbers).collect();
         checkpoint.exchanges = self.exchanges;
@@ -114,17 +118,18 @@ impl<'p> Exchange<'p> {
         checkpoint: &ExchangeCheckpoint,
     ) -> Result<Exchange<'p>, ExchangeError> {
         assert_eq!(solids.len(), windows.solids.len());
+        let assembly = assembly.into();
         let method = ExplicitMethod::CentralDifferences;
         let mut solids: Vec<SteppedSolid> = solids
             .into_iter()
             .zip(&windows.solids)
-            .map(|(SolidPart { name, model, .. }, &(steps, limit))| {
+            .map(|(SolidPart { name, model, shaft, .. }, &(steps, limit))| {
                 let step = windows.window / steps as f64;
                 let solid = ExplicitSolid::at_rest(model, method, step, limit);
-                SteppedSolid { name, solid, steps, seats: Vec::new() }
+                let shaft = shaft.map(|of| Box::new(SteppedShaft::new(of, &assembly)));
+                SteppedSolid { name, solid, steps, seats: Vec::new(), shaft }
             })
             .collect();
-        let assembly = assembly.into();
         seated(&assembly, &mut solids, seats);
         let simulation =
             Simulation::from_checkpoint(assembly, options.bearing, &checkpoint.simulation)?;
@@ -143,6 +148,9 @@ impl<'p> Exchange<'p> {
         for (part, kept) in exchange.solids.iter_mut().zip(&checkpoint.solids) {
             part.solid.restore(&kept.solid);
             part.sort(&exchange.simulation);
+            if let Some(shaft) = &mut part.shaft {
+                shaft.restore(&kept.shaft);
+            }
             assert_eq!(part.seats.len(), kept.seats.len());
             for (seat, kept) in part.seats.iter_mut().zip(&kept.seats) {
                 seat.impulse = kept.impulse;

@@ -12,6 +12,7 @@ use super::bonded::{BondedBushing, BondedSnapshot};
 use super::exchange_start::is_alone;
 use super::seat::{Lost, SeatSnapshot, SeatState};
 use super::stepped::{SolidSnapshot, SteppedSolid};
+use super::stepped_shaft::{JointSnapshot, ShaftPart};
 use crate::ch2_housing::bore_contact::{ContactNode, Penalty};
 use crate::kinematics::vec3::Vec3;
 use crate::solver::dynamics::race::RaceLoads;
@@ -34,12 +35,23 @@ pub struct SolidPart {
     pub model: SolidModel,
     /// m, one for each node.
     pub displacement: Vec<Vec3>,
+    /// Where it is a shaft.
+    pub shaft: Option<ShaftPart>,
 }
 
 impl SolidPart {
     pub fn undeformed(name: Option<String>, model: SolidModel) -> SolidPart {
         let displacement = vec![[0.0; 3]; model.mass.len()];
-        SolidPart { name, model, displacement }
+        SolidPart::displaced(name, model, displacement)
+    }
+
+    /// `displacement` in m, one for each node.
+    pub fn displaced(
+        name: Option<String>,
+        model: SolidModel,
+        displacement: Vec<Vec3>,
+    ) -> SolidPart {
+        SolidPart { name, model, displacement, shaft: None }
     }
 }
 
@@ -54,9 +66,9 @@ pub struct ExchangeOptions {
 }
 
 impl ExchangeOptions {
-    /// Of bushings without a housing beside them.
-    pub fn on_rubber(bearing: RunOptions) -> ExchangeOptions {
-        ExchangeOptions { solid_fraction: 1.0, seat_phase: 1.0, bearing }
+    /// Of bushings and shafts without a housing beside them.
+    pub fn without_housings(bearing: RunOptions) -> ExchangeOptions {
+        ExchangeOptions { solid_fraction: 0.9, seat_phase: 1.0, bearing }
     }
 }
 
@@ -211,7 +223,7 @@ impl<'p> Exchange<'p> {
     /// How often each stage has run in all.
     pub fn ran(&self) -> Ran {
         let mut ran = self.simulation.system.ran.clone();
-        ran.solids = self.solids.iter().map(|part| part.solid.ran).collect();
+        ran.solids = self.solids.iter().map(SteppedSolid::ran).collect();
         ran.solids.extend(self.bushings.iter().map(BondedBushing::ran));
         ran.seats = self.seats().map(|_| Tally::default()).collect();
         for (tally, seat) in ran.seats.iter_mut().zip(self.seats()) {
@@ -225,8 +237,7 @@ impl<'p> Exchange<'p> {
     pub fn forget_ran(&mut self) {
         self.simulation.system.ran.clear();
         for part in &mut self.solids {
-            part.solid.ran = Tally::default();
-            part.seats.iter_mut().for_each(SeatState::forget_ran);
+            part.forget_ran();
         }
         self.bushings.iter_mut().for_each(BondedBushing::forget_ran);
     }
@@ -246,6 +257,9 @@ impl<'p> Exchange<'p> {
         for part in &mut self.solids {
             for seat in &mut part.seats {
                 seat.begin_window(self.simulation.body(seat.seat.mount.body));
+            }
+            if let Some(shaft) = &mut part.shaft {
+                shaft.begin_window(&self.simulation);
             }
         }
         self.crew.each(&mut self.solids, |part| {
@@ -305,6 +319,10 @@ impl<'p> Exchange<'p> {
         for seat in self.solids.iter_mut().flat_map(|part| &mut part.seats) {
             push(seat.seat.mount.body, seat.take_mean_load(window));
         }
+        for now in self.solids.iter().filter_map(|part| part.shaft.as_ref()).flat_map(|s| &s.joints)
+        {
+            push(now.joint.body, now.mean_load(window));
+        }
         for now in self.bushings.iter().flat_map(|bushing| &bushing.sleeves) {
             push(now.sleeve.body, now.mean_load(window));
         }
@@ -322,6 +340,10 @@ impl<'p> Exchange<'p> {
                 Some(work) => seat.work = work,
                 None => seat.book(self.window, &self.simulation.body(seat.seat.mount.body)),
             }
+        }
+        let shafts = self.solids.iter_mut().filter_map(|part| part.shaft.as_mut());
+        for now in shafts.flat_map(|shaft| &mut shaft.joints) {
+            now.book(self.window, &self.simulation.body(now.joint.body));
         }
         for now in self.bushings.iter_mut().flat_map(|bushing| &mut bushing.sleeves) {
             now.book(self.window, &self.simulation.body(now.sleeve.body));
@@ -363,12 +385,16 @@ impl<'p> Exchange<'p> {
         let of_seats = |of: fn(&SeatSnapshot) -> f64| -> f64 {
             solids.iter().flat_map(|solid| &solid.seats).map(of).sum()
         };
+        let of_joints = |of: fn(&JointSnapshot) -> f64| -> f64 {
+            solids.iter().flat_map(|solid| &solid.joints).map(of).sum()
+        };
         let of_solids = |of: fn(&SolidSnapshot) -> f64| -> f64 { solids.iter().map(of).sum() };
         let held = of_solids(|solid| {
             let SolidLedger { energy, .. } = solid.ledger;
             let seats: f64 = solid.seats.iter().map(|seat| seat.contact.energy).sum();
             let springs: f64 = solid.seats.iter().map(|seat| seat.friction.stored).sum();
-            energy.strain + energy.kinetic + seats + springs
+            let joints: f64 = solid.joints.iter().map(|joint| joint.stored).sum();
+            energy.strain + energy.kinetic + seats + springs + joints
         });
         let residual =
             bodies.residual + of_seats(|seat| seat.work) + of_seats(|seat| seat.to_come) + held
@@ -376,6 +402,8 @@ impl<'p> Exchange<'p> {
                 - of_solids(|solid| solid.ledger.damping_work)
                 - of_seats(|seat| seat.growth_work)
                 + of_seats(|seat| seat.friction.heat - seat.friction.load_work)
+                + of_joints(|joint| joint.work + joint.to_come + joint.heat)
+                - of_solids(|solid| solid.unbalance_work)
                 + of_bushings(|of| of.work + of.to_come + of.held() + of.dissipated + of.beyond);
         let work: f64 = bodies.ledger.iter().map(|entry| entry.abs()).sum();
         let turned_over = bodies.energy.contact
@@ -385,6 +413,8 @@ impl<'p> Exchange<'p> {
             + of_solids(|solid| solid.ledger.damping_work.abs())
             + of_seats(|seat| seat.growth_work.abs())
             + of_seats(|seat| seat.friction.heat + seat.friction.load_work.abs())
+            + of_joints(|joint| joint.heat)
+            + of_solids(|solid| solid.unbalance_work.abs())
             + of_bushings(|of| of.held() + of.dissipated);
         Ok(ExchangeSnapshot { simulation: bodies, solids, bushings, residual, turned_over })
     }

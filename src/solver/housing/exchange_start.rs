@@ -5,6 +5,7 @@ use super::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
 use super::exchange_window::{check, divided, longest_window};
 use super::seat::Seat;
 use super::stepped::{SteppedSolid, seated};
+use super::stepped_shaft::SteppedShaft;
 use crate::solver::dynamics::assembly::{Assembly, Body};
 use crate::solver::dynamics::race;
 use crate::solver::dynamics::run::Simulation;
@@ -54,17 +55,24 @@ impl<'p> Exchange<'p> {
         let method = ExplicitMethod::CentralDifferences;
         let mut solids: Vec<SteppedSolid> = solids
             .into_iter()
-            .map(|SolidPart { name, model, displacement }| {
+            .map(|SolidPart { name, model, displacement, shaft }| {
                 let displacement = padded(displacement);
                 let limit = step_limit(&model, &displacement, method);
                 let mut solid = ExplicitSolid::at_rest(model, method, limit.step, limit);
                 solid.displacement = displacement;
-                SteppedSolid { name, solid, steps: 1, seats: Vec::new() }
+                let shaft = shaft.map(|of| Box::new(SteppedShaft::new(of, &assembly)));
+                SteppedSolid { name, solid, steps: 1, seats: Vec::new(), shaft }
             })
             .collect();
         let seats = seated(&assembly, &mut solids, seats);
         let mut bushings = bushings;
-        let state = held_start(&assembly, &seats, &bushings)?;
+        let joined = solids.iter().filter_map(|part| part.shaft.as_ref()).flat_map(|s| &s.joints);
+        let held: Vec<usize> = seats
+            .iter()
+            .map(|seat| seat.mount.body)
+            .chain(joined.map(|now| now.joint.body))
+            .collect();
+        let state = held_start(&assembly, &held, &bushings)?;
         let mut simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
         if bushings.iter().any(|part| part.is_moved(&simulation)) {
             for part in &mut bushings {
@@ -73,7 +81,7 @@ impl<'p> Exchange<'p> {
                 measured.map_err(named)?;
             }
             let assembly = simulation.system.assembly;
-            let state = held_start(&assembly, &seats, &bushings)?;
+            let state = held_start(&assembly, &held, &bushings)?;
             simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
         }
         let mut on_rubber = Vec::with_capacity(bushings.len());
@@ -83,14 +91,15 @@ impl<'p> Exchange<'p> {
             on_rubber.push(bushing.map_err(|source| ExchangeError::Bushing { name, source })?);
         }
         let assembly = &simulation.system.assembly;
-        let longest = longest_window(assembly, &seats, &on_rubber, options.seat_phase)?;
+        let longest = longest_window(assembly, &seats, &solids, &on_rubber, options.seat_phase)?;
         let steps: Vec<f64> = solids
             .iter()
-            .map(|SteppedSolid { solid, seats, .. }| {
+            .map(|SteppedSolid { solid, seats, shaft, .. }| {
                 // With every node of every seat closed.
                 let closed = seats.iter().fold(solid.limit, |limit, seat| {
                     closed_limit(&solid.model, &seat.seat.nodes, seat.seat.penalty, &limit)
                 });
+                let closed = shaft.as_ref().map_or(closed, |shaft| closed.with(shaft.added(solid)));
                 (options.solid_fraction * closed.step).min(longest)
             })
             .collect();
@@ -118,28 +127,28 @@ pub(super) fn is_alone(
         assembly.bodies.iter().filter_map(Body::driven).flat_map(|b| b.foundation_damping);
     let seats: usize = solids.iter().map(|part| part.seats.len()).sum();
     seats == 1
+        && solids.iter().all(|part| part.shaft.is_none())
         && bushings.is_empty()
         && assembly.connections.is_empty()
         && brakes.all(|damping| damping == 0.0)
 }
 
-/// State of an assembly in equilibrium whose bodies in solids are held where they rest, those on bushings on the
+/// State of an assembly in equilibrium whose bodies in and on solids are held where they rest, those on bushings on the
 /// springs that these are like.
 fn held_start(
     assembly: &Assembly,
-    seats: &[Seat],
+    in_solids: &[usize],
     bushings: &[BondedPart],
 ) -> Result<Vec<f64>, StaticsError> {
     let mut held = assembly.clone();
     held.connections.extend(bushings.iter().map(|part| part.spring.clone()));
-    for seat in seats {
-        held.bodies[seat.mount.body].hold();
+    for body in in_solids {
+        held.bodies[*body].hold();
     }
     let mut state = start::at_equilibrium(&held)?;
     let [own, with_springs] = [assembly, &held].map(|of| Places::of(of).ledger());
     state.drain(own..with_springs);
-    for seat in seats {
-        let body = seat.mount.body;
+    for &body in in_solids {
         if held.bodies[body].driven().is_some() {
             // It turns, and balls roll with it.
             continue;

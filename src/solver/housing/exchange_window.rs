@@ -3,18 +3,24 @@
 use super::bonded::BondedBushing;
 use super::exchange::{ExchangeError, ExchangeOptions};
 use super::seat::Seat;
+use super::stepped::SteppedSolid;
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::model::Rotation;
 
-/// The longest window for which no body goes further on its seats than `phase` and on its bushings than their own, s:
-/// of both together, stiffnesses over squares of phases count.
+/// How far a body may swing on a section of a shaft in a window, rad: its own motion there is fast and of no interest.
+const JOINT_PHASE: f64 = 0.5;
+
+/// The longest window for which no body goes further on its seats than `phase`, and on its bushings and shafts than their own, s:
+/// of all together, stiffnesses over squares of phases count.
 pub(super) fn longest_window(
     assembly: &Assembly,
     seats: &[Seat],
+    solids: &[SteppedSolid],
     bushings: &[BondedBushing],
     phase: f64,
 ) -> Result<f64, ExchangeError> {
-    if seats.is_empty() && bushings.is_empty() {
+    let joints = || solids.iter().filter_map(|part| part.shaft.as_ref()).flat_map(|s| &s.joints);
+    if seats.is_empty() && bushings.is_empty() && joints().next().is_none() {
         return Err(ExchangeError::NoSeat { seat: String::new() });
     }
     let mut most = 0.0f64;
@@ -34,6 +40,11 @@ pub(super) fn longest_window(
             |bushing: &&BondedBushing| bushing.sleeves.iter().any(|now| now.sleeve.body == index);
         for bushing in bushings.iter().filter(sleeves) {
             let ([shift, tilt], weight) = (bushing.stiffness, phase / bushing.window_phase);
+            let weight = weight * weight;
+            sums = [sums[0] + weight * shift, sums[1] + weight * tilt];
+        }
+        for now in joints().filter(|now| now.joint.body == index) {
+            let ([shift, tilt], weight) = (now.joint.stiffness(), phase / JOINT_PHASE);
             let weight = weight * weight;
             sums = [sums[0] + weight * shift, sums[1] + weight * tilt];
         }

@@ -30,3 +30,4 @@ pub mod reduced_start;
 pub mod seat;
 pub mod seat_friction;
 pub mod stepped;
+pub mod stepped_shaft;

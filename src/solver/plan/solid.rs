@@ -1,6 +1,8 @@
 //! Items of a flexible solid, by itself or as a housing: what acts on it, and how it is solved for.
 
 use super::{Item, Stage, Subject, does};
+use crate::solver::dynamics::assembly::Assembly;
+use crate::solver::housing::exchange::SolidPart;
 use crate::solver::solid::model::{DampedMotion, SolidProblem};
 
 /// How a solid is solved for.
@@ -59,6 +61,33 @@ pub fn items(
     };
     items.extend(own);
     named(items, of)
+}
+
+/// Items of a shaft in elements, the `index`-th solid, which is stepped beside the bodies that sit on it.
+pub fn stepped_shaft(
+    assembly: &Assembly,
+    index: usize,
+    (name, part): (&str, &SolidPart),
+    mesh: &str,
+) -> Vec<Item> {
+    let (subject, of) = (Subject::Solid(index), Some(name));
+    let mut items = items(&part.model.problem, index, of, mesh, &Method::Explicit);
+    for item in items.iter_mut().filter(|item| item.stage == Stage::Explicit) {
+        item.why = "elements and bodies in steps of their own, which exchange impulses".into();
+    }
+    let Some(shaft) = &part.shaft else { return items };
+    let (count, unbalances) = (shaft.joints.len(), shaft.unbalances.len());
+    let why = format!(
+        "{count} races and discs on springs to their sections, in every step of the elements"
+    );
+    items.push(Item::new(Stage::Joints, subject, count > 0, why).named(of));
+    let why = format!("{unbalances} at sections");
+    items.push(Item::new(Stage::Unbalance, subject, unbalances > 0, why).named(of));
+    items.extend(shaft.joints.iter().map(|joint| {
+        let why = format!("on {}, the mean of each window", assembly.bodies[joint.body].name);
+        Item::does(Stage::Impulses, Subject::Body(joint.body), why).named(of)
+    }));
+    items
 }
 
 fn named(items: Vec<Item>, of: Option<&str>) -> Vec<Item> {

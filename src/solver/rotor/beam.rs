@@ -168,7 +168,7 @@ impl Beam {
         Element::new(&section, length, youngs_modulus, poisson_ratio, density, kappa)
     }
 
-    fn check(&self) -> Result<(), BeamError> {
+    pub(super) fn check(&self) -> Result<(), BeamError> {
         if self.segments.is_empty() {
             return Err(BeamError::NoSegment);
         }
@@ -221,7 +221,7 @@ impl Beam {
     }
 
     /// Ends of all elements, and the segment that each element belongs to.
-    fn elements(&self, at: &[f64]) -> Result<(Vec<f64>, Vec<usize>), BeamError> {
+    pub(super) fn elements(&self, at: &[f64]) -> Result<(Vec<f64>, Vec<usize>), BeamError> {
         let length = self.length();
         let near = NEAR * length;
         let discs = self.discs.iter().map(|disc| disc.at);

@@ -57,6 +57,16 @@ impl Beam {
         })
     }
 
+    /// The mesh of its segments as a free solid, with layers of nodes at the places `at` (m from its first end); `None` of a beam.
+    ///
+    /// # Errors
+    /// As [`Beam::matrices`].
+    pub fn solid(&self, at: &[f64]) -> Result<Option<(TetMesh, SolidProblem)>, BeamError> {
+        self.check()?;
+        let (ends, segments) = self.elements(at)?;
+        self.mesh.as_ref().map(|mesh| self.free(mesh, &ends, &segments)).transpose()
+    }
+
     pub(super) fn tetrahedra(
         &self,
         mesh: &ShaftMesh,
@@ -64,6 +74,16 @@ impl Beam {
         segments: &[usize],
         stations: Vec<f64>,
     ) -> Result<BeamMatrices, BeamError> {
+        let (mesh, problem) = self.free(mesh, ends, segments)?;
+        Ok(solid::matrices(&mesh, &problem, stations)?)
+    }
+
+    fn free(
+        &self,
+        mesh: &ShaftMesh,
+        ends: &[f64],
+        segments: &[usize],
+    ) -> Result<(TetMesh, SolidProblem), BeamError> {
         let of = |segment: &BeamSegment| {
             [segment.youngs_modulus, segment.poisson_ratio, segment.density]
         };
@@ -90,7 +110,7 @@ impl Beam {
             loads: Vec::new(),
             gravity: [0.0; 3],
         };
-        Ok(solid::matrices(&mesh, &problem, stations)?)
+        Ok((mesh, problem))
     }
 }
 

@@ -71,9 +71,7 @@ pub fn closed_limit(
         let per_mass = model.per_mass[node.node as usize];
         penalty.of_node(node.area) * per_mass[0].max(per_mass[1]).max(per_mass[2])
     };
-    let added = nodes.iter().map(of_node).fold(0.0, f64::max);
-    let frequency = (of_solid.frequency * of_solid.frequency + added).sqrt();
-    SolidStepLimit { step: of_solid.step * of_solid.frequency / frequency, frequency, ..*of_solid }
+    of_solid.with(nodes.iter().map(of_node).fold(0.0, f64::max))
 }
 
 /// Contact of a cylinder with nodes that are displaced by `displacement` (m, for each node of the

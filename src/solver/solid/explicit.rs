@@ -62,7 +62,7 @@ pub struct ExplicitSolid {
     pub limit: SolidStepLimit,
     pub displacement: Vec<Node>,
     /// At `time` for Runge–Kutta; half a step before it for central differences.
-    pub(super) rate: Vec<Node>,
+    pub(in crate::solver) rate: Vec<Node>,
     pub(super) force: Vec<Node>,
     /// Work of loads and drives, and of damping (≤ 0), on each node since the start, J: by node, so
     /// that no sum depends on how many threads share the nodes.

@@ -29,6 +29,14 @@ pub struct SolidStepLimit {
     pub products: usize,
 }
 
+impl SolidStepLimit {
+    /// Of the same solid with springs that add so much (1/s²) to the square of its highest frequency at most.
+    pub fn with(&self, added: f64) -> SolidStepLimit {
+        let frequency = (self.frequency * self.frequency + added).sqrt();
+        SolidStepLimit { step: self.step * self.frequency / frequency, frequency, ..*self }
+    }
+}
+
 /// ωh at which a method turns unstable without damping. For Runge–Kutta √8; damping moves either
 /// limit by less than αh.
 pub(super) fn reach(method: ExplicitMethod) -> f64 {

@@ -227,7 +227,7 @@ fn settled(mesh: &TetMesh) -> Result<([f64; 3], u64), CaseError> {
         let unloaded = vec![[0.0; 3]; mesh.nodes.len()];
         let mut housed = Exchange::new(
             problem,
-            vec![SolidPart { name: None, model, displacement: unloaded }],
+            vec![SolidPart::displaced(None, model, unloaded)],
             vec![seat(mesh)?],
             &options(),
         )?;

@@ -1,0 +1,55 @@
+//! Columns of a shaft in elements: its watched sections, its energies, and those of what joins races to it.
+
+use super::Recorder;
+use crate::output::series::Column;
+use crate::solver::housing::exchange::SolidPart;
+use crate::solver::housing::stepped::{SolidSnapshot, SteppedSolid};
+use crate::solver::housing::stepped_shaft::JointSnapshot;
+
+/// J.
+const ENERGIES: [&str; 8] = [
+    "energy_strain",
+    "energy_kinetic",
+    "work_loads",
+    "work_damping",
+    "work_unbalance",
+    "energy_joints",
+    "heat_joints",
+    "work_on_races",
+];
+
+/// Of a solid that is a shaft; of others none.
+pub(super) fn columns(part: &SolidPart) -> Vec<Column> {
+    let Some(shaft) = &part.shaft else { return Vec::new() };
+    let name = part.name.as_deref().unwrap_or("shaft");
+    let of = |section: &str, axis| Column::new(format!("{name}_{section}_{axis}"), "m");
+    let sections = shaft.watched.iter();
+    let mut columns: Vec<Column> =
+        sections.flat_map(|(section, _)| [of(section, "y"), of(section, "z")]).collect();
+    columns.extend(ENERGIES.map(|energy| Column::new(format!("{name}_{energy}"), "J")));
+    columns
+}
+
+impl Recorder {
+    /// In the order of [`columns`].
+    pub(super) fn record_shaft(&mut self, part: &SteppedSolid, now: &SolidSnapshot) {
+        let Some(shaft) = &part.shaft else { return };
+        for index in 0..shaft.watched.len() {
+            let [[_, y, z], ..] = shaft.section(index, &part.solid);
+            self.values.extend([y, z]);
+        }
+        let of_joints = |of: fn(&JointSnapshot) -> f64| -> f64 { now.joints.iter().map(of).sum() };
+        let ledger = &now.ledger;
+        self.values.extend([
+            ledger.energy.strain,
+            ledger.energy.kinetic,
+            ledger.external_work,
+            ledger.damping_work,
+            now.unbalance_work,
+            of_joints(|joint| joint.stored),
+            of_joints(|joint| joint.heat),
+            // Up to where the elements are, so that the columns sum up to the residual.
+            of_joints(|joint| joint.work + joint.to_come),
+        ]);
+    }
+}

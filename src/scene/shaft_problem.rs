@@ -1,0 +1,227 @@
+//! The shafts of a scene that a run steps in elements: out of the lists of bodies, into solids with what sits on them.
+
+use crate::ch2_housing::bearing::inertia::Inertia;
+use crate::kinematics::vec3::Vec3;
+use crate::mesh::{Order, TetMesh};
+use crate::scene::assembly::{AssemblyScene, Carrier, RaceJoint, SceneBeam, SceneBody};
+use crate::solver::dynamics::assembly::{Assembly, Body, Mobility};
+use crate::solver::dynamics::connection::SpringDashpot;
+use crate::solver::dynamics::model::{Drive, RaceBody, Rotation};
+use crate::solver::housing::exchange::SolidPart;
+use crate::solver::housing::stepped_shaft::{Joint, SectionUnbalance, ShaftPart};
+use crate::solver::mount::Mount;
+use crate::solver::profile::Profile;
+use crate::solver::rotor::beam::{BeamDisc, BeamError};
+use crate::solver::rotor::solid::{SolidShaftError, section};
+use crate::solver::solid::model::{DampedMotion, Load, SolidError, SolidModel, SolidProblem};
+use thiserror::Error;
+
+/// A shaft ready to be stepped.
+#[derive(Clone, Debug)]
+pub struct ShaftElements {
+    /// Of its body.
+    pub name: String,
+    pub mesh: TetMesh,
+    pub part: SolidPart,
+}
+
+impl ShaftElements {
+    /// "33280 four-node elements, 6120 nodes".
+    pub fn mesh_text(&self) -> String {
+        let kind = match self.mesh.order() {
+            Order::Linear => "four",
+            Order::Quadratic => "ten",
+        };
+        let (elements, nodes) = (self.mesh.elements.len(), self.mesh.nodes.len());
+        format!("{elements} {kind}-node elements, {nodes} nodes")
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("body.{body}.beam.mesh: {error}")]
+pub struct ShaftError {
+    body: String,
+    error: Reason,
+}
+
+#[derive(Clone, Debug, PartialEq, Error)]
+enum Reason {
+    #[error(transparent)]
+    Beam(#[from] BeamError),
+    #[error(transparent)]
+    Section(#[from] SolidShaftError),
+    #[error(transparent)]
+    Solid(#[from] SolidError),
+}
+
+/// Two things are at one place of a shaft that are nearer than this part of its length.
+const SAME: f64 = 1e-9;
+
+/// Takes shafts in elements out of an assembly of the scene and makes these. Each race on them, and each disc, is a body of its
+/// own from then on, which turns with the shaft's speed.
+///
+/// # Errors
+/// Sizes from which there is no mesh.
+pub fn take_shafts(
+    scene: &AssemblyScene,
+    assembly: &mut Assembly,
+) -> Result<Vec<ShaftElements>, ShaftError> {
+    let mut found = Vec::new();
+    for (index, body) in scene.bodies.iter().enumerate() {
+        let Some(beam) = body.beam.as_deref() else { continue };
+        let Some(joint) = beam.in_elements else { continue };
+        let named = |error| ShaftError { body: body.name.clone(), error };
+        let sitting = take_sitting(scene, assembly, (index, body, beam));
+        found.push(made(body, (beam, joint), sitting, assembly.gravity).map_err(named)?);
+    }
+    Ok(found)
+}
+
+/// Index of a body, and where along X it sits, m.
+type Sitting = Vec<(usize, f64)>;
+
+/// Makes bodies of races and discs, and leaves that of the shaft standing with nothing joined to it.
+fn take_sitting(
+    scene: &AssemblyScene,
+    assembly: &mut Assembly,
+    (index, of, beam): (usize, &SceneBody, &SceneBeam),
+) -> Sitting {
+    assembly.shafts.retain(|shaft| shaft.body != index);
+    let body = &mut assembly.bodies[index];
+    (body.mobility, body.label, body.rest) = (Mobility::Fixed, None, [0.0; 5]);
+    let near = SAME * beam.beam.length();
+    let places = beam.beam.discs.iter().map(|disc| (disc, disc.at + beam.start));
+    let mut discs: Vec<Option<(&BeamDisc, f64)>> = places.map(Some).collect();
+    let mut sitting = Sitting::new();
+    let mut sit = |assembly: &mut Assembly, name: String, at: f64, inertia: Inertia| {
+        let damping = if beam.absolute { beam.damping } else { 0.0 };
+        let Inertia { mass, transverse, .. } = inertia;
+        let race = RaceBody {
+            inertia,
+            drives: [const { Drive::Load(Profile::ZERO) }; 5],
+            rotation: of.race.rotation.clone(),
+            foundation_stiffness: [0.0; 5],
+            foundation_damping: [mass, mass, mass, transverse, transverse].map(|of| of * damping),
+        };
+        sitting.push((assembly.bodies.len(), at));
+        assembly.bodies.push(Body {
+            name,
+            label: None,
+            mobility: Mobility::Driven(Box::new(race)),
+            rest: [at, 0.0, 0.0, 0.0, 0.0],
+            rotating_load: None,
+            unbalance: 0.0,
+        });
+        assembly.bodies.len() - 1
+    };
+    for (bearing, placed) in scene.bearings.iter().enumerate() {
+        for (side, carrier) in placed.carriers.into_iter().enumerate() {
+            let Carrier::Body { index: on, at } = carrier else { continue };
+            if on != index {
+                continue;
+            }
+            // A disc where a race sits is the race; else it is a ring of its sizes.
+            let here = |disc: &&mut Option<(&BeamDisc, f64)>| {
+                disc.is_some_and(|(_, place)| (place - at).abs() <= near)
+            };
+            let dynamics = &placed.scene.dynamics;
+            let own = if side == 0 { Some(&dynamics.inner) } else { dynamics.outer.as_ref() };
+            let inertia = match discs.iter_mut().find(here).and_then(Option::take) {
+                Some((disc, _)) => inertia_of(disc),
+                None => own.unwrap_or(&dynamics.inner).inertia,
+            };
+            let which = ["inner", "outer"][side];
+            let suffix = assembly.bearings[bearing].suffix();
+            let body = sit(assembly, format!("the {which} race{suffix}"), at, inertia);
+            let reversed = assembly.bearings[bearing].mounts[side].reversed;
+            assembly.bearings[bearing].mounts[side] = Mount { body, along: 0.0, reversed };
+        }
+    }
+    for (number, disc) in discs.into_iter().enumerate() {
+        if let Some((disc, at)) = disc {
+            let name = format!("disc {} of the body {}", number + 1, of.name);
+            sit(assembly, name, at, inertia_of(disc));
+        }
+    }
+    sitting
+}
+
+fn inertia_of(disc: &BeamDisc) -> Inertia {
+    let BeamDisc { mass, axial, transverse, .. } = *disc;
+    Inertia { mass, axial, transverse }
+}
+
+fn made(
+    body: &SceneBody,
+    (beam, joint): (&SceneBeam, RaceJoint),
+    sitting: Sitting,
+    gravity: Vec3,
+) -> Result<ShaftElements, Reason> {
+    let start = beam.start;
+    let places = sitting.iter().map(|(_, at)| *at);
+    let places = places.chain(beam.loads.iter().map(|(at, _)| *at));
+    let places = places.chain(beam.unbalances.iter().map(|(at, ..)| *at));
+    let places = places.chain(beam.watched.iter().map(|(_, at)| *at));
+    let places: Vec<f64> = places.map(|at| at - start).collect();
+    let (mut mesh, problem) = beam.beam.solid(&places)?.ok_or(BeamError::NoSegment)?;
+    mesh.nodes.iter_mut().for_each(|node| node[0] += start);
+    let at = |at: f64| Ok::<_, SolidShaftError>(section(&mesh, at)?.about([at, 0.0, 0.0]));
+    let diameter = |at: f64| {
+        // Of the thinner segment where it steps.
+        let mut end = start;
+        let mut here = f64::INFINITY;
+        for segment in &beam.beam.segments {
+            let from = end;
+            end += segment.length;
+            let near = SAME * beam.beam.length();
+            if from - near <= at && at <= end + near {
+                here = here.min(segment.outer_diameter);
+            }
+        }
+        here
+    };
+    let joint = |(body, place): (usize, f64)| -> Result<Joint, Reason> {
+        let arm = diameter(place);
+        let along = |of: f64| [of, of, of, of * arm * arm, of * arm * arm, of * arm * arm];
+        let (stiffness, damping) = (along(joint.stiffness), along(joint.damping));
+        let law = SpringDashpot { stiffness, damping, ..SpringDashpot::default() };
+        Ok(Joint { body, section: at(place)?, law })
+    };
+    let joints = sitting.into_iter().map(joint).collect::<Result<Vec<_>, _>>()?;
+    let unbalances = beam
+        .unbalances
+        .iter()
+        .map(|&(place, size, angle)| Ok(SectionUnbalance { section: at(place)?, size, angle }));
+    let watched = beam.watched.iter().map(|(name, place)| Ok((name.clone(), at(*place)?)));
+    let speed = match &body.race.rotation {
+        Rotation::Speed(speed) => speed.clone(),
+        Rotation::Torque(_) => Profile::ZERO,
+    };
+    let shaft = ShaftPart {
+        speed,
+        joints,
+        unbalances: unbalances.collect::<Result<_, Reason>>()?,
+        watched: watched.collect::<Result<_, Reason>>()?,
+    };
+    let mut loads = Vec::new();
+    for (place, force) in &beam.loads {
+        let section = at(*place)?;
+        for (axis, profile) in force.iter().enumerate().filter(|(_, profile)| !profile.is_zero()) {
+            let mut unit = [0.0; 3];
+            unit[axis] = 1.0;
+            let forces = section.forces(unit, [0.0; 3]).collect();
+            loads.push(Load { forces, profile: profile.clone() });
+        }
+    }
+    let (damping, damped_motion) = if beam.internal_damping > 0.0 {
+        (beam.internal_damping, DampedMotion::RelativeToRigid)
+    } else {
+        (beam.damping, DampedMotion::Absolute)
+    };
+    let nodes = mesh.nodes.clone();
+    let problem = SolidProblem { nodes, loads, gravity, damping, damped_motion, ..problem };
+    let name = Some(body.name.clone());
+    let mut part = SolidPart::undeformed(name, SolidModel::new(problem)?);
+    part.shaft = Some(shaft);
+    Ok(ShaftElements { name: body.name.clone(), mesh, part })
+}
