@@ -8,7 +8,7 @@ use super::whirl::Spinning;
 use super::{Fallible, plan, record};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
-use crate::commands::remarks::at_rest;
+use crate::commands::scene_remarks::at_rest;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
 use bearing_dynamics::scene::assembly::AssemblyScene;
