@@ -1,6 +1,6 @@
 //! Shafts that bend start where statics has them: bent, and still.
 
-use crate::bending::{STEEL, on_bearings, section};
+use crate::bent_shafts::{STEEL, on_bearings, section};
 use crate::dynamics::*;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::kinematics::vec3::dot;
