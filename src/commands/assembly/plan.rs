@@ -3,6 +3,7 @@
 
 use super::course::{along_course, inertia_estimate, verdicts};
 use super::housing::Housing;
+use super::lists::Lists;
 use super::shapes::{Shapes, shapes};
 use super::{Fallible, housings, still};
 use crate::commands::bushing_remarks::of_bushings;
@@ -40,6 +41,7 @@ const TIMED: Duration = Duration::from_millis(300);
 
 pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
     let housings = housings::prepare(document, scene)?;
+    let lists = &Lists::of(scene);
     let method = scene.housing_method();
     match (method, scene.run()) {
         (Some(HousingMethod::QuasiStatic), Some(_)) => housings::refuse_steps(document)?,
@@ -47,18 +49,18 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         _ => housings::refuse(document, scene, &housings)?,
     }
     let reduced = match method {
-        Some(HousingMethod::Reduced) => Some(shapes(scene, &housings)?),
+        Some(HousingMethod::Reduced) => Some(shapes(lists, &housings)?),
         _ => None,
     };
     let (items, mut notes) = match (scene.run(), method) {
         (None, _) => {
             scene.check_smooth()?;
-            (of_statics(scene, &housings)?, Vec::new())
+            (of_statics(lists, &housings)?, Vec::new())
         }
         (Some(settings), Some(HousingMethod::QuasiStatic)) => {
-            (of_course(scene, &housings, settings)?, Vec::new())
+            (of_course(lists, &housings, settings)?, Vec::new())
         }
-        (Some(settings), _) => of_steps(scene, &housings, reduced.as_ref(), settings)?,
+        (Some(settings), _) => of_steps(lists, &housings, reduced.as_ref(), settings)?,
     };
     notes.extend(of_shafts(scene).iter().map(|said| note("shaft", said)));
     notes.extend(of_springs(scene).iter().map(|said| note("spring", said)));
@@ -75,12 +77,12 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         notes.push(note("start of the housing", UNDEFORMED));
     }
     if !housings.is_empty() {
-        notes.extend(equilibrium_notes(scene, &housings)?);
+        notes.extend(equilibrium_notes(lists, &housings)?);
     }
     // With bushings in elements the steps of all have been told.
     let told = housings.is_empty() || scene.has_bushings_in_elements();
     if let (Some(settings), false) = (scene.run(), told) {
-        notes.push(explicit_note(scene, &housings, settings));
+        notes.push(explicit_note(lists, &housings, settings));
     }
     if scene.common().rigid_housing {
         let said = "housing.method = rigid: the outer race is fixed, no mesh is read";
@@ -96,14 +98,15 @@ const UNDEFORMED: &str = "undeformed, the outer race in its first place: what th
 
 /// A run in steps: items, and what there is to note of steps and of the size of its table.
 fn of_steps(
-    scene: &AssemblyScene,
+    lists: &Lists,
     housings: &[Housing],
     reduced: Option<&Shapes>,
     settings: &RunSettings,
 ) -> Fallible<(Vec<Item>, Vec<String>)> {
+    let scene = lists.scene;
     let mut assembly = match reduced {
         Some(shapes) => shapes.assembly.clone(),
-        None => scene.assembly()?,
+        None => lists.assembly()?.clone(),
     };
     let bushings = take_bushings(scene, &mut assembly)?;
     // Races without their housings or bushings would have nothing to hold them.
@@ -176,8 +179,8 @@ pub fn stages(
 }
 
 /// Items of the equilibrium at t = 0.
-pub fn of_statics(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Vec<Item>> {
-    Ok(of_equilibrium(&still(scene)?, housings, ASKED_FOR))
+pub fn of_statics(lists: &Lists, housings: &[Housing]) -> Fallible<Vec<Item>> {
+    Ok(of_equilibrium(&still(lists)?, housings, ASKED_FOR))
 }
 
 fn of_equilibrium(still: &StaticAssembly, housings: &[Housing], centrifugal: &str) -> Vec<Item> {
@@ -192,15 +195,11 @@ fn of_equilibrium(still: &StaticAssembly, housings: &[Housing], centrifugal: &st
 }
 
 /// Items of one equilibrium after the other, of which there are as many as a run solves.
-pub fn of_course(
-    scene: &AssemblyScene,
-    housings: &[Housing],
-    run: &RunSettings,
-) -> Fallible<Vec<Item>> {
+pub fn of_course(lists: &Lists, housings: &[Housing], run: &RunSettings) -> Fallible<Vec<Item>> {
     const GO_ROUND: &str =
         "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
-    let mut still = still(scene)?;
-    for (bearing, placed) in still.bearings.iter_mut().zip(&scene.bearings) {
+    let mut still = still(lists)?;
+    for (bearing, placed) in still.bearings.iter_mut().zip(&lists.scene.bearings) {
         let turning = &placed.scene.dynamics.inner.rotation;
         let turns = matches!(turning, Rotation::Speed(speed) if !speed.is_zero());
         // At any speed that it has.
@@ -234,7 +233,8 @@ fn size_line(assembly: &Assembly, request: &RunRequest) -> String {
 
 /// What condensing takes; of the quasi-static method also whether equilibria will do, which needs
 /// the condensed housings. Of other methods nothing is factorised here.
-fn equilibrium_notes(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Vec<String>> {
+fn equilibrium_notes(lists: &Lists, housings: &[Housing]) -> Fallible<Vec<String>> {
+    let scene = lists.scene;
     let chosen = scene.housing_method() == Some(HousingMethod::QuasiStatic);
     let name = if chosen { "inertia left out" } else { "quasi-static instead" };
     let mut planned = Vec::new();
@@ -255,7 +255,7 @@ fn equilibrium_notes(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Ve
         return Ok(planned);
     }
     let bores = housings::condensed(housings)?;
-    let course = housings::course(scene, housings, &bores)?;
+    let course = housings::course(lists.assembly()?.clone(), housings, &bores);
     let Some(estimate) = inertia_estimate(scene, &course)? else {
         planned.push(note(name, "nothing holds the outer race under the largest load"));
         return Ok(planned);
@@ -278,10 +278,10 @@ fn condensed_text(sizes: &Sizes) -> String {
 }
 
 /// Windows of the explicit way, and about how long they take here.
-fn explicit_note(scene: &AssemblyScene, housings: &[Housing], run: &RunSettings) -> String {
-    let chosen = scene.housing_method() == Some(HousingMethod::Explicit);
+fn explicit_note(lists: &Lists, housings: &[Housing], run: &RunSettings) -> String {
+    let chosen = lists.scene.housing_method() == Some(HousingMethod::Explicit);
     // Where it starts does not matter here, and finding out takes long.
-    let windows = housings::undeformed(scene, housings, 1);
+    let windows = housings::undeformed(lists, housings, 1);
     match (windows.and_then(|parts| windows_text(parts, run)), chosen) {
         (Ok(said), true) => note("step", &said),
         (Ok(said), false) => note("explicit instead", &said),
