@@ -8,8 +8,9 @@ use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, Mobility};
 use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::solver::dynamics::contacts::Driver;
+use bearing_dynamics::solver::dynamics::equilibrium::at_start;
 use bearing_dynamics::solver::dynamics::held::check_held;
-use bearing_dynamics::solver::dynamics::model::{RaceBody, Rotation};
+use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::race::mounted;
 use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
 use bearing_dynamics::solver::dynamics::stability::step_limit;
@@ -224,4 +225,42 @@ fn what_a_connection_holds_is_determinate() {
         let stretch = found.coordinates[0][i] - rest[i];
         assert!((stretch * SPRING.stiffness[i] / load - 1.0).abs() <= 1e-2, "{i}: {stretch}");
     }
+}
+
+/// A wheel held along its axis, and across it by a spring at arm's length, is tilted by its unbalance by λ = G cos² λ; each round
+/// goes the way that is left times λ tan λ/(1 + λ tan λ). A start is found where that is small, and refused where rounds do not
+/// settle.
+#[test]
+fn a_pull_that_turns_with_the_tilt_it_makes_is_followed_or_refused() {
+    let (arm, speed, size) = (0.05, 300.0, 1e-2);
+    let pull = size * speed * speed;
+    let start = |turning: f64| {
+        let law = SpringDashpot {
+            stiffness: [0.0, 1e9, 1e9, 0.0, turning, turning],
+            ..SpringDashpot::default()
+        };
+        let mut connection = spring();
+        connection.ends = [1, 0].map(|body| Mount { along: arm, ..Mount::at_centre(body) });
+        connection.law = Law::SpringDashpot(law);
+        let mut wheel = free("wheel");
+        wheel.unbalance = size;
+        let race = wheel.driven_mut().unwrap();
+        race.rotation = Rotation::Speed(Profile::Constant(speed));
+        race.drives[0] = Drive::Motion(Profile::ZERO);
+        at_start(&Assembly {
+            bodies: vec![wheel, body("ground", Mobility::Fixed)],
+            connections: vec![connection],
+            ..Assembly::default()
+        })
+    };
+    for gain in [0.1, 0.4] {
+        let found = start(pull * arm / gain).unwrap();
+        let tilt = found.coordinates[0][4].abs();
+        let expected = gain * tilt.cos().powi(2);
+        // The search stops at 1e-11 of the load.
+        assert!((tilt / expected - 1.0).abs() <= 1e-9, "{gain}: {tilt} {expected}");
+    }
+    let refused = start(pull * arm / 1.7).unwrap_err();
+    assert_eq!(refused, StaticsError::Unbalanced { body: "wheel".into() });
+    assert!(refused.to_string().contains("numerics.start"), "{refused}");
 }

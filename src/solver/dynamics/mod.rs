@@ -5,7 +5,8 @@
 //! integrate (the last through `linearised` contacts, the `arrow` matrix and each ball's `orbit_frame`),
 //! `held` says whether anything holds a bearing against its loads, `bounds` where a state has lost its meaning,
 //! `control` chooses steps for an accuracy, `extremes` remembers the largest loads, `run` takes a simulation from step to step,
-//! `clocked` up to what is due next, `foretell` for a while.
+//! `clocked` up to what is due next, `foretell` for a while. `equilibrium` says where all stand still, under loads that `following`
+//! takes along.
 pub mod arrow;
 mod arrow_terms;
 pub mod assembly;
@@ -24,6 +25,7 @@ pub mod energy;
 pub mod equilibrium;
 pub mod extremes;
 pub mod failure;
+mod following;
 pub mod foretell;
 pub mod held;
 pub mod linearised;
