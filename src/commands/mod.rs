@@ -17,6 +17,7 @@ pub mod plan_step;
 mod remarks;
 pub mod rubber;
 pub mod run;
+mod scene_remarks;
 pub mod schema;
 pub mod solid;
 pub mod statics;

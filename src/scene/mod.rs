@@ -51,6 +51,7 @@ mod resolve_rubber;
 mod resolve_shaft;
 mod resolve_solid;
 mod resolve_solid_mesh;
+mod resolve_spring;
 pub mod resolved;
 pub mod rubber_problem;
 pub mod schema;

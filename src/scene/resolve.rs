@@ -118,6 +118,15 @@ impl<'d> Reader<'d> {
         self.defaults_used
     }
 
+    /// Adds the defaults of a named thing to others, under its name.
+    pub fn note_named(self, defaults: &mut Vec<DefaultUsed>) {
+        let document = self.document;
+        defaults.extend(self.defaults_used.into_iter().map(|mut used| {
+            used.key = document.shown(&used.key, true);
+            used
+        }));
+    }
+
     pub fn given_number(&self, path: &str) -> Option<f64> {
         match self.document.value(path)? {
             Checked::Number(value) => Some(*value),

@@ -2,24 +2,22 @@
 
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::scene::assembly::{
-    AssemblyScene, Carrier, NO_INERTIA, PlacedBearing, PlacedHousing, SIX, SceneBody, Spring,
-    SpringAt, SpringEnd, race_at,
+    AssemblyScene, Carrier, NO_INERTIA, PlacedBearing, PlacedHousing, SceneBody, Spring, SpringAt,
+    SpringEnd,
 };
-use crate::scene::document::{Document, ItemRef};
+use crate::scene::document::Document;
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::housing::HousingMethod;
-use crate::scene::key_table_assembly::{GROUND, OWN_RACES};
+use crate::scene::key_table_assembly::OWN_RACES;
 use crate::scene::keys;
 use crate::scene::resolve::{Reader, resolve, text};
-use crate::scene::resolve_bushing::bushing;
 use crate::scene::resolve_dynamics::{check_inertia, foundation, rotating_load, rotation};
 use crate::scene::resolve_housing::in_housing;
 use crate::scene::resolve_shaft::{beam, refuse_places_off_shafts, refuse_springs_on_elements};
-use crate::scene::resolve_solid::{item_number, missing};
+use crate::scene::resolve_spring::spring;
 use crate::scene::resolved::{DefaultUsed, Scene};
 use crate::scene::scopes::no_such;
 use crate::scene::value::Checked;
-use crate::solver::dynamics::connection::MaxwellElement;
 use crate::solver::dynamics::model::RaceBody;
 
 /// Whether a scene is more than a bearing alone, a solid alone, or one bearing in its housing.
@@ -390,128 +388,7 @@ fn body(
     };
     let rotating_load = rotating_load(&mut reader, "body")?;
     let unbalance = reader.given_number("body.unbalance").unwrap_or(0.0);
-    note_named(reader, &scoped, defaults);
+    reader.note_named(defaults);
     let beam = beam.map(Box::new);
     Ok(SceneBody { name: name.into(), race, rotating_load, unbalance, beam })
-}
-
-fn spring(
-    document: &Document,
-    name: &str,
-    (bodies, bearings): (&[&str], &[PlacedBearing]),
-    defaults: &mut Vec<DefaultUsed>,
-) -> Result<Spring, SceneError> {
-    let scoped = document.scoped(name);
-    let mut reader = Reader::new(&scoped);
-    let end = |reader: &Reader, key: &str| -> Result<SpringAt, SceneError> {
-        match text(reader.document, key).as_deref() {
-            None if key == "spring.from" => Err(reader.missing(key, "")),
-            None | Some(GROUND) => Ok(SpringAt::Ground),
-            Some(name) => match bodies.iter().position(|other| *other == name) {
-                Some(index) => Ok(SpringAt::Body(index)),
-                None => race(reader, key, name, bodies, bearings),
-            },
-        }
-    };
-    let from = end(&reader, "spring.from")?;
-    let to = end(&reader, "spring.to")?;
-    if text(&scoped, "spring.to").is_none() {
-        reader.note_default("spring.to");
-    }
-    if from == to {
-        let reason = "both ends are at the same body".into();
-        let advice = "a spring joins two bodies, or a body and the ground".into();
-        return Err(scoped.error("spring.to", Problem::Refused { reason, advice }));
-    }
-    // Both ends at one place; that of a race, where one end is at a race.
-    let [from_x, to_x] = [from, to].map(|at| race_at(bearings, at));
-    let along = match from {
-        SpringAt::Race { .. } => reader.number("spring.from_at").unwrap_or(0.0),
-        _ if to_x != 0.0 => reader.given_number("spring.from_at").unwrap_or(to_x),
-        _ => reader.number("spring.from_at").unwrap_or(0.0),
-    };
-    let to_along = reader.given_number("spring.to_at").unwrap_or(from_x + along - to_x);
-    let six = |what: &str| {
-        SIX.map(|name| reader.given_number(&format!("spring.{what}.{name}")).unwrap_or(0.0))
-    };
-    let (stiffness, damping) = (six("stiffness"), six("damping"));
-    let maxwell = scoped.items("spring.maxwell").map(maxwell).collect::<Result<Vec<_>, _>>()?;
-    let ends = [SpringEnd { at: from, along }, SpringEnd { at: to, along: to_along }];
-    let mut spring = Spring { name: name.into(), ends, stiffness, damping, maxwell, bushing: None };
-    match bushing(&mut reader)? {
-        Some((bushing, law)) => {
-            (spring.stiffness, spring.maxwell) = (law.stiffness, law.maxwell);
-            spring.bushing = Some(Box::new(bushing));
-        }
-        None if stiffness == [0.0; 6] && damping == [0.0; 6] && spring.maxwell.is_empty() => {
-            return Err(reader.missing("spring.stiffness.x", " or another spring or dashpot"));
-        }
-        None => {}
-    }
-    note_named(reader, &scoped, defaults);
-    Ok(spring)
-}
-
-/// A race that is a body of its own, `outer_race` or `left.outer_race`.
-fn race(
-    reader: &Reader,
-    key: &str,
-    name: &str,
-    bodies: &[&str],
-    bearings: &[PlacedBearing],
-) -> Result<SpringAt, SceneError> {
-    let refused = |reason: String, advice: String| {
-        reader.document.error(key, Problem::Refused { reason, advice })
-    };
-    let (of, race) = name.split_once('.').map_or((None, name), |(of, race)| (Some(of), race));
-    let side = OWN_RACES.iter().position(|own| *own == race);
-    let bearing = match of {
-        None if bearings.len() == 1 => Some(0),
-        None => None,
-        Some(of) => bearings.iter().position(|placed| placed.name.as_deref() == Some(of)),
-    };
-    let (Some(side), Some(bearing)) = (side, bearing) else {
-        if side.is_some() && of.is_none() {
-            let each = bearings.iter().filter_map(|placed| placed.name.as_ref());
-            let each: Vec<String> = each.map(|name| format!("{name}.{race}")).collect();
-            return Err(refused(
-                "there are several bearings".into(),
-                format!("write one of {}", each.join(", ")),
-            ));
-        }
-        return Err(reader.document.error(key, no_such(name, "body", bodies.iter().copied())));
-    };
-    let placed = &bearings[bearing];
-    if let Carrier::Body { index, .. } = placed.carriers[side] {
-        let advice = format!("write {:?}", bodies[index]);
-        return Err(refused(format!("this race sits on body.{}", bodies[index]), advice));
-    }
-    if side == 1 && placed.housing.is_some() {
-        let advice = "join the spring to a body, or leave the housing out".into();
-        return Err(refused("the outer race sits in the bore of its housing".into(), advice));
-    }
-    if side == 1 && placed.scene.dynamics.outer.is_none() {
-        let advice = "write `motion = \"5-dof\"` in [outer_race]".into();
-        return Err(refused("the outer race is fixed".into(), advice));
-    }
-    Ok(SpringAt::Race { bearing, side })
-}
-
-fn maxwell(item: ItemRef) -> Result<MaxwellElement, SceneError> {
-    let Some(relaxation_time) = item_number(item, "relaxation_time") else {
-        return Err(missing(item, "relaxation_time", "", "relaxation_time = \"10 ms\""));
-    };
-    let stiffness = SIX.map(|name| item_number(item, name).unwrap_or(0.0));
-    if stiffness == [0.0; 6] {
-        return Err(missing(item, "z", ", nothing relaxes", "z = \"2e6 N/m\""));
-    }
-    Ok(MaxwellElement { stiffness, relaxation_time })
-}
-
-/// Defaults of a named thing, under its name.
-fn note_named(reader: Reader, scoped: &Document, defaults: &mut Vec<DefaultUsed>) {
-    defaults.extend(reader.into_defaults_used().into_iter().map(|mut used| {
-        used.key = scoped.shown(&used.key, true);
-        used
-    }));
 }

@@ -19,8 +19,9 @@ use thiserror::Error;
 /// A shaft ready to be stepped.
 #[derive(Clone, Debug)]
 pub struct ShaftElements {
-    /// Of its body.
+    /// Of its body, and its index.
     pub name: String,
+    pub body: usize,
     pub mesh: TetMesh,
     pub part: SolidPart,
 }
@@ -72,7 +73,7 @@ pub fn take_shafts(
         let Some(joint) = beam.in_elements else { continue };
         let named = |error| ShaftError { body: body.name.clone(), error };
         let sitting = take_sitting(scene, assembly, (index, body, beam));
-        found.push(made(body, (beam, joint), sitting, assembly.gravity).map_err(named)?);
+        found.push(made((index, body), (beam, joint), sitting, assembly.gravity).map_err(named)?);
     }
     Ok(found)
 }
@@ -152,7 +153,7 @@ fn inertia_of(disc: &BeamDisc) -> Inertia {
 }
 
 fn made(
-    body: &SceneBody,
+    (index, body): (usize, &SceneBody),
     (beam, joint): (&SceneBeam, RaceJoint),
     sitting: Sitting,
     gravity: Vec3,
@@ -223,5 +224,5 @@ fn made(
     let name = Some(body.name.clone());
     let mut part = SolidPart::undeformed(name, SolidModel::new(problem)?);
     part.shaft = Some(shaft);
-    Ok(ShaftElements { name: body.name.clone(), mesh, part })
+    Ok(ShaftElements { name: body.name.clone(), body: index, mesh, part })
 }

@@ -3,7 +3,11 @@
 use crate::ch2_housing::bearing::frequencies;
 use crate::ch2_housing::bearing::hertz::{HertzError, RaceSide, contact};
 use crate::kinematics::{Pose, euler};
+use crate::scene::assembly::AssemblyScene;
 use crate::scene::resolved::Scene;
+use crate::solver::dynamics::assembly::Assembly;
+use crate::solver::dynamics::equilibrium::static_assembly;
+use crate::solver::static_assembly::StaticAssembly;
 use crate::solver::statics::StaticProblem;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
@@ -31,6 +35,17 @@ pub fn static_problem(scene: &Scene) -> Result<StaticProblem, HertzError> {
         },
         conditions: scene.conditions,
     })
+}
+
+/// The lists of a scene in equilibrium at t = 0: as a motion would start, without the centrifugal force of the balls unless
+/// it is asked for.
+pub fn still_lists(scene: &AssemblyScene, assembly: &Assembly) -> StaticAssembly<'static> {
+    let mut still = static_assembly(assembly, 0.0, &[]);
+    for (bearing, placed) in still.bearings.iter_mut().zip(&scene.bearings) {
+        let speed = if placed.scene.centrifugal { orbital_speed(&placed.scene) } else { 0.0 };
+        bearing.centrifugal = ball_mass(&placed.scene) * speed * speed;
+    }
+    still
 }
 
 /// Of one ball, kg.

@@ -162,6 +162,12 @@ pub enum StaticsError {
     )]
     Dragged { body: String },
     #[error(
+        "the unbalance on {body} tilts it so far that the direction of its own pull changes: rounds over that do not settle; take \
+         less of it, a lower speed at the start, or stiffer supports, or start in nominal positions \
+         (numerics.start = \"nominal\")"
+    )]
+    Unbalanced { body: String },
+    #[error(
         "nothing holds {body} along {coordinate}: no spring, no given coordinate of it or of the races it is \
          joined to, while the loads there add up to {load:.3e} N at t = {at} s: hold the coordinate by a \
          displacement or a spring, balance the loads, or start a motion in nominal positions \

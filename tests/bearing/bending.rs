@@ -1,19 +1,19 @@
 //! Shafts that bend: natural frequencies and whirl against the whole beam, balance, invariance, and the rigid shaft
 //! as their limit.
 
-use crate::common;
+use crate::bent_shafts::{
+    MIDDLE, OFF_MIDDLE, OVERHUNG, STEEL, alone, along, beam, loaded, off, on_bearings, on_springs,
+    rising, run, section, unbalanced,
+};
 use crate::dynamics;
-use crate::shafts;
 
 use bearing_dynamics::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, GROUND, Mobility};
+use bearing_dynamics::solver::dynamics::assembly::{Assembly, Mobility};
 use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::solver::dynamics::contacts::Driver;
 use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::run::{
-    Integrator, RunOptions, Simulation, Start, Stepping,
-};
-use bearing_dynamics::solver::dynamics::shaft::{ElasticShaft, Section, ShaftLoad, Unbalance};
+use bearing_dynamics::solver::dynamics::run::{Integrator, Simulation, Start, Stepping};
+use bearing_dynamics::solver::dynamics::shaft::Section;
 use bearing_dynamics::solver::dynamics::stability::jacobian;
 use bearing_dynamics::solver::dynamics::start;
 use bearing_dynamics::solver::dynamics::state::{SPIN, VELOCITY};
@@ -21,77 +21,10 @@ use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::plan::{Stage, Subject};
 use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc, BeamMatrices, BeamSegment, STATION};
-use bearing_dynamics::solver::shaft_shapes::{Kept, free_shaft};
-use common::table_4_1;
+use bearing_dynamics::solver::rotor::beam::{BeamMatrices, STATION};
+use bearing_dynamics::solver::shaft_shapes::Kept;
 use dynamics::*;
 use nalgebra::{Complex, DMatrix, DVector, Vector3};
-use shafts::{body, seated};
-
-/// 30 mm steel, 400 mm, in two elements, with a disc.
-fn beam(disc: BeamDisc, youngs_modulus: f64) -> Beam {
-    let segment = BeamSegment {
-        length: 0.4,
-        outer_diameter: 30e-3,
-        inner_diameter: 0.0,
-        density: 7850.0,
-        youngs_modulus,
-        poisson_ratio: 0.3,
-    };
-    Beam { discs: vec![disc], longest_element: 0.2001, ..Beam::new(vec![segment]) }
-}
-
-pub const STEEL: f64 = 210e9;
-const OVERHUNG: BeamDisc = BeamDisc { at: 0.4, mass: 3.0, axial: 0.02, transverse: 0.011 };
-const MIDDLE: BeamDisc = BeamDisc { at: 0.2, mass: 20.0, axial: 0.09, transverse: 0.05 };
-
-const OFF_MIDDLE: BeamDisc = BeamDisc { at: 0.3, ..MIDDLE };
-
-/// An assembly of the shaft alone, turning at `speed` (rad/s), its sections at `holds` (m from its end) asked for.
-fn alone(beam: &Beam, kept: Kept, holds: &[f64], speed: f64) -> Assembly {
-    let holds: Vec<(f64, bool)> = holds.iter().map(|at| (*at, true)).collect();
-    let (rigid, shapes) = free_shaft(beam, kept, &holds, &[]).unwrap();
-    let inertia = Inertia { mass: rigid.mass, axial: rigid.axial, transverse: rigid.transverse };
-    let spinning = race([0.0; 5], Rotation::Speed(Profile::Constant(speed)));
-    let spinning = RaceBody { inertia, ..spinning };
-    Assembly {
-        bodies: vec![
-            body(
-                "the shaft",
-                Mobility::Driven(spinning.into()),
-                [rigid.centre, 0.0, 0.0, 0.0, 0.0],
-            ),
-            body(GROUND, Mobility::Fixed, [0.0; 5]),
-        ],
-        shafts: vec![ElasticShaft { shapes, ..ElasticShaft::default() }],
-        ..Assembly::default()
-    }
-}
-
-/// From the body's centre to `at` from the shaft's end, m.
-pub fn along(assembly: &Assembly, at: f64) -> f64 {
-    at - assembly.bodies[0].rest[0]
-}
-
-pub fn section(assembly: &Assembly, at: f64) -> Section {
-    assembly.shafts[0].shapes.section(along(assembly, at))
-}
-
-/// Puts the shaft on springs to the ground at these places (m from its end).
-pub fn on_springs(assembly: &mut Assembly, places: &[f64], stiffness: [f64; 3]) {
-    for &at in places {
-        let [x, y, z] = stiffness;
-        let law = SpringDashpot { stiffness: [x, y, z, 0.0, 0.0, 0.0], ..Default::default() };
-        let shaft = Mount { along: along(assembly, at), ..Mount::at_centre(0) };
-        let ground = Mount { along: at, ..Mount::at_centre(1) };
-        assembly.connections.push(Connection {
-            name: "a spring".into(),
-            label: None,
-            ends: [ground, shaft],
-            law: Law::SpringDashpot(law),
-        });
-    }
-}
 
 /// The eigenvalue (rad/s) of the motion about its place at rest that is nearest to `frequency`, by inverse iteration.
 fn nearest(motion: &DMatrix<Complex<f64>>, frequency: f64) -> Complex<f64> {
@@ -215,31 +148,6 @@ fn static_answers_make_few_shapes_exact_at_rest() {
     }
 }
 
-pub fn unbalanced(size: f64, assembly: &Assembly, at: f64) -> Unbalance {
-    Unbalance { section: section(assembly, at), size, angle: 0.4 }
-}
-
-pub fn run(assembly: Assembly, integrator: Integrator, stepping: Stepping, end: f64) -> Simulation {
-    let options =
-        RunOptions { start: Start::Nominal, integrator, stepping, ..RunOptions::default() };
-    let mut simulation = Simulation::new(assembly, options).unwrap();
-    simulation.snapshot().unwrap();
-    while simulation.time < end * (1.0 - 1e-12) {
-        let step = simulation.step_size.min(end - simulation.time);
-        simulation.step_by(step).unwrap();
-    }
-    simulation.snapshot().unwrap();
-    simulation
-}
-
-/// Off the axis at a place, m.
-pub fn off(simulation: &Simulation, at: f64) -> f64 {
-    let assembly = &simulation.system.assembly;
-    let section = section(assembly, at);
-    let [_, y, z] = simulation.system.section_now(&simulation.state, 0, &section).state.position;
-    y.hypot(z)
-}
-
 /// Far below and above its critical speed a damped rotor answers an unbalance as the linear beam does.
 #[test]
 fn unbalance_response_below_and_above_critical() {
@@ -323,26 +231,6 @@ fn an_unbalance_pushes_as_its_mass_is_accelerated() {
         let found = mass * rates[at + VELOCITY + 1 + i];
         assert!((found - SIZE * expected).abs() <= 1e-12 * SIZE * squared, "{found} {expected}");
     }
-}
-
-/// The rotor of 4.3.4 on two bearings, at a speed that rises.
-pub fn on_bearings(speed: Profile, youngs_modulus: f64) -> Assembly {
-    let beam = beam(MIDDLE, youngs_modulus);
-    let mut assembly = alone(&beam, Kept { most: 4, ..Kept::ALL }, &[0.0, 0.2, 0.4], 0.0);
-    assembly.bodies[0].driven_mut().unwrap().rotation = Rotation::Speed(speed);
-    assembly.bodies[1].rest = [0.0; 5];
-    assembly.bodies.push(body("the other outer race", Mobility::Fixed, [0.4, 0.0, 0.0, 0.0, 0.0]));
-    let ends = [along(&assembly, 0.0), along(&assembly, 0.4)];
-    let geometry = table_4_1(-2e-6);
-    assembly.bearings = vec![
-        seated(geometry, "left", ends[0], false, 1),
-        seated(geometry, "right", ends[1], false, 2),
-    ];
-    assembly
-}
-
-fn rising(to: f64, within: f64) -> Profile {
-    Profile::Ramp { from: 0.0, to, start: 0.0, duration: within }
 }
 
 /// Every integrator goes the same way through the first critical speed.
@@ -447,13 +335,6 @@ fn with_bending(assembly: &Assembly, state: &[f64]) -> (Vector3<f64>, Vector3<f6
         angular += (e2 * a + e3 * b) * tilted + Vector3::from(body.motion.axis) * (a * v - b * u);
     }
     (momentum, angular)
-}
-
-pub fn loaded(assembly: &mut Assembly, at: f64, [y, z]: [f64; 2]) {
-    let force =
-        [0.0, y, z].map(|force| Profile::Ramp { from: 0.0, to: force, start: 0.0, duration: 2e-3 });
-    let section = section(assembly, at);
-    assembly.shafts[0].loads.push(ShaftLoad { section, force });
 }
 
 /// A shaft that hardly bends moves as the rigid one, whose load acts at the same place.

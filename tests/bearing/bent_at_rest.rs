@@ -1,6 +1,6 @@
 //! Shafts that bend start where statics has them: bent, and still.
 
-use crate::bending::{STEEL, on_bearings, section};
+use crate::bent_shafts::{STEEL, on_bearings, section};
 use crate::dynamics::*;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::kinematics::vec3::dot;
@@ -15,6 +15,7 @@ use bearing_dynamics::solver::dynamics::start::at_equilibrium;
 use bearing_dynamics::solver::dynamics::state::{SPIN, VELOCITY};
 use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::statics::StaticsError;
 
 /// Loaded askew and along the axis, by its weight too; the shaft stands still, or turns.
 fn askew(speed: f64) -> Assembly {
@@ -122,4 +123,18 @@ fn a_pull_along_the_axis_stretches_the_shaft() {
     let expected = force * 0.4 / (STEEL * area);
     let ours = ends[1] - ends[0];
     assert!((ours / expected - 1.0).abs() <= 1e-9, "{ours:e} {expected:e}");
+}
+
+/// Damping inside that drags a spinning shaft about as hard as it springs back leaves no start, and is told before bodies are
+/// looked for elsewhere.
+#[test]
+fn a_bend_that_is_dragged_as_hard_as_it_springs_back_is_refused() {
+    let mut assembly = askew(300.0);
+    let more = (0..20).map(|k| 2e3 * 1.15f64.powi(k));
+    let refused = more.map(|damping| {
+        assembly.shafts[0].internal_damping = damping;
+        at_start(&assembly).err()
+    });
+    let refused = refused.flatten().next();
+    assert_eq!(refused, Some(StaticsError::Dragged { body: "the shaft".into() }));
 }

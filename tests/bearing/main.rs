@@ -7,7 +7,9 @@ mod dynamics;
 
 mod bending;
 mod bent_at_rest;
+mod bent_shafts;
 mod clock_laws;
+mod connected_bodies;
 mod connections;
 mod dents;
 mod dynamics_balls;

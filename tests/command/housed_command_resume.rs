@@ -4,8 +4,7 @@ use crate::housed_command_common;
 use crate::resume_common;
 
 use housed_command_common::*;
-use resume_common::{assert_same_results, signal, start, wait};
-use std::time::Duration;
+use resume_common::{assert_same_results, interrupted, stopped};
 
 /// A blow; the rows lie on a grid that windows divide.
 fn blow(end: &str, further: &str) -> String {
@@ -24,23 +23,15 @@ fn interrupted_killed_and_extended_runs_end_with_the_same_bytes() {
     let place = Place::new();
     let scene = place.scene("scene.toml", &blow("2 ms", ""));
     let (whole, parts) = (place.path("whole"), place.path("parts"));
-    let child = start(into_folder("run", &scene, &parts, &["--save-every", "1"]));
-    std::thread::sleep(Duration::from_millis(150));
-    signal(&child, "-TERM");
-    let (code, message) = wait(child);
-    assert_eq!(code, Some(2), "{message}");
-    assert!(message.contains("--resume"), "{message}");
-    let stood = json(parts.join("state.json"))["time"].as_f64().unwrap();
+    let part = into_folder("run", &scene, &parts, &["--save-every", "1"]);
+    let stood = interrupted(part, 150, &parts)["time"].as_f64().unwrap();
     assert!(stood > 0.0 && stood < 2e-3, "{stood}");
-    assert_eq!(json(parts.join("summary.json"))["complete"], false);
     // It is not written over.
     let output = into_folder("run", &scene, &parts, &[]).output().unwrap();
     assert!(stderr(&output).contains("--resume"), "{}", stderr(&output));
     // Killed on the way, it goes on from what was kept last.
-    let child = start(into_folder("run", &scene, &parts, &["--resume", "--save-every", "1"]));
-    std::thread::sleep(Duration::from_millis(100));
-    signal(&child, "-KILL");
-    wait(child);
+    let part = into_folder("run", &scene, &parts, &["--resume", "--save-every", "1"]);
+    assert_eq!(stopped(part, 100, "-KILL").0, None);
     let said = succeed(into_folder("run", &scene, &parts, &["--resume"]));
     assert!(said.contains("resumed at"), "{said}");
     succeed(into_folder("run", &scene, &whole, &[]));
@@ -70,13 +61,7 @@ fn interrupted_and_extended_courses_end_with_the_same_bytes() {
     };
     let scene = place.scene("scene.toml", &numerics("60 ms"));
     let (whole, parts) = (place.path("whole"), place.path("parts"));
-    let child = start(into_folder("run", &scene, &parts, &["--save-every", "1"]));
-    std::thread::sleep(Duration::from_millis(60));
-    signal(&child, "-TERM");
-    let (code, message) = wait(child);
-    assert_eq!(code, Some(2), "{message}");
-    assert!(message.contains("interrupted at t = ") && message.contains("--resume"), "{message}");
-    assert_eq!(json(parts.join("state.json"))["stopped"], "interrupted");
+    interrupted(into_folder("run", &scene, &parts, &["--save-every", "1"]), 60, &parts);
     let output = into_folder("run", &scene, &parts, &[]).output().unwrap();
     assert!(stderr(&output).contains("--resume"), "{}", stderr(&output));
     let said = succeed(into_folder("run", &scene, &parts, &["--resume"]));

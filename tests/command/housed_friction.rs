@@ -4,9 +4,8 @@ use crate::housed_command_common;
 use crate::resume_common;
 
 use housed_command_common::*;
-use resume_common::{assert_same_results, signal, start, wait};
+use resume_common::{assert_same_results, interrupted};
 use std::fs;
-use std::time::Duration;
 
 /// A race free in a rough bore under loads down, along and about its axis.
 fn rough(housing: &str, end: &str) -> String {
@@ -60,12 +59,8 @@ fn an_interrupted_run_with_friction_ends_with_the_same_bytes() {
     let place = Place::new();
     let scene = place.scene("scene.toml", &rough(GIVEN, "2 ms"));
     let (whole, parts) = (place.path("whole"), place.path("parts"));
-    let child = start(into_folder("run", &scene, &parts, &["--save-every", "1"]));
-    std::thread::sleep(Duration::from_millis(150));
-    signal(&child, "-TERM");
-    let (code, message) = wait(child);
-    assert_eq!(code, Some(2), "{message}");
-    let state = json(parts.join("state.json"));
+    let part = into_folder("run", &scene, &parts, &["--save-every", "1"]);
+    let state = interrupted(part, 150, &parts);
     assert!(state["exchange"]["friction"]["seats"][0][0].as_u64().unwrap() > 0, "{state}");
     let kept = parts.join(state["exchange"]["friction"]["arrays"].as_str().unwrap());
     assert!(kept.is_file());

@@ -1,7 +1,7 @@
 //! Scenes with a solid of rubber: statics, vibrations, runs that are interrupted and extended, and refusals.
 
 use crate::housed_command_common::scene_text;
-use crate::resume_common::{assert_same_results, signal, start, wait};
+use crate::resume_common::{assert_same_results, interrupted};
 use crate::solid_command_common::{
     Place, column, command, into_folder, json, shipped, stderr, succeed,
 };
@@ -203,12 +203,7 @@ fn interrupted_killed_and_extended_runs_of_rubber_end_with_the_same_bytes() {
     let of = |end: &str| numerics(end).replace("\"10 ms\"", "\"7 ms\"");
     let scene = place.scene("scene.toml", &of("7 s"));
     let (whole, parts) = (place.path("whole"), place.path("parts"));
-    let child = start(into_folder("run", &scene, &parts, &["--save-every", "1"]));
-    std::thread::sleep(std::time::Duration::from_millis(200));
-    signal(&child, "-TERM");
-    let (code, message) = wait(child);
-    assert_eq!(code, Some(2), "{message}");
-    assert!(message.contains("interrupted at t = ") && message.contains("--resume"), "{message}");
+    interrupted(into_folder("run", &scene, &parts, &["--save-every", "1"]), 200, &parts);
     let said = succeed(into_folder("run", &scene, &parts, &["--resume"]));
     assert!(said.contains("resumed at t = "), "{said}");
     succeed(into_folder("run", &scene, &whole, &[]));

@@ -1,6 +1,6 @@
 //! `bearing run` as a user meets it: results folder, signals, errors, comparison.
 
-use crate::resume_common::{assert_same_results, signal, start, wait};
+use crate::resume_common::{assert_same_results, interrupted, signal, start, stopped, wait};
 use crate::solid_command_common::{Place, json, stderr};
 
 use serde_json::Value;
@@ -157,15 +157,8 @@ fn interrupted_by_a_signal_and_resumed() {
     let scene = place.scene("scene.toml", &scene(numerics, ALL_PLOTS));
     let whole = place.path("whole");
     let parts = place.path("parts");
-    let mut child = start(command(&scene, &parts, &[]));
-    std::thread::sleep(Duration::from_millis(60));
-    signal(&child, "-TERM");
-    let (code_of_part, message) = wait(child);
-    assert_eq!(code_of_part, Some(2), "{message}");
-    assert!(message.contains("interrupted at t = ") && message.contains("--resume"), "{message}");
+    interrupted(command(&scene, &parts, &[]), 60, &parts);
     let summary = json(parts.join("summary.json"));
-    assert_eq!(summary["complete"], false);
-    assert_eq!(summary["stopped_by"], "interrupted");
     let rows = fs::read_to_string(parts.join("series.csv")).unwrap().lines().count() - 1;
     assert_eq!(summary["output"]["rows"], rows);
     assert!(rows > 1 && rows < 2000, "{rows}");
@@ -176,10 +169,7 @@ fn interrupted_by_a_signal_and_resumed() {
     assert!(stderr(&refused).contains("--resume") && stderr(&refused).contains("--fresh"));
     assert_eq!(json(parts.join("summary.json")), summary);
 
-    child = start(command(&scene, &parts, &["--resume"]));
-    std::thread::sleep(Duration::from_millis(30));
-    signal(&child, "-INT");
-    assert_eq!(wait(child).0, Some(2));
+    assert_eq!(stopped(command(&scene, &parts, &["--resume"]), 30, "-INT").0, Some(2));
     let output = run(&scene, &parts, &["--resume"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     assert!(String::from_utf8_lossy(&output.stdout).contains("resumed at t = "));

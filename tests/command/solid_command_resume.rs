@@ -4,7 +4,7 @@ use crate::resume_common;
 use crate::solid_command_common;
 
 use bearing_dynamics::solver::clock::rounded;
-use resume_common::{assert_same_results, signal, start, wait};
+use resume_common::{assert_same_results, interrupted, stopped};
 use solid_command_common::{Place, SHORT_RUN, column, into_folder, json, stderr, succeed};
 use std::fs;
 
@@ -19,20 +19,8 @@ fn interrupted_killed_and_extended_runs_end_with_the_same_bytes() {
         // A second or so; the end lies off the grid of rows.
         let scene = place.scene("scene.toml", &numerics("4.003 ms"));
         let (whole, parts) = (place.path("whole"), place.path("parts"));
-        let child = start(into_folder("run", &scene, &parts, &["--save-every", "1"]));
-        std::thread::sleep(std::time::Duration::from_millis(100));
-        signal(&child, "-TERM");
-        let (code, message) = wait(child);
-        assert_eq!(code, Some(2), "{message}");
-        assert!(
-            message.contains("interrupted at t = ") && message.contains("--resume"),
-            "{message}"
-        );
+        interrupted(into_folder("run", &scene, &parts, &["--save-every", "1"]), 100, &parts);
         let summary = json(parts.join("summary.json"));
-        assert_eq!(
-            (&summary["complete"], &summary["stopped_by"]),
-            (&false.into(), &"interrupted".into())
-        );
 
         // Without a word about it nothing is overwritten.
         let refused = into_folder("run", &scene, &parts, &[]).output().unwrap();
@@ -41,10 +29,7 @@ fn interrupted_killed_and_extended_runs_end_with_the_same_bytes() {
         assert_eq!(json(parts.join("summary.json")), summary);
 
         // Killed outright it goes on from the state kept before.
-        let child = start(into_folder("run", &scene, &parts, &["--resume"]));
-        std::thread::sleep(std::time::Duration::from_millis(50));
-        signal(&child, "-KILL");
-        assert_eq!(wait(child).0, None);
+        assert_eq!(stopped(into_folder("run", &scene, &parts, &["--resume"]), 50, "-KILL").0, None);
         // As if killed in the middle of a file: gone when the next part has ended.
         let dead = u32::MAX - 1;
         for half in ["series.npy", "fields/fields_000001.vtu"] {

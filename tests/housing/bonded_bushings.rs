@@ -77,7 +77,7 @@ impl Made {
             solids: Vec::new(),
             seats: Vec::new(),
             bushings: self.bushings.iter().map(BushingElements::part).collect(),
-            options: ExchangeOptions::on_rubber(bearing),
+            options: ExchangeOptions::without_housings(bearing),
             threads: 1,
         }))
     }

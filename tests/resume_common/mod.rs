@@ -6,6 +6,7 @@ use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::time::Duration;
 
 /// Every file of two folders to the byte, but for wall times.
 pub fn assert_same_results(expected: &Path, found: &Path) {
@@ -52,6 +53,31 @@ pub fn start(mut command: Command) -> Child {
         assert!(lines.read_line(&mut line).unwrap() > 0, "it ended before it stepped");
     }
     child
+}
+
+/// Starts a run and sends it a signal so many milliseconds after its first step; its code and what it said.
+pub fn stopped(command: Command, after: u64, name: &str) -> (Option<i32>, String) {
+    let child = start(command);
+    std::thread::sleep(Duration::from_millis(after));
+    signal(&child, name);
+    wait(child)
+}
+
+/// Starts a run into a folder, interrupts it so many milliseconds after its first step, and reads the state that it left.
+pub fn interrupted(command: Command, after: u64, folder: &Path) -> Value {
+    let (code, message) = stopped(command, after, "-TERM");
+    assert_eq!(code, Some(2), "{message}");
+    assert!(message.contains("interrupted at t = ") && message.contains("--resume"), "{message}");
+    let read = |name: &str| -> Value {
+        serde_json::from_slice(&fs::read(folder.join(name)).unwrap()).unwrap()
+    };
+    let (state, summary) = (read("state.json"), read("summary.json"));
+    assert_eq!(state["stopped"], "interrupted");
+    assert_eq!(
+        (&summary["complete"], &summary["stopped_by"]),
+        (&false.into(), &"interrupted".into())
+    );
+    state
 }
 
 pub fn signal(child: &Child, name: &str) {

@@ -150,7 +150,7 @@ pub fn ran(scene: &AssemblyScene, names: &[&str]) -> Result<Vec<Vec<f64>>, CaseE
                 solids: Vec::new(),
                 seats: Vec::new(),
                 bushings: bushings.iter().map(BushingElements::part).collect(),
-                options: ExchangeOptions::on_rubber(bearing),
+                options: ExchangeOptions::without_housings(bearing),
                 threads: 1,
             }));
             done(parts, &request)?.series()?

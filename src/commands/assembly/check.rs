@@ -2,11 +2,12 @@
 
 use super::echo::{echo, motion, numerics};
 use super::housing::Housing;
+use super::lists::Lists;
 use super::{defaults, housings, lines};
 use crate::commands::check::{Line, say_json, say_lines};
 use crate::commands::echo::through;
-use crate::commands::remarks::{of_shafts, of_springs, turning_races};
 use crate::commands::run::{planned_request, request};
+use crate::commands::scene_remarks::{of_shafts, of_springs, turning_races};
 use crate::commands::{CommandResult, echo_run};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::session::table_size;
@@ -35,14 +36,16 @@ pub fn run(
         }
     }
     housings::refuse(document, &scene, &housings)?;
+    let mut made = None;
     if let Some(settings) = scene.run().cloned() {
         // Bearings that are to move have to make bodies, too.
         let assembly = scene.assembly()?;
         let mut request = request(scene.common(), &settings);
         if housings.is_empty() {
             (request, _) = planned_request(&scene, &settings, &assembly, None);
-            table_size(assembly, &request)?;
+            table_size(assembly.clone(), &request)?;
         }
+        made = Some(assembly);
         let run = RunSettings { options: request.options, ..settings };
         scene.bearings[0].scene.dynamics.run = Some(run);
     }
@@ -52,7 +55,7 @@ pub fn run(
         let lines = |line: &mut Line| of_scene(scene, &housings, line);
         return say_lines(path, &common.title, lines, &common.assumptions, &defaults);
     }
-    let mut understood = echo(scene)?;
+    let mut understood = echo(&Lists::made(scene, made))?;
     if let (Some(run), None) = (scene.run(), scene.one().filter(|one| one.housing.is_some())) {
         understood["motion"] = motion(scene)?;
         understood["numerics"] = numerics(run, housings.first().map(|of| &of.scene.housing))?;

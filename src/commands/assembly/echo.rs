@@ -1,6 +1,7 @@
 //! What was understood of a scene of bearings, as JSON with units.
 
 use super::housing::method;
+use super::lists::Lists;
 use super::{Fallible, name_of};
 use crate::commands::{echo as bearing_echo, echo_run, solid};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
@@ -20,7 +21,8 @@ use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
 use serde_json::{Map, Value, json};
 
 /// The scene as understood, every dimensional value with its unit.
-pub fn echo(scene: &AssemblyScene) -> Fallible<Value> {
+pub fn echo(lists: &Lists) -> Fallible<Value> {
+    let scene = lists.scene;
     if let Some(one) = scene.one() {
         return of_one(one);
     }
@@ -57,15 +59,14 @@ pub fn echo(scene: &AssemblyScene) -> Fallible<Value> {
     }
     echo.insert("bearings".into(), Value::Object(bearings));
     let mut bodies = Map::new();
-    let bends = scene.bodies.iter().any(|body| body.beam.is_some());
-    let whole = if bends { Some(scene.assembly()?) } else { None };
     for (index, body) in scene.bodies.iter().enumerate() {
         let mut own = echo_run::body(body)?;
-        if let (Some(of), Some(whole)) = (&body.beam, &whole) {
+        if let Some(of) = &body.beam {
             own["beam"] = shaft(of)?;
-            let race = whole.bodies[index].driven();
+            let made = &lists.assembly()?.bodies[index];
+            let race = made.driven();
             own["inertia"] = race.map(|race| echo_run::inertia(&race.inertia)).transpose()?.into();
-            own["centre_of_mass"] = quantity("place", 1e3 * whole.bodies[index].rest[0], "mm")?;
+            own["centre_of_mass"] = quantity("place", 1e3 * made.rest[0], "mm")?;
         }
         bodies.insert(body.name.clone(), own);
     }

@@ -2,6 +2,7 @@
 
 use super::Fallible;
 use super::housing::Housing;
+use super::lists::Lists;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::session::HousedParts;
 use bearing_dynamics::scene::Document;
@@ -99,13 +100,13 @@ pub fn condensed(housings: &[Housing]) -> Fallible<Vec<CondensedBore>> {
 
 /// All with their races in their bores, to go through equilibria.
 pub fn course<'b>(
-    scene: &AssemblyScene,
+    assembly: Assembly,
     housings: &[Housing],
     bores: &'b [CondensedBore],
-) -> Fallible<CourseProblem<'b>> {
+) -> CourseProblem<'b> {
     let seats = housings.iter().zip(bores);
     let seats = seats.map(|(of, bore)| of.course_seat(bore, of.setup.radius(&of.scene)));
-    Ok(CourseProblem { assembly: scene.assembly()?, seats: seats.collect() })
+    CourseProblem { assembly, seats: seats.collect() }
 }
 
 /// The same with races as fully grown into their fits.
@@ -126,18 +127,18 @@ pub struct Equilibrium<'b> {
 
 /// The equilibrium at t = 0, races grown into their fits; looked for `near` places that are known.
 pub fn equilibrium<'b>(
-    scene: &AssemblyScene,
+    lists: &Lists,
     seats: Vec<CourseSeat<'b>>,
     near: Option<&[SVector<f64, 5>]>,
 ) -> Fallible<Equilibrium<'b>> {
-    let mut still: StaticAssembly<'b> = super::still(scene)?;
+    let mut still: StaticAssembly<'b> = super::still(lists)?;
     if seats.is_empty() {
         let solution = solve_assembly(&still, near, &StaticOptions::default())?;
         let moment = Moment { time: 0.0, residual: 0.0, contact_changes: 0, solution };
         return Ok(Equilibrium { still, moment, in_bores: None });
     }
     seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
-    let course = CourseProblem { assembly: scene.assembly()?, seats };
+    let course = CourseProblem { assembly: lists.assembly()?.clone(), seats };
     let mut search = CourseSearch::of(&course.seats);
     search.look_near(near);
     let moment = course.solve(&mut search, &still, 0.0)?;
@@ -160,11 +161,11 @@ pub fn explicit<'p>(
 
 /// The same from undeformed housings, whatever the scene says.
 pub fn undeformed(
-    scene: &AssemblyScene,
+    lists: &Lists,
     housings: &[Housing],
     threads: usize,
 ) -> Fallible<HousedParts<'static>> {
-    parts(scene, scene.assembly()?, housings, Vec::new(), threads)
+    parts(lists.scene, lists.assembly()?.clone(), housings, Vec::new(), threads)
 }
 
 fn parts<'p>(

@@ -5,6 +5,7 @@ pub mod course;
 pub mod echo;
 pub mod housing;
 pub mod housings;
+pub mod lists;
 pub mod modes;
 pub mod plan;
 pub mod shapes;
@@ -16,10 +17,11 @@ use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::scene::DefaultUsed;
 use bearing_dynamics::scene::assembly::{AssemblyScene, Carrier, PlacedBearing, PlacedHousing};
 use bearing_dynamics::scene::housing::HousingMethod;
-use bearing_dynamics::scene::statics::static_problem;
+use bearing_dynamics::scene::statics::{static_problem, still_lists};
 use bearing_dynamics::solver::plan::Item;
 use bearing_dynamics::solver::plan::motion::race_freedom;
 use bearing_dynamics::solver::static_assembly::StaticAssembly;
+use lists::Lists;
 use std::error::Error;
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
@@ -57,21 +59,17 @@ pub fn defaults(scene: &AssemblyScene) -> Vec<DefaultUsed> {
 }
 
 /// What `statics` finds the equilibrium of; of a bearing alone under the loads that are given, its outer race held.
-pub fn still(scene: &AssemblyScene) -> Fallible<StaticAssembly<'static>> {
-    Ok(match scene.only() {
+pub fn still(lists: &Lists) -> Fallible<StaticAssembly<'static>> {
+    Ok(match lists.scene.only() {
         Some(alone) => static_problem(alone)?.assembly(),
-        None => scene.statics()?,
+        None => still_lists(lists.scene, lists.assembly()?),
     })
 }
 
 /// What results of a run or an equilibrium have of the scene: itself, its plan, assumptions and defaults.
-pub fn record(
-    scene: &AssemblyScene,
-    plan: Vec<Item>,
-    seconds: Vec<(String, f64)>,
-) -> Fallible<RunRecord> {
-    let (assumptions, defaults) = (&scene.common().assumptions, defaults(scene));
-    Ok(super::record(echo::echo(scene)?, plan, assumptions, &defaults, seconds))
+pub fn record(lists: &Lists, plan: Vec<Item>, seconds: Vec<(String, f64)>) -> Fallible<RunRecord> {
+    let (assumptions, defaults) = (&lists.scene.common().assumptions, defaults(lists.scene));
+    Ok(super::record(echo::echo(lists)?, plan, assumptions, &defaults, seconds))
 }
 
 /// Name of a bearing in tables of names.

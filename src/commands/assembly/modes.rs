@@ -4,11 +4,12 @@
 //! (Rayleigh), so that frequencies are upper bounds, near the truth while its own modes are higher.
 
 use super::housings::{self, Equilibrium};
+use super::lists::Lists;
 use super::whirl::Spinning;
 use super::{Fallible, plan, record};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
-use crate::commands::remarks::at_rest;
+use crate::commands::scene_remarks::at_rest;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
 use bearing_dynamics::scene::assembly::AssemblyScene;
@@ -29,10 +30,11 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let housings = housings::prepare(document, scene)?;
     let start = Instant::now();
     let bores = housings::condensed(&housings)?;
-    let found = housings::equilibrium(scene, housings::grown(&housings, &bores), None)?;
+    let lists = Lists::of(scene);
+    let found = housings::equilibrium(&lists, housings::grown(&housings, &bores), None)?;
     let Equilibrium { still, moment, in_bores } = &found;
-    let assembly = scene.assembly()?;
-    let bodies = taking_part(&assembly, still);
+    let assembly = lists.assembly()?;
+    let bodies = taking_part(assembly, still);
     if !bodies.iter().any(|body| body.free.contains(&true)) {
         let place = path.display();
         return Err(format!("{place}: all coordinates are given: nothing is left to swing").into());
@@ -40,7 +42,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let mut masses = Vec::new();
     if let Some((course, search)) = in_bores {
         for (seat, bore) in course.seats.iter().zip(search.bores()) {
-            let race = bodies.iter().position(|of| of.body == seat.body(&assembly));
+            let race = bodies.iter().position(|of| of.body == seat.body(assembly));
             masses.extend(race.map(|race| housing_mass(bore, race)));
         }
     }
@@ -50,7 +52,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         let hint = "give it: body.NAME.inertia";
         return Err(format!("{}: a body has no mass. Hint: {hint}", path.display()).into());
     }
-    let names = names(still, &bodies, &assembly);
+    let names = names(still, &bodies, assembly);
     let mut text = "mode        frequency, Hz  moves most\n".to_string();
     for (index, mode) in found.iter().enumerate() {
         let most = &names[moves_most(mode)];
@@ -58,7 +60,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     }
     say(&text)?;
     let mut remarks: Vec<String> = at_rest(scene).collect();
-    let spinning = spinning(&assembly, still, solution, &bodies, &masses)?;
+    let spinning = spinning(assembly, still, solution, &bodies, &masses)?;
     if let Some(spinning) = &spinning {
         say(&spinning.text())?;
         remarks.extend(spinning.remarks());
@@ -91,7 +93,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let seconds = vec![("solve".into(), start.elapsed().as_secs_f64())];
-    let mut record = record(scene, plan::of_statics(scene, &housings)?, seconds)?;
+    let mut record = record(&lists, plan::of_statics(&lists, &housings)?, seconds)?;
     record.ran.clone_from(&moment.solution.ran);
     record.sections.push(("remarks".into(), json!(remarks)));
     let mut written = Vec::new();

@@ -3,13 +3,14 @@
 
 use super::course::{along_course, inertia_estimate, verdicts};
 use super::housing::Housing;
+use super::lists::Lists;
 use super::shapes::{Shapes, shapes};
 use super::{Fallible, housings, still};
 use crate::commands::bushing_remarks::of_bushings;
 use crate::commands::plan::say_plan;
 use crate::commands::plan_step::{note, refused, step_lines};
-use crate::commands::remarks::{of_shafts, of_springs, turning_races};
 use crate::commands::run::{self, planned_request};
+use crate::commands::scene_remarks::{of_shafts, of_springs, turning_races};
 use crate::commands::{CommandResult, Outcome, memory};
 use bearing_dynamics::output::session::{HousedParts, RunRequest, table_size};
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
@@ -41,6 +42,7 @@ const TIMED: Duration = Duration::from_millis(300);
 
 pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
     let housings = housings::prepare(document, scene)?;
+    let lists = &Lists::of(scene);
     let method = scene.housing_method();
     match (method, scene.run()) {
         (Some(HousingMethod::QuasiStatic), Some(_)) => housings::refuse_steps(document)?,
@@ -48,18 +50,18 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         _ => housings::refuse(document, scene, &housings)?,
     }
     let reduced = match method {
-        Some(HousingMethod::Reduced) => Some(shapes(scene, &housings)?),
+        Some(HousingMethod::Reduced) => Some(shapes(lists, &housings)?),
         _ => None,
     };
     let (items, mut notes) = match (scene.run(), method) {
         (None, _) => {
             scene.check_smooth()?;
-            (of_statics(scene, &housings)?, Vec::new())
+            (of_statics(lists, &housings)?, Vec::new())
         }
         (Some(settings), Some(HousingMethod::QuasiStatic)) => {
-            (of_course(scene, &housings, settings)?, Vec::new())
+            (of_course(lists, &housings, settings)?, Vec::new())
         }
-        (Some(settings), _) => of_steps(scene, &housings, reduced.as_ref(), settings)?,
+        (Some(settings), _) => of_steps(lists, &housings, reduced.as_ref(), settings)?,
     };
     notes.extend(of_shafts(scene).iter().map(|said| note("shaft", said)));
     notes.extend(of_springs(scene).iter().map(|said| note("spring", said)));
@@ -76,13 +78,13 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         notes.push(note("start of the housing", UNDEFORMED));
     }
     if !housings.is_empty() {
-        notes.extend(equilibrium_notes(scene, &housings)?);
+        notes.extend(equilibrium_notes(lists, &housings)?);
     }
     // With bushings or shafts in elements the steps of all have been told.
     let in_elements = scene.has_bushings_in_elements() || scene.has_shafts_in_elements();
     let told = housings.is_empty() || in_elements;
     if let (Some(settings), false) = (scene.run(), told) {
-        notes.push(explicit_note(scene, &housings, settings));
+        notes.push(explicit_note(lists, &housings, settings));
     }
     if scene.common().rigid_housing {
         let said = "housing.method = rigid: the outer race is fixed, no mesh is read";
@@ -98,14 +100,15 @@ const UNDEFORMED: &str = "undeformed, the outer race in its first place: what th
 
 /// A run in steps: items, and what there is to note of steps and of the size of its table.
 fn of_steps(
-    scene: &AssemblyScene,
+    lists: &Lists,
     housings: &[Housing],
     reduced: Option<&Shapes>,
     settings: &RunSettings,
 ) -> Fallible<(Vec<Item>, Vec<String>)> {
+    let scene = lists.scene;
     let mut assembly = match reduced {
         Some(shapes) => shapes.assembly.clone(),
-        None => scene.assembly()?,
+        None => lists.assembly()?.clone(),
     };
     let bushings = take_bushings(scene, &mut assembly)?;
     let shafts = take_shafts(scene, &mut assembly)?;
@@ -180,6 +183,12 @@ pub fn stages(
         cage_left_out: &left_out,
         solids,
     });
+    for shaft in shafts {
+        let of_body = |item: &&mut Item| item.subject == Subject::Body(shaft.body);
+        for item in items.iter_mut().filter(of_body).filter(|item| item.stage == Stage::Motion) {
+            item.why = "its elements move, and what sits on them; it has no body of its own".into();
+        }
+    }
     if let Some(choice) = choice {
         let said = format!("{}: {}", choice.integrator.name(), choice.reason());
         items.push(Item::does(Stage::IntegratorChoice, Subject::Whole, said));
@@ -188,8 +197,8 @@ pub fn stages(
 }
 
 /// Items of the equilibrium at t = 0.
-pub fn of_statics(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Vec<Item>> {
-    Ok(of_equilibrium(&still(scene)?, housings, ASKED_FOR))
+pub fn of_statics(lists: &Lists, housings: &[Housing]) -> Fallible<Vec<Item>> {
+    Ok(of_equilibrium(&still(lists)?, housings, ASKED_FOR))
 }
 
 fn of_equilibrium(still: &StaticAssembly, housings: &[Housing], centrifugal: &str) -> Vec<Item> {
@@ -204,15 +213,11 @@ fn of_equilibrium(still: &StaticAssembly, housings: &[Housing], centrifugal: &st
 }
 
 /// Items of one equilibrium after the other, of which there are as many as a run solves.
-pub fn of_course(
-    scene: &AssemblyScene,
-    housings: &[Housing],
-    run: &RunSettings,
-) -> Fallible<Vec<Item>> {
+pub fn of_course(lists: &Lists, housings: &[Housing], run: &RunSettings) -> Fallible<Vec<Item>> {
     const GO_ROUND: &str =
         "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
-    let mut still = still(scene)?;
-    for (bearing, placed) in still.bearings.iter_mut().zip(&scene.bearings) {
+    let mut still = still(lists)?;
+    for (bearing, placed) in still.bearings.iter_mut().zip(&lists.scene.bearings) {
         let turning = &placed.scene.dynamics.inner.rotation;
         let turns = matches!(turning, Rotation::Speed(speed) if !speed.is_zero());
         // At any speed that it has.
@@ -246,7 +251,8 @@ fn size_line(assembly: &Assembly, request: &RunRequest) -> String {
 
 /// What condensing takes; of the quasi-static method also whether equilibria will do, which needs
 /// the condensed housings. Of other methods nothing is factorised here.
-fn equilibrium_notes(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Vec<String>> {
+fn equilibrium_notes(lists: &Lists, housings: &[Housing]) -> Fallible<Vec<String>> {
+    let scene = lists.scene;
     let chosen = scene.housing_method() == Some(HousingMethod::QuasiStatic);
     let name = if chosen { "inertia left out" } else { "quasi-static instead" };
     let mut planned = Vec::new();
@@ -267,7 +273,7 @@ fn equilibrium_notes(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Ve
         return Ok(planned);
     }
     let bores = housings::condensed(housings)?;
-    let course = housings::course(scene, housings, &bores)?;
+    let course = housings::course(lists.assembly()?.clone(), housings, &bores);
     let Some(estimate) = inertia_estimate(scene, &course)? else {
         planned.push(note(name, "nothing holds the outer race under the largest load"));
         return Ok(planned);
@@ -290,10 +296,10 @@ fn condensed_text(sizes: &Sizes) -> String {
 }
 
 /// Windows of the explicit way, and about how long they take here.
-fn explicit_note(scene: &AssemblyScene, housings: &[Housing], run: &RunSettings) -> String {
-    let chosen = scene.housing_method() == Some(HousingMethod::Explicit);
+fn explicit_note(lists: &Lists, housings: &[Housing], run: &RunSettings) -> String {
+    let chosen = lists.scene.housing_method() == Some(HousingMethod::Explicit);
     // Where it starts does not matter here, and finding out takes long.
-    let windows = housings::undeformed(scene, housings, 1);
+    let windows = housings::undeformed(lists, housings, 1);
     match (windows.and_then(|parts| windows_text(parts, run)), chosen) {
         (Ok(said), true) => note("step", &said),
         (Ok(said), false) => note("explicit instead", &said),
@@ -322,7 +328,8 @@ fn windows_text(parts: HousedParts, run: &RunSettings) -> Result<String, Box<dyn
     let steps = |part: &SteppedSolid| {
         let of = part.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
         let limit = part.solid.limit.step;
-        let what = if part.shaft.is_some() { "shaft" } else { "housing" };
+        let what = part.kind();
+        let of = if of.strip_prefix(' ') == Some(what) { String::new() } else { of };
         format!("{} of the {what}{of} (limit {limit:.3e} s)", steps_of(part.steps))
     };
     let mut solids: Vec<String> = housed.solids.iter().map(steps).collect();

@@ -4,6 +4,7 @@ use super::Fallible;
 use super::course::percent;
 use super::housing::Housing;
 use super::housings::largest_force;
+use super::lists::Lists;
 use crate::commands::plan_step::note;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::session::Motion;
@@ -63,8 +64,8 @@ fn reduction(housing: &Housing, bearing: &Bearing, force: f64) -> Fallible<Found
 }
 
 /// Condenses and reduces the housings, and finds the equilibrium that a run starts from.
-pub fn shapes(scene: &AssemblyScene, housings: &[Housing]) -> Fallible<Shapes> {
-    let mut assembly = scene.assembly()?;
+pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
+    let (scene, mut assembly) = (lists.scene, lists.assembly()?.clone());
     let force = largest_force(&assembly, housings);
     let (mut reductions, mut bores) = (Vec::new(), Vec::new());
     let mut seconds = [0.0; 2];

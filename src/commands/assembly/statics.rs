@@ -3,6 +3,7 @@
 use super::course::{estimate_at, section, verdicts};
 use super::housing::Housing;
 use super::housings::{self, Equilibrium};
+use super::lists::Lists;
 use super::{Fallible, defaults, echo, name_of, plan};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
@@ -62,7 +63,8 @@ pub fn find_equilibrium<'s>(
     let bores = housings::condensed(&housings)?;
     let condense = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let found = housings::equilibrium(scene, housings::grown(&housings, &bores), None)?;
+    let lists = Lists::of(scene);
+    let found = housings::equilibrium(&lists, housings::grown(&housings, &bores), None)?;
     let Equilibrium { still, moment, in_bores } = &found;
     let estimate =
         in_bores.as_ref().and_then(|(course, search)| estimate_at(course, search, moment));
@@ -87,9 +89,9 @@ pub fn find_equilibrium<'s>(
         Some(alone) => alone.defaults_used.clone(),
         None => defaults(scene),
     };
-    let planned = plan::of_statics(scene, &housings)?;
+    let planned = plan::of_statics(&lists, &housings)?;
     let assumptions = &scene.common().assumptions;
-    let mut record = record(echo::echo(scene)?, planned, assumptions, &defaults, seconds);
+    let mut record = record(echo::echo(&lists)?, planned, assumptions, &defaults, seconds);
     record.ran.clone_from(&moment.solution.ran);
     for (tally, bore) in record.ran.solids.iter_mut().zip(&bores) {
         tally.absorb(&bore.ran);
@@ -125,7 +127,7 @@ pub fn find_equilibrium<'s>(
     }
     let Equilibrium { still, mut moment, .. } = found;
     if of_one.is_none() {
-        moment.solution = readable(&scene.assembly()?, &still, &moment.solution);
+        moment.solution = readable(lists.assembly()?, &still, &moment.solution);
     }
     let StaticAssembly { bodies, bearings, connections, shafts, .. } = still;
     // Bores are needed no longer.

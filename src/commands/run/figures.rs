@@ -57,11 +57,14 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
             ("steps".into(), format!("{done} in {seconds:.2} s"))
         }
         Motion::Housed(housed) => {
-            let of_housing: u64 = housed.solids.iter().map(|part| part.solid.steps).sum();
             let of_bearing = housed.simulation.steps;
             let mut said = format!("{done} in {seconds:.2} s; ");
-            if !housed.solids.is_empty() {
-                said += &format!("{of_housing} steps of the housing, ");
+            for kind in ["housing", "shaft"] {
+                let of_kind = housed.solids.iter().filter(|part| part.kind() == kind);
+                let steps: u64 = of_kind.map(|part| part.solid.steps).sum();
+                if steps > 0 {
+                    said += &format!("{steps} steps of the {kind}, ");
+                }
             }
             for bushing in &housed.bushings {
                 said += &format!("{} steps of the bushing {}, ", bushing.steps_done(), bushing.name);

@@ -76,7 +76,6 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let folder = claimed(&folder, Writes::Run { fresh: arguments.fresh })?;
     let kept = kept_state(arguments, &folder)?;
     let prepared = Prepared::new(&document, &subject)?;
-    let parts = || prepared.parts(usize::from(arguments.threads));
     let (request, choice) = prepared.request(kept.as_ref())?;
     let mut seconds = Seconds { read: start.elapsed().as_secs_f64(), ..Seconds::default() };
 
@@ -85,17 +84,18 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))?;
 
     let start = Instant::now();
+    let parts = prepared.parts(usize::from(arguments.threads))?;
     let record = StateRecord {
-        fingerprint: state::fingerprint(&parts()?, &request),
+        fingerprint: state::fingerprint(&parts, &request),
         stopped: Stopped::Running,
         error: None,
         seconds: kept.as_ref().map_or(0.0, |file| file.seconds),
     };
     let mut session = match &kept {
-        Some(file) => state::resume(&folder, file, parts()?, &request)?,
+        Some(file) => state::resume(&folder, file, parts, &request)?,
         None => {
             remove_earlier(&folder)?;
-            Session::start(parts()?, &request)?
+            Session::start(parts, &request)?
         }
     };
     seconds.start = start.elapsed().as_secs_f64();

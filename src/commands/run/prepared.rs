@@ -1,6 +1,7 @@
 //! From a scene to what moves in its run: the one place that asks what the scene is of.
 
 use crate::commands::assembly::housing::Housing;
+use crate::commands::assembly::lists::Lists;
 use crate::commands::assembly::shapes::{Shapes, shapes};
 use crate::commands::assembly::{self, housings, plan};
 use crate::commands::{rubber, solid};
@@ -36,7 +37,8 @@ type Fallible<T> = Result<T, Box<dyn Error>>;
 /// A scene ready to run.
 pub(super) enum Prepared<'s> {
     Bearings {
-        scene: &'s AssemblyScene,
+        /// As the scene has them.
+        lists: Box<Lists<'s>>,
         settings: RunSettings,
         /// With the housings that are reduced, without springs of bushings and shafts in elements.
         assembly: Box<Assembly>,
@@ -128,12 +130,13 @@ impl<'s> Prepared<'s> {
         let settings = scene.run().cloned().ok_or(NO_END)?;
         let housings = housings::prepare(document, scene)?;
         housings::refuse(document, scene, &housings)?;
+        let lists = Box::new(Lists::of(scene));
         let in_elements = scene.has_bushings_in_elements() || scene.has_shafts_in_elements();
         let way = match scene.housing_method() {
             None if in_elements => Way::Explicit,
             None => Way::Rigid,
             Some(HousingMethod::Explicit) => Way::Explicit,
-            Some(HousingMethod::Reduced) => Way::Reduced(Box::new(shapes(scene, &housings)?)),
+            Some(HousingMethod::Reduced) => Way::Reduced(Box::new(shapes(&lists, &housings)?)),
             Some(HousingMethod::QuasiStatic) => {
                 let start = Instant::now();
                 let bores = housings::condensed(&housings)?;
@@ -142,18 +145,18 @@ impl<'s> Prepared<'s> {
         };
         let mut assembly = Box::new(match &way {
             Way::Reduced(shapes) => shapes.assembly.clone(),
-            _ => scene.assembly()?,
+            _ => lists.assembly()?.clone(),
         });
         let bushings = take_bushings(scene, &mut assembly)?;
         let shafts = take_shafts(scene, &mut assembly)?;
-        Ok(Prepared::Bearings { scene, settings, assembly, housings, bushings, shafts, way })
+        Ok(Prepared::Bearings { lists, settings, assembly, housings, bushings, shafts, way })
     }
 
     /// What moves.
     pub fn parts(&self, threads: usize) -> Fallible<Parts<'_>> {
         Ok(match self {
             Prepared::Bearings {
-                scene,
+                lists,
                 assembly,
                 housings,
                 bushings,
@@ -163,11 +166,11 @@ impl<'s> Prepared<'s> {
             } => {
                 let assembly = (**assembly).clone();
                 let elements = (&bushings[..], &shafts[..]);
-                let parts = housings::explicit(scene, assembly, housings, elements, threads)?;
+                let parts = housings::explicit(lists.scene, assembly, housings, elements, threads)?;
                 Parts::Housed(Box::new(parts))
             }
-            Prepared::Bearings { scene, housings, way: Way::Course(bores, _), .. } => {
-                let problem = housings::course(scene, housings, bores)?;
+            Prepared::Bearings { assembly, housings, way: Way::Course(bores, _), .. } => {
+                let problem = housings::course((**assembly).clone(), housings, bores);
                 let models = housings.iter().map(|housing| &housing.setup.model).collect();
                 Parts::Course(Box::new(CourseParts { problem, models }))
             }
@@ -187,8 +190,8 @@ impl<'s> Prepared<'s> {
     /// What the scene asks of the run, with the integrator that the plan chooses for a bearing.
     pub fn request(&self, kept: Option<&StateFile>) -> Fallible<(RunRequest, Option<Choice>)> {
         Ok(match self {
-            Prepared::Bearings { scene, settings, assembly, housings, way, .. } => {
-                let mut request = request(scene.common(), settings);
+            Prepared::Bearings { lists, settings, assembly, housings, way, .. } => {
+                let mut request = request(lists.scene.common(), settings);
                 if let Some(first) = housings.first() {
                     request.fields_interval = first.scene.housing.fields_interval;
                 }
@@ -233,8 +236,8 @@ impl<'s> Prepared<'s> {
 
     pub fn title(&self) -> String {
         match self {
-            Prepared::Bearings { scene, .. } => {
-                scene.common().title.clone().unwrap_or_else(|| "Bearing".into())
+            Prepared::Bearings { lists, .. } => {
+                lists.scene.common().title.clone().unwrap_or_else(|| "Bearing".into())
             }
             Prepared::Solid { scene, .. } | Prepared::Rubber { scene, .. } => solid::title(scene),
         }
@@ -243,7 +246,7 @@ impl<'s> Prepared<'s> {
     /// What all bearings of the scene share, if it has any.
     pub fn bearing(&self) -> Option<&Scene> {
         match self {
-            Prepared::Bearings { scene, .. } => Some(scene.common()),
+            Prepared::Bearings { lists, .. } => Some(lists.scene.common()),
             Prepared::Solid { .. } | Prepared::Rubber { .. } => None,
         }
     }
@@ -322,17 +325,18 @@ impl<'s> Prepared<'s> {
         seconds: Vec<(String, f64)>,
     ) -> Fallible<RunRecord> {
         match self {
-            Prepared::Bearings { scene, settings, assembly, housings, bushings, shafts, way } => {
+            Prepared::Bearings { lists, settings, assembly, housings, bushings, shafts, way } => {
+                let scene = lists.scene;
                 // With housings a run that is extended has the bytes of an unbroken one.
                 let choice = choice.filter(|_| housings.is_empty());
                 let planned = match way {
-                    Way::Course(..) => plan::of_course(scene, housings, settings)?,
+                    Way::Course(..) => plan::of_course(lists, housings, settings)?,
                     _ => {
                         let elements = (&bushings[..], &shafts[..]);
                         plan::stages(scene, (housings, elements), assembly, request, choice)
                     }
                 };
-                let mut record = assembly::record(scene, planned, seconds)?;
+                let mut record = assembly::record(lists, planned, seconds)?;
                 record.ran.whole.add(Stage::IntegratorChoice, u64::from(choice.is_some()));
                 record.ran.solids = match way {
                     Way::Course(bores, _) => bores.iter().map(|bore| bore.ran).collect(),

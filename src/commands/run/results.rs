@@ -68,7 +68,8 @@ pub(super) fn write_results(
     let start = Instant::now();
     let mut said = Said::default();
     match prepared {
-        Prepared::Bearings { scene, .. } => {
+        Prepared::Bearings { lists, .. } => {
+            let scene = lists.scene;
             if let Some(simulation) = session.motion.bearing() {
                 said.remarks = remarks::of_run(scene, simulation);
             }
@@ -155,7 +156,8 @@ fn housing_results(
     session: &mut Session,
     said: &mut Said,
 ) -> Fallible<()> {
-    let Prepared::Bearings { scene, housings, way, .. } = prepared else { return Ok(()) };
+    let Prepared::Bearings { lists, housings, way, .. } = prepared else { return Ok(()) };
+    let scene = lists.scene;
     if housings.is_empty() {
         return Ok(());
     }

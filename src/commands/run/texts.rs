@@ -166,8 +166,10 @@ fn of_solid_in_window(part: &SteppedSolid) -> String {
         count => format!("{count} steps"),
     };
     let of = part.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
+    let what = part.kind();
+    let of = if of.strip_prefix(' ') == Some(what) { String::new() } else { of };
     format!(
-        "{steps} of the housing{of} in it; limit of the housing {:.4e} s, its fastest element, {}, at x {x:.3}, \
+        "{steps} of the {what}{of} in it; limit of the {what} {:.4e} s, its fastest element, {}, at x {x:.3}, \
          y {y:.3}, z {z:.3} mm",
         limit.step,
         part.solid.model.labels.element(limit.element),

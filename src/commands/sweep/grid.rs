@@ -1,5 +1,6 @@
 //! The points of a sweep: a grid over the varied keys, the last one fastest.
 
+use crate::commands::assembly::lists::Lists;
 use crate::commands::assembly::still;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::{
@@ -110,7 +111,7 @@ impl Grid {
     pub fn check(&self, document: &Document) -> Result<(), Box<dyn Error>> {
         const LOOKS: usize = 1000;
         let problem = |point| -> Result<(), Box<dyn Error>> {
-            still(&self.scene(document, point)?).map(|_| ())
+            still(&Lists::of(&self.scene(document, point)?)).map(|_| ())
         };
         if self.axes.iter().any(|axis| axis.key == "housing.method") {
             let text = "housing.method: statics of a flexible housing is one for all methods, and a \

@@ -3,6 +3,7 @@
 use super::grid::Grid;
 use super::housings::{self, Kept};
 use crate::commands::assembly::housings::{Equilibrium, equilibrium, grown};
+use crate::commands::assembly::lists::Lists;
 use bearing_dynamics::output::Column;
 use bearing_dynamics::output::assembly_results::{key, readable};
 use bearing_dynamics::output::results::load_zone_of;
@@ -42,7 +43,8 @@ fn solve_scene(
     scene.check_smooth()?;
     *kept = std::mem::take(kept).take(scene)?;
     let (housings, bores) = kept.parts();
-    let Equilibrium { still, moment, .. } = equilibrium(scene, grown(housings, bores), neighbour)?;
+    let lists = Lists::of(scene);
+    let Equilibrium { still, moment, .. } = equilibrium(&lists, grown(housings, bores), neighbour)?;
     let solution = moment.solution;
     let determinate = solution.determinacy == Determinacy::Determinate;
     let start_for_neighbour =
@@ -50,7 +52,7 @@ fn solve_scene(
     let of_housings = kept.row(&solution.seats);
     let mut row = match scene.one() {
         Some(_) => of_bearing(&StaticSolution::from(solution)),
-        None => of_assembly(&still, &readable(&scene.assembly()?, &still, &solution)),
+        None => of_assembly(&still, &readable(lists.assembly()?, &still, &solution)),
     };
     row.extend(of_housings);
     Ok(Solved { row, start_for_neighbour })

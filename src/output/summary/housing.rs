@@ -215,7 +215,7 @@ pub(super) fn method(motion: &Motion) -> Option<&'static str> {
             (!simulation.system.assembly.seats.is_empty()).then_some("reduced")
         }
         Motion::Solid(_) | Motion::Rubber(_) => None,
-        Motion::Housed(housed) => (!housed.solids.is_empty()).then_some("explicit"),
+        Motion::Housed(housed) => housed.seats().next().map(|_| "explicit"),
         Motion::Course(_) => Some("quasi-static"),
     }
 }
@@ -227,8 +227,9 @@ pub(super) fn step(housed: &Exchange) -> Part {
     section.insert("window".into(), quantity("window", housed.window, "s")?);
     for part in &housed.solids {
         let (of, solid) = (prefix(&part.name), &part.solid);
-        section.insert(format!("{of}housing"), quantity("step", solid.step_size, "s")?);
-        section.insert(format!("{of}housing_steps_a_window"), json!(part.steps));
+        let kind = part.kind();
+        section.insert(format!("{of}{kind}"), quantity("step", solid.step_size, "s")?);
+        section.insert(format!("{of}{kind}_steps_a_window"), json!(part.steps));
     }
     for bushing in &housed.bushings {
         let name = &bushing.name;
@@ -239,7 +240,7 @@ pub(super) fn step(housed: &Exchange) -> Part {
     section.insert("bearing_at_most".into(), quantity("step", most, "s")?);
     for part in &housed.solids {
         let limit = limit_section(&part.solid.limit, &part.solid.model.labels)?;
-        section.insert(format!("{}housing_limit", prefix(&part.name)), limit);
+        section.insert(format!("{}{}_limit", prefix(&part.name), part.kind()), limit);
     }
     Ok(section.into())
 }
@@ -248,7 +249,8 @@ pub(super) fn work(housed: &Exchange) -> Value {
     let mut section = Map::new();
     section.insert("windows".into(), json!(housed.exchanges));
     for part in &housed.solids {
-        section.insert(format!("{}housing_steps", prefix(&part.name)), json!(part.solid.steps));
+        let of = prefix(&part.name);
+        section.insert(format!("{of}{}_steps", part.kind()), json!(part.solid.steps));
     }
     for bushing in &housed.bushings {
         section.insert(format!("{}_bushing_steps", bushing.name), json!(bushing.steps_done()));

@@ -1,11 +1,12 @@
 //! The bearing in motion: every part a rigid body with six degrees of freedom (2.2.1, 4.2.1).
 //!
 //! `assembly` says what is simulated (a bearing alone is written as a `model`), `state` where it lies, `contacts`
-//! and `race` turn states into loads, `seat` and `reduced_solid` those of bodies in flexible solids, each bearing's `ball_set` into loads on its bodies, `system` into rates, `energy` into energies; `rk4`, `dormand_prince` and `rosenbrock`
+//! (with `contact_traction`) and `race` turn states into loads, `seat` and `reduced_solid` those of bodies in flexible solids, each bearing's `ball_set` into loads on its bodies, `system` into rates, `energy` into energies; `rk4`, `dormand_prince` and `rosenbrock`
 //! integrate (the last through `linearised` contacts, the `arrow` matrix and each ball's `orbit_frame`),
 //! `held` says whether anything holds a bearing against its loads, `bounds` where a state has lost its meaning,
 //! `control` chooses steps for an accuracy, `extremes` remembers the largest loads, `run` takes a simulation from step to step,
-//! `clocked` up to what is due next, `foretell` for a while.
+//! `clocked` up to what is due next, `foretell` for a while. `equilibrium` says where all stand still, under loads that `following`
+//! takes along.
 pub mod arrow;
 mod arrow_terms;
 pub mod assembly;
@@ -14,6 +15,7 @@ pub mod bounds;
 pub mod checkpoint;
 pub mod clocked;
 pub mod connection;
+mod contact_traction;
 pub mod contacts;
 pub mod control;
 pub mod dents;
@@ -23,6 +25,7 @@ pub mod energy;
 pub mod equilibrium;
 pub mod extremes;
 pub mod failure;
+mod following;
 pub mod foretell;
 pub mod held;
 pub mod linearised;

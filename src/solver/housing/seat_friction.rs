@@ -1,9 +1,10 @@
 //! Friction of a race in the bore of a solid in explicit steps: a spring for each node that touches, which changes
 //! once in every step of the solid.
 
-use crate::ch2_housing::bore_contact::{ContactNode, ContactSum, Cylinder, Frame, Penalty, Touch};
+use crate::ch2_housing::bore_contact::{ContactNode, ContactSum, Frame, Touch};
 use crate::ch4_rotor::bore_friction::{BoreFriction, Pull, Spring};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale};
+pub use crate::solver::solid::contact::Pressed;
 use crate::solver::solid::contact::press_and;
 use crate::solver::solid::tet4_blocks::Node;
 
@@ -47,16 +48,6 @@ pub struct SeatFriction {
     pub pulls: u64,
     /// Of the step that is being taken.
     next: Vec<NodeSpring>,
-}
-
-/// Where a race is, and the solid around it.
-pub struct Pressed<'s> {
-    pub cylinder: &'s Cylinder,
-    pub frame: &'s Frame,
-    pub penalty: Penalty,
-    /// Ascending.
-    pub nodes: &'s [ContactNode],
-    pub displacement: &'s [Node],
 }
 
 impl SeatFriction {
@@ -121,7 +112,7 @@ fn pull_all(
     forces: &mut [Node],
     mut keep: impl FnMut(u32, Spring),
 ) -> (ContactSum, FrictionSum) {
-    let Pressed { cylinder, frame, penalty, nodes, displacement } = *pressed;
+    let frame = pressed.frame;
     let FrictionSum { heat, load_work, .. } = before;
     let mut sum = FrictionSum { heat, load_work, ..FrictionSum::default() };
     let mut walk = Walk { left: springs, released: 0.0 };
@@ -146,7 +137,7 @@ fn pull_all(
         sum.moment = add(sum.moment, cross(touch.arm, on_race));
         Some(scale(on_race, -1.0))
     };
-    let mut contact = press_and(cylinder, frame, penalty, nodes, displacement, forces, also);
+    let mut contact = press_and(pressed, forces, also);
     // The load was eased to nothing.
     sum.load_work -= walk.finish();
     contact.force = add(contact.force, sum.force);

@@ -58,6 +58,11 @@ impl SteppedSolid {
         Ok(())
     }
 
+    /// What messages and summaries call it.
+    pub fn kind(&self) -> &'static str {
+        if self.shaft.is_some() { "shaft" } else { "housing" }
+    }
+
     /// How often each stage ran, but for seats.
     pub(super) fn ran(&self) -> Tally {
         let mut ran = self.solid.ran;

@@ -74,6 +74,17 @@ pub fn closed_limit(
     of_solid.with(nodes.iter().map(of_node).fold(0.0, f64::max))
 }
 
+/// Where a cylinder is, and the solid around it.
+pub struct Pressed<'s> {
+    pub cylinder: &'s Cylinder,
+    pub frame: &'s Frame,
+    pub penalty: Penalty,
+    /// Ascending.
+    pub nodes: &'s [ContactNode],
+    /// m, for each node of the solid.
+    pub displacement: &'s [Node],
+}
+
 /// Contact of a cylinder with nodes that are displaced by `displacement` (m, for each node of the
 /// solid); adds its forces to theirs, N.
 pub fn press(
@@ -84,20 +95,17 @@ pub fn press(
     displacement: &[Node],
     forces: &mut [Node],
 ) -> ContactSum {
-    press_and(cylinder, frame, penalty, nodes, displacement, forces, |_, _, _| None)
+    press_and(&Pressed { cylinder, frame, penalty, nodes, displacement }, forces, |_, _, _| None)
 }
 
 /// The same with a further force (N) on nodes that touch, if there is one: `also` is given the node, its contact and how
 /// stiff that is (N/m).
 pub fn press_and(
-    cylinder: &Cylinder,
-    frame: &Frame,
-    penalty: Penalty,
-    nodes: &[ContactNode],
-    displacement: &[Node],
+    pressed: &Pressed,
     forces: &mut [Node],
     mut also: impl FnMut(&ContactNode, &Touch, f64) -> Option<Vec3>,
 ) -> ContactSum {
+    let Pressed { cylinder, frame, penalty, nodes, displacement } = *pressed;
     let moved = |n: u32| moved(displacement, n);
     contact(cylinder, frame, penalty, nodes, moved, |node, touch, stiffness, force| {
         let further = also(node, touch, stiffness);

@@ -1,42 +1,26 @@
 //! Columns of a bearing in motion.
 
+mod energy;
+
 use super::Recorder;
 use super::seat::{SeatRow, prefix, seat_columns};
 use crate::ch2_housing::bearing::cage::Guidance;
-use crate::ch2_housing::bearing::contact::ContactDamping;
-use crate::ch2_housing::bearing::traction::{Motion, Sliding, TractionLaw, sliding};
+use crate::ch2_housing::bearing::traction::{Motion, Sliding, sliding};
 use crate::kinematics::vec3::{dot, scale, sub};
 use crate::output::series::Column;
 use crate::solver::channels::ChannelGroup;
-use crate::solver::dynamics::assembly::{Assembly, BallMeeting, Bearing};
+use crate::solver::dynamics::assembly::{Assembly, Bearing};
 use crate::solver::dynamics::ball_set::BallSet;
 use crate::solver::dynamics::race::{RaceLoads, RaceNow, tilts_of};
 use crate::solver::dynamics::run::{Simulation, Snapshot};
 use crate::solver::dynamics::shaft::ElasticShaft;
-use crate::solver::dynamics::state::{Ledger, POSITION, SPIN, VELOCITY};
+use crate::solver::dynamics::state::{POSITION, SPIN, VELOCITY};
 use crate::solver::mount::Mount;
 use crate::solver::plan::Stage;
 use crate::solver::plan::motion::channel_group;
+use energy::{Term, energy_term, term_name, terms};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
-
-/// Parts of the energy and of the ledger that a problem can have any of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Term {
-    Kinetic,
-    Contact,
-    CageContact,
-    Gravity,
-    Foundation,
-    BallContact,
-    SolidStrain,
-    SolidKinetic,
-    BendingStrain,
-    BendingKinetic,
-    Seat,
-    Work(Ledger),
-    Residual,
-}
 
 /// What is recorded of a bearing.
 pub(super) struct BearingColumns {
@@ -287,10 +271,6 @@ fn contact_angle(set: &BallSet, bearing: &Bearing, side: usize) -> f64 {
     if load > 0.0 { sum / load } else { bearing.geometry.contact_angle }
 }
 
-fn has_cage(assembly: &Assembly) -> bool {
-    assembly.bearings.iter().any(|bearing| bearing.cage.is_some())
-}
-
 const RACE_COLUMNS: [(&str, &str); 9] = [
     ("x", "m"),
     ("y", "m"),
@@ -424,84 +404,5 @@ fn bearing_columns(
             }
         }
         ChannelGroup::Pockets | ChannelGroup::Energy => {}
-    }
-}
-
-/// What can differ from zero in this problem.
-fn terms(assembly: &Assembly) -> Vec<Term> {
-    let any = |of: &dyn Fn(&Bearing) -> bool| assembly.bearings.iter().any(of);
-    let cage = has_cage(assembly);
-    let meet = any(&|bearing| bearing.ball_meeting() == BallMeeting::Tested);
-    let traction = any(&|bearing| bearing.traction != TractionLaw::None);
-    let damping = any(&|bearing| bearing.damping != ContactDamping::None);
-    let mut driven = assembly.bodies.iter().filter_map(|body| body.driven());
-    let on_foundation = driven
-        .any(|body| body.foundation_stiffness != [0.0; 5] || body.foundation_damping != [0.0; 5]);
-    // Springs and dashpots between bodies are booked with those to the ground.
-    let on_foundation = on_foundation || !assembly.connections.is_empty();
-    // With them the damping of solids.
-    let solids = !assembly.solids.is_empty();
-    let bends = !assembly.shafts.is_empty();
-    let terms = [
-        (Term::Kinetic, true),
-        (Term::Contact, true),
-        (Term::CageContact, cage),
-        (Term::Gravity, assembly.gravity != [0.0; 3]),
-        (Term::Foundation, on_foundation),
-        (Term::BallContact, meet),
-        (Term::SolidStrain, solids),
-        (Term::SolidKinetic, solids),
-        (Term::BendingStrain, bends),
-        (Term::BendingKinetic, bends),
-        (Term::Seat, solids),
-        (Term::Work(Ledger::Traction), traction),
-        (Term::Work(Ledger::ContactDamping), damping),
-        (Term::Work(Ledger::CageFriction), cage),
-        (Term::Work(Ledger::Foundation), on_foundation || solids || bends),
-        (Term::Work(Ledger::BallFriction), meet),
-        (Term::Work(Ledger::Drives), true),
-        (Term::Residual, true),
-    ];
-    terms.into_iter().filter(|(_, present)| *present).map(|(term, _)| term).collect()
-}
-
-fn term_name(term: Term) -> &'static str {
-    match term {
-        Term::Kinetic => "energy_kinetic",
-        Term::Contact => "energy_contact",
-        Term::CageContact => "energy_cage_contact",
-        Term::Gravity => "energy_gravity",
-        Term::Foundation => "energy_foundation",
-        Term::BallContact => "energy_ball_contact",
-        Term::SolidStrain => "energy_housing_strain",
-        Term::SolidKinetic => "energy_housing_kinetic",
-        Term::BendingStrain => "energy_bending_strain",
-        Term::BendingKinetic => "energy_bending_kinetic",
-        Term::Seat => "energy_seat",
-        Term::Work(Ledger::Traction) => "work_traction",
-        Term::Work(Ledger::ContactDamping) => "work_contact_damping",
-        Term::Work(Ledger::CageFriction) => "work_cage_friction",
-        Term::Work(Ledger::Foundation) => "work_foundation_damping",
-        Term::Work(Ledger::BallFriction) => "work_ball_friction",
-        Term::Work(Ledger::Drives) => "work_drives",
-        Term::Residual => "energy_residual",
-    }
-}
-
-fn energy_term(term: Term, snapshot: &Snapshot) -> f64 {
-    match term {
-        Term::Kinetic => snapshot.energy.kinetic,
-        Term::Contact => snapshot.energy.contact,
-        Term::CageContact => snapshot.energy.cage_contact,
-        Term::Gravity => snapshot.energy.gravity,
-        Term::Foundation => snapshot.energy.foundation,
-        Term::BallContact => snapshot.energy.ball_contact,
-        Term::SolidStrain => snapshot.energy.solid_strain,
-        Term::SolidKinetic => snapshot.energy.solid_kinetic,
-        Term::BendingStrain => snapshot.energy.bending_strain,
-        Term::BendingKinetic => snapshot.energy.bending_kinetic,
-        Term::Seat => snapshot.energy.seat,
-        Term::Work(entry) => snapshot.ledger[entry as usize],
-        Term::Residual => snapshot.residual,
     }
 }

@@ -1,0 +1,119 @@
+//! What a reader should know of what the scene asks for, whatever the numbers turn out to be: of its shafts, springs and
+//! given motions.
+
+use bearing_dynamics::mesh::Order;
+use bearing_dynamics::scene::assembly::{AssemblyScene, SceneBody, Spring, SpringAt};
+use bearing_dynamics::solver::dynamics::model::Rotation;
+use bearing_dynamics::solver::profile::Profile;
+
+/// Shafts of tetrahedra.
+pub fn of_shafts(scene: &AssemblyScene) -> Vec<String> {
+    let said = |body: &SceneBody| {
+        let mesh = body.beam.as_ref()?.beam.mesh?;
+        let nodes = if mesh.order == Order::Linear { "four" } else { "ten" };
+        let solved = match body.beam.as_ref()?.in_elements {
+            None => "condensed onto its sections; it moves in shapes, no element takes steps",
+            Some(_) => {
+                "in explicit steps in a run; in equilibria and `modes` condensed onto its sections. A run starts straight: loads \
+                that do not grow from nothing (`smooth_ramp`) are blows"
+            }
+        };
+        Some(format!(
+            "the segments of body.{} are {nodes}-node tetrahedra ({} cells around, {} in the ring about the core), {solved}",
+            body.name, mesh.around, mesh.radial
+        ))
+    };
+    scene.bodies.iter().filter_map(said).collect()
+}
+
+/// Springs whose axes turn with the body that they begin at, and that are not the same along all of them.
+pub fn of_springs(scene: &AssemblyScene) -> Vec<String> {
+    let turning = |rotation: &Rotation| match rotation {
+        Rotation::Speed(speed) => *speed != Profile::ZERO,
+        Rotation::Torque(_) => true,
+    };
+    let turns = |at: SpringAt| match at {
+        SpringAt::Ground => false,
+        SpringAt::Body(body) => turning(&scene.bodies[body].race.rotation),
+        SpringAt::Race { bearing, side } => {
+            let of = &scene.bearings[bearing].scene.dynamics;
+            let race = if side == 0 { Some(&of.inner) } else { of.outer.as_ref() };
+            race.is_some_and(|race| turning(&race.rotation))
+        }
+    };
+    let bare = |name: &str| name.trim_start_matches("body.").to_string();
+    let uneven = |of: &[f64; 6]| of[1] != of[2] || of[4] != of[5];
+    let said = |spring: &Spring| {
+        let [from, to] = spring.ends.map(|end| end.at);
+        let uneven_element = spring.maxwell.iter().any(|element| uneven(&element.stiffness));
+        let alike = !uneven(&spring.stiffness) && !uneven(&spring.damping) && !uneven_element;
+        if alike || !turns(from) {
+            return None;
+        }
+        let [body, end] = [from, to].map(|at| scene.name_of_end(at));
+        let advice = if turns(to) {
+            "both ends turn: make it alike along y and z".to_string()
+        } else {
+            format!(
+                "for axes that stand still write from = {:?}, to = {:?}",
+                bare(&end),
+                bare(&body)
+            )
+        };
+        Some(format!(
+            "spring {} turns with {body}, where it begins: its axes are those of that body, and what it does along \
+             y differs from along z, so that its force goes round with the body; {advice}",
+            spring.name
+        ))
+    };
+    scene.springs.iter().filter_map(said).collect()
+}
+
+/// Outer races that turn as they are told, whatever acts on them.
+pub fn turning_races(scene: &AssemblyScene) -> impl Iterator<Item = String> {
+    scene.bearings.iter().filter_map(|placed| {
+        let outer = placed.scene.dynamics.outer.as_ref()?;
+        let turns = matches!(&outer.rotation, Rotation::Speed(speed) if !speed.is_zero());
+        let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
+        turns.then(|| {
+            format!(
+                "the outer race{of} turns about its axis at the speed that is given, which nothing that acts on it \
+                 changes; write motion = \"6-dof\" for a race that moments turn"
+            )
+        })
+    })
+}
+
+/// Springs and foundations of which an equilibrium knows a part only.
+pub fn at_rest(scene: &AssemblyScene) -> impl Iterator<Item = String> {
+    let bodies = scene.bodies.iter().map(|body| (format!("body {}", body.name), &body.race));
+    let races = scene.bearings.iter().filter_map(|placed| {
+        let name = placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
+        Some((format!("the outer race{name}"), placed.scene.dynamics.outer.as_ref()?))
+    });
+    let damped = bodies.chain(races).filter(|(_, race)| race.foundation_damping != [0.0; 5]);
+    let foundations =
+        damped.map(|(of, _)| format!("foundation of {of}: its dashpots push nothing at rest"));
+    let springs = scene.springs.iter().filter_map(|Spring { name, damping, maxwell, .. }| {
+        let slowest = maxwell.iter().map(|element| element.relaxation_time).fold(0.0, f64::max);
+        match (*damping != [0.0; 6], slowest > 0.0) {
+            (_, true) => Some(format!(
+                "spring {name}: its Maxwell elements have relaxed, as they have some {slowest} s after the last change; \
+                 dashpots push nothing at rest"
+            )),
+            (true, false) => Some(format!("spring {name}: its dashpots push nothing at rest")),
+            (false, false) => None,
+        }
+    });
+    let in_elements = scene
+        .springs
+        .iter()
+        .filter(|spring| spring.bushing.as_deref().is_some_and(|of| of.elements.is_some()));
+    let in_elements = in_elements.map(|spring| {
+        format!(
+            "bushing {}: its fitted springs stand for its elements here; a run starts where the elements are in equilibrium",
+            spring.name
+        )
+    });
+    springs.chain(foundations).chain(in_elements)
+}

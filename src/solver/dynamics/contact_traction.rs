@@ -1,0 +1,247 @@
+//! Traction of the loaded ball–race contacts of one evaluation, contact by contact or over blocks of them.
+//! Loads and places are those that [`detection`](super::contacts) has found.
+
+use super::contacts::{ContactLaws, ContactTable, Want};
+use super::race::RaceNow;
+use super::state::{LANES, Layout, POSITION, SPIN, VELOCITY};
+use crate::ch2_housing::bearing::contact::RaceContact;
+use crate::ch2_housing::bearing::traction::{
+    Motion, SliceSum, Sliding, TractionLaw, TractionSlope, add_slice, add_slope, coefficient,
+    coefficient_and_slope, integrate, integrate_slope, per_entrainment, regularised, sliding,
+    traction_force,
+};
+use crate::kinematics::vec3::Vec3;
+
+/// Motion of ball and race at a pair.
+#[inline(always)]
+fn ball_motion(layout: &Layout, state: &[f64], ball: usize) -> Motion {
+    Motion {
+        position: layout.ball_vector(state, POSITION, ball),
+        velocity: layout.ball_vector(state, VELOCITY, ball),
+        spin: layout.ball_vector(state, SPIN, ball),
+    }
+}
+
+fn race_motion(now: &RaceNow) -> Motion {
+    Motion { position: now.motion.position, velocity: now.motion.velocity, spin: now.motion.spin }
+}
+
+/// Distance from the ball centre to the contact point: the overlap is shared in halves.
+#[inline(always)]
+fn reach(laws: &ContactLaws, overlap: f64) -> f64 {
+    laws.ball_radius - 0.5 * overlap
+}
+
+#[inline(always)]
+fn semi_major(laws: &ContactLaws, race: usize, overlap: f64) -> f64 {
+    laws.races[race].semi_major_factor * overlap.sqrt()
+}
+
+fn sliding_of(
+    laws: &ContactLaws,
+    layout: &Layout,
+    state: &[f64],
+    races: &[Motion; 2],
+    axes: &[Vec3; 2],
+    pair: usize,
+    contact: &RaceContact,
+) -> Sliding {
+    let (race, ball) = (pair / layout.padded, pair % layout.padded);
+    sliding(
+        &ball_motion(layout, state, ball),
+        &races[race],
+        axes[race],
+        contact.outward,
+        contact.normal,
+        reach(laws, contact.overlap),
+    )
+}
+
+/// Traction contact by contact.
+pub(super) fn traction_plain(
+    laws: &ContactLaws,
+    layout: &Layout,
+    state: &[f64],
+    races: [&RaceNow; 2],
+    want: Want,
+    table: &mut ContactTable,
+) {
+    let motions = races.map(race_motion);
+    let axes = races.map(|now| now.motion.axis);
+    for &pair in &table.active {
+        let race = pair / layout.padded;
+        let contact = &table.contact[pair];
+        let sliding = sliding_of(laws, layout, state, &motions, &axes, pair, contact);
+        let width = semi_major(laws, race, contact.overlap);
+        let (law, slices, curvature) = (&laws.traction, &laws.slices, laws.curvature[race]);
+        let sum = integrate(law, slices, &sliding, width, curvature);
+        if want == Want::ForcesAndSlopes {
+            table.slope[pair] = integrate_slope(law, slices, &sliding, width, curvature);
+        }
+        table.traction[pair] = traction_force(&sum, &sliding, contact.normal, table.load[pair]);
+        table.sliding[pair] = sliding;
+    }
+}
+
+/// Traction over blocks of [`LANES`] contacts.
+pub(super) fn traction_lanes<const SLOPES: bool>(
+    laws: &ContactLaws,
+    layout: &Layout,
+    state: &[f64],
+    races: [&RaceNow; 2],
+    table: &mut ContactTable,
+) {
+    // One instance of the loop for each law, so that nothing is decided inside it. Without slopes
+    // the compiler drops what only they need.
+    match &laws.traction {
+        TractionLaw::None => {}
+        TractionLaw::SlideToRoll { curve, entrainment_floor } => {
+            let (curve, floor) = (*curve, *entrainment_floor);
+            let prepare = |entrainment| per_entrainment(entrainment, floor);
+            let friction = |slip: f64, per_rolling: f64| {
+                let (value, slope) = curve.coefficient_and_slope(slip * per_rolling);
+                (value, slope * per_rolling)
+            };
+            lanes_of::<SLOPES>(laws, layout, state, races, table, prepare, friction);
+        }
+        TractionLaw::SlipSpeed { curve } => {
+            let curve = *curve;
+            let friction = |slip, _| curve.coefficient_and_slope(slip);
+            lanes_of::<SLOPES>(laws, layout, state, races, table, |_| 0.0, friction);
+        }
+        TractionLaw::Constant { coefficient, regularisation_speed } => {
+            let (coefficient, speed) = (*coefficient, *regularisation_speed);
+            let friction = |slip, _| regularised(coefficient, speed, slip);
+            lanes_of::<SLOPES>(laws, layout, state, races, table, |_| 0.0, friction);
+        }
+        law @ TractionLaw::Table { .. } => {
+            let friction = |slip, entrainment| {
+                if SLOPES {
+                    coefficient_and_slope(law, slip, entrainment)
+                } else {
+                    (coefficient(law, slip, entrainment), 0.0)
+                }
+            };
+            lanes_of::<SLOPES>(
+                laws,
+                layout,
+                state,
+                races,
+                table,
+                |entrainment| entrainment,
+                friction,
+            );
+        }
+    }
+}
+
+#[inline(always)]
+fn lanes_of<const SLOPES: bool>(
+    laws: &ContactLaws,
+    layout: &Layout,
+    state: &[f64],
+    races: [&RaceNow; 2],
+    table: &mut ContactTable,
+    prepare: impl Fn(f64) -> f64,
+    friction: impl Fn(f64, f64) -> (f64, f64) + Copy,
+) {
+    let motions = races.map(race_motion);
+    let axes = races.map(|now| now.motion.axis);
+    let ContactTable { contact, load, traction, sliding, slope, active, .. } = table;
+    for block in active.chunks(LANES) {
+        let mut slip = [[0.0; LANES]; 2];
+        let mut spin = [[0.0; LANES]; 3];
+        let mut width = [0.0; LANES];
+        let mut curvature = [0.0; LANES];
+        // What the law needs of the entrainment speed; lanes without a pair slide nowhere.
+        let mut rolling = [1.0; LANES];
+        for (l, &pair) in block.iter().enumerate() {
+            let race = pair / layout.padded;
+            let here = sliding_of(laws, layout, state, &motions, &axes, pair, &contact[pair]);
+            slip[0][l] = here.slip[0];
+            slip[1][l] = here.slip[1];
+            for i in 0..3 {
+                spin[i][l] = here.relative_spin[i];
+            }
+            rolling[l] = prepare(here.entrainment);
+            width[l] = semi_major(laws, race, contact[pair].overlap);
+            curvature[l] = laws.curvature[race];
+            sliding[pair] = here;
+        }
+        let (sums, slopes) =
+            slice_lanes::<SLOPES>(laws, &slip, &spin, &width, &curvature, &rolling, friction);
+        for (l, &pair) in block.iter().enumerate() {
+            if SLOPES {
+                slope[pair] = slopes[l];
+            }
+            traction[pair] =
+                traction_force(&sums[l], &sliding[pair], contact[pair].normal, load[pair]);
+        }
+    }
+}
+
+/// All slices of a block of contacts.
+#[inline(always)]
+fn slice_lanes<const SLOPES: bool>(
+    laws: &ContactLaws,
+    slip: &[[f64; LANES]; 2],
+    spin: &[[f64; LANES]; 3],
+    width: &[f64; LANES],
+    curvature: &[f64; LANES],
+    prepared: &[f64; LANES],
+    friction: impl Fn(f64, f64) -> (f64, f64) + Copy,
+) -> ([SliceSum; LANES], [TractionSlope; LANES]) {
+    // One array for each sum: an array of arrays would keep the loop from becoming vector code.
+    let mut rolling = [0.0; LANES];
+    let mut transverse = [0.0; LANES];
+    let mut moment = [0.0; LANES];
+    let mut about_t = [0.0; LANES];
+    let mut about_s = [0.0; LANES];
+    let mut power = [0.0; LANES];
+    let mut tt = [0.0; LANES];
+    let mut ts = [0.0; LANES];
+    let mut tn = [0.0; LANES];
+    let mut ss = [0.0; LANES];
+    let mut sn = [0.0; LANES];
+    let mut nn = [0.0; LANES];
+    for (middle, share) in laws.slices.middle.iter().zip(&laws.slices.share) {
+        for l in 0..LANES {
+            let y = middle * width[l];
+            let sagitta = y * y * curvature[l];
+            let before = SliceSum {
+                rolling: rolling[l],
+                transverse: transverse[l],
+                moment: moment[l],
+                curvature_moment: [about_t[l], about_s[l]],
+                power: power[l],
+            };
+            let here = [slip[0][l], slip[1][l]];
+            let turning = [spin[0][l], spin[1][l], spin[2][l]];
+            let coefficient = |speed| friction(speed, prepared[l]).0;
+            let after = add_slice(&before, here, turning, y, sagitta, *share, coefficient);
+            rolling[l] = after.rolling;
+            transverse[l] = after.transverse;
+            moment[l] = after.moment;
+            [about_t[l], about_s[l]] = after.curvature_moment;
+            power[l] = after.power;
+            if SLOPES {
+                let before = [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]];
+                let friction = |speed| friction(speed, prepared[l]);
+                [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]] =
+                    add_slope(&before, here, turning, y, sagitta, *share, friction);
+            }
+        }
+    }
+    let mut sums = [SliceSum::default(); LANES];
+    for (l, sum) in sums.iter_mut().enumerate() {
+        *sum = SliceSum {
+            rolling: rolling[l],
+            transverse: transverse[l],
+            moment: moment[l],
+            curvature_moment: [about_t[l], about_s[l]],
+            power: power[l],
+        };
+    }
+    let slopes = std::array::from_fn(|l| [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]]);
+    (sums, slopes)
+}
