@@ -46,6 +46,7 @@ mod run_recorder;
 mod run_remarks;
 mod run_resume;
 mod run_step_watch;
+mod shaft_in_elements;
 mod solid_command;
 mod solid_command_errors;
 mod solid_command_numbers;

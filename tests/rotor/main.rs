@@ -5,6 +5,7 @@ mod common;
 
 mod assemblies;
 mod beam;
+mod in_elements;
 mod run_ups;
 mod solid_shaft;
 mod statics;

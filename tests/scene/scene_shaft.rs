@@ -1,7 +1,9 @@
 //! A body of a scene that bends.
 
+use bearing_dynamics::scene::shaft_problem::take_shafts;
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
+use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
+use bearing_dynamics::solver::dynamics::model::Rotation;
 
 const BEARINGS: &str = r#"
 [bearing]
@@ -118,6 +120,98 @@ fn faults_of_beams_say_what_is_wrong() {
         let error = read(&text).unwrap_err();
         assert!(error.contains(expected), "{text}: {error}");
     }
+}
+
+#[test]
+fn faults_of_shafts_in_elements_say_what_is_wrong() {
+    const ELEMENTS: &str = "mesh = { order = 1, method = \"explicit\" }";
+    let whole = "[body.shaft.beam]\nstart = \"-200 mm\"\nsegments = [{ length = \"400 mm\", outer_diameter = \"30 mm\" }]\n";
+    let beam = |before: &str, lines: &str| format!("{before}\n{whole}{lines}\n");
+    let turning = |lines: &str| beam("speed = \"1000 rpm\"", lines);
+    let in_elements = |lines: &str| turning(&format!("{ELEMENTS}\n{lines}"));
+    let cases = [
+        (beam("", ELEMENTS), "turn at a given speed"),
+        (beam("torque = \"1 N m\"", ELEMENTS), "body.torque: refused"),
+        (
+            beam("speed = \"1000 rpm\"\nz = { load = \"-100 N\" }", ELEMENTS),
+            "which loads meet at sections",
+        ),
+        (in_elements("below = \"3 kHz\""), "all of their frequencies"),
+        (in_elements("damping = \"10 1/s\"\ninternal_damping = \"1 1/s\""), "`damping` as well"),
+        (
+            in_elements("damping = \"10 1/s\"\ndamped_motion = \"relative-to-rigid\""),
+            "against the spinning shaft",
+        ),
+        (
+            turning("mesh = { order = 1, race_stiffness = \"1e9 N/m\" }"),
+            "sit on the sections themselves",
+        ),
+        (turning("mesh = { order = 1, method = \"implicit\" }"), "reduced"),
+        (
+            format!(
+                "{}\n[spring.bed]\nfrom = \"ground\"\nto = \"shaft\"\nstiffness.y = \"1e6 N/m\"\n",
+                turning(ELEMENTS)
+            ),
+            "bearings alone take hold of",
+        ),
+    ];
+    for (text, expected) in cases {
+        let error = read(&text).unwrap_err();
+        assert!(error.contains(expected), "{text}: {error}");
+    }
+}
+
+/// In a run each race and each disc of a shaft in elements is a body of its own on a section; equilibria have the reduced shaft.
+#[test]
+fn a_shaft_in_elements_is_a_solid_and_what_sits_on_it() {
+    let text = r#"speed = "1000 rpm"
+[body.shaft.beam]
+segments = [{ length = "250 mm", outer_diameter = "30 mm" }, { length = "150 mm", outer_diameter = "24 mm" }]
+mesh = { order = 1, method = "explicit", race_stiffness = "1e9 N/m", race_damping = "10 N s/m" }
+disc = [{ at = "-200 mm", mass = "60 g", axial = "2e-5 kg m^2", transverse = "1e-5 kg m^2" }, { at = "0 mm", mass = "1 kg" }]
+load = [{ at = "30 mm", z = "-100 N" }]
+watch = [{ name = "mid", at = "0 mm" }]
+damping = "5 1/s"
+"#;
+    let document =
+        Document::read_str(&format!("{BEARINGS}{text}"), Format::Toml, "scene.toml").unwrap();
+    let Subject::Assembly(scene) = resolve_subject(&document).unwrap() else { panic!() };
+    let reduced = scene.assembly().unwrap();
+    assert_eq!(reduced.shafts.len(), 1);
+    let mut assembly = reduced.clone();
+    let [shaft] = &take_shafts(&scene, &mut assembly).unwrap()[..] else { panic!() };
+    assert!(assembly.shafts.is_empty() && !assembly.bodies[0].moves());
+    let part = shaft.part.shaft.as_ref().unwrap();
+    let bodies: Vec<&Body> = part.joints.iter().map(|joint| &assembly.bodies[joint.body]).collect();
+    // Left race as the disc says, right race as a ring of its sizes, and the disc that no race sits on.
+    assert_eq!(bodies.len(), 3);
+    assert_eq!(bodies[0].inertia().unwrap().axial, 2e-5);
+    assert_eq!(bodies[1].inertia().unwrap(), &scene.bearings[1].scene.dynamics.inner.inertia);
+    assert_eq!(bodies[2].inertia().unwrap().mass, 1.0);
+    assert_eq!([bodies[0].rest[0], bodies[1].rest[0], bodies[2].rest[0]], [-0.2, 0.1, 0.0]);
+    for (bearing, joint) in assembly.bearings.iter().zip(&part.joints) {
+        assert_eq!((bearing.mounts[0].body, bearing.mounts[0].along), (joint.body, 0.0));
+    }
+    let arms = [30e-3, 24e-3, 30e-3];
+    for ((joint, body), arm) in part.joints.iter().zip(&bodies).zip(arms) {
+        let law = &joint.law;
+        assert_eq!((law.stiffness[1], law.damping[2]), (1e9, 10.0));
+        assert!((law.stiffness[4] / (1e9 * arm * arm) - 1.0).abs() <= 1e-12);
+        let of_mass = body.inertia().unwrap().mass;
+        assert_eq!(body.driven().unwrap().foundation_damping[1], 5.0 * of_mass);
+        assert!(matches!(body.driven().unwrap().rotation, Rotation::Speed(_)));
+    }
+    // A load's forces on the nodes of its section sum to it, about the axis.
+    let problem = &shaft.part.model.problem;
+    let [load] = &problem.loads[..] else { panic!() };
+    let (mut sum, mut about) = (0.0, 0.0);
+    for (node, force) in &load.forces {
+        let [x, y, _] = problem.nodes[*node as usize];
+        assert!((x - 0.03).abs() <= 1e-12 && force[0] == 0.0);
+        sum += force[2];
+        about += y * force[2];
+    }
+    assert!((sum - 1.0).abs() <= 1e-12 && about.abs() <= 1e-15, "{sum} {about}");
 }
 
 /// The same scene with tetrahedra in the place of beam theory: the same body to what a mesh of that size is good to.

@@ -76,6 +76,8 @@ mod rod_wave;
 mod ross_comparison;
 #[path = "../rotating_load_orbit/case.rs"]
 mod rotating_load_orbit;
+#[path = "../rotor_in_elements_4_2/case.rs"]
+mod rotor_in_elements_4_2;
 #[path = "../rotor_in_housings_4_3/case.rs"]
 mod rotor_in_housings_4_3;
 #[path = "../rotor_resonance_4_3_4/case.rs"]
@@ -126,6 +128,7 @@ pub const CASES: &[Case] = &[
     shaft_on_two_bearings::CASE,
     shaft_beam::CASE,
     shaft_solid_4_2_2::CASE,
+    rotor_in_elements_4_2::CASE,
     free_spin_4_2_2::CASE,
     ross_comparison::CASE,
     flexible_shaft_4_3_3::CASE,

@@ -5,6 +5,7 @@ use bearing_dynamics::output::session::{CourseParts, HousedParts, Parts, RunRequ
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::housing::HousedScene;
 use bearing_dynamics::scene::housing_problem::{HousingSetup, setup};
+use bearing_dynamics::scene::shaft_problem::take_shafts;
 use bearing_dynamics::scene::solid_mesh::build_housing;
 use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::equilibrium::static_assembly;
@@ -153,7 +154,7 @@ impl Shaft {
 
     fn parts(
         &self,
-        assembly: Assembly,
+        mut assembly: Assembly,
         displacements: Vec<Vec<Vec3>>,
         threads: usize,
     ) -> Result<HousedParts<'static>, CaseError> {
@@ -179,6 +180,8 @@ impl Shaft {
                 reach: f64::INFINITY,
             });
         }
+        let shafts = take_shafts(&self.scene, &mut assembly)?;
+        solids.extend(shafts.into_iter().map(|shaft| shaft.part));
         let run = self.scene.run().ok_or_else(|| CaseError::message("no end"))?;
         let options = ExchangeOptions {
             solid_fraction: 0.8,

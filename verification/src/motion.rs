@@ -13,6 +13,7 @@ use bearing_dynamics::output::series::Series;
 use bearing_dynamics::output::session::{HousedParts, Parts, RunRequest, Session, Status};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::bushing_problem::{BushingElements, take_bushings};
+use bearing_dynamics::scene::shaft_problem::take_shafts;
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::race::tilts_of;
@@ -38,6 +39,7 @@ pub const RACE_INERTIA: (&str, &str, &str) = (
 );
 
 /// Shipped scenes of chapter 4.
+pub const ROTOR_IN_ELEMENTS: &str = include_str!("../../scenes/rotor_in_elements.toml");
 pub const ROTOR_IN_PILLOW_BLOCKS: &str = include_str!("../../scenes/rotor_in_pillow_blocks.toml");
 pub const ROTOR_RUN_UP: &str = include_str!("../../scenes/rotor_run_up.toml");
 pub const RACE_IN_ROUGH_BORE: &str = include_str!("../../scenes/race_in_rough_bore.toml");
@@ -136,18 +138,19 @@ pub fn column(series: &Series, name: &str) -> Result<Vec<f64>, CaseError> {
     Ok(column.ok_or_else(|| CaseError::message(format!("no column {name}")))?.to_vec())
 }
 
-/// Columns of the run of a scene, its bushings as springs or in elements.
+/// Columns of the run of a scene, its bushings as springs or in elements, its shafts reduced or in elements.
 pub fn ran(scene: &AssemblyScene, names: &[&str]) -> Result<Vec<Vec<f64>>, CaseError> {
     let (request, mut assembly) = (request(scene)?, scene.assembly()?);
     let bushings = take_bushings(scene, &mut assembly)?;
-    let series = match bushings.is_empty() {
+    let shafts = take_shafts(scene, &mut assembly)?;
+    let series = match bushings.is_empty() && shafts.is_empty() {
         true => done(assembly, &request)?.series()?,
         false => {
             // All together are balanced, not the bearing alone.
             let bearing = RunOptions { energy_limit: f64::INFINITY, ..request.options };
             let parts = Parts::Housed(Box::new(HousedParts {
                 assembly,
-                solids: Vec::new(),
+                solids: shafts.into_iter().map(|shaft| shaft.part).collect(),
                 seats: Vec::new(),
                 bushings: bushings.iter().map(BushingElements::part).collect(),
                 options: ExchangeOptions::without_housings(bearing),

@@ -1,0 +1,93 @@
+//! Runs of a shaft in elements as a user meets them.
+
+use crate::housed_command_common::{Place, into_folder, json, stderr, succeed};
+use crate::resume_common::{assert_same_results, interrupted};
+use std::fs;
+
+const SHIPPED: &str = include_str!("../../scenes/rotor_in_elements.toml");
+
+/// Coarse cells, until `end`.
+fn scene(end: &str) -> String {
+    let coarse = "longest_layer = \"12.5 mm\"";
+    SHIPPED.replace("longest_layer = \"5 mm\"", coarse).replace("5 ms", end)
+}
+
+#[test]
+fn an_interrupted_run_ends_with_the_same_bytes() {
+    let place = Place::new();
+    let path = place.scene("scene.toml", &scene("3 ms"));
+    let (whole, parts) = (place.path("whole"), place.path("parts"));
+    let state = interrupted(into_folder("run", &path, &parts, &["--save-every", "1"]), 150, &parts);
+    assert_eq!(state["exchange"]["shafts"][0].as_array().unwrap().len(), 5, "{state}");
+    let said = succeed(into_folder("run", &path, &parts, &["--resume"]));
+    assert!(said.contains("resumed at"), "{said}");
+    let said = succeed(into_folder("run", &path, &whole, &[]));
+    assert!(said.contains("steps of the shaft"), "{said}");
+    assert_same_results(&whole, &parts);
+    let columns = fs::read_to_string(whole.join("series.csv")).unwrap();
+    let head = columns.lines().next().unwrap();
+    for name in [
+        "shaft_mid_y [m]",
+        "shaft_heat_joints [J]",
+        "left_inner_z [m]",
+        "energy_coupled_residual [J]",
+    ] {
+        assert!(head.split(',').any(|column| column == name), "{name}: {head}");
+    }
+    // Another penalty is another scene; a state without its shaft is none.
+    let other = scene("4 ms")
+        .replace("method = \"explicit\"", "method = \"explicit\", race_stiffness = \"1e9 N/m\"");
+    let other = place.scene("other.toml", &other);
+    let output = into_folder("run", &other, &whole, &["--resume"]).output().unwrap();
+    assert!(stderr(&output).contains("another scene"), "{}", stderr(&output));
+    let mut state = json(whole.join("state.json"));
+    state["exchange"].as_object_mut().unwrap().remove("shafts");
+    fs::write(whole.join("state.json"), state.to_string()).unwrap();
+    let longer = place.scene("longer.toml", &scene("4 ms"));
+    let output = into_folder("run", &longer, &whole, &["--resume"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("lacks a part"), "{}", stderr(&output));
+}
+
+/// Equilibria and modes are those of the same elements reduced.
+#[test]
+fn statics_do_not_mind_how_a_run_steps() {
+    let place = Place::new();
+    let loaded = scene("3 ms").replace(
+        "z = { smooth_ramp = [\"0 N\", \"-600 N\"], duration = \"2 ms\" }",
+        "z = \"-600 N\"",
+    );
+    let [explicit, reduced] =
+        [("a", loaded.clone()), ("b", loaded.replace(", method = \"explicit\"", ""))].map(
+            |(name, text)| {
+                let path = place.scene(&format!("{name}.toml"), &text);
+                let out = place.path(name);
+                succeed(into_folder("statics", &path, &out, &[]));
+                json(out.join("summary.json"))["bodies"].clone()
+            },
+        );
+    assert_eq!(explicit, reduced);
+    assert!(!explicit.is_null());
+}
+
+#[test]
+fn what_a_shaft_in_elements_cannot_stand_beside_is_refused() {
+    let place = Place::new();
+    let blocks = include_str!("../../scenes/rotor_in_pillow_blocks.toml");
+    let mesh = "damping = \"100 1/s\"\nmesh = { order = 1, method = \"explicit\" }\nload";
+    let shaft = blocks.replacen("damping = \"100 1/s\"\nload", mesh, 1);
+    let start = "method = \"explicit\"\nstart = \"equilibrium\"";
+    let cases = [
+        (shaft.clone(), "housing.method: refused: a shaft of the scene is solved in elements"),
+        (
+            shaft.replace("method = \"reduced\"", start),
+            "housing.start: refused: a shaft of the scene",
+        ),
+    ];
+    for (text, expected) in cases {
+        let path = place.scene("scene.toml", &text);
+        let output = into_folder("run", &path, &place.path("out"), &[]).output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(expected), "{}", stderr(&output));
+    }
+}
