@@ -1,5 +1,7 @@
 # Set-up is two commands: `make verify` (the main job) and `make test`.
-# Everything builds with the one release profile, so that nothing compiles twice.
+# Everything builds with the one release profile. Commands and tests still compile apart: what tests alone depend on asks more
+# features of packages that both use (approx, either, once_cell, serde), so that these, and the library with them, are built
+# once for `make verify` and once for `make test`.
 CARGO ?= cargo
 VERIFY = $(CARGO) run --release --locked -q -p verification --bin verify --
 

@@ -190,7 +190,7 @@ pub(super) const KEYS: &[Key] = &[
 
     Key::new("output.plots", Kind::Choices(PLOTS),
         Depends("`load-zone`, `polar`; of a run `orbit`, `series`, `polar`; of a solid `series`, `spectrum`"),
-        "Plots to draw; `[]` for none. Statics draws `load-zone`, `polar` and `moment-tilt` (in a housing `load-zone` only; equilibria over time have no `polar`, `slip-spin` and `run-up`), a run `polar` and the others; `run-up` is how far what changes its speed is off its axis, over that speed."),
+        "Plots to draw; `[]` for none. Statics draws `load-zone`, `polar` and `moment-tilt` (in a housing `load-zone` only; equilibria over time have no `polar`, `slip-spin` and `run-up`), a run `polar` and the others; `run-up` is how far what changes its speed is off its axis, over that speed (a note says so where nothing does)."),
 ];
 
 const MATERIAL_EXAMPLE: &str =

@@ -2,6 +2,7 @@
 
 use crate::connections::{SPRING, kinds, pair, spring};
 use crate::dynamics;
+use crate::shafts;
 
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
 use bearing_dynamics::kinematics::Pose;
@@ -27,14 +28,7 @@ use dynamics::*;
 use nalgebra::Vector3;
 
 fn body(name: &str, mobility: Mobility) -> Body {
-    Body {
-        name: name.into(),
-        label: None,
-        mobility,
-        rest: [0.0; 5],
-        rotating_load: None,
-        unbalance: 0.0,
-    }
+    shafts::body(name, mobility, [0.0; 5])
 }
 
 fn free(name: &str) -> Body {

@@ -434,3 +434,28 @@ fn keys_can_be_replaced_from_the_command_line() {
         assert!(stderr(&output).contains(why), "{}", stderr(&output));
     }
 }
+
+/// A run-up over a speed that is held would be a picture of nothing: that is said, and not where something speeds up.
+#[test]
+fn a_run_up_at_a_speed_that_is_held_is_told_not_to_be_drawn() {
+    let place = Place::new();
+    let text =
+        scene("end = \"1 ms\"\noutput_interval = \"10 us\"", "plots = [\"run-up\", \"series\"]");
+    let rising = text.replace(
+        "speed = \"1000 rpm\"",
+        "speed = { ramp = [\"500 rpm\", \"1000 rpm\"], start = \"0 s\", duration = \"1 ms\" }",
+    );
+    for (name, text, drawn) in [("held", &text, false), ("rising", &rising, true)] {
+        let out = place.path(name);
+        let output = run(&place.scene(&format!("{name}.toml"), text), &out, &[]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        assert_eq!(out.join("run_up_inner_race.svg").exists(), drawn, "{name}");
+        let told = said(&output);
+        assert_eq!(told.matches("nothing is drawn for `run-up`").count(), usize::from(!drawn));
+        let summary = json(out.join("summary.json"));
+        let remarks = summary["remarks"].as_array().unwrap();
+        let of_plot = remarks.iter().filter(|said| said.as_str().unwrap().contains("run-up"));
+        assert_eq!(of_plot.count(), usize::from(!drawn), "{remarks:?}");
+        assert!(out.join("series_inner_race.svg").exists());
+    }
+}

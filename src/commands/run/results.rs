@@ -11,7 +11,7 @@ use bearing_dynamics::output::fields::bore::{bore_nodes, bore_series};
 use bearing_dynamics::output::fields::{
     FOLDER, file_name, rubber_stresses, stresses, write_fields, write_list,
 };
-use bearing_dynamics::output::pictures::bearing::{Picture, draw};
+use bearing_dynamics::output::pictures::bearing::{Picture, draw, without_run_up};
 use bearing_dynamics::output::pictures::solid::{
     force_plots, probe_spectra, series_plots, spectrum_plot,
 };
@@ -67,6 +67,7 @@ pub(super) fn write_results(
 ) -> Fallible<()> {
     let start = Instant::now();
     let mut said = Said::default();
+    let table = RunTable::new(session, prepared.window_start())?;
     match prepared {
         Prepared::Bearings { lists, .. } => {
             let scene = lists.scene;
@@ -74,13 +75,15 @@ pub(super) fn write_results(
                 said.remarks = remarks::of_run(scene, simulation);
             }
             said.remarks.extend(beyond_bushings(scene, session));
+            if scene.common().dynamics.plots.contains(&RunPlot::RunUp) {
+                said.remarks.extend(without_run_up(&table));
+            }
             housing_results(folder, prepared, session, &mut said)?;
             said.sections.push(("remarks".into(), json!(said.remarks)));
         }
         Prepared::Solid { .. } => solid_results(prepared, session, &mut said)?,
         Prepared::Rubber { .. } => rubber_results(prepared, session, &mut said)?,
     }
-    let table = RunTable::new(session, prepared.window_start())?;
     let spectra = spectra(prepared, session, &table);
     let plots = pictures(folder, prepared, session, &table, &spectra)?;
     let mut stages = vec![

@@ -140,18 +140,35 @@ fn orbits(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
     Ok(drawn)
 }
 
-/// Of whatever changes its speed by more than [`STEADY`].
+/// The speed in all rows of what changes it by more than [`STEADY`].
+fn changing_speed(table: &RunTable, of: &Moving) -> Option<Vec<f64>> {
+    let speed = table.all(&of.speed)?;
+    let ends = |of: fn(f64, f64) -> f64| speed.iter().copied().reduce(of).unwrap_or(0.0);
+    let (low, high) = (ends(f64::min), ends(f64::max));
+    (high - low > STEADY * high.abs().max(low.abs())).then_some(speed)
+}
+
+/// What a reader should know of run-ups that were asked for where there is none.
+pub fn without_run_up(table: &RunTable) -> Option<String> {
+    let none = table.bodies.iter().all(|body| changing_speed(table, body).is_none());
+    none.then(|| {
+        format!(
+            "output.plots: nothing is drawn for `run-up`: no race, body or cage has changed its speed by more than {:.0} %; give \
+             a speed that rises, such as {{ ramp = [\"0 rpm\", \"3000 rpm\"], start = \"0 s\", duration = \"1 s\" }}",
+            100.0 * STEADY
+        )
+    })
+}
+
+/// Of whatever changes its speed.
 fn run_ups(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
     let mut drawn = Vec::new();
-    for Moving { column: body, title: name, speed } in &table.bodies {
-        let (y, z) = (table.all(&format!("{body}_y")), table.all(&format!("{body}_z")));
-        let (Some(y), Some(z), Some(speed)) = (y, z, table.all(speed)) else { continue };
-        let ends = |of: fn(f64, f64) -> f64| speed.iter().copied().reduce(of).unwrap_or(0.0);
-        let (low, high) = (ends(f64::min), ends(f64::max));
-        let changes = high - low > STEADY * high.abs().max(low.abs());
-        if !changes {
+    for body in &table.bodies {
+        let Moving { column, title: name, .. } = body;
+        let (y, z) = (table.all(&format!("{column}_y")), table.all(&format!("{column}_z")));
+        let (Some(y), Some(z), Some(speed)) = (y, z, changing_speed(table, body)) else {
             continue;
-        }
+        };
         let rpm = 60.0 / std::f64::consts::TAU;
         let points = speed.iter().zip(y.iter().zip(&z));
         let points = points.map(|(speed, (y, z))| point(rpm * speed, 1e6 * libm::hypot(*y, *z)));
