@@ -6,6 +6,7 @@ use crate::commands::assembly::shapes::{Shapes, shapes};
 use crate::commands::assembly::{self, housings, plan};
 use crate::commands::{rubber, solid};
 use bearing_dynamics::kinematics::vec3::Vec3;
+use bearing_dynamics::mesh::TetMesh;
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::session::{
     CourseParts, Motion, Parts, RubberParts, RunRequest, Session, SolidParts,
@@ -17,7 +18,6 @@ use bearing_dynamics::scene::dynamics::DynamicsError;
 use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::scene::shaft_problem::{ShaftElements, take_shafts};
 use bearing_dynamics::scene::solid::{Law, RubberScene, RunSteps, SolidRun};
-use bearing_dynamics::scene::solid_mesh::BuiltMesh;
 use bearing_dynamics::scene::{Document, RunPlot, RunSettings, Scene, SolidScene, Subject};
 use bearing_dynamics::solver::channels::ChannelGroup;
 use bearing_dynamics::solver::dynamics::assembly::Assembly;
@@ -79,9 +79,11 @@ pub(super) enum Way {
 pub(super) struct SolidOf<'p> {
     /// `None` for the only one.
     pub name: Option<&'p str>,
-    pub built: &'p BuiltMesh,
-    /// Of a housing; that of a solid by itself is in the motion.
+    pub mesh: &'p TetMesh,
+    /// Beside bearings; that of a solid by itself is in the motion.
     pub model: Option<&'p SolidModel>,
+    /// Whether a race sits in a bore of it.
+    pub has_bore: bool,
 }
 
 /// What fields are made of, a vector a node.
@@ -274,15 +276,21 @@ impl<'s> Prepared<'s> {
     /// The solids of the scene: by themselves, or housings.
     pub fn solids(&self) -> Vec<SolidOf<'_>> {
         fn of_housing(Housing { name, built, setup, .. }: &Housing) -> SolidOf<'_> {
-            SolidOf { name: name.as_deref(), built, model: Some(&setup.model) }
+            let (mesh, model) = (&built.mesh, Some(&setup.model));
+            SolidOf { name: name.as_deref(), mesh, model, has_bore: true }
+        }
+        fn of_shaft(ShaftElements { name, mesh, part, .. }: &ShaftElements) -> SolidOf<'_> {
+            SolidOf { name: Some(name), mesh, model: Some(&part.model), has_bore: false }
         }
         match self {
-            Prepared::Bearings { housings, .. } => housings.iter().map(of_housing).collect(),
+            Prepared::Bearings { housings, shafts, .. } => {
+                housings.iter().map(of_housing).chain(shafts.iter().map(of_shaft)).collect()
+            }
             Prepared::Solid { mesh, .. } => {
-                vec![SolidOf { name: None, built: &mesh.built, model: None }]
+                vec![SolidOf { name: None, mesh: &mesh.built.mesh, model: None, has_bore: false }]
             }
             Prepared::Rubber { mesh, .. } => {
-                vec![SolidOf { name: None, built: &mesh.built, model: None }]
+                vec![SolidOf { name: None, mesh: &mesh.built.mesh, model: None, has_bore: false }]
             }
         }
     }

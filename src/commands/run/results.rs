@@ -270,7 +270,8 @@ pub(super) fn write_fields_file(
         };
         let (bore, stress) = match (solid.model, &session.motion) {
             (Some(model), motion) => {
-                (Some(bore_nodes(motion, number, model)), stresses(model, &displacement))
+                let bore = solid.has_bore.then(|| bore_nodes(motion, number, model));
+                (bore, stresses(model, &displacement))
             }
             (None, Motion::Solid(moving)) => (None, stresses(&moving.solid.model, &displacement)),
             (None, Motion::Rubber(moving)) => {
@@ -279,7 +280,7 @@ pub(super) fn write_fields_file(
             _ => return Ok(()),
         };
         let path = folder.join(file_name(solid.name.unwrap_or("fields"), index as usize));
-        let (mesh, velocity) = (&solid.built.mesh, velocity.as_deref());
+        let (mesh, velocity) = (solid.mesh, velocity.as_deref());
         write_fields(&path, mesh, &displacement, velocity, &stress, bore.as_deref())?;
     }
     if solids.is_empty() {
