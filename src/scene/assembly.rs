@@ -8,10 +8,9 @@ use crate::scene::housing::{HousedScene, HousingMethod, HousingSettings};
 use crate::scene::key_table_assembly::OWN_RACES;
 use crate::scene::resolved::{DefaultUsed, RunSettings, Scene};
 use crate::scene::solid::SolidScene;
-use crate::scene::statics::{ball_mass, orbital_speed};
+use crate::scene::statics::still_lists;
 use crate::solver::dynamics::assembly::{Assembly, Body, CAGE, GROUND, INNER, Mobility, OUTER};
 use crate::solver::dynamics::connection::{Connection, Law, MaxwellElement, SpringDashpot};
-use crate::solver::dynamics::equilibrium::static_assembly;
 use crate::solver::dynamics::model::{Drive, RaceBody, RotatingLoad};
 use crate::solver::dynamics::shaft::{ElasticShaft, ShaftLoad, Unbalance};
 use crate::solver::mount::Mount;
@@ -375,13 +374,7 @@ impl AssemblyScene {
     /// # Errors
     /// As [`AssemblyScene::assembly`].
     pub fn statics(&self) -> Result<StaticAssembly<'static>, DynamicsError> {
-        let mut still = static_assembly(&self.assembly()?, 0.0, &[]);
-        for (bearing, placed) in still.bearings.iter_mut().zip(&self.bearings) {
-            let scene = &placed.scene;
-            let speed = if scene.centrifugal { orbital_speed(scene) } else { 0.0 };
-            bearing.centrifugal = ball_mass(scene) * speed * speed;
-        }
-        Ok(still)
+        Ok(still_lists(self, &self.assembly()?))
     }
 }
 

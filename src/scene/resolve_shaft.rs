@@ -80,19 +80,10 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
     let length = beam.length();
     let at = |item: ItemRef| -> Result<f64, SceneError> {
         let at = required(item, "at", "at = \"0 mm\"")?;
-        // As near to its ends as stations are.
-        let room = 1e-9 * length;
-        if start - room <= at && at <= start + length + room {
-            return Ok(at);
+        match beside(at, [start, start + length], "the shaft") {
+            None => Ok(at),
+            Some(problem) => Err(item.error("at", problem)),
         }
-        let reason = format!(
-            "{:.4} mm is not on the shaft, which goes from {:.4} to {:.4} mm",
-            1e3 * at,
-            1e3 * start,
-            1e3 * (start + length)
-        );
-        let advice = "places count from the body's centre".into();
-        Err(item.error("at", Problem::Refused { reason, advice }))
     };
     beam.discs = document
         .items("body.beam.disc")
@@ -148,6 +139,18 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
     }))
 }
 
+/// What to say of a place that is not between the ends of a shaft (m).
+fn beside(at: f64, [start, end]: [f64; 2], of: &str) -> Option<Problem> {
+    // As near to its ends as stations are.
+    let room = 1e-9 * (end - start);
+    if start - room <= at && at <= end + room {
+        return None;
+    }
+    let [at, start, end] = [at, start, end].map(|x| 1e3 * x);
+    let reason = format!("{at:.4} mm is not on {of}, which goes from {start:.4} to {end:.4} mm");
+    Some(Problem::Refused { reason, advice: "places count from the body's centre".into() })
+}
+
 /// Races sit on the shafts that carry them.
 ///
 /// # Errors
@@ -161,20 +164,9 @@ pub(super) fn refuse_places_off_shafts(
         for (carrier, key) in placed.carriers.into_iter().zip(["inner_at", "outer_at"]) {
             let Carrier::Body { index, at } = carrier else { continue };
             let Some(beam) = &bodies[index].beam else { continue };
-            let end = beam.start + beam.beam.length();
-            let room = 1e-9 * beam.beam.length();
-            if beam.start - room <= at && at <= end + room {
-                continue;
-            }
-            let reason = format!(
-                "{:.4} mm is not on body {}, which goes from {:.4} to {:.4} mm",
-                1e3 * at,
-                bodies[index].name,
-                1e3 * beam.start,
-                1e3 * end
-            );
-            let problem =
-                Problem::Refused { reason, advice: "places count from the body's centre".into() };
+            let ends = [beam.start, beam.start + beam.beam.length()];
+            let of = format!("body {}", bodies[index].name);
+            let Some(problem) = beside(at, ends, &of) else { continue };
             let key = format!("bearing.{key}");
             return Err(match &placed.name {
                 Some(name) => document.scoped(name).error(&key, problem),

@@ -256,13 +256,12 @@ impl SeatState {
     ) {
         let [body, race] = self.seat.carried(&self.from, after);
         let cylinder = self.seat.cylinder(t, self.rim);
-        let (frame, nodes, penalty) = (&frame(&race), &self.near, self.seat.penalty);
+        let (cylinder, frame) = (&cylinder, &frame(&race));
+        let (nodes, penalty) = (&self.near[..], self.seat.penalty);
+        let pressed = Pressed { cylinder, frame, penalty, nodes, displacement };
         let sum = match &mut self.friction {
-            None => press(&cylinder, frame, penalty, nodes, displacement, forces),
-            Some(friction) => {
-                let cylinder = &cylinder;
-                friction.push(&Pressed { cylinder, frame, penalty, nodes, displacement }, forces)
-            }
+            None => press(&pressed, forces),
+            Some(friction) => friction.push(&pressed, forces),
         };
         self.growth = self.growth.to(cylinder.radius, sum.radial_load);
         self.tested += sum.tested as u64;
@@ -372,16 +371,12 @@ impl SeatState {
     ) -> SeatSnapshot {
         let cylinder = self.seat.cylinder(t, self.rim);
         let there = self.seat.frame_after(body, ahead);
-        let (frame, nodes, penalty) = (&there, &self.near, self.seat.penalty);
+        let (cylinder, frame) = (&cylinder, &there);
+        let (nodes, penalty) = (&self.near[..], self.seat.penalty);
+        let pressed = Pressed { cylinder, frame, penalty, nodes, displacement };
         let (contact, friction) = match &self.friction {
-            None => {
-                let contact = press(&cylinder, frame, penalty, nodes, displacement, forces);
-                (contact, FrictionSum::default())
-            }
-            Some(friction) => {
-                let cylinder = &cylinder;
-                friction.look(&Pressed { cylinder, frame, penalty, nodes, displacement }, forces)
-            }
+            None => (press(&pressed, forces), FrictionSum::default()),
+            Some(friction) => friction.look(&pressed, forces),
         };
         let race = mounted(&RaceNow::new(*body), &self.seat.mount).state;
         let power = dot(contact.force, race.velocity) + dot(contact.moment, race.spin);

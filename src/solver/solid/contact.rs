@@ -85,17 +85,9 @@ pub struct Pressed<'s> {
     pub displacement: &'s [Node],
 }
 
-/// Contact of a cylinder with nodes that are displaced by `displacement` (m, for each node of the
-/// solid); adds its forces to theirs, N.
-pub fn press(
-    cylinder: &Cylinder,
-    frame: &Frame,
-    penalty: Penalty,
-    nodes: &[ContactNode],
-    displacement: &[Node],
-    forces: &mut [Node],
-) -> ContactSum {
-    press_and(&Pressed { cylinder, frame, penalty, nodes, displacement }, forces, |_, _, _| None)
+/// Contact of a cylinder with nodes; adds its forces to theirs, N.
+pub fn press(pressed: &Pressed, forces: &mut [Node]) -> ContactSum {
+    press_and(pressed, forces, |_, _, _| None)
 }
 
 /// The same with a further force (N) on nodes that touch, if there is one: `also` is given the node, its contact and how
@@ -261,7 +253,8 @@ impl ContactRun {
     pub fn add_forces(&mut self, t: f64, displacement: &[Node], forces: &mut [Node]) {
         let (cylinder, frame) = self.contact.at(t);
         let penalty = self.contact.penalty;
-        self.sum = press(&cylinder, &frame, penalty, &self.near, displacement, forces);
+        let (cylinder, frame, nodes) = (&cylinder, &frame, &self.near[..]);
+        self.sum = press(&Pressed { cylinder, frame, penalty, nodes, displacement }, forces);
         self.tested += self.sum.tested as u64;
     }
 
