@@ -31,13 +31,13 @@ const RAMP: f64 = 0.2;
 /// Others, s; where slow ones begin, rpm, a quarter of a second before the peak, when a start has died out by e^-12; and where
 /// they end, past it.
 const RAMPS: [(f64, f64, f64); 4] =
-    [(0.1, 0.0, 8500.0), (0.5, 0.0, 6200.0), (1.0, 3000.0, 5900.0), (5.0, 4400.0, 5600.0)];
+    [(0.1, 0.0, 7800.0), (0.5, 0.0, 6050.0), (1.0, 3000.0, 5780.0), (5.0, 4600.0, 5480.0)];
 /// Constant speeds about the peak of the steady whirl, rpm.
 const STEADY: [f64; 5] = [4900.0, 5000.0, 5100.0, 5200.0, 5300.0];
 /// s at the first of them, by which a start dies out by e^-10, from one to the next, at each other, and the last two turns of it.
 const SETTLES: f64 = 0.2;
 const GOES_ON: f64 = 0.005;
-const STAYS: f64 = 0.13;
+const STAYS: f64 = 0.11;
 const LOOKED_AT: f64 = 0.024;
 /// The ramp, s, that was found to put the peak near the published speed.
 const NEAR_PUBLISHED: f64 = 0.156;
@@ -46,10 +46,15 @@ const PIN: f64 = 1e9;
 const SHIPPED: Way = Way {
     integrator: Integrator::DormandPrince,
     stepping: Stepping::Accuracy(1e-3),
-    cage: false,
+    calm: false,
     changes: &[],
 };
-const CAGED: Way = Way { cage: true, ..SHIPPED };
+/// Shapes up to 2 kHz in place of 5 kHz, at half the cost, move heights by less than a thousandth.
+const CALM: Way = Way {
+    calm: true,
+    changes: &[("damping = \"100 1/s\"", "below = \"2 kHz\"\ndamping = \"100 1/s\"")],
+    ..SHIPPED
+};
 /// Peak of the scene over the published speed, less one.
 const GAP: f64 = -0.0294;
 const ORACLE: &str = "half a Timoshenko beam on balls without inertia, Newmark's rule";
@@ -145,7 +150,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         let last = course[course.len() - 1][0];
         let end = last - ramp * (1.0 - to / TOP);
         for unbalance in UNBALANCES {
-            let pair = both(&course, unbalance, &CAGED, end)?;
+            let pair = both(&course, unbalance, &CALM, end)?;
             let id = format!("ramp_{}_{}", digits(&ramp.to_string()), digits(unbalance));
             passage(context, &mut rows, &id, (ramp, unbalance), &pair)?;
         }
@@ -153,7 +158,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     forgotten(context)?;
     let rest = steady_peaks(context)?;
     rolling(context, rest)?;
-    let pair = both(&straight(NEAR_PUBLISHED), UNBALANCES[0], &CAGED, NEAR_PUBLISHED)?;
+    let pair = both(&straight(NEAR_PUBLISHED), UNBALANCES[0], &CALM, NEAR_PUBLISHED)?;
     let found = passage(context, &mut rows, "ramp_found", (NEAR_PUBLISHED, UNBALANCES[0]), &pair)?;
     context.table(
         "ramps",
@@ -294,7 +299,7 @@ fn steady_peaks(context: &mut CaseContext) -> Result<Peak, CaseError> {
     let course = stairs(0.0);
     let end = course[course.len() - 1][0];
     for unbalance in UNBALANCES {
-        let pair = both(&course, unbalance, &CAGED, end)?;
+        let pair = both(&course, unbalance, &CALM, end)?;
         let [(ours, peak), (other, other_peak)] =
             [whirl(&pair[0], &course)?, whirl(&pair[1], &course)?];
         for (speed, heights) in STEADY.iter().zip(ours.iter().zip(&other)) {
@@ -341,7 +346,7 @@ fn rolling(context: &mut CaseContext, rest: Peak) -> Result<(), CaseError> {
     let unbalance = UNBALANCES[2];
     let course = stairs(STEADY[0]);
     let end = course[course.len() - 1][0];
-    let ours = run_up(rotor(&course, unbalance, &CAGED)?, &CAGED, end)?;
+    let ours = run_up(rotor(&course, unbalance, &CALM)?, &CALM, end)?;
     let Lengths { ball_radius, pitch_radius, .. } = DEEP_GROOVE;
     let orbit = 0.5 * (1.0 - ball_radius / pitch_radius) * STEADY[0] * RPM;
     let other = followed(&oracle(&course, unbalance, balls(orbit)), end);

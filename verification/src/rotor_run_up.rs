@@ -28,7 +28,11 @@ pub const TOP: f64 = 10_000.0;
 const ROWS: f64 = 5e-5;
 /// Steps of the oracle, s.
 const STEP: f64 = 1e-5;
-/// Keeps balls apart: light, soft, with 0.05 mm about each ball and without friction.
+/// Balls that keep their distances and do not rattle where they carry nothing, as the oracle's: a light, soft cage without friction,
+/// 0.05 mm about each ball, and damped contacts.
+const CALM: [(&str, &str); 2] = [("[bearing.left]", CAGE), ("law = \"none\"\n", DAMPED)];
+const DAMPED: &str =
+    "law = \"none\"\n\n[contact_damping]\nlaw = \"hunt-crossley\"\nalpha = \"1 s/m\"\n";
 const CAGE: &str = "[bearing.cage]\npocket_radius = \"6.0 mm\"\ninner_radius = \"24 mm\"\nouter_radius = \"28 mm\"\nrace_clearance = \"0.2 mm\"\n\
                     mass = \"20 g\"\nguidance = \"outer-race\"\ncontact = { law = \"penalty\", stiffness = \"1e6 N/m\" }\nfriction = 0\n\n[bearing.left]";
 
@@ -51,8 +55,8 @@ pub fn headed(ramp: f64, first: f64) -> Course {
 pub struct Way<'w> {
     pub integrator: Integrator,
     pub stepping: Stepping,
-    /// Whether a cage keeps the balls' distances; without one they wander off in slow passages.
-    pub cage: bool,
+    /// Whether a cage and damping calm the balls: without, they wander off in slow passages.
+    pub calm: bool,
     /// Further words of the scene, changed.
     pub changes: &'w [(&'w str, &'w str)],
 }
@@ -63,8 +67,8 @@ pub fn rotor(course: &Course, unbalance: &str, way: &Way) -> Result<Assembly, Ca
     let speed = format!("speed = {{ table = [{}] }}", points.collect::<Vec<_>>().join(", "));
     let size = format!("size = \"{unbalance} kg m\"");
     let mut changes = vec![(SPEED, speed.as_str()), ("size = \"1e-3 kg m\"", size.as_str())];
-    if way.cage {
-        changes.push(("[bearing.left]", CAGE));
+    if way.calm {
+        changes.extend(CALM);
     }
     changes.extend(way.changes);
     Ok(changed_scene(ROTOR_RUN_UP, &changes)?.assembly()?)
