@@ -1,7 +1,6 @@
 //! The rotor of 4.3.4 from rest through its first critical speed, against half a beam in polynomials.
 
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::solver::dynamics::run::{Integrator, Stepping};
 
 use crate::bearings::{DEEP_GROOVE, Lengths};
@@ -11,7 +10,7 @@ use crate::context::CaseContext;
 use crate::motion::RPM;
 use crate::oracles::run_up::{Peak, Support};
 use crate::rotor_run_up::{
-    Course, Done, RAMP_UNSTATED, TOP, Way, balls, followed, headed, oracle, rotor, run_up,
+    Course, Done, RAMP_UNSTATED, TOP, Way, balls, followed, headed, on_pins, oracle, rotor, run_up,
     straight, top,
 };
 
@@ -64,13 +63,7 @@ fn pinned() -> Result<Done, CaseError> {
     let way =
         Way { integrator: Integrator::RungeKutta, stepping: Stepping::Fixed(4e-6), ..SHIPPED };
     let mut assembly = rotor(&straight(RAMP), UNBALANCES[0], &way)?;
-    for bearing in std::mem::take(&mut assembly.bearings) {
-        let [inner, outer] = bearing.mounts;
-        let stiffness = [1e6, PIN, PIN, 0.0, 0.0, 0.0];
-        let law = Law::SpringDashpot(SpringDashpot { stiffness, ..SpringDashpot::default() });
-        let (name, ends) = ("a pin".into(), [outer, inner]);
-        assembly.connections.push(Connection { name, label: None, ends, law });
-    }
+    on_pins(&mut assembly, PIN);
     run_up(assembly, &way, RAMP)
 }
 

@@ -1,6 +1,7 @@
 //! The rotor of 4.3.4 run up: by the program from its shipped scene, and by the oracle.
 
 use bearing_dynamics::solver::dynamics::assembly::Assembly;
+use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, Start, Stepping,
 };
@@ -72,6 +73,17 @@ pub fn rotor(course: &Course, unbalance: &str, way: &Way) -> Result<Assembly, Ca
     }
     changes.extend(way.changes);
     Ok(changed_scene(ROTOR_RUN_UP, &changes)?.assembly()?)
+}
+
+/// Springs across in place of its bearings, N/m, a soft one along.
+pub fn on_pins(assembly: &mut Assembly, across: f64) {
+    for bearing in std::mem::take(&mut assembly.bearings) {
+        let [inner, outer] = bearing.mounts;
+        let stiffness = [1e6, across, across, 0.0, 0.0, 0.0];
+        let law = Law::SpringDashpot(SpringDashpot { stiffness, ..SpringDashpot::default() });
+        let (name, ends) = ("a pin".into(), [outer, inner]);
+        assembly.connections.push(Connection { name, label: None, ends, law });
+    }
 }
 
 /// What a run-up did.
