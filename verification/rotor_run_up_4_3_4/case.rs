@@ -7,6 +7,7 @@ use crate::bearings::{DEEP_GROOVE, Lengths};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::{Check, Explanation};
 use crate::context::CaseContext;
+use crate::golden::GoldenTolerance;
 use crate::motion::RPM;
 use crate::oracles::run_up::{Peak, Support};
 use crate::rotor_run_up::{
@@ -56,6 +57,8 @@ const CALM: Way = Way {
 };
 /// Peak of the scene over the published speed, less one.
 const GAP: f64 = -0.0294;
+/// Of pinned numbers: balls that carry nothing strike as chance has it, which moves peaks by up to a thousandth.
+const RATTLE: GoldenTolerance = GoldenTolerance { relative: 2e-3, absolute: 0.0 };
 const ORACLE: &str = "half a Timoshenko beam on balls without inertia, Newmark's rule";
 
 /// The rotor of the scene with springs across in place of its bearings, a soft one along, in steps as given.
@@ -89,7 +92,8 @@ fn held(
         context.check(
             Check::new(&format!("{id}_{key}"), &format!("{what}: {of}"), unit, ours)
                 .independent(other, ORACLE)
-                .relative(tolerance, reason),
+                .relative(tolerance, reason)
+                .golden(RATTLE),
         );
     }
 }
@@ -101,14 +105,14 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     context.assumption(name, text, default);
     context.assumption(
         "balls",
-        "Without friction, cage and gravity: balls stay where they are as the races turn; fixed outer races, no clearance.",
+        "Without friction and gravity: balls stay where they are as the races turn; fixed outer races, no clearance.",
         "scenes/rotor_run_up.toml",
     );
     context.assumption(
         "cage",
-        "The source says nothing of cages here. In other ramps than the scene's and in the steady whirl a light one without friction keeps the balls' distances; without it they \
-         wander off when the passage is slow, and meet.",
-        "20 g, 0.05 mm about each ball",
+        "The source says nothing of cages here. In other ramps than the scene's and in the steady whirl a light one without friction keeps the balls' distances, and damped contacts \
+         keep balls that carry nothing from rattling; without them balls wander off when the passage is slow, and meet.",
+        "20 g, 0.05 mm about each ball; 1 s/m",
     );
     let linear = pinned()?;
     let linear_oracle =

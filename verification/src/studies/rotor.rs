@@ -47,18 +47,16 @@ enum Body {
 }
 use Body::{Beam, Cells};
 
-const MESHES: [Body; 8] = [
+const MESHES: [Body; 6] = [
     Cells { order: 2, around: 8, radial: 1, along: 12.5 },
     Cells { order: 2, around: 16, radial: 1, along: 12.5 },
-    Cells { order: 2, around: 24, radial: 2, along: 12.5 },
     Cells { order: 1, around: 16, radial: 1, along: 12.5 },
     Cells { order: 1, around: 16, radial: 1, along: 3.34 },
     Cells { order: 1, around: 32, radial: 2, along: 3.34 },
     Cells { order: 1, around: 48, radial: 4, along: 3.34 },
-    Cells { order: 1, around: 64, radial: 5, along: 2.0 },
 ];
-/// Twice as fine as scenes have it.
-const FINEST: Body = Cells { order: 2, around: 32, radial: 2, along: 6.25 };
+/// Layers half as long as scenes have them, and finer around and on the radius.
+const FINEST: Body = Cells { order: 2, around: 24, radial: 2, along: 6.25 };
 
 impl Body {
     fn series(self) -> &'static str {
@@ -142,7 +140,7 @@ fn timed(
 }
 
 fn critical_speeds(context: &mut ParetoContext) -> Result<(), CaseError> {
-    let reference = critical_speed(FINEST, ALL)?;
+    let reference = critical_speed(FINEST, 20e3)?;
     for below in [10.0, 1e3, 5e3, 20e3, ALL] {
         let name = match below {
             ALL => "all shapes".to_string(),
@@ -154,17 +152,12 @@ fn critical_speeds(context: &mut ParetoContext) -> Result<(), CaseError> {
         let name = format!("{}, shapes to 5000 Hz", body.name());
         timed(context, (body.series(), &name), reference, || critical_speed(body, 5e3))?;
     }
-    let usual = MESHES[1];
-    for below in [10.0, ALL] {
-        let name = format!("{}, shapes to {below} Hz", usual.name());
-        timed(context, ("tet10", &name), reference, || critical_speed(usual, below))?;
-    }
     let half = Part::Length(Length::steel(0.2, 0.03));
     let disc = Part::Disc { mass: 20.0, axial: 0.0, transverse: 0.0 };
     let theory = |speed: f64| left(&[half, disc, half], [End::Pinned; 2], speed, speed);
     let theory = root(theory, reference * RPM) / RPM;
     context.sentence(format!(
-        "Reference: ten-node elements, {}, all shapes: {reference:.2} rpm; Timoshenko's beam by transfer matrices (Cowper's shear coefficient): {theory:.2} rpm, {:+.1e} off.",
+        "Reference: ten-node elements, {}, shapes to 20 kHz: {reference:.2} rpm; Timoshenko's beam by transfer matrices (Cowper's shear coefficient): {theory:.2} rpm, {:+.1e} off.",
         FINEST.name(),
         theory / reference - 1.0
     ));
@@ -235,7 +228,7 @@ fn run_ups(context: &mut ParetoContext) -> Result<(), CaseError> {
     for (name, below) in SHAPES {
         try_way("beam, dormand-prince 1e-3", name, Beam, below, &NEAR)?;
     }
-    for body in [MESHES[1], MESHES[5]] {
+    for body in [MESHES[1], MESHES[4]] {
         let name = format!("{}, shapes to 2 kHz", body.name());
         try_way(&format!("{}, dormand-prince 1e-3", body.series()), &name, body, 2e3, &NEAR)?;
     }
@@ -249,6 +242,12 @@ fn run_ups(context: &mut ParetoContext) -> Result<(), CaseError> {
             try_way(&series, &format!("accuracy {accuracy:.0e}"), Beam, 2e3, &way)?;
         }
     }
+    for accuracy in [1.0, 1e-1] {
+        let stepping = Stepping::Accuracy(accuracy);
+        let way = Way { integrator: Integrator::Rosenbrock, stepping, ..NEAR };
+        let name = format!("accuracy {accuracy:.0e}");
+        try_way("rosenbrock, no natural shapes", &name, Beam, SHAPES[0].1, &way)?;
+    }
     for step in [4e-6, 2e-6, 1e-6] {
         let stepping = Stepping::Fixed(step);
         let way = Way { integrator: Integrator::RungeKutta, stepping, ..NEAR };
@@ -260,7 +259,7 @@ fn run_ups(context: &mut ParetoContext) -> Result<(), CaseError> {
     let [found, massless] = [off(&other), off(&massless)];
     context.sentence(format!(
         "Reference: a beam with its shapes to 20 kHz, dormand-prince at 1e-6: {:.1} rpm, {:.3} µm. Beside it, height and speed: rosenbrock at 1e-5 {:+.1e}, {:+.1e}; \
-         the verification's oracle, whose balls have no inertia, {:+.1e}, {:+.1e}.",
+         the verification's oracle, whose balls have no inertia, {:+.1e}, {:+.1e}. Balls that carry nothing strike as chance has it: errors below some 2e-4 are luck.",
         reference.speed / RPM,
         1e6 * reference.height,
         found[0],
