@@ -11,6 +11,7 @@ use crate::housed_shaft::Shaft;
 use crate::motion::{
     ROTOR_IN_PILLOW_BLOCKS, ROTOR_RUN_UP, RPM, changed_scene, column, done, request,
 };
+use crate::rotor_run_up::{RAMP_UNSTATED, SPEED};
 use crate::solids::largest;
 
 pub const CASE: Case = Case {
@@ -24,8 +25,6 @@ pub const CASE: Case = Case {
 
 type Change<'c> = (&'c str, &'c str);
 
-const RAMP: &str =
-    "speed = { ramp = [\"0 rpm\", \"10000 rpm\"], start = \"0 s\", duration = \"0.2 s\" }";
 /// Beside the middle, mm from it.
 const WATCHED: [i32; 8] = [-190, -150, -100, -50, 50, 100, 150, 190];
 const NO_CLEARANCE: &str = "clearance = { radial = \"0 um\" }";
@@ -89,7 +88,7 @@ fn housed(clearance: &str) -> Result<Done, CaseError> {
         .collect();
     let watch = format!("watch = [{{ name = \"mid\", at = \"0 mm\" }}, {}]", watch.join(", "));
     let changes: [Change; 8] = [
-        ("speed = \"1000 rpm\"", RAMP),
+        ("speed = \"1000 rpm\"", SPEED),
         (
             "load = [{ at = \"0 mm\", z = \"-3000 N\" }]\n",
             "disc = [{ at = \"0 mm\", mass = \"20 kg\", axial = \"2.25e-3 kg m^2\", transverse = \"1.125e-3 kg m^2\" }]\nunbalance = [{ at = \"0 mm\", size = \"1e-3 kg m\" }]\n",
@@ -119,11 +118,8 @@ fn fixed(clearance: &str) -> Result<Done, CaseError> {
 }
 
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
-    context.assumption(
-        "ramp",
-        "4.3.4 does not say within which time the speed rises from 0 to 10 000 rpm: at a constant rate within 0.2 s.",
-        "0.2 s",
-    );
+    let (name, text, default) = RAMP_UNSTATED;
+    context.assumption(name, text, default);
     context.assumption(
         "housing_dimensions",
         "The sizes of Fig. 4.5's pillow block are not in the text.",
@@ -265,7 +261,7 @@ fn moments(context: &mut CaseContext, in_blocks: &Done, on_fixed: &Done) -> Resu
     let moment = |radial: &str| -> Result<f64, CaseError> {
         let clearance = format!("clearance = {{ radial = \"{radial} um\" }}");
         let changes: [Change; 4] = [
-            (RAMP, "speed = \"0 rpm\""),
+            (SPEED, "speed = \"0 rpm\""),
             (
                 "unbalance = [{ at = \"0 mm\", size = \"1e-3 kg m\" }]",
                 "load = [{ at = \"0 mm\", z = \"-2000 N\" }]",

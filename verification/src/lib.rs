@@ -36,6 +36,7 @@ pub mod pressed_block;
 pub mod published;
 pub mod readme;
 pub mod report;
+pub mod rotor_run_up;
 pub mod runner;
 pub mod solid_bodies;
 pub mod solids;

@@ -1,8 +1,9 @@
 //! A rotor with a mass in its middle that is run up on two alike bearings: half of it, as a Timoshenko beam in polynomials
 //! over the half length, stepped by Newmark's rule.
 //!
-//! Deflection y + i z and slope count as complex numbers. Balls have no mass: each lies on the line between the centres of
-//! the two grooves at its azimuth, both of its contacts in series.
+//! Deflection y + i z and slope count as complex numbers. Balls have no inertia across their orbits and keep their distances:
+//! each lies on the line between the centres of the two grooves at its azimuth, both of its contacts in series, the outer one
+//! under the centrifugal force too.
 
 use super::dense::solve_positive_definite;
 use nalgebra::Complex;
@@ -11,7 +12,7 @@ use std::f64::consts::TAU;
 type C = Complex<f64>;
 
 /// SI units.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RunUp {
     pub length: f64,
     pub radius: f64,
@@ -24,9 +25,8 @@ pub struct RunUp {
     pub unbalance: f64,
     /// Force over mass and velocity, 1/s.
     pub damping: f64,
-    /// rad/s, reached at a constant rate within `ramp` s; then it stays.
-    pub top_speed: f64,
-    pub ramp: f64,
+    /// Speed over time, s and rad/s: from 0 s on, straight between these, then it stays.
+    pub speed: Vec<[f64; 2]>,
     pub support: Support,
     /// s.
     pub step: f64,
@@ -49,10 +49,11 @@ pub struct Balls {
     pub outer: [f64; 2],
     /// N/m^1.5.
     pub stiffness: [f64; 2],
-    /// Azimuth of the first, rad.
+    /// Azimuth of the first at 0 s, rad, and speed of all, rad/s: without friction they keep it.
     pub phase: f64,
-    /// Whether balls go round with the cage of ideal rolling; without friction they stay.
-    pub rolls: bool,
+    pub orbit: f64,
+    /// Of one, kg; of no effect without orbit.
+    pub mass: f64,
 }
 
 /// Where the middle of the rotor was farthest off.
@@ -150,25 +151,22 @@ impl RunUp {
         [mass, gyro, stiffness]
     }
 
+    /// Angle, speed and its rate.
     fn speed(&self, t: f64) -> [f64; 3] {
-        let rate = self.top_speed / self.ramp;
-        let within = t.min(self.ramp);
-        let angle = 0.5 * rate * within * within + self.top_speed * (t - within);
-        [angle, rate * within, if t < self.ramp { rate } else { 0.0 }]
-    }
-
-    /// The farthest that the middle goes until `end` s.
-    pub fn peak(&self, end: f64) -> Peak {
-        let mut peak = Peak::default();
-        self.history(end, |speed, _, middle| {
-            if middle > peak.height {
-                peak = Peak { speed, height: middle };
+        let (mut angle, mut last) = (0.0, self.speed[0]);
+        for pair in self.speed.windows(2) {
+            let [[from, before], [to, after]] = [pair[0], pair[1]];
+            let (rate, past) = ((after - before) / (to - from), t - from);
+            if t < to {
+                return [angle + past * (before + 0.5 * rate * past), before + rate * past, rate];
             }
-        });
-        peak
+            angle += 0.5 * (before + after) * (to - from);
+            last = [to, after];
+        }
+        [angle + last[1] * (t - last[0]), last[1], 0.0]
     }
 
-    /// Calls `see` with speed (rad/s), and how far end and middle are off the axis (m), after each step.
+    /// Calls `see` with the time (s), the speed (rad/s), and how far the middle is off the axis (m), after each step.
     pub fn history(&self, end: f64, mut see: impl FnMut(f64, f64, f64)) {
         let [mass, gyro, stiffness] = self.matrices();
         let dt = self.step;
@@ -219,7 +217,7 @@ impl RunUp {
                     .collect();
                 let free = times(&inverse, &right);
                 let free_end = [along(&end_w, &free), along(&end_s, &free)];
-                load = self.held(free_end, gives, load, angle);
+                load = self.held(free_end, gives, load, t);
                 for i in 0..SIZE {
                     next[i] = free[i] + pushed[0][i] * load[0] + pushed[1][i] * load[1];
                     ahead[i] = (next[i] - now[i]) * (2.0 / dt) - speeds[i];
@@ -230,19 +228,19 @@ impl RunUp {
                 let rate = gone * (4.0 / (dt * dt)) - speeds[i] * (4.0 / dt) - rates[i];
                 (speeds[i], rates[i], now[i]) = (ahead[i], rate, next[i]);
             }
-            see(speed, along(&end_w, &now).norm(), along(&middle_w, &now).norm());
+            see(t, speed, along(&middle_w, &now).norm());
         }
     }
 
     /// Force and moment on the end where it goes to free + gives · load, by Newton with differences.
-    fn held(&self, free: [C; 2], gives: [[f64; 2]; 2], from: [C; 2], angle: f64) -> [C; 2] {
+    fn held(&self, free: [C; 2], gives: [[f64; 2]; 2], from: [C; 2], t: f64) -> [C; 2] {
         let place = |load: &[f64; 4]| {
             let [f, m] = [C::new(load[0], load[1]), C::new(load[2], load[3])];
             [0, 1].map(|i| free[i] + f * gives[i][0] + m * gives[i][1])
         };
         let miss = |load: &[f64; 4]| {
             let [w, s] = place(load);
-            let [f, m] = self.support.load(w, s, angle);
+            let [f, m] = self.support.load(w, s, t);
             [load[0] - f.re, load[1] - f.im, load[2] - m.re, load[3] - m.im]
         };
         let mut load = [from[0].re, from[0].im, from[1].re, from[1].im];
@@ -299,25 +297,25 @@ fn four(mut rows: [[f64; 5]; 4]) -> [f64; 4] {
 
 impl Support {
     /// Force and moment (towards the slope) on the shaft's end at this deflection and slope.
-    fn load(&self, w: C, s: C, angle: f64) -> [C; 2] {
+    fn load(&self, w: C, s: C, t: f64) -> [C; 2] {
         match self {
             Support::Spring(stiffness) => [w * -*stiffness, C::new(0.0, 0.0)],
-            Support::Balls(balls) => balls.load(w, s, angle),
+            Support::Balls(balls) => balls.load(w, s, t),
         }
     }
 }
 
 impl Balls {
-    fn load(&self, w: C, s: C, angle: f64) -> [C; 2] {
+    fn load(&self, w: C, s: C, t: f64) -> [C; 2] {
         let [inner, outer] = [self.inner[0] + self.inner[1], self.outer[0] - self.outer[1]];
         let closed = self.inner[1] + self.outer[1] - 2.0 * self.ball_radius;
         let pitch = 0.5 * (self.inner[0] + self.outer[0]);
-        let cage = if self.rolls { 0.5 * (1.0 - self.ball_radius / pitch) } else { 0.0 };
+        let thrown = self.mass * pitch * self.orbit * self.orbit;
         let soft = |k: f64| k.powf(-2.0 / 3.0);
         let stiffness = (soft(self.stiffness[0]) + soft(self.stiffness[1])).powf(-1.5);
         let mut sum = [C::new(0.0, 0.0); 2];
         for ball in 0..self.count {
-            let azimuth = self.phase + TAU * ball as f64 / self.count as f64 + cage * angle;
+            let azimuth = self.phase + TAU * ball as f64 / self.count as f64 + self.orbit * t;
             let outwards = C::new(azimuth.cos(), azimuth.sin());
             // Of the groove's centre on the inner race against that on the outer one.
             let axial = -inner * (s * outwards.conj()).re;
@@ -325,12 +323,29 @@ impl Balls {
             let distance = axial.hypot(radial);
             let overlap = distance - closed;
             if overlap > 0.0 {
-                let load = stiffness * overlap * overlap.sqrt() / distance;
+                let load = match thrown > 0.0 {
+                    true => self.inner_load(overlap, thrown),
+                    false => stiffness * overlap * overlap.sqrt(),
+                };
+                let load = load / distance;
                 sum[0] -= outwards * (load * radial);
                 // The axial part at the groove's centre turns the shaft.
                 sum[1] += outwards * (load * axial * inner);
             }
         }
         sum
+    }
+
+    /// Of a ball that is thrown outwards, by halves of what both contacts overlap.
+    fn inner_load(&self, overlap: f64, thrown: f64) -> f64 {
+        let [inner, outer] = self.stiffness;
+        let load = |stiffness: f64, overlap: f64| stiffness * overlap * overlap.sqrt();
+        let (mut low, mut high) = (0.0, overlap);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            let held = load(inner, middle) + thrown;
+            if held < load(outer, overlap - middle) { low = middle } else { high = middle }
+        }
+        load(inner, low)
     }
 }

@@ -6,6 +6,7 @@ mod housing;
 mod motion;
 mod motion_sweeps;
 mod regimes;
+mod rotor;
 mod rubber;
 mod solids;
 mod statics;
@@ -39,4 +40,7 @@ pub const STUDIES: &[Study] = &[
     rubber::SLOW,
     rubber::FAST,
     dent::DENT,
+    rotor::CRITICAL_SPEED,
+    rotor::MOMENT,
+    rotor::RUN_UP,
 ];
