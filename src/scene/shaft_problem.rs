@@ -27,6 +27,18 @@ pub struct ShaftElements {
 }
 
 impl ShaftElements {
+    /// Σ m (y, z), kg·m, and Σ m x (y, z) about their centre, kg·m²: how far lumped masses of a mesh that is not alike all around are
+    /// out of balance, statically and as a couple.
+    pub fn imbalance(&self) -> [[f64; 2]; 2] {
+        let model = &self.part.model;
+        let nodes = || model.mass.iter().zip(&model.problem.nodes);
+        let sum = |of: &dyn Fn(&Vec3) -> f64| -> f64 { nodes().map(|(m, at)| m * of(at)).sum() };
+        let centre = sum(&|at| at[0]) / model.mass.iter().sum::<f64>();
+        let [y, z] = [1, 2].map(|axis: usize| sum(&|at| at[axis]));
+        let [by_y, by_z] = [1, 2].map(|axis: usize| sum(&|at| (at[0] - centre) * at[axis]));
+        [[y, z], [by_y, by_z]]
+    }
+
     /// "33280 four-node elements, 6120 nodes".
     pub fn mesh_text(&self) -> String {
         let kind = match self.mesh.order() {

@@ -130,6 +130,15 @@ fn of_steps(
         let parts = housings::explicit(scene, assembly.clone(), housings, elements, 1)?;
         notes.push(note("step", &windows_text(parts, settings)?));
     }
+    for shaft in &shafts {
+        let [static_part, couple] = shaft.imbalance().map(|[y, z]| y.hypot(z));
+        let said = format!(
+            "the cells of {} are not alike all around: their masses are out of balance by {static_part:.1e} kg m and a couple of {couple:.1e} \
+             kg m^2, which turn with the shaft",
+            shaft.name
+        );
+        notes.push(note("shaft", &said));
+    }
     notes.push(size_line(&assembly, &request));
     Ok((items, notes))
 }
