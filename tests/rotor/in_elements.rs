@@ -140,3 +140,19 @@ fn the_ledger_of_all_parts_closes() {
         assert!(largest(of("shaft_heat_joints")) > 0.0);
     }
 }
+
+/// With springs under the races so stiff that they are the fastest thing, steps are as short as they ask for, and energy is kept.
+#[test]
+fn steps_know_the_springs_of_races() {
+    let stiff = "method = \"explicit\", race_stiffness = \"2e12 N/m\", race_damping = \"0 N s/m\"";
+    let scene = changed(&[("method = \"explicit\"", stiff)]);
+    let soft = session(&changed(&[]), 0.1e-3, true);
+    let start = session(&scene, 0.1e-3, true);
+    let [soft, stiff] = [&soft, &start].map(|of| exchange(of).solids[0].solid.step_size);
+    // Of nodes that have a part each of 12.5 mm of the shaft, 0.07 kg in all: √(2e12/0.07) 1/s and more.
+    assert!(stiff < 0.35e-6 && stiff < 0.8 * soft, "{stiff} {soft}");
+    let ended = ended(start);
+    let series = ended.series().unwrap();
+    let left = series.column("energy_coupled_residual").unwrap().to_vec();
+    assert!(left.iter().all(|left| left.abs() <= 1e-6), "{left:?}");
+}
