@@ -120,8 +120,8 @@ pub struct SteppedShaft {
     pub unbalance_work: f64,
     /// How often sections and what sits on them were looked at.
     pub looks: u64,
-    /// Of the unbalances in this step, N.
-    forces: Vec<Vec3>,
+    /// Of the unbalances in this step, N, and their sections.
+    forces: Vec<(Vec3, Option<SectionPlace>)>,
 }
 
 impl SteppedShaft {
@@ -138,7 +138,7 @@ impl SteppedShaft {
         SteppedShaft {
             speed: part.speed,
             joints: part.joints.into_iter().map(joint).collect(),
-            forces: vec![[0.0; 3]; part.unbalances.len()],
+            forces: vec![([0.0; 3], None); part.unbalances.len()],
             unbalances: part.unbalances,
             watched: part.watched,
             unbalance_work: 0.0,
@@ -190,7 +190,8 @@ impl SteppedShaft {
             (now.place, now.on_section) = (Some(place), pull.on[0]);
         }
         for (of, force) in self.unbalances.iter().zip(&mut self.forces) {
-            *force = unbalanced(of, &self.speed, &place_of(&of.section, solid), solid.time);
+            let place = place_of(&of.section, solid);
+            *force = (unbalanced(of, &self.speed, &place, solid.time), Some(place));
         }
         self.book(solid);
     }
@@ -198,7 +199,7 @@ impl SteppedShaft {
     /// Books what the unbalances do in half a step at the present rates.
     fn book(&mut self, solid: &ExplicitSolid) {
         let half = 0.5 * solid.step_size;
-        for (of, force) in self.unbalances.iter().zip(&self.forces) {
+        for (of, (force, _)) in self.unbalances.iter().zip(&self.forces) {
             self.unbalance_work += half * dot(*force, place_of(&of.section, solid).velocity);
         }
     }
@@ -215,8 +216,9 @@ impl SteppedShaft {
             let RaceLoads { force, moment } = now.on_section;
             add_to(forces, now.joint.section.forces_at(place, force, moment));
         }
-        for (of, force) in self.unbalances.iter().zip(&self.forces) {
-            add_to(forces, of.section.forces(*force, [0.0; 3]));
+        for (of, (force, place)) in self.unbalances.iter().zip(&self.forces) {
+            let Some(place) = place else { continue };
+            add_to(forces, of.section.forces_at(place, *force, [0.0; 3]));
         }
     }
 
@@ -252,7 +254,7 @@ impl SteppedShaft {
             let place = unbalance.section.place(&u, &v);
             let force = unbalanced(unbalance, &self.speed, &place, t);
             work += ahead * dot(force, place.velocity);
-            add_to(forces, unbalance.section.forces(force, [0.0; 3]));
+            add_to(forces, unbalance.section.forces_at(&place, force, [0.0; 3]));
         }
         (joints, work)
     }
