@@ -51,8 +51,7 @@ impl RotorSection {
         is_sound.then_some(RotorSection { centre, point: [0.0; 3], area, nodes, spread })
     }
 
-    /// The same as seen by what sits at a point (m) that goes with the section: faces of ten-node elements have their area's centre a
-    /// little beside the axis.
+    /// The same as seen by what sits at a point (m) that goes with the section.
     #[must_use]
     pub fn about(self, point: Vec3) -> RotorSection {
         RotorSection { point: sub(point, self.centre), ..self }

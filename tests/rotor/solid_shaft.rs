@@ -76,6 +76,22 @@ fn a_stepped_hollow_shaft_weighs_what_it_should() {
     assert!(ours < theirs && ours > 0.9 * theirs, "{ours} {theirs}");
 }
 
+/// Of curved six-node faces corners carry less than nothing at some places and more at others: area and centre are those of the
+/// volume, whose cells are alike around every eighth of a turn.
+#[test]
+fn sections_of_curved_faces_have_their_area_and_stand_on_the_axis() {
+    let (mesh, problem, stations) = stub();
+    let model = SolidModel::new(problem).unwrap();
+    let area = model.mass.iter().sum::<f64>() / (7850.0 * 0.1);
+    for at in stations {
+        let section = section(&mesh, at).unwrap();
+        // Rounding of some tens of nodes.
+        assert!((section.area / area - 1.0).abs() <= 1e-12, "{} {area}", section.area);
+        let [_, y, z] = section.centre;
+        assert!(y.hypot(z) <= 1e-14, "{y} {z}");
+    }
+}
+
 /// Loads on stations that balance, on the condensed shaft and on the whole solid by the solver of equilibria: condensation is
 /// exact there.
 #[test]

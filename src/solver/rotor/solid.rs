@@ -70,9 +70,14 @@ pub fn section(mesh: &TetMesh, at: f64) -> Result<RotorSection, SolidShaftError>
     }
     let of = |faces: &[Face]| {
         let areas = (0u32..).zip(vector_areas(mesh, faces));
-        let carrying = areas.filter(|(_, area)| area[0] != 0.0);
-        let nodes: Vec<(u32, Vec3, f64)> =
-            carrying.map(|(node, area)| (node, mesh.nodes[node as usize], area[0].abs())).collect();
+        // Faces look one way; corners of curved six-node ones may carry a little less than nothing.
+        let carrying: Vec<(u32, f64)> =
+            areas.map(|(node, area)| (node, area[0])).filter(|(_, area)| *area != 0.0).collect();
+        let way = carrying.iter().map(|(_, area)| area).sum::<f64>().signum();
+        let nodes: Vec<(u32, Vec3, f64)> = carrying
+            .into_iter()
+            .map(|(node, area)| (node, mesh.nodes[node as usize], way * area))
+            .collect();
         RotorSection::new(&nodes)
     };
     let found = match [of(&below), of(&above)] {
