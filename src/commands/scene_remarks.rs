@@ -14,8 +14,8 @@ pub fn of_shafts(scene: &AssemblyScene) -> Vec<String> {
         let solved = match body.beam.as_ref()?.in_elements {
             None => "condensed onto its sections; it moves in shapes, no element takes steps",
             Some(_) => {
-                "in explicit steps in a run; in equilibria and `modes` condensed onto its sections. A run starts straight: loads \
-                that do not grow from nothing (`smooth_ramp`) are blows"
+                "in explicit steps in a run; in equilibria and `modes` condensed onto its sections. A run starts straight: what \
+                does not grow from nothing (`smooth_ramp`) is a blow, gravity and the unbalance of a shaft that turns from the start too"
             }
         };
         Some(format!(

@@ -231,6 +231,11 @@ fn in_elements(reader: &mut Reader) -> Result<Option<RaceJoint>, SceneError> {
             "leave it out",
         ),
         ("body.torque", "a shaft in explicit steps turns at a given speed", "write `speed`"),
+        (
+            "body.beam.internal_damping",
+            "elements in explicit steps are damped in axes that stand still alone",
+            "leave it out, or write method = \"reduced\" in [body.NAME.beam.mesh]",
+        ),
     ] {
         if document.value(key).is_some() {
             return refused(key, reason, advice);
@@ -258,40 +263,55 @@ fn in_elements(reader: &mut Reader) -> Result<Option<RaceJoint>, SceneError> {
             );
         }
     }
-    let number = |key: &str| reader.given_number(key).unwrap_or(0.0);
-    let (damping, internal) = (number("body.beam.damping"), number("body.beam.internal_damping"));
-    if damping > 0.0 && internal > 0.0 {
-        let advice = "keep one of them, or write method = \"reduced\" in [body.NAME.beam.mesh]";
-        return refused("body.beam.internal_damping", "elements have `damping` as well", advice);
+    if reader.choice_if_given("body.beam.damped_motion") == Some("relative-to-rigid") {
+        let reason = "elements in explicit steps are damped in axes that stand still alone";
+        return refused("body.beam.damped_motion", reason, "leave it out");
     }
-    if damping > 0.0
-        && document.value("body.beam.damped_motion").is_some_and(|_| {
-            reader.choice_if_given("body.beam.damped_motion") == Some("relative-to-rigid")
-        })
+    // A disc without inertia has no motion of its own on its spring.
+    let inertia = ["mass", "axial", "transverse"];
+    for item in document.items("body.beam.disc").filter(|item| item_number(*item, "mass").is_some())
     {
-        let reason = "elements know motion in the room and motion against the spinning shaft";
-        let advice = "leave it out, or write `internal_damping`";
-        return refused("body.beam.damped_motion", reason, advice);
+        let missing = |name: &&str| item_number(item, name).is_none_or(|value| value <= 0.0);
+        if let Some(name) = inertia.into_iter().find(missing) {
+            let reason = "a disc on elements in explicit steps is a body of its own".to_string();
+            let advice = format!("give its `{name}`, above 0; or its outer_diameter and width");
+            return Err(item.error("mass", Problem::Refused { reason, advice }));
+        }
     }
     let [stiffness, damping] = JOINT.map(|key| reader.number(key).unwrap_or(0.0));
     Ok(Some(RaceJoint { stiffness, damping }))
 }
 
-/// Nothing but bearings takes hold of a shaft in elements.
+/// Nothing but inner races takes hold of a shaft in elements.
 ///
 /// # Errors
-/// The first spring that does.
+/// The first spring, or outer race, that does.
 pub(super) fn refuse_springs_on_elements(
     document: &Document,
     scene: &AssemblyScene,
 ) -> Result<(), SceneError> {
+    let is_elements = |index: usize| {
+        scene.bodies[index].beam.as_ref().is_some_and(|beam| beam.in_elements.is_some())
+    };
+    for placed in &scene.bearings {
+        let Carrier::Body { index, .. } = placed.carriers[1] else { continue };
+        if is_elements(index) {
+            let reason = "an outer race does not sit on elements in explicit steps".into();
+            let advice = "write method = \"reduced\" in [body.NAME.beam.mesh]".into();
+            let problem = Problem::Refused { reason, advice };
+            return Err(match &placed.name {
+                Some(name) => document.scoped(name).error("bearing.outer_on", problem),
+                None => document.error("bearing.outer_on", problem),
+            });
+        }
+    }
     for spring in &scene.springs {
         for (end, key) in spring.ends.iter().zip(["spring.from", "spring.to"]) {
             let SpringAt::Body(index) = end.at else { continue };
-            let of = &scene.bodies[index];
-            if of.beam.as_ref().is_none_or(|beam| beam.in_elements.is_none()) {
+            if !is_elements(index) {
                 continue;
             }
+            let of = &scene.bodies[index];
             let reason = format!(
                 "body {} is elements in explicit steps, which bearings alone take hold of",
                 of.name

@@ -4,7 +4,7 @@ use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::{Order, TetMesh};
 use crate::scene::assembly::{AssemblyScene, Carrier, RaceJoint, SceneBeam, SceneBody};
-use crate::solver::dynamics::assembly::{Assembly, Body, Mobility};
+use crate::solver::dynamics::assembly::{Assembly, Body, INNER, Mobility};
 use crate::solver::dynamics::connection::SpringDashpot;
 use crate::solver::dynamics::model::{Drive, RaceBody, Rotation};
 use crate::solver::housing::exchange::SolidPart;
@@ -128,27 +128,22 @@ fn take_sitting(
         assembly.bodies.len() - 1
     };
     for (bearing, placed) in scene.bearings.iter().enumerate() {
-        for (side, carrier) in placed.carriers.into_iter().enumerate() {
-            let Carrier::Body { index: on, at } = carrier else { continue };
-            if on != index {
-                continue;
-            }
-            // A disc where a race sits is the race; else it is a ring of its sizes.
-            let here = |disc: &&mut Option<(&BeamDisc, f64)>| {
-                disc.is_some_and(|(_, place)| (place - at).abs() <= near)
-            };
-            let dynamics = &placed.scene.dynamics;
-            let own = if side == 0 { Some(&dynamics.inner) } else { dynamics.outer.as_ref() };
-            let inertia = match discs.iter_mut().find(here).and_then(Option::take) {
-                Some((disc, _)) => inertia_of(disc),
-                None => own.unwrap_or(&dynamics.inner).inertia,
-            };
-            let which = ["inner", "outer"][side];
-            let suffix = assembly.bearings[bearing].suffix();
-            let body = sit(assembly, format!("the {which} race{suffix}"), at, inertia);
-            let reversed = assembly.bearings[bearing].mounts[side].reversed;
-            assembly.bearings[bearing].mounts[side] = Mount { body, along: 0.0, reversed };
+        let Carrier::Body { index: on, at } = placed.carriers[INNER] else { continue };
+        if on != index {
+            continue;
         }
+        // A disc where a race sits is the race; else it is a ring of its sizes.
+        let here = |disc: &&mut Option<(&BeamDisc, f64)>| {
+            disc.is_some_and(|(_, place)| (place - at).abs() <= near)
+        };
+        let inertia = match discs.iter_mut().find(here).and_then(Option::take) {
+            Some((disc, _)) => inertia_of(disc),
+            None => placed.scene.dynamics.inner.inertia,
+        };
+        let suffix = assembly.bearings[bearing].suffix();
+        let body = sit(assembly, format!("the inner race{suffix}"), at, inertia);
+        let reversed = assembly.bearings[bearing].mounts[INNER].reversed;
+        assembly.bearings[bearing].mounts[INNER] = Mount { body, along: 0.0, reversed };
     }
     for (number, disc) in discs.into_iter().enumerate() {
         if let Some((disc, at)) = disc {
@@ -226,11 +221,7 @@ fn made(
             loads.push(Load { forces, profile: profile.clone() });
         }
     }
-    let (damping, damped_motion) = if beam.internal_damping > 0.0 {
-        (beam.internal_damping, DampedMotion::RelativeToRigid)
-    } else {
-        (beam.damping, DampedMotion::Absolute)
-    };
+    let (damping, damped_motion) = (beam.damping, DampedMotion::Absolute);
     let nodes = mesh.nodes.clone();
     let problem = SolidProblem { nodes, loads, gravity, damping, damped_motion, ..problem };
     let name = Some(body.name.clone());

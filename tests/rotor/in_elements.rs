@@ -164,3 +164,17 @@ fn steps_know_the_springs_of_races() {
     let left = series.column("energy_coupled_residual").unwrap().to_vec();
     assert!(left.iter().all(|left| left.abs() <= 1e-6), "{left:?}");
 }
+
+/// Dashpots see velocities that are half a step old: where they are strong, steps and windows are short enough for it.
+#[test]
+fn strong_dashpots_do_not_make_energy() {
+    let strong = "method = \"explicit\", race_damping = \"1e5 N s/m\"";
+    let scene = changed(&[("method = \"explicit\"", strong)]);
+    let start = session(&scene, 0.1e-3, true);
+    let [window, step] = [exchange(&start).window, exchange(&start).solids[0].solid.step_size];
+    // 1e5 N s/m on a race of 60 g; 90 N m s/rad on 1e-5 kg m².
+    assert!(window <= 0.5 * 1e-5 / 90.0 && step <= window, "{window} {step}");
+    let ended = ended(start);
+    let left = ended.series().unwrap().column("energy_coupled_residual").unwrap().to_vec();
+    assert!(left.iter().all(|left| left.abs() <= 1e-6), "{left:?}");
+}

@@ -137,11 +137,12 @@ fn faults_of_shafts_in_elements_say_what_is_wrong() {
             "which loads meet at sections",
         ),
         (in_elements("below = \"3 kHz\""), "all of their frequencies"),
-        (in_elements("damping = \"10 1/s\"\ninternal_damping = \"1 1/s\""), "`damping` as well"),
+        (in_elements("internal_damping = \"1 1/s\""), "body.shaft.beam.internal_damping: refused"),
         (
             in_elements("damping = \"10 1/s\"\ndamped_motion = \"relative-to-rigid\""),
-            "against the spinning shaft",
+            "in axes that stand still alone",
         ),
+        (in_elements("disc = [{ at = \"0 mm\", mass = \"1 kg\" }]"), "give its `axial`, above 0"),
         (
             turning("mesh = { order = 1, race_stiffness = \"1e9 N/m\" }"),
             "sit on the sections themselves",
@@ -153,6 +154,13 @@ fn faults_of_shafts_in_elements_say_what_is_wrong() {
                 turning(ELEMENTS)
             ),
             "bearings alone take hold of",
+        ),
+        (
+            format!(
+                "{}\n[bearing.back]\ninner_on = \"inner_race\"\nouter_on = \"shaft\"\ninner_at = \"0 mm\"\nouter_at = \"0 mm\"\n",
+                turning(ELEMENTS)
+            ),
+            "an outer race does not sit on elements",
         ),
     ];
     for (text, expected) in cases {
@@ -168,7 +176,7 @@ fn a_shaft_in_elements_is_a_solid_and_what_sits_on_it() {
 [body.shaft.beam]
 segments = [{ length = "250 mm", outer_diameter = "30 mm" }, { length = "150 mm", outer_diameter = "24 mm" }]
 mesh = { order = 1, method = "explicit", race_stiffness = "1e9 N/m", race_damping = "10 N s/m" }
-disc = [{ at = "-200 mm", mass = "60 g", axial = "2e-5 kg m^2", transverse = "1e-5 kg m^2" }, { at = "0 mm", mass = "1 kg" }]
+disc = [{ at = "-200 mm", mass = "60 g", axial = "2e-5 kg m^2", transverse = "1e-5 kg m^2" }, { at = "0 mm", mass = "1 kg", axial = "1e-3 kg m^2", transverse = "1e-3 kg m^2" }]
 load = [{ at = "30 mm", z = "-100 N" }]
 watch = [{ name = "mid", at = "0 mm" }]
 damping = "5 1/s"

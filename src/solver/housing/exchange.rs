@@ -97,6 +97,10 @@ pub enum ExchangeError {
     )]
     NoSeat { seat: String },
     #[error(
+        "windows between bodies and solids would be {window} s: a body has no mass or inertia against the springs that it sits on"
+    )]
+    NoWindow { window: f64 },
+    #[error(
         "{race} has left its bore at t = {time} s, step {step}: it is {distance:.3e} m off \
          {way}, where {allowed:.3e} m are left of its seat"
     )]

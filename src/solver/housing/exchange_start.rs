@@ -100,6 +100,8 @@ impl<'p> Exchange<'p> {
                     closed_limit(&solid.model, &seat.seat.nodes, seat.seat.penalty, &limit)
                 });
                 let closed = shaft.as_ref().map_or(closed, |shaft| closed.with(shaft.added(solid)));
+                let longest =
+                    shaft.as_ref().map_or(longest, |shaft| longest.min(shaft.braked(solid)));
                 (options.solid_fraction * closed.step).min(longest)
             })
             .collect();

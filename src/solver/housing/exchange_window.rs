@@ -4,6 +4,7 @@ use super::bonded::BondedBushing;
 use super::exchange::{ExchangeError, ExchangeOptions};
 use super::seat::Seat;
 use super::stepped::SteppedSolid;
+use super::stepped_shaft::BRAKED;
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::model::Rotation;
 
@@ -27,6 +28,7 @@ pub(super) fn longest_window(
     for (index, body) in assembly.bodies.iter().enumerate() {
         let mut sums = [0.0; 2];
         let mut about_axis = 0.0;
+        let mut braked = [0.0; 2];
         let [x, y, z, ..] = body.rest;
         for seat in seats.iter().filter(|seat| seat.mount.body == index) {
             let [shift, tilt, turn] = seat.stiffness([x, y, z]);
@@ -47,15 +49,23 @@ pub(super) fn longest_window(
             let ([shift, tilt], weight) = (now.joint.stiffness(), phase / JOINT_PHASE);
             let weight = weight * weight;
             sums = [sums[0] + weight * shift, sums[1] + weight * tilt];
+            braked = [braked[0] + now.joint.damping()[0], braked[1] + now.joint.damping()[1]];
         }
         let Some(inertia) = body.inertia() else { continue };
+        // As if a spring asked for the same window.
+        for (rate, of) in braked.into_iter().zip([inertia.mass, inertia.transverse]) {
+            let rate = phase * rate / (BRAKED * of);
+            most = most.max(rate * rate);
+        }
         most = most.max((sums[0] / inertia.mass).max(sums[1] / inertia.transverse));
         // Nothing but friction turns a race in its bore back; one whose speed is given does not mind.
         if body.driven().is_none_or(|race| matches!(race.rotation, Rotation::Torque(_))) {
             most = most.max(about_axis / inertia.axial);
         }
     }
-    Ok(phase / most.sqrt())
+    let window = phase / most.sqrt();
+    // No mass on a spring, or no number.
+    if window > 0.0 { Ok(window) } else { Err(ExchangeError::NoWindow { window }) }
 }
 
 /// How many steps of at most `step` s (one a solid) fill a window, whole steps of one of them and no

@@ -54,10 +54,19 @@ impl Joint {
         [0..3, 3..6].map(|axes| self.law.stiffness[axes].iter().copied().fold(0.0, f64::max))
     }
 
+    /// Largest damping of a shift (N·s/m) and of a turn (N·m·s/rad).
+    pub(super) fn damping(&self) -> [f64; 2] {
+        [0..3, 3..6].map(|axes| self.law.damping[axes].iter().copied().fold(0.0, f64::max))
+    }
+
     /// What it adds to the square of the highest frequency of the solid at most, 1/s²: by Weyl's bound, of springs that hold a
     /// node's part of the section each.
     fn added(&self, per_mass: impl Fn(u32) -> f64) -> f64 {
-        let [shift, turn] = self.stiffness();
+        self.felt(self.stiffness(), per_mass)
+    }
+
+    /// Of springs or dashpots against a shift and a turn what a mass of its nodes feels of them at most, over that mass.
+    fn felt(&self, [shift, turn]: [f64; 2], per_mass: impl Fn(u32) -> f64) -> f64 {
         let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let of = |force: Vec3, moment: Vec3| -> f64 {
             let forces = self.section.forces(force, moment);
@@ -148,11 +157,14 @@ impl SteppedShaft {
 
     /// What its joints add to the square of the solid's highest frequency at most, 1/s².
     pub(super) fn added(&self, solid: &ExplicitSolid) -> f64 {
-        let per_mass = |node: u32| {
-            let of = solid.model.per_mass[node as usize];
-            of[0].max(of[1]).max(of[2])
-        };
-        self.joints.iter().map(|now| now.joint.added(per_mass)).sum()
+        self.joints.iter().map(|now| now.joint.added(|node| per_mass(solid, node))).sum()
+    }
+
+    /// The longest step of the solid with which dashpots, which see velocities half a step old, do not overshoot, s.
+    pub(super) fn braked(&self, solid: &ExplicitSolid) -> f64 {
+        let joints = self.joints.iter().map(|now| &now.joint);
+        let rates = joints.map(|joint| joint.felt(joint.damping(), |node| per_mass(solid, node)));
+        BRAKED / rates.sum::<f64>()
     }
 
     /// Turns the nodes of a solid that has not been stepped: velocities of a rigid body at the start, displacements half a step
@@ -300,6 +312,15 @@ impl JointNow {
     pub(super) fn book(&mut self, window: f64, to: &BodyState) {
         self.work += work_on_way(&self.mean_load(window), &self.from, to);
     }
+}
+
+/// Rate of a dashpot times the step or window in which it brakes by what it saw before: stable below 1, halved.
+pub(super) const BRAKED: f64 = 0.5;
+
+/// 1/kg, along the axis where it is largest.
+fn per_mass(solid: &ExplicitSolid, node: u32) -> f64 {
+    let of = solid.model.per_mass[node as usize];
+    of[0].max(of[1]).max(of[2])
 }
 
 fn of(list: &[Node]) -> impl Fn(u32) -> Vec3 + '_ {
