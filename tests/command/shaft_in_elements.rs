@@ -24,6 +24,7 @@ fn an_interrupted_run_ends_with_the_same_bytes() {
     let said = succeed(into_folder("run", &path, &whole, &[]));
     assert!(said.contains("steps of the shaft"), "{said}");
     assert_same_results(&whole, &parts);
+    assert!(whole.join("fields/shaft_000000.vtu").is_file() && whole.join("fields.pvd").is_file());
     let columns = fs::read_to_string(whole.join("series.csv")).unwrap();
     let head = columns.lines().next().unwrap();
     for name in [
@@ -84,7 +85,12 @@ fn what_a_shaft_in_elements_cannot_stand_beside_is_refused() {
             "housing.start: refused: a shaft of the scene",
         ),
     ];
-    for (text, expected) in cases {
+    let start = "[numerics]\nstart = \"equilibrium\"";
+    let own = (
+        scene("3 ms").replace("[numerics]", start),
+        "numerics.start: refused: a shaft of the scene",
+    );
+    for (text, expected) in cases.into_iter().chain([own]) {
         let path = place.scene("scene.toml", &text);
         let output = into_folder("run", &path, &place.path("out"), &[]).output().unwrap();
         assert_eq!(output.status.code(), Some(2));

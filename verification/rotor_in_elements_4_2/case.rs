@@ -105,10 +105,14 @@ fn both(changes: &[Change]) -> Result<[Way; 2], CaseError> {
     let explicit = changed_scene(ROTOR_IN_ELEMENTS, changes)?;
     // A reduced shaft is one of revolution: counterweights would put it out of balance.
     let own = changes.iter().filter(|(from, _)| *from != WEIGHTS).copied();
-    let own: Vec<Change> = own.chain([EXPLICIT]).collect();
+    let is_stiff = changes.iter().any(|(_, to)| to.contains(STIFF));
+    let soft = is_stiff.then_some((STIFF, ""));
+    let own: Vec<Change> = own.chain([EXPLICIT]).chain(soft).collect();
     Ok([alone(&explicit)?, alone(&changed_scene(ROTOR_IN_ELEMENTS, &own)?)?])
 }
 
+/// Springs of which a reduced shaft has none.
+const STIFF: &str = ", race_stiffness = \"4e10 N/m\"";
 const WEIGHTS: &str = "watch =";
 
 /// Unbalances along a shaft of such a mesh that balance the masses of its cells.
@@ -143,7 +147,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     };
     let coarse = ten("13 mm", "8");
     let balanced = counterweights(&coarse)?;
-    let stiff = format!("{coarse}, race_stiffness = \"4e10 N/m\"");
+    let stiff = format!("{coarse}{STIFF}");
     let unbalanced = "unbalance = [{ at = \"0 mm\", size = \"1e-3 kg m\", angle = \"30 deg\" }]";
     let rising = "speed = { smooth_ramp = [\"0 rpm\", \"10000 rpm\"], duration = \"4 ms\" }";
     let ways = [

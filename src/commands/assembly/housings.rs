@@ -64,6 +64,14 @@ pub fn refuse(document: &Document, scene: &AssemblyScene, housings: &[Housing]) 
         )
         .into());
     }
+    if scene.has_shafts_in_elements() && document.is_given("numerics.start") {
+        let place = document.place_of(&About::key("numerics.start"));
+        return Err(format!(
+            "{place}: numerics.start: refused: a shaft of the scene is solved in elements, which start straight, races where they are first. \
+             Hint: leave it out, or write method = \"reduced\" in [body.NAME.beam.mesh]"
+        )
+        .into());
+    }
     let from_equilibrium = |of: &Housing| of.scene.housing.from_equilibrium;
     if scene.has_shafts_in_elements() && housings.iter().any(from_equilibrium) {
         let place = document.place_of(&About::key("housing.start"));

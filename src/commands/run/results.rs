@@ -152,16 +152,16 @@ fn rubber_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fa
     Ok(())
 }
 
-/// Fields of the last state, the nodes of the bores, and what leaving out inertia costs.
+/// Fields of the last state of housings and shafts in elements, the nodes of the bores, and what leaving out inertia costs.
 fn housing_results(
     folder: &Path,
     prepared: &Prepared,
     session: &mut Session,
     said: &mut Said,
 ) -> Fallible<()> {
-    let Prepared::Bearings { lists, housings, way, .. } = prepared else { return Ok(()) };
+    let Prepared::Bearings { lists, housings, shafts, way, .. } = prepared else { return Ok(()) };
     let scene = lists.scene;
-    if housings.is_empty() {
+    if housings.is_empty() && shafts.is_empty() {
         return Ok(());
     }
     // Of explicit steps that stopped on the way the state at the last row is not at hand.
