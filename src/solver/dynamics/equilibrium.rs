@@ -1,7 +1,7 @@
 //! Where bodies and balls of an assembly stand still: the place that a motion starts from and settles into.
 //!
 //! One search over the coordinates of all bodies ([`solve_assembly`]), again and again where loads follow the place they
-//! act at ([`Following`]).
+//! act at (`Following`).
 
 use super::assembly::{Assembly, Bearing, Body};
 use super::bounds::FARTHEST;

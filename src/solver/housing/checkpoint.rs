@@ -32,7 +32,7 @@ pub struct ExchangeCheckpoint {
 pub struct SteppedCheckpoint {
     pub solid: SolidCheckpoint,
     pub seats: Vec<SeatCheckpoint>,
-    /// Of a shaft [`SteppedShaft::numbers`]; of other solids none.
+    /// Of a shaft what it keeps beside its elements; of other solids none.
     pub shaft: Vec<f64>,
 }
 
