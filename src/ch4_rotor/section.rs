@@ -13,8 +13,6 @@ const ON_A_LINE: f64 = 1e-9;
 pub struct RotorSection {
     /// Of its area, undeformed, m.
     pub centre: Vec3,
-    /// The point that moves and that loads act on, from there, m: none unless [`RotorSection::about`] says other.
-    point: Vec3,
     /// m².
     pub area: f64,
     /// Node, its part of the area (all: 1), and where it is from the centre, m.
@@ -48,13 +46,7 @@ impl RotorSection {
         let spread = sum.try_inverse()?;
         let is_sound = area > 0.0 && about.min() > ON_A_LINE * about.max();
         let spread = [0, 1, 2].map(|i: usize| [0, 1, 2].map(|j: usize| spread[(i, j)]));
-        is_sound.then_some(RotorSection { centre, point: [0.0; 3], area, nodes, spread })
-    }
-
-    /// The same as seen by what sits at a point (m) that goes with the section.
-    #[must_use]
-    pub fn about(self, point: Vec3) -> RotorSection {
-        RotorSection { point: sub(point, self.centre), ..self }
+        is_sound.then_some(RotorSection { centre, area, nodes, spread })
     }
 
     /// Mean displacement (m) and rotation (rad): the small one that fits the displacements of the nodes best, by least squares
@@ -66,13 +58,12 @@ impl RotorSection {
             mean = add_scaled(mean, *part, of);
             swept = add_scaled(swept, *part, cross(*arm, of));
         }
-        let rotation = times(&self.spread, swept);
-        [add(mean, cross(rotation, self.point)), rotation]
+        [mean, times(&self.spread, swept)]
     }
 
     /// Forces on the nodes (N) that do the work of a force (N) and a moment (N·m) on [`RotorSection::motion`].
     pub fn forces(&self, force: Vec3, moment: Vec3) -> impl Iterator<Item = (u32, Vec3)> + '_ {
-        let couple = times(&self.spread, add(moment, cross(self.point, force)));
+        let couple = times(&self.spread, moment);
         self.nodes
             .iter()
             .map(move |(node, part, arm)| (*node, scale(add(force, cross(couple, *arm)), *part)))
@@ -82,7 +73,7 @@ impl RotorSection {
 /// A section of a rotor that has moved and turned any way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SectionPlace {
-    /// Of its point, m.
+    /// Of its area, m.
     pub centre: Vec3,
     /// From the undeformed section to this one: the rotation that fits best, by least squares weighted by area.
     pub orientation: UnitQuaternion<f64>,
@@ -127,11 +118,10 @@ impl RotorSection {
             swept += arm.cross(&Vector3::from(rate(*node))) * *part;
         }
         let spin: Vec3 = (couple * swept).into();
-        let arm: Vec3 = (turn * Vector3::from(self.point)).into();
         SectionPlace {
-            centre: add(add(self.centre, mean), arm),
+            centre: add(self.centre, mean),
             orientation,
-            velocity: add(velocity, cross(spin, arm)),
+            velocity,
             spin,
             couple: [0, 1, 2].map(|i: usize| [0, 1, 2].map(|j: usize| couple[(i, j)])),
         }
@@ -145,8 +135,7 @@ impl RotorSection {
         moment: Vec3,
     ) -> impl Iterator<Item = (u32, Vec3)> + '_ {
         let turn = place.orientation.to_rotation_matrix();
-        let arm: Vec3 = (turn * Vector3::from(self.point)).into();
-        let couple = times(&place.couple, add(moment, cross(arm, force)));
+        let couple = times(&place.couple, moment);
         self.nodes.iter().map(move |(node, part, arm)| {
             let arm: Vec3 = (turn * Vector3::from(*arm)).into();
             (*node, scale(add(force, cross(couple, arm)), *part))
@@ -204,13 +193,10 @@ mod tests {
             (2, [0.1, 0.015, 0.015], 0.0),
         ];
         let section = RotorSection::new(&nodes).unwrap();
-        let aside = [0.0, 4e-3, -7e-3];
-        let section = section.clone().about(add(section.centre, aside));
         let place = |node: u32| nodes.iter().find(|(n, ..)| *n == node).unwrap().1;
         let [shift, turn] = [[1e-3, -2e-3, 5e-4], [0.02, -0.01, 0.03]];
         let rigid = |n: u32| add(shift, cross(turn, sub(place(n), section.centre)));
         let [mean, rotation] = section.motion(rigid);
-        let shift = add(shift, cross(turn, aside));
         for i in 0..3 {
             assert!((mean[i] - shift[i]).abs() <= 1e-17 && (rotation[i] - turn[i]).abs() <= 1e-15);
         }
@@ -236,8 +222,6 @@ mod tests {
             (4, [0.1, -0.011, -0.002], 1.3),
         ];
         let section = RotorSection::new(&nodes).unwrap();
-        let beside = add(section.centre, [0.0, 3e-3, -1e-3]);
-        let section = section.about(beside);
         let at = |node: u32| nodes[node as usize].1;
         // Where a node is at a time: spun about an axis that moves, and strained.
         let now = |node: u32, t: f64| -> Vec3 {
@@ -253,12 +237,10 @@ mod tests {
         let rate = |node: u32| scale(sub(now(node, h), now(node, -h)), 0.5 / h);
         let placed = |t: f64| section.place(|node| sub(now(node, t), at(node)), rate);
         let place = placed(0.0);
-        let arm: Vec3 = (place.orientation * Vector3::from(section.point)).into();
-        let mean = sub(place.centre, arm);
         let squares = |turn: UnitQuaternion<f64>| -> f64 {
             let off = |node: u32, arm: &Vec3| {
                 let there: Vec3 = (turn * Vector3::from(*arm)).into();
-                sub(sub(now(node, 0.0), mean), there)
+                sub(sub(now(node, 0.0), place.centre), there)
             };
             section.nodes.iter().map(|(node, part, arm)| part * norm(off(*node, arm)).powi(2)).sum()
         };

@@ -1,6 +1,7 @@
 //! The shafts of a scene that a run steps in elements: out of the lists of bodies, into solids with what sits on them.
 
 use crate::ch2_housing::bearing::inertia::Inertia;
+use crate::ch4_rotor::section::RotorSection;
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::{Order, TetMesh};
 use crate::scene::assembly::{AssemblyScene, Carrier, RaceJoint, SceneBeam, SceneBody};
@@ -13,7 +14,7 @@ use crate::solver::mount::Mount;
 use crate::solver::profile::Profile;
 use crate::solver::rotor::beam::{BeamDisc, BeamError};
 use crate::solver::rotor::solid::{SolidShaftError, section};
-use crate::solver::solid::model::{DampedMotion, Load, SolidError, SolidModel, SolidProblem};
+use crate::solver::solid::model::{Load, SolidError, SolidModel, SolidProblem};
 use thiserror::Error;
 
 /// A shaft ready to be stepped.
@@ -107,14 +108,14 @@ fn take_sitting(
     let mut discs: Vec<Option<(&BeamDisc, f64)>> = places.map(Some).collect();
     let mut sitting = Sitting::new();
     let mut sit = |assembly: &mut Assembly, name: String, at: f64, inertia: Inertia| {
-        let damping = if beam.absolute { beam.damping } else { 0.0 };
         let Inertia { mass, transverse, .. } = inertia;
         let race = RaceBody {
             inertia,
             drives: [const { Drive::Load(Profile::ZERO) }; 5],
             rotation: of.race.rotation.clone(),
             foundation_stiffness: [0.0; 5],
-            foundation_damping: [mass, mass, mass, transverse, transverse].map(|of| of * damping),
+            foundation_damping: [mass, mass, mass, transverse, transverse]
+                .map(|of| of * beam.damping),
         };
         sitting.push((assembly.bodies.len(), at));
         assembly.bodies.push(Body {
@@ -159,48 +160,73 @@ fn inertia_of(disc: &BeamDisc) -> Inertia {
     Inertia { mass, axial, transverse }
 }
 
+/// Where something is along X, m.
+fn places_of(beam: &SceneBeam, sitting: &Sitting) -> Vec<f64> {
+    let sitting = sitting.iter().map(|(_, at)| *at);
+    let loads = beam.loads.iter().map(|(at, _)| *at);
+    let unbalances = beam.unbalances.iter().map(|(at, ..)| *at);
+    let watched = beam.watched.iter().map(|(_, at)| *at);
+    sitting.chain(loads).chain(unbalances).chain(watched).collect()
+}
+
+/// Outer diameter at a place along X, m: of the thinner segment where it steps.
+fn diameter_at(beam: &SceneBeam, at: f64) -> f64 {
+    let near = SAME * beam.beam.length();
+    let mut end = beam.start;
+    let mut here = f64::INFINITY;
+    for segment in &beam.beam.segments {
+        let from = end;
+        end += segment.length;
+        if from - near <= at && at <= end + near {
+            here = here.min(segment.outer_diameter);
+        }
+    }
+    here
+}
+
+/// Springs that hold a race or a disc to the section at its place: those against turns are those against shifts at an arm of the
+/// shaft's diameter.
+fn joint_at(section: RotorSection, body: usize, springs: RaceJoint, diameter: f64) -> Joint {
+    let turn = diameter * diameter;
+    let along = |of: f64| [of, of, of, of * turn, of * turn, of * turn];
+    let (stiffness, damping) = (along(springs.stiffness), along(springs.damping));
+    let law = SpringDashpot { stiffness, damping, ..SpringDashpot::default() };
+    Joint { body, section, law }
+}
+
+/// What pulls at a section over time, as a load for each direction.
+fn pulls<'l>(
+    section: &'l RotorSection,
+    force: &'l [Profile; 3],
+) -> impl Iterator<Item = Load> + 'l {
+    force.iter().enumerate().filter(|(_, profile)| !profile.is_zero()).map(|(axis, profile)| {
+        let mut unit = [0.0; 3];
+        unit[axis] = 1.0;
+        let forces = section.forces(unit, [0.0; 3]).collect();
+        Load { forces, profile: profile.clone() }
+    })
+}
+
 fn made(
     (index, body): (usize, &SceneBody),
-    (beam, joint): (&SceneBeam, RaceJoint),
+    (beam, springs): (&SceneBeam, RaceJoint),
     sitting: Sitting,
     gravity: Vec3,
 ) -> Result<ShaftElements, Reason> {
     let start = beam.start;
-    let places = sitting.iter().map(|(_, at)| *at);
-    let places = places.chain(beam.loads.iter().map(|(at, _)| *at));
-    let places = places.chain(beam.unbalances.iter().map(|(at, ..)| *at));
-    let places = places.chain(beam.watched.iter().map(|(_, at)| *at));
-    let places: Vec<f64> = places.map(|at| at - start).collect();
+    let places: Vec<f64> = places_of(beam, &sitting).iter().map(|at| at - start).collect();
     let (mut mesh, problem) = beam.beam.solid(&places)?.ok_or(BeamError::NoSegment)?;
     mesh.nodes.iter_mut().for_each(|node| node[0] += start);
-    let at = |at: f64| Ok::<_, SolidShaftError>(section(&mesh, at)?.about([at, 0.0, 0.0]));
-    let diameter = |at: f64| {
-        // Of the thinner segment where it steps.
-        let mut end = start;
-        let mut here = f64::INFINITY;
-        for segment in &beam.beam.segments {
-            let from = end;
-            end += segment.length;
-            let near = SAME * beam.beam.length();
-            if from - near <= at && at <= end + near {
-                here = here.min(segment.outer_diameter);
-            }
-        }
-        here
+    let section = |at: f64| section(&mesh, at);
+    let joint = |(body, at): (usize, f64)| -> Result<Joint, Reason> {
+        Ok(joint_at(section(at)?, body, springs, diameter_at(beam, at)))
     };
-    let joint = |(body, place): (usize, f64)| -> Result<Joint, Reason> {
-        let arm = diameter(place);
-        let along = |of: f64| [of, of, of, of * arm * arm, of * arm * arm, of * arm * arm];
-        let (stiffness, damping) = (along(joint.stiffness), along(joint.damping));
-        let law = SpringDashpot { stiffness, damping, ..SpringDashpot::default() };
-        Ok(Joint { body, section: at(place)?, law })
-    };
-    let joints = sitting.into_iter().map(joint).collect::<Result<Vec<_>, _>>()?;
+    let joints = sitting.into_iter().map(joint).collect::<Result<_, _>>()?;
     let unbalances = beam
         .unbalances
         .iter()
-        .map(|&(place, size, angle)| Ok(SectionUnbalance { section: at(place)?, size, angle }));
-    let watched = beam.watched.iter().map(|(name, place)| Ok((name.clone(), at(*place)?)));
+        .map(|&(at, size, angle)| Ok(SectionUnbalance { section: section(at)?, size, angle }));
+    let watched = beam.watched.iter().map(|(name, at)| Ok((name.clone(), section(*at)?)));
     let speed = match &body.race.rotation {
         Rotation::Speed(speed) => speed.clone(),
         Rotation::Torque(_) => Profile::ZERO,
@@ -212,18 +238,11 @@ fn made(
         watched: watched.collect::<Result<_, Reason>>()?,
     };
     let mut loads = Vec::new();
-    for (place, force) in &beam.loads {
-        let section = at(*place)?;
-        for (axis, profile) in force.iter().enumerate().filter(|(_, profile)| !profile.is_zero()) {
-            let mut unit = [0.0; 3];
-            unit[axis] = 1.0;
-            let forces = section.forces(unit, [0.0; 3]).collect();
-            loads.push(Load { forces, profile: profile.clone() });
-        }
+    for (at, force) in &beam.loads {
+        loads.extend(pulls(&section(*at)?, force));
     }
-    let (damping, damped_motion) = (beam.damping, DampedMotion::Absolute);
-    let nodes = mesh.nodes.clone();
-    let problem = SolidProblem { nodes, loads, gravity, damping, damped_motion, ..problem };
+    let (nodes, damping) = (mesh.nodes.clone(), beam.damping);
+    let problem = SolidProblem { nodes, loads, gravity, damping, ..problem };
     let name = Some(body.name.clone());
     let mut part = SolidPart::undeformed(name, SolidModel::new(problem)?);
     part.shaft = Some(shaft);

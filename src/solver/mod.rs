@@ -29,6 +29,7 @@ pub mod sparse;
 pub mod static_assembly;
 mod static_bearing;
 mod static_connection;
+mod static_error;
 mod static_model;
 mod static_search;
 mod static_seat;

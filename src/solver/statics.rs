@@ -5,8 +5,9 @@
 //! cold start; the balls are in equilibrium at every evaluation, so that the bodies'
 //! coordinates are the only unknowns of the outer loop. A bearing alone is a [`StaticProblem`].
 
-use super::clock::told;
-use super::housing::bore_equilibrium::{BoreError, BoreSearch, BoreState};
+pub use super::static_error::StaticsError;
+
+use super::housing::bore_equilibrium::{BoreSearch, BoreState};
 use super::mount::Mount;
 use super::plan::tally::Ran;
 use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing, StaticBody};
@@ -18,7 +19,6 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::kinematics::Pose;
 use nalgebra::{DMatrix, DVector, SMatrix, SVector, Vector3};
-use thiserror::Error;
 
 /// The five coordinates of a race, in this order: x, y, z (m), tilt_y, tilt_z (rad). The tilts are
 /// the Euler angles ξ and λ of (2.16) with η = 0.
@@ -143,63 +143,6 @@ pub struct StaticSolution {
     pub ran: Ran,
     /// Largest unbalanced load over the free coordinates (moments divided by the pitch radius), N.
     pub residual: f64,
-}
-
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum StaticsError {
-    #[error("{what} is {value}: every input of the static problem must be finite")]
-    NotFinite { what: &'static str, value: f64 },
-    #[error(
-        "no equilibrium: {body} leaves its place along {coordinate} \
-         ({travel:.3e} m, farther than the {room:.3e} m it has); nothing holds it \
-         against the load in this direction: hold the coordinate by a displacement or a spring, turn the load, \
-         or start a motion in nominal positions (numerics.start = \"nominal\")"
-    )]
-    NoEquilibrium { body: String, coordinate: &'static str, travel: f64, room: f64 },
-    #[error(
-        "the damping inside {body} (internal_damping) drags it at this speed as hard as it springs back: rounds over its pull do not \
-         settle; take less of it, a lower speed at the start, or start in nominal positions (numerics.start = \"nominal\")"
-    )]
-    Dragged { body: String },
-    #[error(
-        "the unbalance on {body} tilts it so far that the direction of its own pull changes: rounds over that do not settle; take \
-         less of it, a lower speed at the start, or stiffer supports, or start in nominal positions \
-         (numerics.start = \"nominal\")"
-    )]
-    Unbalanced { body: String },
-    #[error(
-        "nothing holds {body} along {coordinate}: no spring, no given coordinate of it or of the races it is \
-         joined to, while the loads there add up to {load:.3e} N at t = {at} s: hold the coordinate by a \
-         displacement or a spring, balance the loads, or start a motion in nominal positions \
-         (numerics.start = \"nominal\")",
-        at = told(*time)
-    )]
-    Unheld { body: String, coordinate: &'static str, load: f64, time: f64 },
-    #[error(
-        "{ball} has found no equilibrium between the races: {unbalance:.1e} of the force on it is \
-         unbalanced; hold or load the inner race differently, or leave the forces on balls out"
-    )]
-    BallNotSettled { ball: String, unbalance: f64 },
-    #[error(
-        "{ball} leaves its grooves: pressed {overlap:.3e} m deep at a contact angle of \
-         {degrees:.1} deg, past the 90 deg where the races hold it; the load is too large for this \
-         bearing, check it and its unit"
-    )]
-    BallOutside { ball: String, overlap: f64, degrees: f64 },
-    #[error(
-        "no equilibrium found in {iterations} iterations: unbalanced load {residual:.3e} N against \
-         {allowed:.3e} N allowed; farthest from it is {body}, at x, y, z {position:?} m, tilts {tilts:?} rad"
-    )]
-    NotConverged {
-        body: String,
-        iterations: usize,
-        residual: f64,
-        allowed: f64,
-        position: [f64; 3],
-        tilts: [f64; 2],
-    },
-    #[error("the outer race{of} in its bore: {source}")]
-    Seat { of: String, source: BoreError },
 }
 
 /// Equilibrium of an assembly.

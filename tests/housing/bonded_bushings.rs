@@ -10,7 +10,7 @@ use bearing_dynamics::scene::bushing_problem::{BushingElements, take_bushings};
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
 use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::run::RunOptions;
-use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions};
+use bearing_dynamics::solver::housing::exchange::Exchange;
 use bearing_dynamics::solver::profile::Profile;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -71,15 +71,10 @@ impl Made {
         if self.bushings.is_empty() {
             return self.assembly.clone().into();
         }
-        let bearing = RunOptions { energy_limit: f64::INFINITY, ..self.request.options };
-        Parts::Housed(Box::new(HousedParts {
-            assembly: self.assembly.clone(),
-            solids: Vec::new(),
-            seats: Vec::new(),
-            bushings: self.bushings.iter().map(BushingElements::part).collect(),
-            options: ExchangeOptions::without_housings(bearing),
-            threads: 1,
-        }))
+        let bushings = self.bushings.iter().map(BushingElements::part).collect();
+        let (assembly, options) = (self.assembly.clone(), &self.request.options);
+        let parts = HousedParts::without_housings(assembly, Vec::new(), bushings, options);
+        Parts::Housed(Box::new(parts))
     }
 
     fn run(&self) -> Session<'_> {

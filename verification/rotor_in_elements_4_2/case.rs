@@ -4,8 +4,6 @@ use bearing_dynamics::output::series::Series;
 use bearing_dynamics::output::session::{HousedParts, Motion, Parts, Session};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::shaft_problem::take_shafts;
-use bearing_dynamics::solver::dynamics::run::RunOptions;
-use bearing_dynamics::solver::housing::exchange::ExchangeOptions;
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
@@ -86,16 +84,8 @@ fn alone(scene: &AssemblyScene) -> Result<Way, CaseError> {
     let session = if shafts.is_empty() {
         done(assembly, &request)?
     } else {
-        // All together are balanced, not the bearings alone.
-        let bearing = RunOptions { energy_limit: f64::INFINITY, ..request.options };
-        let parts = HousedParts {
-            assembly,
-            solids: shafts.into_iter().map(|shaft| shaft.part).collect(),
-            seats: Vec::new(),
-            bushings: Vec::new(),
-            options: ExchangeOptions::without_housings(bearing),
-            threads: 1,
-        };
+        let shafts = shafts.into_iter().map(|shaft| shaft.part).collect();
+        let parts = HousedParts::without_housings(assembly, shafts, Vec::new(), &request.options);
         done(Parts::Housed(Box::new(parts)), &request)?
     };
     Way::of(&session.series()?, &session)

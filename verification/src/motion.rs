@@ -19,7 +19,6 @@ use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RaceBody,
 use bearing_dynamics::solver::dynamics::race::tilts_of;
 use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Stepping};
 use bearing_dynamics::solver::dynamics::state::{BodyState, POSITION, VELOCITY};
-use bearing_dynamics::solver::housing::exchange::ExchangeOptions;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::Condition;
 
@@ -147,17 +146,10 @@ pub fn ran(scene: &AssemblyScene, names: &[&str]) -> Result<Vec<Vec<f64>>, CaseE
     let series = match bushings.is_empty() && shafts.is_empty() {
         true => done(assembly, &request)?.series()?,
         false => {
-            // All together are balanced, not the bearing alone.
-            let bearing = RunOptions { energy_limit: f64::INFINITY, ..request.options };
-            let parts = Parts::Housed(Box::new(HousedParts {
-                assembly,
-                solids: shafts.into_iter().map(|shaft| shaft.part).collect(),
-                seats: Vec::new(),
-                bushings: bushings.iter().map(BushingElements::part).collect(),
-                options: ExchangeOptions::without_housings(bearing),
-                threads: 1,
-            }));
-            done(parts, &request)?.series()?
+            let shafts = shafts.into_iter().map(|shaft| shaft.part).collect();
+            let bushings = bushings.iter().map(BushingElements::part).collect();
+            let parts = HousedParts::without_housings(assembly, shafts, bushings, &request.options);
+            done(Parts::Housed(Box::new(parts)), &request)?.series()?
         }
     };
     names.iter().map(|name| column(&series, name)).collect()

@@ -34,10 +34,8 @@ impl Recorder {
     /// In the order of [`columns`].
     pub(super) fn record_shaft(&mut self, part: &SteppedSolid, now: &SolidSnapshot) {
         let Some(shaft) = &part.shaft else { return };
-        for index in 0..shaft.watched.len() {
-            let [[_, y, z], ..] = shaft.section(index, &part.solid);
-            self.values.extend([y, z]);
-        }
+        let centres = shaft.watched_centres(&part.solid);
+        self.values.extend(centres.flat_map(|[_, y, z]| [y, z]));
         let of_joints = |of: fn(&JointSnapshot) -> f64| -> f64 { now.joints.iter().map(of).sum() };
         let ledger = &now.ledger;
         self.values.extend([

@@ -9,7 +9,7 @@ use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
 use crate::solver::dynamics::clocked::{self, Arrival, RunRequest};
 use crate::solver::dynamics::model::DynamicProblem;
-use crate::solver::dynamics::run::Simulation;
+use crate::solver::dynamics::run::{RunOptions, Simulation};
 use crate::solver::housing::bonded::BondedPart;
 use crate::solver::housing::checkpoint::{ExchangeCheckpoint, Windows};
 use crate::solver::housing::course::{Course, CourseCheckpoint, CourseProblem};
@@ -65,6 +65,21 @@ pub struct HousedParts<'p> {
     pub options: ExchangeOptions,
     /// Threads that step the solids, with the same bits.
     pub threads: usize,
+}
+
+impl<'p> HousedParts<'p> {
+    /// Shafts and bushings in elements beside fixed races, on one thread. What `options` allow to go missing is for all
+    /// together, not for the bearings alone.
+    pub fn without_housings(
+        assembly: Assembly,
+        solids: Vec<SolidPart>,
+        bushings: Vec<BondedPart<'p>>,
+        options: &RunOptions,
+    ) -> HousedParts<'p> {
+        let bearing = RunOptions { energy_limit: f64::INFINITY, ..*options };
+        let options = ExchangeOptions::without_housings(bearing);
+        HousedParts { assembly, solids, seats: Vec::new(), bushings, options, threads: 1 }
+    }
 }
 
 /// Bodies, bearings and condensed housings that go through equilibria, and the solids of these.

@@ -126,7 +126,8 @@ impl<'p> Exchange<'p> {
             .map(|(SolidPart { name, model, shaft, .. }, &(steps, limit))| {
                 let step = windows.window / steps as f64;
                 let solid = ExplicitSolid::at_rest(model, method, step, limit);
-                let shaft = shaft.map(|of| Box::new(SteppedShaft::new(of, &assembly)));
+                let shaft =
+                    shaft.map(|of| Box::new(SteppedShaft::new(of, &solid.model, &assembly)));
                 SteppedSolid { name, solid, steps, seats: Vec::new(), shaft }
             })
             .collect();

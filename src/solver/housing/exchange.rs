@@ -410,8 +410,10 @@ impl<'p> Exchange<'p> {
                 - of_solids(|solid| solid.unbalance_work)
                 + of_bushings(|of| of.work + of.to_come + of.held() + of.dissipated + of.beyond);
         let work: f64 = bodies.ledger.iter().map(|entry| entry.abs()).sum();
+        let shafts = self.solids.iter().filter_map(|part| part.shaft.as_ref());
+        let spinning: f64 = shafts.map(|shaft| shaft.spin_energy(self.simulation.time)).sum();
         let turned_over = bodies.energy.contact
-            + held
+            + (held - spinning).max(0.0)
             + work
             + of_solids(|solid| solid.ledger.external_work.abs())
             + of_solids(|solid| solid.ledger.damping_work.abs())

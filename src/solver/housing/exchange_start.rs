@@ -60,7 +60,8 @@ impl<'p> Exchange<'p> {
                 let limit = step_limit(&model, &displacement, method);
                 let mut solid = ExplicitSolid::at_rest(model, method, limit.step, limit);
                 solid.displacement = displacement;
-                let shaft = shaft.map(|of| Box::new(SteppedShaft::new(of, &assembly)));
+                let shaft =
+                    shaft.map(|of| Box::new(SteppedShaft::new(of, &solid.model, &assembly)));
                 SteppedSolid { name, solid, steps: 1, seats: Vec::new(), shaft }
             })
             .collect();

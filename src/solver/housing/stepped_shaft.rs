@@ -6,7 +6,7 @@
 
 use super::seat::{carried_on, mean_over, work_on_way};
 use crate::ch4_rotor::section::{RotorSection, SectionPlace};
-use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale};
+use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale};
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::connection::{Pull, SpringDashpot, spring_dashpot};
 use crate::solver::dynamics::race::{self, RaceLoads, RaceNow};
@@ -14,6 +14,7 @@ use crate::solver::dynamics::run::Simulation;
 use crate::solver::dynamics::state::BodyState;
 use crate::solver::profile::Profile;
 use crate::solver::solid::explicit::ExplicitSolid;
+use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::tet4_blocks::Node;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -107,8 +108,6 @@ pub struct JointNow {
 /// A joint at one time, for the ledger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointSnapshot {
-    /// On the body, about its centre.
-    pub load: RaceLoads,
     /// Held by its springs, J.
     pub stored: f64,
     /// Since the start, J.
@@ -129,12 +128,14 @@ pub struct SteppedShaft {
     pub unbalance_work: f64,
     /// How often sections and what sits on them were looked at.
     pub looks: u64,
-    /// Of the unbalances in this step, N, and their sections.
-    forces: Vec<(Vec3, Option<SectionPlace>)>,
+    /// Of the unbalances in this step, N.
+    forces: Vec<Vec3>,
+    /// Of its nodes about X, kg·m².
+    axial_inertia: f64,
 }
 
 impl SteppedShaft {
-    pub(super) fn new(part: ShaftPart, assembly: &Assembly) -> SteppedShaft {
+    pub(super) fn new(part: ShaftPart, model: &SolidModel, assembly: &Assembly) -> SteppedShaft {
         let joint = |joint: Joint| JointNow {
             work: 0.0,
             heat: 0.0,
@@ -144,14 +145,16 @@ impl SteppedShaft {
             on_section: RaceLoads::default(),
             joint,
         };
+        let around = |(mass, [_, y, z]): (&f64, &Vec3)| mass * (y * y + z * z);
         SteppedShaft {
             speed: part.speed,
             joints: part.joints.into_iter().map(joint).collect(),
-            forces: vec![([0.0; 3], None); part.unbalances.len()],
+            forces: vec![[0.0; 3]; part.unbalances.len()],
             unbalances: part.unbalances,
             watched: part.watched,
             unbalance_work: 0.0,
             looks: 0,
+            axial_inertia: model.mass.iter().zip(&model.problem.nodes).map(around).sum(),
         }
     }
 
@@ -202,8 +205,7 @@ impl SteppedShaft {
             (now.place, now.on_section) = (Some(place), pull.on[0]);
         }
         for (of, force) in self.unbalances.iter().zip(&mut self.forces) {
-            let place = place_of(&of.section, solid);
-            *force = (unbalanced(of, &self.speed, &place, solid.time), Some(place));
+            *force = unbalanced(of, &self.speed, &place_of(&of.section, solid), solid.time);
         }
         self.book(solid);
     }
@@ -211,9 +213,17 @@ impl SteppedShaft {
     /// Books what the unbalances do in half a step at the present rates.
     fn book(&mut self, solid: &ExplicitSolid) {
         let half = 0.5 * solid.step_size;
-        for (of, (force, _)) in self.unbalances.iter().zip(&self.forces) {
-            self.unbalance_work += half * dot(*force, place_of(&of.section, solid).velocity);
-        }
+        self.unbalance_work += half * self.unbalance_power(&solid.rate);
+    }
+
+    /// Of the unbalances of this step on nodes that move so fast (m/s), W.
+    fn unbalance_power(&self, rates: &[Node]) -> f64 {
+        let rate = of(rates);
+        let pull = |(of, force): (&SectionUnbalance, &Vec3)| -> f64 {
+            let forces = of.section.forces(*force, [0.0; 3]);
+            forces.map(|(node, force)| dot(force, rate(node))).sum()
+        };
+        self.unbalances.iter().zip(&self.forces).map(pull).sum()
     }
 
     /// After a step.
@@ -228,9 +238,8 @@ impl SteppedShaft {
             let RaceLoads { force, moment } = now.on_section;
             add_to(forces, now.joint.section.forces_at(place, force, moment));
         }
-        for (of, (force, place)) in self.unbalances.iter().zip(&self.forces) {
-            let Some(place) = place else { continue };
-            add_to(forces, of.section.forces_at(place, *force, [0.0; 3]));
+        for (of, force) in self.unbalances.iter().zip(&self.forces) {
+            add_to(forces, of.section.forces(*force, [0.0; 3]));
         }
     }
 
@@ -252,7 +261,6 @@ impl SteppedShaft {
             let load = pull.on[1];
             let power = dot(load.force, body.velocity) + dot(load.moment, body.spin);
             JointSnapshot {
-                load,
                 stored: pull.energy,
                 heat: now.heat,
                 work: now.work,
@@ -266,20 +274,26 @@ impl SteppedShaft {
             let place = unbalance.section.place(&u, &v);
             let force = unbalanced(unbalance, &self.speed, &place, t);
             work += ahead * dot(force, place.velocity);
-            add_to(forces, unbalance.section.forces_at(&place, force, [0.0; 3]));
+            add_to(forces, unbalance.section.forces(force, [0.0; 3]));
         }
         (joints, work)
     }
 
-    /// Where a watched section is at the bodies' time, half a step before the solid's displacements: place (m), velocity (m/s) and
-    /// axis.
-    pub fn section(&self, index: usize, solid: &ExplicitSolid) -> [Vec3; 3] {
-        let place = place_of(&self.watched[index].1, solid);
-        let back = -0.5 * solid.step_size;
-        let axis: Vec3 = (place.orientation * Vector3::x()).into();
-        let axis = add_scaled(axis, back, cross(place.spin, axis));
-        let centre = add_scaled(place.centre, back, place.velocity);
-        [centre, place.velocity, scale(axis, 1.0 / norm(axis))]
+    /// Centres of the watched sections at the bodies' time, half a step before the solid's displacements, m.
+    pub fn watched_centres<'s>(
+        &'s self,
+        solid: &'s ExplicitSolid,
+    ) -> impl Iterator<Item = Vec3> + 's {
+        self.watched.iter().map(|(_, section)| {
+            let place = place_of(section, solid);
+            add_scaled(place.centre, -0.5 * solid.step_size, place.velocity)
+        })
+    }
+
+    /// Of its nodes, which spin whatever else happens, J: no part of what a run turns over.
+    pub(super) fn spin_energy(&self, time: f64) -> f64 {
+        let speed = self.speed.value(time);
+        0.5 * self.axial_inertia * speed * speed
     }
 
     /// Numbers that go with a state: of each joint work and heat, and the work of unbalances, J.
@@ -357,6 +371,7 @@ fn unbalanced(of: &SectionUnbalance, speed: &Profile, place: &SectionPlace, t: f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kinematics::vec3::norm;
 
     const NODES: [Vec3; 5] = [
         [0.2, 0.012, 0.0],
@@ -369,7 +384,7 @@ mod tests {
     fn joint() -> Joint {
         let nodes: Vec<(u32, Vec3, f64)> =
             (0..5).map(|n| (n as u32, NODES[n], 1.0 + n as f64)).collect();
-        let section = RotorSection::new(&nodes).unwrap().about([0.2, 0.0, 0.0]);
+        let section = RotorSection::new(&nodes).unwrap();
         let stiffness = [2e9, 2e9, 2e9, 1e6, 1e6, 1e6];
         let damping = [2e2, 2e2, 2e2, 0.2, 0.2, 0.2];
         Joint { body: 0, section, law: SpringDashpot { stiffness, damping, ..Default::default() } }
