@@ -44,7 +44,7 @@ pub(super) const KEYS: &[Key] = &[
         "`stick-slip`: coefficient at which the bore slips on the outer race. Zero is no friction.").hint("the source has 0.6").example_of("0.6"),
     Key::new("housing.friction.stretch", Kind::Quantity(Length, above(0.0, 1e3, "um")), Default { value: "0.1 nm", reason: "the source says \"a large penalty\" alone; from 0.17 nm of penetration on springs are as stiff as the contact" },
         "`stick-slip`: how far a node of the bore moves along the outer race, against a spring, until it slips: up to there the coefficient grows with the stretch. No spring is stiffer than the contact along its normal, so that deeper nodes slip later.").hint("a part of a micrometre; the shorter, the stiffer the grip").example_of("0.1 nm"),
-    Key::new("housing.modes_to", Kind::Quantity(Frequency, above(0.0, 1e9, "Hz")), Depends("twice the natural frequency of a ball between its races under the largest load"),
+    Key::new("housing.modes_to", Kind::Quantity(Frequency, above(0.0, 1e9, "Hz")), Depends("twice the natural frequency of a ball between its races under the largest load on bodies; shafts that bend keep theirs to themselves"),
         "`reduced`: natural shapes of the housing up to this frequency move; what is stiffer follows statically, and by a few shapes of its own.").example_of("40 kHz"),
     Key::new("housing.step_fraction", Kind::Number(above(0.0, 1.0, "")), Default { value: "0.8", reason: "a part of the largest stable step of the housing in contact" },
         "`explicit`: steps of the housing as a part of their stability limit.").example_of("0.8"),

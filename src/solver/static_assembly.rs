@@ -121,8 +121,8 @@ pub struct StaticBearing {
     pub outer_contact: HertzContact,
     /// Inner race, outer race.
     pub mounts: [Mount; 2],
-    /// Azimuth of ball 1 in the outer race's frame, from +Y towards +Z, rad.
-    pub ball_phase: f64,
+    /// Of each ball in the outer race's frame, from +Y towards +Z, rad: [`BearingGeometry::azimuths`] where they are evenly spaced.
+    pub azimuths: Vec<f64>,
     /// Of each ball, N.
     pub weight: Vector3<f64>,
     /// Centrifugal force on a ball per distance from the axis, N/m.

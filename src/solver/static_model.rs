@@ -13,7 +13,6 @@ use super::static_shaft::SectionPlace;
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
 use nalgebra::{DMatrix, DVector, Matrix3, SVector, Vector3};
-use std::f64::consts::TAU;
 
 pub(super) type Five = SVector<f64, 5>;
 
@@ -136,19 +135,16 @@ impl<'a> Model<'a> {
         let steps = StaticSteps::new(&plan, assembly);
         let bearings = assembly.bearings.iter().zip(&steps.ball_forces);
         let bearings = bearings.map(|(bearing, [weighed, flung])| {
-            let count = bearing.geometry.ball_count;
-            let azimuths: Vec<f64> =
-                (0..count).map(|j| bearing.ball_phase + TAU * j as f64 / count as f64).collect();
             let mut of = BearingModel {
                 contacts: bearing.contacts(),
-                azimuths,
+                azimuths: bearing.azimuths.clone(),
                 weight: if *weighed { bearing.weight } else { Vector3::zeros() },
                 centrifugal: if *flung { bearing.centrifugal } else { 0.0 },
                 origin: origin(assembly, bearing),
                 planes: Vec::new(),
             };
             if let Place::Held(pose) = &assembly.bodies[bearing.mounts[1].body].place {
-                let mut held = Vec::with_capacity(count);
+                let mut held = Vec::with_capacity(of.azimuths.len());
                 planes(bearing, &of, pose, &mut held);
                 of.planes = held;
             }

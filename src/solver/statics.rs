@@ -213,7 +213,7 @@ impl StaticProblem {
             inner_contact: self.inner_contact,
             outer_contact: self.outer_contact,
             mounts: RACES.map(Mount::at_centre),
-            ball_phase: self.ball_phase,
+            azimuths: self.geometry.azimuths(self.ball_phase),
             weight,
             centrifugal: self.ball_mass * self.orbital_speed.powi(2),
         };

@@ -44,7 +44,7 @@ fn pair(
             Mount { body: 0, along: at[side], reversed: reversed[side] },
             Mount { body: 1 + side, along: 0.0, reversed: reversed[side] },
         ],
-        ball_phase: 0.1,
+        azimuths: geometry.azimuths(0.1),
         weight: Vector3::zeros(),
         centrifugal: 0.0,
     });

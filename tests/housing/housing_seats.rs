@@ -127,7 +127,7 @@ fn two_housings<'b>(
             Mount { body: 0, along: [-HALF, HALF][side], reversed: side == 1 },
             Mount::at_centre(1 + side),
         ],
-        ball_phase: 0.1,
+        azimuths: single.geometry.azimuths(0.1),
         weight: Vector3::zeros(),
         centrifugal: 0.0,
     });

@@ -62,7 +62,7 @@ fn assembly(
         inner_contact: side(RaceSide::Inner),
         outer_contact: side(RaceSide::Outer),
         mounts: [Mount::at_centre(index), Mount::at_centre(3 + index)],
-        ball_phase: 0.0,
+        azimuths: geometry.azimuths(0.0),
         weight: Vector3::zeros(),
         centrifugal: 0.0,
     };

@@ -160,7 +160,7 @@ impl Setup {
                 inner_contact: alone.inner_contact,
                 outer_contact: alone.outer_contact,
                 mounts: [Mount::at_centre(index), Mount::at_centre(3 + index)],
-                ball_phase: self.phase,
+                azimuths: alone.geometry.azimuths(self.phase),
                 weight: Vector3::zeros(),
                 centrifugal: 0.0,
             });

@@ -57,7 +57,7 @@ fn assembly<'b>(bores: &'b [CondensedBore; 2]) -> Result<StaticAssembly<'b>, Cas
             inner_contact: alone.inner_contact,
             outer_contact: alone.outer_contact,
             mounts: [Mount { body: 0, along: ALONG[side], reversed: false }, mount],
-            ball_phase: PHASE[side],
+            azimuths: alone.geometry.azimuths(PHASE[side]),
             weight: Vector3::zeros(),
             centrifugal: 0.0,
         });

@@ -139,7 +139,7 @@ impl Shaft {
                     Mount { body: 0, along: end.along, reversed },
                     Mount { body, along: 0.0, reversed },
                 ],
-                ball_phase: end.phase,
+                azimuths: alone.geometry.azimuths(end.phase),
                 weight: Vector3::from(self.gravity) * alone.ball_mass,
                 centrifugal: 0.0,
             });

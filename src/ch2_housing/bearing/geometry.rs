@@ -1,5 +1,7 @@
 //! Geometry of a deep-groove or angular-contact ball bearing (Tables 2.2, 3.5, 4.1 and 5.3).
 
+use std::f64::consts::TAU;
+
 /// Isotropic linear elastic material of one bearing part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
@@ -63,6 +65,13 @@ pub struct BearingGeometry {
 }
 
 impl BearingGeometry {
+    /// Azimuths of balls evenly spaced from the `first` one on, rad.
+    pub fn azimuths(&self, first: f64) -> Vec<f64> {
+        (0..self.ball_count)
+            .map(|ball| first + TAU * ball as f64 / self.ball_count as f64)
+            .collect()
+    }
+
     /// Deep-groove bearing from the groove-bottom radii of its races (Tables 2.2, 3.5 and 4.1), all
     /// in m; the radial clearance follows as R_OR − R_IR − 2 r_ball.
     ///

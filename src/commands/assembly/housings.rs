@@ -12,8 +12,9 @@ use bearing_dynamics::scene::bushing_problem::BushingElements;
 use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::scene::shaft_problem::ShaftElements;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
-use bearing_dynamics::solver::dynamics::equilibrium::{conditions, static_assembly};
+use bearing_dynamics::solver::dynamics::equilibrium::{conditions, given_speed, static_assembly};
 use bearing_dynamics::solver::dynamics::run::RunOptions;
+use bearing_dynamics::solver::dynamics::shaft::{ElasticShaft, ShaftLoad};
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::course::{CourseProblem, CourseSeat, Moment};
 use bearing_dynamics::solver::housing::course_search::CourseSearch;
@@ -229,25 +230,56 @@ fn start_of_steps(assembly: &mut Assembly, housings: &[Housing]) -> Fallible<Vec
 const LOOKS: usize = 64;
 const AFTER: f64 = 1.0;
 
-/// Across their axes on all bodies but races in bores, N, at any time: a run that is extended keeps its housings.
-pub fn largest_force(assembly: &Assembly, housings: &[Housing]) -> f64 {
-    let in_bores: Vec<usize> =
-        housings.iter().map(|of| assembly.bearings[of.bearing].mounts[1].body).collect();
-    let of = |(index, body): (usize, &Body), t: f64| {
-        let race = body.driven().filter(|_| !in_bores.contains(&index))?;
-        let [_, y, z, ..] = conditions(assembly, body, race, t).map(|condition| match condition {
-            Condition::Load(load) => load,
-            Condition::Displacement(_) => 0.0,
-        });
-        Some(y.hypot(z))
-    };
-    let at = |t: f64| assembly.bodies.iter().enumerate().filter_map(|body| of(body, t)).sum();
+/// What presses races into bores at most at any time, so that a run that is extended keeps its housings, N.
+pub struct Largest {
+    /// Across their axes on all bodies but races in bores: what can strike.
+    pub on_bodies: f64,
+    /// With what comes through shafts that bend, their loads and unbalances.
+    pub in_all: f64,
+}
+
+impl Largest {
+    pub fn of(assembly: &Assembly, housings: &[Housing]) -> Largest {
+        let in_bores: Vec<usize> =
+            housings.iter().map(|of| assembly.bearings[of.bearing].mounts[1].body).collect();
+        let bodies = |t: f64| -> f64 {
+            let bodies = assembly.bodies.iter().enumerate();
+            bodies
+                .filter(|(index, _)| !in_bores.contains(index))
+                .filter_map(|(_, body)| on_body(assembly, body, t))
+                .sum()
+        };
+        let all = |t: f64| -> f64 {
+            let shafts = assembly.shafts.iter().map(|shaft| on_shaft(assembly, shaft, t));
+            shafts.fold(bodies(t), |sum, of| sum + of)
+        };
+        Largest { on_bodies: largest(assembly, bodies), in_all: largest(assembly, all) }
+    }
+}
+
+fn on_body(assembly: &Assembly, body: &Body, t: f64) -> Option<f64> {
+    let loads = conditions(assembly, body, body.driven()?, t).map(|condition| match condition {
+        Condition::Load(load) => load,
+        Condition::Displacement(_) => 0.0,
+    });
+    Some(loads[1].hypot(loads[2]))
+}
+
+fn on_shaft(assembly: &Assembly, shaft: &ElasticShaft, t: f64) -> f64 {
+    let across = |load: &ShaftLoad| load.force[1].value(t).hypot(load.force[2].value(t));
+    let speed = given_speed(&assembly.bodies[shaft.body], t);
+    let unbalances = shaft.unbalances.iter().map(|of| of.size * speed * speed);
+    shaft.loads.iter().map(across).chain(unbalances).sum()
+}
+
+/// The largest value between corners of loads and speeds, and for a while after the last one.
+fn largest(assembly: &Assembly, at: impl Fn(f64) -> f64) -> f64 {
     let corners = assembly.corners();
     let mut largest: f64 = at(0.0);
     let mut from = 0.0;
     for to in corners.iter().copied().chain([corners.last().unwrap_or(&0.0) + AFTER]) {
         let times = (1..=LOOKS).map(|i| from + (to - from) * i as f64 / LOOKS as f64);
-        largest = times.map(at).fold(largest, f64::max);
+        largest = times.map(&at).fold(largest, f64::max);
         from = to;
     }
     largest

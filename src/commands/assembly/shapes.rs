@@ -3,7 +3,7 @@
 use super::Fallible;
 use super::course::percent;
 use super::housing::Housing;
-use super::housings::largest_force;
+use super::housings::Largest;
 use super::lists::Lists;
 use crate::commands::plan_step::note;
 use bearing_dynamics::kinematics::vec3::Vec3;
@@ -45,8 +45,8 @@ struct Found {
     seconds: [f64; 2],
 }
 
-/// Condenses a housing and reduces it for a bearing with up to `force` (N) on it.
-fn reduction(housing: &Housing, bearing: &Bearing, force: f64) -> Fallible<Found> {
+/// Condenses a housing and reduces it for a bearing with so much on it.
+fn reduction(housing: &Housing, bearing: &Bearing, force: &Largest) -> Fallible<Found> {
     let settings = &housing.scene.housing;
     let start = Instant::now();
     let bore = housing.condensed()?;
@@ -54,9 +54,9 @@ fn reduction(housing: &Housing, bearing: &Bearing, force: f64) -> Fallible<Found
     let start = Instant::now();
     let fit = housing.setup.fit(&housing.scene);
     // A bearing may be loaded by its places alone.
-    let force = force.max(1.0);
-    let loads = pressed(&bore, settings.penalty, &fit, force)?;
-    let by_default = || BEYOND_BALLS * ball_frequency(bearing, force);
+    let [struck, pressing] = [force.on_bodies, force.in_all].map(|force| force.max(1.0));
+    let loads = pressed(&bore, settings.penalty, &fit, pressing)?;
+    let by_default = || BEYOND_BALLS * ball_frequency(bearing, struck);
     let modes_to = settings.modes_to.unwrap_or_else(by_default);
     let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
     let reduction = reduce(&housing.setup.model, &bore, settings.penalty, &loads, &options)?;
@@ -66,12 +66,12 @@ fn reduction(housing: &Housing, bearing: &Bearing, force: f64) -> Fallible<Found
 /// Condenses and reduces the housings, and finds the equilibrium that a run starts from.
 pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     let (scene, mut assembly) = (lists.scene, lists.assembly()?.clone());
-    let force = largest_force(&assembly, housings);
+    let force = Largest::of(&assembly, housings);
     let (mut reductions, mut bores) = (Vec::new(), Vec::new());
     let mut seconds = [0.0; 2];
     for housing in housings {
         let bearing = &assembly.bearings[housing.bearing];
-        let found = reduction(housing, bearing, force)?;
+        let found = reduction(housing, bearing, &force)?;
         let body = bearing.mounts[1].body;
         let radius = housing.setup.radius(&housing.scene);
         let penalty = housing.scene.housing.penalty;

@@ -154,7 +154,9 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
         inner_contact: bearing.inner_contact,
         outer_contact: bearing.outer_contact,
         mounts: bearing.mounts,
-        ball_phase: bearing.ball_phase + turned.get(index).copied().unwrap_or(0.0),
+        azimuths: bearing
+            .geometry
+            .azimuths(bearing.ball_phase + turned.get(index).copied().unwrap_or(0.0)),
         weight: Vector3::from(assembly.gravity) * bearing.ball.mass,
         centrifugal: bearing.ball.mass * orbital_speed(assembly, bearing, t).powi(2),
     });
@@ -208,7 +210,7 @@ pub(super) fn is_held(body: &Body) -> bool {
 }
 
 /// Given speed of a body about its own axis at `t`, rad/s; zero when it is driven by a torque, or fixed.
-pub(super) fn given_speed(body: &Body, t: f64) -> f64 {
+pub fn given_speed(body: &Body, t: f64) -> f64 {
     match body.driven().map(|race| &race.rotation) {
         Some(Rotation::Speed(profile)) => profile.value(t),
         Some(Rotation::Torque(_)) | None => 0.0,

@@ -16,7 +16,7 @@ use super::bore_equilibrium::{BoreSearch, Fit, RaceLoad};
 use super::condensed::{BoreNode, CondensedBore, lever, rim};
 use super::housed::race_under_load;
 use crate::ch2_housing::bore_contact::Penalty;
-use crate::kinematics::vec3::{Vec3, add_scaled, dot};
+use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot};
 use crate::solver::dense::DenseSymmetric;
 use crate::solver::dynamics::reduced_solid::{ModalLoad, ReducedSolid, Surface, SurfaceNode};
 use crate::solver::dynamics::seat::Seat;
@@ -40,7 +40,7 @@ pub struct ReduceOptions {
 }
 
 /// Part of the compliance that is left out where nothing else is asked for.
-pub const LEFT_OUT: f64 = 1e-4;
+pub const LEFT_OUT: f64 = 1e-5;
 
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ReduceError {
@@ -217,15 +217,19 @@ pub fn natural_shapes(
         // About as many more as a plate has.
         let top = modes.last().map_or(frequency, |mode| mode.frequency);
         let guess = (1.2 * count as f64 * (frequency / top).max(1.0)) as usize;
-        count = guess.clamp(2 * count, 8 * count).min(MOST).min(unknowns.count);
+        count = guess.clamp(count + count / 8, 8 * count).min(MOST).min(unknowns.count);
     }
 }
 
 /// Directions in which [`pressed`] presses: patches of contact move on by a part of their width from one to the next.
 const DIRECTIONS: usize = 48;
 
-/// Loads on the bore's nodes (N) of a race pressed into it by `force` (N) in directions all round, and what they differ
-/// by from those of the fit alone: what compliance is measured under. Of a tight fit the differences are what moves
+/// Where along the race, over its width, [`pressed`] presses: in its middle, as a race does that tilts a little, and with a
+/// moment that lifts one end, as a shaft that bends has it.
+const LEVERS: [f64; 5] = [0.0, -0.25, 0.25, -1.0, 1.0];
+
+/// Loads on the bore's nodes (N) of a race pressed into it by `force` (N) in directions all round, with moments and without, and
+/// what they differ by from those of the fit alone: what compliance is measured under. Of a tight fit the differences are what moves
 /// the race. Besides them those of a race that shifts, tilts and grows in a bore that touches all round.
 ///
 /// # Errors
@@ -238,7 +242,7 @@ pub fn pressed(
 ) -> Result<Vec<Vec<f64>>, StaticsError> {
     let mut search = BoreSearch::new(bore, penalty);
     let alone = race_under_load(&mut search, fit, &RaceLoad::default())?.loads;
-    let mut all = Vec::with_capacity(2 * DIRECTIONS + 5);
+    let mut all = Vec::with_capacity(2 * LEVERS.len() * DIRECTIONS + 5);
     let closed = |of: &dyn Fn(&BoreNode) -> f64| -> Vec<f64> {
         bore.nodes.iter().map(|node| penalty.of_node(node.area) * of(node)).collect()
     };
@@ -246,10 +250,14 @@ pub fn pressed(
     all.push(closed(&|_| 1.0));
     for i in 0..DIRECTIONS {
         let (sin, cos) = libm::sincos(TAU * i as f64 / DIRECTIONS as f64);
-        let load = RaceLoad { force: [0.0, force * cos, force * sin], moment: [0.0; 3] };
-        let loads = race_under_load(&mut search, fit, &load)?.loads;
-        all.push(loads.iter().zip(&alone).map(|(p, alone)| p - alone).collect());
-        all.push(loads);
+        let force = [0.0, force * cos, force * sin];
+        for lever in LEVERS {
+            let load =
+                RaceLoad { force, moment: cross([lever * bore.reach.width, 0.0, 0.0], force) };
+            let loads = race_under_load(&mut search, fit, &load)?.loads;
+            all.push(loads.iter().zip(&alone).map(|(p, alone)| p - alone).collect());
+            all.push(loads);
+        }
     }
     Ok(all)
 }

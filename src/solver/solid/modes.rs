@@ -114,8 +114,13 @@ pub fn modes_over(
     let most = (4 * options.count + 60).max((FREE_TRIALS / size).min(MOST_TRIALS)).min(size);
     let mut krylov = Krylov::new(&masses, &factor);
     krylov.start(size.min(BLOCK));
-    let mut before = Vec::new();
+    let (mut before, mut looked) = (Vec::new(), 0);
     loop {
+        // A look costs the cube of the basis, a block little: large ones are looked at each time they have grown by a part.
+        if krylov.basis.len() < looked + looked / 16 && krylov.grow(most) {
+            continue;
+        }
+        looked = krylov.basis.len();
         // Residuals are looked at once the values stand still: these settle twice as fast as shapes.
         let values = krylov.largest(options.count);
         let still = |(now, old): (&f64, &f64)| (now - old).abs() <= STILL * now.abs();
@@ -312,7 +317,7 @@ impl<'a> Krylov<'a> {
     /// The largest eigenvalues of the inverse within the space.
     fn largest(&self, wanted: usize) -> Vec<f64> {
         let mut values: Vec<f64> =
-            SymmetricEigen::new(self.projected.clone()).eigenvalues.iter().copied().collect();
+            self.projected.clone().symmetric_eigenvalues().iter().copied().collect();
         values.sort_by(|a, b| b.total_cmp(a));
         values.truncate(wanted);
         values
