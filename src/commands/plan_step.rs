@@ -127,10 +127,16 @@ fn adaptive(assembly: &Assembly, request: &RunRequest, accuracy: f64) -> Vec<Str
         Err(error) => return vec![note("step", &refused(&error))],
     };
     let overlap = simulation.control.as_ref().map_or(0.0, |control| control.memory.displacement);
+    let caged = assembly.bearings.iter().any(|bearing| bearing.cage.is_some());
+    let strikes = match caged {
+        true => {
+            "strikes of the cage, of balls or races let it grow (21 times in 20 ms with a cage at 1000 rpm)"
+        }
+        false => "strikes of balls or races let it grow",
+    };
     let said = format!(
         "adapts so that the error of the races' motion stays near {accuracy} of the largest overlap of a \
-         contact, at the start {} of {} um, as long as nothing strikes; strikes of a cage, of balls or races \
-         let it grow (21 times in 20 ms with a cage at 1000 rpm); at least a step a row, the first of {:.3e} s; {}",
+         contact, at the start {} of {} um, as long as nothing strikes; {strikes}; at least a step a row, the first of {:.3e} s; {}",
         to_digits(accuracy * 1e6 * overlap, 3),
         to_digits(1e6 * overlap, 5),
         simulation.step_size,

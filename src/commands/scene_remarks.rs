@@ -12,11 +12,15 @@ pub fn of_shafts(scene: &AssemblyScene) -> Vec<String> {
         let mesh = body.beam.as_ref()?.beam.mesh?;
         let nodes = if mesh.order == Order::Linear { "four" } else { "ten" };
         let solved = match body.beam.as_ref()?.in_elements {
-            None => "condensed onto its sections; it moves in shapes, no element takes steps",
-            Some(_) => {
-                "in explicit steps in a run; in equilibria and `modes` condensed onto its sections. A run starts straight: what \
-                does not grow from nothing (`smooth_ramp`) is a blow, gravity and the unbalance of a shaft that turns from the start too"
-            }
+            None => "condensed onto its sections; it moves in shapes, no element takes steps".into(),
+            Some(_) => format!(
+                "in explicit steps in a run; in equilibria and `modes` condensed onto its sections{}",
+                blows(scene, body).map_or(String::new(), |all| {
+                    format!(
+                        ". A run starts straight, so that {all} strike it at the start: what grows from nothing (`smooth_ramp`) does not"
+                    )
+                })
+            ),
         };
         Some(format!(
             "the segments of body.{} are {nodes}-node tetrahedra ({} cells around, {} in the ring about the core), {solved}",
@@ -24,6 +28,22 @@ pub fn of_shafts(scene: &AssemblyScene) -> Vec<String> {
         ))
     };
     scene.bodies.iter().filter_map(said).collect()
+}
+
+/// What a shaft that starts straight meets at once.
+fn blows(scene: &AssemblyScene, body: &SceneBody) -> Option<String> {
+    let beam = body.beam.as_ref()?;
+    let gravity = scene.common().gravity != [0.0; 3];
+    let loads = beam.loads.iter().flat_map(|(_, force)| force).any(|force| force.value(0.0) != 0.0);
+    let turns = matches!(&body.race.rotation, Rotation::Speed(speed) if speed.value(0.0) != 0.0);
+    let unbalances = turns && beam.unbalances.iter().any(|(_, size, _)| *size != 0.0);
+    let all = [
+        (gravity, "gravity"),
+        (loads, "loads that are there at t = 0"),
+        (unbalances, "unbalances at the speed of the start"),
+    ];
+    let all: Vec<&str> = all.iter().filter(|(is, _)| *is).map(|(_, what)| *what).collect();
+    (!all.is_empty()).then(|| all.join(", "))
 }
 
 /// Springs whose axes turn with the body that they begin at, and that are not the same along all of them.

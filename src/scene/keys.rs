@@ -3,6 +3,7 @@
 //! Reading, the refusal of unknown keys, `docs/scene.md` and the JSON Schema all follow this table.
 
 use crate::scene::units::Dimension::{self, *};
+use crate::scene::units::parse_quantity;
 use crate::scene::{
     key_table, key_table_assembly, key_table_dynamics, key_table_housing, key_table_shaft,
     key_table_solid,
@@ -154,6 +155,13 @@ impl Key {
                     || other.table() == self.path
                     || other.path == self.table())
         })
+    }
+
+    /// The unit that its values are usually written in: that of its example, or of its bounds.
+    pub fn usual_unit(&self, dimension: Dimension, range: Range) -> &'static str {
+        let of = |example: &'static str| Some(parse_quantity(example, dimension).ok()?.unit);
+        let unit = of(self.example).or_else(|| of(usual(dimension, range)));
+        unit.unwrap_or(range.unit)
     }
 
     /// An example of a value, as it is written in TOML.

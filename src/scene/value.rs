@@ -364,7 +364,7 @@ pub(crate) fn quantity(
                 written,
                 number: shortened(&number),
                 dimension,
-                suggested: range.unit,
+                suggested: key.usual_unit(dimension, range),
             },
             QuantityProblem::NoNumber => Problem::NotANumber {
                 written,

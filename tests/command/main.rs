@@ -39,6 +39,7 @@ mod housed_command_resume;
 mod housed_command_sweep;
 mod housed_friction;
 mod housed_reduced;
+mod plan_words;
 mod rubber_command;
 mod run_command;
 mod run_plan;

@@ -99,6 +99,15 @@ fn faults_of_beams_say_what_is_wrong() {
             "201.0000 mm is not on the shaft, which goes from -200.0000 to 200.0000 mm",
         ),
         (beam(&format!("{whole}load = [{{ at = \"0 mm\" }}]")), "nothing acts"),
+        // Bounds of places and sizes are in metres, drawings are not.
+        (
+            beam("segments = [{ length = 400, outer_diameter = \"30 mm\" }]"),
+            "400 has no unit, and this is a length. Allowed units: mm, um, nm, cm, m, km, in. Hint: write \"400 mm\"",
+        ),
+        (
+            beam(&format!("{whole}load = [{{ at = \"-20\", z = \"1 N\" }}]")),
+            "Hint: write \"-20 mm\"",
+        ),
         (
             beam(&format!(
                 "{whole}disc = [{{ at = \"0 mm\", mass = \"1 kg\", width = \"1 mm\" }}]"

@@ -15,6 +15,8 @@ use crate::rotor_run_up::{
     straight, top,
 };
 
+mod sensitivity;
+
 pub const CASE: Case = Case {
     id: "rotor_run_up_4_3_4",
     title: "Rotor run up through its first critical speed",
@@ -68,6 +70,13 @@ fn pinned() -> Result<Done, CaseError> {
     let mut assembly = rotor(&straight(RAMP), UNBALANCES[0], &way)?;
     on_pins(&mut assembly, PIN);
     run_up(assembly, &way, RAMP)
+}
+
+/// Of one of [`RAMPS`]: its course, and where it ends, s.
+fn course((ramp, from, to): (f64, f64, f64)) -> (Course, f64) {
+    let course = if from > 0.0 { headed(ramp, from) } else { straight(ramp) };
+    let end = course[course.len() - 1][0] - ramp * (1.0 - to / TOP);
+    (course, end)
 }
 
 /// The program's and the oracle's.
@@ -142,16 +151,17 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             scene_peak = tops;
         }
     }
-    for (ramp, from, to) in RAMPS {
-        let course = if from > 0.0 { headed(ramp, from) } else { straight(ramp) };
-        let last = course[course.len() - 1][0];
-        let end = last - ramp * (1.0 - to / TOP);
+    let mut calm = Vec::new();
+    for of in RAMPS {
+        let (ramp, (course, end)) = (of.0, course(of));
         for unbalance in UNBALANCES {
             let pair = both(&course, unbalance, &CALM, end)?;
             let id = format!("ramp_{}_{}", digits(&ramp.to_string()), digits(unbalance));
-            passage(context, &mut rows, &id, (ramp, unbalance), &pair)?;
+            let top = passage(context, &mut rows, &id, (ramp, unbalance), &pair)?;
+            calm.push(((ramp, unbalance), top));
         }
     }
+    sensitivity::of_choices(context, &calm)?;
     forgotten(context)?;
     let rest = steady_peaks(context)?;
     rolling(context, rest)?;
@@ -252,8 +262,7 @@ fn passage(
 fn forgotten(context: &mut CaseContext) -> Result<(), CaseError> {
     let (ramp, from, to) = RAMPS[2];
     let from_rest = followed(&oracle(&straight(ramp), UNBALANCES[0], balls(0.0)), ramp * to / TOP);
-    let begun = headed(ramp, from);
-    let end = begun[2][0] - ramp * (1.0 - to / TOP);
+    let (begun, end) = course(RAMPS[2]);
     let begun = followed(&oracle(&begun, UNBALANCES[0], balls(0.0)), end);
     context.check(
         Check::new(

@@ -5,8 +5,9 @@ use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDash
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, Start, Stepping,
 };
-use bearing_dynamics::solver::dynamics::state::Ledger;
+use bearing_dynamics::solver::dynamics::state::{Ledger, POSITION};
 use nalgebra::{DMatrix, DVector};
+use std::f64::consts::TAU;
 
 use crate::bearings::{self, DEEP_GROOVE, Hertz};
 use crate::case::CaseError;
@@ -32,9 +33,11 @@ const STEP: f64 = 1e-5;
 /// Balls that keep their distances and do not rattle where they carry nothing, as the oracle's: a light, soft cage without friction,
 /// 0.05 mm about each ball, and damped contacts.
 const CALM: [(&str, &str); 2] = [("[bearing.left]", CAGE), ("law = \"none\"\n", DAMPED)];
-const DAMPED: &str =
+/// With damping in contacts.
+pub const DAMPED: &str =
     "law = \"none\"\n\n[contact_damping]\nlaw = \"hunt-crossley\"\nalpha = \"1 s/m\"\n";
-const CAGE: &str = "[bearing.cage]\npocket_radius = \"6.0 mm\"\ninner_radius = \"24 mm\"\nouter_radius = \"28 mm\"\nrace_clearance = \"0.2 mm\"\n\
+/// With a cage.
+pub const CAGE: &str = "[bearing.cage]\npocket_radius = \"6.0 mm\"\ninner_radius = \"24 mm\"\nouter_radius = \"28 mm\"\nrace_clearance = \"0.2 mm\"\n\
                     mass = \"20 g\"\nguidance = \"outer-race\"\ncontact = { law = \"penalty\", stiffness = \"1e6 N/m\" }\nfriction = 0\n\n[bearing.left]";
 
 /// Speed over time, s and rpm: straight between these, then it stays.
@@ -97,6 +100,8 @@ pub struct Done {
     pub seconds: f64,
     /// Largest energy that no entry names, over the largest in bending and contacts and what damping took.
     pub residual: f64,
+    /// How far the way from a ball to its neighbour came from an even part of the turn, rad.
+    pub astray: f64,
 }
 
 impl Done {
@@ -180,6 +185,7 @@ pub fn run_up(assembly: Assembly, way: &Way, end: f64) -> Result<Done, CaseError
             let energy = now.energy;
             stored = stored.max(energy.bending_kinetic + energy.bending_strain + energy.contact);
             done.residual = done.residual.max(now.residual.abs());
+            done.astray = done.astray.max(astray(&simulation));
         }
     }
     let damped = simulation.snapshot()?.ledger[Ledger::Foundation as usize].abs();
@@ -187,6 +193,23 @@ pub fn run_up(assembly: Assembly, way: &Way, end: f64) -> Result<Done, CaseError
     done.steps = simulation.steps;
     done.seconds = watch.seconds();
     Ok(done)
+}
+
+/// How far the way from a ball to its neighbour is from an even part of the turn, rad: the largest of all bearings.
+fn astray(simulation: &Simulation) -> f64 {
+    let mut largest = 0.0f64;
+    for set in &simulation.system.sets {
+        let balls = set.layout.balls;
+        let angle = |ball: usize| {
+            let [_, y, z] = set.layout.ball_vector(&simulation.state, POSITION, ball % balls);
+            z.atan2(y)
+        };
+        for ball in 0..balls {
+            let way = (angle(ball + 1) - angle(ball)).rem_euclid(TAU);
+            largest = largest.max((way - TAU / balls as f64).abs());
+        }
+    }
+    largest
 }
 
 /// The same rotor for the oracle.
@@ -224,6 +247,6 @@ pub fn balls(orbit: f64) -> Support {
         stiffness: [bearing.stiffness_inner, bearing.stiffness_outer],
         phase: 0.0,
         orbit,
-        mass: 7850.0 * std::f64::consts::TAU / 1.5 * bearing.ball_radius.powi(3),
+        mass: 7850.0 * TAU / 1.5 * bearing.ball_radius.powi(3),
     })
 }

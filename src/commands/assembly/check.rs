@@ -52,7 +52,11 @@ pub fn run(
     let scene = &scene;
     let (common, defaults) = (scene.common(), defaults(scene));
     if !json {
-        let lines = |line: &mut Line| of_scene(scene, &housings, line);
+        let sits = match scene.one() {
+            Some(_) => Vec::new(),
+            None => lines(&Lists::made(scene, made))?,
+        };
+        let lines = |line: &mut Line| of_scene(scene, &housings, sits, line);
         return say_lines(path, &common.title, lines, &common.assumptions, &defaults);
     }
     let mut understood = echo(&Lists::made(scene, made))?;
@@ -71,8 +75,13 @@ pub fn run(
     say_json(understood, echo_run::output(common)?, &common.assumptions, &defaults)
 }
 
-/// Bearings and what they sit on and in, a line each.
-fn of_scene(scene: &AssemblyScene, housings: &[Housing], line: &mut Line) {
+/// Bearings and what they sit on (`sits`) and in, a line each.
+fn of_scene(
+    scene: &AssemblyScene,
+    housings: &[Housing],
+    sits: Vec<(String, String)>,
+    line: &mut Line,
+) {
     for (index, placed) in scene.bearings.iter().enumerate() {
         if let Some(name) = &placed.name {
             line("bearing", format!("\"{name}\""));
@@ -83,7 +92,7 @@ fn of_scene(scene: &AssemblyScene, housings: &[Housing], line: &mut Line) {
         }
     }
     if scene.one().is_none() {
-        lines(scene).into_iter().for_each(|(label, said)| line(&label, said));
+        sits.into_iter().for_each(|(label, said)| line(&label, said));
         of_shafts(scene).into_iter().for_each(|said| line("note", said));
         of_springs(scene).into_iter().for_each(|said| line("note", said));
     }

@@ -11,6 +11,7 @@ pub mod plan;
 pub mod shapes;
 pub mod statics;
 mod whirl;
+mod windows;
 
 use super::echo_run;
 use bearing_dynamics::output::results::RunRecord;
@@ -18,6 +19,7 @@ use bearing_dynamics::scene::DefaultUsed;
 use bearing_dynamics::scene::assembly::{AssemblyScene, Carrier, PlacedBearing, PlacedHousing};
 use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::scene::statics::{static_problem, still_lists};
+use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::plan::Item;
 use bearing_dynamics::solver::plan::motion::race_freedom;
 use bearing_dynamics::solver::static_assembly::StaticAssembly;
@@ -77,8 +79,12 @@ pub fn name_of(placed: &PlacedBearing) -> &str {
     placed.name.as_deref().unwrap_or("bearing")
 }
 
-/// Where bearings sit and how bodies move, a line each.
-pub fn lines(scene: &AssemblyScene) -> Vec<(String, String)> {
+/// Where bearings sit, how bodies move and what they weigh, a line each.
+///
+/// # Errors
+/// As [`AssemblyScene::assembly`].
+pub fn lines(lists: &Lists) -> Fallible<Vec<(String, String)>> {
+    let (scene, assembly) = (lists.scene, lists.assembly()?);
     let mut said = Vec::new();
     for placed in &scene.bearings {
         let sits = |carrier: &Carrier, own: &str| {
@@ -99,8 +105,12 @@ pub fn lines(scene: &AssemblyScene) -> Vec<(String, String)> {
             ),
         ));
     }
-    for body in &scene.bodies {
-        said.push((format!("body {}", body.name), race_freedom(&body.race)));
+    // The scene's bodies come first.
+    for (body, made) in scene.bodies.iter().zip(&assembly.bodies) {
+        let mass = made.inertia().map_or(0.0, |inertia| inertia.mass);
+        let weighs =
+            if mass > 0.0 { format!("{} kg; ", to_digits(mass, 6)) } else { String::new() };
+        said.push((format!("body {}", body.name), weighs + &race_freedom(&body.race)));
     }
     for spring in &scene.springs {
         let [from, to] = spring.ends.map(|end| scene.name_of_end(end.at));
@@ -123,5 +133,5 @@ pub fn lines(scene: &AssemblyScene) -> Vec<(String, String)> {
             ));
         }
     }
-    said
+    Ok(said)
 }

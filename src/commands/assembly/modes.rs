@@ -5,7 +5,7 @@
 
 use super::housings::{self, Equilibrium};
 use super::lists::Lists;
-use super::whirl::Spinning;
+use super::whirl::{Spinning, rpm};
 use super::{Fallible, plan, record};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
@@ -13,6 +13,7 @@ use crate::commands::scene_remarks::at_rest;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
 use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::housing::inertia::{HousingMass, MovingBody, housing_mass, modes};
@@ -64,6 +65,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     if let Some(spinning) = &spinning {
         say(&spinning.text())?;
         remarks.extend(spinning.remarks());
+        remarks.extend(of_other_speed(scene, assembly, spinning.whirling.top_speed));
     }
     if found.iter().any(|mode| frequency(mode) == 0.0) {
         remarks.push(
@@ -120,6 +122,29 @@ fn spinning(
         return Ok(None);
     }
     Ok(Some(Spinning::new(whirling(assembly, still, solution, bodies, masses)?)?))
+}
+
+/// What a reader should know where whirl is that of the speed at the end, `top` (rad/s), and the equilibrium that of another at t = 0.
+fn of_other_speed(scene: &AssemblyScene, assembly: &Assembly, top: f64) -> Option<String> {
+    let speeds = assembly.bodies.iter().filter_map(|body| match &body.driven()?.rotation {
+        Rotation::Speed(speed) => Some(speed.value(0.0)),
+        Rotation::Torque(_) => None,
+    });
+    let first =
+        speeds.fold(0.0, |first: f64, now| if now.abs() > first.abs() { now } else { first });
+    let flung = scene.bearings.iter().any(|placed| placed.scene.centrifugal);
+    let [first, last] = [first, top].map(|speed| to_digits(rpm(speed), 6));
+    let balls = match flung {
+        true => format!("the balls' centrifugal force is that at {first} rpm, too"),
+        false => "the balls' centrifugal force is left out".into(),
+    };
+    (first != last).then(|| {
+        format!(
+            "whirl is at {last} rpm, where the speed ends, about the equilibrium at t = 0, where it is {first} rpm: {balls}; \
+             write speed = \"{last} rpm\" for the equilibrium there{}",
+            if flung { "" } else { ", with ball_forces.centrifugal = true" }
+        )
+    })
 }
 
 /// The bodies that loads move.

@@ -5,6 +5,7 @@ use super::course::{along_course, inertia_estimate, verdicts};
 use super::housing::Housing;
 use super::lists::Lists;
 use super::shapes::{Shapes, shapes};
+use super::windows::windows_text;
 use super::{Fallible, housings, still};
 use crate::commands::bushing_remarks::of_bushings;
 use crate::commands::plan::say_plan;
@@ -12,7 +13,7 @@ use crate::commands::plan_step::{note, refused, step_lines};
 use crate::commands::run::{self, planned_request};
 use crate::commands::scene_remarks::{of_shafts, of_springs, turning_races};
 use crate::commands::{CommandResult, Outcome, memory};
-use bearing_dynamics::output::session::{HousedParts, RunRequest, table_size};
+use bearing_dynamics::output::session::{RunRequest, table_size};
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
 use bearing_dynamics::scene::bushing_problem::{BushingElements, take_bushings};
 use bearing_dynamics::scene::housing::HousingMethod;
@@ -24,9 +25,7 @@ use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::foretell::Choice;
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::dynamics::run::Start;
-use bearing_dynamics::solver::housing::bonded::BondedBushing;
 use bearing_dynamics::solver::housing::condensed::Sizes;
-use bearing_dynamics::solver::housing::stepped::SteppedSolid;
 use bearing_dynamics::solver::plan::motion::{self, Planned};
 use bearing_dynamics::solver::plan::rubber;
 use bearing_dynamics::solver::plan::solid::{Method, stepped_shaft};
@@ -34,11 +33,6 @@ use bearing_dynamics::solver::plan::statics::{self, ASKED_FOR};
 use bearing_dynamics::solver::plan::{Item, Stage, Subject};
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
 use bearing_dynamics::solver::statics::StaticProblem;
-use std::error::Error;
-use std::time::{Duration, Instant};
-
-/// How long windows are timed for an estimate of the wall time.
-const TIMED: Duration = Duration::from_millis(300);
 
 pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
     let housings = housings::prepare(document, scene)?;
@@ -128,19 +122,36 @@ fn of_steps(
     }
     if in_elements {
         let parts = housings::explicit(scene, assembly.clone(), housings, elements, 1)?;
-        notes.push(note("step", &windows_text(parts, settings)?));
+        notes.push(note("step", &windows_text(scene, parts, settings)?));
     }
     for shaft in &shafts {
-        let [static_part, couple] = shaft.imbalance().map(|[y, z]| y.hypot(z));
-        let said = format!(
-            "the cells of {} are not alike all around: their masses are out of balance by {static_part:.1e} kg m and a couple of {couple:.1e} \
-             kg m^2, which turn with the shaft",
-            shaft.name
-        );
-        notes.push(note("shaft", &said));
+        notes.extend(imbalance_text(scene, shaft).map(|said| note("shaft", &said)));
     }
     notes.push(size_line(&assembly, &request));
     Ok((items, notes))
+}
+
+/// Of the mass times length of a shaft (couples: its square): what is less out of balance is so by rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// How far the mesh of a shaft is out of balance, if it is.
+fn imbalance_text(scene: &AssemblyScene, shaft: &ShaftElements) -> Option<String> {
+    let length = scene.bodies[shaft.body].beam.as_ref()?.beam.length();
+    let mass: f64 = shaft.part.model.mass.iter().sum();
+    let [balance, couple] = shaft.imbalance().map(|[y, z]| y.hypot(z));
+    let is = |size: f64, of: f64| size > ROUNDING * of;
+    let balance =
+        is(balance, mass * length).then(|| format!("{} g mm", to_digits(1e6 * balance, 2)));
+    let couple = is(couple, mass * length * length)
+        .then(|| format!("a couple of {} g mm^2", to_digits(1e9 * couple, 2)));
+    let all: Vec<String> = [balance, couple].into_iter().flatten().collect();
+    (!all.is_empty()).then(|| {
+        format!(
+            "the cells of {} are not alike all around: their masses are out of balance by {}, which turns with the shaft",
+            shaft.name,
+            all.join(" and ")
+        )
+    })
 }
 
 /// Bushings and shafts in elements.
@@ -309,70 +320,10 @@ fn explicit_note(lists: &Lists, housings: &[Housing], run: &RunSettings) -> Stri
     let chosen = lists.scene.housing_method() == Some(HousingMethod::Explicit);
     // Where it starts does not matter here, and finding out takes long.
     let windows = housings::undeformed(lists, housings, 1);
-    match (windows.and_then(|parts| windows_text(parts, run)), chosen) {
+    match (windows.and_then(|parts| windows_text(lists.scene, parts, run)), chosen) {
         (Ok(said), true) => note("step", &said),
         (Ok(said), false) => note("explicit instead", &said),
         (Err(error), true) => note("step", &refused(&*error)),
         (Err(error), false) => note("explicit instead", &format!("not possible: {error}")),
-    }
-}
-
-/// Windows of explicit steps from here, and about how long they take.
-fn windows_text(parts: HousedParts, run: &RunSettings) -> Result<String, Box<dyn Error>> {
-    let (mut housed, windows) = parts.started(run.output_interval)?;
-    let all = whole_number(run.end, run.output_interval) * windows;
-    let mut nodes = String::new();
-    for seat in housed.seats() {
-        let (tested, out_of_reach) = seat.counts();
-        let of = seat.seat.suffix();
-        nodes +=
-            &format!("at the start {tested} bore nodes{of} tested, {out_of_reach} out of reach");
-        if out_of_reach > 0 {
-            let moved = to_digits(0.5e6 * seat.seat.reach, 3);
-            nodes +=
-                &format!(", sorted anew each time that race and bore have moved by {moved} um");
-        }
-        nodes += "; ";
-    }
-    let steps = |part: &SteppedSolid| {
-        let of = part.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
-        let limit = part.solid.limit.step;
-        let what = part.kind();
-        let of = if of.strip_prefix(' ') == Some(what) { String::new() } else { of };
-        format!("{} of the {what}{of} (limit {limit:.3e} s)", steps_of(part.steps))
-    };
-    let mut solids: Vec<String> = housed.solids.iter().map(steps).collect();
-    let of_bushing =
-        |of: &BondedBushing| format!("{} of the bushing {}", steps_of(of.steps), of.name);
-    solids.extend(housed.bushings.iter().map(of_bushing));
-    let start = Instant::now();
-    let mut done = 0u64;
-    while start.elapsed() < TIMED && done < all {
-        for _ in 0..10 {
-            housed.advance()?;
-        }
-        done += 10;
-    }
-    let seconds = start.elapsed().as_secs_f64() / done as f64 * all as f64;
-    Ok(format!(
-        "{all} windows of {:.3e} s to t = {} s, each {} and steps of the bearing up to {:.3e} s; {nodes}about \
-         {} of wall time here",
-        housed.window,
-        run.end,
-        solids.join(" and "),
-        housed.simulation.step_size,
-        duration(seconds)
-    ))
-}
-
-fn steps_of(count: usize) -> String {
-    if count == 1 { "one step".into() } else { format!("{count} steps") }
-}
-
-fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 120.0 => format!("{} s", to_digits(s, 2)),
-        s if s < 7200.0 => format!("{} min", to_digits(s / 60.0, 2)),
-        s => format!("{} h", to_digits(s / 3600.0, 2)),
     }
 }

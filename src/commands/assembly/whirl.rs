@@ -34,7 +34,7 @@ pub struct Spinning {
     campbell: Campbell,
 }
 
-fn rpm(speed: f64) -> f64 {
+pub fn rpm(speed: f64) -> f64 {
     speed * 60.0 / TAU
 }
 

@@ -6,6 +6,7 @@
 
 pub mod motion;
 pub mod rubber;
+mod shaft;
 pub mod solid;
 pub mod statics;
 pub mod steps;

@@ -1,5 +1,6 @@
 //! Items of a motion: what each evaluation of the forces computes, how it starts and steps, what it records.
 
+use super::shaft::bending;
 use super::{Item, Stage, Subject};
 use crate::ch2_housing::bearing::cage::{Guidance, Pocket};
 use crate::ch2_housing::bearing::contact::ContactDamping;
@@ -12,8 +13,6 @@ use crate::solver::dynamics::assembly::{Assembly, BallMeeting, Bearing, Body, GR
 use crate::solver::dynamics::ball_set::neighbours;
 use crate::solver::dynamics::model::{Drive, RaceBody, Rotation};
 use crate::solver::dynamics::run::{Integrator, RunOptions, Start, Stepping};
-use crate::solver::dynamics::shaft::ElasticShaft;
-use std::f64::consts::TAU;
 
 /// A run of an assembly.
 #[derive(Clone, Debug)]
@@ -166,45 +165,6 @@ pub fn stepped_seat(
         Item::does(Stage::BoreFriction, Subject::Seat(index), why).named(name)
     });
     [seat].into_iter().chain(friction).chain([impulses])
-}
-
-/// A body that bends.
-fn bending(shaft: &ElasticShaft, assembly: &Assembly) -> [Item; 3] {
-    let (body, subject) = (&assembly.bodies[shaft.body], Subject::Body(shaft.body));
-    let (count, natural) = (shaft.count(), shaft.shapes.natural);
-    let cut = &shaft.shapes.cut;
-    let beyond = match cut.above.is_finite() {
-        true => format!(
-            "; left out are natural ones from {:.0} Hz on, which have up to {:.1e} of its static compliance at a hold",
-            cut.above / TAU,
-            cut.share
-        ),
-        false => String::new(),
-    };
-    let why = format!(
-        "{} bends in {count} shapes either way: {natural} natural ones, {} static answers to what holds it{beyond}",
-        body.name,
-        count - natural
-    );
-    let (loads, unbalances) = (shaft.loads.len(), shaft.unbalances.len());
-    let acting = loads + unbalances;
-    let along = format!("{loads} forces and {unbalances} unbalances at places along {}", body.name);
-    let damped = shaft.damping != 0.0 || shaft.internal_damping != 0.0;
-    let damping = match shaft.internal_damping != 0.0 {
-        true => {
-            "of bending, in proportion to mass; inside the shaft too, where it feeds whirl above a critical speed: `bearing modes` tells"
-        }
-        false => "of bending, in proportion to mass",
-    };
-    let either = |stage, does, why: String| {
-        Item::new(stage, subject, does, if does { why } else { "none is given".into() })
-    };
-    let own = [
-        Item::does(Stage::Reduced, subject, why).costing(1),
-        either(Stage::Loads, acting > 0, along).costing(acting as u64),
-        either(Stage::Damping, damped, damping.into()).costing(1),
-    ];
-    own.map(|item| item.named(body.label.clone()))
 }
 
 fn gravity(assembly: &Assembly) -> Item {
@@ -394,7 +354,7 @@ pub fn race_freedom(body: &RaceBody) -> String {
     }
 }
 
-fn stands_on_ground(body: &RaceBody) -> bool {
+pub(super) fn stands_on_ground(body: &RaceBody) -> bool {
     body.foundation_stiffness.iter().chain(&body.foundation_damping).any(|value| *value != 0.0)
 }
 

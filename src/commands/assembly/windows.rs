@@ -1,0 +1,108 @@
+//! What `bearing plan` says of windows between exchanges of bodies and solids in explicit steps.
+
+use bearing_dynamics::output::session::HousedParts;
+use bearing_dynamics::scene::RunSettings;
+use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::solver::clock::{to_digits, whole_number};
+use bearing_dynamics::solver::dynamics::run::Stepping;
+use bearing_dynamics::solver::housing::bonded::BondedBushing;
+use bearing_dynamics::solver::housing::exchange::Exchange;
+use bearing_dynamics::solver::housing::stepped::SteppedSolid;
+use std::error::Error;
+use std::time::{Duration, Instant};
+
+/// How long windows are timed for an estimate of the wall time.
+const TIMED: Duration = Duration::from_millis(300);
+
+/// Windows of explicit steps from here, and about how long they take.
+pub fn windows_text(
+    scene: &AssemblyScene,
+    parts: HousedParts,
+    run: &RunSettings,
+) -> Result<String, Box<dyn Error>> {
+    let (mut housed, windows) = parts.started(run.output_interval)?;
+    let all = whole_number(run.end, run.output_interval) * windows;
+    let mut nodes = String::new();
+    for seat in housed.seats() {
+        let (tested, out_of_reach) = seat.counts();
+        let of = seat.seat.suffix();
+        nodes +=
+            &format!("at the start {tested} bore nodes{of} tested, {out_of_reach} out of reach");
+        if out_of_reach > 0 {
+            let moved = to_digits(0.5e6 * seat.seat.reach, 3);
+            nodes +=
+                &format!(", sorted anew each time that race and bore have moved by {moved} um");
+        }
+        nodes += "; ";
+    }
+    let steps = |part: &SteppedSolid| {
+        let of = part.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
+        let limit = part.solid.limit.step;
+        let what = part.kind();
+        let of = if of.strip_prefix(' ') == Some(what) { String::new() } else { of };
+        format!("{} of the {what}{of} (limit {limit:.3e} s)", steps_of(part.steps))
+    };
+    let mut solids: Vec<String> = housed.solids.iter().map(steps).collect();
+    let of_bushing =
+        |of: &BondedBushing| format!("{} of the bushing {}", steps_of(of.steps), of.name);
+    solids.extend(housed.bushings.iter().map(of_bushing));
+    let cut = cut_to_window(scene, &housed, run);
+    let start = Instant::now();
+    let mut done = 0u64;
+    while start.elapsed() < TIMED && done < all {
+        for _ in 0..10 {
+            housed.advance()?;
+        }
+        done += 10;
+    }
+    let seconds = start.elapsed().as_secs_f64() / done as f64 * all as f64;
+    Ok(format!(
+        "{all} windows of {:.3e} s to t = {} s, each {} and steps of the bearing up to {:.3e} s{cut}; {nodes}about \
+         {} of wall time here",
+        housed.window,
+        run.end,
+        solids.join(" and "),
+        housed.simulation.step_size,
+        duration(seconds)
+    ))
+}
+
+/// What was asked of steps and does not come to be, as none is longer than a window between two exchanges.
+fn cut_to_window(scene: &AssemblyScene, housed: &Exchange, run: &RunSettings) -> String {
+    let shorter = |of: f64, than: f64| of < than * (1.0 - 1e-9);
+    let (window, mut said) = (housed.window, String::new());
+    let step = housed.simulation.step_size;
+    if let Stepping::Fixed(given) = run.options.stepping
+        && shorter(step, given)
+    {
+        said += &format!("; numerics.step = {given:e} s is cut to the window");
+    }
+    for (part, placed) in
+        housed.solids.iter().zip(scene.bearings.iter().filter_map(|placed| placed.housing.as_ref()))
+    {
+        let settings = &placed.settings;
+        let is_default =
+            settings.defaults_used.iter().any(|used| used.key.ends_with("step_fraction"));
+        let comes_to = window / part.steps as f64 / part.solid.limit.step;
+        if !is_default && part.steps == 1 && shorter(comes_to, settings.step_fraction) {
+            said += &format!(
+                "; housing.step_fraction = {} comes to {}, as its step is cut to the window",
+                settings.step_fraction,
+                to_digits(comes_to, 2)
+            );
+        }
+    }
+    said
+}
+
+fn steps_of(count: usize) -> String {
+    if count == 1 { "one step".into() } else { format!("{count} steps") }
+}
+
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{} s", to_digits(s, 2)),
+        s if s < 7200.0 => format!("{} min", to_digits(s / 60.0, 2)),
+        s => format!("{} h", to_digits(s / 3600.0, 2)),
+    }
+}

@@ -1,0 +1,118 @@
+//! What `check`, `plan` and `modes` say of shafts and of steps, and what they leave unsaid where it does not apply.
+
+use crate::command_line_common::{changed, done, read, scene, write};
+use crate::housed_command_common::scene_text;
+use std::path::Path;
+use tempfile::tempdir;
+
+/// What a command says of a shipped scene with these words changed.
+fn said_of(command: &[&str], shipped: &str, changes: &[(&str, &str)]) -> String {
+    let folder = tempdir().unwrap();
+    let mut text = read(Path::new(&scene(shipped)));
+    for (from, to) in changes {
+        text = changed(&text, from, to);
+    }
+    let path = write(folder.path(), "scene.toml", &text);
+    done(&[&command[..1], &[&path[..]], &command[1..]].concat())
+}
+
+/// Whirl is that of the speed at the end, the equilibrium that of t = 0; where they differ, a note says what balls feel.
+#[test]
+fn modes_of_a_ramp_say_at_which_speed_balls_are() {
+    const RAMP: &str =
+        "speed = { ramp = [\"0 rpm\", \"10000 rpm\"], start = \"0 s\", duration = \"0.2 s\" }";
+    const FLUNG: (&str, &str) = ("[traction]", "[ball_forces]\ncentrifugal = true\n\n[traction]");
+    let modes = |changes: &[(&str, &str)]| {
+        let said = said_of(&["modes", "--dry"], "rotor_run_up.toml", changes);
+        said.lines().filter(|line| line.starts_with("note: whirl is")).collect::<String>()
+    };
+    let ends =
+        "at 10000 rpm, where the speed ends, about the equilibrium at t = 0, where it is 0 rpm";
+    let without = modes(&[]);
+    assert!(without.contains(ends) && without.contains("force is left out"), "{without}");
+    let flung = modes(&[FLUNG]);
+    assert!(flung.contains(ends) && flung.contains("is that at 0 rpm, too"), "{flung}");
+    let from = modes(&[FLUNG, ("[\"0 rpm\"", "[\"3000 rpm\"")]);
+    assert!(from.contains("is that at 3000 rpm, too"), "{from}");
+    for changes in
+        [&[(RAMP, "speed = \"10000 rpm\"")][..], &[FLUNG, (RAMP, "speed = \"10000 rpm\"")]]
+    {
+        assert_eq!(modes(changes), "");
+    }
+}
+
+/// A shaft in elements is told what strikes it at the start where something does, and what its mesh is out of balance by where it is.
+#[test]
+fn a_shaft_in_elements_is_told_what_strikes_it() {
+    const SMOOTH: &str = "z = { smooth_ramp = [\"0 N\", \"-600 N\"], duration = \"2 ms\" }";
+    let plan = |changes: &[(&str, &str)]| said_of(&["plan"], "rotor_in_elements.toml", changes);
+    let grown = plan(&[]);
+    assert!(grown.contains("condensed onto its sections\n"), "{grown}");
+    assert!(!grown.contains("strike it at the start"), "{grown}");
+    // Four-node cells are alike from one half to the other, so that nothing is left but a couple.
+    assert!(grown.contains("out of balance by a couple of 1600 g mm^2, which"), "{grown}");
+    let sudden = plan(&[(SMOOTH, "z = \"-600 N\"")]);
+    assert!(
+        sudden.contains("so that loads that are there at t = 0 strike it at the start"),
+        "{sudden}"
+    );
+    let weighs = (
+        "[numerics]",
+        "[ball_forces]\ngravity = [\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]\n\n[numerics]",
+    );
+    let out = ("watch = [", "unbalance = [{ at = \"0 mm\", size = \"1e-5 kg m\" }]\nwatch = [");
+    let all = plan(&[weighs, out]);
+    assert!(all.contains("so that gravity, unbalances at the speed of the start strike"), "{all}");
+}
+
+#[test]
+fn plans_of_shafts_have_plain_words() {
+    let said = said_of(&["plan"], "rotor_run_up.toml", &[]);
+    for part in [
+        "left out are natural ones from 8044 Hz on, whose part of the static compliance at a hold, up to 27 %, those answers have",
+        "1 unbalance at places along the body shaft",
+        "in proportion to mass, of bending; where it brakes all motion",
+        "strikes of balls or races let it grow; at least",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    let said = said_of(
+        &["plan"],
+        "rotor_run_up.toml",
+        &[(
+            "damping = \"100 1/s\"",
+            "damping = \"100 1/s\"\ndamped_motion = \"relative-to-rigid\"",
+        )],
+    );
+    assert!(said.contains("of bending alone, in proportion to mass"), "{said}");
+    assert!(!said.contains("dashpots to the ground under"), "{said}");
+}
+
+#[test]
+fn check_tells_what_a_shaft_weighs() {
+    // 7850 kg/m³ π/4 (30 mm)² 400 mm, and the disc.
+    let shaft = 7850.0 * std::f64::consts::PI / 4.0 * 0.03 * 0.03 * 0.4;
+    let said = said_of(&["check"], "rotor_run_up.toml", &[]);
+    let (_, after) = said.split_once("  body shaft             ").expect(&said);
+    let mass: f64 = after.split_once(" kg; 5 of 6").expect(after).0.parse().unwrap();
+    assert!((mass / (shaft + 20.0) - 1.0).abs() <= 1e-5, "{mass}");
+    let said = said_of(&["check"], "shaft_back_to_back.toml", &[]);
+    assert!(said.contains("body shaft             0.67 kg; "), "{said}");
+}
+
+/// No step is longer than a window between two exchanges, whatever is asked for.
+#[test]
+fn steps_that_windows_cut_are_told() {
+    let folder = tempdir().unwrap();
+    let plan = |housing: &str, numerics: &str| {
+        let housing = format!("method = \"explicit\"\n{housing}");
+        let text = scene_text(&housing, &format!("[numerics]\nend = \"20 us\"\n{numerics}"));
+        done(&["plan", &write(folder.path(), "scene.toml", &text)])
+    };
+    let plain = plan("", "");
+    assert!(!plain.contains("cut to the window"), "{plain}");
+    let given = plan("", "step = \"1 us\"");
+    assert!(given.contains("numerics.step = 1e-6 s is cut to the window"), "{given}");
+    let part = plan("step_fraction = 0.95\nwindow_phase = 0.01\n", "");
+    assert!(part.contains("housing.step_fraction = 0.95 comes to 0."), "{part}");
+}
