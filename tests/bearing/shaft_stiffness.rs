@@ -86,6 +86,30 @@ fn squeezed(geometry: &BearingGeometry, axial: f64) -> Squeezed {
     Squeezed { load, normal, stiffness: outer * along + (Matrix2::identity() - outer) * across }
 }
 
+/// Balls unevenly spaced, races closed along the axis: each pushes across it where it is, as much as any other.
+#[test]
+fn balls_stand_where_they_are_said_to() {
+    let geometry = table_5_3();
+    let closing = 5e-6;
+    let held = [Condition::Displacement(0.0); 5];
+    let mut given = pair(12e-3, [-closing, -closing], [false, false], held);
+    let azimuths: Vec<f64> =
+        (0..geometry.ball_count).map(|ball| 0.02 * (ball * ball) as f64).collect();
+    given.bearings[0].azimuths.clone_from(&azimuths);
+    let found = solve_assembly(&given, None, &StaticOptions::default()).unwrap();
+    let one = squeezed(&geometry, closing);
+    let force = found.bearings[0].forces[0];
+    // Inwards.
+    let across = -one.load * one.normal[1].abs();
+    let expected = azimuths.iter().fold([0.0; 2], |[y, z], azimuth| {
+        let (sin, cos) = libm::sincos(*azimuth);
+        [y + across * cos, z + across * sin]
+    });
+    let error = (force.y - expected[0]).hypot(force.z - expected[1]);
+    // Closed forms of the same contacts; an even spacing would add up to nothing.
+    assert!(error <= 1e-8 * expected[0].hypot(expected[1]), "{force} {expected:?}");
+}
+
 /// Back to back, face to face and in tandem: axial and tilting stiffness of the pair follow from one ball's
 /// stiffness, the contact angle, the pitch and the distance.
 #[test]
