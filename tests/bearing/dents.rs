@@ -260,7 +260,7 @@ fn press_ball(system: &mut System, [around, in_groove]: [f64; 2], overlap: f64) 
 fn arcs_and_stiffness_over_a_dent() {
     let (high, low) = ([0.2, 0.6], [1.0, 0.0]);
     let at = |[angle, groove_angle]: [f64; 2]| Dent { groove_angle, ..dent(1, angle) };
-    let mut system = System::new(&dented(vec![at(high), at(low)]), Driver::Lanes);
+    let mut system = System::new(dented(vec![at(high), at(low)]), Driver::Lanes);
     let pair = system.sets[0].layout.padded;
     let outer = table_3_5().outer;
     let radius = outer.centre_radius + outer.groove_radius * libm::cos(high[1]);
