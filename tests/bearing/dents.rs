@@ -10,7 +10,7 @@ use bearing_dynamics::ch2_housing::bearing::hertz::{
 use bearing_dynamics::ch3_bushing::dent::{Dent, DentShape, DentTable, dented_load};
 use bearing_dynamics::kinematics::vec3::{add, cross, norm, scale};
 use bearing_dynamics::solver::dent_table::{Bed, DentedContact, Fineness, dent_table};
-use bearing_dynamics::solver::dynamics::contacts::Driver;
+use bearing_dynamics::solver::dynamics::contacts::{ContactTable, Driver, Want};
 use bearing_dynamics::solver::dynamics::model::DynamicProblem;
 use bearing_dynamics::solver::dynamics::run::{Integrator, Stepping};
 use bearing_dynamics::solver::dynamics::start;
@@ -234,6 +234,54 @@ fn a_dent_makes_no_momentum() {
         }
         assert!(largest > 1.0 && norm(force) <= 1e-11 * largest, "{force:?} of {largest}");
         assert!(norm(moment) <= 1e-12 * largest, "{moment:?}");
+    }
+}
+
+/// Ball 0 of a system alone, pressed into the outer race by `overlap` (m) at angles around the axis and in the groove (rad); what
+/// is made of its contact there.
+fn press_ball(system: &mut System, [around, in_groove]: [f64; 2], overlap: f64) -> ContactTable {
+    let geometry = table_3_5();
+    let deep = geometry.outer.groove_radius - geometry.ball_radius + overlap;
+    let (sin, cos) = libm::sincos(in_groove);
+    let radius = geometry.outer.centre_radius + deep * cos;
+    let place = [deep * sin, radius * libm::cos(around), radius * libm::sin(around)];
+    let mut state = start_of(&dented(Vec::new()));
+    for (i, value) in place.into_iter().enumerate() {
+        state[system.sets[0].layout.ball(POSITION + i)] = value;
+    }
+    let mut rates = vec![0.0; state.len()];
+    system.evaluate_with(Want::ForcesAndSlopes, 0.0, &state, &mut rates);
+    system.sets[0].table.clone()
+}
+
+/// A dent high up in its groove is nearer to the axis than the groove's bottom: arcs from it are of that radius. And the stiffness
+/// over a dent is the slope of its load over the approach.
+#[test]
+fn arcs_and_stiffness_over_a_dent() {
+    let (high, low) = ([0.2, 0.6], [1.0, 0.0]);
+    let at = |[angle, groove_angle]: [f64; 2]| Dent { groove_angle, ..dent(1, angle) };
+    let mut system = System::new(dented(vec![at(high), at(low)]), Driver::Lanes);
+    let pair = system.sets[0].layout.padded;
+    let outer = table_3_5().outer;
+    let radius = outer.centre_radius + outer.groove_radius * libm::cos(high[1]);
+    for arc in [100e-6, 200e-6, 300e-6] {
+        let overlap = 6e-6;
+        let table = press_ball(&mut system, [high[0] + arc / radius, high[1]], overlap);
+        let lost = overlap - table.contact[pair].overlap;
+        let expected = system.sets[0].laws.dents[0].table.lost(overlap, [arc, 0.0]).unwrap().value;
+        // Rounding of places; arcs of the groove's bottom would be 3 % longer.
+        assert!((lost / expected - 1.0).abs() <= 1e-6, "{arc}: {lost:e} {expected:e}");
+    }
+    for (aside, overlap) in [(0.0, 4e-6), (0.0, 15e-6), (0.004, 4e-6), (0.006, 8e-6)] {
+        let mut over = |overlap: f64| {
+            let table = press_ball(&mut system, [low[0] + aside, low[1]], overlap);
+            *table.dented(pair).expect("it is over the dent")
+        };
+        let step = 1e-4 * overlap;
+        let slope = (over(overlap + step).elastic - over(overlap - step).elastic) / (2.0 * step);
+        let found = over(overlap).stiffness;
+        // Its own differences are as long; splines have jumps of their third derivative.
+        assert!((found / slope - 1.0).abs() <= 1e-5, "{aside} {overlap}: {found} {slope}");
     }
 }
 

@@ -8,6 +8,7 @@ use bearing_dynamics::output::state::{self, StateRecord, Stopped};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::bushing_problem::{BushingElements, take_bushings};
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
+use bearing_dynamics::solver::dynamics::connection::Law;
 use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::run::RunOptions;
 use bearing_dynamics::solver::housing::exchange::Exchange;
@@ -184,6 +185,29 @@ fn windows_follow_the_phase_of_the_bushing() {
     assert!((window("0.3") / window("0.1") - 3.0).abs() <= 1e-9);
 }
 
+/// Windows are for rubber that nothing has relaxed in: by the springs that it is like, with all of their Maxwell elements.
+#[test]
+fn windows_are_short_enough_for_rubber_that_has_not_relaxed() {
+    let own = "length = \"20 mm\"\nwindow_phase = 0.1\ntable";
+    let made = Made::of(&changed("explicit", COARSE, ("length = \"20 mm\"\ntable", own)), 2e-4);
+    let Parts::Housed(parts) = made.parts() else { panic!("no bushing") };
+    let HousedParts { assembly, bushings, options, .. } = *parts;
+    let Law::SpringDashpot(law) = &bushings[0].spring.law else { panic!("no springs") };
+    let sudden = |axis: usize| {
+        law.stiffness[axis] + law.maxwell.iter().map(|of| of.stiffness[axis]).sum::<f64>()
+    };
+    assert!(sudden(2) > 1.5 * law.stiffness[2], "rubber relaxes");
+    let largest = |axes: std::ops::Range<usize>| axes.map(sudden).fold(0.0, f64::max);
+    let outer = bushings[0].sleeves.iter().map(|sleeve| &assembly.bodies[sleeve.body]);
+    let rates = outer
+        .filter_map(|body| body.inertia())
+        .map(|inertia| f64::max(largest(0..3) / inertia.mass, largest(3..6) / inertia.transverse));
+    let expected = 0.1 / rates.fold(0.0, f64::max).sqrt();
+    let (solids, seats) = (Vec::new(), Vec::new());
+    let found = Exchange::with_bushings(assembly, solids, seats, bushings, &options).unwrap();
+    assert!((found.window / expected - 1.0).abs() <= 1e-9, "{} {expected}", found.window);
+}
+
 /// A third of the nodes of a sleeve pull at their body twice: at small strain too the ledger ends such a run.
 #[test]
 fn a_pull_that_is_wrong_ends_a_run() {
@@ -231,19 +255,29 @@ fn a_run_starts_in_equilibrium_with_its_load() {
 /// Tilted by a moment the race has the tilt that the springs allow, and the rubber pushes back with their moment.
 #[test]
 fn a_tilted_race_is_pushed_back_by_the_moment_of_the_springs() {
-    let tilted = |method: &str| {
-        let mut of = scene(method, COARSE, "0 N");
-        let outer = of.bearings[0].scene.dynamics.outer.as_mut().unwrap();
-        outer.drives[3] = Drive::Load(Profile::Constant(0.5));
-        let made = Made::of(&of, 4e-5);
-        let session = made.run();
-        ["outer_tilt_y", "mount_moment_y"].map(|name| column(&session, name)[0])
-    };
-    let [reduced, implicit] = ["reduced", "implicit"].map(tilted);
-    // The bearing, whose inner race does not tilt, takes the rest of 0.5 N·m.
-    assert!(reduced[1] < -0.05, "{reduced:?}");
-    assert!((implicit[1] / reduced[1] - 1.0).abs() <= 0.03, "{implicit:?} {reduced:?}");
-    assert!((implicit[0] / reduced[0] - 1.0).abs() <= 0.03, "{implicit:?} {reduced:?}");
+    // In the middle of the race and beside it, where a load at the race tilts it too: springs are about the bushing's own middle.
+    for along in ["0 mm", "12 mm"] {
+        let tilted = |method: &str| {
+            let ends = format!("to = \"outer_race\"\nfrom_at = \"{along}\"\nto_at = \"{along}\"\n");
+            let mut of = changed(method, COARSE, ("to = \"outer_race\"\n", &ends));
+            let outer = of.bearings[0].scene.dynamics.outer.as_mut().unwrap();
+            outer.drives[3] = Drive::Load(Profile::Constant(0.5));
+            let made = Made::of(&of, 4e-5);
+            let session = made.run();
+            ["outer_tilt_y", "mount_moment_y"].map(|name| column(&session, name)[0])
+        };
+        let [reduced, implicit] = ["reduced", "implicit"].map(tilted);
+        // The bearing, whose inner race does not tilt, takes the rest of 0.5 N·m.
+        assert!(reduced[1] < -0.05, "{along}: {reduced:?}");
+        assert!(
+            (implicit[1] / reduced[1] - 1.0).abs() <= 0.03,
+            "{along}: {implicit:?} {reduced:?}"
+        );
+        assert!(
+            (implicit[0] / reduced[0] - 1.0).abs() <= 0.03,
+            "{along}: {implicit:?} {reduced:?}"
+        );
+    }
 }
 
 /// The bodies of the sleeves have the mass of the nodes that they carry: nothing is lost or had twice.

@@ -511,3 +511,26 @@ fn every_spring_is_counted() {
     housed.forget_ran();
     assert_eq!(housed.ran().seats[0].of(Stage::BoreFriction), 0);
 }
+
+/// A race so light about its diameters that its tilt decides: springs of the friction hold it with what they are worth across the
+/// bore beside what the contact holds along it, and windows are as much shorter. One whose speed is given is not held about its axis.
+#[test]
+fn windows_know_what_friction_holds_tilts_with() {
+    let (_, nodes) = rigid();
+    let window = |friction| {
+        let mut turning = alone([UNLOADED; 5], Rotation::Speed(Profile::ZERO));
+        turning.bodies[0].driven_mut().unwrap().inertia.transverse = 1e-6;
+        // Steps of the solid are far shorter than windows: these are of so many.
+        in_bore(turning, rigid(), friction, &rated(0.02, 1.0, 1e-6)).window
+    };
+    let sum = |axis: usize| -> f64 {
+        nodes.iter().map(|node| STIFFNESS * node.area * node.place[axis] * node.place[axis]).sum()
+    };
+    let (along, across) = (sum(0), f64::max(sum(1), sum(2)));
+    for (friction, stiffness) in [(None, along), (Some(LAW), along + across)] {
+        let longest = (1e-6 / stiffness).sqrt();
+        let found = window(friction);
+        // Of whole steps.
+        assert!(found <= longest && found >= 0.9 * longest, "{friction:?}: {found:e} {longest:e}");
+    }
+}

@@ -358,6 +358,27 @@ fn nodes_out_of_reach_are_not_tested_and_not_missed() {
     assert_eq!(near + far, only(&some).seat.nodes.len());
 }
 
+/// A housing that comes to a race at rest is met by it, however few nodes are tested: what nodes have moved counts in the reach.
+#[test]
+fn nodes_that_come_to_a_race_at_rest_are_not_missed() {
+    let run = |reach| {
+        let (mut model, nodes) = housing(false, 0.0);
+        // 30 µm in 1 ms.
+        model.problem.gravity = [0.0, 0.0, 60.0];
+        let seat = Seat { radius: Profile::Constant(RADIUS - 30e-6), ..seat(nodes, reach) };
+        let mut housed = joined(mounted([0.0; 5]), model, seat, &options()).unwrap();
+        while housed.time() < 1.5e-3 {
+            housed.advance().unwrap();
+        }
+        housed
+    };
+    let (all, some) = (run(f64::INFINITY), run(10e-6));
+    assert!(Vector3::from(only(&all).impulse).norm() > 0.0, "they have met");
+    assert_eq!(bits(&all.simulation.state), bits(&some.simulation.state));
+    assert_eq!(all.solids[0].solid.displacement, some.solids[0].solid.displacement);
+    assert!(only(&some).tested < only(&all).tested);
+}
+
 /// An interference that grows in does its work at the time of the contact, half a step of the housing ahead.
 #[test]
 fn the_work_of_a_growing_fit_is_that_of_the_present_contact() {

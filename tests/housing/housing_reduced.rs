@@ -198,6 +198,42 @@ fn shapes_are_orthogonal_under_mass_and_stiffness() {
     for (found, own) in found.iter().flatten().zip(own.iter().flatten()) {
         assert!((found - own).abs() <= 1e-6 * largest, "{found:e} {own:e}");
     }
+    // So is how far they move the bore outwards.
+    let bore = &housing.bore;
+    let largest = bore.own.iter().fold(0.0f64, |most, u| most.max(u.abs()));
+    for (found, own) in reduction.own().iter().zip(&bore.own) {
+        assert!((found - own).abs() <= 1e-6 * largest, "{found:e} {own:e}");
+    }
+}
+
+/// A ball between its races by Hertz: springs 1.5 K δ½ on either side, under five times the mean load and what an
+/// interference presses it with. A clearance presses nothing.
+#[test]
+fn the_frequency_of_a_ball_knows_load_and_interference() {
+    let problem = bearing(table_4_1(0.0), [0.0; 5], 0.0);
+    let found = |clearance: f64, force: f64| {
+        let mut bearing = problem.assembly().bearings[0].clone();
+        bearing.geometry.radial_clearance = clearance;
+        reduced_start::ball_frequency(&bearing, force)
+    };
+    let [inner, outer] = [problem.inner_contact.stiffness, problem.outer_contact.stiffness];
+    let expected = |load: f64| {
+        let slope = |k: f64| 1.5 * (k * k * load).cbrt();
+        ((slope(inner) + slope(outer)) / problem.ball.mass).sqrt() / std::f64::consts::TAU
+    };
+    // δ = δ_i + δ_o of equal loads: F = (δ/(K_i^−⅔ + K_o^−⅔))^1.5.
+    let soft = |k: f64| (1.0 / (k * k)).cbrt();
+    let pressed = (8e-6 / (soft(inner) + soft(outer))).powf(1.5);
+    let carried = 5.0 * 250.0 / 8.0;
+    for (clearance, force, load) in [
+        (0.0, 250.0, carried),
+        (8e-6, 250.0, carried),
+        (-8e-6, 0.0, pressed),
+        (-8e-6, 250.0, pressed + carried),
+    ] {
+        let [found, expected] = [found(clearance, force), expected(load)];
+        assert!((found / expected - 1.0).abs() <= 1e-12, "{clearance} {force}: {found} {expected}");
+    }
 }
 
 #[test]

@@ -193,3 +193,27 @@ fn strong_dashpots_do_not_make_energy() {
     let left = ended.series().unwrap().column("energy_coupled_residual").unwrap().to_vec();
     assert!(left.iter().all(|left| left.abs() <= 1e-6), "{left:?}");
 }
+
+/// A watched section is told where it is at the bodies' time: midway between where its nodes are, half a step later, and where
+/// they were a step before that.
+#[test]
+fn a_watched_section_is_told_at_the_time_of_its_row() {
+    let session = ended(session(&changed(&[]), 0.1e-3, true));
+    let part = &exchange(&session).solids[0];
+    let (solid, shaft) = (&part.solid, part.shaft.as_ref().unwrap());
+    let three = |of: [f64; 4]| [of[0], of[1], of[2]];
+    let rate = |node: u32| three(solid.rates()[node as usize]);
+    let place = |steps: f64| {
+        let at = |node: u32| {
+            let now = three(solid.displacement[node as usize]);
+            add_scaled(now, -steps * solid.step_size, rate(node))
+        };
+        shaft.watched[0].1.place(at, rate).centre
+    };
+    let (later, earlier) = (place(0.0), place(1.0));
+    let centre = shaft.watched_centres(solid).next().unwrap();
+    let step = norm(sub(later, earlier));
+    let off = norm(sub(centre, scale(add(later, earlier), 0.5)));
+    // What the section turns by in half a step, 3e-5, of the 30 µm that its area's centre may stand beside the axis.
+    assert!(step > 1e-12 && off <= 1e-2 * step, "{off:e} of {step:e}");
+}

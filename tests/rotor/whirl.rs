@@ -259,3 +259,23 @@ fn few_natural_motions_are_enough() {
         assert!(error.abs() <= 1e-10, "{} {error:e}", all.frequency());
     }
 }
+
+/// However far apart the speeds are, no motion is on two lines.
+#[test]
+fn no_motion_is_on_two_lines_of_the_campbell_diagram() {
+    let mut rotor = overhung();
+    // Two discs, whose shapes change places as they spin.
+    rotor.beam.discs.push(BeamDisc { at: 0.5 * LENGTH, ..DISC });
+    let model = RotorModel::new(&rotor).unwrap();
+    for top in [200.0, 1000.0, 3000.0, 1e4, 3e4] {
+        let campbell = model.campbell(&[0.0, 0.5 * top, top], 6).unwrap();
+        for at in 0..3 {
+            for (index, line) in campbell.lines.iter().enumerate() {
+                for other in &campbell.lines[..index] {
+                    let alike = line[at].likeness(&other[at]);
+                    assert!(alike <= 1.0 - 1e-6, "{top} {at} {index}: {alike}");
+                }
+            }
+        }
+    }
+}

@@ -91,6 +91,8 @@ const CASES: &[Case] = &[
     ("frequency as a speed", "\"50 Hz\"", "\"50 rpm\"", 24, &["unit of rotation speed", "a frequency"]),
     ("amplitude and mean too large", r#"mean = "1 deg""#, r#"mean = "4.5 deg""#, 24,
         &["inner_race.tilt_y.tilt.amplitude", "reach together", "from -5 deg to 5 deg"]),
+    ("mean too low for its amplitude", r#"mean = "1 deg""#, r#"mean = "-4.5 deg""#, 24,
+        &["inner_race.tilt_y.tilt.amplitude", "reach together", "from -5 deg to 5 deg"]),
     ("displacement beyond a ball", r#"x = { displacement = "7 um" }"#, r#"x = { displacement = { ramp = ["0 mm", "7 mm"], duration = "1 s" } }"#, 21,
         &["inner_race.x.displacement", "more than a ball radius"]),
     ("profile where none may be", "unbalance = \"900 g mm\"", r#"unbalance = { ramp = ["0 g mm", "1 g mm"], duration = "1 s" }"#, 29,

@@ -214,8 +214,14 @@ damping = "5 1/s"
         let law = &joint.law;
         assert_eq!((law.stiffness[1], law.damping[2]), (1e9, 10.0));
         assert!((law.stiffness[4] / (1e9 * arm * arm) - 1.0).abs() <= 1e-12);
-        let of_mass = body.inertia().unwrap().mass;
-        assert_eq!(body.driven().unwrap().foundation_damping[1], 5.0 * of_mass);
+        // (2.7) brakes shifts by the mass, tilts by the inertia about a diameter.
+        let of = body.inertia().unwrap();
+        let braked = body.driven().unwrap().foundation_damping;
+        for (braked, inertia) in
+            braked.iter().zip([of.mass, of.mass, of.mass, of.transverse, of.transverse])
+        {
+            assert!((braked / (5.0 * inertia) - 1.0).abs() <= 1e-15, "{braked} {inertia}");
+        }
         assert!(matches!(body.driven().unwrap().rotation, Rotation::Speed(_)));
     }
     // A load's forces on the nodes of its section sum to it, about the axis.
@@ -251,4 +257,27 @@ fn a_body_may_be_a_mesh() {
     // The step's corners do not bend with it: 1 % of the first frequency.
     let [first, of_solid] = [&beam, &solid].map(|all| all.shafts[0].shapes.hertz()[0]);
     assert!(first != of_solid && (of_solid / first - 1.0).abs() <= 1e-2, "{of_solid} {first}");
+}
+
+/// A bearing that is put in the other way round stays so on elements: its races face the same way as on the reduced shaft.
+#[test]
+fn a_bearing_on_elements_faces_the_way_it_was_put_in() {
+    let text = r#"speed = "1000 rpm"
+[body.shaft.beam]
+start = "-200 mm"
+segments = [{ length = "400 mm", outer_diameter = "30 mm" }]
+mesh = { order = 1, method = "explicit" }
+"#;
+    let turned = BEARINGS.replace("[numerics]", "reversed = true\n[numerics]");
+    let document =
+        Document::read_str(&format!("{turned}{text}"), Format::Toml, "scene.toml").unwrap();
+    let Subject::Assembly(scene) = resolve_subject(&document).unwrap() else { panic!() };
+    let reduced = scene.assembly().unwrap();
+    let mut assembly = reduced.clone();
+    take_shafts(&scene, &mut assembly).unwrap();
+    let facing = |of: &Assembly| -> Vec<[bool; 2]> {
+        of.bearings.iter().map(|bearing| bearing.mounts.map(|mount| mount.reversed)).collect()
+    };
+    assert_eq!(facing(&assembly), [[false; 2], [true; 2]]);
+    assert_eq!(facing(&assembly), facing(&reduced));
 }
