@@ -48,8 +48,6 @@ pub struct HousingSettings {
     pub window_phase: f64,
     /// Natural shapes of a reduced housing up to this frequency, Hz; `None`: by what the bearing pushes with.
     pub modes_to: Option<f64>,
-    /// Time between files of fields in a run, s; `None`: at its end only.
-    pub fields_interval: Option<f64>,
     pub defaults_used: Vec<DefaultUsed>,
 }
 

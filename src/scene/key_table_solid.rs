@@ -190,8 +190,8 @@ pub(super) const KEYS: &[Key] = &[
 
     Key::new("numerics.method", Kind::Choice(METHODS), Default { value: "central-differences", reason: "one force evaluation a step" },
         "Steps of a solid: order 2, or the source's classical Runge-Kutta. 0.8 of the stability limit unless `step` or `step_fraction` is given; a step beyond the limit is refused."),
-    Key::new("numerics.fields_interval", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("a twentieth of the run"),
-        "Time from one file of fields of a solid to the next, rounded to whole rows.").example_of("0.1 ms"),
+    Key::new("numerics.fields_interval", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("a solid by itself: a twentieth of the run; housings and shafts in elements: at the end alone"),
+        "Time from one file of fields of a solid, a housing or a shaft in elements to the next, rounded to whole rows.").example_of("0.1 ms"),
 ];
 
 /// Tables in the order of the reference.

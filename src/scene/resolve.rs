@@ -20,6 +20,7 @@ use crate::solver::statics::{COORDINATE_NAMES, Condition};
 /// The first key, in a fixed order, that is missing or contradicts others.
 pub fn resolve(document: &Document) -> Result<Scene, SceneError> {
     resolve_solid::refuse_solid(document)?;
+    resolve_solid::refuse_fields(document)?;
     resolve_bearing(document)
 }
 

@@ -10,10 +10,11 @@ use crate::scene::error::{Problem, SceneError};
 use crate::scene::housing::HousingMethod;
 use crate::scene::key_table_assembly::OWN_RACES;
 use crate::scene::keys;
-use crate::scene::resolve::{Reader, resolve, text};
+use crate::scene::resolve::{Reader, resolve_bearing, text};
 use crate::scene::resolve_dynamics::{check_inertia, foundation, rotating_load, rotation};
 use crate::scene::resolve_housing::in_housing;
 use crate::scene::resolve_shaft::{beam, refuse_places_off_shafts, refuse_springs_on_elements};
+use crate::scene::resolve_solid::{refuse_fields, refuse_solid};
 use crate::scene::resolve_spring::spring;
 use crate::scene::resolved::{DefaultUsed, Scene};
 use crate::scene::scopes::no_such;
@@ -67,6 +68,9 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
     let scene = AssemblyScene { bearings, bodies: resolved, springs, defaults_used };
     refuse_free_bodies(document, &scene)?;
     refuse_springs_on_elements(document, &scene)?;
+    if scene.housing_method().is_none() && !scene.has_shafts_in_elements() {
+        refuse_fields(document)?;
+    }
     if scene.housing_method() == Some(HousingMethod::QuasiStatic) {
         refuse_inertia(document, &scene)?;
     }
@@ -195,7 +199,10 @@ fn bearing(
     }
     let (mut scene, mut housing) = match scoped.first_below("housing") {
         Some(_) => in_housing(&scoped)?,
-        None => (resolve(&scoped)?, None),
+        None => {
+            refuse_solid(&scoped)?;
+            (resolve_bearing(&scoped)?, None)
+        }
     };
     if let (Some(body), Some(_)) = (on[1], &housing) {
         let reason = format!("the outer race sits on body.{}, not in a bore", bodies[body]);

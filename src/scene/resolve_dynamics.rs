@@ -368,7 +368,15 @@ fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
         }
         _ => ChannelGroup::DEFAULT.to_vec(),
     };
-    Ok(Some(RunSettings { options, by_plan, end, output_interval, window_start, channels }))
+    Ok(Some(RunSettings {
+        options,
+        by_plan,
+        end,
+        output_interval,
+        fields_interval: within(reader, "numerics.fields_interval", end)?,
+        window_start,
+        channels,
+    }))
 }
 
 /// Energy that error control may lose, as a part of the energy turned over: sound runs at an accuracy of

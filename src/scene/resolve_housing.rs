@@ -256,20 +256,6 @@ fn settings(
             "leave it out, or write method = \"reduced\"",
         );
     }
-    let fields_interval = reader.given_number("numerics.fields_interval");
-    if let (Some(interval), Some(end)) = (fields_interval, end)
-        && interval > end
-    {
-        let problem = Problem::WrongTime {
-            value: interval,
-            relation: "after",
-            other_name: "the end of the run",
-            other: end,
-            allowed: "up to",
-            advice: "check the units of both",
-        };
-        return Err(document.error("numerics.fields_interval", problem));
-    }
     Ok(HousingSettings {
         from_equilibrium,
         method,
@@ -283,7 +269,6 @@ fn settings(
         step_fraction,
         window_phase,
         modes_to,
-        fields_interval,
         defaults_used: Vec::new(),
     })
 }

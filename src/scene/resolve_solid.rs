@@ -61,8 +61,7 @@ pub fn resolve_subject(document: &Document) -> Result<Subject, SceneError> {
 
 /// What takes a bearing has no use for a solid, and for what belongs to one.
 pub(crate) fn refuse_solid(document: &Document) -> Result<(), SceneError> {
-    const OF_A_SOLID: [&str; 5] =
-        ["housing", "solid", "modes", "numerics.method", "numerics.fields_interval"];
+    const OF_A_SOLID: [&str; 4] = ["housing", "solid", "modes", "numerics.method"];
     let Some(key) = OF_A_SOLID.iter().find_map(|part| document.first_below(part)) else {
         return Ok(());
     };
@@ -76,6 +75,16 @@ pub(crate) fn refuse_solid(document: &Document) -> Result<(), SceneError> {
         ("only a solid has it, and the scene holds none", "leave it out".to_string())
     };
     Err(document.error(key, Problem::NotApplicable { reason, advice }))
+}
+
+/// Where nothing has elements there are no fields.
+pub(crate) fn refuse_fields(document: &Document) -> Result<(), SceneError> {
+    let key = "numerics.fields_interval";
+    if document.value(key).is_none() {
+        return Ok(());
+    }
+    let reason = "only solids and shafts in elements have fields, and the scene holds none";
+    Err(document.error(key, Problem::NotApplicable { reason, advice: "leave it out".to_string() }))
 }
 
 fn solid_scene(document: &Document) -> Result<SolidScene, SceneError> {

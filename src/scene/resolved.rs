@@ -115,6 +115,8 @@ pub struct RunSettings {
     pub end: f64,
     /// Time from one written row to the next, s.
     pub output_interval: f64,
+    /// Time from one file of fields to the next, s; `None`: at the end alone.
+    pub fields_interval: Option<f64>,
     /// Time from which means and spectra are taken, s.
     pub window_start: f64,
     /// Groups of columns to write.

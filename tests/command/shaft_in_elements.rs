@@ -15,7 +15,9 @@ fn scene(end: &str) -> String {
 #[test]
 fn an_interrupted_run_ends_with_the_same_bytes() {
     let place = Place::new();
-    let path = place.scene("scene.toml", &scene("3 ms"));
+    let with_fields =
+        |end: &str| scene(end).replace("[output]", "fields_interval = \"1 ms\"\n\n[output]");
+    let path = place.scene("scene.toml", &with_fields("3 ms"));
     let (whole, parts) = (place.path("whole"), place.path("parts"));
     let state = interrupted(into_folder("run", &path, &parts, &["--save-every", "1"]), 150, &parts);
     assert_eq!(state["exchange"]["shafts"][0].as_array().unwrap().len(), 5, "{state}");
@@ -24,7 +26,9 @@ fn an_interrupted_run_ends_with_the_same_bytes() {
     let said = succeed(into_folder("run", &path, &whole, &[]));
     assert!(said.contains("steps of the shaft"), "{said}");
     assert_same_results(&whole, &parts);
-    assert!(whole.join("fields/shaft_000000.vtu").is_file() && whole.join("fields.pvd").is_file());
+    // At the start and every millisecond.
+    assert_eq!(fs::read_dir(whole.join("fields")).unwrap().count(), 4);
+    assert!(whole.join("fields/shaft_000003.vtu").is_file() && whole.join("fields.pvd").is_file());
     let columns = fs::read_to_string(whole.join("series.csv")).unwrap();
     let head = columns.lines().next().unwrap();
     for name in [
@@ -36,7 +40,7 @@ fn an_interrupted_run_ends_with_the_same_bytes() {
         assert!(head.split(',').any(|column| column == name), "{name}: {head}");
     }
     // Another penalty is another scene; a state without its shaft is none.
-    let other = scene("4 ms")
+    let other = with_fields("4 ms")
         .replace("method = \"explicit\"", "method = \"explicit\", race_stiffness = \"1e9 N/m\"");
     let other = place.scene("other.toml", &other);
     let output = into_folder("run", &other, &whole, &["--resume"]).output().unwrap();
@@ -44,7 +48,7 @@ fn an_interrupted_run_ends_with_the_same_bytes() {
     let mut state = json(whole.join("state.json"));
     state["exchange"].as_object_mut().unwrap().remove("shafts");
     fs::write(whole.join("state.json"), state.to_string()).unwrap();
-    let longer = place.scene("longer.toml", &scene("4 ms"));
+    let longer = place.scene("longer.toml", &with_fields("4 ms"));
     let output = into_folder("run", &longer, &whole, &["--resume"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("lacks a part"), "{}", stderr(&output));

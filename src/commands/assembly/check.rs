@@ -190,8 +190,8 @@ fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, Str
         said.extend(bodies(&one.scene));
         said.extend(turning_races(scene).map(|said| ("note", said)));
     }
-    if let Some(housing) = housings.first() {
-        let fields = match housing.scene.housing.fields_interval {
+    if !housings.is_empty() || scene.has_shafts_in_elements() {
+        let fields = match run.fields_interval {
             Some(interval) => format!("every {interval} s"),
             None => "at the end".into(),
         };

@@ -213,7 +213,7 @@ pub fn numerics(
         }),
         _ => echo_run::numerics(run)?,
     };
-    if let Some(interval) = housing.and_then(|housing| housing.fields_interval) {
+    if let Some(interval) = run.fields_interval {
         echo["fields_interval"] = quantity("fields_interval", interval, "s")?;
     }
     Ok(echo)

@@ -192,11 +192,8 @@ impl<'s> Prepared<'s> {
     /// What the scene asks of the run, with the integrator that the plan chooses for a bearing.
     pub fn request(&self, kept: Option<&StateFile>) -> Fallible<(RunRequest, Option<Choice>)> {
         Ok(match self {
-            Prepared::Bearings { lists, settings, assembly, housings, way, .. } => {
+            Prepared::Bearings { lists, settings, assembly, way, .. } => {
                 let mut request = request(lists.scene.common(), settings);
-                if let Some(first) = housings.first() {
-                    request.fields_interval = first.scene.housing.fields_interval;
-                }
                 match way {
                     Way::Rigid => planned(request, settings, assembly, kept),
                     Way::Reduced(_) => {
@@ -386,7 +383,7 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
         options: settings.options,
         end: settings.end,
         output_interval: settings.output_interval,
-        fields_interval: None,
+        fields_interval: settings.fields_interval,
         channels,
     }
 }
