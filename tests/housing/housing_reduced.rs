@@ -30,9 +30,8 @@ use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreSearch, Fit, RaceLoad};
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
 use bearing_dynamics::solver::housing::housed::race_under_load;
-use bearing_dynamics::solver::housing::reduce::{
-    ReduceError, ReduceOptions, Reduction, pressed, reduce,
-};
+use bearing_dynamics::solver::housing::presses::{Presses, pressed};
+use bearing_dynamics::solver::housing::reduce::{ReduceError, ReduceOptions, Reduction, reduce};
 use bearing_dynamics::solver::housing::reduced_start::{self, add_housing, put_in_equilibrium};
 use bearing_dynamics::solver::plan::solid::SolidSteps;
 use bearing_dynamics::solver::plan::tally::Tally;
@@ -268,7 +267,8 @@ fn what_is_left_out_of_the_compliance_is_what_is_said() {
     let housing = ring(YOUNG, |_| {}, 40e3, 0.0);
     let found = housing.reduction.compliance();
     let everyone: Vec<usize> = (0..housing.bore.nodes.len()).collect();
-    for load in pressed(&housing.bore, PENALTY(), &fit(0.0), 250.0).unwrap() {
+    let presses = pressed(&housing.bore, PENALTY(), &fit(0.0), 250.0).unwrap();
+    for load in presses.closed.into_iter().chain(presses.others) {
         let [whole, ours] = [&housing.bore.compliance, &found].map(|compliance| {
             let mut moves = vec![0.0; load.len()];
             compliance.add_product(&everyone, &load, &mut moves);
@@ -285,7 +285,7 @@ fn frequencies_that_are_none_and_too_many_shapes_are_refused() {
     let bore = condense(&model, &bore_of(&mesh), &reach()).unwrap();
     for modes_to in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let options = ReduceOptions { modes_to, left_out: 1e-3 };
-        let refused = reduce(&model, &bore, PENALTY(), &[], &options);
+        let refused = reduce(&model, &bore, PENALTY(), &Presses::default(), &options);
         assert!(matches!(refused, Err(ReduceError::Frequency { .. })), "{modes_to}");
     }
     // No natural shape below: all is static answers.

@@ -12,9 +12,8 @@ use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreState;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
-use bearing_dynamics::solver::housing::reduce::{
-    LEFT_OUT, ReduceOptions, Reduction, pressed, reduce,
-};
+use bearing_dynamics::solver::housing::presses::pressed;
+use bearing_dynamics::solver::housing::reduce::{LEFT_OUT, ReduceOptions, Reduction, reduce};
 use bearing_dynamics::solver::housing::reduced_start::{
     Housing, add_housing, ball_frequency, put_in_equilibrium,
 };

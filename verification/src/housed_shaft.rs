@@ -14,7 +14,8 @@ use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
 use bearing_dynamics::solver::housing::course::{CourseProblem, CourseSeat};
 use bearing_dynamics::solver::housing::course_search::CourseSearch;
 use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, SolidPart};
-use bearing_dynamics::solver::housing::reduce::{LEFT_OUT, ReduceOptions, pressed, reduce};
+use bearing_dynamics::solver::housing::presses::pressed;
+use bearing_dynamics::solver::housing::reduce::{LEFT_OUT, ReduceOptions, reduce};
 use bearing_dynamics::solver::housing::reduced_start::{
     Housing as Start0, add_housing, put_in_equilibrium,
 };

@@ -15,8 +15,9 @@ use bearing_dynamics::solver::dynamics::assembly::{Assembly, Bearing};
 use bearing_dynamics::solver::dynamics::run::Start;
 use bearing_dynamics::solver::housing::bore_equilibrium::Fit;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::presses::pressed;
 use bearing_dynamics::solver::housing::reduce::{
-    CutOff, LEFT_OUT, ReduceOptions, Reduction, pressed, reduce,
+    CutOff, LEFT_OUT, ReduceOptions, Reduction, reduce,
 };
 use bearing_dynamics::solver::housing::reduced_start::{
     self, add_housing, ball_frequency, put_in_equilibrium,

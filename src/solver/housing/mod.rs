@@ -24,6 +24,7 @@ mod exchange_start;
 mod exchange_window;
 pub mod housed;
 pub mod inertia;
+pub mod presses;
 pub mod quasi_static;
 pub mod reduce;
 pub mod reduced_start;

@@ -8,15 +8,14 @@
 //! out is diagonal, free of coupled masses, and statically exact for every f_j. Interface shapes with fixed-interface modes
 //! (Craig and Bampton) span no more, and would need an interface of few coordinates first.
 //!
-//! Patterns are combinations of loads that a race puts on its bore in all directions ([`pressed`]), the principal ones by
+//! Patterns are combinations of loads that a race puts on its bore in all directions ([`super::presses::pressed`]), the principal ones by
 //! the compliance that natural shapes leave. So many are kept that under none of these loads more than
 //! a given part of the compliance of bore and contact is left out. The masses are the lumped ones, as of explicit steps.
 
-use super::bore_equilibrium::{BoreSearch, Fit, RaceLoad};
-use super::condensed::{BoreNode, CondensedBore, lever, rim};
-use super::housed::race_under_load;
+use super::condensed::{CondensedBore, rim};
+use super::presses::{NOTHING_NEW, Presses, patterns};
 use crate::ch2_housing::bore_contact::Penalty;
-use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot};
+use crate::kinematics::vec3::{Vec3, add_scaled, dot};
 use crate::solver::dense::DenseSymmetric;
 use crate::solver::dynamics::reduced_solid::{ModalLoad, ReducedSolid, Surface, SurfaceNode};
 use crate::solver::dynamics::seat::Seat;
@@ -26,7 +25,6 @@ use crate::solver::profile::Profile;
 use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::modes::{Mode, ModeError, ModeOptions, modes_over};
 use crate::solver::solid::tangent::MassMatrix;
-use crate::solver::statics::StaticsError;
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 use std::f64::consts::TAU;
 use thiserror::Error;
@@ -221,60 +219,14 @@ pub fn natural_shapes(
     }
 }
 
-/// Directions in which [`pressed`] presses: patches of contact move on by a part of their width from one to the next.
-const DIRECTIONS: usize = 48;
-
-/// Where along the race, over its width, [`pressed`] presses: in its middle, as a race does that tilts a little, and with a
-/// moment that lifts one end, as a shaft that bends has it.
-const LEVERS: [f64; 5] = [0.0, -0.25, 0.25, -1.0, 1.0];
-
-/// Loads on the bore's nodes (N) of a race pressed into it by `force` (N) in directions all round, with moments and without, and
-/// what they differ by from those of the fit alone: what compliance is measured under. Of a tight fit the differences are what moves
-/// the race. Besides them those of a race that shifts, tilts and grows in a bore that touches all round.
-///
-/// # Errors
-/// A bore that does not hold the race.
-pub fn pressed(
-    bore: &CondensedBore,
-    penalty: Penalty,
-    fit: &Fit,
-    force: f64,
-) -> Result<Vec<Vec<f64>>, StaticsError> {
-    let mut search = BoreSearch::new(bore, penalty);
-    let alone = race_under_load(&mut search, fit, &RaceLoad::default())?.loads;
-    let mut all = Vec::with_capacity(2 * LEVERS.len() * DIRECTIONS + 5);
-    let closed = |of: &dyn Fn(&BoreNode) -> f64| -> Vec<f64> {
-        bore.nodes.iter().map(|node| penalty.of_node(node.area) * of(node)).collect()
-    };
-    all.extend((0..4).map(|axis| closed(&|node| lever(node)[axis])));
-    all.push(closed(&|_| 1.0));
-    for i in 0..DIRECTIONS {
-        let (sin, cos) = libm::sincos(TAU * i as f64 / DIRECTIONS as f64);
-        let force = [0.0, force * cos, force * sin];
-        for lever in LEVERS {
-            let moment = cross([lever * bore.reach.width, 0.0, 0.0], force);
-            let found = race_under_load(&mut search, fit, &RaceLoad { force, moment });
-            let loads = match found {
-                Ok(state) => state.loads,
-                // A race on its rim may have no rest to rounding: its neighbours say what is new of it.
-                Err(_) if lever != 0.0 => continue,
-                Err(error) => return Err(error),
-            };
-            all.push(loads.iter().zip(&alone).map(|(p, alone)| p - alone).collect());
-            all.push(loads);
-        }
-    }
-    Ok(all)
-}
-
 /// A force on the solid and what its natural shapes leave of the static answer.
 struct Answer {
     forces: Vec<(u32, Vec3)>,
     shape: Vec<Vec3>,
 }
 
-/// Reduces `model`, condensed as `bore`, for contact of stiffness `penalty`; `loads` (N on the bore's nodes) are what
-/// compliance is measured under, see [`pressed`].
+/// Reduces `model`, condensed as `bore`, for contact of stiffness `penalty`, with answers to `loads`, see
+/// [`super::presses::pressed`].
 ///
 /// # Errors
 /// See [`ReduceError`].
@@ -282,7 +234,7 @@ pub fn reduce(
     model: &SolidModel,
     bore: &CondensedBore,
     penalty: Penalty,
-    loads: &[Vec<f64>],
+    loads: &Presses,
     options: &ReduceOptions,
 ) -> Result<Reduction, ReduceError> {
     let (modes, first_left_out) = natural_shapes(model, bore, options.modes_to)?;
@@ -385,75 +337,6 @@ fn own_loads(model: &SolidModel) -> Vec<(NodalForces, Option<Profile>)> {
     own.extend(loads);
     own
 }
-
-/// Patterns of force on the bore that get a static answer.
-struct Patterns {
-    vectors: Vec<Vec<f64>>,
-    left_out: f64,
-    by_patterns: f64,
-}
-
-/// As few combinations of `loads` as leave out no more than `tolerance` of the compliance under each of them: the
-/// principal ones of what natural shapes leave, each load by its whole compliance.
-fn patterns(
-    bore: &CondensedBore,
-    penalty: Penalty,
-    natural: &[(f64, Vec<Vec3>)],
-    loads: &[Vec<f64>],
-    tolerance: f64,
-    at_bore: impl Fn(&[Vec3]) -> Vec<f64>,
-) -> Patterns {
-    let everyone: Vec<usize> = (0..bore.nodes.len()).collect();
-    let shapes: Vec<(f64, Vec<f64>)> =
-        natural.iter().map(|(frequency, shape)| (*frequency, at_bore(shape))).collect();
-    let inner = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let (mut units, mut moves) = (Vec::new(), Vec::new());
-    for load in loads {
-        let mut moved = vec![0.0; load.len()];
-        bore.compliance.add_product(&everyone, load, &mut moved);
-        let springs = load.iter().zip(&bore.nodes).map(|(p, n)| p * p / penalty.of_node(n.area));
-        let whole = inner(load, &moved) + springs.sum::<f64>();
-        if whole <= 0.0 {
-            continue;
-        }
-        for (frequency, shape) in &shapes {
-            let share = inner(shape, load) / (frequency * frequency);
-            moved.iter_mut().zip(shape).for_each(|(to, along)| *to -= share * along);
-        }
-        let unit = 1.0 / whole.sqrt();
-        units.push(load.iter().map(|p| unit * p).collect::<Vec<f64>>());
-        moves.push(moved.iter().map(|u| unit * u).collect::<Vec<f64>>());
-    }
-    let size = units.len();
-    let gram = DMatrix::from_fn(size, size, |i, j| {
-        0.5 * (inner(&units[i], &moves[j]) + inner(&units[j], &moves[i]))
-    });
-    let mut left: Vec<f64> = (0..size).map(|i| gram[(i, i)].max(0.0)).collect();
-    let largest = |left: &[f64]| left.iter().fold(0.0f64, |most, of| most.max(*of));
-    let by_patterns = largest(&left);
-    let found = SymmetricEigen::new(gram);
-    let mut order: Vec<usize> = (0..size).collect();
-    order.sort_by(|a, b| found.eigenvalues[*b].total_cmp(&found.eigenvalues[*a]));
-    let mut vectors = Vec::new();
-    for k in order {
-        // Rounding has no pattern of its own.
-        if largest(&left) <= tolerance || found.eigenvalues[k] <= NOTHING_NEW {
-            break;
-        }
-        let shares = found.eigenvectors.column(k);
-        let mut pattern = vec![0.0; everyone.len()];
-        for ((share, unit), left) in shares.iter().zip(&units).zip(&mut left) {
-            pattern.iter_mut().zip(unit).for_each(|(to, p)| *to += share * p);
-            *left = (*left - found.eigenvalues[k] * share * share).max(0.0);
-        }
-        vectors.push(pattern);
-    }
-    let left_out = largest(&left);
-    Patterns { vectors, left_out, by_patterns: by_patterns - left_out }
-}
-
-/// Part of the largest energy below which a combination of answers is rounding of the others.
-const NOTHING_NEW: f64 = 1e-10;
 
 /// Frequencies (rad/s, ascending) and shapes of unit mass that the answers span.
 fn combine(answers: &[Answer], mass: &[f64]) -> Vec<(f64, Vec<Vec3>)> {

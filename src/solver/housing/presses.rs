@@ -1,0 +1,177 @@
+//! Patterns of force on a bore that a reduced housing answers to statically: what a race puts on it.
+
+use super::bore_equilibrium::{BoreSearch, Fit, RaceLoad};
+use super::condensed::{BoreNode, CondensedBore, lever};
+use super::housed::race_under_load;
+use crate::ch2_housing::bore_contact::Penalty;
+use crate::kinematics::vec3::{Vec3, cross};
+use crate::solver::statics::StaticsError;
+use nalgebra::{DMatrix, SymmetricEigen};
+use std::f64::consts::TAU;
+
+/// Directions in which [`pressed`] presses: patches of contact move on by a part of their width from one to the next.
+const DIRECTIONS: usize = 48;
+
+/// Where along the race, over its width, [`pressed`] presses: in its middle, as a race does that tilts a little, and with a
+/// moment that lifts one end, as a shaft that bends has it.
+const LEVERS: [f64; 5] = [0.0, -0.25, 0.25, -1.0, 1.0];
+
+/// Loads on the nodes of a bore, N: what its compliance is measured under.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Presses {
+    /// Of a race that shifts, tilts and grows where the bore touches it all round: these have answers of their own.
+    pub closed: Vec<Vec<f64>>,
+    pub others: Vec<Vec<f64>>,
+}
+
+/// Of a race pressed into the bore by `force` (N) in directions all round, with moments and without, and what they differ by from
+/// those of the fit alone. Of a tight fit the differences are what moves the race.
+///
+/// # Errors
+/// A bore that does not hold the race.
+pub fn pressed(
+    bore: &CondensedBore,
+    penalty: Penalty,
+    fit: &Fit,
+    force: f64,
+) -> Result<Presses, StaticsError> {
+    let mut search = BoreSearch::new(bore, penalty);
+    let alone = race_under_load(&mut search, fit, &RaceLoad::default())?.loads;
+    let closed = |of: &dyn Fn(&BoreNode) -> f64| -> Vec<f64> {
+        bore.nodes.iter().map(|node| penalty.of_node(node.area) * of(node)).collect()
+    };
+    let moved = (0..4).map(|axis| closed(&|node| lever(node)[axis]));
+    let closed = moved.chain([closed(&|_| 1.0)]).collect();
+    let mut others = Vec::with_capacity(2 * LEVERS.len() * DIRECTIONS);
+    for i in 0..DIRECTIONS {
+        let (sin, cos) = libm::sincos(TAU * i as f64 / DIRECTIONS as f64);
+        let force = [0.0, force * cos, force * sin];
+        for lever in LEVERS {
+            let moment = cross([lever * bore.reach.width, 0.0, 0.0], force);
+            let found = race_under_load(&mut search, fit, &RaceLoad { force, moment });
+            let loads = match found {
+                Ok(state) => state.loads,
+                // A race on its rim may have no rest to rounding: its neighbours say what is new of it.
+                Err(_) if lever != 0.0 => continue,
+                Err(error) => return Err(error),
+            };
+            others.push(loads.iter().zip(&alone).map(|(p, alone)| p - alone).collect());
+            others.push(loads);
+        }
+    }
+    Ok(Presses { closed, others })
+}
+
+/// Part of the largest energy below which a combination of answers is rounding of the others.
+pub(super) const NOTHING_NEW: f64 = 1e-10;
+
+/// Patterns of force on the bore that get a static answer.
+pub(super) struct Patterns {
+    pub vectors: Vec<Vec<f64>>,
+    pub left_out: f64,
+    pub by_patterns: f64,
+}
+
+/// A load and how it moves the bore's nodes beyond natural shapes, m.
+#[derive(Clone)]
+struct Pattern {
+    load: Vec<f64>,
+    moved: Vec<f64>,
+}
+
+fn inner(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl Pattern {
+    fn energy(&self) -> f64 {
+        inner(&self.load, &self.moved)
+    }
+
+    fn add_scaled(&mut self, factor: f64, other: &Pattern) {
+        self.load.iter_mut().zip(&other.load).for_each(|(to, p)| *to += factor * p);
+        self.moved.iter_mut().zip(&other.moved).for_each(|(to, u)| *to += factor * u);
+    }
+
+    /// Takes away what others, of unit energy, have of it.
+    fn beyond(mut self, others: &[Pattern]) -> Pattern {
+        for other in others {
+            self.add_scaled(-inner(&other.load, &self.moved), other);
+        }
+        self
+    }
+}
+
+/// Those of `loads` that are of a closed bore, and as few combinations of the others as leave out no more than `tolerance` of the
+/// compliance under each of them: the principal ones of what natural shapes and these leave, each load by its whole compliance.
+pub(super) fn patterns(
+    bore: &CondensedBore,
+    penalty: Penalty,
+    natural: &[(f64, Vec<Vec3>)],
+    loads: &Presses,
+    tolerance: f64,
+    at_bore: impl Fn(&[Vec3]) -> Vec<f64>,
+) -> Patterns {
+    let everyone: Vec<usize> = (0..bore.nodes.len()).collect();
+    let shapes: Vec<(f64, Vec<f64>)> =
+        natural.iter().map(|(frequency, shape)| (*frequency, at_bore(shape))).collect();
+    // Of unit compliance, contact included; none where nothing gives way.
+    let pattern = |load: &Vec<f64>| -> Option<Pattern> {
+        let mut moved = vec![0.0; load.len()];
+        bore.compliance.add_product(&everyone, load, &mut moved);
+        let springs = load.iter().zip(&bore.nodes).map(|(p, n)| p * p / penalty.of_node(n.area));
+        let whole = inner(load, &moved) + springs.sum::<f64>();
+        if whole <= 0.0 {
+            return None;
+        }
+        for (frequency, shape) in &shapes {
+            let share = inner(shape, load) / (frequency * frequency);
+            moved.iter_mut().zip(shape).for_each(|(to, along)| *to -= share * along);
+        }
+        let unit = 1.0 / whole.sqrt();
+        let of_unit = |of: &[f64]| of.iter().map(|p| unit * p).collect();
+        Some(Pattern { load: of_unit(load), moved: of_unit(&moved) })
+    };
+    let mut by_patterns = 0.0f64;
+    let mut kept: Vec<Pattern> = Vec::new();
+    for found in loads.closed.iter().filter_map(pattern) {
+        by_patterns = by_patterns.max(found.energy());
+        let mut new = found.beyond(&kept);
+        let energy = new.energy();
+        if energy > NOTHING_NEW {
+            let unit = 1.0 / energy.sqrt();
+            new.load.iter_mut().chain(&mut new.moved).for_each(|of| *of *= unit);
+            kept.push(new);
+        }
+    }
+    let mut rest = Vec::with_capacity(loads.others.len());
+    for found in loads.others.iter().filter_map(pattern) {
+        by_patterns = by_patterns.max(found.energy());
+        rest.push(found.beyond(&kept));
+    }
+    let size = rest.len();
+    let gram = DMatrix::from_fn(size, size, |i, j| {
+        0.5 * (inner(&rest[i].load, &rest[j].moved) + inner(&rest[j].load, &rest[i].moved))
+    });
+    let mut left: Vec<f64> = (0..size).map(|i| gram[(i, i)].max(0.0)).collect();
+    let largest = |left: &[f64]| left.iter().fold(0.0f64, |most, of| most.max(*of));
+    let found = SymmetricEigen::new(gram);
+    let mut order: Vec<usize> = (0..size).collect();
+    order.sort_by(|a, b| found.eigenvalues[*b].total_cmp(&found.eigenvalues[*a]));
+    let mut vectors: Vec<Vec<f64>> = kept.into_iter().map(|pattern| pattern.load).collect();
+    for k in order {
+        // Rounding has no pattern of its own.
+        if largest(&left) <= tolerance || found.eigenvalues[k] <= NOTHING_NEW {
+            break;
+        }
+        let shares = found.eigenvectors.column(k);
+        let mut pattern = vec![0.0; everyone.len()];
+        for ((share, rest), left) in shares.iter().zip(&rest).zip(&mut left) {
+            pattern.iter_mut().zip(&rest.load).for_each(|(to, p)| *to += share * p);
+            *left = (*left - found.eigenvalues[k] * share * share).max(0.0);
+        }
+        vectors.push(pattern);
+    }
+    let left_out = largest(&left);
+    Patterns { vectors, left_out, by_patterns: by_patterns - left_out }
+}
