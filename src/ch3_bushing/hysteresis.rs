@@ -132,4 +132,15 @@ mod tests {
         assert_eq!(of_loop(&[]), None);
         assert_eq!(of_loop(&[[1.0, 0.0], [0.0, 0.0]]), None);
     }
+
+    /// What is largest is so on either side: a lopsided loop the other way round has the same stiffness and damping.
+    #[test]
+    fn a_lopsided_loop_is_the_same_the_other_way_round() {
+        let points = [[0.0, 0.5], [1e-3, 2.0], [0.0, -0.5], [-3e-3, -9.0]];
+        let turned = points.map(|point| point.map(|x| -x));
+        let [found, other] = [&points, &turned].map(|points| of_loop(points).unwrap());
+        assert_eq!(found, other);
+        // 9 N over 3 mm.
+        assert!((found.dynamic_stiffness / 3e3 - 1.0).abs() <= 1e-14, "{found:?}");
+    }
 }

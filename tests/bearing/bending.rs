@@ -12,17 +12,19 @@ use bearing_dynamics::solver::dynamics::assembly::{Assembly, Mobility};
 use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::solver::dynamics::contacts::Driver;
 use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
+use bearing_dynamics::solver::dynamics::race;
 use bearing_dynamics::solver::dynamics::run::{Integrator, Simulation, Start, Stepping};
-use bearing_dynamics::solver::dynamics::shaft::Section;
+use bearing_dynamics::solver::dynamics::shaft::{ElasticShaft, Section, ShaftSteps};
 use bearing_dynamics::solver::dynamics::stability::jacobian;
 use bearing_dynamics::solver::dynamics::start;
 use bearing_dynamics::solver::dynamics::state::{SPIN, VELOCITY};
 use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::mount::Mount;
+use bearing_dynamics::solver::plan::tally::Tally;
 use bearing_dynamics::solver::plan::{Stage, Subject};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::rotor::beam::{BeamMatrices, STATION};
-use bearing_dynamics::solver::shaft_shapes::Kept;
+use bearing_dynamics::solver::shaft_shapes::{Kept, ShaftShapes};
 use dynamics::*;
 use nalgebra::{Complex, DMatrix, DVector, Vector3};
 
@@ -449,4 +451,29 @@ fn a_plan_counts_what_bending_does() {
         let mut items = items.filter(|item| item.stage == stage && item.subject == of);
         assert!(items.any(|item| item.does && item.cost == Some(each)), "{stage:?}");
     }
+}
+
+/// Stretching turns with the shaft and does not change as it turns: what damps it inside and outside add up.
+#[test]
+fn stretching_is_damped_inside_and_outside() {
+    let [frequency, gone, speed] = [3e3, 2e-6, 5e-3];
+    let [outside, inside] = [40.0, 700.0];
+    let shapes = ShaftShapes { stretch_frequencies: vec![frequency], ..ShaftShapes::default() };
+    let shaft = ElasticShaft {
+        shapes,
+        damping: outside,
+        internal_damping: inside,
+        ..ElasticShaft::default()
+    };
+    let body = race::fixed(&[0.0; 5]);
+    let mut rates = [0.0; 2];
+    let steps = ShaftSteps { loads: false, damping: true };
+    let entries = [gone, speed];
+    let mut ran = Tally::default();
+    let done = shaft.rates(steps, 0.0, 0.0, (&body, &entries), &mut rates, &mut ran);
+    let pushed = -frequency * frequency * gone - (outside + inside) * speed;
+    // Rounding.
+    assert!((rates[1] / pushed - 1.0).abs() <= 1e-14 && rates[0] == speed, "{rates:?} {pushed}");
+    let lost = -(outside + inside) * speed * speed;
+    assert!((done.damped / lost - 1.0).abs() <= 1e-14, "{done:?} {lost}");
 }

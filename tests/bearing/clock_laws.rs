@@ -140,7 +140,10 @@ fn given_steps_divide_the_way_to_a_corner_evenly_and_are_as_many_as_foretold() {
         // Ways between stops of so many steps and a bit.
         let corners =
             [INTERVAL + ratio.fract() * step, 3.0 * INTERVAL + 0.4 * step, 5.5 * INTERVAL];
-        let corners = corners.to_vec();
+        // And two within one row.
+        let mut corners = corners.to_vec();
+        corners.extend([4.31 * INTERVAL, 4.77 * INTERVAL]);
+        corners.sort_by(f64::total_cmp);
         let end = 6.0 * INTERVAL;
         let mut clock = Clock {
             end,

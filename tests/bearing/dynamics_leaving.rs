@@ -12,11 +12,12 @@ use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };
 use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{Layout, POSITION};
+use bearing_dynamics::solver::dynamics::state::{BodyState, Layout, POSITION};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::StaticsError;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
+use nalgebra::{UnitQuaternion, Vector3};
 
 /// The error that ends a run.
 fn ends(problem: DynamicProblem, stepping: Stepping, most: usize) -> SimulationError {
@@ -80,6 +81,25 @@ fn a_race_that_leaves_its_bearing_ends_the_run() {
         assert!(matches!(error, SimulationError::RaceLeft { way, .. } if way == named), "{error}");
         assert!(error.to_string().contains("the inner race has left the bearing at t = "));
     }
+}
+
+/// A race that lies askew has left its bearing where its pitch circle is out along the axis, wherever its centre is.
+#[test]
+fn a_race_that_tilts_out_of_its_bearing_ends_the_run() {
+    let problem = bearing(table_4_1(5e-6), [0.0; 5], 0.0);
+    let (pitch, tilt) = (problem.geometry.pitch_radius, 0.4f64);
+    let layout = Layout::new(8, false);
+    let mut state = start::nominal(&problem.assembly());
+    let mut body = BodyState::from_slice(&state[layout.inner()..]);
+    body.orientation = UnitQuaternion::from_scaled_axis(tilt * Vector3::y());
+    state[layout.inner()..layout.inner() + 13].copy_from_slice(&body.to_array());
+    let options = options(Integrator::RungeKutta, Stepping::Fixed(1e-12));
+    let mut simulation = Simulation::from_state(problem.clone(), options, state, 0.0).unwrap();
+    let error = simulation.step().unwrap_err();
+    let SimulationError::RaceLeft { way, distance, allowed, .. } = error else { panic!("{error}") };
+    assert_eq!((way, allowed), ("along its axis", race_limit(&problem.geometry)));
+    // A step of 1e-12 s moves nothing.
+    assert!((distance - pitch * tilt.sin()).abs() <= 1e-12, "{distance}");
 }
 
 /// What counts is how far the races are from each other, not where in the world they are.

@@ -11,7 +11,8 @@ use bearing_dynamics::solver::dynamics::model::{
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };
-use bearing_dynamics::solver::dynamics::state::{BodyState, SPIN, VELOCITY};
+use bearing_dynamics::solver::dynamics::start;
+use bearing_dynamics::solver::dynamics::state::{BodyState, Layout, SPIN, VELOCITY};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::statics::StaticsError;
 use common::table_4_1;
@@ -225,4 +226,28 @@ fn a_start_has_no_velocity_that_its_loads_do_not_give() {
     let start = simulation(&varying, 1e-6, Start::Equilibrium);
     let velocity = inner_state(&start).velocity;
     assert!(velocity[1].abs() > 1e-6 && velocity[2].abs() > 1e-6, "{velocity:?}");
+}
+
+/// Nothing slides at a nominal start, whichever races turn: at both contacts a ball's surface goes with that of the race.
+#[test]
+fn balls_start_rolling_on_both_races() {
+    for speeds in [[100.0, 0.0], [0.0, 60.0], [100.0, -60.0], [80.0, 50.0]] {
+        let mut problem = bearing(table_4_1(0.0), [0.0; 5], speeds[0]);
+        problem.outer = Some(race([0.0; 5], Rotation::Speed(Profile::Constant(speeds[1]))));
+        let state = start::nominal(&problem.assembly());
+        let layout = Layout::new(8, false);
+        let radius = problem.geometry.ball_radius;
+        for ball in 0..8 {
+            let body = layout.ball_state(&state, ball);
+            let at = Vector3::from(body.position);
+            let outward = at.normalize();
+            for (reach, speed) in [-radius, radius].into_iter().zip(speeds) {
+                let arm = outward * reach;
+                let of_ball = Vector3::from(body.velocity) + Vector3::from(body.spin).cross(&arm);
+                let of_race = Vector3::x().cross(&(at + arm)) * speed;
+                // Rounding of metres a second.
+                assert!((of_ball - of_race).norm() <= 1e-13, "{speeds:?}: {of_ball} {of_race}");
+            }
+        }
+    }
 }

@@ -308,6 +308,27 @@ fn shipped_scenes_run() {
     assert!(value(&summary["energy"]["largest_residual_part"]) <= 1e-4);
 }
 
+/// Inertia is judged where the load is largest, whenever that is and along whichever axis across.
+#[test]
+fn inertia_is_judged_under_the_largest_load() {
+    let place = Place::new();
+    let lowest = |axis: &str, load: &str| {
+        let run = "[numerics]\nend = \"2 ms\"\noutput_interval = \"0.5 ms\"\n";
+        let text = scene_text("fit.radial = \"2 um\"", run);
+        let text =
+            text.replace("z = { load = \"-250 N\" }", &format!("{axis} = {{ load = {load} }}"));
+        let (scene, out) = (place.scene("loaded.toml", &text), place.path("out"));
+        succeed(into_folder("run", &scene, &out, &["--fresh"]));
+        value(&json(out.join("summary.json"))["inertia"]["lowest_frequency"])
+    };
+    for axis in ["y", "z"] {
+        // Largest in the middle of the run, where one of 400 looks is.
+        let blow = lowest(axis, "{ half_sine = \"-250 N\", duration = \"2 ms\" }");
+        let held = lowest(axis, "\"-250 N\"");
+        assert!((blow / held - 1.0).abs() <= 1e-9, "{axis}: {blow} {held}");
+    }
+}
+
 /// Inertia changes much of a ripple and next to nothing of the displacement that it is on: judged is what is
 /// read, and a load that swings the race as far as it is displaced still gets its warning.
 #[test]

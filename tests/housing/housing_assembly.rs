@@ -17,7 +17,9 @@ use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, SeatLooks, course_inertia,
 };
 use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState, OUTER, lists, moving};
-use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate, housing_mass};
+use bearing_dynamics::solver::housing::inertia::{
+    InertiaEstimate, Mode, estimate, housing_mass, modes,
+};
 use bearing_dynamics::solver::housing::quasi_static::{Course, history};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::{Load, SolidModel};
@@ -444,6 +446,25 @@ fn inertia_along_a_circle_is_that_of_one_mass_on_a_spring() {
     // Damping takes the start's ringing before the corner adds to it.
     let damped = circle(0.1, 1e4, vec![0.05]);
     assert!(damped.bound < cornered.bound, "{damped:?}");
+    // So little that start and corner together are the most. Mass-proportional, of the housing's part p of what rings: by
+    // half of α p, as a swing on a dashpot.
+    let damping = 0.2;
+    let gently = circle(0.1, damping, vec![0.05]);
+    let left = (gently.bound - 2.0 * gently.steady - gently.largest_kink) / gently.start;
+    let bore = condensed(&RING, &COARSE, Order::Linear, 1e-2 * YOUNG);
+    let mut search = search(&bore);
+    let problem = bearing(loads([0.0, 2.5, 0.0, 0.0, 0.0]));
+    let state = search.solve(&problem, &fit(5e-6), [0.0; 3]).unwrap();
+    let steel = hollow_cylinder(32e-3, 35.5e-3, 20e-3, 7850.0);
+    let bodies = moving([steel; 2], [false, true, true, true, true]);
+    let found = modes(&state.stiffness, &bodies, &[housing_mass(search.bore(), OUTER)]);
+    let off = |mode: &Mode| (mode.square.sqrt() / TAU / gently.frequency - 1.0).abs();
+    let rings = found.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
+    assert!(off(rings) <= 1e-6 && rings.housings[0] > 0.0, "{rings:?} {gently:?}");
+    let decay = -left.ln() / 0.05;
+    let should = 0.5 * damping * rings.housings[0];
+    // Of a part in a thousand that is left out of 1, to rounding of 1e-13.
+    assert!((decay / should - 1.0).abs() <= 1e-6, "{decay} {should}");
 }
 
 /// Balls are where the shaft has rolled them, not where its present speed would have: a shaft that runs up has turned

@@ -31,7 +31,9 @@ use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreSearch, Fit
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
 use bearing_dynamics::solver::housing::housed::race_under_load;
 use bearing_dynamics::solver::housing::presses::{Presses, pressed};
-use bearing_dynamics::solver::housing::reduce::{ReduceError, ReduceOptions, Reduction, reduce};
+use bearing_dynamics::solver::housing::reduce::{
+    CutOff, ReduceError, ReduceOptions, Reduction, reduce,
+};
 use bearing_dynamics::solver::housing::reduced_start::{self, add_housing, put_in_equilibrium};
 use bearing_dynamics::solver::plan::solid::SolidSteps;
 use bearing_dynamics::solver::plan::tally::Tally;
@@ -42,6 +44,7 @@ use common::table_4_1;
 use dynamics::*;
 use housing_common::{BORE, COARSE, RING, WIDTH, YOUNG, bore_of, mesh_of, model_of, reach};
 use nalgebra::Complex;
+use std::f64::consts::TAU;
 
 const PENALTY: fn() -> Penalty = Penalty::default;
 
@@ -702,4 +705,30 @@ fn a_race_beside_its_seat_and_a_shape_that_is_no_number_end_the_run() {
     lost.solids[0].start[0] = f64::NAN;
     let error = Simulation::new(lost, options).err().expect("refused");
     assert!(error.to_string().contains("not finite"), "{error}");
+}
+
+/// A natural shape that is left out follows by its compliance alone; at a frequency it would swing by 1/(1 − (f/f₁)²) of
+/// that. What no shape has at all is another part.
+#[test]
+fn what_is_left_out_swings_by_its_own_compliance() {
+    let shape = CutOff {
+        natural: 3,
+        patterns: 5,
+        own: 0,
+        modes_to: 900.0,
+        lowest: 300.0,
+        first_left_out: 1000.0,
+        highest: 1e5,
+        static_left_out: 1e-6,
+        by_patterns: 0.02,
+        nodes: 72,
+    };
+    for frequency in [1.0, 100.0, 500.0] {
+        let (k, m) = (1.0, 1.0 / (TAU * shape.first_left_out).powi(2));
+        let w = TAU * frequency;
+        let grown = 1.0 / (k - m * w * w) - 1.0 / k;
+        let found = shape.dynamic_error(frequency);
+        // Rounding of a difference of a millionth.
+        assert!((found / (shape.by_patterns * grown) - 1.0).abs() <= 1e-9, "{frequency}: {found}");
+    }
 }

@@ -245,6 +245,16 @@ fn a_typed_input_deck() {
     assert_eq!(said, ["*ELASTIC was skipped (1 times)", "*MATERIAL was skipped (1 times)"]);
 }
 
+/// Lines behind the first are a material's constants at other temperatures.
+#[test]
+fn a_deck_has_the_constants_of_its_first_temperature() {
+    let constants = "210e9, 0.3, 20.\n180e9, 0.35, 400.\n*Density\n7850., 20.\n7700., 400.\n";
+    let text = DECK.replacen("210e9, 0.3\n", constants, 1);
+    let Loaded { materials, .. } = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap();
+    assert_eq!(materials.len(), 1);
+    assert_eq!((materials[0].elastic, materials[0].density), (Some([210e9, 0.3]), Some(7850.0)));
+}
+
 #[test]
 fn wrong_input_decks_are_placed() {
     let line =

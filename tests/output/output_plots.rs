@@ -4,10 +4,14 @@
 use crate::output_common;
 
 use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, BearingKind, Raceway};
+use bearing_dynamics::output::pictures::bearing::{Picture, draw};
 use bearing_dynamics::output::plots::load_zone::LoadZoneBall;
 use bearing_dynamics::output::plots::{
     Axis, Curve, LoadZone, PlotError, PolarPlot, Style, XyPlot, load_zone, polar, xy,
 };
+use bearing_dynamics::output::series::{Column, Series};
+use bearing_dynamics::output::table::RunTable;
+use ndarray::Array2;
 use output_common::solution;
 use std::path::Path;
 
@@ -281,4 +285,28 @@ fn input_that_cannot_be_drawn_is_refused() {
     let mut wrong = zone();
     wrong.balls.clear();
     assert!(matches!(load_zone(&wrong), Err(PlotError::NoBall)));
+}
+
+/// A ball that stays at one azimuth is drawn there in the plot of loads over azimuth: in the middle of a sector.
+#[test]
+fn loads_over_azimuth_are_drawn_where_the_ball_is() {
+    let columns = [("time", "s"), ("ball_1_angle", "deg"), ("ball_1_outer_load", "N")];
+    let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
+    let rows = [[0.0, 91.5, 100.0], [0.1, 91.5 - 360.0, 300.0], [0.2, 91.5 + 720.0, 200.0]];
+    let table = RunTable {
+        series: Series::new(columns, Array2::from(rows.to_vec())).unwrap(),
+        interval: 0.1,
+        window: 0..3,
+        bearings: vec![String::new()],
+        bodies: Vec::new(),
+    };
+    let drawn = draw(Picture::Polar, "A ball", &table).unwrap();
+    let [(file, found)] = &drawn[..] else { panic!("{drawn:?}") };
+    let there = Curve::new("ball on outer race", vec![[91.5f64.to_radians(), 200.0]]);
+    let expected = PolarPlot {
+        title: "A ball: normal load over ball azimuth".into(),
+        quantity: "mean normal load over 3 deg".into(),
+        ..polar_plot(vec![there])
+    };
+    assert_eq!((file.as_str(), found), ("polar.svg", &polar(&expected).unwrap()));
 }

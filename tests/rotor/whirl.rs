@@ -279,3 +279,22 @@ fn no_motion_is_on_two_lines_of_the_campbell_diagram() {
         }
     }
 }
+
+/// At a high speed the two slowest motions are backward; each is followed down to its own pair at rest, past the forward
+/// one of the first pair, which is slower there than the second.
+#[test]
+fn lines_that_cross_are_followed_to_rest() {
+    let mut rotor = overhung();
+    rotor.beam.discs.push(BeamDisc { at: 0.5 * LENGTH, ..DISC });
+    let model = RotorModel::new(&rotor).unwrap();
+    let pairs = model.whirls(0.0, 6).unwrap();
+    let speeds: Vec<f64> = (0..=100).map(|n| 100.0 * f64::from(n)).collect();
+    let campbell = model.campbell(&speeds, 2).unwrap();
+    for (index, line) in campbell.lines.iter().enumerate() {
+        assert!(line[1..].iter().all(|whirl| !whirl.is_forward()), "{index}");
+        let rest = pairs[2 * index].frequency();
+        // As near as the two motions of a pair at rest are to each other.
+        let miss = line[0].frequency() / rest - 1.0;
+        assert!(miss.abs() <= 1e-9, "{index}: {miss}");
+    }
+}

@@ -3,7 +3,9 @@
 use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
+use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::dynamics::{DynamicsError, dynamic_problem, run_options};
+use bearing_dynamics::scene::excitations::excitations;
 use bearing_dynamics::scene::keys::{self, Need};
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{self, CageInRun, Document, Format, RunPlot, Scene, Subject};
@@ -440,4 +442,20 @@ fn added_mass_adds_to_the_mass_alone() {
         let outer = |of: &DynamicProblem| of.outer.as_ref().map(|race| race.inertia);
         assert_eq!(outer(&plain), outer(&laden));
     }
+}
+
+/// A change drives as fast as it is, however it is written: a ramp, and a table of its two ends.
+#[test]
+fn a_table_drives_as_fast_as_the_ramp_that_it_draws() {
+    let of = |profile: &str| {
+        let scene = resolved(&document(&format!("[inner_race]\nz = {{ load = {profile} }}\n")));
+        excitations(&AssemblyScene::alone(scene))
+    };
+    let ramp = of(r#"{ ramp = ["0 N", "250 N"], start = "5 ms", duration = "0.1 s" }"#);
+    let table = of(r#"{ table = [["5 ms", "0 N"], ["105 ms", "250 N"], ["2 s", "250 N"]] }"#);
+    // Half a period of a swing up and down.
+    assert_eq!((ramp.len(), ramp[0].what.as_str()), (1, "inner_race.z"));
+    assert!((ramp[0].frequency - 5.0).abs() <= 1e-14, "{ramp:?}");
+    assert_eq!((table.len(), &table[0].what), (1, &ramp[0].what));
+    assert!((table[0].frequency / ramp[0].frequency - 1.0).abs() <= 1e-14, "{table:?}");
 }

@@ -5,7 +5,7 @@ use super::rubber_bodies::{
     scatter, static_stiffness, with_bulk,
 };
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
-use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
+use bearing_dynamics::ch2_housing::elastomer::maxwell::{Maxwell, curvature_error};
 use bearing_dynamics::ch2_housing::elastomer::{Elastomer, named};
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::ch3_bushing::hysteresis::{
@@ -13,6 +13,7 @@ use bearing_dynamics::ch3_bushing::hysteresis::{
 };
 use bearing_dynamics::elements::tet10::POINTS;
 use bearing_dynamics::elements::tet10_nodal::{at_corners, strains};
+use bearing_dynamics::kinematics::strain::{Sym3, double_dot};
 use bearing_dynamics::kinematics::vec3::{Vec3, cross};
 use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
 use bearing_dynamics::solver::profile::Profile;
@@ -432,6 +433,46 @@ fn adaptive_steps_keep_their_accuracy() {
         counts.push(count.accepted);
     }
     assert!(counts[1] > counts[0] && counts[0] <= 60, "{counts:?}");
+}
+
+/// Steps are as long as what they were asked allows and no longer, by the second differences of the stresses at their ends.
+#[test]
+fn no_step_is_longer_than_its_accuracy_allows() {
+    let material = rubber_of(network(100.0e6), &[Maxwell::new(0.7, 0.1).unwrap()]);
+    let profile = Profile::Harmonic { mean: 0.0, amplitude: 1e-3, frequency: 1.0, phase: 0.0 };
+    let (model, _) = bonded(material, [4, 2, 1], profile);
+    let elements = &model.problem.material.maxwell;
+    let volumes = || model.tets.iter().flat_map(|tet| tet.points.iter().map(|of| of.volume));
+    let mean = |stresses: &mut dyn Iterator<Item = Sym3>| -> f64 {
+        let squares = stresses.zip(volumes()).map(|(s, volume)| volume * double_dot(&s, &s));
+        (squares.sum::<f64>() / volumes().sum::<f64>()).sqrt()
+    };
+    let asked = 1e-4;
+    let options = StepOptions { stepping: Stepping::Accuracy(asked), ..Default::default() };
+    let mut seen: Vec<(f64, Vec<Sym3>)> = Vec::new();
+    let (mut scale, mut largest) = (0.0f64, 0.0f64);
+    RubberSolid::new(&model, options)
+        .unwrap()
+        .advance(1.0, |solid| {
+            let state = solid.state();
+            let total = state.deviatoric.iter().zip(&state.history);
+            let total = mean(&mut total.map(|(s, h)| std::array::from_fn(|i| s[i] + h[i])));
+            scale = scale.max(total);
+            if let [.., (t0, s0), (t1, s1)] = &seen[..] {
+                let step = state.time - t1;
+                let divided = |k: usize, i: usize| {
+                    let slope = (state.deviatoric[k][i] - s1[k][i]) / step;
+                    2.0 * (slope - (s1[k][i] - s0[k][i]) / (t1 - t0)) / (state.time - t0)
+                };
+                let bend = (0..s1.len()).map(|k| std::array::from_fn(|i| divided(k, i)));
+                let error = curvature_error(elements, step) * mean(&mut bend.into_iter());
+                largest = largest.max(error / (asked * scale));
+            }
+            seen.push((state.time, state.deviatoric.clone()));
+        })
+        .unwrap();
+    // Times of steps end a last digit before their corners.
+    assert!(seen.len() > 20 && largest > 0.5 && largest <= 1.0 + 1e-6, "{largest}, {}", seen.len());
 }
 
 /// Torsion is 4πμL/(1/a² − 1/b²) at any length; a quarter with mirrored or reversed planes is a quarter of the

@@ -14,7 +14,9 @@ use bearing_dynamics::solver::solid::tangent::{
 use bearing_dynamics::solver::sparse::dissection::nested_dissection;
 use bearing_dynamics::solver::sparse::graph::Graph;
 use bearing_dynamics::solver::sparse::separator::{Side, smallest_cuts};
-use bearing_dynamics::solver::sparse::{Cost, Entry, FactorError, Ordering, SymmetricMatrix, Task};
+use bearing_dynamics::solver::sparse::{
+    Cost, Entry, FactorError, Ordering, Speed, SymmetricMatrix, Task,
+};
 use solid_common::{cut_cubes, solid};
 use std::collections::BTreeSet;
 
@@ -293,4 +295,20 @@ fn a_pivot_that_is_not_positive_is_named() {
         let refused = unknowns.factor(&matrix).err();
         assert_eq!(refused, Some(FactorError::NotPositiveDefinite { pivot: bad }));
     }
+}
+
+/// A solution goes through the factors twice, forwards and back: it takes no less than to read so much, and no more than
+/// some times that.
+#[test]
+fn a_solution_reads_its_factors_twice() {
+    let model = block([4, 3, 2], Order::Quadratic);
+    let unknowns = Unknowns::new(&model);
+    let task = foretold::statics(&model, &unknowns).task;
+    // Products cost nothing.
+    let speed = Speed { operations: f64::INFINITY, bytes: 1e9 };
+    let seconds =
+        |passes: usize| Cost::new(&unknowns.elimination, Task { passes, ..task }).seconds(&speed);
+    let twice = 2.0 * 8.0 * unknowns.elimination.fill as f64 / speed.bytes;
+    let ratio = (seconds(3) - seconds(2)) / twice;
+    assert!((1.0..=4.0).contains(&ratio), "{ratio}");
 }
