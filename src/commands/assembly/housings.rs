@@ -230,39 +230,47 @@ fn start_of_steps(assembly: &mut Assembly, housings: &[Housing]) -> Fallible<Vec
 const LOOKS: usize = 64;
 const AFTER: f64 = 1.0;
 
-/// What presses races into bores at most at any time, so that a run that is extended keeps its housings, N.
+/// What presses and turns races in bores at most at any time, so that a run that is extended keeps its housings.
 pub struct Largest {
-    /// Across their axes on all bodies but races in bores: what can strike.
+    /// Across their axes on all bodies but races in bores: what can strike, N.
     pub on_bodies: f64,
-    /// With what comes through shafts that bend, their loads and unbalances.
+    /// With what is on races in bores themselves, and what comes through shafts that bend, their loads and unbalances, N.
     pub in_all: f64,
+    /// About axes across their own, on bodies, N·m.
+    pub moments: f64,
 }
 
 impl Largest {
     pub fn of(assembly: &Assembly, housings: &[Housing]) -> Largest {
         let in_bores: Vec<usize> =
             housings.iter().map(|of| assembly.bearings[of.bearing].mounts[1].body).collect();
-        let bodies = |t: f64| -> f64 {
+        let bodies = |t: f64, is_meant: &dyn Fn(usize) -> bool| -> [f64; 2] {
             let bodies = assembly.bodies.iter().enumerate();
             bodies
-                .filter(|(index, _)| !in_bores.contains(index))
+                .filter(|(index, _)| is_meant(*index))
                 .filter_map(|(_, body)| on_body(assembly, body, t))
-                .sum()
+                .fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]])
         };
+        let striking = |t: f64| bodies(t, &|index| !in_bores.contains(&index))[0];
         let all = |t: f64| -> f64 {
             let shafts = assembly.shafts.iter().map(|shaft| on_shaft(assembly, shaft, t));
-            shafts.fold(bodies(t), |sum, of| sum + of)
+            shafts.fold(bodies(t, &|_| true)[0], |sum, of| sum + of)
         };
-        Largest { on_bodies: largest(assembly, bodies), in_all: largest(assembly, all) }
+        Largest {
+            on_bodies: largest(assembly, striking),
+            in_all: largest(assembly, all),
+            moments: largest(assembly, |t| bodies(t, &|_| true)[1]),
+        }
     }
 }
 
-fn on_body(assembly: &Assembly, body: &Body, t: f64) -> Option<f64> {
+/// Force across its axis, N, and moment about axes across it, N·m.
+fn on_body(assembly: &Assembly, body: &Body, t: f64) -> Option<[f64; 2]> {
     let loads = conditions(assembly, body, body.driven()?, t).map(|condition| match condition {
         Condition::Load(load) => load,
         Condition::Displacement(_) => 0.0,
     });
-    Some(loads[1].hypot(loads[2]))
+    Some([loads[1].hypot(loads[2]), loads[3].hypot(loads[4])])
 }
 
 fn on_shaft(assembly: &Assembly, shaft: &ElasticShaft, t: f64) -> f64 {

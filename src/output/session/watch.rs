@@ -4,6 +4,10 @@
 /// body at rest: what a step leaves of it is much of the little that has been turned over.
 const MOST_ROWS_OPEN: u32 = 5;
 
+/// Energy that is nothing to any body of a scene, J: some hundred times what heat gives one atom at room temperature. What
+/// rounding makes of a system at rest, before its load comes, is far below.
+const NOTHING: f64 = 1e-18;
+
 /// What the ledger has come to at a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LedgerWatch {
@@ -23,9 +27,29 @@ impl LedgerWatch {
     pub fn see(&mut self, residual: f64, turned_over: f64, limit: f64) -> bool {
         self.turned_over = self.turned_over.max(turned_over);
         self.largest_residual = self.largest_residual.max(residual.abs());
-        let closes = residual.abs() <= limit * self.turned_over;
+        let closes = residual.abs() <= (limit * self.turned_over).max(NOTHING);
         self.rows_open = if closes { 0 } else { self.rows_open + 1 };
         // A residual that is not a number is refused as well.
         self.rows_open < MOST_ROWS_OPEN && residual.is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows on end that are seen until a run ends, at most a hundred.
+    fn rows_seen(residual: f64, turned_over: f64) -> usize {
+        let mut watch = LedgerWatch::default();
+        (0..100).take_while(|_| watch.see(residual, turned_over, 0.2)).count()
+    }
+
+    /// As of a rotor at rest in elements, whose load comes later: 1.6e-23 J of 3.3e-23 J.
+    #[test]
+    fn rounding_of_a_system_at_rest_ends_no_run() {
+        assert_eq!(rows_seen(1.6e-23, 3.3e-23), 100);
+        assert_eq!(rows_seen(1.6e-9, 3.3e-9), MOST_ROWS_OPEN as usize - 1);
+        assert_eq!(rows_seen(1.6e-23, 0.0), 100);
+        assert_eq!(rows_seen(f64::NAN, 1.0), 0);
     }
 }

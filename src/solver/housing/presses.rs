@@ -62,6 +62,30 @@ pub fn pressed(
     Ok(Presses { closed, others })
 }
 
+/// [`Presses::others`] of a race that nothing but a moment (N·m) turns, about axes all round across its own: what forces with levers do not
+/// come to where a moment is on a body. A loose race may have no rest under it.
+///
+/// # Errors
+/// A bore that does not hold the race.
+pub fn turned(
+    bore: &CondensedBore,
+    penalty: Penalty,
+    fit: &Fit,
+    moment: f64,
+) -> Result<Vec<Vec<f64>>, StaticsError> {
+    let mut search = BoreSearch::new(bore, penalty);
+    let alone = race_under_load(&mut search, fit, &RaceLoad::default())?.loads;
+    let mut all = Vec::new();
+    for i in 0..DIRECTIONS {
+        let (sin, cos) = libm::sincos(TAU * i as f64 / DIRECTIONS as f64);
+        let load = RaceLoad { force: [0.0; 3], moment: [0.0, moment * cos, moment * sin] };
+        let Ok(found) = race_under_load(&mut search, fit, &load) else { continue };
+        all.push(found.loads.iter().zip(&alone).map(|(p, alone)| p - alone).collect());
+        all.push(found.loads);
+    }
+    Ok(all)
+}
+
 /// Part of the largest energy below which a combination of answers is rounding of the others.
 pub(super) const NOTHING_NEW: f64 = 1e-10;
 
