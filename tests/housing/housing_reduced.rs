@@ -60,7 +60,7 @@ pub(crate) struct Housing {
 }
 
 fn reduced_model(model: SolidModel, bore: CondensedBore, modes_to: f64, left_out: f64) -> Housing {
-    let loads = pressed(&bore, PENALTY(), &fit(0.0), 250.0).unwrap();
+    let loads = pressed(&bore, PENALTY(), &fit(0.0), [250.0, 0.0]).unwrap();
     let options = ReduceOptions { modes_to, left_out };
     let reduction = reduce(&model, &bore, PENALTY(), &loads, &options).unwrap();
     Housing { model, bore, reduction }
@@ -270,7 +270,7 @@ fn what_is_left_out_of_the_compliance_is_what_is_said() {
     let housing = ring(YOUNG, |_| {}, 40e3, 0.0);
     let found = housing.reduction.compliance();
     let everyone: Vec<usize> = (0..housing.bore.nodes.len()).collect();
-    let presses = pressed(&housing.bore, PENALTY(), &fit(0.0), 250.0).unwrap();
+    let presses = pressed(&housing.bore, PENALTY(), &fit(0.0), [250.0, 0.0]).unwrap();
     for load in presses.closed.into_iter().chain(presses.others) {
         let [whole, ours] = [&housing.bore.compliance, &found].map(|compliance| {
             let mut moves = vec![0.0; load.len()];
@@ -292,7 +292,7 @@ fn frequencies_that_are_none_and_too_many_shapes_are_refused() {
         assert!(matches!(refused, Err(ReduceError::Frequency { .. })), "{modes_to}");
     }
     // No natural shape below: all is static answers.
-    let loads = pressed(&bore, PENALTY(), &fit(0.0), 250.0).unwrap();
+    let loads = pressed(&bore, PENALTY(), &fit(0.0), [250.0, 0.0]).unwrap();
     let options = ReduceOptions { modes_to: 1.0, left_out: 1e-3 };
     let stiff = reduce(&model, &bore, PENALTY(), &loads, &options).unwrap();
     assert_eq!(stiff.cut_off.natural, 0);

@@ -109,7 +109,7 @@ impl Shaft {
             self.housings.iter().zip(&bores).enumerate()
         {
             let penalty = scene.housing.penalty;
-            let loads = pressed(bore, penalty, &setup.fit(scene), FORCE)?;
+            let loads = pressed(bore, penalty, &setup.fit(scene), [FORCE, 0.0])?;
             let modes_to = scene.housing.modes_to.unwrap_or(MODES_TO);
             let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
             let reduction = reduce(&setup.model, bore, penalty, &loads, &options)?;

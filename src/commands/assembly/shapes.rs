@@ -15,7 +15,7 @@ use bearing_dynamics::solver::dynamics::assembly::{Assembly, Bearing};
 use bearing_dynamics::solver::dynamics::run::Start;
 use bearing_dynamics::solver::housing::bore_equilibrium::Fit;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::presses::{pressed, turned};
+use bearing_dynamics::solver::housing::presses::pressed;
 use bearing_dynamics::solver::housing::reduce::{
     CutOff, LEFT_OUT, ReduceOptions, Reduction, reduce,
 };
@@ -56,10 +56,7 @@ fn reduction(housing: &Housing, bearing: &Bearing, force: &Largest) -> Fallible<
     let fit = housing.setup.fit(&housing.scene);
     // A bearing may be loaded by its places alone.
     let [struck, pressing] = [force.on_bodies, force.in_all].map(|force| force.max(1.0));
-    let mut loads = pressed(&bore, settings.penalty, &fit, pressing)?;
-    if force.moments > 0.0 {
-        loads.others.extend(turned(&bore, settings.penalty, &fit, force.moments)?);
-    }
+    let loads = pressed(&bore, settings.penalty, &fit, [pressing, force.moments])?;
     let by_default = || BEYOND_BALLS * ball_frequency(bearing, struck);
     let modes_to = settings.modes_to.unwrap_or_else(by_default);
     let options = ReduceOptions { modes_to, left_out: LEFT_OUT };

@@ -111,7 +111,7 @@ impl<'b> HousedSearch<'b> {
     }
 }
 
-fn in_bore(source: BoreError) -> StaticsError {
+pub(super) fn in_bore(source: BoreError) -> StaticsError {
     StaticsError::Seat { of: String::new(), source }
 }
 

@@ -1,8 +1,8 @@
 //! Patterns of force on a bore that a reduced housing answers to statically: what a race puts on it.
 
-use super::bore_equilibrium::{BoreSearch, Fit, RaceLoad};
-use super::condensed::{BoreNode, CondensedBore, lever};
-use super::housed::race_under_load;
+use super::bore_equilibrium::{BoreError, BoreSearch, Fit, RaceLoad};
+use super::condensed::{CondensedBore, lever};
+use super::housed::{in_bore, race_under_load};
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::kinematics::vec3::{Vec3, cross};
 use crate::solver::statics::StaticsError;
@@ -12,20 +12,22 @@ use std::f64::consts::TAU;
 /// Directions in which [`pressed`] presses: patches of contact move on by a part of their width from one to the next.
 const DIRECTIONS: usize = 48;
 
-/// Where along the race, over its width, [`pressed`] presses: in its middle, as a race does that tilts a little, and with a
-/// moment that lifts one end, as a shaft that bends has it.
-const LEVERS: [f64; 5] = [0.0, -0.25, 0.25, -1.0, 1.0];
+/// Where along the race, over its width, [`pressed`] presses besides its middle: within it, and with a moment that lifts one end, as a
+/// shaft that bends has it.
+const LEVERS: [f64; 4] = [-0.25, 0.25, -1.0, 1.0];
 
 /// Loads on the nodes of a bore, N: what its compliance is measured under.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Presses {
-    /// Of a race that shifts, tilts and grows where the bore touches it all round: these have answers of their own.
+    /// Of a race that shifts, tilts and grows where the bore touches it all round: these have answers of their own, so that nothing is
+    /// left out where no node lets go.
     pub closed: Vec<Vec<f64>>,
     pub others: Vec<Vec<f64>>,
 }
 
-/// Of a race pressed into the bore by `force` (N) in directions all round, with moments and without, and what they differ by from
-/// those of the fit alone. Of a tight fit the differences are what moves the race.
+/// Of a race pressed into the bore by `force` (N) in directions all round, with moments and without, and turned by nothing but `moment`
+/// (N·m, none where it is 0) about axes all round; and what they differ by from those of the fit alone. Of a tight fit the
+/// differences are what moves the race.
 ///
 /// # Errors
 /// A bore that does not hold the race.
@@ -33,57 +35,46 @@ pub fn pressed(
     bore: &CondensedBore,
     penalty: Penalty,
     fit: &Fit,
-    force: f64,
+    [force, moment]: [f64; 2],
 ) -> Result<Presses, StaticsError> {
     let mut search = BoreSearch::new(bore, penalty);
     let alone = race_under_load(&mut search, fit, &RaceLoad::default())?.loads;
-    let closed = |of: &dyn Fn(&BoreNode) -> f64| -> Vec<f64> {
-        bore.nodes.iter().map(|node| penalty.of_node(node.area) * of(node)).collect()
+    let mut others = Vec::with_capacity(2 * (LEVERS.len() + 1) * DIRECTIONS);
+    let mut add = |load: &RaceLoad| -> Result<(), StaticsError> {
+        let loads = race_under_load(&mut search, fit, load)?.loads;
+        others.push(loads.iter().zip(&alone).map(|(p, alone)| p - alone).collect());
+        others.push(loads);
+        Ok(())
     };
-    let moved = (0..4).map(|axis| closed(&|node| lever(node)[axis]));
-    let closed = moved.chain([closed(&|_| 1.0)]).collect();
-    let mut others = Vec::with_capacity(2 * LEVERS.len() * DIRECTIONS);
     for i in 0..DIRECTIONS {
         let (sin, cos) = libm::sincos(TAU * i as f64 / DIRECTIONS as f64);
-        let force = [0.0, force * cos, force * sin];
-        for lever in LEVERS {
+        let across = |size: f64| [0.0, size * cos, size * sin];
+        let force = across(force);
+        add(&RaceLoad { force, moment: [0.0; 3] })?;
+        let levered = LEVERS.map(|lever| {
             let moment = cross([lever * bore.reach.width, 0.0, 0.0], force);
-            let found = race_under_load(&mut search, fit, &RaceLoad { force, moment });
-            let loads = match found {
-                Ok(state) => state.loads,
-                // A race on its rim may have no rest to rounding: its neighbours say what is new of it.
-                Err(_) if lever != 0.0 => continue,
-                Err(error) => return Err(error),
-            };
-            others.push(loads.iter().zip(&alone).map(|(p, alone)| p - alone).collect());
-            others.push(loads);
+            RaceLoad { force, moment }
+        });
+        let turned = (moment > 0.0).then(|| RaceLoad { force: [0.0; 3], moment: across(moment) });
+        for load in levered.iter().chain(&turned) {
+            // A race on its rim, or loose under a moment, may have no rest: other samples say what is new of it.
+            let _ = add(load);
         }
     }
+    let closed = closed(bore, penalty).map_err(in_bore)?;
     Ok(Presses { closed, others })
 }
 
-/// [`Presses::others`] of a race that nothing but a moment (N·m) turns, about axes all round across its own: what forces with levers do not
-/// come to where a moment is on a body. A loose race may have no rest under it.
-///
-/// # Errors
-/// A bore that does not hold the race.
-pub fn turned(
-    bore: &CondensedBore,
-    penalty: Penalty,
-    fit: &Fit,
-    moment: f64,
-) -> Result<Vec<Vec<f64>>, StaticsError> {
-    let mut search = BoreSearch::new(bore, penalty);
-    let alone = race_under_load(&mut search, fit, &RaceLoad::default())?.loads;
-    let mut all = Vec::new();
-    for i in 0..DIRECTIONS {
-        let (sin, cos) = libm::sincos(TAU * i as f64 / DIRECTIONS as f64);
-        let load = RaceLoad { force: [0.0; 3], moment: [0.0, moment * cos, moment * sin] };
-        let Ok(found) = race_under_load(&mut search, fit, &load) else { continue };
-        all.push(found.loads.iter().zip(&alone).map(|(p, alone)| p - alone).collect());
-        all.push(found.loads);
-    }
-    Ok(all)
+/// [`Presses::closed`]: of (C + 1/k) p = g with C the compliance of the bore, k its contact, and g of 1 m or 1 rad of each coordinate of
+/// the race, and of a growth by 1 m.
+fn closed(bore: &CondensedBore, penalty: Penalty) -> Result<Vec<Vec<f64>>, BoreError> {
+    let everyone: Vec<usize> = (0..bore.nodes.len()).collect();
+    let softness = bore.nodes.iter().map(|node| 1.0 / penalty.of_node(node.area));
+    let factor = bore.compliance.factor(&everyone, &softness.collect::<Vec<_>>())?;
+    let moved = (0..4).flat_map(|axis| bore.nodes.iter().map(move |node| lever(node)[axis]));
+    let mut all: Vec<f64> = moved.chain(bore.nodes.iter().map(|_| 1.0)).collect();
+    factor.solve_columns(&mut all, 5);
+    Ok(all.chunks_exact(everyone.len()).map(<[f64]>::to_vec).collect())
 }
 
 /// Part of the largest energy below which a combination of answers is rounding of the others.
