@@ -6,6 +6,7 @@ use crate::resume_common;
 
 use housed_command_common::*;
 use resume_common::assert_same_results;
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// A blow on a bearing that grows into its fit; the housing starts undeformed, as in explicit steps.
@@ -87,8 +88,8 @@ fn under_a_bent_shaft_it_starts_in_the_common_equilibrium() {
         for name in ["left_inner_z", "left_outer_z", "shaft_mid_z", "left_outer_tilt_y"] {
             let [ours, theirs] =
                 [&reduced, &course].map(|of| column(&of.join("series.csv"), name)[0]);
-            // Of the compliance 1e-4 is left out at most; pressures that settle anew make it some times that.
-            assert!((ours / theirs - 1.0).abs() <= 3e-4, "{which} {name}: {ours:e} {theirs:e}");
+            println!("{which} {name}: {:.1e}", ours / theirs - 1.0);
+            assert!((ours / theirs - 1.0).abs() <= EXACT, "{which} {name}: {ours:e} {theirs:e}");
         }
     }
 }
@@ -116,8 +117,11 @@ fn starts(fit: &str, changes: &[(&str, &str)], held: &[(&str, f64)]) {
     }
 }
 
-/// Shapes are made for what presses the race into its bore, on whichever body that is. Under those made for a press of 1 N the
-/// pressure is 6 % off.
+/// Shapes answer to the pressure at the start as the condensed housing does: what differs is the rounding of two searches.
+const EXACT: f64 = 1e-10;
+
+/// What presses the race may come from elsewhere than its loads: here the place of the other race puts more on it. Without an answer of
+/// their own to that pressure shapes have it 4 % off.
 #[test]
 fn a_load_on_the_race_itself_starts_in_the_common_equilibrium() {
     let changes = [
@@ -125,11 +129,11 @@ fn a_load_on_the_race_itself_starts_in_the_common_equilibrium() {
         ("z = { load = \"-250 N\" }", "z = { displacement = \"0 um\" }"),
         ("\"5-dof\"\n", "\"5-dof\"\nz = { load = \"-3000 N\" }\n"),
     ];
-    // A part of 1e-4 of the compliance is left out, which pressures that settle anew make some ten times that.
-    starts("-2.5 um", &changes, &[("outer_z", 3e-4), ("bore_peak_pressure", 1e-2)]);
+    // In motion a race that moves aside touches a little elsewhere, by its way over the radius.
+    starts("-2.5 um", &changes, &[("outer_z", EXACT), ("bore_peak_pressure", 2e-4)]);
 }
 
-/// A moment far beyond what forces with levers come to. Under shapes made for forces alone the race tilts by 21 % less.
+/// A moment far beyond what forces with levers come to.
 #[test]
 fn a_moment_on_a_race_starts_in_the_common_equilibrium() {
     let changes = [
@@ -138,7 +142,8 @@ fn a_moment_on_a_race_starts_in_the_common_equilibrium() {
         ("tilt_y = { tilt = \"0 deg\" }", "tilt_y = { moment = \"15 N m\" }"),
         ("tilt_z = { tilt = \"0 deg\" }\n", ""),
     ];
-    let held = [("outer_z", 1e-3), ("outer_tilt_y", 1e-3), ("bore_peak_pressure", 1e-2)];
+    // Equilibria are linear in the tilt. In motion a race tilted by θ stands off by R θ²/2 more.
+    let held = [("outer_z", EXACT), ("outer_tilt_y", EXACT), ("bore_peak_pressure", 5e-3)];
     starts("0.5 um", &changes, &held);
 }
 
@@ -185,6 +190,28 @@ fn extended_runs_end_with_the_same_bytes() {
         let other = place.scene("other.toml", &text);
         let output = into_folder("run", &other, &longer, &["--resume"]).output().unwrap();
         assert!(stderr(&output).contains("another scene"), "{}", stderr(&output));
+    }
+}
+
+/// The largest of loads on bodies, races in bores among them, of those along shafts, and of moments, at any time.
+#[test]
+fn the_plan_says_what_presses_shapes_are_made_for() {
+    let place = Place::new();
+    let alone = blow("reduced", "1 ms", NOMINAL).replace(
+        "\"5-dof\"\n",
+        "\"5-dof\"\ny = { load = { ramp = [\"0 N\", \"900 N\"], start = \"1 s\", duration = \"1 s\" } }\n\
+         tilt_z = { moment = \"3 N m\" }\n",
+    );
+    let shafts = include_str!("../../scenes/rotor_in_pillow_blocks.toml").replace(
+        "damping = \"100 1/s\"\n",
+        "damping = \"100 1/s\"\nunbalance = [{ at = \"0 mm\", size = \"0.01 kg m\" }]\n",
+    );
+    // m e ω² with ω = 1000 rpm.
+    let unbalance = 0.01 * (1000.0 * TAU / 60.0_f64).powi(2);
+    let shafts_said = format!("presses of {:.0} N,", 3000.0 + unbalance);
+    for (text, said) in [(alone, "presses of 900 N or 3 N m,".into()), (shafts, shafts_said)] {
+        let plan = succeed(command("plan", &place.scene("scene.toml", &text), &[]));
+        assert!(plan.contains(&said), "{said} is not in {plan}");
     }
 }
 

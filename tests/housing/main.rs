@@ -17,4 +17,5 @@ mod housing_nonlinear;
 mod housing_reduced;
 mod housing_seats;
 mod reduced_laws;
+mod reduced_presses;
 mod several_housings;

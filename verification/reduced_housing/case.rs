@@ -12,7 +12,7 @@ use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreState;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
-use bearing_dynamics::solver::housing::presses::pressed;
+use bearing_dynamics::solver::housing::presses::{Hardest, pressed};
 use bearing_dynamics::solver::housing::reduce::{LEFT_OUT, ReduceOptions, Reduction, reduce};
 use bearing_dynamics::solver::housing::reduced_start::{
     Housing, add_housing, ball_frequency, put_in_equilibrium,
@@ -158,7 +158,12 @@ fn lowest_across(reduction: &Reduction) -> Result<f64, CaseError> {
 
 fn reduced(whole: &Whole, modes_to: f64) -> Result<Reduction, CaseError> {
     let penalty = Penalty::default();
-    let loads = pressed(&whole.bore, penalty, &housings::fit(TIGHT), [BLOW, 0.0])?;
+    let loads = pressed(
+        &whole.bore,
+        penalty,
+        &housings::fit(TIGHT),
+        &Hardest { force: BLOW, ..Hardest::default() },
+    )?;
     let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
     Ok(reduce(&whole.model, &whole.bore, penalty, &loads, &options)?)
 }

@@ -14,7 +14,7 @@ use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
 use bearing_dynamics::solver::housing::course::{CourseProblem, CourseSeat};
 use bearing_dynamics::solver::housing::course_search::CourseSearch;
 use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, SolidPart};
-use bearing_dynamics::solver::housing::presses::pressed;
+use bearing_dynamics::solver::housing::presses::{Hardest, pressed};
 use bearing_dynamics::solver::housing::reduce::{LEFT_OUT, ReduceOptions, reduce};
 use bearing_dynamics::solver::housing::reduced_start::{
     Housing as Start0, add_housing, put_in_equilibrium,
@@ -109,7 +109,12 @@ impl Shaft {
             self.housings.iter().zip(&bores).enumerate()
         {
             let penalty = scene.housing.penalty;
-            let loads = pressed(bore, penalty, &setup.fit(scene), [FORCE, 0.0])?;
+            let loads = pressed(
+                bore,
+                penalty,
+                &setup.fit(scene),
+                &Hardest { force: FORCE, ..Hardest::default() },
+            )?;
             let modes_to = scene.housing.modes_to.unwrap_or(MODES_TO);
             let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
             let reduction = reduce(&setup.model, bore, penalty, &loads, &options)?;

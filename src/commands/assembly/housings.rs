@@ -21,7 +21,9 @@ use bearing_dynamics::solver::housing::course_search::CourseSearch;
 use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, SolidPart};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::static_assembly::StaticAssembly;
-use bearing_dynamics::solver::statics::{Condition, StaticOptions, solve_assembly};
+use bearing_dynamics::solver::statics::{
+    AssemblySolution, Condition, StaticOptions, solve_assembly,
+};
 use nalgebra::SVector;
 
 /// Reads or makes the meshes.
@@ -213,10 +215,8 @@ fn start_of_steps(assembly: &mut Assembly, housings: &[Housing]) -> Fallible<Vec
         return Ok(Vec::new());
     }
     let bores = condensed(housings)?;
-    let mut still = static_assembly(assembly, 0.0, &[]);
     let seats = grown(housings, &bores);
-    seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
-    let found = solve_assembly(&still, None, &StaticOptions::default())?;
+    let found = at_start(assembly, &seats)?;
     let mut displacements = Vec::with_capacity(housings.len());
     for (seat, state) in seats.iter().zip(&found.seats) {
         let body = seat.body(assembly);
@@ -224,6 +224,13 @@ fn start_of_steps(assembly: &mut Assembly, housings: &[Housing]) -> Fallible<Vec
         displacements.push(seat.bore.displacement(&state.loads));
     }
     Ok(displacements)
+}
+
+/// Where bodies rest under the loads at t = 0, races in their bores.
+pub fn at_start(assembly: &Assembly, seats: &[CourseSeat]) -> Fallible<AssemblySolution> {
+    let mut still = static_assembly(assembly, 0.0, &[]);
+    seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
+    Ok(solve_assembly(&still, None, &StaticOptions::default())?)
 }
 
 /// Looks at loads between two of their corners, and how long after the last one, s.

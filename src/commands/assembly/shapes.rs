@@ -3,7 +3,7 @@
 use super::Fallible;
 use super::course::percent;
 use super::housing::Housing;
-use super::housings::Largest;
+use super::housings::{Largest, at_start, condensed, course};
 use super::lists::Lists;
 use crate::commands::plan_step::note;
 use bearing_dynamics::kinematics::vec3::Vec3;
@@ -13,9 +13,9 @@ use bearing_dynamics::scene::excitations::{Excitation, excitations};
 use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Bearing};
 use bearing_dynamics::solver::dynamics::run::Start;
-use bearing_dynamics::solver::housing::bore_equilibrium::Fit;
+use bearing_dynamics::solver::housing::bore_equilibrium::{BoreState, Fit};
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::presses::pressed;
+use bearing_dynamics::solver::housing::presses::{Hardest, pressed};
 use bearing_dynamics::solver::housing::reduce::{
     CutOff, LEFT_OUT, ReduceOptions, Reduction, reduce,
 };
@@ -28,6 +28,8 @@ use std::time::Instant;
 /// Housings as shapes, and the assembly with them.
 pub struct Shapes {
     pub assembly: Assembly,
+    /// What the shapes are made for, besides the start.
+    pub hardest: Hardest<'static>,
     /// One for each housing.
     pub reductions: Vec<Reduction>,
     /// Wall time that condensing, and finding shapes and start took, s.
@@ -39,54 +41,57 @@ pub struct Shapes {
 /// Frequencies of the housing that are kept, over that of a ball between its races.
 const BEYOND_BALLS: f64 = 2.0;
 
-/// A housing condensed and reduced, and the wall time of both, s.
-struct Found {
-    bore: CondensedBore,
-    reduction: Reduction,
-    seconds: [f64; 2],
-}
-
-/// Condenses a housing and reduces it for a bearing with so much on it.
-fn reduction(housing: &Housing, bearing: &Bearing, force: &Largest) -> Fallible<Found> {
+/// Reduces a housing for a bearing whose balls are under `struck` (N).
+fn reduction(
+    housing: &Housing,
+    bore: &CondensedBore,
+    (bearing, struck): (&Bearing, f64),
+    hardest: &Hardest,
+) -> Fallible<Reduction> {
     let settings = &housing.scene.housing;
-    let start = Instant::now();
-    let bore = housing.condensed()?;
-    let condensing = start.elapsed().as_secs_f64();
-    let start = Instant::now();
     let fit = housing.setup.fit(&housing.scene);
-    // A bearing may be loaded by its places alone.
-    let [struck, pressing] = [force.on_bodies, force.in_all].map(|force| force.max(1.0));
-    let loads = pressed(&bore, settings.penalty, &fit, [pressing, force.moments])?;
+    let loads = pressed(bore, settings.penalty, &fit, hardest)?;
     let by_default = || BEYOND_BALLS * ball_frequency(bearing, struck);
     let modes_to = settings.modes_to.unwrap_or_else(by_default);
     let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
-    let reduction = reduce(&housing.setup.model, &bore, settings.penalty, &loads, &options)?;
-    Ok(Found { bore, reduction, seconds: [condensing, start.elapsed().as_secs_f64()] })
+    Ok(reduce(&housing.setup.model, bore, settings.penalty, &loads, &options)?)
 }
 
 /// Condenses and reduces the housings, and finds the equilibrium that a run starts from.
 pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     let (scene, mut assembly) = (lists.scene, lists.assembly()?.clone());
-    let force = Largest::of(&assembly, housings);
-    let (mut reductions, mut bores) = (Vec::new(), Vec::new());
-    let mut seconds = [0.0; 2];
-    for housing in housings {
+    let largest = Largest::of(&assembly, housings);
+    // A bearing may be loaded by its places alone.
+    let [struck, force] = [largest.on_bodies, largest.in_all].map(|force| force.max(1.0));
+    let hardest = Hardest { force, moment: largest.moments, start: None };
+    let start = Instant::now();
+    let mut bores: Vec<CondensedBore> = condensed(housings)?;
+    let condensing = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let settles = scene.run().is_none_or(|run| run.options.start != Start::Nominal);
+    let settled = match settles {
+        true => {
+            let course = course(assembly.clone(), housings, &bores);
+            Some(at_start(&course.assembly, &course.seats)?)
+        }
+        false => None,
+    };
+    let mut reductions = Vec::new();
+    for (index, (housing, bore)) in housings.iter().zip(&bores).enumerate() {
         let bearing = &assembly.bearings[housing.bearing];
-        let found = reduction(housing, bearing, &force)?;
+        let start: Option<&BoreState> = settled.as_ref().map(|settled| &settled.seats[index]);
+        let reduction = reduction(housing, bore, (bearing, struck), &Hardest { start, ..hardest })?;
         let body = bearing.mounts[1].body;
         let radius = housing.setup.radius(&housing.scene);
         let penalty = housing.scene.housing.penalty;
-        add_housing(&mut assembly, body, &found.reduction, &found.bore, radius, penalty);
+        add_housing(&mut assembly, body, &reduction, bore, radius, penalty);
         if let (Some(seat), Some(name)) = (assembly.seats.last_mut(), &housing.name) {
             seat.label = Some(name.clone());
             seat.name = format!("the bore of housing {name}");
         }
-        seconds = [seconds[0] + found.seconds[0], seconds[1] + found.seconds[1]];
-        reductions.push(found.reduction);
-        bores.push(found.bore);
+        reductions.push(reduction);
     }
-    let start = Instant::now();
-    if scene.run().is_none_or(|run| run.options.start != Start::Nominal) {
+    if settles {
         let of = |((housing, reduction), bore): ((&Housing, _), _)| {
             let radius = housing.setup.radius(&housing.scene).value(0.0);
             let fit = Fit { radius, ..housing.setup.fit(&housing.scene) };
@@ -97,9 +102,9 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
             housings.iter().zip(&reductions).zip(bores.iter_mut()).map(of).collect();
         put_in_equilibrium(&mut assembly, &mut parts)?;
     }
-    seconds[1] += start.elapsed().as_secs_f64();
+    let seconds = [condensing, start.elapsed().as_secs_f64()];
     let ran = bores.iter().map(|bore| bore.ran).collect();
-    Ok(Shapes { assembly, reductions, seconds, ran })
+    Ok(Shapes { hardest, assembly, reductions, seconds, ran })
 }
 
 impl Shapes {
@@ -124,7 +129,7 @@ impl Shapes {
         for (housing, reduction) in housings.iter().zip(&self.reductions) {
             let (of, cut) = (housing.before(), &reduction.cut_off);
             said.push(note("shapes of the housing", &format!("{of}{}", text(cut))));
-            said.push(note("cut off", &format!("{of}{}", cut_off(scene, cut))));
+            said.push(note("cut off", &format!("{of}{}", cut_off(scene, &self.hardest, cut))));
         }
         said.push(note("masses of the housing", "lumped, as of explicit steps"));
         said
@@ -147,13 +152,22 @@ fn text(cut: &CutOff) -> String {
     )
 }
 
-fn cut_off(scene: &AssemblyScene, cut: &CutOff) -> String {
+fn presses(hardest: &Hardest) -> String {
+    let moment = match hardest.moment > 0.0 {
+        true => format!(" or {} N m", to_digits(hardest.moment, 4)),
+        false => String::new(),
+    };
+    format!("{} N{moment}", to_digits(hardest.force, 4))
+}
+
+fn cut_off(scene: &AssemblyScene, hardest: &Hardest, cut: &CutOff) -> String {
     let driven = |of: &Excitation| {
         let error = cut.dynamic_error(of.frequency);
         format!("{} of what goes with {}", percent(error), of.what)
     };
     let mut said = format!(
-        "{} of the compliance under the largest load all round has no shape; the lowest natural shape left out swings at {} Hz",
+        "of the compliance under presses of {}, looked at all round, {} has no shape; the lowest natural shape left out swings at {} Hz",
+        presses(hardest),
         percent(cut.static_left_out),
         to_digits(cut.first_left_out, 4)
     );

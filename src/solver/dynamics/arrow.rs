@@ -1,21 +1,19 @@
 //! The matrix of a linearly implicit step, M + hγ D + h²γ² K over all velocities: balls touch hubs
 //! (races, cage) and never each other, so that each ball is eliminated into the hubs and what
-//! remains is six equations for each body that moves, and one for each shape of a reduced solid.
+//! remains is six equations for each body that moves; shapes of reduced solids are eliminated likewise.
 //!
 //! Balls are eliminated a block of [`LANES`] at a time, with every driver.
 
+use super::arrow_solids::SolidBlock;
 use super::arrow_terms::{
-    add_joints, add_solids, drive_power, elongate, joint_forces, relaxing_forces, solid_forces,
-    spring_back, weigh,
+    add_joints, drive_power, elongate, joint_forces, relaxing_forces, spring_back, weigh,
 };
-use super::assembly::Assembly;
 use super::ball_set::BallSet;
 use super::elimination::{
     Block, Dense, ZERO, add_product, factor_lanes, solve_columns, solve_lanes, total,
 };
 use super::linearised::{BallBlock, Hub, Lane, Linearised, from_basis, to_basis};
 use super::linearised_shafts::Bending;
-use super::reduced_solid::Surface;
 use super::state::{LANES, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use super::system::System;
 use crate::ch2_housing::bearing::inertia::Inertia;
@@ -41,31 +39,19 @@ pub struct Arrow {
     /// Where bodies bend.
     bending: Option<Bending>,
     balls: Vec<[Lane; 6]>,
-    /// Of all hubs and then all shapes: right-hand side and rates; what the hubs have moved.
+    /// Of all hubs: right-hand side and rates; what they have moved.
     hubs: Vec<f64>,
     moved: Vec<[f64; 6]>,
-    /// Of each seat: its shapes node by node, and room for the displacement of its nodes.
-    seats: Vec<SeatShapes>,
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct SeatShapes {
-    pub(super) by_node: Vec<f64>,
-    pub(super) surface: Surface,
-    pub(super) outward: Vec<f64>,
+    /// Of each reduced solid.
+    solids: Vec<SolidBlock>,
 }
 
 impl Arrow {
     pub fn new(system: &System, linearised: &Linearised) -> Arrow {
         let blocks = linearised.blocks.len();
         let hubs = linearised.hubs.len();
-        let size = 6 * hubs + linearised.shapes();
-        let Assembly { seats, solids, .. } = &system.assembly;
-        let seats = seats.iter().zip(&system.seats).map(|(seat, now)| SeatShapes {
-            by_node: now.by_node.clone(),
-            surface: solids[seat.solid].surfaces[seat.surface].clone(),
-            outward: now.outward.clone(),
-        });
+        let size = 6 * hubs;
+        let solids = (0..linearised.solids.len()).map(|k| SolidBlock::new(system, linearised, k));
         Arrow {
             ball: system.assembly.bearings.iter().map(|bearing| bearing.ball).collect(),
             scale: 0.0,
@@ -77,7 +63,7 @@ impl Arrow {
             balls: vec![[ZERO; 6]; blocks],
             hubs: vec![0.0; size],
             moved: vec![[0.0; 6]; hubs],
-            seats: seats.collect(),
+            solids: solids.collect(),
         }
     }
 
@@ -92,7 +78,9 @@ impl Arrow {
             }
         }
         add_joints(linearised, scale, &mut self.schur);
-        add_solids(linearised, &self.seats, scale, &mut self.schur);
+        for (block, solid) in self.solids.iter_mut().zip(&linearised.solids) {
+            block.factor(linearised, solid, scale, &mut self.schur);
+        }
         for (index, block) in linearised.blocks.iter().enumerate() {
             self.factor_block(index, block);
         }
@@ -190,7 +178,7 @@ impl Arrow {
     ) {
         w.copy_from_slice(r);
         let scale = self.scale;
-        let Arrow { ball, factors, eliminated, coupled, balls, hubs, moved, seats, .. } = self;
+        let Arrow { ball, factors, eliminated, coupled, balls, hubs, moved, solids, .. } = self;
         let bodies = linearised.bodies();
         hubs[6 * bodies..6 * linearised.hubs.len()].fill(0.0);
         for (index, hub) in linearised.hubs[..bodies].iter().enumerate() {
@@ -206,7 +194,9 @@ impl Arrow {
         }
         joint_forces(linearised, scale, moved, hubs);
         relaxing_forces(linearised, scale, r, hubs);
-        solid_forces(linearised, scale, seats, r, moved, hubs);
+        for (block, solid) in solids.iter_mut().zip(&linearised.solids) {
+            block.push(solid, scale, r, moved, hubs);
+        }
         for (index, block) in linearised.blocks.iter().enumerate() {
             let right = &mut balls[index];
             let layout = &sets[block.bearing].layout;
@@ -254,13 +244,8 @@ impl Arrow {
             }
         }
         elongate(linearised, scale, rates, r, w);
-        let (_, shapes) = hubs.split_at(6 * linearised.hubs.len());
-        for solid in &linearised.solids {
-            let (at, count) = (solid.at, solid.stiffness.len());
-            for (k, rate) in shapes[solid.first..solid.first + count].iter().enumerate() {
-                w[at + k] = r[at + k] + scale * rate;
-                w[at + count + k] = *rate;
-            }
+        for (block, solid) in solids.iter_mut().zip(&linearised.solids) {
+            block.follow(solid, scale, r, rates, w);
         }
         let mut power = 0.0;
         for (index, (block, right)) in linearised.blocks.iter().zip(balls).enumerate() {

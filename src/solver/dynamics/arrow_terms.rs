@@ -1,7 +1,5 @@
-//! What contacts, joints, drives and reduced solids add to the matrix of a linearly implicit step and to its right-hand
-//! sides.
+//! What contacts, joints and drives add to the matrix of a linearly implicit step and to its right-hand sides.
 
-use super::arrow::SeatShapes;
 use super::connection::MaxwellElement;
 use super::elimination::{Dense, ZERO, add_product, subtract_product, total};
 use super::linearised::{JointRow, Lane, LaneContact, Linearised};
@@ -271,82 +269,6 @@ pub(super) fn elongate(
             for (k, element) in of.elements.iter().enumerate() {
                 let e = of.at + 6 * k + i;
                 w[e] = (r[e] + scale * rate) / (1.0 + scale / element.relaxation_time);
-            }
-        }
-    }
-}
-
-/// Springs, dampers and seats of reduced solids, whose equations come after those of the hubs.
-pub(super) fn add_solids(
-    linearised: &Linearised,
-    seats: &[SeatShapes],
-    scale: f64,
-    schur: &mut Dense,
-) {
-    let before = 6 * linearised.hubs.len();
-    for solid in &linearised.solids {
-        for (k, stiffness) in solid.stiffness.iter().enumerate() {
-            let at = before + solid.first + k;
-            *schur.at(at, at) = 1.0 + scale * (solid.damping + scale * stiffness);
-        }
-    }
-    for (joint, seat) in linearised.seats.iter().zip(seats) {
-        let solid = &linearised.solids[joint.solid];
-        let (first, count) = (before + solid.first, solid.stiffness.len());
-        for row in &joint.nodes {
-            let shapes = &seat.by_node[row.node * count..(row.node + 1) * count];
-            let weight = scale * scale * row.stiffness;
-            if let Some(hub) = joint.hub {
-                for i in 0..6 {
-                    let push = row.lever[i] * weight;
-                    for j in i..6 {
-                        *schur.at(6 * hub + i, 6 * hub + j) += push * row.lever[j];
-                    }
-                    schur.add_to_row(6 * hub + i, first, push * row.along, shapes);
-                }
-            }
-            let weight = weight * row.along * row.along;
-            for (k, shape) in shapes.iter().enumerate() {
-                schur.add_to_row(first + k, first + k, weight * shape, &shapes[k..]);
-            }
-        }
-    }
-}
-
-/// Right-hand sides of the shapes, and what the displacements in `r` push back through the seats.
-pub(super) fn solid_forces(
-    linearised: &Linearised,
-    scale: f64,
-    seats: &mut [SeatShapes],
-    r: &[f64],
-    moved: &[[f64; 6]],
-    hubs: &mut [f64],
-) {
-    let before = 6 * linearised.hubs.len();
-    for solid in &linearised.solids {
-        let (at, count) = (solid.at, solid.stiffness.len());
-        for (k, stiffness) in solid.stiffness.iter().enumerate() {
-            hubs[before + solid.first + k] = r[at + count + k] - scale * stiffness * r[at + k];
-        }
-    }
-    for (joint, seat) in linearised.seats.iter().zip(seats) {
-        let solid = &linearised.solids[joint.solid];
-        let (first, count) = (before + solid.first, solid.stiffness.len());
-        seat.surface.along_normals(&r[solid.at..solid.at + count], &mut seat.outward);
-        for row in &joint.nodes {
-            let mut push = row.along * seat.outward[row.node];
-            if let Some(hub) = joint.hub {
-                push += (0..6).map(|j| row.lever[j] * moved[hub][j]).sum::<f64>();
-            }
-            push *= scale * row.stiffness;
-            if let Some(hub) = joint.hub {
-                for j in 0..6 {
-                    hubs[6 * hub + j] -= row.lever[j] * push;
-                }
-            }
-            let shapes = &seat.by_node[row.node * count..(row.node + 1) * count];
-            for (to, shape) in hubs[first..first + count].iter_mut().zip(shapes) {
-                *to -= row.along * push * shape;
             }
         }
     }

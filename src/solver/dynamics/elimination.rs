@@ -94,6 +94,18 @@ impl Dense {
         Dense { size, values: vec![0.0; size * size] }
     }
 
+    /// Of another size, all zero.
+    pub fn resize(&mut self, size: usize) {
+        self.size = size;
+        self.values.clear();
+        self.values.resize(size * size, 0.0);
+    }
+
+    /// A row from its diagonal on.
+    pub fn row_from(&mut self, row: usize) -> &mut [f64] {
+        &mut self.values[row * self.size + row..(row + 1) * self.size]
+    }
+
     pub fn clear(&mut self) {
         self.values.fill(0.0);
     }
@@ -140,10 +152,36 @@ impl Dense {
         }
         for k in (0..n).rev() {
             let factors = row(k);
-            for j in k + 1..n {
-                right[k] -= factors[j] * right[j];
+            let mut sum = right[k];
+            for (factor, known) in factors[k + 1..].iter().zip(&right[k + 1..]) {
+                sum -= factor * known;
             }
-            right[k] *= factors[k];
+            right[k] = sum * factors[k];
+        }
+    }
+
+    /// [`Dense::solve`] of six right-hand sides side by side.
+    pub fn solve_six(&self, right: &mut [[f64; 6]]) {
+        let n = self.size;
+        let row = |k: usize| &self.values[k * n..(k + 1) * n];
+        for k in 0..n {
+            let factors = row(k);
+            let scaled = right[k].map(|of| of * factors[k]);
+            for (right, factor) in right[k + 1..n].iter_mut().zip(&factors[k + 1..]) {
+                for i in 0..6 {
+                    right[i] -= factor * scaled[i];
+                }
+            }
+        }
+        for k in (0..n).rev() {
+            let factors = row(k);
+            let mut sum = right[k];
+            for (factor, known) in factors[k + 1..].iter().zip(&right[k + 1..n]) {
+                for i in 0..6 {
+                    sum[i] -= factor * known[i];
+                }
+            }
+            right[k] = sum.map(|of| of * factors[k]);
         }
     }
 }

@@ -96,8 +96,6 @@ pub struct Relaxing {
 pub struct Shapes {
     /// First of its entries in the state.
     pub at: usize,
-    /// First of its equations among those of all solids.
-    pub first: usize,
     /// ω², 1/s², and α, 1/s.
     pub stiffness: Vec<f64>,
     pub damping: f64,
@@ -226,12 +224,9 @@ impl Linearised {
             elements: connection.maxwell().to_vec(),
         });
         let relaxing = relaxing.collect();
-        let mut first = 0;
         let solids = assembly.solids.iter().zip(&system.solids).map(|(solid, &at)| {
             let stiffness: Vec<f64> = solid.frequencies.iter().map(|w| w * w).collect();
-            let shapes = Shapes { at, first, stiffness, damping: solid.damping };
-            first += solid.count();
-            shapes
+            Shapes { at, stiffness, damping: solid.damping }
         });
         let seated = assembly.seats.iter().zip(&system.seats).zip(&system.holds.seats);
         let seats = seated.map(|((seat, now), hold)| SeatJoint {
@@ -242,11 +237,6 @@ impl Linearised {
         let (solids, seats) = (solids.collect(), seats.collect());
         let shafts = linearised_shafts::shapes(system);
         Linearised { blocks, joints, relaxing, hubs, sections, shafts, hub_of, solids, seats }
-    }
-
-    /// Equations of all reduced solids.
-    pub fn shapes(&self) -> usize {
-        self.solids.iter().map(|solid| solid.stiffness.len()).sum()
     }
 
     /// Hubs that are bodies.

@@ -1,8 +1,8 @@
 //! Bodies that bend in the matrix of a linearly implicit step: a section where something takes hold is a hub of its
 //! own, without mass, whose six velocities follow from those of its body and of the shapes.
 //!
-//! Balls and joints are eliminated into sections as into bodies; the small matrix over bodies, sections and solids is then taken
-//! to bodies, solids and shapes of bending by that dependence. What is of second order in bending, the
+//! Balls, joints and solids are eliminated into sections as into bodies; the small matrix over bodies and sections is then taken
+//! to bodies and shapes of bending by that dependence. What is of second order in bending, the
 //! shortening, is not in the matrix, as any may be left out: the method is of third order with every matrix.
 
 use super::elimination::Dense;
@@ -56,14 +56,11 @@ pub(super) fn sections(
 
 /// Equations of the shapes of all shafts, along e₂, e₃ and the axis of each.
 pub(super) fn shapes(system: &System) -> Vec<Shapes> {
-    let mut first = 0;
     let shafts = system.assembly.shafts.iter().zip(&system.shafts);
     let of = shafts.map(|(shaft, &at)| {
         let stiffness: Vec<f64> = shaft.frequencies().map(|w| w * w).collect();
         let damping = shaft.damping + shaft.internal_damping;
-        let shapes = Shapes { at, first, stiffness, damping };
-        first += shaft.amplitudes();
-        shapes
+        Shapes { at, stiffness, damping }
     });
     of.collect()
 }
@@ -126,15 +123,15 @@ pub(super) fn update(sections: &mut [SectionHub], hubs: &mut [Hub], system: &Sys
 /// The small matrix with sections taken to bodies and shapes, and room to solve with it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bending {
-    /// Unknowns before, of hubs and solids: where each is after, or the part of the section that it is.
+    /// Unknowns before, of hubs: where each is after, or the part of the section that it is.
     from: Vec<Unknown>,
-    /// Over bodies, solids and shapes of bending.
+    /// Over bodies and shapes of bending.
     matrix: Dense,
     right: Vec<f64>,
     /// Where the columns of a section's rows are after.
     columns: Vec<Vec<usize>>,
-    /// First of the shapes of bending.
-    first: usize,
+    /// First of the shapes of bending of each shaft.
+    first: Vec<usize>,
     product: Vec<f64>,
 }
 
@@ -146,30 +143,32 @@ enum Unknown {
 
 impl Bending {
     pub(super) fn new(linearised: &Linearised, before: usize) -> Bending {
-        let (bodies, hubs) = (6 * linearised.bodies(), 6 * linearised.hubs.len());
-        let first = bodies + linearised.shapes();
-        let shapes: usize = linearised.shafts.iter().map(|shaft| shaft.stiffness.len()).sum();
+        let bodies = 6 * linearised.bodies();
+        let mut size = bodies;
+        let first = linearised.shafts.iter().map(|shaft| {
+            let first = size;
+            size += shaft.stiffness.len();
+            first
+        });
+        let first: Vec<usize> = first.collect();
         let columns = linearised.sections.iter().map(|section| {
             let shaft = &linearised.shafts[section.shaft];
-            let from = first + shaft.first;
+            let from = first[section.shaft];
             // Of a body without equations the columns are zero, wherever they go.
             let own = 6 * section.body.unwrap_or(0);
             (own..own + 6).chain(from..from + shaft.stiffness.len()).collect()
         });
         let unknown = |index: usize| match index {
             _ if index < bodies => Unknown::Kept(index),
-            _ if index < hubs => {
-                Unknown::Section { number: (index - bodies) / 6, part: (index - bodies) % 6 }
-            }
-            _ => Unknown::Kept(index - (hubs - bodies)),
+            _ => Unknown::Section { number: (index - bodies) / 6, part: (index - bodies) % 6 },
         };
         Bending {
             from: (0..before).map(unknown).collect(),
-            matrix: Dense::new(first + shapes),
-            right: vec![0.0; first + shapes],
+            matrix: Dense::new(size),
+            right: vec![0.0; size],
             columns: columns.collect(),
+            product: vec![0.0; size],
             first,
-            product: vec![0.0; first + shapes],
         }
     }
 
@@ -177,9 +176,9 @@ impl Bending {
     pub(super) fn factor(&mut self, linearised: &Linearised, scale: f64, schur: &mut Dense) {
         let Bending { from, matrix, columns, first, product, .. } = self;
         matrix.clear();
-        for shaft in &linearised.shafts {
+        for (shaft, first) in linearised.shafts.iter().zip(&*first) {
             for (k, stiffness) in shaft.stiffness.iter().enumerate() {
-                let at = *first + shaft.first + k;
+                let at = first + k;
                 *matrix.at(at, at) = 1.0 + scale * (shaft.damping + scale * stiffness);
             }
         }
@@ -225,7 +224,7 @@ impl Bending {
         }
     }
 
-    /// Puts the rates of all hubs and solids in place of their right-hand sides, and those of the shapes into `w`.
+    /// Puts the rates of all hubs in place of their right-hand sides, and those of the shapes into `w`.
     pub(super) fn solve(
         &mut self,
         linearised: &Linearised,
@@ -235,11 +234,10 @@ impl Bending {
         w: &mut [f64],
     ) {
         let Bending { from, matrix, right, columns, first, .. } = self;
-        for shaft in &linearised.shafts {
+        for (shaft, first) in linearised.shafts.iter().zip(&*first) {
             let count = shaft.stiffness.len();
             for (k, stiffness) in shaft.stiffness.iter().enumerate() {
-                right[*first + shaft.first + k] =
-                    r[shaft.at + count + k] - scale * stiffness * r[shaft.at + k];
+                right[first + k] = r[shaft.at + count + k] - scale * stiffness * r[shaft.at + k];
             }
         }
         for (force, to) in hubs.iter().zip(from.iter()) {
@@ -264,10 +262,10 @@ impl Bending {
                 }
             };
         }
-        for shaft in &linearised.shafts {
+        for (shaft, first) in linearised.shafts.iter().zip(&*first) {
             let count = shaft.stiffness.len();
             for k in 0..count {
-                let rate = right[*first + shaft.first + k];
+                let rate = right[first + k];
                 w[shaft.at + k] = r[shaft.at + k] + scale * rate;
                 w[shaft.at + count + k] = rate;
             }

@@ -8,6 +8,7 @@
 //! `clocked` up to what is due next, `foretell` for a while. `equilibrium` says where all stand still, under loads that `following`
 //! takes along.
 pub mod arrow;
+mod arrow_solids;
 mod arrow_terms;
 pub mod assembly;
 pub mod ball_set;

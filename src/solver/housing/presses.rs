@@ -1,6 +1,6 @@
 //! Patterns of force on a bore that a reduced housing answers to statically: what a race puts on it.
 
-use super::bore_equilibrium::{BoreError, BoreSearch, Fit, RaceLoad};
+use super::bore_equilibrium::{BoreError, BoreSearch, BoreState, Fit, RaceLoad};
 use super::condensed::{CondensedBore, lever};
 use super::housed::{in_bore, race_under_load};
 use crate::ch2_housing::bore_contact::Penalty;
@@ -19,15 +19,26 @@ const LEVERS: [f64; 4] = [-0.25, 0.25, -1.0, 1.0];
 /// Loads on the nodes of a bore, N: what its compliance is measured under.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Presses {
-    /// Of a race that shifts, tilts and grows where the bore touches it all round: these have answers of their own, so that nothing is
-    /// left out where no node lets go.
-    pub closed: Vec<Vec<f64>>,
+    /// These have answers of their own: of a race that shifts, tilts and grows where the bore touches it all round, so that nothing is
+    /// left out where no node lets go; and of the race where a run starts.
+    pub own: Vec<Vec<f64>>,
     pub others: Vec<Vec<f64>>,
 }
 
-/// Of a race pressed into the bore by `force` (N) in directions all round, with moments and without, and turned by nothing but `moment`
-/// (N·m, none where it is 0) about axes all round; and what they differ by from those of the fit alone. Of a tight fit the
-/// differences are what moves the race.
+/// How hard a race may be pressed into its bore, whichever way.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hardest<'s> {
+    /// N.
+    pub force: f64,
+    /// That turns it without a force, N·m.
+    pub moment: f64,
+    /// Where a run starts: loads that come from elsewhere, and go through levers, are known there only.
+    pub start: Option<&'s BoreState>,
+}
+
+/// Of a race pressed into the bore by a force in directions all round, with moments and without, turned by nothing but a moment about
+/// axes all round, and as at the start of a run, turned all round; and what they differ by from those of the fit alone. Of a tight
+/// fit the differences are what moves the race.
 ///
 /// # Errors
 /// A bore that does not hold the race.
@@ -35,11 +46,11 @@ pub fn pressed(
     bore: &CondensedBore,
     penalty: Penalty,
     fit: &Fit,
-    [force, moment]: [f64; 2],
+    hardest: &Hardest,
 ) -> Result<Presses, StaticsError> {
     let mut search = BoreSearch::new(bore, penalty);
     let alone = race_under_load(&mut search, fit, &RaceLoad::default())?.loads;
-    let mut others = Vec::with_capacity(2 * (LEVERS.len() + 1) * DIRECTIONS);
+    let mut others = Vec::with_capacity(2 * (LEVERS.len() + 3) * DIRECTIONS);
     let mut add = |load: &RaceLoad| -> Result<(), StaticsError> {
         let loads = race_under_load(&mut search, fit, load)?.loads;
         others.push(loads.iter().zip(&alone).map(|(p, alone)| p - alone).collect());
@@ -48,24 +59,30 @@ pub fn pressed(
     };
     for i in 0..DIRECTIONS {
         let (sin, cos) = libm::sincos(TAU * i as f64 / DIRECTIONS as f64);
-        let across = |size: f64| [0.0, size * cos, size * sin];
-        let force = across(force);
+        let across = |[y, z]: [f64; 2]| [0.0, y * cos - z * sin, y * sin + z * cos];
+        let force = across([hardest.force, 0.0]);
         add(&RaceLoad { force, moment: [0.0; 3] })?;
         let levered = LEVERS.map(|lever| {
             let moment = cross([lever * bore.reach.width, 0.0, 0.0], force);
             RaceLoad { force, moment }
         });
-        let turned = (moment > 0.0).then(|| RaceLoad { force: [0.0; 3], moment: across(moment) });
-        for load in levered.iter().chain(&turned) {
+        let turned = RaceLoad { force: [0.0; 3], moment: across([hardest.moment, 0.0]) };
+        let turned = (hardest.moment > 0.0).then_some(turned);
+        let start = hardest.start.map(|start| {
+            let [y, z, about_y, about_z] = start.load;
+            RaceLoad { force: across([y, z]), moment: across([about_y, about_z]) }
+        });
+        for load in levered.iter().chain(&turned).chain(&start) {
             // A race on its rim, or loose under a moment, may have no rest: other samples say what is new of it.
             let _ = add(load);
         }
     }
-    let closed = closed(bore, penalty).map_err(in_bore)?;
-    Ok(Presses { closed, others })
+    let mut own = closed(bore, penalty).map_err(in_bore)?;
+    own.extend(hardest.start.map(|start| start.loads.clone()));
+    Ok(Presses { own, others })
 }
 
-/// [`Presses::closed`]: of (C + 1/k) p = g with C the compliance of the bore, k its contact, and g of 1 m or 1 rad of each coordinate of
+/// Of a race that shifts, tilts and grows where no node lets go: of (C + 1/k) p = g with C the compliance of the bore, k its contact, and g of 1 m or 1 rad of each coordinate of
 /// the race, and of a growth by 1 m.
 fn closed(bore: &CondensedBore, penalty: Penalty) -> Result<Vec<Vec<f64>>, BoreError> {
     let everyone: Vec<usize> = (0..bore.nodes.len()).collect();
@@ -117,7 +134,7 @@ impl Pattern {
     }
 }
 
-/// Those of `loads` that are of a closed bore, and as few combinations of the others as leave out no more than `tolerance` of the
+/// Those of `loads` that get answers of their own, and as few combinations of the others as leave out no more than `tolerance` of the
 /// compliance under each of them: the principal ones of what natural shapes and these leave, each load by its whole compliance.
 pub(super) fn patterns(
     bore: &CondensedBore,
@@ -149,7 +166,7 @@ pub(super) fn patterns(
     };
     let mut by_patterns = 0.0f64;
     let mut kept: Vec<Pattern> = Vec::new();
-    for found in loads.closed.iter().filter_map(pattern) {
+    for found in loads.own.iter().filter_map(pattern) {
         by_patterns = by_patterns.max(found.energy());
         let mut new = found.beyond(&kept);
         let energy = new.energy();
