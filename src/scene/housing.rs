@@ -48,6 +48,8 @@ pub struct HousingSettings {
     pub window_phase: f64,
     /// Natural shapes of a reduced housing up to this frequency, Hz; `None`: by what the bearing pushes with.
     pub modes_to: Option<f64>,
+    /// Force on the race in its bore that shapes are made for, N; `None`: the largest load.
+    pub press: Option<f64>,
     pub defaults_used: Vec<DefaultUsed>,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::scene::key_table::{RADIUS, RADIUS_HINT};
 use crate::scene::keys::{Key, Kind, Need, Table, above, closed, table};
-use crate::scene::units::Dimension::{Frequency, Length, Stiffness, StiffnessPerArea, Time};
+use crate::scene::units::Dimension::{Force, Frequency, Length, Stiffness, StiffnessPerArea, Time};
 use Need::{Default, Depends, Optional};
 
 pub const METHODS: &[&str] = &["quasi-static", "explicit", "reduced", "rigid"];
@@ -46,6 +46,8 @@ pub(super) const KEYS: &[Key] = &[
         "`stick-slip`: how far a node of the bore moves along the outer race, against a spring, until it slips: up to there the coefficient grows with the stretch. No spring is stiffer than the contact along its normal, so that deeper nodes slip later.").hint("a part of a micrometre; the shorter, the stiffer the grip").example_of("0.1 nm"),
     Key::new("housing.modes_to", Kind::Quantity(Frequency, above(0.0, 1e9, "Hz")), Depends("twice the natural frequency of a ball between its races under the largest load on bodies; shafts that bend keep theirs to themselves"),
         "`reduced`: natural shapes of the housing up to this frequency move; what is stiffer follows statically, and by a few shapes of its own.").example_of("40 kHz"),
+    Key::new("housing.press", Kind::Quantity(Force, above(0.0, 1e12, "N")), Depends("the largest load across their axes on all bodies, shafts and unbalances at given speeds among them, at any time"),
+        "`reduced`: shapes of the housing are made for the outer race pressed into its bore by this, all round and with levers, besides what presses it at the start. To be given where something else presses: `run` says so.").example_of("5 kN"),
     Key::new("housing.step_fraction", Kind::Number(above(0.0, 1.0, "")), Default { value: "0.8", reason: "a part of the largest stable step of the housing in contact" },
         "`explicit`: steps of the housing as a part of their stability limit.").example_of("0.8"),
     Key::new("housing.window_phase", Kind::Number(above(0.0, 1.9, "")), Default { value: "0.125", reason: "energy is kept to 1e-4 of what a blow through clearance turns over" },

@@ -246,12 +246,16 @@ fn settings(
             );
         }
     }
-    let modes_to = reader.given_number("housing.modes_to");
-    if modes_to.is_some() && method != HousingMethod::Reduced {
-        let reason = "only `reduced` takes natural shapes";
+    let [modes_to, press] =
+        ["housing.modes_to", "housing.press"].map(|key| reader.given_number(key));
+    let of_shapes = [("housing.modes_to", modes_to), ("housing.press", press)];
+    if let Some((key, _)) = of_shapes.into_iter().find(|(_, given)| given.is_some())
+        && method != HousingMethod::Reduced
+    {
+        let reason = "only `reduced` moves in shapes";
         return not_applicable(
             document,
-            "housing.modes_to",
+            key,
             reason,
             "leave it out, or write method = \"reduced\"",
         );
@@ -269,6 +273,7 @@ fn settings(
         step_fraction,
         window_phase,
         modes_to,
+        press,
         defaults_used: Vec::new(),
     })
 }

@@ -215,6 +215,42 @@ fn the_plan_says_what_presses_shapes_are_made_for() {
     }
 }
 
+/// A place that is given presses with what that takes, which no load tells before.
+#[test]
+fn a_press_beyond_what_shapes_are_made_for_is_told() {
+    let place = Place::new();
+    let squeezed = |housing: &str| {
+        let numerics = "[numerics]\nend = \"0.4 ms\"\noutput_interval = \"20 us\"\n";
+        let text = scene_text(&format!("method = \"reduced\"\n{housing}"), numerics).replace(
+            "z = { load = \"-250 N\" }",
+            "z = { displacement = { ramp = [\"0 um\", \"-12 um\"], start = \"0 s\", duration = \"0.3 ms\" } }",
+        );
+        let folder = place.path(&format!("out-{}", housing.len()));
+        let scene = place.scene("scene.toml", &text);
+        let said = succeed(into_folder("run", &scene, &folder, &[]));
+        let [y, z] = ["y", "z"].map(|axis| {
+            column(&folder.join("series.csv"), &format!("housing_force_on_outer_{axis}"))
+        });
+        let hardest = y.iter().zip(&z).fold(0.0f64, |most, (y, z)| most.max(y.hypot(*z)));
+        (said, json(folder.join("summary.json"))["housing_remarks"].to_string(), hardest)
+    };
+    let beyond = "beyond what its shapes are made for";
+    let (said, remarks, hardest) = squeezed("");
+    assert!(hardest > 300.0, "{hardest}");
+    let found = format!("pressed by up to {:.3e}", hardest);
+    let digits = |text: &str| {
+        text.split("up to ").nth(1).unwrap().split(' ').next().unwrap().parse::<f64>().unwrap()
+    };
+    let told = remarks.split("the bore was pressed").nth(1).unwrap();
+    assert!((digits(told) / digits(&found) - 1.0).abs() <= 1e-3, "{remarks} {found}");
+    assert!(said.contains(beyond) && remarks.contains("Hint: write press ="), "{said} {remarks}");
+    // Made for it, and for four fifths of it.
+    for press in [format!("{hardest}"), format!("{:.1}", 0.81 * hardest)] {
+        let (said, remarks, _) = squeezed(&format!("press = \"{press} N\""));
+        assert!(!said.contains(beyond) && !remarks.contains(beyond), "{said} {remarks}");
+    }
+}
+
 #[test]
 fn plan_and_check_say_what_moves_and_what_is_cut_off() {
     let place = Place::new();
@@ -248,6 +284,10 @@ fn what_a_reduced_housing_cannot_have_is_refused() {
     let explicit =
         blow("explicit", "1 ms", "").replace("fit_ramp", "modes_to = \"9 kHz\"\nfit_ramp");
     refused(&explicit, &["housing.modes_to", "only `reduced`"]);
+    refused(
+        &explicit.replace("modes_to = \"9 kHz\"", "press = \"9 kN\""),
+        &["housing.press", "only `reduced`"],
+    );
     let stepped = blow("reduced", "1 ms", "").replace("fit_ramp", "window_phase = 0.2\nfit_ramp");
     refused(&stepped, &["housing.window_phase"]);
     let moved = blow("reduced", "1 ms", "")

@@ -284,5 +284,8 @@ fn housing(housing: &HousingSettings) -> Result<Value, ResultsError> {
     if let Some(modes_to) = housing.modes_to {
         echo.insert("modes_to".into(), quantity("modes_to", modes_to, "Hz")?);
     }
+    if let Some(press) = housing.press {
+        echo.insert("press".into(), quantity("press", press, "N")?);
+    }
     Ok(Value::Object(echo))
 }

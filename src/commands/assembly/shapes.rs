@@ -28,8 +28,8 @@ use std::time::Instant;
 /// Housings as shapes, and the assembly with them.
 pub struct Shapes {
     pub assembly: Assembly,
-    /// What the shapes are made for, besides the start.
-    pub hardest: Hardest<'static>,
+    /// What the shapes of each housing are made for, and force (N) and moment (N m) on its race at the start.
+    pub presses: Vec<(Hardest<'static>, [f64; 2])>,
     /// One for each housing.
     pub reductions: Vec<Reduction>,
     /// Wall time that condensing, and finding shapes and start took, s.
@@ -37,6 +37,9 @@ pub struct Shapes {
     /// How often each stage of condensing ran, one for each housing.
     pub ran: Vec<Tally>,
 }
+
+/// A press by so much more than shapes are made for is told of: patches of contact grow by less than it does.
+const BEYOND: f64 = 1.25;
 
 /// Frequencies of the housing that are kept, over that of a ball between its races.
 const BEYOND_BALLS: f64 = 2.0;
@@ -76,11 +79,15 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
         }
         false => None,
     };
-    let mut reductions = Vec::new();
+    let (mut reductions, mut presses) = (Vec::new(), Vec::new());
     for (index, (housing, bore)) in housings.iter().zip(&bores).enumerate() {
         let bearing = &assembly.bearings[housing.bearing];
         let start: Option<&BoreState> = settled.as_ref().map(|settled| &settled.seats[index]);
+        let force = housing.scene.housing.press.unwrap_or(hardest.force);
+        let hardest = Hardest { force, ..hardest };
         let reduction = reduction(housing, bore, (bearing, struck), &Hardest { start, ..hardest })?;
+        let [y, z, about_y, about_z] = start.map_or([0.0; 4], |start| start.load);
+        presses.push((hardest, [y.hypot(z), about_y.hypot(about_z)]));
         let body = bearing.mounts[1].body;
         let radius = housing.setup.radius(&housing.scene);
         let penalty = housing.scene.housing.penalty;
@@ -104,7 +111,7 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     }
     let seconds = [condensing, start.elapsed().as_secs_f64()];
     let ran = bores.iter().map(|bore| bore.ran).collect();
-    Ok(Shapes { hardest, assembly, reductions, seconds, ran })
+    Ok(Shapes { presses, assembly, reductions, seconds, ran })
 }
 
 impl Shapes {
@@ -113,6 +120,39 @@ impl Shapes {
         let Motion::Bearing(simulation) = motion else { return None };
         let (gone, speeds) = simulation.system.shapes_of(&simulation.state, index);
         Some([gone, speeds].map(|of| self.reductions[index].displacement(of)))
+    }
+
+    /// The presses that shapes of a housing are made for.
+    fn made_for(&self, index: usize) -> String {
+        let (hardest, [force, _]) = self.presses[index];
+        let mut said = format!("presses of {} N", to_digits(hardest.force, 4));
+        if hardest.moment > 0.0 {
+            said += &format!(" or {} N m", to_digits(hardest.moment, 4));
+        }
+        if force > hardest.force {
+            said += &format!(" and the start's {} N", to_digits(force, 4));
+        }
+        said
+    }
+
+    /// What there is to say where a race was pressed (N) or turned (N m) beyond what the shapes of its housing are made for.
+    pub fn beyond(&self, housings: &[Housing], index: usize, found: [f64; 2]) -> Option<String> {
+        let (hardest, start) = self.presses[index];
+        let housing = &housings[index];
+        let force = hardest.force.max(start[0]);
+        // Levers of a width are among the samples.
+        let moment = (housing.setup.width * hardest.force).max(hardest.moment).max(start[1]);
+        if found[0] <= BEYOND * force && found[1] <= BEYOND * moment {
+            return None;
+        }
+        let needed = found[0].max(found[1] / housing.setup.width);
+        let [force, moment, needed] = [found[0], found[1], needed].map(|of| to_digits(of, 4));
+        Some(format!(
+            "{}the bore was pressed by up to {force} N and {moment} N m, beyond what its shapes are made for ({}): what they leave out \
+             there is not known. Hint: write press = \"{needed} N\", or more, in [housing]",
+            housing.before(),
+            self.made_for(index)
+        ))
     }
 
     /// Unknowns, shapes and frequencies of each housing, a line each.
@@ -126,10 +166,13 @@ impl Shapes {
     /// What there is to note of each housing in a plan.
     pub fn notes(&self, scene: &AssemblyScene, housings: &[Housing]) -> Vec<String> {
         let mut said = Vec::new();
-        for (housing, reduction) in housings.iter().zip(&self.reductions) {
+        for (index, (housing, reduction)) in housings.iter().zip(&self.reductions).enumerate() {
             let (of, cut) = (housing.before(), &reduction.cut_off);
             said.push(note("shapes of the housing", &format!("{of}{}", text(cut))));
-            said.push(note("cut off", &format!("{of}{}", cut_off(scene, &self.hardest, cut))));
+            said.push(note(
+                "cut off",
+                &format!("{of}{}", cut_off(scene, &self.made_for(index), cut)),
+            ));
         }
         said.push(note("masses of the housing", "lumped, as of explicit steps"));
         said
@@ -152,22 +195,14 @@ fn text(cut: &CutOff) -> String {
     )
 }
 
-fn presses(hardest: &Hardest) -> String {
-    let moment = match hardest.moment > 0.0 {
-        true => format!(" or {} N m", to_digits(hardest.moment, 4)),
-        false => String::new(),
-    };
-    format!("{} N{moment}", to_digits(hardest.force, 4))
-}
-
-fn cut_off(scene: &AssemblyScene, hardest: &Hardest, cut: &CutOff) -> String {
+fn cut_off(scene: &AssemblyScene, made_for: &str, cut: &CutOff) -> String {
     let driven = |of: &Excitation| {
         let error = cut.dynamic_error(of.frequency);
         format!("{} of what goes with {}", percent(error), of.what)
     };
     let mut said = format!(
-        "of the compliance under presses of {}, looked at all round, {} has no shape; the lowest natural shape left out swings at {} Hz",
-        presses(hardest),
+        "of the compliance under {}, looked at all round, {} has no shape; the lowest natural shape left out swings at {} Hz",
+        made_for,
         percent(cut.static_left_out),
         to_digits(cut.first_left_out, 4)
     );

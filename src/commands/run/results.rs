@@ -15,6 +15,7 @@ use bearing_dynamics::output::pictures::bearing::{Picture, draw, without_run_up}
 use bearing_dynamics::output::pictures::solid::{
     force_plots, probe_spectra, series_plots, spectrum_plot,
 };
+use bearing_dynamics::output::recorder::seat::prefix;
 use bearing_dynamics::output::remarks as of_solid;
 use bearing_dynamics::output::session::{Motion, RunRequest, Session, Status};
 use bearing_dynamics::output::spectrum::Spectrum;
@@ -78,7 +79,7 @@ pub(super) fn write_results(
             if scene.common().dynamics.plots.contains(&RunPlot::RunUp) {
                 said.remarks.extend(without_run_up(&table));
             }
-            housing_results(folder, prepared, session, &mut said)?;
+            housing_results(folder, prepared, session, &table, &mut said)?;
             said.sections.push(("remarks".into(), json!(said.remarks)));
         }
         Prepared::Solid { .. } => solid_results(prepared, session, &mut said)?,
@@ -157,6 +158,7 @@ fn housing_results(
     folder: &Path,
     prepared: &Prepared,
     session: &mut Session,
+    table: &RunTable,
     said: &mut Said,
 ) -> Fallible<()> {
     let Prepared::Bearings { lists, housings, shafts, way, .. } = prepared else { return Ok(()) };
@@ -185,6 +187,8 @@ fn housing_results(
                 sections.push(("seat".into(), seat_section(&housing.setup)?));
                 let name = if housing.name.is_some() { "shapes" } else { "reduced_housing" };
                 sections.push((name.into(), reduced_section(cut, &excitations(scene))?));
+                let found = pressed_by(table, &housing.name);
+                remarks.extend(shapes.beyond(housings, number, found).filter(|_| is_sound));
             }
             Way::Explicit | Way::Rigid => {
                 sections.push(("seat".into(), seat_section(&housing.setup)?));
@@ -222,6 +226,17 @@ fn housing_results(
         inertia_results(scene, &course.problem, said)?;
     }
     Ok(())
+}
+
+/// Largest force (N) and moment (N m) across its axis on the race of this name in its bore, over all rows.
+fn pressed_by(table: &RunTable, name: &Option<String>) -> [f64; 2] {
+    ["force", "moment"].map(|of| {
+        let [y, z] = ["y", "z"].map(|axis| {
+            let column = format!("{}housing_{of}_on_outer_{axis}", prefix(name));
+            table.all(&column).unwrap_or_default()
+        });
+        y.iter().zip(&z).fold(0.0, |most, (y, z)| f64::max(most, y.hypot(*z)))
+    })
 }
 
 /// The latest equilibrium of a housing.
