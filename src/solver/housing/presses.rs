@@ -1,12 +1,13 @@
 //! Patterns of force on a bore that a reduced housing answers to statically: what a race puts on it.
 
-use super::bore_equilibrium::{BoreError, BoreSearch, BoreState, Fit, RaceLoad};
+use super::bore_equilibrium::{BoreSearch, BoreState, Fit, RaceLoad};
 use super::condensed::{CondensedBore, lever};
 use super::housed::{in_bore, race_under_load};
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::kinematics::vec3::{Vec3, cross};
+use crate::solver::dense::DenseFactor;
+use crate::solver::sparse::FactorError;
 use crate::solver::statics::StaticsError;
-use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::TAU;
 
 /// Directions in which [`pressed`] presses: patches of contact move on by a part of their width from one to the next.
@@ -77,22 +78,49 @@ pub fn pressed(
             let _ = add(load);
         }
     }
-    let mut own = closed(bore, penalty).map_err(in_bore)?;
+    let mut own = closed(bore, penalty).map_err(|error| in_bore(error.into()))?;
     own.extend(hardest.start.map(|start| start.loads.clone()));
     Ok(Presses { own, others })
 }
 
-/// Of a race that shifts, tilts and grows where no node lets go: of (C + 1/k) p = g with C the compliance of the bore, k its contact, and g of 1 m or 1 rad of each coordinate of
-/// the race, and of a growth by 1 m.
-fn closed(bore: &CondensedBore, penalty: Penalty) -> Result<Vec<Vec<f64>>, BoreError> {
-    let everyone: Vec<usize> = (0..bore.nodes.len()).collect();
-    let softness = bore.nodes.iter().map(|node| 1.0 / penalty.of_node(node.area));
-    let factor = bore.compliance.factor(&everyone, &softness.collect::<Vec<_>>())?;
+/// Of a race that shifts, tilts and grows where no node lets go: what (C + 1/k) p = g has for 1 m or 1 rad of each of its coordinates, and
+/// for a growth by 1 m.
+fn closed(bore: &CondensedBore, penalty: Penalty) -> Result<Vec<Vec<f64>>, FactorError> {
     let moved = (0..4).flat_map(|axis| bore.nodes.iter().map(move |node| lever(node)[axis]));
     let mut all: Vec<f64> = moved.chain(bore.nodes.iter().map(|_| 1.0)).collect();
-    factor.solve_columns(&mut all, 5);
-    Ok(all.chunks_exact(everyone.len()).map(<[f64]>::to_vec).collect())
+    all_touching(bore, penalty)?.solve_columns(&mut all, 5);
+    Ok(all.chunks_exact(bore.nodes.len()).map(<[f64]>::to_vec).collect())
 }
+
+/// C + 1/k with C the compliance of the bore and k its contact: what the nodes give way by under pressures, all of them in contact.
+fn all_touching(bore: &CondensedBore, penalty: Penalty) -> Result<DenseFactor, FactorError> {
+    let everyone: Vec<usize> = (0..bore.nodes.len()).collect();
+    let softness = bore.nodes.iter().map(|node| 1.0 / penalty.of_node(node.area));
+    bore.compliance.factor(&everyone, &softness.collect::<Vec<_>>())
+}
+
+/// What natural shapes (frequency in rad/s, displacements outwards) up to a frequency push the race with that they ring against.
+fn ringing(
+    bore: &CondensedBore,
+    penalty: Penalty,
+    shapes: &[(f64, Vec<f64>)],
+    below: f64,
+) -> Result<Vec<Vec<f64>>, FactorError> {
+    let mut all: Vec<f64> = Vec::new();
+    for (_, shape) in shapes.iter().filter(|(frequency, _)| *frequency <= below) {
+        all.extend(shape);
+    }
+    let nodes = bore.nodes.len();
+    let count = all.len() / nodes;
+    if count > 0 {
+        all_touching(bore, penalty)?.solve_columns(&mut all, count);
+    }
+    Ok(all.chunks_exact(nodes).map(<[f64]>::to_vec).collect())
+}
+
+/// Natural shapes up to this part of the highest have answers to what they push the race with: by default those up to the frequency of
+/// a ball. Without these a tight bore is stiffer to them than its elements are, by which a blow comes out 1 % off.
+const RINGING: f64 = 0.5;
 
 /// Part of the largest energy below which a combination of answers is rounding of the others.
 pub(super) const NOTHING_NEW: f64 = 1e-10;
@@ -125,6 +153,17 @@ impl Pattern {
         self.moved.iter_mut().zip(&other.moved).for_each(|(to, u)| *to += factor * u);
     }
 
+    /// Nothing if it is rounding of others.
+    fn of_unit_energy(mut self) -> Option<Pattern> {
+        let energy = self.energy();
+        if energy <= NOTHING_NEW {
+            return None;
+        }
+        let unit = 1.0 / energy.sqrt();
+        self.load.iter_mut().chain(&mut self.moved).for_each(|of| *of *= unit);
+        Some(self)
+    }
+
     /// Takes away what others, of unit energy, have of it.
     fn beyond(mut self, others: &[Pattern]) -> Pattern {
         for other in others {
@@ -134,8 +173,8 @@ impl Pattern {
     }
 }
 
-/// Those of `loads` that get answers of their own, and as few combinations of the others as leave out no more than `tolerance` of the
-/// compliance under each of them: the principal ones of what natural shapes and these leave, each load by its whole compliance.
+/// Those of `loads` that get answers of their own, and so many of the others, and of what natural shapes push with, that no more than `tolerance` of the compliance under any
+/// of them is left out: one after the other the one that natural shapes and those before leave most of, each by its whole compliance.
 pub(super) fn patterns(
     bore: &CondensedBore,
     penalty: Penalty,
@@ -143,7 +182,7 @@ pub(super) fn patterns(
     loads: &Presses,
     tolerance: f64,
     at_bore: impl Fn(&[Vec3]) -> Vec<f64>,
-) -> Patterns {
+) -> Result<Patterns, FactorError> {
     let everyone: Vec<usize> = (0..bore.nodes.len()).collect();
     let shapes: Vec<(f64, Vec<f64>)> =
         natural.iter().map(|(frequency, shape)| (*frequency, at_bore(shape))).collect();
@@ -165,45 +204,35 @@ pub(super) fn patterns(
         Some(Pattern { load: of_unit(load), moved: of_unit(&moved) })
     };
     let mut by_patterns = 0.0f64;
+    let mut found = |loads: &[Vec<f64>]| -> Vec<Pattern> {
+        let found: Vec<Pattern> = loads.iter().filter_map(pattern).collect();
+        by_patterns = found.iter().map(Pattern::energy).fold(by_patterns, f64::max);
+        found
+    };
+    let (own, mut rest) = (found(&loads.own), found(&loads.others));
+    let ringing = match shapes.last() {
+        Some((highest, _)) => ringing(bore, penalty, &shapes, RINGING * highest)?,
+        None => Vec::new(),
+    };
+    rest.extend(found(&ringing));
     let mut kept: Vec<Pattern> = Vec::new();
-    for found in loads.own.iter().filter_map(pattern) {
-        by_patterns = by_patterns.max(found.energy());
-        let mut new = found.beyond(&kept);
-        let energy = new.energy();
-        if energy > NOTHING_NEW {
-            let unit = 1.0 / energy.sqrt();
-            new.load.iter_mut().chain(&mut new.moved).for_each(|of| *of *= unit);
-            kept.push(new);
-        }
+    for new in own {
+        kept.extend(new.beyond(&kept).of_unit_energy());
     }
-    let mut rest = Vec::with_capacity(loads.others.len());
-    for found in loads.others.iter().filter_map(pattern) {
-        by_patterns = by_patterns.max(found.energy());
-        rest.push(found.beyond(&kept));
+    rest = rest.into_iter().map(|pattern| pattern.beyond(&kept)).collect();
+    // Whichever is answered to least comes next.
+    let least = |rest: &[Pattern]| {
+        let left = rest.iter().map(Pattern::energy).enumerate();
+        left.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
+    };
+    let (mut next, mut left_out) = least(&rest);
+    while left_out > tolerance {
+        let Some(new) = rest.swap_remove(next).of_unit_energy() else { break };
+        kept.push(new);
+        let last = &kept[kept.len() - 1..];
+        rest = rest.into_iter().map(|pattern| pattern.beyond(last)).collect();
+        (next, left_out) = least(&rest);
     }
-    let size = rest.len();
-    let gram = DMatrix::from_fn(size, size, |i, j| {
-        0.5 * (inner(&rest[i].load, &rest[j].moved) + inner(&rest[j].load, &rest[i].moved))
-    });
-    let mut left: Vec<f64> = (0..size).map(|i| gram[(i, i)].max(0.0)).collect();
-    let largest = |left: &[f64]| left.iter().fold(0.0f64, |most, of| most.max(*of));
-    let found = SymmetricEigen::new(gram);
-    let mut order: Vec<usize> = (0..size).collect();
-    order.sort_by(|a, b| found.eigenvalues[*b].total_cmp(&found.eigenvalues[*a]));
-    let mut vectors: Vec<Vec<f64>> = kept.into_iter().map(|pattern| pattern.load).collect();
-    for k in order {
-        // Rounding has no pattern of its own.
-        if largest(&left) <= tolerance || found.eigenvalues[k] <= NOTHING_NEW {
-            break;
-        }
-        let shares = found.eigenvectors.column(k);
-        let mut pattern = vec![0.0; everyone.len()];
-        for ((share, rest), left) in shares.iter().zip(&rest).zip(&mut left) {
-            pattern.iter_mut().zip(&rest.load).for_each(|(to, p)| *to += share * p);
-            *left = (*left - found.eigenvalues[k] * share * share).max(0.0);
-        }
-        vectors.push(pattern);
-    }
-    let left_out = largest(&left);
-    Patterns { vectors, left_out, by_patterns: by_patterns - left_out }
+    let vectors = kept.into_iter().map(|pattern| pattern.load).collect();
+    Ok(Patterns { vectors, left_out, by_patterns: by_patterns - left_out })
 }

@@ -8,9 +8,9 @@
 //! out is diagonal, free of coupled masses, and statically exact for every f_j. Interface shapes with fixed-interface modes
 //! (Craig and Bampton) span no more, and would need an interface of few coordinates first.
 //!
-//! Patterns are combinations of loads that a race puts on its bore in all directions ([`super::presses::pressed`]), the principal ones by
-//! the compliance that natural shapes leave. So many are kept that under none of these loads more than
-//! a given part of the compliance of bore and contact is left out. The masses are the lumped ones, as of explicit steps.
+//! Patterns are loads that a race puts on its bore in all directions ([`super::presses::pressed`]), and what natural shapes push it with
+//! that ring against it. So many are kept that under none of them more than a given part of the compliance of bore and contact is
+//! left out. The masses are the lumped ones, as of explicit steps.
 
 use super::condensed::{CondensedBore, rim};
 use super::presses::{NOTHING_NEW, Presses, patterns};
@@ -25,6 +25,7 @@ use crate::solver::profile::Profile;
 use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::modes::{Mode, ModeError, ModeOptions, modes_over};
 use crate::solver::solid::tangent::MassMatrix;
+use crate::solver::sparse::FactorError;
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 use std::f64::consts::TAU;
 use thiserror::Error;
@@ -44,6 +45,8 @@ pub const LEFT_OUT: f64 = 1e-4;
 pub enum ReduceError {
     #[error(transparent)]
     Modes(#[from] ModeError),
+    #[error(transparent)]
+    Bore(#[from] FactorError),
     #[error("natural shapes up to {frequency} Hz are asked for; that must be positive and finite")]
     Frequency { frequency: f64 },
     #[error(
@@ -251,7 +254,7 @@ pub fn reduce(
         nodes.map(|(node, out)| dot(shape[node.node as usize], *out)).collect()
     };
 
-    let kept = patterns(bore, penalty, &natural, loads, options.left_out, at_bore);
+    let kept = patterns(bore, penalty, &natural, loads, options.left_out, at_bore)?;
     let own = own_loads(model);
     let mut answers: Vec<Answer> = Vec::new();
     let all = own.iter().map(|(forces, _)| forces.clone());
