@@ -104,6 +104,7 @@ impl Shaft {
     pub fn reduced(&self) -> Result<Parts<'static>, CaseError> {
         let mut assembly = self.scene.assembly()?;
         let mut bores = self.bores()?;
+        let rest = self.rest(&assembly, &bores)?;
         let mut reductions = Vec::new();
         for (bearing, (Housing { scene, setup }, bore)) in
             self.housings.iter().zip(&bores).enumerate()
@@ -113,7 +114,7 @@ impl Shaft {
                 bore,
                 penalty,
                 &setup.fit(scene),
-                &Hardest { force: FORCE, ..Hardest::default() },
+                &Hardest { force: FORCE, moment: 0.0, start: Some(&rest.seats[bearing]) },
             )?;
             let modes_to = scene.housing.modes_to.unwrap_or(MODES_TO);
             let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
@@ -136,14 +137,23 @@ impl Shaft {
         Ok(Parts::Bearing(Box::new(assembly)))
     }
 
+    /// Of all under the loads at t = 0.
+    fn rest(
+        &self,
+        assembly: &Assembly,
+        bores: &[CondensedBore],
+    ) -> Result<AssemblySolution, CaseError> {
+        let mut still = static_assembly(assembly, 0.0, &[]);
+        self.course(bores)?.seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
+        Ok(solve_assembly(&still, None, &StaticOptions::default())?)
+    }
+
     /// From the equilibrium of all.
     pub fn explicit(&self, threads: usize) -> Result<HousedParts<'static>, CaseError> {
         let mut assembly: Assembly = self.scene.assembly()?;
         let bores = self.bores()?;
         let course = self.course(&bores)?;
-        let mut still = static_assembly(&assembly, 0.0, &[]);
-        course.seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
-        let found = solve_assembly(&still, None, &StaticOptions::default())?;
+        let found = self.rest(&assembly, &bores)?;
         let mut displacements = Vec::new();
         for (of, state) in course.seats.iter().zip(&found.seats) {
             let body = of.body(&assembly);
