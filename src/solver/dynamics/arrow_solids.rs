@@ -3,7 +3,8 @@
 //! With D the diagonal of the shapes' own equations, S what they are at the nodes that touch, L the levers of hubs there and k the
 //! nodes' stiffness, rates q of shapes and h of hubs push each node by p = hγ k (S (u + hγ q) + L (m + hγ h)), where u and m are the
 //! displacements in the right-hand side. So D q = f − Sᵀp, and what is left is one equation for each node that touches,
-//! (1/(h²γ² k) + S D⁻¹ Sᵀ) p = S (D⁻¹ f + u/hγ) + L (h + m/hγ): fewer than there are shapes, but in a tight fit.
+//! (1/(h²γ² k) + S D⁻¹ Sᵀ) p = S (D⁻¹ f + u/hγ) + L (h + m/hγ). Where more nodes touch than there are shapes, in a tight fit of a fine
+//! mesh, the shapes' own equations with the nodes' springs in them are the fewer ones, D + h²γ² Sᵀ k S.
 
 use super::elimination::Dense;
 use super::linearised::{Linearised, SeatRow, Shapes};
@@ -24,9 +25,12 @@ pub(super) struct SolidBlock {
     rows: Vec<(usize, SeatRow)>,
     /// D⁻¹.
     yielding: Vec<f64>,
-    /// 1/(h²γ² k) + S D⁻¹ Sᵀ, factored, and its inverse times the levers of each hub.
+    /// Whether the equations are those of the shapes.
+    by_shapes: bool,
+    /// Factored, and its inverse times what couples it to each hub: L, or B = h²γ² Sᵀ k L.
     matrix: Dense,
     levered: Vec<Vec<[f64; 6]>>,
+    coupled: Vec<Vec<[f64; 6]>>,
     /// p of each node that touches, and f and D⁻¹ f + u/hγ of each shape.
     pushes: Vec<f64>,
     forces: Vec<f64>,
@@ -63,8 +67,10 @@ impl SolidBlock {
         SolidBlock {
             rows: Vec::with_capacity(nodes),
             yielding: vec![0.0; shapes],
-            matrix: Dense::new(nodes),
-            levered: hubs.iter().map(|_| Vec::with_capacity(nodes)).collect(),
+            matrix: Dense::new(nodes.max(shapes)),
+            by_shapes: false,
+            levered: hubs.iter().map(|_| Vec::with_capacity(nodes.max(shapes))).collect(),
+            coupled: hubs.iter().map(|_| Vec::with_capacity(shapes)).collect(),
             pushes: Vec::with_capacity(nodes),
             forces: vec![0.0; shapes],
             gone: vec![0.0; shapes],
@@ -82,13 +88,18 @@ impl SolidBlock {
         scale: f64,
         schur: &mut Dense,
     ) {
-        let SolidBlock { seats, rows, yielding, matrix, .. } = self;
+        let SolidBlock { seats, rows, yielding, matrix, by_shapes, .. } = self;
         for (yielding, stiffness) in yielding.iter_mut().zip(&solid.stiffness) {
             *yielding = 1.0 / (1.0 + scale * (solid.damping + scale * stiffness));
         }
         rows.clear();
         for (own, (number, _)) in seats.iter().enumerate() {
             rows.extend(linearised.seats[*number].nodes.iter().map(|row| (own, *row)));
+        }
+        *by_shapes = rows.len() > yielding.len();
+        if *by_shapes {
+            self.factor_shapes(scale, schur);
+            return;
         }
         matrix.resize(rows.len());
         for (i, (_, row)) in rows.iter().enumerate() {
@@ -97,6 +108,76 @@ impl SolidBlock {
         self.add_shapes();
         self.matrix.factor();
         self.hold(schur);
+    }
+
+    /// D + h²γ² Sᵀ k S, and what it and the nodes' springs hold the hubs with.
+    fn factor_shapes(&mut self, scale: f64, schur: &mut Dense) {
+        let SolidBlock { seats, hubs, rows, yielding, matrix, levered, coupled, .. } = self;
+        let shapes = yielding.len();
+        matrix.resize(shapes);
+        for (k, yielding) in yielding.iter().enumerate() {
+            *matrix.at(k, k) = 1.0 / yielding;
+        }
+        for coupled in coupled.iter_mut() {
+            coupled.clear();
+            coupled.resize(shapes, [0.0; 6]);
+        }
+        for (own, row) in rows.iter() {
+            let seat = &seats[*own].1;
+            let of_node = &seat.by_node[row.node * shapes..][..shapes];
+            let weight = scale * scale * row.stiffness;
+            for (k, shape) in of_node.iter().enumerate() {
+                matrix.add_to_row(k, k, weight * row.along * row.along * shape, &of_node[k..]);
+            }
+            let Some(hub) = seat.hub else { continue };
+            let coupled = hubs.iter().zip(coupled.iter_mut()).filter(|(of, _)| **of == hub);
+            let push = row.lever.map(|lever| weight * row.along * lever);
+            for (to, shape) in coupled.flat_map(|(_, coupled)| coupled).zip(of_node) {
+                (0..6).for_each(|i| to[i] += push[i] * shape);
+            }
+            for i in 0..6 {
+                let (at, push) = (6 * hub + i, weight * row.lever[i]);
+                schur.add_to_row(at, at, push, &row.lever[i..]);
+            }
+        }
+        matrix.factor();
+        for (number, (hub, levered)) in hubs.iter().zip(levered).enumerate() {
+            levered.clone_from(&coupled[number]);
+            matrix.solve_six(levered);
+            for (other, coupled) in hubs.iter().zip(coupled.iter()).take(number + 1) {
+                for (coupled, held) in coupled.iter().zip(levered.iter()) {
+                    for i in 0..6 {
+                        let from = if other == hub { i } else { 0 };
+                        schur.add_to_row(6 * other + i, 6 * hub + from, -coupled[i], &held[from..]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// [`SolidBlock::push`] with the equations of the shapes; what the shapes do where hubs stand still is in `gone` then.
+    fn push_shapes(&mut self, scale: f64, places: &[f64], moved: &[[f64; 6]], to: &mut [f64]) {
+        let SolidBlock { seats, hubs, rows, matrix, coupled, forces, gone, .. } = self;
+        let shapes = forces.len();
+        for (_, seat) in seats.iter_mut() {
+            seat.surface.along_normals(places, &mut seat.outward);
+        }
+        for (own, row) in rows.iter() {
+            let seat = &seats[*own].1;
+            let lever = seat.hub.map_or(0.0, |hub| inner(&row.lever, &moved[hub]));
+            let push = scale * row.stiffness * (row.along * seat.outward[row.node] + lever);
+            let of_node = &seat.by_node[row.node * shapes..][..shapes];
+            forces.iter_mut().zip(of_node).for_each(|(to, shape)| *to -= row.along * push * shape);
+            let Some(hub) = seat.hub else { continue };
+            (0..6).for_each(|j| to[6 * hub + j] -= row.lever[j] * push);
+        }
+        gone.clone_from(forces);
+        matrix.solve(gone);
+        for (hub, coupled) in hubs.iter().zip(coupled) {
+            for (coupled, gone) in coupled.iter().zip(&*gone) {
+                (0..6).for_each(|j| to[6 * hub + j] -= coupled[j] * gone);
+            }
+        }
     }
 
     /// S D⁻¹ Sᵀ.
@@ -161,10 +242,15 @@ impl SolidBlock {
         hubs: &mut [f64],
     ) {
         let SolidBlock { seats, rows, yielding, matrix, pushes, forces, gone, .. } = self;
-        let (places, speeds) = r[solid.at..].split_at(yielding.len());
+        let shapes = yielding.len();
+        let (places, speeds) = r[solid.at..solid.at + 2 * shapes].split_at(shapes);
         for (k, yielding) in yielding.iter().enumerate() {
             forces[k] = speeds[k] - scale * solid.stiffness[k] * places[k];
             gone[k] = yielding * forces[k] + places[k] / scale;
+        }
+        if self.by_shapes {
+            self.push_shapes(scale, places, moved, hubs);
+            return;
         }
         for (_, seat) in seats.iter_mut() {
             seat.surface.along_normals(gone, &mut seat.outward);
@@ -193,8 +279,20 @@ impl SolidBlock {
         rates: &[[f64; 6]],
         w: &mut [f64],
     ) {
-        let SolidBlock { seats, hubs, rows, yielding, levered, pushes, forces, .. } = self;
+        let SolidBlock { seats, hubs, rows, yielding, levered, pushes, forces, gone, .. } = self;
         let shapes = yielding.len();
+        if self.by_shapes {
+            for (hub, levered) in hubs.iter().zip(levered) {
+                for (gone, held) in gone.iter_mut().zip(levered) {
+                    *gone -= inner(held, &rates[*hub]);
+                }
+            }
+            for (k, rate) in gone.iter().enumerate() {
+                w[solid.at + k] = r[solid.at + k] + scale * rate;
+                w[solid.at + shapes + k] = *rate;
+            }
+            return;
+        }
         for (hub, levered) in hubs.iter().zip(levered) {
             for (push, held) in pushes.iter_mut().zip(levered) {
                 *push += inner(held, &rates[*hub]);
