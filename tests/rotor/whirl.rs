@@ -3,8 +3,8 @@
 use crate::beam::{DENSITY, E, full, steel};
 use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc};
 use bearing_dynamics::solver::rotor::model::{Held, Rotor, RotorError, RotorModel, Support};
-use bearing_dynamics::solver::rotor::unbalance::Unbalance;
-use nalgebra::Matrix4;
+use bearing_dynamics::solver::rotor::unbalance::{Orbit, Unbalance};
+use nalgebra::{Complex, Matrix4};
 use std::f64::consts::PI;
 
 const LENGTH: f64 = 0.4;
@@ -296,5 +296,19 @@ fn lines_that_cross_are_followed_to_rest() {
         // As near as the two motions of a pair at rest are to each other.
         let miss = line[0].frequency() / rest - 1.0;
         assert!(miss.abs() <= 1e-9, "{index}: {miss}");
+    }
+}
+
+/// y = 3 cos φ, z = 2 sin φ: an ellipse of half axes 3 and 2, whichever way it is gone round.
+#[test]
+fn an_ellipse_is_as_long_as_both_circles_together() {
+    for around in [-2.0, 2.0] {
+        let orbit = Orbit { y: Complex::new(3.0, 0.0), z: Complex::new(0.0, around) };
+        assert!((orbit.semi_major() - 3.0).abs() <= 1e-15, "{}", orbit.semi_major());
+        let [forward, backward] = orbit.circles();
+        let farthest = (0..360).map(|i| f64::from(i).to_radians().sin_cos());
+        let farthest =
+            farthest.map(|(sin, cos)| (3.0 * cos).hypot(around * sin)).fold(0.0, f64::max);
+        assert!((forward + backward - farthest).abs() <= 1e-14, "{forward} {backward}");
     }
 }

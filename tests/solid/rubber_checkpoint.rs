@@ -125,6 +125,25 @@ fn rubber_does_what_is_planned_and_nothing_else() {
     }
 }
 
+/// Under a load that is growing it rests as under a constant one as large as that is then.
+#[test]
+fn relaxed_is_under_what_acts_at_its_time() {
+    let under = |profile: Profile| {
+        let mut model = pulled(Profile::ZERO, true, named::table_3_1());
+        let forces = vec![(40, [0.0, 0.0, 1.0])];
+        model.problem.loads.push(Load { forces, profile });
+        relaxed(&model, 0.25).unwrap().state.displacement
+    };
+    let growing = under(Profile::Ramp { from: 0.0, to: 0.8, start: 0.0, duration: 1.0 });
+    let constant = under(Profile::Constant(0.2));
+    let largest = constant.iter().flatten().fold(0.0f64, |most, u| most.max(u.abs()));
+    assert!(largest > 1e-9, "{largest:e}");
+    for (growing, constant) in growing.iter().flatten().zip(constant.iter().flatten()) {
+        // Two searches of the same steps: rounding.
+        assert!((growing - constant).abs() <= 1e-12 * largest, "{growing:e} {constant:e}");
+    }
+}
+
 /// A bar under tension has one stress, the force over the deformed section, and nothing across.
 #[test]
 fn stresses_hold_the_forces() {
