@@ -130,8 +130,17 @@ fn rubber_does_what_is_planned_and_nothing_else() {
 fn relaxed_is_under_what_acts_at_its_time() {
     let under = |profile: Profile| {
         let mut model = pulled(Profile::ZERO, true, named::table_3_1());
-        let forces = vec![(40, [0.0, 0.0, 1.0])];
-        model.problem.loads.push(Load { forces, profile });
+        // In the middle of its length, at an edge: no support holds it.
+        let nodes = &model.problem.nodes;
+        let ends = nodes.iter().fold([f64::MAX, f64::MIN], |[a, b], x| [a.min(x[0]), b.max(x[0])]);
+        let middle =
+            |node: &u32| (nodes[*node as usize][0] - 0.5 * (ends[0] + ends[1])).abs() < 1e-9;
+        let out = |node: &u32| nodes[*node as usize][1] + nodes[*node as usize][2];
+        let node = (0..nodes.len() as u32)
+            .filter(middle)
+            .max_by(|a, b| out(a).total_cmp(&out(b)))
+            .unwrap();
+        model.problem.loads.push(Load { forces: vec![(node, [0.0, 0.0, 1.0])], profile });
         relaxed(&model, 0.25).unwrap().state.displacement
     };
     let growing = under(Profile::Ramp { from: 0.0, to: 0.8, start: 0.0, duration: 1.0 });
