@@ -115,9 +115,13 @@ pub fn course<'b>(
     housings: &[Housing],
     bores: &'b [CondensedBore],
 ) -> CourseProblem<'b> {
+    CourseProblem { assembly, seats: seats(housings, bores) }
+}
+
+/// Their races in their bores, as large as they are at any time.
+pub fn seats<'b>(housings: &[Housing], bores: &'b [CondensedBore]) -> Vec<CourseSeat<'b>> {
     let seats = housings.iter().zip(bores);
-    let seats = seats.map(|(of, bore)| of.course_seat(bore, of.setup.radius(&of.scene)));
-    CourseProblem { assembly, seats: seats.collect() }
+    seats.map(|(of, bore)| of.course_seat(bore, of.setup.radius(&of.scene))).collect()
 }
 
 /// The same with races as fully grown into their fits.

@@ -3,7 +3,7 @@
 use super::Fallible;
 use super::course::percent;
 use super::housing::Housing;
-use super::housings::{Largest, at_start, condensed, course};
+use super::housings::{Largest, at_start, condensed, seats};
 use super::lists::Lists;
 use crate::commands::plan_step::note;
 use bearing_dynamics::kinematics::vec3::Vec3;
@@ -72,13 +72,7 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     let condensing = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let settles = scene.run().is_none_or(|run| run.options.start != Start::Nominal);
-    let settled = match settles {
-        true => {
-            let course = course(assembly.clone(), housings, &bores);
-            Some(at_start(&course.assembly, &course.seats)?)
-        }
-        false => None,
-    };
+    let settled = settles.then(|| at_start(&assembly, &seats(housings, &bores))).transpose()?;
     let (mut reductions, mut presses) = (Vec::new(), Vec::new());
     for (index, (housing, bore)) in housings.iter().zip(&bores).enumerate() {
         let bearing = &assembly.bearings[housing.bearing];
