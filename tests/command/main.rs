@@ -27,6 +27,7 @@ mod command_line_check;
 mod command_line_compare;
 mod command_line_files;
 mod command_line_sweep;
+mod crooked_scenes;
 mod documented_commands;
 mod features;
 mod frozen_scenes;

@@ -56,11 +56,11 @@ fn a_spinning_shaft_on_pins_whirls_in_circles() {
             assert!((near / exact - 1.0).abs() <= 1e-6, "{spin} {near} {exact}");
         }
     }
-    // It spins against Y towards Z: backward becomes forward, nothing else changes.
+    // It spins against Y towards Z: with the spin is with the spin, and nothing else changes.
     let [with, against] = [3000.0, -3000.0].map(|spin| model.whirls(spin, 4).unwrap());
     for (with, against) in with.iter().zip(&against) {
         assert!((with.frequency() / against.frequency() - 1.0).abs() <= 1e-9);
-        assert!((with.direction + against.direction).abs() <= 1e-9);
+        assert!((with.direction - against.direction).abs() <= 1e-9);
     }
 }
 

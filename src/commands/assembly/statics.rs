@@ -34,6 +34,9 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+const ONE_BEARING: &str = "moment-tilt and polar are not drawn: they move the inner race of a bearing by itself, whose outer race stands still at the origin; \
+     of this scene, `bearing sweep` gives loads over places";
+
 /// An equilibrium and everything its results folder records.
 pub struct Found<'s> {
     scene: &'s AssemblyScene,
@@ -119,6 +122,10 @@ pub fn find_equilibrium<'s>(
         record.sections.push(("housing_remarks".into(), json!(of_housings)));
     }
     remarks.append(&mut of_housings);
+    if scene.common().plots.contains(&Plot::MomentTilt) && (of_one.is_none() || !settled.is_empty())
+    {
+        remarks.push(ONE_BEARING.into());
+    }
     record.sections.push(("remarks".into(), json!(remarks)));
     let mut inertia = Vec::new();
     if let Some(estimate) = &estimate {

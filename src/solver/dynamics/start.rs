@@ -8,6 +8,7 @@ use super::quasi_static::{self, Rates};
 use super::race::{self, RaceNow};
 use super::shaft_holds::{Holds, sitting};
 use super::state::{BODY, BodyState, Layout, Places};
+use crate::ch2_housing::bearing::cage::Guidance;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
 use crate::solver::statics::StaticsError;
 use nalgebra::Vector3;
@@ -134,6 +135,10 @@ fn fill(assembly: &Assembly, bodies: &[[f64; 5]], known: Option<Known>, rates: &
         if layout.has_cage {
             let mut cage = outer.state;
             if let Some(law) = &bearing.cage {
+                if law.contacts.guidance == Guidance::InnerRace {
+                    (cage.position, cage.orientation) =
+                        (inner.state.position, inner.state.orientation);
+                }
                 let along: Vec<f64> =
                     positions.iter().map(|at| dot(sub(*at, cage.position), axis)).collect();
                 cage.position = add_scaled(cage.position, among(&along, law.room(bearing)), axis);

@@ -73,7 +73,10 @@ impl RotorModel {
         let values = self.eigenvalues(speed, &damping, &stiffness)?;
         let lowest = values.into_iter().take(count).enumerate();
         let both = [&damping, &stiffness];
-        Ok(lowest.map(|(number, value)| self.whirl(value, both, number)).collect())
+        // Of a shaft that spins the other way it is the other circle; −0, where its Campbell lines begin, is its side too.
+        let side = 1f64.copysign(speed);
+        let whirls = lowest.map(|(number, value)| self.whirl(value, both, number));
+        Ok(whirls.map(|whirl| Whirl { direction: side * whirl.direction, ..whirl }).collect())
     }
 
     /// Of (D p, ṗ) with D the natural frequencies: skew-symmetric without damping, so that nothing is badly scaled.
