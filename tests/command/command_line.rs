@@ -34,6 +34,28 @@ fn every_scene_of_the_repository_goes_through_every_command() {
     }
 }
 
+/// Critical speeds are listed up to twice the scene's own.
+#[test]
+fn critical_speeds_are_told_up_to_twice_the_speed() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = |top: &str| {
+        let content = read(Path::new(&scene("stepped_rotor.toml")));
+        let content =
+            changed(&content, "[\"0 rpm\", \"9000 rpm\"]", &format!("[\"0 rpm\", \"{top} rpm\"]"));
+        let printed = done(&["modes", &write(folder.path(), "rotor.toml", &content), "--dry"]);
+        let speeds = printed.lines().skip_while(|line| !line.starts_with("critical speeds"));
+        let speeds =
+            speeds.filter_map(|line| line.split_once(" rpm")?.0.trim().parse::<f64>().ok());
+        speeds.collect::<Vec<_>>()
+    };
+    let all = told("9000");
+    assert!(!all.is_empty(), "{all:?}");
+    // The lowest is told as soon as twice the speed reaches it, wherever ramps end: axial motions do not follow the speed.
+    let [before, after] = [0.49, 0.51].map(|part| told(&format!("{:.3}", part * all[0])));
+    assert!(before.is_empty() && after.len() == 1, "{before:?} {after:?}");
+    assert!((after[0] / all[0] - 1.0).abs() <= 1e-2, "{after:?} {all:?}");
+}
+
 /// A shaft that bends, in every command: its sections in an equilibrium, its whirl among its motions.
 #[test]
 fn commands_take_a_shaft_that_bends() {

@@ -12,6 +12,7 @@ use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc};
 use bearing_dynamics::solver::rotor::model::{Rotor, RotorModel, Support};
+use bearing_dynamics::solver::rotor::unbalance::Unbalance;
 use bearing_dynamics::solver::shaft_shapes::{Kept, free_shaft};
 use bearing_dynamics::solver::vibrations::{Whirling, whirling};
 use nalgebra::Matrix4;
@@ -136,6 +137,30 @@ fn damping_that_turns_along_feeds_whirl_above_the_critical_speed() {
             .unwrap();
         assert_eq!(same.damping_ratio() < 0.0, grows, "{part}: {}", same.eigenvalue);
     }
+}
+
+/// A shaft that goes round as it spins does not bend to and fro: what brakes its bending as its spinning material feels it, is not
+/// felt by the orbit of an unbalance.
+#[test]
+fn an_orbit_that_turns_with_the_shaft_feels_no_damping_inside_it() {
+    let mut alike = assembly(0.0);
+    for connection in &mut alike.connections {
+        let Law::SpringDashpot(law) = &mut connection.law else { panic!("springs") };
+        law.stiffness = [3e7, 3e7, 3e7, 0.0, 500.0, 500.0];
+        law.damping = [10.0, 150.0, 150.0, 0.0, 0.05, 0.05];
+    }
+    let without = whirl(&alike).model;
+    alike.shafts[0].internal_damping = 400.0;
+    let with = whirl(&alike).model;
+    let (at, speed) = (without.stations[0], 0.8 * SPEED);
+    let unbalance = Unbalance { at, moment: 1e-3, angle: 0.4 };
+    let orbits = [&without, &with].map(|model| {
+        let response = model.response(&[unbalance], speed).unwrap();
+        model.orbit(&response, 0).circles()
+    });
+    let [[forward, backward], [same, _]] = orbits;
+    assert!(backward <= 1e-8 * forward, "{backward} {forward} {same}");
+    assert!((same / forward - 1.0).abs() <= 1e-9, "{same} {forward}");
 }
 
 /// A shaft on springs of its own body, some of its coordinates given: a mass on a spring, whose shapes nothing pushes.

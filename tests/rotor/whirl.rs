@@ -56,6 +56,15 @@ fn a_spinning_shaft_on_pins_whirls_in_circles() {
             assert!((near / exact - 1.0).abs() <= 1e-6, "{spin} {near} {exact}");
         }
     }
+    // c over twice the natural frequency of each motion, and far from the small ratios where both ways to say it agree.
+    let mut braked = pinned_shaft();
+    let first = model.natural[0];
+    braked.mass_damping = first;
+    for whirl in RotorModel::new(&braked).unwrap().whirls(0.0, 4).unwrap() {
+        let ratio = first / (2.0 * whirl.eigenvalue.norm());
+        assert!((whirl.damping_ratio() / ratio - 1.0).abs() <= 1e-9, "{}", whirl.damping_ratio());
+        assert!(whirl.frequency() > 2.0 * first || (ratio - 0.5).abs() <= 1e-9, "{ratio}");
+    }
     // It spins against Y towards Z: with the spin is with the spin, and nothing else changes.
     let [with, against] = [3000.0, -3000.0].map(|spin| model.whirls(spin, 4).unwrap());
     for (with, against) in with.iter().zip(&against) {

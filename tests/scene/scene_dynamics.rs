@@ -302,6 +302,21 @@ fn laws_take_their_coefficients() {
     assert_eq!(problem(lines).damping, damping);
 }
 
+/// (b x − d) e^(−c x) + d with b = 39, c = 10, d = 1 is greatest at x = 1/c + d/b = 0.1256, 2.11 there; with b = 33, 1.95 at 0.1303.
+#[test]
+fn curves_with_a_coefficient_above_2_are_refused() {
+    let curve = |b: f64| {
+        let lines =
+            format!("[traction]\nlaw = \"slip-speed\"\nb = \"{b} s/m\"\nc = \"10 s/m\"\nd = 1");
+        let x = 0.1 + 1.0 / b;
+        ((b * x - 1.0) * (-10.0 * x).exp() + 1.0, scene::resolve(&document(&lines)))
+    };
+    let (peak, refused) = curve(39.0);
+    assert!(peak > 2.05 && refused.is_err(), "{peak}");
+    let (peak, taken) = curve(33.0);
+    assert!(peak < 1.99 && taken.is_ok(), "{peak}");
+}
+
 #[test]
 fn setting_a_profile_replaces_it_by_a_constant() {
     let mut document = document(
