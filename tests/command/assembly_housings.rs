@@ -246,3 +246,26 @@ fn the_force_of_a_bore_does_not_swing_from_row_to_row() {
         assert!(bend <= 40.0 && swing(&force) > 1000.0, "{name}: {bend} N of {} N", swing(&force));
     }
 }
+
+/// Where nothing pushes a race along its axis, a smooth bore that leaves it free there holds it as one that does not: tilted too, when
+/// its tilting moment has a part about X.
+#[test]
+fn a_tilted_race_that_nothing_pushes_along_is_free_as_it_is_held() {
+    let folder = tempfile::tempdir().unwrap();
+    let crooked =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/crooked/housing_quasi_static.toml");
+    let rows = ["free", "held"].map(|axial| {
+        let content = changed(&read(&crooked), "axial = \"free\"", &format!("axial = \"{axial}\""));
+        let out = folder.path().join(axial);
+        done(&["statics", &write(folder.path(), "scene.toml", &content), "--out", &text(&out)]);
+        let summary = json(&out.join("summary.json"));
+        ["x", "y", "z", "tilt_y", "tilt_z"]
+            .map(|name| summary["inner_race"]["position"][name]["value"].as_f64().unwrap())
+    });
+    let [free, held] = rows;
+    assert!(free[3].abs() > 1e-5 && free[4].abs() > 1e-5, "{free:?}");
+    for (free, held) in free.iter().zip(&held) {
+        // Both searches end at 1e-10 of the load.
+        assert!((free - held).abs() <= 1e-8 * held.abs(), "{free:?} {held:?}");
+    }
+}

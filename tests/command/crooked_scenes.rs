@@ -202,6 +202,25 @@ fn columns(out: &Path, to: &mut String) {
     }
 }
 
+/// The same of every other table in a folder, such as a Campbell diagram or a spectrum.
+fn tables(out: &Path, to: &mut String) {
+    for name in files(out).iter().filter(|name| name.ends_with(".csv") && *name != "series.csv") {
+        let table = read(&out.join(name));
+        let mut lines = table.lines();
+        let heads: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+        let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+        for (i, head) in heads.iter().enumerate() {
+            let values: Vec<f64> = rows.iter().filter_map(|row| row.get(i)?.parse().ok()).collect();
+            let largest = values.iter().fold(0.0f64, |most, v| most.max(v.abs()));
+            let weighed: f64 =
+                values.iter().enumerate().map(|(i, v)| v * (1.0 + (i % 7) as f64)).sum();
+            let weighed = if weighed.abs() <= 1e-9 * largest { 0.0 } else { weighed };
+            writeln!(to, "{name} {head} {} {} {}", rows.len(), number(largest), number(weighed))
+                .unwrap();
+        }
+    }
+}
+
 /// All that the commands of a scene say and write.
 fn said(file: &Path) -> String {
     let commands = read(file);
@@ -234,6 +253,7 @@ fn said(file: &Path) -> String {
                 all += &words(&done(&[command, &scene, "--out", &to]), &out);
                 leaves(&json(&out.join("summary.json")), "", &mut all);
                 columns(&out, &mut all);
+                tables(&out, &mut all);
             }
         }
     }
