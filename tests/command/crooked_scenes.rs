@@ -119,10 +119,8 @@ fn words(printed: &str, out: &Path) -> String {
     let elsewhere = [" MB of memory", "wall time", "processor time", "written to"];
     let mut lines = String::new();
     for line in printed.lines() {
-        let start = |word: &&str| line.trim_start().starts_with(word);
-        if clocked.iter().any(|word| start(&word))
-            || elsewhere.iter().any(|part| line.contains(part))
-        {
+        let starts = |word: &&str| line.trim_start().starts_with(word);
+        if clocked.iter().any(starts) || elsewhere.iter().any(|part| line.contains(part)) {
             continue;
         }
         let line = line.replace(&text(out), "OUT").replace(env!("CARGO_MANIFEST_DIR"), "");
