@@ -32,16 +32,16 @@ const FACTOR: f64 = 1e3;
 
 /// Of the summary: what other lines say already, and what depends on the machine.
 const NOT_HELD: [&str; 10] = [
-    "/plan/",
-    "/stages/",
-    "/final/",
-    "/timings/",
-    "/run/",
-    "/program",
-    "/version",
-    "/scene",
-    "/echo/",
-    "/seconds/",
+    ":plan:",
+    ":stages:",
+    ":final:",
+    ":timings:",
+    ":run:",
+    ":program",
+    ":version",
+    ":scene",
+    ":echo:",
+    ":seconds:",
 ];
 
 fn folder(name: &str) -> PathBuf {
@@ -139,9 +139,9 @@ fn without_time(line: &str) -> String {
     }
 }
 
-/// `/place value unit` of each number and word.
+/// `:place value unit` of each number and word.
 fn leaves(of: &Value, at: &str, to: &mut String) {
-    if NOT_HELD.iter().any(|part| format!("{at}/").contains(part)) {
+    if NOT_HELD.iter().any(|part| format!("{at}:").contains(part)) {
         return;
     }
     match of {
@@ -150,10 +150,10 @@ fn leaves(of: &Value, at: &str, to: &mut String) {
             writeln!(to, "{at} {value} {}", entries["unit"].as_str().unwrap_or_default()).unwrap();
         }
         Value::Object(entries) => {
-            entries.iter().for_each(|(key, value)| leaves(value, &format!("{at}/{key}"), to))
+            entries.iter().for_each(|(key, value)| leaves(value, &format!("{at}:{key}"), to))
         }
         Value::Array(list) => {
-            list.iter().enumerate().for_each(|(i, value)| leaves(value, &format!("{at}/{i}"), to));
+            list.iter().enumerate().for_each(|(i, value)| leaves(value, &format!("{at}:{i}"), to));
         }
         Value::Number(value) => writeln!(to, "{at} {}", number(value.as_f64().unwrap())).unwrap(),
         other => writeln!(to, "{at} {other}").unwrap(),

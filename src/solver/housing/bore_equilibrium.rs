@@ -445,7 +445,7 @@ pub(crate) fn check_load(fit: &Fit, load: &RaceLoad) -> Result<Vector4<f64>, Bor
             return Err(BoreError::AxialForce { force: force[0] });
         }
         // About the axis of a race that tilts nothing turns it without friction; about X its tilting moment has a part.
-        let of_tilts = LARGEST_TILT * moment[1].hypot(moment[2]);
+        let of_tilts = LARGEST_TILT * libm::hypot(moment[1], moment[2]);
         if moment[0].abs() > nothing * fit.radius + of_tilts {
             return Err(BoreError::AxialMoment { moment: moment[0] });
         }
