@@ -210,6 +210,16 @@ fn a_bearing_that_nothing_holds_is_refused_or_ends_where_it_flies_to() {
     // A sixteenth of the ramp.
     assert_eq!((body.as_str(), *coordinate, *load, *time), ("the outer race", "z", 62.5, 62.5e-6));
     assert!(error.to_string().contains("6.250e1 N at t = 0.0000625 s"), "{error}");
+    // One that swings without ever turning a corner, and is nothing at the outset.
+    let mut swinging = problem.clone();
+    swinging.inner.drives[2] =
+        Drive::Load(Profile::Harmonic { mean: 0.0, amplitude: 1000.0, frequency: 3.0, phase: 0.0 });
+    let error = begun(&swinging, Start::Equilibrium).err().unwrap();
+    let is_told = matches!(
+        &error,
+        SimulationError::Start(StaticsError::Unheld { coordinate: "z", time, .. }) if *time > 0.0
+    );
+    assert!(is_told, "{error}");
     // In nominal positions it may begin; it is held by a spring, a given coordinate, or a load that balances.
     begun(&problem, Start::Nominal).unwrap();
     let held: [&dyn Fn(&mut DynamicProblem); 3] = [

@@ -347,3 +347,56 @@ fn modes_of_a_shaft_are_those_of_its_stiffness_and_mass() {
     let said = refused(&["modes", &path]);
     assert!(said.contains("nothing is left to swing"), "{said}");
 }
+
+/// Bending is of small turns: a thin shaft whose end bends far is told by how much, against the shaft as a whole; a thick one
+/// that tilts as far, its outer race with it, is not.
+#[test]
+fn statics_says_where_a_shaft_bends_too_far_for_small_turns() {
+    let folder = folder();
+    let with = |thick: &str, tilt_stiffness: &str, moment: &str, load: &str| {
+        format!(
+            r#"
+[bearing]
+kind = "deep-groove"
+balls = 8
+length = "20 mm"
+clearance = {{ radial = "-5 um" }}
+ball = {{ radius = "5.953 mm" }}
+inner_race = {{ radius = "20.047 mm", groove_radius = "6.013 mm" }}
+outer_race = {{ groove_radius = "6.310 mm", outer_radius = "35.527 mm" }}
+[bearing.only]
+inner_at = "0 mm"
+[outer_race]
+motion = "5-dof"
+x = {{ displacement = "0 mm" }}
+y = {{ displacement = "0 mm" }}
+z = {{ displacement = "0 mm" }}
+foundation = {{ stiffness = {{ tilt_y = "{tilt_stiffness}", tilt_z = "{tilt_stiffness}" }} }}
+[body.shaft]
+tilt_y = {{ moment = "{moment}" }}
+[body.shaft.beam]
+start = "-30 mm"
+segments = [{{ length = "60 mm", outer_diameter = "{thick}" }}]
+load = [{{ at = "28 mm", z = "{load}" }}]
+"#
+        )
+    };
+    let statics = |name: &str, words: &str| {
+        let out = folder.path().join(name);
+        let path = write(folder.path(), &format!("{name}.toml"), words);
+        let said = done(&["statics", &path, "--out", &text(&out)]);
+        let summary = json(&out.join("summary.json"));
+        let whole = value(&summary["bodies"]["shaft"]["position"]["tilt_y"]);
+        let end = said.lines().find(|line| line.starts_with("the body shaft at its load"));
+        let columns: Vec<&str> = end.expect("a section").split_whitespace().rev().collect();
+        let tilt: f64 = columns[1].parse().expect("a tilt");
+        (whole, tilt - whole, said)
+    };
+    let (tilted, bent, words) = statics("thick", &with("20 mm", "20 N m/rad", "1.5 N m", "-33 N"));
+    assert!(tilted > 6.0 && bent < 0.1 && !words.contains("small turns"), "{tilted} {words}");
+    let (_, bent, words) = statics("thin", &with("4 mm", "5e4 N m/rad", "0 N m", "-1000 N"));
+    let (_, told) = words.split_once("is turned by ").expect("a remark");
+    let told: f64 = told.split(' ').next().expect("a number").parse().expect("degrees");
+    assert!(words.contains("the section of the body shaft at its load is turned by"), "{words}");
+    assert!(bent > 5.8 && (told - bent).abs() <= 0.051, "{told} {bent}");
+}

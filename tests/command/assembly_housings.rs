@@ -163,6 +163,35 @@ fn a_course_in_two_housings_is_statics_row_by_row() {
     }
 }
 
+/// A shaft that bends and whose centre of mass is off the origin: it, too, stands in the rows where statics puts it.
+#[test]
+fn a_course_of_a_bending_shaft_is_told_from_its_centre_of_mass() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let changes = [
+        EQUILIBRIA,
+        ("speed = \"1000 rpm\"\n", ""),
+        ("5 us", "0.5 ms"),
+        (BLOW, "z = { load = \"-300 N\" }"),
+        ("x = { displacement = \"0 um\" }", "x = { load = \"20 N\" }"),
+        (
+            "inertia = { mass = \"1.39 kg\", axial = \"1.56e-4 kg m^2\", transverse = \"7.3e-3 kg m^2\" }",
+            "beam = { start = \"-100 mm\", segments = [{ length = \"250 mm\", outer_diameter = \"30 mm\" }] }",
+        ),
+    ];
+    let course = run(folder.path(), "course", &changes, &[]);
+    let path = variant(folder.path(), "one", &changes);
+    let out = folder.path().join("still");
+    done(&["statics", &path, "--out", &text(&out)]);
+    let summary = json(&out.join("summary.json"));
+    for axis in ["x", "z"] {
+        let at = value(&summary["bodies"]["shaft"]["position"][axis]);
+        let here = column(&course, &format!("shaft_{axis}"))[0];
+        // Both end at 1e-11 of the load.
+        assert!((here - at).abs() <= 1e-9 * at.abs(), "{axis}: {here:e} {at:e}");
+        assert!(at.abs() < 1e-5, "{axis}: {at}");
+    }
+}
+
 /// Items of a plan are told apart by the names of their seats.
 #[test]
 fn no_two_items_of_a_plan_have_one_name() {

@@ -245,6 +245,21 @@ fn a_typed_input_deck() {
     assert_eq!(said, ["*ELASTIC was skipped (1 times)", "*MATERIAL was skipped (1 times)"]);
 }
 
+/// Triangles and lines that a set of elements names, among tetrahedra or alone, are its surface and its nodes.
+#[test]
+fn sets_of_a_deck_may_name_lines_and_triangles() {
+    let further = "*Element, type=T3D2, elset=edge\n21, 2, 7\n*Element, type=B31\n22, 3, 7\n\
+                   *Element, type=S3, elset=sail\n31, 1, 2, 7\n*Elset, elset=mixed\n11, 22\n*Material, name=steel\n";
+    let text = DECK.replacen("*Material, name=steel\n", further, 1);
+    let Loaded { mesh, .. } = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap();
+    assert_eq!(mesh.node_set("edge").unwrap(), [1, 3]);
+    assert_eq!(mesh.node_set("mixed").unwrap(), [2, 3]);
+    assert_eq!(mesh.surface_set("sail").unwrap().len(), 1);
+    assert_eq!(mesh.node_set("sail").unwrap(), [0, 1, 3]);
+    let of_elements: Vec<&str> = mesh.element_sets.keys().map(String::as_str).collect();
+    assert_eq!(of_elements, ["again", "body", "mixed"]);
+}
+
 /// Lines behind the first are a material's constants at other temperatures.
 #[test]
 fn a_deck_has_the_constants_of_its_first_temperature() {

@@ -2,8 +2,10 @@
 
 use crate::beam::{DENSITY, E, full, steel};
 use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc};
+use bearing_dynamics::solver::rotor::critical::Critical;
 use bearing_dynamics::solver::rotor::model::{Held, Rotor, RotorError, RotorModel, Support};
 use bearing_dynamics::solver::rotor::unbalance::{Orbit, Unbalance};
+use bearing_dynamics::solver::rotor::whirl::Whirl;
 use nalgebra::{Complex, Matrix4};
 use std::f64::consts::PI;
 
@@ -125,7 +127,18 @@ fn an_overhung_disc_splits_as_its_determinant_says() {
         // Where the line of the same motion has the frequency of the spin.
         let along = model.damped_critical_speed(critical).unwrap();
         assert!((along / critical.speed - 1.0).abs() <= 1e-9, "{along} {}", critical.speed);
+        assert_is_a_motion_at_its_speed(&model, critical);
     }
+}
+
+/// Found as an eigenvector of the spin, its shape is that of one of the frequencies at that spin.
+fn assert_is_a_motion_at_its_speed(model: &RotorModel, critical: &Critical) {
+    let whirls = model.whirls(critical.speed, 2 * model.natural.len()).unwrap();
+    let likeness = |whirl: &Whirl| critical.whirl.likeness(whirl);
+    let own = whirls.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b))).unwrap();
+    assert!((own.frequency() / critical.speed - 1.0).abs() <= 1e-8, "{}", own.frequency());
+    // A part of 1e-4 that is missing, as rounding of both leaves 1e-6 at most.
+    assert!(1.0 - likeness(own) <= 1e-8, "{} {}", critical.speed, likeness(own));
 }
 
 /// Frequencies fall and rise with speed along each line, and none jumps to another where lines cross.
@@ -199,12 +212,16 @@ fn a_stiff_shaft_on_springs_moves_as_a_rigid_body() {
     assert!((first.frequency() / precession - 1.0).abs() <= 1e-6 && first.is_forward());
     // Critical speeds are those on springs too soft to matter, but for the rigid motions on these.
     rotor.modes = 60;
-    let bending = RotorModel::new(&rotor).unwrap().critical_speeds().unwrap();
+    let free_of_springs = RotorModel::new(&rotor).unwrap();
+    let bending = free_of_springs.critical_speeds().unwrap();
     let soft = Matrix4::from_diagonal(&[1.0, 1.0, 0.1, 0.1].into());
     rotor.supports = vec![Support { at: 0.5 * LENGTH, stiffness: soft, damping: Matrix4::zeros() }];
     let held = RotorModel::new(&rotor).unwrap().critical_speeds().unwrap();
     let held: Vec<_> = held.iter().filter(|of| of.speed > 100.0).collect();
     assert!(bending.len() >= 8);
+    for critical in bending.iter().take(8) {
+        assert_is_a_motion_at_its_speed(&free_of_springs, critical);
+    }
     for (free, held) in bending.iter().zip(held).take(8) {
         // 1 N/m over the shaft's stiffness of bending, some 1e7.
         let apart = (free.speed / held.speed - 1.0).abs();
