@@ -116,6 +116,24 @@ fn three_ways_of_one_bushing_answer_a_blow_alike() {
     assert!(reduced[0] < 0.0 && reduced[1] > 0.0, "{found:?}");
 }
 
+/// Written from the race to the ground, its force is that on the ground.
+#[test]
+fn the_force_of_a_bushing_is_that_on_the_body_it_goes_to() {
+    let ends = "from = \"ground\"\nto = \"outer_race\"";
+    for method in ["implicit", "explicit"] {
+        let found = [ends, "from = \"outer_race\"\nto = \"ground\""].map(|written| {
+            let made = Made::of(&changed(method, COARSE, (ends, written)), 0.5e-3);
+            let session = made.run();
+            ["outer_z", "mount_force_z"].map(|name| peak(&column(&session, name)))
+        });
+        let [[one, pushes], [other, pulls]] = found;
+        // The same motion but for the order of sums.
+        assert!((one / other - 1.0).abs() <= 1e-9, "{found:?}");
+        // The rubber between both takes 3 % of the swing's mass.
+        assert!((pushes / pulls + 1.0).abs() <= 0.03 && pushes > 0.0, "{found:?}");
+    }
+}
+
 /// The same elements with the same masses: nothing but the steps differs. Implicit steps as long as the windows (1/100 of
 /// the swing's period), explicit ones a fifteenth of that.
 #[test]

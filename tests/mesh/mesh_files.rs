@@ -245,6 +245,19 @@ fn a_typed_input_deck() {
     assert_eq!(said, ["*ELASTIC was skipped (1 times)", "*MATERIAL was skipped (1 times)"]);
 }
 
+/// A surface of elements without sides is their free faces: not the one between two.
+#[test]
+fn a_surface_of_elements_without_sides_is_what_lies_outside() {
+    let text = DECK.replacen("7, 0., 0., 1.\n", "7, 0., 0., 1.\n8, 1., 1., 1.\n", 1).replacen(
+        "3, 7\n",
+        "3, 7\n12, 2, 3, 7, 8\n",
+        1,
+    );
+    let Loaded { mesh, .. } = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap();
+    let skin = mesh.surface_set("skin").unwrap();
+    assert_eq!((mesh.element_sets["again"].len(), skin.len()), (2, 6));
+}
+
 /// Triangles and lines that a set of elements names, among tetrahedra or alone, are its surface and its nodes.
 #[test]
 fn sets_of_a_deck_may_name_lines_and_triangles() {

@@ -255,6 +255,12 @@ fn a_load_zone_takes_its_sizes_from_the_geometry() {
     assert!((drawn.outer_raceway_radius - outer).abs() <= 1e-15);
     assert_eq!(drawn.balls, zone().balls);
     assert_eq!(load_zone(&drawn).unwrap(), load_zone(&zone()).unwrap());
+    // One that its weight or speed presses on the outer race alone carries nothing between the races.
+    let mut flung = solution().balls;
+    let idle = flung.iter().position(|ball| ball.inner.normal_load == 0.0).unwrap();
+    flung[idle].outer.normal_load = 3.5;
+    let drawn = &LoadZone::new(zone().title, &geometry, &flung).balls[idle];
+    assert!(!drawn.loaded && drawn.outer_load == 3.5, "{drawn:?}");
 }
 
 #[test]
