@@ -126,3 +126,14 @@ fn frequency(profile: &Profile) -> f64 {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_excites_as_fast_as_its_shortest_change() {
+        let points = vec![[0.0, 1.0], [2.0, 3.0], [2.5, -1.0], [2.75, -1.0], [7.0, 4.0]];
+        assert_eq!(frequency(&Profile::Table { points }), 1.0);
+    }
+}

@@ -245,6 +245,20 @@ fn a_typed_input_deck() {
     assert_eq!(said, ["*ELASTIC was skipped (1 times)", "*MATERIAL was skipped (1 times)"]);
 }
 
+/// In files of version 2 a negative physical number stands for an element turned round: of the same group.
+#[test]
+fn negative_groups_of_gmsh_are_the_same_groups() {
+    let text = String::from_utf8(data("box_o1_v22.msh")).unwrap();
+    let line = "\n2 2 2 2 1 2 1 22\n";
+    assert!(text.contains(line));
+    let turned = text.replacen(line, "\n2 2 2 -2 1 2 1 22\n", 1);
+    let [own, other] = [&text, &turned].map(|text| {
+        let Loaded { mesh, .. } = read_gmsh(text.as_bytes(), LengthUnit::Metre).unwrap();
+        mesh.surface_set("clamped").unwrap().to_vec()
+    });
+    assert_eq!(own, other);
+}
+
 /// A surface of elements without sides is their free faces: not the one between two.
 #[test]
 fn a_surface_of_elements_without_sides_is_what_lies_outside() {
