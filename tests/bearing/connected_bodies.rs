@@ -132,6 +132,20 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
     assert!(matches!(error, StaticsError::NoEquilibrium { .. }), "{error}");
     assert!(check_held(&assembly).is_ok());
     assert!(matches!(check_held(&loose), Err(StaticsError::Unheld { .. })));
+    // A spring holds along its own axes, whatever it does along others.
+    for axis in 0..3 {
+        let mut alone = assembly.clone();
+        let Law::SpringDashpot(law) = &mut alone.connections[0].law else { panic!() };
+        (0..3).filter(|i| *i != axis).for_each(|i| law.stiffness[i] = 0.0);
+        let across = (axis + 1) % 3;
+        let push = |alone: &mut Assembly, i: usize, load: f64| {
+            alone.bodies[0].driven_mut().unwrap().drives[i] = Drive::Load(Profile::Constant(load));
+        };
+        (0..3).filter(|i| *i != axis).for_each(|i| push(&mut alone, i, 0.0));
+        assert!(check_held(&alone).is_ok(), "{axis}");
+        push(&mut alone, across, 1.0);
+        assert!(matches!(check_held(&alone), Err(StaticsError::Unheld { .. })), "{axis}");
+    }
     let mut system = System::new(assembly.clone(), Driver::Lanes);
     let mut rates = vec![0.0; state.len()];
     system.evaluate(0.0, &state, &mut rates);
