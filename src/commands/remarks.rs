@@ -12,8 +12,9 @@ use bearing_dynamics::solver::dynamics::bounds::FARTHEST_BENT;
 use bearing_dynamics::solver::dynamics::extremes::{Extreme, Extremes};
 use bearing_dynamics::solver::dynamics::run::Simulation;
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
+use bearing_dynamics::solver::static_tables::BearingState;
 use bearing_dynamics::solver::statics::{
-    AssemblySolution, BallState, ContactState, Determinacy, StaticProblem, StaticSolution,
+    AssemblySolution, BallState, ContactState, Determinacy, StaticProblem,
 };
 
 /// Pressure above which ISO 76 counts on lasting dents in ball bearings, Pa.
@@ -57,7 +58,7 @@ impl Seen {
 pub fn of_statics(
     scene: &Scene,
     problem: &StaticProblem,
-    solution: &StaticSolution,
+    solution: &AssemblySolution,
 ) -> Vec<String> {
     let mut remarks = Vec::new();
     if let Determinacy::Indeterminate { free_directions } = &solution.determinacy {
@@ -73,13 +74,8 @@ pub fn of_statics(
                 .into(),
         );
     }
-    let apart = [0, 1, 2].map(|i| solution.coordinates[i] - problem.outer_pose.position[i]);
-    let still = Still {
-        contacts: [&problem.inner_contact, &problem.outer_contact],
-        balls: &solution.balls,
-        apart: norm(apart),
-    };
-    remarks.extend(of_balls(scene, &still));
+    let contacts = [&problem.inner_contact, &problem.outer_contact];
+    remarks.extend(of_balls(scene, &Still::new(contacts, &solution.bearings[0])));
     remarks
 }
 
@@ -107,12 +103,7 @@ pub fn of_assembly(
     for ((placed, bearing), state) in
         scene.bearings.iter().zip(&assembly.bearings).zip(&solution.bearings)
     {
-        let [inner, outer] = state.centres;
-        let still = Still {
-            contacts: [&bearing.inner_contact, &bearing.outer_contact],
-            balls: &state.balls,
-            apart: norm((inner - outer).into()),
-        };
+        let still = Still::new([&bearing.inner_contact, &bearing.outer_contact], state);
         remarks.extend(named(placed, of_balls(&placed.scene, &still)));
     }
     remarks
@@ -137,16 +128,19 @@ fn bent_far(assembly: &StaticAssembly, solution: &AssemblySolution) -> Option<St
     })
 }
 
-fn norm(of: [f64; 3]) -> f64 {
-    of.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
 /// A bearing in equilibrium.
 struct Still<'s> {
     contacts: [&'s HertzContact; 2],
     balls: &'s [BallState],
     /// Centres of the races, m.
     apart: f64,
+}
+
+impl<'s> Still<'s> {
+    fn new(contacts: [&'s HertzContact; 2], state: &'s BearingState) -> Still<'s> {
+        let [inner, outer] = state.centres;
+        Still { contacts, balls: &state.balls, apart: (inner - outer).norm() }
+    }
 }
 
 fn of_balls(scene: &Scene, still: &Still) -> Vec<String> {

@@ -28,6 +28,8 @@ pub struct Whirling {
     pub places: Vec<String>,
     /// The largest given speed of a body (rad/s), of which the others turn at a fixed part.
     pub top_speed: f64,
+    /// Whose it is, where others turn at other speeds.
+    pub fastest: Option<String>,
 }
 
 /// Speed that is given at the end of all that changes, rad/s.
@@ -52,11 +54,16 @@ pub fn whirling(
     bodies: &[MovingBody],
     housings: &[HousingMass],
 ) -> Result<Whirling, RotorError> {
-    let top_speed = assembly
-        .bodies
-        .iter()
-        .map(|body| final_speed(assembly, body))
-        .fold(0.0, |top: f64, speed| if speed.abs() > top.abs() { speed } else { top });
+    let (mut top_speed, mut fastest) = (0.0f64, None);
+    let speeds: Vec<f64> = assembly.bodies.iter().map(|body| final_speed(assembly, body)).collect();
+    for (body, speed) in assembly.bodies.iter().zip(&speeds) {
+        if speed.abs() > top_speed.abs() {
+            (top_speed, fastest) = (*speed, Some(body.name.clone()));
+        }
+    }
+    if speeds.iter().all(|speed| *speed == 0.0 || *speed == top_speed) {
+        fastest = None;
+    }
     let model = Model::new(still);
     let size = model.scale.len();
     let here = placed(&model, found);
@@ -97,7 +104,7 @@ pub fn whirling(
     let (places, rows) = told(&model, still, &moved);
     let stations = (0..places.len()).map(|place| place as f64).collect();
     let model = RotorModel::of(&all, MODES, stations, Some(&rows))?;
-    Ok(Whirling { model, places, top_speed })
+    Ok(Whirling { model, places, top_speed, fastest })
 }
 
 /// Everything where an equilibrium has it.

@@ -256,6 +256,20 @@ fn a_bearing_that_nothing_holds_is_refused_or_ends_where_it_flies_to() {
             Err(error) => panic!("{error}"),
         }
     }
+    // What is given takes a bearing along, as far as it has come by then.
+    let (far, late) = (1.5 * FARTHEST, 3.0);
+    let mut carried = problem.clone();
+    carried.inner.drives[1] =
+        Drive::Motion(Profile::Ramp { from: 0.0, to: far, start: 0.0, duration: 2.0 });
+    let mut state = start::nominal(&carried.assembly());
+    for ball in 0..8 {
+        let mut body = layout.ball_state(&state, ball);
+        body.position[1] += far;
+        layout.set_ball(&mut state, ball, &body);
+    }
+    state[layout.inner() + POSITION + 1] += far;
+    state[layout.outer() + POSITION + 1] += far;
+    Simulation::from_state(carried, options, state, late).unwrap().step().unwrap();
 }
 
 /// Round pockets do not hold a cage across its axis: its ring ends what it may go, and with it what the

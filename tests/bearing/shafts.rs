@@ -25,6 +25,26 @@ use dynamics::*;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
 
+/// Puts every ball back into the plane through its outer race's axis in which statics holds it.
+fn hold_azimuths(simulation: &mut Simulation) {
+    let Simulation { system, state, .. } = simulation;
+    for (set, bearing) in system.sets.iter().zip(&system.assembly.bearings) {
+        let facing = if bearing.mounts[1].reversed { -1.0 } else { 1.0 };
+        for ball in 0..set.layout.balls {
+            let angle = bearing.ball_phase + TAU * ball as f64 / set.layout.balls as f64;
+            let tangent = Vector3::new(0.0, -facing * angle.sin(), angle.cos());
+            let mut body = set.layout.ball_state(state, ball);
+            let across = |v: [f64; 3]| -> [f64; 3] {
+                let v = Vector3::from(v);
+                (v - tangent * tangent.dot(&v)).into()
+            };
+            body.position = across(body.position);
+            body.velocity = across(body.velocity);
+            set.layout.set_ball(state, ball, &body);
+        }
+    }
+}
+
 pub fn body(name: &str, mobility: Mobility, rest: [f64; 5]) -> Body {
     Body { name: name.into(), label: None, mobility, rest, rotating_load: None, unbalance: 0.0 }
 }
@@ -54,7 +74,7 @@ pub fn seated(
 }
 
 /// A shaft on two angular-contact bearings back to back, 80 mm apart and preloaded by 6 µm each.
-fn on_two(loads: [f64; 5], speed: f64) -> Assembly {
+pub fn on_two(loads: [f64; 5], speed: f64) -> Assembly {
     let geometry = table_5_3();
     Assembly {
         bodies: vec![
@@ -71,7 +91,7 @@ fn on_two(loads: [f64; 5], speed: f64) -> Assembly {
     }
 }
 
-fn rates(assembly: &Assembly, state: &[f64]) -> (System, Vec<f64>) {
+pub fn rates(assembly: &Assembly, state: &[f64]) -> (System, Vec<f64>) {
     let mut system = System::new(assembly.clone(), Driver::Lanes);
     let mut rates = vec![0.0; state.len()];
     system.evaluate(0.0, state, &mut rates);
@@ -322,119 +342,6 @@ fn a_damped_shaft_settles_into_static_equilibrium() {
     let off = (0..3).map(|i| (end.position[i] - expected[i]).abs()).fold(0.0, f64::max);
     println!("off by {:e} of {largest:e} m", off / largest);
     assert!(off <= 1e-6 * largest, "{off:e} of {largest:e}");
-}
-
-/// Puts every ball back into the plane through its outer race's axis in which statics holds it.
-fn hold_azimuths(simulation: &mut Simulation) {
-    let Simulation { system, state, .. } = simulation;
-    for (set, bearing) in system.sets.iter().zip(&system.assembly.bearings) {
-        let facing = if bearing.mounts[1].reversed { -1.0 } else { 1.0 };
-        for ball in 0..set.layout.balls {
-            let angle = bearing.ball_phase + TAU * ball as f64 / set.layout.balls as f64;
-            let tangent = Vector3::new(0.0, -facing * angle.sin(), angle.cos());
-            let mut body = set.layout.ball_state(state, ball);
-            let across = |v: [f64; 3]| -> [f64; 3] {
-                let v = Vector3::from(v);
-                (v - tangent * tangent.dot(&v)).into()
-            };
-            body.position = across(body.position);
-            body.velocity = across(body.velocity);
-            set.layout.set_ball(state, ball, &body);
-        }
-    }
-}
-
-/// Whichever race turns, and whichever way round the bearing sits, balls and cage begin by rolling: surfaces at the
-/// contacts move alike.
-#[test]
-fn a_start_rolls_whichever_race_turns() {
-    let speed = 3000.0 * RPM;
-    for (inner, outer) in [(speed, 0.0), (0.0, speed), (speed, -0.4 * speed), (speed, speed)] {
-        for reversed in [false, true] {
-            let geometry = table_5_3();
-            let mut problem = bearing(geometry, [500.0, 0.0, 0.0, 0.0, 0.0], inner);
-            problem.traction = CONSTANT;
-            let mut ring = race([0.0; 5], Rotation::Speed(Profile::Constant(outer)));
-            ring.drives = [const { Drive::Motion(Profile::ZERO) }; 5];
-            problem.outer = Some(ring);
-            let mut assembly = problem.assembly();
-            for mount in &mut assembly.bearings[0].mounts {
-                mount.reversed = reversed;
-            }
-            if reversed {
-                let shaft = assembly.bodies[0].driven_mut().unwrap();
-                shaft.drives[0] = Drive::Load(Profile::Constant(-500.0));
-            }
-            let state = start::nominal(&assembly);
-            let (system, _) = rates(&assembly, &state);
-            let set = &system.sets[0];
-            let [axis_of, turning] = [&set.races[1], &set.races[0]].map(|race| race.motion.axis[0]);
-            assert_eq!(axis_of, turning);
-            let facing = if reversed { -1.0 } else { 1.0 };
-            for ball in 0..set.layout.balls {
-                let vector =
-                    |component| Vector3::from(set.layout.ball_vector(&state, component, ball));
-                let (place, velocity, spin) = (vector(POSITION), vector(VELOCITY), vector(SPIN));
-                // At the nominal contact angle, from the outer to the inner contact.
-                let outward = Vector3::new(0.0, place.y, place.z).normalize();
-                let angle = geometry.contact_angle;
-                let normal = outward * angle.cos() + Vector3::x() * (facing * angle.sin());
-                for (side, speed) in [(1.0, outer), (-1.0, inner)] {
-                    let arm = normal * (side * geometry.ball_radius);
-                    let of_ball = velocity + spin.cross(&arm);
-                    let of_race = (Vector3::x() * speed).cross(&(place + arm));
-                    let slip = (of_ball - of_race).norm();
-                    // Rounding of speeds of some metres a second.
-                    assert!(slip <= 1e-12 * 20.0, "{inner} {outer} {reversed}: {slip:e} m/s");
-                }
-                // Balls go with the mean of both surfaces.
-                let orbit = place.cross(&velocity).x / (place.y * place.y + place.z * place.z);
-                let lever = geometry.ball_radius * angle.cos() / geometry.pitch_radius;
-                let mean = 0.5 * ((1.0 - lever) * inner + (1.0 + lever) * outer);
-                assert!((orbit - mean).abs() <= 1e-12 * speed, "{orbit} {mean}");
-            }
-        }
-    }
-}
-
-/// Balls that roll without slip go round at the mean of both races' speeds, each by its radius at the contact,
-/// about the world's axis: whichever way round their bearing is put in, and with turning outer races too.
-#[test]
-fn balls_roll_between_two_turning_races_whichever_way_their_bearing_faces() {
-    let geometry = table_5_3();
-    let gamma = geometry.ball_radius * geometry.contact_angle.cos() / geometry.pitch_radius;
-    for outer in [0.0, -130.0] {
-        let inner = 300.0;
-        let mut assembly = on_two([0.0; 5], inner);
-        let ring = hollow_cylinder(36e-3, 40e-3, 16e-3, 7850.0);
-        for body in &mut assembly.bodies[1..] {
-            let drives = body.rest.map(|at| Drive::Motion(Profile::Constant(at)));
-            let turns = race([0.0; 5], Rotation::Speed(Profile::Constant(outer)));
-            let turns = RaceBody { inertia: ring, drives, ..turns };
-            body.mobility = Mobility::Driven(turns.into());
-        }
-        let expected = 0.5 * (1.0 - gamma) * inner + 0.5 * (1.0 + gamma) * outer;
-        let state = start::nominal(&assembly);
-        let system = System::new(assembly.clone(), Driver::Lanes);
-        for set in &system.sets {
-            for ball in 0..set.layout.balls {
-                let [_, y, z] = set.layout.ball_vector(&state, POSITION, ball);
-                let [_, v, w] = set.layout.ball_vector(&state, VELOCITY, ball);
-                let speed = (y * w - z * v) / (y * y + z * z);
-                // Rounding.
-                assert!((speed / expected - 1.0).abs() <= 1e-12, "{speed} {expected}");
-            }
-        }
-        // What presses them outwards in statics.
-        for bearing in &static_assembly(&assembly, 0.0, &[]).bearings {
-            let pressed = assembly.bearings[0].ball.mass * expected * expected;
-            assert!(
-                (bearing.centrifugal / pressed - 1.0).abs() <= 1e-12,
-                "{}",
-                bearing.centrifugal
-            );
-        }
-    }
 }
 
 /// Balls ride on the outer race: what stands under it carries the load, both races and all balls, and however far it

@@ -4,29 +4,24 @@ use crate::run_common;
 
 use bearing_dynamics::output::recorder::Recorder;
 use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status};
-use bearing_dynamics::output::summary::{RunReport, run_summary};
 use bearing_dynamics::output::table::RunTable;
 use bearing_dynamics::solver::channels::ChannelGroup;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
+use bearing_dynamics::solver::dynamics::model::{DynamicProblem, Rotation};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
-use bearing_dynamics::solver::dynamics::state::{POSITION, VELOCITY};
 use bearing_dynamics::solver::profile::Profile;
-use nalgebra::{Matrix3, Vector3};
-use run_common::{
-    common, complete, frictionless, jolted, request, simulation, simulation_mut, sliding,
-};
+use run_common::{complete, frictionless, jolted, request, simulation};
 
-fn to_the_end(problem: DynamicProblem, request: &RunRequest) -> Session<'static> {
+pub fn to_the_end(problem: DynamicProblem, request: &RunRequest) -> Session<'static> {
     let mut session = Session::start(problem, request).unwrap();
     while session.advance(1000).unwrap() == Status::Running {}
     session
 }
 
-fn table(session: &Session) -> RunTable {
+pub fn table(session: &Session) -> RunTable {
     RunTable::new(session, 0.0).unwrap()
 }
 
-fn column(session: &Session, name: &str) -> Vec<f64> {
+pub fn column(session: &Session, name: &str) -> Vec<f64> {
     table(session).all(name).unwrap_or_else(|| panic!("no channel {name}"))
 }
 
@@ -177,45 +172,6 @@ fn angles_count_turns() {
 }
 
 #[test]
-fn slip_is_the_difference_of_surface_speeds() {
-    // Balls start rolling at the nominal contact angle. Brake ball 1 by 10 rad/s about X: its
-    // outer contact then slides by 10 rad/s · r_b along the rolling direction.
-    let problem = frictionless();
-    let radius = problem.geometry.ball_radius;
-    let mut wanted = request(1e-6, 2);
-    // The brake takes energy that no ledger knows of.
-    wanted.options.energy_limit = 1e9;
-    let mut session = Session::start(problem.clone(), &wanted).unwrap();
-    let layout = simulation(&session).system.sets[0].layout;
-    let before: Vec<f64> = session.recorder.row(0).to_vec();
-    simulation_mut(&mut session).state[layout.ball(10)] += 10.0;
-    let snapshot = simulation_mut(&mut session).snapshot().unwrap();
-    session.recorder.record(session.motion.bearing().unwrap(), &snapshot);
-    let at = |name: &str| {
-        let columns = session.recorder.columns();
-        let index = columns.iter().position(|column| column.name == name).unwrap();
-        session.recorder.row(1)[index] - before[index]
-    };
-    // ω × n r with n = −out on the inner and +out on the outer race: out × X turned.
-    let outer = at("ball_1_outer_slip_rolling");
-    let inner = at("ball_1_inner_slip_rolling");
-    assert!((outer - 10.0 * radius).abs() <= 0.02 * 10.0 * radius, "{outer}");
-    assert!((inner + 10.0 * radius).abs() <= 0.02 * 10.0 * radius, "{inner}");
-    assert_eq!(at("ball_2_outer_slip_rolling"), 0.0);
-    // Spin about the outer normal, which points along the ball's radius.
-    let mut session = Session::start(problem, &wanted).unwrap();
-    let angle: f64 = 0.1;
-    simulation_mut(&mut session).state[layout.ball(11)] += 5.0 * angle.cos();
-    simulation_mut(&mut session).state[layout.ball(12)] += 5.0 * angle.sin();
-    let snapshot = simulation_mut(&mut session).snapshot().unwrap();
-    session.recorder.record(session.motion.bearing().unwrap(), &snapshot);
-    let columns = session.recorder.columns();
-    let index = columns.iter().position(|c| c.name == "ball_1_outer_spin").unwrap();
-    let spin = session.recorder.row(1)[index] - session.recorder.row(0)[index];
-    assert!((spin - 5.0).abs() <= 0.01, "{spin}");
-}
-
-#[test]
 fn the_window_starts_on_its_row() {
     let session = to_the_end(frictionless(), &request(1e-6, 20));
     let rows = |start: f64| RunTable::new(&session, start).unwrap().window;
@@ -278,236 +234,5 @@ fn the_work_of_a_jolt_is_in_the_ledger() {
         let worst = residual.iter().fold(0.0_f64, |worst, value| worst.max(value.abs()));
         println!("{integrator:?}: a jump makes {jump:e} J, residual {worst:e} J");
         assert!(worst <= 1e-3 * jump, "{integrator:?}: {worst} of {jump}");
-    }
-}
-
-/// A pulse shorter than a row: 9 kN for 20 µs in a row of 1 ms.
-fn struck() -> DynamicProblem {
-    let mut problem = frictionless();
-    let pulse = Profile::HalfSine { base: -250.0, peak: -9000.0, start: 0.33e-3, duration: 60e-6 };
-    problem.inner.drives[2] = Drive::Load(pulse);
-    problem
-}
-
-#[test]
-fn extremes_are_of_every_step_whatever_the_rows() {
-    for (integrator, stepping) in [
-        (Integrator::RungeKutta, Stepping::Fixed(1e-6)),
-        (Integrator::DormandPrince, Stepping::Accuracy(1e-3)),
-        (Integrator::Rosenbrock, Stepping::Accuracy(1e-3)),
-    ] {
-        let options = RunOptions { integrator, stepping, ..RunOptions::default() };
-        let wanted = |output_interval: f64| RunRequest {
-            options,
-            end: 1e-3,
-            output_interval,
-            ..request(1e-6, 1)
-        };
-        // A row a step: what the rows say is what the steps say.
-        let fine = to_the_end(struck(), &wanted(1e-6));
-        let of_rows = |what: &str, session: &Session| {
-            let channels = (1..=8).map(|ball| column(session, &format!("ball_{ball}_{what}_load")));
-            channels.flatten().fold(0.0, f64::max)
-        };
-        for (side, what) in ["inner", "outer"].into_iter().enumerate() {
-            let most = simulation(&fine).extremes[0].races[side].load.value;
-            // Steps of error control end between rows as well, half a microsecond from a peak of 50 kHz.
-            assert!(most >= of_rows(what, &fine));
-            let race = simulation(&fine).extremes[0].races[side];
-            assert!(
-                most <= 1.01 * of_rows(what, &fine),
-                "{integrator:?} {race:?} {}",
-                of_rows(what, &fine)
-            );
-        }
-        // Two rows: they show nothing of the pulse, the extremes all of it.
-        let coarse = to_the_end(struck(), &wanted(1e-3));
-        let [of_fine, of_coarse] =
-            [&fine, &coarse].map(|session| simulation(session).extremes[0].races[0].load);
-        assert!(of_coarse.value >= 1.5 * of_rows("inner", &coarse), "{of_coarse:?}");
-        match integrator {
-            // But for rounding of the times at which the pulse is read.
-            Integrator::RungeKutta => {
-                let off = of_coarse.value / of_fine.value - 1.0;
-                assert!(off.abs() <= 1e-10 && of_coarse.ball == of_fine.ball, "{of_coarse:?}");
-                assert!((of_coarse.time - of_fine.time).abs() <= 1e-15, "{of_coarse:?}");
-            }
-            // Other steps, the same motion.
-            _ => assert!((of_coarse.value / of_fine.value - 1.0).abs() <= 1e-2, "{of_coarse:?}"),
-        }
-        let far = |session: &Session| {
-            let of = |axis: &str| column(session, &format!("inner_{axis}"));
-            let [x, y, z] = ["x", "y", "z"].map(of);
-            let all = x.iter().zip(&y).zip(&z).map(|((x, y), z)| (x * x + y * y + z * z).sqrt());
-            all.fold(0.0, f64::max)
-        };
-        let farthest = simulation(&coarse).extremes[0].farthest.value;
-        assert!((farthest / far(&fine) - 1.0).abs() <= 1e-2, "{farthest} {}", far(&fine));
-        assert!(farthest >= 1.2 * far(&coarse));
-    }
-}
-
-/// Value and time of an extreme belong to one state.
-#[test]
-fn an_extreme_has_the_time_of_its_state() {
-    for (integrator, stepping) in [
-        (Integrator::RungeKutta, Stepping::Fixed(1e-6)),
-        (Integrator::DormandPrince, Stepping::Accuracy(1e-3)),
-        (Integrator::Rosenbrock, Stepping::Accuracy(1e-3)),
-    ] {
-        let options = RunOptions { integrator, stepping, ..RunOptions::default() };
-        let wanted = RunRequest { options, end: 1e-3, output_interval: 1e-3, ..request(1e-6, 1) };
-        let mut session = Session::start(struck(), &wanted).unwrap();
-        let at = simulation(&session).system.sets[0].layout.inner() + POSITION;
-        let (mut farthest, mut when) = (0.0f64, 0.0);
-        loop {
-            let [x, y, z] = [0, 1, 2].map(|i| simulation(&session).state[at + i]);
-            let distance = (x * x + y * y + z * z).sqrt();
-            if distance > farthest {
-                (farthest, when) = (distance, simulation(&session).time);
-            }
-            if session.advance(1).unwrap() == Status::Complete {
-                break;
-            }
-        }
-        let found = simulation(&session).extremes[0].farthest;
-        // Rounding of a sum of three squares, and of the time at which a step ends.
-        assert!((found.value / farthest - 1.0).abs() <= 1e-14, "{integrator:?} {found:?}");
-        assert!((found.time - when).abs() <= 1e-15, "{integrator:?} {found:?} {when}");
-    }
-}
-
-#[test]
-fn slip_is_told_against_the_contact_angle_that_balls_have() {
-    // Pushed along its axis with clearance, the deep-groove bearing runs at an angle far from its
-    // nominal one of zero, and the axial load leaves the balls hardly any slip.
-    let mut problem = DynamicProblem { geometry: common::table_4_1(20e-6), ..sliding() };
-    problem.inner.drives[2] = Drive::Load(Profile::ZERO);
-    problem.inner.drives[0] = Drive::Load(Profile::Constant(500.0));
-    problem.inner.drives[3] = Drive::Motion(Profile::ZERO);
-    problem.inner.drives[4] = Drive::Motion(Profile::ZERO);
-    let options = RunOptions {
-        integrator: Integrator::Rosenbrock,
-        stepping: Stepping::Accuracy(1e-3),
-        energy_limit: f64::INFINITY,
-        ..RunOptions::default()
-    };
-    let wanted = RunRequest { options, end: 40e-3, output_interval: 0.1e-3, ..request(1e-6, 1) };
-    let session = to_the_end(problem, &wanted);
-    let table = RunTable::new(&session, 30e-3).unwrap();
-    let summary = run_summary(&session, &table, &[], &RunReport::default()).unwrap();
-    let of = |name: &str| summary["kinematics"][name]["value"].as_f64().unwrap();
-    assert!(of("inner_contact_angle") > 10.0, "{}", summary["kinematics"]);
-    // Harris: the ball set with control of either race.
-    let geometry = simulation(&session).system.assembly.bearings[0].geometry;
-    let gamma = geometry.ball_radius / geometry.pitch_radius;
-    let [inner, outer] = ["inner_contact_angle", "outer_contact_angle"].map(|n| of(n).to_radians());
-    let both = 1.0 + (inner - outer).cos();
-    let control = [
-        ("outer", (1.0 - gamma * inner.cos()) / both),
-        ("inner", ((inner - outer).cos() - gamma * outer.cos()) / both),
-    ];
-    let [low, high] = [control[1].1, control[0].1].map(|ratio| ratio * of("inner_race_speed"));
-    for (race, ratio) in control {
-        let told = of(&format!("rolling_cage_speed_{race}_control"));
-        let expected = ratio * of("inner_race_speed");
-        assert!((told / expected - 1.0).abs() <= 1e-12, "{race}: {told} {expected}");
-    }
-    // No slip between them, and against the nearer one outside.
-    let measured = of("ball_set_speed");
-    let slip = 1.0 - measured / measured.clamp(low.min(high), low.max(high));
-    assert!((of("ball_set_slip") - slip).abs() <= 1e-12, "{slip}");
-    let nominal = 1.0 - of("ball_set_speed") / of("rolling_cage_speed_at_nominal_angle");
-    assert!(nominal.abs() > 2e-3, "{nominal}");
-    // A tenth of it at most: what spin leaves, and the angle of each ball beside the mean.
-    assert!(of("ball_set_slip").abs() <= 0.1 * nominal.abs(), "{}", summary["kinematics"]);
-    assert!(summary["kinematics"]["rolling_at"].as_str().unwrap().contains("mean contact angles"));
-}
-
-/// Balls go round the outer race's centre: what all of them have in common is no orbiting.
-#[test]
-fn orbital_speeds_count_from_the_moving_outer_race() {
-    let mut wanted = request(1e-6, 2);
-    // The push takes energy that no ledger knows of.
-    wanted.options.energy_limit = 1e9;
-    let mut session = Session::start(complete(), &wanted).unwrap();
-    let before: Vec<f64> = session.recorder.row(0).to_vec();
-    let simulation = simulation_mut(&mut session);
-    let (layout, at) = (simulation.system.sets[0].layout, simulation.system.places.body(1));
-    let velocity = [0.0, 0.7, -0.4];
-    for (i, by) in velocity.into_iter().enumerate() {
-        simulation.state[at + VELOCITY + i] += by;
-        for ball in 0..layout.balls {
-            simulation.state[layout.ball(VELOCITY + i) + ball] += by;
-        }
-    }
-    let snapshot = simulation.snapshot().unwrap();
-    session.recorder.record(session.motion.bearing().unwrap(), &snapshot);
-    for ball in 1..=layout.balls {
-        let name = format!("ball_{ball}_orbital_speed");
-        let index = session.recorder.columns().iter().position(|c| c.name == name).unwrap();
-        let (was, is) = (before[index], session.recorder.row(1)[index]);
-        // Rounding; the common velocity alone would be 0.8/0.026 of it.
-        assert!((is - was).abs() <= 1e-12 * was.abs() && was > 10.0, "{name}: {was} {is}");
-    }
-}
-
-/// The largest energy that was missing is that of all rows, not of the last one.
-#[test]
-fn the_summary_tells_the_largest_residual_of_all_rows() {
-    // What the steps leave changes its sign between the third row and the fourth.
-    let wanted = RunRequest { end: 30e-6, ..request(1e-6, 3) };
-    let session = to_the_end(jolted(), &wanted);
-    let summary = run_summary(&session, &table(&session), &[], &RunReport::default()).unwrap();
-    let of = |name: &str| summary["energy"][name]["value"].as_f64().unwrap();
-    let rows = column(&session, "energy_residual");
-    let largest = rows.iter().fold(0.0f64, |most, value| most.max(value.abs()));
-    assert_eq!(of("energy_residual"), rows[rows.len() - 1]);
-    assert_eq!(of("largest_residual"), largest);
-    assert!(largest > rows[rows.len() - 1].abs(), "{rows:?}");
-}
-
-/// Speed of the balls' orbits where they slip at neither contact and do not spin on one of the races, from the
-/// velocities of the surfaces: contact angles (rad) and speeds (rad/s) of the inner and the outer race.
-fn orbit_without_slip(ball: f64, pitch: f64, angles: [f64; 2], speeds: [f64; 2], on: usize) -> f64 {
-    // Radially outwards and along the axis, from the ball's centre to its contacts.
-    let normals = [[-angles[0].cos(), -angles[0].sin()], [angles[1].cos(), angles[1].sin()]];
-    // Unknown: the orbit's speed, the ball's spin along the axis and along the radius.
-    let row = |[r, x]: [f64; 2]| [pitch, ball * r, -ball * x];
-    let surface = |side: usize| speeds[side] * (pitch + ball * normals[side][0]);
-    let [r, x] = normals[on];
-    let matrix =
-        Matrix3::from_rows(&[row(normals[0]).into(), row(normals[1]).into(), [0.0, x, r].into()]);
-    let right = Vector3::new(surface(0), surface(1), speeds[on] * x);
-    matrix.lu().solve(&right).expect("two contacts")[0]
-}
-
-/// At speed balls press outwards: they touch the inner race at the larger angle, and which race they spin on counts.
-#[test]
-fn speeds_of_rolling_follow_from_the_velocities_at_both_contacts() {
-    let mut problem = DynamicProblem { geometry: common::table_5_3(), ..frictionless() };
-    problem.inner.drives = [const { Drive::Motion(Profile::ZERO) }; 5];
-    problem.inner.drives[0] = Drive::Load(Profile::Constant(400.0));
-    problem.inner.rotation = Rotation::Speed(Profile::Constant(2000.0));
-    let mut outer = problem.inner.clone();
-    outer.drives[0] = Drive::Motion(Profile::ZERO);
-    outer.rotation = Rotation::Speed(Profile::Constant(-300.0));
-    problem.outer = Some(outer);
-    let mut wanted = request(1e-6, 20);
-    wanted.options.energy_limit = f64::INFINITY;
-    let session = to_the_end(problem, &wanted);
-    let summary = run_summary(&session, &table(&session), &[], &RunReport::default()).unwrap();
-    let of = |name: &str| summary["kinematics"][name]["value"].as_f64().unwrap();
-    let degrees = ["inner_contact_angle", "outer_contact_angle"].map(of);
-    assert!(degrees[0] > degrees[1] + 1.0, "{degrees:?}");
-    let geometry = simulation(&session).system.assembly.bearings[0].geometry;
-    let (ball, pitch) = (geometry.ball_radius, geometry.pitch_radius);
-    let angles = degrees.map(f64::to_radians);
-    let expected = [0, 1].map(|on| orbit_without_slip(ball, pitch, angles, [2000.0, -300.0], on));
-    assert!((expected[0] / expected[1] - 1.0).abs() > 1e-4, "{expected:?}");
-    for (race, expected) in ["inner", "outer"].into_iter().zip(expected) {
-        let told = of(&format!("rolling_cage_speed_{race}_control"));
-        // Rounding of angles in degrees.
-        assert!((told / expected - 1.0).abs() <= 1e-12, "{race}: {told} {expected}");
     }
 }

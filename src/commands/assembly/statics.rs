@@ -78,14 +78,13 @@ pub fn find_equilibrium<'s>(
     }
     let of_one = match scene.one() {
         Some(one) => {
-            let mut problem = plan::of_one(one, still)?;
-            problem.outer_pose.position = moment.solution.bearings[0].centres[1];
+            let problem = plan::of_one(one, still)?;
             Some((problem, StaticSolution::from(moment.solution.clone())))
         }
         None => None,
     };
     let mut remarks = match &of_one {
-        Some((problem, solution)) => remarks::of_statics(scene.common(), problem, solution),
+        Some((problem, _)) => remarks::of_statics(scene.common(), problem, &moment.solution),
         None => remarks::of_assembly(scene, still, &moment.solution),
     };
     let defaults = match scene.only() {

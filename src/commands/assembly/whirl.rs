@@ -83,8 +83,11 @@ impl Spinning {
     }
 
     pub fn text(&self) -> String {
+        let of = self.whirling.fastest.as_deref();
+        let of = of
+            .map_or(String::new(), |body| format!(" of {body}, the others at a fixed part of it"));
         let mut text = format!(
-            "\nwhirl at {:.1} rpm\nmode        frequency, Hz  damping ratio  direction  moves most\n",
+            "\nwhirl at {:.1} rpm{of}\nmode        frequency, Hz  damping ratio  direction  moves most\n",
             rpm(self.whirling.top_speed)
         );
         for (index, whirl) in self.whirls.iter().enumerate() {
@@ -161,6 +164,9 @@ impl Spinning {
             "speed": { "value": self.whirling.top_speed, "unit": "rad/s" },
             "whirl": self.whirls.iter().map(whirl).collect::<Vec<_>>(),
         });
+        if let Some(body) = &self.whirling.fastest {
+            section["speed_of"] = json!(body);
+        }
         match &self.critical {
             Ok(all) => section["critical_speeds"] = all.iter().map(critical).collect(),
             Err(why) => section["no_critical_speeds"] = json!(why.to_string()),
