@@ -223,6 +223,23 @@ fn tables(out: &Path, to: &mut String) {
     }
 }
 
+/// What is written in each picture: its heading, axes, the numbers along them, the names of its curves. Numbers beside what is
+/// unaccounted for alone are rounding.
+fn pictures(out: &Path, to: &mut String) {
+    for name in files(out).iter().filter(|name| name.ends_with(".svg")) {
+        let picture = read(&out.join(name));
+        let mut parts: Vec<&str> = picture.split("</text>").collect();
+        parts.pop();
+        let text = |part: &&str| part.rsplit('>').next().unwrap_or_default().trim().to_string();
+        let mut texts: Vec<String> = parts.iter().map(text).collect();
+        assert!(!texts.is_empty(), "{name}");
+        if texts.last().is_some_and(|last| last == "unaccounted for") {
+            texts.retain(|text| text.parse::<f64>().is_err());
+        }
+        writeln!(to, "{name} {}", texts.join(" | ")).unwrap();
+    }
+}
+
 /// Half a run, taken up again, has the rows of an unbroken one.
 fn resumes(file: &Path, folder: &Path, out: &Path) {
     let content = read(file);
@@ -275,6 +292,7 @@ fn said(file: &Path) -> String {
                 leaves(&json(&out.join("summary.json")), "", &mut all);
                 columns(&out, &mut all);
                 tables(&out, &mut all);
+                pictures(&out, &mut all);
             }
         }
     }

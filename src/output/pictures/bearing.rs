@@ -30,6 +30,8 @@ pub(super) const POINTS: usize = 1500;
 const SECTOR: usize = 3;
 /// A speed that changes by less than this part of it is held.
 const STEADY: f64 = 0.05;
+/// Changes of less than this part of the fastest speed are rounding.
+const ROUNDING: f64 = 1e-9;
 /// Bins below this part of the highest are not drawn: rounding.
 const SPECTRUM_FLOOR: f64 = 1e-9;
 
@@ -140,18 +142,24 @@ fn orbits(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
     Ok(drawn)
 }
 
-/// The speed in all rows of what changes it by more than [`STEADY`].
-fn changing_speed(table: &RunTable, of: &Moving) -> Option<Vec<f64>> {
-    let speed = table.all(&of.speed)?;
-    let ends = |of: fn(f64, f64) -> f64| speed.iter().copied().reduce(of).unwrap_or(0.0);
-    let (low, high) = (ends(f64::min), ends(f64::max));
-    (high - low > STEADY * high.abs().max(low.abs())).then_some(speed)
+/// Speed of each body in all rows, of those that change theirs by more than [`STEADY`], and by more than rounding of the
+/// fastest.
+fn changing_speeds(table: &RunTable) -> Vec<(&Moving, Vec<f64>)> {
+    let bodies = table.bodies.iter();
+    let all: Vec<_> = bodies.filter_map(|body| Some((body, table.all(&body.speed)?))).collect();
+    let top = |speed: &[f64]| speed.iter().fold(0.0f64, |most, v| most.max(v.abs()));
+    let fastest = all.iter().map(|(_, speed)| top(speed)).fold(0.0, f64::max);
+    let changes = |speed: &[f64]| {
+        let end = |of: fn(f64, f64) -> f64| speed.iter().copied().reduce(of).unwrap_or(0.0);
+        let rise = end(f64::max) - end(f64::min);
+        rise > STEADY * top(speed) && rise > ROUNDING * fastest
+    };
+    all.into_iter().filter(|(_, speed)| changes(speed)).collect()
 }
 
 /// What a reader should know of run-ups that were asked for where there is none.
 pub fn without_run_up(table: &RunTable) -> Option<String> {
-    let none = table.bodies.iter().all(|body| changing_speed(table, body).is_none());
-    none.then(|| {
+    changing_speeds(table).is_empty().then(|| {
         format!(
             "output.plots: nothing is drawn for `run-up`: no race, body or cage has changed its speed by more than {:.0} %; give \
              a speed that rises, such as {{ ramp = [\"0 rpm\", \"3000 rpm\"], start = \"0 s\", duration = \"1 s\" }}",
@@ -163,12 +171,9 @@ pub fn without_run_up(table: &RunTable) -> Option<String> {
 /// Of whatever changes its speed.
 fn run_ups(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
     let mut drawn = Vec::new();
-    for body in &table.bodies {
-        let Moving { column, title: name, .. } = body;
+    for (Moving { column, title: name, .. }, speed) in changing_speeds(table) {
         let (y, z) = (table.all(&format!("{column}_y")), table.all(&format!("{column}_z")));
-        let (Some(y), Some(z), Some(speed)) = (y, z, changing_speed(table, body)) else {
-            continue;
-        };
+        let (Some(y), Some(z)) = (y, z) else { continue };
         let rpm = 60.0 / std::f64::consts::TAU;
         let points = speed.iter().zip(y.iter().zip(&z));
         let points = points.map(|(speed, (y, z))| point(rpm * speed, 1e6 * libm::hypot(*y, *z)));
