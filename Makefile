@@ -9,7 +9,7 @@ VERIFY = $(CARGO) run --release --locked -q -p verification --bin verify --
 
 ## Benchmarks of the source against independent oracles; report in target/verify.
 verify:
-	$(VERIFY) --tier smoke
+	$(VERIFY) --tier smoke --jobs 2
 
 ## The same with the long cases.
 verify-full:

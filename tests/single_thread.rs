@@ -117,12 +117,13 @@ fn only_the_sweep_knows_of_threads() {
     let mut found: Vec<_> = sources.into_iter().filter(knows).collect();
     found.sort();
     // What watches a long factorisation and sleeps between its looks; a sweep, a solid that is asked for
-    // threads, seeded faults side by side.
+    // threads, seeded faults and cases side by side.
     let known = [
         "src/commands/memory.rs",
         "src/commands/sweep/mod.rs",
         "src/solver/solid/team.rs",
         "verification/src/mutants/mod.rs",
+        "verification/src/runner.rs",
     ];
     assert_eq!(found, known.map(|path| root.join(path)));
 }

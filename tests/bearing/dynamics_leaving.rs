@@ -233,16 +233,8 @@ fn a_bearing_that_nothing_holds_is_refused_or_ends_where_it_flies_to() {
         begun(&held, Start::Equilibrium).unwrap();
     }
     // Both races a metre off together.
-    let layout = Layout::new(8, false);
     for (off, ends) in [(0.999 * FARTHEST, false), (1.001 * FARTHEST, true)] {
-        let mut state = start::nominal(&problem.assembly());
-        for ball in 0..8 {
-            let mut body = layout.ball_state(&state, ball);
-            body.position[1] += off;
-            layout.set_ball(&mut state, ball, &body);
-        }
-        state[layout.inner() + POSITION + 1] += off;
-        state[layout.outer() + POSITION + 1] += off;
+        let state = both_off(&problem, off);
         let mut moved = Simulation::from_state(problem.clone(), options, state, 0.0).unwrap();
         match moved.step() {
             Ok(()) => assert!(!ends),
@@ -261,15 +253,22 @@ fn a_bearing_that_nothing_holds_is_refused_or_ends_where_it_flies_to() {
     let mut carried = problem.clone();
     carried.inner.drives[1] =
         Drive::Motion(Profile::Ramp { from: 0.0, to: far, start: 0.0, duration: 2.0 });
-    let mut state = start::nominal(&carried.assembly());
+    let state = both_off(&carried, far);
+    Simulation::from_state(carried, options, state, late).unwrap().step().unwrap();
+}
+
+/// The nominal state, moved along Y with both races and all balls.
+fn both_off(problem: &DynamicProblem, off: f64) -> Vec<f64> {
+    let layout = Layout::new(8, false);
+    let mut state = start::nominal(&problem.assembly());
     for ball in 0..8 {
         let mut body = layout.ball_state(&state, ball);
-        body.position[1] += far;
+        body.position[1] += off;
         layout.set_ball(&mut state, ball, &body);
     }
-    state[layout.inner() + POSITION + 1] += far;
-    state[layout.outer() + POSITION + 1] += far;
-    Simulation::from_state(carried, options, state, late).unwrap().step().unwrap();
+    state[layout.inner() + POSITION + 1] += off;
+    state[layout.outer() + POSITION + 1] += off;
+    state
 }
 
 /// Round pockets do not hold a cage across its axis: its ring ends what it may go, and with it what the

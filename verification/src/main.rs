@@ -4,6 +4,8 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
 
 use clap::{Parser, Subcommand};
 use verification::cache::Cache;
@@ -36,6 +38,9 @@ struct Arguments {
     /// Compute long cases anew whatever the cache holds.
     #[arg(long)]
     no_cache: bool,
+    /// Cases to compute at a time, one a processor; those that time something run by themselves.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..))]
+    jobs: u8,
 }
 
 #[derive(Subcommand)]
@@ -114,7 +119,7 @@ fn verify(arguments: &Arguments) -> Result<bool, String> {
     let selected = select(&arguments.cases, arguments.tier)?;
     let skipped = outside::skipped(&selected)?;
     let golden_folder = arguments.golden.clone().unwrap_or_else(golden::default_folder);
-    let mut report = Report {
+    let report = Report {
         machine: Machine::facts(),
         tier: arguments.tier,
         index: Index::load().map_err(|error| format!("source_index.toml: {error}"))?,
@@ -130,30 +135,27 @@ fn verify(arguments: &Arguments) -> Result<bool, String> {
         true => Cache::none(),
         false => Cache::open(&arguments.cache),
     };
-    for (index, case) in selected.iter().enumerate() {
-        eprint!("case {}/{} {} … ", index + 1, selected.len(), case.id);
+    let (start, shared) = (Instant::now(), Mutex::new(report));
+    let done = runner::side_by_side(&selected, arguments.jobs.into(), |index| {
+        let case = &selected[index];
+        let begun = format!("case {}/{} {} … ", index + 1, selected.len(), case.id);
+        if arguments.jobs == 1 {
+            eprint!("{begun}");
+        }
         let (run, kept) = runner::run(case, &cache);
         let outcome = runner::assess(case, &run, &golden_folder);
-        let cached =
-            outcome.cached.as_ref().map_or(String::new(), |cached| format!("; {}", cached.note));
-        eprintln!(
-            "{} ({} checks, {:.2} s{cached})",
-            outcome.status.word(),
-            outcome.checks.len(),
-            run.seconds
-        );
+        let mut report = shared.lock().unwrap_or_else(PoisonError::into_inner);
+        let begun = if arguments.jobs == 1 { "" } else { &begun };
+        say(begun, &outcome, run.seconds);
         if let Err(reason) = kept {
             eprintln!("    not cached: {reason}");
         }
-        if outcome.status != CaseStatus::Passed {
-            for failure in outcome.failures().iter().take(8) {
-                eprintln!("    {failure}");
-            }
-        }
         report.cases[index] = outcome;
         report.machine.threads = report.machine.threads.max(machine::threads());
-        save(&report)?;
-    }
+        save(&report)
+    });
+    done.into_iter().collect::<Result<(), String>>()?;
+    let report = shared.into_inner().unwrap_or_else(PoisonError::into_inner);
     let held = report.cases.iter().filter(|case| case.status == CaseStatus::Passed).count();
     let (cached, before) = report.cached();
     let cached = match cached {
@@ -163,11 +165,27 @@ fn verify(arguments: &Arguments) -> Result<bool, String> {
     eprintln!(
         "{held} of {} cases passed in {:.1} s{cached}; report: {}",
         report.cases.len(),
-        report.seconds() - before,
+        start.elapsed().as_secs_f64(),
         arguments.out.join("report.html").display()
     );
     skipped.iter().for_each(|line| eprintln!("{line}"));
     Ok(report.passed())
+}
+
+/// One line of a case, and what failed in it.
+fn say(begun: &str, outcome: &CaseReport, seconds: f64) {
+    let cached =
+        outcome.cached.as_ref().map_or(String::new(), |cached| format!("; {}", cached.note));
+    eprintln!(
+        "{begun}{} ({} checks, {seconds:.2} s{cached})",
+        outcome.status.word(),
+        outcome.checks.len()
+    );
+    if outcome.status != CaseStatus::Passed {
+        for failure in outcome.failures().iter().take(8) {
+            eprintln!("    {failure}");
+        }
+    }
 }
 
 /// Write golden files; a case that does not hold against the world is not accepted as a past.

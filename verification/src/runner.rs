@@ -1,12 +1,15 @@
-//! Runs cases one after the other, on one thread, and survives whatever they do.
+//! Runs cases, one after the other or side by side, and survives whatever they do.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use crate::cache::Cache;
 use crate::case::{Case, Computation};
+use crate::cases;
 use crate::context::CaseContext;
 use crate::golden::{self, GoldenValue};
 use crate::judge::{self, Verdict};
@@ -23,6 +26,31 @@ pub struct Run {
     pub seconds: f64,
     /// When it was computed, if it was not now but comes from the cache.
     pub computed: Option<String>,
+}
+
+/// Does `work` for each case, by its index: `jobs` at a time on threads of their own, since cases know nothing of each
+/// other, and those that time something alone, when the others are done. One job is the caller's thread, and keeps the order.
+pub fn side_by_side<T: Send + Sync>(
+    cases: &[Case],
+    jobs: usize,
+    work: impl Fn(usize) -> T + Sync,
+) -> Vec<T> {
+    let all = 0..cases.len();
+    if jobs <= 1 {
+        return all.map(work).collect();
+    }
+    let (alone, others): (Vec<_>, Vec<_>) = all.partition(|case| cases::is_timed(cases[*case].id));
+    let done: Vec<OnceLock<T>> = cases.iter().map(|_| OnceLock::new()).collect();
+    for (jobs, queue) in [(jobs, others), (1, alone)] {
+        let next = AtomicUsize::new(0);
+        let go = || {
+            while let Some(case) = queue.get(next.fetch_add(1, Ordering::Relaxed)) {
+                let _ = done[*case].set(work(*case));
+            }
+        };
+        std::thread::scope(|scope| (0..jobs).for_each(|_| drop(scope.spawn(go))));
+    }
+    done.into_iter().filter_map(OnceLock::into_inner).collect()
 }
 
 /// A case's run: from the cache where the case is a long one and nothing has changed, else

@@ -1,4 +1,4 @@
-//! The `verify` command: exit codes, the three forms of the report, one thread.
+//! The `verify` command: exit codes, the three forms of the report, its threads.
 
 use std::fs;
 use std::path::Path;
@@ -76,6 +76,32 @@ fn a_run_writes_its_report_in_three_forms_on_one_thread() {
         .unwrap()
         .any(|entry| entry.unwrap().path().extension().is_some_and(|e| e == "partial"));
     assert!(!leftover);
+}
+
+/// Cases on two threads, the timed one after them, are reported as those on one: in the registry's order, with the same numbers.
+#[test]
+fn cases_side_by_side_are_those_one_after_the_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |jobs: &str| {
+        let out = folder.path().join(jobs);
+        let ids = ["kinematic_frequencies", "rubber_explicit", "hertz_elliptic"];
+        let mut arguments = vec!["--jobs", jobs, "--out", out.to_str().unwrap()];
+        arguments.extend(ids.iter().flat_map(|id| ["--case", id]));
+        let output = verify(&arguments);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        let report: serde_json::Value =
+            serde_json::from_str(&text(&out.join("report.json"))).unwrap();
+        let cases = report["cases"].as_array().unwrap().iter();
+        let checks: Vec<_> =
+            cases.map(|case| (case["id"].clone(), case["checks"].clone())).collect();
+        (checks, said)
+    };
+    let ((one, _), (two, said)) = (run("1"), run("2"));
+    assert!(one.len() == 3 && one == two);
+    let last = said.lines().rev().nth(1).unwrap();
+    assert!(last.contains("rubber_explicit"), "{said}");
+    assert_eq!(verify(&["--jobs", "0"]).status.code(), Some(2));
 }
 
 #[test]

@@ -2,7 +2,6 @@
 //! verdict, and each golden value is what it was.
 
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use verification::case::{Case, Computation, Tier};
 use verification::cases;
@@ -10,27 +9,16 @@ use verification::golden::{self, differences};
 use verification::judge::{Status, judge, widest_tolerance};
 use verification::published::Published;
 use verification::readme;
-use verification::runner::{Run, compute};
+use verification::runner::{Run, compute, side_by_side};
 
 /// In order; on all cores, since the cases know nothing of each other.
 fn smoke_runs() -> &'static [(Case, Run)] {
     static RUNS: OnceLock<Vec<(Case, Run)>> = OnceLock::new();
     RUNS.get_or_init(|| {
         let cases = cases::of_tier(Tier::Smoke);
-        let runs: Vec<OnceLock<Run>> = cases.iter().map(|_| OnceLock::new()).collect();
-        let next = AtomicUsize::new(0);
-        let work = || {
-            while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let index = cases.iter().position(|other| other.id == case.id).unwrap();
-                runs[index].set(compute(case.run)).unwrap();
-            }
-        };
-        std::thread::scope(|scope| {
-            for _ in 0..std::thread::available_parallelism().map_or(1, |cores| cores.get()) {
-                scope.spawn(work);
-            }
-        });
-        cases.iter().copied().zip(runs.into_iter().map(|run| run.into_inner().unwrap())).collect()
+        let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
+        let runs = side_by_side(&cases, cores, |index| compute(cases[index].run));
+        cases.into_iter().zip(runs).collect()
     })
 }
 
