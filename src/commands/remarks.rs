@@ -1,6 +1,6 @@
 //! What a reader of the numbers should know: one set of remarks for equilibrium and motion.
 
-use crate::commands::scene_remarks::{at_rest, of_springs};
+use crate::commands::scene_remarks::{at_rest, of_springs, sudden_fits};
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use bearing_dynamics::scene::Scene;
@@ -181,7 +181,7 @@ pub fn of_run(scene: &AssemblyScene, simulation: &Simulation) -> Vec<String> {
     let each = scene.bearings.iter().zip(bearings).map(|(placed, (bearing, extremes))| {
         named(placed, of_moving(&placed.scene, bearing, extremes))
     });
-    of_springs(scene).into_iter().chain(each.flatten()).collect()
+    of_springs(scene).into_iter().chain(sudden_fits(scene)).chain(each.flatten()).collect()
 }
 
 /// With the name of the bearing that they are about.

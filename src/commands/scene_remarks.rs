@@ -3,7 +3,9 @@
 
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::scene::assembly::{AssemblyScene, SceneBody, Spring, SpringAt};
+use bearing_dynamics::scene::housing::{FitSize, HousingMethod};
 use bearing_dynamics::solver::dynamics::model::Rotation;
+use bearing_dynamics::solver::dynamics::run::Start;
 use bearing_dynamics::solver::profile::Profile;
 
 /// Shafts of tetrahedra.
@@ -87,6 +89,24 @@ pub fn of_springs(scene: &AssemblyScene) -> Vec<String> {
         ))
     };
     scene.springs.iter().filter_map(said).collect()
+}
+
+/// Races that a run begins in their whole fit while the housing has given way nowhere.
+pub fn sudden_fits(scene: &AssemblyScene) -> impl Iterator<Item = String> {
+    let nominal = scene.run().is_some_and(|run| run.options.start == Start::Nominal);
+    let bearings = scene.bearings.iter().filter(move |_| nominal);
+    bearings.filter_map(|placed| {
+        let settings = &placed.housing.as_ref()?.settings;
+        let sudden = settings.method == HousingMethod::Reduced && settings.fit_ramp.is_none();
+        let loose = matches!(settings.fit, FitSize::Interference(fit) if fit <= 0.0);
+        let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
+        (sudden && !loose).then(|| {
+            format!(
+                "the outer race{of} is in its whole fit at once (numerics.start = \"nominal\", no housing.fit_ramp): an \
+                 interference strikes race and housing at the start; let it grow in by housing.fit_ramp, or start in equilibrium"
+            )
+        })
+    })
 }
 
 /// Outer races that turn as they are told, whatever acts on them.

@@ -11,8 +11,9 @@ pub enum StaticsError {
     #[error(
         "no equilibrium: {body} leaves its place along {coordinate} \
          ({travel:.3e} m, farther than the {room:.3e} m it has); nothing holds it \
-         against the load in this direction: hold the coordinate by a displacement or a spring, turn the load, \
-         or start a motion in nominal positions (numerics.start = \"nominal\")"
+         against the load in this direction: hold the coordinate by a displacement or a spring{start}, turn the load, \
+         or start a motion in nominal positions (numerics.start = \"nominal\")",
+        start = no_hold(coordinate)
     )]
     NoEquilibrium { body: String, coordinate: &'static str, travel: f64, room: f64 },
     #[error(
@@ -29,9 +30,9 @@ pub enum StaticsError {
     #[error(
         "nothing holds {body} along {coordinate}: no spring, no given coordinate of it or of the races it is \
          joined to, while the loads there add up to {load:.3e} N at t = {at} s: hold the coordinate by a \
-         displacement or a spring, balance the loads, or start a motion in nominal positions \
+         displacement or a spring{start}, balance the loads, or start a motion in nominal positions \
          (numerics.start = \"nominal\")",
-        at = told(*time)
+        at = told(*time), start = no_hold(coordinate)
     )]
     Unheld { body: String, coordinate: &'static str, load: f64, time: f64 },
     #[error(
@@ -59,4 +60,13 @@ pub enum StaticsError {
     },
     #[error("the outer race{of} in its bore: {source}")]
     Seat { of: String, source: BoreError },
+}
+
+/// A length in the place of a displacement is a frequent slip.
+fn no_hold(coordinate: &str) -> String {
+    let (kind, unit) =
+        if coordinate.starts_with("tilt") { ("tilt", "deg") } else { ("displacement", "mm") };
+    format!(
+        " ({coordinate} = {{ {kind} = \"0 {unit}\" }} holds it; {coordinate} = \"0 {unit}\" of an outer race is where it starts)"
+    )
 }
