@@ -13,16 +13,11 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
 use bearing_dynamics::mesh::tet_mesh::Elements;
-use bearing_dynamics::output::session::{HousedParts, Motion, Parts, RunRequest, Session, Status};
-use bearing_dynamics::output::state::{self, StateRecord, Stopped};
-use bearing_dynamics::solver::channels::ChannelGroup;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Bearing, Body, Mobility};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
 use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, SPIN, VELOCITY};
-use bearing_dynamics::solver::housing::exchange::{
-    Exchange, ExchangeError, ExchangeOptions, SolidPart,
-};
+use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
 use bearing_dynamics::solver::housing::seat::{Seat, SeatState};
 use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
@@ -41,25 +36,25 @@ const SHAFT: usize = 0;
 
 /// A ring round a race.
 #[derive(Clone, Copy)]
-struct Housing {
-    name: &'static str,
+pub struct Housing {
+    pub name: &'static str,
     /// Of its middle along X, m.
-    at: f64,
-    wall: f64,
-    held: bool,
-    damping: f64,
+    pub at: f64,
+    pub wall: f64,
+    pub held: bool,
+    pub damping: f64,
     /// Modulus, density and stiffness of the contact as multiples of steel's.
-    times: [f64; 3],
-    around: usize,
+    pub times: [f64; 3],
+    pub around: usize,
 }
 
-fn left(held: bool) -> Housing {
+pub fn left(held: bool) -> Housing {
     // Hard rubber, so that housings give way by as much as bearings do.
     let (wall, damping, times, around) = (15e-3, 0.0, [1e-3, 1.0, 1e-3], 16);
     Housing { name: "left", at: -HALF, wall, held, damping, times, around }
 }
 
-fn right(held: bool) -> Housing {
+pub fn right(held: bool) -> Housing {
     Housing { name: "right", at: HALF, ..left(held) }
 }
 
@@ -93,7 +88,7 @@ fn made(housing: &Housing) -> (SolidModel, Vec<ContactNode>) {
 }
 
 /// The race on a body at a mount, in the bore of a housing.
-fn fitted(housing: &Housing, solid: usize, mount: Mount) -> (SolidPart, Seat) {
+pub fn fitted(housing: &Housing, solid: usize, mount: Mount) -> (SolidPart, Seat) {
     let (model, nodes) = made(housing);
     let Penalty::PerArea(steel) = Penalty::default() else { panic!("by area") };
     let seat = Seat {
@@ -110,7 +105,7 @@ fn fitted(housing: &Housing, solid: usize, mount: Mount) -> (SolidPart, Seat) {
     (SolidPart::undeformed(Some(housing.name.into()), model), seat)
 }
 
-fn body(name: &str, mobility: Mobility, x: f64) -> Body {
+pub fn body(name: &str, mobility: Mobility, x: f64) -> Body {
     Body {
         name: name.into(),
         label: None,
@@ -121,7 +116,7 @@ fn body(name: &str, mobility: Mobility, x: f64) -> Body {
     }
 }
 
-fn shaft() -> RaceBody {
+pub fn shaft() -> RaceBody {
     RaceBody {
         inertia: inertia::hollow_cylinder(0.0, 15e-3, 120e-3, 7850.0),
         ..race([0.0; 5], Rotation::Speed(Profile::Constant(100.0)))
@@ -137,7 +132,7 @@ fn outer_race() -> RaceBody {
 
 /// A shaft on two bearings with a little interference between balls and races; body 1 is the left outer race,
 /// body 2 the right one.
-fn on_two(shaft: RaceBody, damping: ContactDamping) -> Assembly {
+pub fn on_two(shaft: RaceBody, damping: ContactDamping) -> Assembly {
     let race = |name: &str, x| body(name, Mobility::Driven(outer_race().into()), x);
     let template = bearing(table_4_1(-5e-6), [0.0; 5], 0.0).assembly().bearings.remove(0);
     let seated = |name: &str, along: f64, outer: usize| Bearing {
@@ -157,7 +152,7 @@ fn on_two(shaft: RaceBody, damping: ContactDamping) -> Assembly {
     }
 }
 
-fn options(solid_fraction: f64, seat_phase: f64) -> ExchangeOptions {
+pub fn options(solid_fraction: f64, seat_phase: f64) -> ExchangeOptions {
     let bearing = RunOptions {
         integrator: Integrator::RungeKutta,
         stepping: Stepping::Fixed(2e-6),
@@ -168,7 +163,7 @@ fn options(solid_fraction: f64, seat_phase: f64) -> ExchangeOptions {
 }
 
 /// The two outer races in these housings.
-fn housed(
+pub fn housed(
     assembly: Assembly,
     housings: [Housing; 2],
     options: &ExchangeOptions,
@@ -181,7 +176,7 @@ fn housed(
 }
 
 /// A blow of 2 kN against the shaft, 1 ms long, `off` its middle (m).
-fn struck(off: f64) -> RaceBody {
+pub fn struck(off: f64) -> RaceBody {
     let blow = |peak| Profile::HalfSine { base: 0.0, peak, start: 1e-5, duration: 1e-3 };
     let mut struck = shaft();
     struck.drives[2] = Drive::Load(blow(-2000.0));
@@ -597,112 +592,4 @@ fn what_is_not_joined_does_not_feel_the_other() {
         println!("work {integrated:e} J, booked {booked:e} J");
         assert!((booked / integrated - 1.0).abs() <= 1e-9, "{integrated:e} {booked:e}");
     }
-}
-
-fn parts(threads: usize) -> HousedParts<'static> {
-    // Enough elements for two threads each.
-    let fine = |housing: Housing| Housing { around: 120, damping: 77.0, ..housing };
-    let housings = [fine(left(true)), fine(Housing { wall: 8e-3, ..right(true) })];
-    let (solids, seats) = [0, 1]
-        .map(|index| fitted(&housings[index], index, Mount::at_centre(1 + index)))
-        .into_iter()
-        .unzip();
-    let assembly = on_two(struck(10e-3), ContactDamping::None);
-    HousedParts {
-        assembly,
-        solids,
-        seats,
-        bushings: Vec::new(),
-        options: options(0.8, 0.25),
-        threads,
-    }
-}
-
-fn request(end: f64) -> RunRequest {
-    RunRequest {
-        options: options(0.8, 0.25).bearing,
-        end,
-        output_interval: 1e-5,
-        fields_interval: None,
-        channels: vec![ChannelGroup::Races],
-    }
-}
-
-fn run(parts: HousedParts<'static>, end: f64) -> Session<'static> {
-    let mut session = Session::start(Parts::Housed(Box::new(parts)), &request(end)).unwrap();
-    while session.advance(1000).unwrap() != Status::Complete {}
-    session
-}
-
-fn rows(session: &Session) -> Vec<u64> {
-    session.series().unwrap().data().iter().map(|value| value.to_bits()).collect()
-}
-
-/// One, two and five threads give the same bits, and so does a run that was cut in two.
-#[test]
-fn neither_threads_nor_a_break_change_a_bit() {
-    let whole = run(parts(1), 6e-5);
-    let names: Vec<&str> = whole.recorder.columns().iter().map(|c| c.name.as_str()).collect();
-    for name in
-        ["left_housing_force_on_outer_z", "right_bore_nodes_touching", "left_work_on_housing"]
-    {
-        assert!(names.contains(&name), "{names:?}");
-    }
-    assert_eq!(names.iter().filter(|name| **name == "energy_coupled_residual").count(), 1);
-    assert!(whole.watch.largest_residual <= 1e-4 * whole.watch.turned_over);
-    for threads in [2, 5] {
-        let shared = run(parts(threads), 6e-5);
-        assert_eq!(rows(&shared), rows(&whole), "{threads} threads");
-        let (Motion::Housed(a), Motion::Housed(b)) = (&shared.motion, &whole.motion) else {
-            panic!("housed");
-        };
-        let shares = |part: usize| {
-            let solid = &a.solids[part].solid;
-            solid.elements_a_step() > solid.model.problem.elements.len()
-        };
-        assert_eq!(shares(0) || shares(1), threads > 2, "{threads} threads");
-        for (a, b) in a.solids.iter().zip(&b.solids) {
-            assert_eq!(a.solid.displacement, b.solid.displacement);
-            assert_eq!(a.solid.rates(), b.solid.rates());
-        }
-    }
-    // Cut in two, on other threads.
-    let folder = tempfile::tempdir().unwrap();
-    let mut first = run(parts(1), 3e-5);
-    let fingerprint = state::fingerprint(&Parts::Housed(Box::new(parts(1))), &request(3e-5));
-    let record = StateRecord { fingerprint, stopped: Stopped::Complete, error: None, seconds: 0.0 };
-    state::save(folder.path(), &mut first, &record).unwrap();
-    let kept = state::read(folder.path()).unwrap().expect("a state");
-    let two = Parts::Housed(Box::new(parts(2)));
-    let mut second = state::resume(folder.path(), &kept, two, &request(6e-5)).unwrap();
-    while second.advance(1000).unwrap() != Status::Complete {}
-    assert_eq!(rows(&second), rows(&whole));
-    // One that lacks a seat is no state of this run.
-    let mut lacking = kept.clone();
-    lacking.exchange.as_mut().unwrap().seats[1].clear();
-    let refused =
-        state::resume(folder.path(), &lacking, Parts::Housed(Box::new(parts(1))), &request(6e-5));
-    let Err(error) = refused else { panic!("a state without a seat") };
-    assert!(error.to_string().contains("it lacks a part that the scene has"), "{error}");
-}
-
-#[test]
-fn what_ends_a_run_has_a_name() {
-    let (solid, mut seat) = fitted(&right(true), 0, Mount::at_centre(2));
-    seat.nodes.clear();
-    let assembly = || on_two(shaft(), ContactDamping::None);
-    let refused = Exchange::new(assembly(), vec![solid], vec![seat], &options(0.8, 0.25));
-    let Err(error) = refused else { panic!("a seat without nodes") };
-    assert!(error.to_string().starts_with("no node of the housing right carries"), "{error}");
-    let mut fixed = assembly();
-    fixed.bodies[2].mobility = Mobility::Fixed;
-    let (solid, seat) = fitted(&right(true), 0, Mount::at_centre(2));
-    let refused = Exchange::new(fixed, vec![solid], vec![seat], &options(0.8, 0.25));
-    let Err(error) = refused else { panic!("a race that is fixed") };
-    assert_eq!(error, ExchangeError::FixedRace { race: "the right outer race".into() });
-    let mut housed = housed(assembly(), [left(true), right(true)], &options(0.8, 0.25));
-    let at = housed.simulation.system.places.body(2);
-    housed.simulation.state[at] += 6e-3;
-    let error = housed.advance().expect_err("a race beside its seat");
-    assert!(error.to_string().starts_with("the right outer race has left its bore"), "{error}");
 }
