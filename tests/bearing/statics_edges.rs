@@ -2,7 +2,7 @@
 
 use crate::common;
 
-use bearing_dynamics::solver::statics::{Condition, Determinacy, solve};
+use bearing_dynamics::solver::statics::{Condition, Determinacy, StaticsError, solve};
 use common::{FREE, problem, table_4_1};
 use nalgebra::Vector3;
 
@@ -33,7 +33,11 @@ fn a_load_that_nothing_holds_is_an_error_with_the_direction() {
     let mut conditions = [Condition::Displacement(0.0); 5];
     conditions[0] = Condition::Load(100.0);
     let error = solve(&problem(wide, conditions)).unwrap_err();
-    assert!(error.to_string().contains("along x"), "{error}");
+    let advice = "x = { displacement = \"0 mm\" } holds it";
+    assert!(error.to_string().contains("along x") && error.to_string().contains(advice), "{error}");
+    let StaticsError::NoEquilibrium { body, travel, room, .. } = error else { panic!("{error}") };
+    let tilted = StaticsError::NoEquilibrium { body, coordinate: "tilt_y", travel, room };
+    assert!(tilted.to_string().contains("tilt_y = { tilt = \"0 deg\" } holds it"), "{tilted}");
 }
 
 #[test]

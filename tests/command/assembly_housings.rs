@@ -198,14 +198,16 @@ fn a_fit_that_is_whole_at_once_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let nominal = ("[numerics]", "[numerics]\nstart = \"nominal\"");
     let fit = |to| ("fit = { radial = \"1 um\" }", to);
-    let cases: [(&str, &[(&str, &str)], usize); 4] = [
-        ("settled", &[], 0),
-        ("struck", &[nominal], 2),
-        ("grows", &[nominal, fit("fit = { radial = \"1 um\" }\nfit_ramp = \"1 ms\"")], 0),
-        ("loose", &[nominal, fit("fit = { radial = \"-1 um\" }")], 0),
+    let grows = fit("fit = { radial = \"1 um\" }\nfit_ramp = \"1 ms\"");
+    let loose = fit("fit = { radial = \"-1 um\" }");
+    let cases = [
+        ("settled", vec![], 0),
+        ("struck", vec![nominal], 2),
+        ("grows", vec![nominal, grows], 0),
+        ("loose", vec![nominal, loose], 0),
     ];
     for (name, changes, count) in cases {
-        let path = variant(folder.path(), name, changes);
+        let path = variant(folder.path(), name, &changes);
         let told = done(&["check", &path]).matches("is in its whole fit at once").count();
         assert_eq!(told, count, "{name}");
     }
