@@ -98,12 +98,19 @@ pub fn sudden_fits(scene: &AssemblyScene) -> impl Iterator<Item = String> {
     bearings.filter_map(|placed| {
         let settings = &placed.housing.as_ref()?.settings;
         let sudden = settings.method == HousingMethod::Reduced && settings.fit_ramp.is_none();
-        let loose = matches!(settings.fit, FitSize::Interference(fit) if fit <= 0.0);
+        let strikes = match settings.fit {
+            FitSize::Interference(fit) if fit <= 0.0 => return None,
+            FitSize::Interference(_) => "an interference strikes race and housing at the start",
+            // Only the mesh knows the bore, and a clearance strikes nothing.
+            FitSize::OuterRadius(_) => {
+                "where housing.outer_radius is more than the bore's, the interference strikes race and housing at the start"
+            }
+        };
         let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
-        (sudden && !loose).then(|| {
+        sudden.then(|| {
             format!(
-                "the outer race{of} is in its whole fit at once (numerics.start = \"nominal\", no housing.fit_ramp): an \
-                 interference strikes race and housing at the start; let it grow in by housing.fit_ramp, or start in equilibrium"
+                "the outer race{of} is in its whole fit at once (numerics.start = \"nominal\", no housing.fit_ramp): \
+                 {strikes}; let it grow in by housing.fit_ramp, or start in equilibrium"
             )
         })
     })

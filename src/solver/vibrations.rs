@@ -54,16 +54,13 @@ pub fn whirling(
     bodies: &[MovingBody],
     housings: &[HousingMass],
 ) -> Result<Whirling, RotorError> {
-    let (mut top_speed, mut fastest) = (0.0f64, None);
     let speeds: Vec<f64> = assembly.bodies.iter().map(|body| final_speed(assembly, body)).collect();
-    for (body, speed) in assembly.bodies.iter().zip(&speeds) {
-        if speed.abs() > top_speed.abs() {
-            (top_speed, fastest) = (*speed, Some(body.name.clone()));
-        }
-    }
-    if speeds.iter().all(|speed| *speed == 0.0 || *speed == top_speed) {
-        fastest = None;
-    }
+    let fastest = (1..speeds.len())
+        .fold(0, |top, body| if speeds[body].abs() > speeds[top].abs() { body } else { top });
+    let top_speed = speeds.get(fastest).copied().unwrap_or(0.0);
+    let ratio = |body: usize| if top_speed == 0.0 { 0.0 } else { speeds[body] / top_speed };
+    let one_speed = speeds.iter().all(|speed| *speed == 0.0 || *speed == top_speed);
+    let named = (!one_speed).then(|| assembly.bodies[fastest].name.clone());
     let model = Model::new(still);
     let size = model.scale.len();
     let here = placed(&model, found);
@@ -84,8 +81,7 @@ pub fn whirling(
         let first = 5 * index;
         all.pairs.extend([[first + 1, first + 2], [first + 3, first + 4]]);
         let body = &assembly.bodies[of.body];
-        let ratio = if top_speed == 0.0 { 0.0 } else { final_speed(assembly, body) / top_speed };
-        let spin = ratio * of.inertia.axial;
+        let spin = ratio(of.body) * of.inertia.axial;
         all.gyroscopic[(first + 3, first + 4)] += spin;
         all.gyroscopic[(first + 4, first + 3)] -= spin;
         if let Some(race) = body.driven() {
@@ -96,15 +92,13 @@ pub fn whirling(
     }
     for ((_, first), shaft) in model.shafts().zip(&assembly.shafts) {
         let body = bodies.iter().position(|of| of.body == shaft.body);
-        let speed = final_speed(assembly, &assembly.bodies[shaft.body]);
-        let ratio = if top_speed == 0.0 { 0.0 } else { speed / top_speed };
-        bending(&mut all, shaft, (body.map(|body| 5 * body), first), ratio);
+        bending(&mut all, shaft, (body.map(|body| 5 * body), first), ratio(shaft.body));
     }
     all.damping += dashpots(&model, &here, &moved);
     let (places, rows) = told(&model, still, &moved);
     let stations = (0..places.len()).map(|place| place as f64).collect();
     let model = RotorModel::of(&all, MODES, stations, Some(&rows))?;
-    Ok(Whirling { model, places, top_speed, fastest })
+    Ok(Whirling { model, places, top_speed, fastest: named })
 }
 
 /// Everything where an equilibrium has it.

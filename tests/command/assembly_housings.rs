@@ -211,6 +211,14 @@ fn a_fit_that_is_whole_at_once_is_told() {
         let told = done(&["check", &path]).matches("is in its whole fit at once").count();
         assert_eq!(told, count, "{name}");
     }
+    // A race told by its size: whether it is an interference is the mesh's to say.
+    let sized = [nominal, fit("outer_radius = \"35.53 mm\"")];
+    let said = done(&["check", &variant(folder.path(), "sized", &sized)]);
+    assert_eq!(
+        said.matches("where housing.outer_radius is more than the bore's").count(),
+        2,
+        "{said}"
+    );
     let path = variant(folder.path(), "struck", &[nominal, ("end = \"1 ms\"", "end = \"50 us\"")]);
     let out = text(&folder.path().join("out"));
     for command in [&["plan"][..], &["run", "--out", &out]] {

@@ -1,4 +1,4 @@
-//! What a run records is what its bodies do.
+//! Rows and windows of a run lie where they are asked for, and channels are what its bodies do.
 
 use crate::run_common;
 

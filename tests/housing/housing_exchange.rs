@@ -1,5 +1,5 @@
 //! Bearing and housing in explicit steps that exchange impulses: momentum, energy, the balance that
-//! they settle in, nodes out of reach, and what ends a run.
+//! they settle in, and what is refused.
 
 use crate::common;
 use crate::dynamics;

@@ -1,5 +1,5 @@
-//! A housing reduced to shapes: what the shapes are, what the seat does, energy and momentum, the matrix of an implicit
-//! step, and limits that are known.
+//! A housing reduced to shapes: what the shapes are, what the seat does, how shapes and race swing, and limits that are
+//! known.
 #![allow(clippy::needless_range_loop)] // indices are the notation of components
 
 use crate::common;

@@ -1,5 +1,5 @@
 //! A shaft on two bearings in two housings, all in explicit steps: momentum and energy over the windows, mirrored
-//! halves, the order of lists, threads, and what a housing comes to that is as good as rigid.
+//! halves, the order of lists, where it settles, and what a housing comes to that is as good as rigid.
 
 use crate::common;
 use crate::dynamics;

@@ -188,7 +188,7 @@ pub fn of_tier(tier: Tier) -> Vec<Case> {
 }
 
 /// Cases that tell how long something took.
-pub const TIMED: [&str; 5] = [
+const TIMED: [&str; 5] = [
     "housing_orbits_2_4_2",
     "housing_settling",
     "reduced_housing",

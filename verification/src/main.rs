@@ -136,7 +136,7 @@ fn verify(arguments: &Arguments) -> Result<bool, String> {
         false => Cache::open(&arguments.cache),
     };
     let (start, shared) = (Instant::now(), Mutex::new(report));
-    let done = runner::side_by_side(&selected, arguments.jobs.into(), |index| {
+    runner::side_by_side(&selected, arguments.jobs.into(), |index| {
         let case = &selected[index];
         let begun = format!("case {}/{} {} … ", index + 1, selected.len(), case.id);
         if arguments.jobs == 1 {
@@ -153,8 +153,7 @@ fn verify(arguments: &Arguments) -> Result<bool, String> {
         report.cases[index] = outcome;
         report.machine.threads = report.machine.threads.max(machine::threads());
         save(&report)
-    });
-    done.into_iter().collect::<Result<(), String>>()?;
+    })?;
     let report = shared.into_inner().unwrap_or_else(PoisonError::into_inner);
     let held = report.cases.iter().filter(|case| case.status == CaseStatus::Passed).count();
     let (cached, before) = report.cached();

@@ -30,27 +30,40 @@ pub struct Run {
 
 /// Does `work` for each case, by its index: `jobs` at a time on threads of their own, since cases know nothing of each
 /// other, and those that time something alone, when the others are done. One job is the caller's thread, and keeps the order.
-pub fn side_by_side<T: Send + Sync>(
+///
+/// # Errors
+/// The first of `work`; no case is begun after it.
+pub fn side_by_side<T: Send + Sync, E: Send + Sync>(
     cases: &[Case],
     jobs: usize,
-    work: impl Fn(usize) -> T + Sync,
-) -> Vec<T> {
+    work: impl Fn(usize) -> Result<T, E> + Sync,
+) -> Result<Vec<T>, E> {
     let all = 0..cases.len();
     if jobs <= 1 {
         return all.map(work).collect();
     }
     let (alone, others): (Vec<_>, Vec<_>) = all.partition(|case| cases::is_timed(cases[*case].id));
     let done: Vec<OnceLock<T>> = cases.iter().map(|_| OnceLock::new()).collect();
+    let failed = OnceLock::new();
     for (jobs, queue) in [(jobs, others), (1, alone)] {
         let next = AtomicUsize::new(0);
         let go = || {
-            while let Some(case) = queue.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let _ = done[*case].set(work(*case));
+            while failed.get().is_none()
+                && let Some(case) = queue.get(next.fetch_add(1, Ordering::Relaxed))
+            {
+                // A cell is set once: each case is one thread's, and of several errors the first stays.
+                match work(*case) {
+                    Ok(result) => drop(done[*case].set(result)),
+                    Err(error) => drop(failed.set(error)),
+                }
             }
         };
         std::thread::scope(|scope| (0..jobs).for_each(|_| drop(scope.spawn(go))));
     }
-    done.into_iter().filter_map(OnceLock::into_inner).collect()
+    match failed.into_inner() {
+        Some(error) => Err(error),
+        None => Ok(done.into_iter().filter_map(OnceLock::into_inner).collect()),
+    }
 }
 
 /// A case's run: from the cache where the case is a long one and nothing has changed, else
