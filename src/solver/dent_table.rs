@@ -3,6 +3,7 @@
 use super::half_space::{Grid, Influence, Pressed, press};
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use crate::ch3_bushing::dent::{DentShape, DentTable, spline};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use thiserror::Error;
 
 /// How fine a table is.
@@ -148,6 +149,28 @@ impl Bed {
 
 fn five_halves(approach: f64) -> f64 {
     approach * approach * approach.sqrt()
+}
+
+/// Tables that [`usual_table`] remembers.
+const REMEMBERED: usize = 8;
+
+/// The table that runs use. It follows from the contact alone and takes seconds: the latest are remembered, for a plan asks
+/// several times, and a sweep at every point. Who asks for one that is being made waits for it.
+///
+/// # Errors
+/// As [`dent_table`].
+pub fn usual_table(contact: &DentedContact) -> Result<Arc<DentTable>, DentError> {
+    type Made = OnceLock<Result<Arc<DentTable>, DentError>>;
+    static LATEST: Mutex<Vec<(DentedContact, Arc<Made>)>> = Mutex::new(Vec::new());
+    let made = {
+        let mut latest = LATEST.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = latest.iter().position(|(other, _)| other == contact);
+        let entry = known.map_or_else(|| (*contact, Arc::default()), |at| latest.remove(at));
+        latest.insert(0, entry.clone());
+        latest.truncate(REMEMBERED);
+        entry.1
+    };
+    made.get_or_init(|| dent_table(contact, Fineness::USUAL).map(Arc::new)).clone()
 }
 
 /// Table of a dent's law.

@@ -47,6 +47,9 @@ pub fn love(x: f64, y: f64, a: f64, b: f64) -> f64 {
     (both(xp, yp) - both(xp, ym) - both(xm, yp) + both(xm, ym)) / PI
 }
 
+/// Cells of a row that are summed at a time: of the usual twenty all.
+const WIDE: usize = 20;
+
 /// What unit pressure on a cell, and on its mirror image, does to every cell, for a grid of one size.
 #[derive(Clone, Debug)]
 pub struct Influence {
@@ -71,20 +74,42 @@ impl Influence {
     }
 
     /// How deep all cells sink under `pressure`, where each cell of the grid is `scale` times as large.
+    ///
+    /// Some cells of a row at a time, whose sums stay in registers while the kernel goes by; every sum is over the
+    /// pressed cells in their order.
     fn sink(&self, scale: f64, pressure: &[f64], to: &mut [f64]) {
-        let Grid { nx, ny, .. } = self.grid;
-        to.fill(0.0);
-        for (source, &p) in pressure.iter().enumerate().filter(|(_, p)| **p != 0.0) {
-            let (k, l) = (source / ny, source % ny);
-            let p = scale * p;
-            for i in 0..nx {
-                let row = (i.abs_diff(k) * ny + l) * ny;
-                let by = &self.kernel[row..row + ny];
-                for (to, by) in to[i * ny..(i + 1) * ny].iter_mut().zip(by) {
-                    *to += p * by;
-                }
+        let ny = self.grid.ny;
+        let pressed = || (0..pressure.len()).filter(|cell| pressure[*cell] != 0.0);
+        let pressed: Vec<_> =
+            pressed().map(|cell| (cell / ny, cell % ny, scale * pressure[cell])).collect();
+        for (i, row) in to.chunks_exact_mut(ny).enumerate() {
+            let wide = ny - ny % WIDE;
+            let (blocks, rest) = row.split_at_mut(wide);
+            for (block, sums) in blocks.chunks_exact_mut(WIDE).enumerate() {
+                sums.copy_from_slice(&self.sums::<WIDE>(&pressed, i, block * WIDE));
+            }
+            for (j, sum) in rest.iter_mut().enumerate() {
+                [*sum] = self.sums(&pressed, i, wide + j);
             }
         }
+    }
+
+    /// Sums over all pressed cells, as (row, column, pressure), in row `i` from column `j` on.
+    fn sums<const N: usize>(
+        &self,
+        pressed: &[(usize, usize, f64)],
+        i: usize,
+        j: usize,
+    ) -> [f64; N] {
+        let ny = self.grid.ny;
+        let mut sums = [0.0; N];
+        for &(k, l, p) in pressed {
+            let from = (i.abs_diff(k) * ny + l) * ny + j;
+            for (sum, by) in sums.iter_mut().zip(&self.kernel[from..from + N]) {
+                *sum += p * by;
+            }
+        }
+        sums
     }
 }
 

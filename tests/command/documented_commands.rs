@@ -1,4 +1,4 @@
-//! Every command that the documents show is run, in a folder that holds nothing but the scenes.
+//! Every command that the README shows is run, in a folder that holds nothing but the scenes.
 //!
 //! A documented command is a line of a ```console or ```sh block that starts with `bearing`, or
 //! `$ bearing`. A comment `# exit code N` at its end states another exit code than 0. Commands of
@@ -26,7 +26,6 @@ fn documented_commands_run() {
         "README.md",
         &["check", "plan", "statics", "modes", "run", "sweep", "pack", "compare", "schema"],
     );
-    run_all("docs/scene.md", &[]);
 }
 
 #[test]

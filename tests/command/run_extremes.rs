@@ -11,6 +11,13 @@ use bearing_dynamics::solver::dynamics::state::POSITION;
 use bearing_dynamics::solver::profile::Profile;
 use run_common::{frictionless, jolted, request, simulation};
 
+/// Every integrator, with the stepping it is used with.
+const METHODS: [(Integrator, Stepping); 3] = [
+    (Integrator::RungeKutta, Stepping::Fixed(1e-6)),
+    (Integrator::DormandPrince, Stepping::Accuracy(1e-3)),
+    (Integrator::Rosenbrock, Stepping::Accuracy(1e-3)),
+];
+
 /// A pulse shorter than a row: 9 kN for 20 µs in a row of 1 ms.
 fn struck() -> DynamicProblem {
     let mut problem = frictionless();
@@ -21,11 +28,7 @@ fn struck() -> DynamicProblem {
 
 #[test]
 fn extremes_are_of_every_step_whatever_the_rows() {
-    for (integrator, stepping) in [
-        (Integrator::RungeKutta, Stepping::Fixed(1e-6)),
-        (Integrator::DormandPrince, Stepping::Accuracy(1e-3)),
-        (Integrator::Rosenbrock, Stepping::Accuracy(1e-3)),
-    ] {
+    for (integrator, stepping) in METHODS {
         let options = RunOptions { integrator, stepping, ..RunOptions::default() };
         let wanted = |output_interval: f64| RunRequest {
             options,
@@ -80,11 +83,7 @@ fn extremes_are_of_every_step_whatever_the_rows() {
 /// Value and time of an extreme belong to one state.
 #[test]
 fn an_extreme_has_the_time_of_its_state() {
-    for (integrator, stepping) in [
-        (Integrator::RungeKutta, Stepping::Fixed(1e-6)),
-        (Integrator::DormandPrince, Stepping::Accuracy(1e-3)),
-        (Integrator::Rosenbrock, Stepping::Accuracy(1e-3)),
-    ] {
+    for (integrator, stepping) in METHODS {
         let options = RunOptions { integrator, stepping, ..RunOptions::default() };
         let wanted = RunRequest { options, end: 1e-3, output_interval: 1e-3, ..request(1e-6, 1) };
         let mut session = Session::start(struck(), &wanted).unwrap();

@@ -12,7 +12,7 @@ use crate::ch2_housing::bearing::contact::{RaceContact, RaceLaw, normal_load, no
 use crate::ch2_housing::bearing::geometry::Raceway;
 use crate::ch3_bushing::dent::{Dent, DentTable, Lost};
 use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot, scale, sub};
-use crate::solver::dent_table::{DentError, DentedContact, Fineness, dent_table};
+use crate::solver::dent_table::{DentError, DentedContact, usual_table};
 use crate::solver::plan::Stage;
 use crate::solver::plan::tally::Tally;
 use nalgebra::Vector3;
@@ -47,7 +47,6 @@ pub struct DentedPair {
 /// # Errors
 /// A dent over which no contact comes to rest.
 pub fn dents(bearing: &Bearing) -> Result<Vec<DentOnRace>, DentError> {
-    let mut made: Vec<(DentedContact, Arc<DentTable>)> = Vec::new();
     let real = bearing.dents.iter().filter(|dent| !dent.shape.vanishes());
     real.map(|dent| {
         let geometry = &bearing.geometry;
@@ -55,13 +54,7 @@ pub fn dents(bearing: &Bearing) -> Result<Vec<DentOnRace>, DentError> {
             0 => (&geometry.inner, &bearing.inner_contact, -1.0),
             _ => (&geometry.outer, &bearing.outer_contact, 1.0),
         };
-        let contact = DentedContact::new(dent.shape, hertz);
-        let known = made.iter().find(|(other, _)| *other == contact);
-        let table = match known {
-            Some((_, table)) => table.clone(),
-            None => Arc::new(dent_table(&contact, Fineness::USUAL)?),
-        };
-        made.push((contact, table.clone()));
+        let table = usual_table(&DentedContact::new(dent.shape, hertz))?;
         Ok(DentOnRace::new(*dent, table, raceway, outward))
     })
     .collect()
