@@ -1,6 +1,6 @@
 //! Figures of the repository's README that come from a run: between `<!-- FORM SOURCE DIGITS -->` and
-//! `<!-- -->`, neither of which a reader sees. A test holds each against the run of the smoke tier or
-//! against `golden/`, so that none goes stale.
+//! `<!-- -->`, neither of which a reader sees. Each run of a case holds those of its checks, a test those of
+//! `golden/`, so that none goes stale.
 //!
 //! | form | source | shows |
 //! |---|---|---|
@@ -30,6 +30,15 @@ pub struct Figure {
 
 const END: &str = "<!-- -->";
 const FORMS: [&str; 6] = ["error", "size", "below", "miss", "value", "ratio"];
+
+/// The repository's README as it is now.
+///
+/// # Errors
+/// Why it cannot be read.
+pub fn text() -> Result<String, String> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../README.md");
+    std::fs::read_to_string(path).map_err(|error| format!("README.md: {error}"))
+}
 
 /// The figures of a text, in its order.
 ///
@@ -65,7 +74,31 @@ pub fn figures(text: &str) -> Result<Vec<Figure>, String> {
     Ok(found)
 }
 
+/// What a text says of a case's checks and is not so, or not so any more.
+pub fn stale(text: &str, case: &str, checks: &[CheckReport]) -> Vec<String> {
+    let figures = match figures(text) {
+        Ok(figures) => figures,
+        Err(error) => return vec![format!("README: {error}")],
+    };
+    let own = figures.iter().filter(|figure| figure.case == case && !figure.is_pinned());
+    own.filter_map(|figure| figure.stale(figure.from_checks(checks))).collect()
+}
+
 impl Figure {
+    /// What is wrong, where `now` should stand there.
+    pub fn stale(&self, now: Result<String, String>) -> Option<String> {
+        match now {
+            Ok(text) if text == self.text => None,
+            Ok(text) => Some(format!(
+                "{} {}: README says {}, it is {text}",
+                self.form,
+                self.source(),
+                self.text
+            )),
+            Err(error) => Some(format!("README: {error}")),
+        }
+    }
+
     /// Whether the figure comes from `golden/`, else from checks of a run.
     pub fn is_pinned(&self) -> bool {
         ["value", "ratio"].contains(&self.form.as_str())

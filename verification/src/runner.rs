@@ -14,6 +14,7 @@ use crate::context::CaseContext;
 use crate::golden::{self, GoldenValue};
 use crate::judge::{self, Verdict};
 use crate::published::Published;
+use crate::readme;
 use crate::report::{Cached, CaseReport, CaseStatus, GoldenReport, GoldenStatus};
 
 /// What a case recorded, how it ended and how long it took.
@@ -125,6 +126,10 @@ pub fn assess(case: &Case, run: &Run, golden_folder: &Path) -> CaseReport {
     // A case that ended early has not said all it would: what is missing says nothing new.
     if run.error.is_none() {
         problems.extend(misuses);
+        problems.extend(match readme::text() {
+            Ok(text) => readme::stale(&text, case.id, &checks),
+            Err(error) => vec![error],
+        });
     }
     let golden = compare_golden(case.id, &record.golden, golden_folder);
     let mut report = CaseReport {

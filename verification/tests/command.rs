@@ -84,7 +84,13 @@ fn cases_side_by_side_are_those_one_after_the_other() {
     let folder = tempfile::tempdir().unwrap();
     let run = |jobs: &str| {
         let out = folder.path().join(jobs);
-        let ids = ["kinematic_frequencies", "rubber_explicit", "hertz_elliptic"];
+        let ids = [
+            "kinematic_frequencies",
+            "misalignment_moment",
+            "bearing_conservation",
+            "rubber_explicit",
+            "hertz_elliptic",
+        ];
         let mut arguments = vec!["--jobs", jobs, "--out", out.to_str().unwrap()];
         arguments.extend(ids.iter().flat_map(|id| ["--case", id]));
         let output = verify(&arguments);
@@ -98,7 +104,7 @@ fn cases_side_by_side_are_those_one_after_the_other() {
         (checks, said)
     };
     let ((one, _), (two, said)) = (run("1"), run("2"));
-    assert!(one.len() == 3 && one == two);
+    assert!(one.len() == 5 && one == two);
     let last = said.lines().rev().nth(1).unwrap();
     assert!(last.contains("rubber_explicit"), "{said}");
     assert_eq!(verify(&["--jobs", "0"]).status.code(), Some(2));

@@ -1,9 +1,10 @@
-//! Golden files notice any change. That they hold today is seen in `smoke.rs`.
+//! Golden files notice any change. That they hold today is seen by `make verify`.
 
 use std::fs;
 
+use verification::case::Tier;
 use verification::golden::{self, GoldenError, GoldenTolerance, GoldenValue, differences};
-use verification::{cases, golden::GoldenFile};
+use verification::{cases, golden::GoldenFile, readme};
 
 /// All files, whatever their tier: the recorded numbers stand in for a run.
 #[test]
@@ -164,4 +165,25 @@ fn files_survive_a_round_trip_and_keep_every_reason() {
     assert!(matches!(write(&nan, "no"), Err(GoldenError::NotFinite { .. })));
     let twice = [value("a", 1.0), value("a", 1.0)];
     assert!(matches!(write(&twice, "no"), Err(GoldenError::Duplicate { .. })));
+}
+
+/// Those of the README that come from checks are of cases that `make verify` computes, where each is held.
+#[test]
+fn pinned_figures_of_the_readme_are_those_of_the_golden_files() {
+    let figures = readme::figures(&readme::text().unwrap()).unwrap();
+    assert!(figures.len() > 20, "only {} figures", figures.len());
+    let (pinned, checked): (Vec<_>, Vec<_>) = figures.iter().partition(|figure| figure.is_pinned());
+    let stale: Vec<String> = pinned
+        .iter()
+        .filter_map(|figure| {
+            let file = golden::read(&golden::default_folder(), &figure.case).unwrap();
+            let file = file.ok_or_else(|| format!("no golden file of {}", figure.case));
+            figure.stale(file.and_then(|file| figure.from_golden(&file)))
+        })
+        .collect();
+    assert_eq!(stale, [""; 0]);
+    for figure in checked {
+        let of = cases::find(&figure.case).map(|case| case.tier);
+        assert_eq!(of, Some(Tier::Smoke), "{}", figure.case);
+    }
 }

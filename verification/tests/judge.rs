@@ -1,6 +1,6 @@
 //! Each rule of the judge, and that breaking it is noticed.
 
-use verification::case::{Case, Tier};
+use verification::case::{Case, Computation, Tier};
 use verification::check::ReferenceKind::{Consistency, Stated};
 use verification::check::{Check, Explanation};
 use verification::context::CaseContext;
@@ -8,8 +8,9 @@ use verification::golden::GoldenTolerance;
 use verification::index::Index;
 use verification::judge::{CheckReport, Status, entries_without_effect, judge};
 use verification::published::Published;
+use verification::readme;
 use verification::report::{CaseReport, CaseStatus, GoldenStatus};
-use verification::runner;
+use verification::runner::{self, Run};
 
 const PUBLISHED: &str = r#"
 [[value]]
@@ -321,3 +322,26 @@ lines = [
     assert_eq!(index.twins("one", "force"), ["two"]);
     assert!(index.twins("one", "load").is_empty());
 }
+
+/// A figure of the README is held against the checks of its case, and of no other.
+#[test]
+fn a_stale_figure_of_the_readme_is_told() {
+    let checks = [verdict(force(100.9).relative(0.01, "why"))];
+    let text = |shown: &str| format!("off by <!-- size pull/force 1 -->{shown}<!-- -->.");
+    let stale = |shown: &str, case: &str| readme::stale(&text(shown), case, &checks);
+    let right = readme::figures(&text("?")).unwrap()[0].from_checks(&checks).unwrap();
+    assert!(right.contains("0.9"), "{right}");
+    assert_eq!(stale(&right, "pull"), [""; 0]);
+    assert_eq!(stale("0.8 %", "push"), [""; 0]);
+    let said = stale("0.8 %", "pull");
+    assert!(said.len() == 1 && said[0].contains("README says 0.8 %, it is 0.9"), "{said:?}");
+    assert!(
+        readme::stale("<!-- size pull/other 1 -->0.9 %<!-- -->", "pull", &checks)[0]
+            .contains("no check")
+    );
+    assert_eq!(readme::stale("<!-- size pull/force 1 -->0.9 %", "pull", &checks).len(), 1);
+}
+
+/// What runs a case takes a function of the record alone. Were a case's text of published numbers
+/// handed over as well, this would not compile.
+const _: fn(Computation) -> Run = runner::compute;

@@ -248,7 +248,7 @@ impl Workshop {
             Check::Lib { .. } => &["test", "--no-run", "--lib"],
             // Beside a test, as it would be for that: packages that both need are then of the same
             // features, and the library is not built twice.
-            Check::Case { .. } => &["test", "--no-run", "--workspace", "--test", "smoke"],
+            Check::Case { .. } => &["test", "--no-run", "--workspace", "--test", "judge"],
         };
         self.cargo(arguments, "json-render-diagnostics")
     }
