@@ -31,7 +31,7 @@ fn body(name: &str, mobility: Mobility) -> Body {
     shafts::body(name, mobility, [0.0; 5])
 }
 
-fn free(name: &str) -> Body {
+pub fn free(name: &str) -> Body {
     let inertia = hollow_cylinder(5e-3, 20e-3, 60e-3, 7850.0);
     let rotation = Rotation::Torque(Profile::ZERO);
     body(name, Mobility::Driven(RaceBody { inertia, ..race([0.0; 5], rotation) }.into()))

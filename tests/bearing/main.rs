@@ -37,4 +37,5 @@ mod shaft_stiffness;
 mod shafts;
 mod statics_edges;
 mod statics_laws;
+mod turning_frames;
 mod work_counts;

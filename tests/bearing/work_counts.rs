@@ -80,5 +80,5 @@ fn error_controlled_runs_take_a_known_number_of_steps() {
         assert_eq!(work.slices, 15 * work.loaded_contacts);
         counts.push((steps, work.rejected_steps));
     }
-    assert_eq!(counts, [(33, 5), (57, 4), (106, 3)], "accepted and rejected steps");
+    assert_eq!(counts, [(29, 5), (48, 4), (87, 3)], "accepted and rejected steps");
 }

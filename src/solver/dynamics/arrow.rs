@@ -166,7 +166,7 @@ impl Arrow {
     /// Solves (1 − hγ J) w = r for all entries of the state; `at` is the state of the Jacobian.
     /// Nothing feeds back from the ledger and the orientation of balls: what drives of prescribed
     /// motions do follows the rest of `w`, their other entries are those of `r`. `drift` is how
-    /// frames carry the balls besides, component by component: contacts close by it.
+    /// frames carry balls and turn bodies besides, component by component: contacts close by it.
     pub fn solve(
         &mut self,
         linearised: &Linearised,
@@ -182,7 +182,7 @@ impl Arrow {
         let bodies = linearised.bodies();
         hubs[6 * bodies..6 * linearised.hubs.len()].fill(0.0);
         for (index, hub) in linearised.hubs[..bodies].iter().enumerate() {
-            moved[index] = displacement(hub, at, r);
+            moved[index] = displacement(hub, at, r, drift);
             let rate = to_basis(hub, vector(r, hub.at + VELOCITY), vector(r, hub.at + SPIN));
             for i in 0..6 {
                 hubs[6 * index + i] =
@@ -320,13 +320,15 @@ fn vector(of: &[f64], at: usize) -> [f64; 3] {
     [of[at], of[at + 1], of[at + 2]]
 }
 
-/// Shift and turn of a hub in a vector of rates or increments; prescribed parts push nothing.
-pub(super) fn displacement(hub: &Hub, at: &[f64], r: &[f64]) -> [f64; 6] {
+/// Shift and turn of a hub in a vector of rates or increments and the turning of its frame; prescribed parts push
+/// nothing.
+fn displacement(hub: &Hub, at: &[f64], r: &[f64], drift: &[f64]) -> [f64; 6] {
     let quaternion = |of: &[f64]| {
         let from = hub.at + ORIENTATION;
         Quaternion::new(of[from], of[from + 1], of[from + 2], of[from + 3])
     };
-    let turn = (quaternion(r) * quaternion(at).conjugate()).imag() * 2.0;
+    let turned = quaternion(r) + quaternion(drift);
+    let turn = (turned * quaternion(at).conjugate()).imag() * 2.0;
     let all = to_basis(hub, vector(r, hub.at + POSITION), turn.into());
     std::array::from_fn(|i| all[i] * hub.free[i])
 }

@@ -2,7 +2,7 @@
 //!
 //! `assembly` says what is simulated (a bearing alone is written as a `model`), `state` where it lies, `contacts`
 //! (with `contact_traction`) and `race` turn states into loads, `seat` and `reduced_solid` those of bodies in flexible solids, each bearing's `ball_set` into loads on its bodies, `system` into rates, `energy` into energies; `rk4`, `dormand_prince` and `rosenbrock`
-//! integrate (the last through `linearised` contacts, the `arrow` matrix and each ball's `orbit_frame`),
+//! integrate (the last through `linearised` contacts, the `arrow` matrix, each ball's `orbit_frame` and each body's `turning_frame`),
 //! `held` says whether anything holds a bearing against its loads, `bounds` where a state has lost its meaning,
 //! `control` chooses steps for an accuracy, `extremes` remembers the largest loads, `run` takes a simulation from step to step,
 //! `clocked` up to what is due next, `foretell` for a while. `equilibrium` says where all stand still, under loads that `following`
@@ -49,3 +49,4 @@ pub mod state;
 mod static_sections;
 pub mod step_watch;
 pub mod system;
+pub mod turning_frame;

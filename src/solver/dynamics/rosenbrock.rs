@@ -4,7 +4,8 @@
 //!
 //! Sliding dies out within 1e-7 s in a rolling contact, a hundred times faster than anything else
 //! moves, and binds an explicit step. Here contacts and traction are implicit through
-//! [`Linearised`], one matrix a step, and balls are described in [`OrbitFrames`].
+//! [`Linearised`], one matrix a step; balls are described in [`OrbitFrames`], the turns of bodies in
+//! [`TurningFrames`].
 
 use super::arrow::Arrow;
 use super::contacts::Want;
@@ -13,6 +14,7 @@ use super::linearised::Linearised;
 use super::orbit_frame::OrbitFrames;
 use super::state::Ledger;
 use super::system::System;
+use super::turning_frame::TurningFrames;
 
 pub const STAGES: usize = 4;
 pub const GAMMA: f64 = 0.435_866_521_508_459_67;
@@ -48,6 +50,7 @@ pub struct Rosenbrock {
     arrow: Arrow,
     /// Of each bearing.
     frames: Vec<OrbitFrames>,
+    turning: TurningFrames,
     first: Vec<f64>,
     stages: [Vec<f64>; STAGES],
     stage: Vec<f64>,
@@ -64,6 +67,7 @@ impl Rosenbrock {
             arrow: Arrow::new(system, &linearised),
             linearised,
             frames: system.sets.iter().map(|set| OrbitFrames::new(&set.layout)).collect(),
+            turning: TurningFrames::new(&system.places, system.steps.moving.iter().copied()),
             first: room(),
             stages: std::array::from_fn(|_| room()),
             stage: room(),
@@ -80,6 +84,7 @@ impl Rosenbrock {
         for (frames, set) in self.frames.iter_mut().zip(&system.sets) {
             frames.follow(&set.layout, state);
         }
+        self.turning.follow(state);
     }
 
     /// Goes on from `state`, reached by an accepted step at `t`.
@@ -113,8 +118,18 @@ impl Rosenbrock {
         state: &[f64],
         to: &mut Attempt,
     ) {
-        let Rosenbrock { linearised, arrow, frames, first, stages, stage, rates, shift, drift } =
-            self;
+        let Rosenbrock {
+            linearised,
+            arrow,
+            frames,
+            turning,
+            first,
+            stages,
+            stage,
+            rates,
+            shift,
+            drift,
+        } = self;
         arrow.factor(linearised, GAMMA * step);
         system.work.factorisations += 1;
         rates.copy_from_slice(first);
@@ -123,6 +138,9 @@ impl Rosenbrock {
             frames.rates_to_frame(&set.layout, state, rates);
             frames.drift(&set.layout, 1.0, state, drift);
         }
+        turning.turn(0.0);
+        turning.rates_to_frame(state, rates);
+        turning.drift(1.0, state, drift);
         arrow.solve(linearised, &system.sets, state, drift, rates, &mut stages[0]);
         for i in 1..STAGES {
             let (before, rest) = stages.split_at_mut(i);
@@ -137,6 +155,8 @@ impl Rosenbrock {
                 frames.turn(after);
                 frames.to_inertial(&set.layout, stage);
             }
+            turning.turn(after);
+            turning.to_inertial(stage);
             system.evaluate(t + after, stage, rates);
             // Time goes on at rate 1 in every stage.
             let going = 1.0 + GAMMAS[i].iter().sum::<f64>() / GAMMA;
@@ -144,6 +164,8 @@ impl Rosenbrock {
                 frames.rates_to_frame(&set.layout, stage, rates);
                 frames.drift(&set.layout, going, state, drift);
             }
+            turning.rates_to_frame(stage, rates);
+            turning.drift(going, state, drift);
             add_scaled(rates, 1.0, shift);
             arrow.solve(linearised, &system.sets, state, drift, rates, &mut rest[0]);
             add_scaled(&mut rest[0], -1.0, shift);
@@ -158,6 +180,8 @@ impl Rosenbrock {
             frames.turn(step);
             frames.to_inertial(&set.layout, &mut to.state);
         }
+        turning.turn(step);
+        turning.to_inertial(&mut to.state);
     }
 }
 

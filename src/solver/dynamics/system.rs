@@ -44,7 +44,7 @@ pub struct System {
     pub work: Work,
     /// Items of one evaluation; those that say *does* are what is run.
     pub plan: Vec<Item>,
-    steps: Steps,
+    pub(super) steps: Steps,
     /// How often each stage has run.
     pub ran: Ran,
     /// Profiles are read no later than this, s: in a step that ends at a corner, just before it, so
