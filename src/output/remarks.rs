@@ -9,6 +9,9 @@ use crate::output::session::Session;
 use crate::solver::clock::{rounded, to_digits};
 use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::modes::Modes;
+use crate::solver::solid::rubber::error::StepFailure;
+use crate::solver::solid::rubber::measures::volume_changes;
+use crate::solver::solid::rubber::model::RubberModel;
 use crate::solver::solid::stress::nodal_stresses;
 use crate::solver::solid::trust::{EnergyError, Strained, at_most, energy_error};
 
@@ -29,6 +32,28 @@ const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 /// Of von Mises stress over Young's modulus: the hardest bearing steel yields at 2 GPa, 1 % of its modulus, and
 /// beyond that a law that is linear in Green's strain is off by as much for rubber too.
 const LARGEST_STRAIN: f64 = 0.01;
+
+/// Change of volume beyond which rubber is told to be no rubber any more: a pressure of ten times C_R makes it where the
+/// bulk modulus is a hundred times that.
+const LARGEST_VOLUME_CHANGE: f64 = 0.1;
+
+/// Remarks on a state of a solid of rubber: a volume that the law was not made for.
+///
+/// # Errors
+/// An element turned inside out.
+pub fn of_rubber(model: &RubberModel, displacement: &[Vec3]) -> Result<Vec<String>, StepFailure> {
+    let [least, most] = volume_changes(model, displacement)?;
+    let far = if -least > most { least } else { most };
+    let is_rubber = far.abs() <= LARGEST_VOLUME_CHANGE;
+    if is_rubber {
+        return Ok(Vec::new());
+    }
+    Ok(vec![format!(
+        "the volume of rubber comes to {} of what it is at rest: its law is for volumes that change by some per cent, so \
+         that these results are of no real part; check displacements, loads and the bulk modulus",
+        to_digits(1.0 + far, 3)
+    )])
+}
 
 /// Remarks on an equilibrium.
 pub fn of_equilibrium(

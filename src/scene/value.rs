@@ -232,10 +232,16 @@ fn expected(kind: Kind) -> String {
 }
 
 fn wrong_kind(key: &Key, found: &Value) -> Problem {
+    // A choice that looks like a number was meant as the text of it.
+    let meant = match (key.kind, found) {
+        (Kind::Choice(choices), Value::Number(text)) => choices.iter().find(|word| **word == text),
+        _ => None,
+    };
+    let example = meant.map_or_else(|| key.example(), |word| format!("\"{word}\""));
     Problem::WrongKind {
         expected: expected(key.kind),
         found: described(found),
-        advice: format!("write {} = {}", key.name(), key.example()),
+        advice: format!("write {} = {example}", key.name()),
     }
 }
 

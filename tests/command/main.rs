@@ -42,6 +42,7 @@ mod housed_friction;
 mod housed_reduced;
 mod plan_words;
 mod rubber_command;
+mod rubber_remarks;
 mod run_command;
 mod run_extremes;
 mod run_plan;

@@ -8,7 +8,7 @@ use crate::commands::solid::plan::from;
 use crate::commands::{CommandResult, Outcome, memory};
 use bearing_dynamics::scene::solid::{RubberScene, RunSteps, SolidRun};
 use bearing_dynamics::scene::{Document, SolidScene};
-use bearing_dynamics::solver::clock::whole_number;
+use bearing_dynamics::solver::clock::{whole_number, whole_steps};
 use bearing_dynamics::solver::plan::rubber::{self, Method};
 use bearing_dynamics::solver::plan::{Item, Stage, Subject};
 use bearing_dynamics::solver::solid::foretold;
@@ -23,8 +23,15 @@ pub fn run(document: &Document, scene: &SolidScene, rubber: &RubberScene) -> Com
         lines.push(note("an equilibrium takes", &memory::text(&cost)));
         let rows = scene.run.as_ref().map(|run| whole_number(run.end, run.output_interval));
         if let Some(rows) = rows {
+            let number = match scene.run.as_ref().map(|run| (run.steps, run.output_interval)) {
+                Some((RunSteps::Implicit(Stepping::Fixed(step)), interval)) => format!(
+                    "{}, and one more for each corner of motions and loads that lies within one",
+                    rows * whole_steps(interval, step)
+                ),
+                _ => format!("{rows} at least, one a row"),
+            };
             let said = format!(
-                "{rows} at least, one a row; each takes an equilibrium, most with the factors of an earlier one"
+                "{number}; each takes an equilibrium, most with the factors of an earlier one"
             );
             lines.push(note("steps", &said));
             lines.push(note("factorisations", &factorisations(&prepared, scene.run.as_ref())));

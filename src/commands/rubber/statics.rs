@@ -5,10 +5,11 @@ use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::watched;
 use crate::commands::solid::statics::{WRITTEN, table, write};
-use crate::commands::solid::{record, say_mesh_notes};
+use crate::commands::solid::{record, say_mesh_notes, say_remarks};
 use crate::commands::{CommandResult, Outcome, placed, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::rubber_stresses;
+use bearing_dynamics::output::remarks;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::summary::rubber::{
     self as summary, harmonic_section, harmonic_series,
@@ -21,6 +22,7 @@ use bearing_dynamics::solver::plan::tally::Tally;
 use bearing_dynamics::solver::solid::foretold;
 use bearing_dynamics::solver::solid::rubber::relaxed::{RelaxedError, relaxed};
 use bearing_dynamics::solver::solid::rubber::vibration::{Answer, vibrations};
+use serde_json::json;
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
@@ -60,14 +62,17 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
         Some((asked, answers)) => Some(harmonic_section(&asked.set, axis(asked), answers)?),
         None => None,
     };
-    let (summary, series) =
+    let (mut summary, series) =
         summary::rubber_statics(setup, built, (time, &found), &stress, section, &record)?;
+    let remarks = remarks::of_rubber(model, &found.state.displacement)?;
+    summary["remarks"] = json!(remarks);
     say_mesh_notes(built)?;
     say(&format!("relaxed, under loads and displacements of t = {} s\n", told(time)))?;
     say(&table(&summary))?;
     if let Some((asked, answers)) = &answers {
         say(&harmonic_table(asked, answers))?;
     }
+    say_remarks(&remarks)?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     write(&folder, &built.mesh, &found.state.displacement, &stress, &series)?;
     let mut files = WRITTEN + 1;
@@ -115,7 +120,8 @@ fn axis(asked: &Harmonic) -> &'static str {
 }
 
 fn harmonic_table(asked: &Harmonic, answers: &[Answer]) -> String {
-    let mut text = format!("small vibrations of \"{}\" along {}\n", asked.set, axis(asked));
+    let mut text =
+        format!("small vibrations of \"{}\" along {}, about rest\n", asked.set, axis(asked));
     let _ = writeln!(
         text,
         "{:>14}{:>16}{:>16}{:>16}{:>12}",

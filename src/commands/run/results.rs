@@ -150,6 +150,8 @@ fn rubber_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fa
     let stress = rubber_stresses(moving.solid.model(), state)?;
     said.sections.push(("mass".into(), rubber_mass(&mesh.setup, built)?));
     said.sections.extend(field_sections(built, &state.displacement, &stress)?);
+    said.remarks = of_solid::of_rubber(moving.solid.model(), &state.displacement)?;
+    said.sections.push(("remarks".into(), json!(said.remarks)));
     Ok(())
 }
 

@@ -50,7 +50,7 @@ pub enum Problem {
     Expected { expected: String, found: String },
     #[error("the file has no {section} section")]
     MissingSection { section: &'static str },
-    #[error("elements of type {found} are not read; mesh with tetrahedra of four or ten nodes")]
+    #[error("elements of type {found} are not read; {}", in_place_of(found))]
     ElementType { found: String },
     #[error(
         "{this} nodes an element here and {first} before; a mesh has elements of one order only"
@@ -76,4 +76,15 @@ pub enum Problem {
     Unsupported { what: String, hint: &'static str },
     #[error(transparent)]
     Mesh(#[from] MeshError),
+}
+
+/// What to mesh with in place of a type of elements.
+fn in_place_of(found: &str) -> &'static str {
+    match found.trim_end_matches(['H', 'M', 'T', 'E']) {
+        "C3D10" => {
+            "write C3D10: elements of ten nodes here do not lock where rubber keeps its volume"
+        }
+        "C3D4" => "write C3D4, or mesh with ten nodes for rubber",
+        _ => "mesh with tetrahedra of four or ten nodes",
+    }
 }

@@ -6,8 +6,10 @@
 //! overlap is w = δ − Δ from here on.
 
 use super::assembly::Bearing;
+use super::ball_set::BallSet;
 use super::contacts::{ContactTable, Set, Want};
-use super::state::POSITION;
+use super::race::RaceNow;
+use super::state::{POSITION, VELOCITY};
 use crate::ch2_housing::bearing::contact::{RaceContact, RaceLaw, normal_load, normal_stiffness};
 use crate::ch2_housing::bearing::geometry::Raceway;
 use crate::ch3_bushing::dent::{Dent, DentTable, Lost};
@@ -115,6 +117,37 @@ fn sum_of(
         so_far.across += lost.across * dent.groove_radius * scales[1];
     }
     sum
+}
+
+/// Of what a dent reaches to either side, the part that a ball may go on by within a step: four steps and their stages
+/// see it pass.
+const PART_OF_REACH: f64 = 0.5;
+
+/// The longest step, s, in which no ball of `set` goes by a dent unseen, from the races that were evaluated last.
+///
+/// Steps that follow from an estimated error know nothing of what lies between their stages: where all else stands still in
+/// the frames of the stages they grow until a ball is past a dent within one.
+pub(super) fn longest_step(set: &BallSet, state: &[f64]) -> f64 {
+    let mut longest = f64::INFINITY;
+    for dent in &set.laws.dents {
+        let RaceNow { state: race, motion, .. } = &set.races[dent.dent.side];
+        let own: [Vec3; 2] =
+            [(race.orientation * Vector3::y()).into(), (race.orientation * Vector3::z()).into()];
+        let [cos, sin] = dent.turn;
+        for ball in 0..set.layout.balls {
+            let arm = sub(set.layout.ball_vector(state, POSITION, ball), race.position);
+            let velocity = sub(set.layout.ball_vector(state, VELOCITY, ball), race.velocity);
+            let [y, z] = own.map(|direction| dot(direction, arm));
+            let orbit = dot(motion.axis, cross(arm, velocity)) / (y * y + z * z);
+            let speed = dent.radius * (orbit - dot(motion.axis, race.spin)).abs();
+            let away = dent.radius * libm::atan2(z * cos - y * sin, y * cos + z * sin).abs();
+            // The contact's own length counts: that of the highest pressure that the table knows.
+            let felt = dent.table.reach + dent.table.spread[0] * dent.table.deepest;
+            let free = (away - felt).max(0.0);
+            longest = longest.min((free + PART_OF_REACH * dent.table.reach) / speed);
+        }
+    }
+    longest
 }
 
 /// Step of the approach, in parts of it, whose differences make the stiffness.

@@ -365,6 +365,10 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::step`].
     pub fn step_by(&mut self, step: f64) -> Result<f64, SimulationError> {
+        let step = match self.control {
+            Some(_) => step.min(self.system.longest_past_dents(&self.state)),
+            None => step,
+        };
         let Simulation { system, state, attempt, extremes, .. } = self;
         let taken = match &mut self.integrator {
             Stepper::RungeKutta(integrator) => {

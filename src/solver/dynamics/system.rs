@@ -4,6 +4,7 @@ use super::assembly::{Assembly, Body, Mobility};
 use super::ball_set::BallSet;
 use super::connection::{Connection, Pull};
 use super::contacts::{Driver, Want, Work};
+use super::dents;
 use super::model::Rotation;
 use super::race::{self, RaceLoads, RaceNow, mounted};
 use super::reduced_solid::ModalEnergy;
@@ -382,6 +383,12 @@ impl System {
                 }
             }
         }
+    }
+
+    /// The longest step, s, in which no ball goes by a dent unseen; a bearing without dents has none.
+    pub(super) fn longest_past_dents(&self, state: &[f64]) -> f64 {
+        let dented = self.sets.iter().filter(|set| set.steps.dents);
+        dented.fold(f64::INFINITY, |least, set| least.min(dents::longest_step(set, state)))
     }
 
     /// History of contact damping, once a step and after an evaluation; `was_loaded` holds all pairs of

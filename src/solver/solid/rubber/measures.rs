@@ -35,6 +35,19 @@ pub fn network_energy(model: &RubberModel, displacement: &[Vec3]) -> Result<f64,
     Ok(energy)
 }
 
+/// Smallest and largest volume around a corner node, over what it is at rest, less one.
+///
+/// # Errors
+/// An element turned inside out.
+pub fn volume_changes(model: &RubberModel, displacement: &[Vec3]) -> Result<[f64; 2], StepFailure> {
+    let mut means = vec![0.0; model.patches.len()];
+    mean_stresses(model, displacement, &mut means)?;
+    let changes = means.iter().map(|mean| mean / model.problem.material.network.bulk);
+    Ok(changes.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], change| {
+        [least.min(change), most.max(change)]
+    }))
+}
+
 /// Energy in the springs of the Maxwell elements by the law of small strain, J.
 pub fn maxwell_energy(model: &RubberModel, state: &RubberState) -> f64 {
     let material = &model.problem.material;

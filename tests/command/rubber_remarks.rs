@@ -1,0 +1,78 @@
+//! What commands say of rubber beyond its numbers: a volume that its law was not made for, steps that are known, a table
+//! that was written as a number.
+
+use crate::solid_command_common::{Place, command, into_folder, json, stderr, succeed};
+
+/// A cube of rubber, free at its sides, whose end goes `moved` mm.
+fn cube(moved: &str, further: &str) -> String {
+    let held = |set: &str, axis: &str, how: &str| {
+        format!("[[solid.held]]\nset = \"{set}\"\n{axis} = {how}\n")
+    };
+    format!(
+        "[solid.mesh]\ngenerate = \"bar\"\nlength = \"12 mm\"\nwidth = \"12 mm\"\nheight = \"12 mm\"\norder = 2\n\
+         cells = {{ along = 1, across = 1, up = 1 }}\n[solid.material]\nlaw = \"elastomer\"\ntable = \"3.1\"\n{}{}{}{}\
+         [[solid.probe]]\nset = \"y_high\"\n{further}",
+        held("x_low", "x", "true"),
+        held("y_low", "y", "true"),
+        held("z_low", "z", "true"),
+        held("x_high", "x", &format!("\"{moved} mm\"")),
+    )
+}
+
+#[test]
+fn a_volume_that_rubber_does_not_have_is_told() {
+    let place = Place::new();
+    let remarks = |moved: &str| {
+        let scene = place.scene("cube.toml", &cube(moved, ""));
+        let out = place.path(&format!("out{moved}"));
+        let said = succeed(into_folder("statics", &scene, &out, &[]));
+        let summary = json(out.join("summary.json"));
+        let remarks = summary["remarks"].as_array().expect("a list").clone();
+        for remark in &remarks {
+            assert!(said.contains(&format!("note: {}", remark.as_str().unwrap())), "{said}");
+        }
+        (remarks, summary)
+    };
+    assert!(remarks("-6").0.is_empty(), "half of its length is nothing that rubber could not bear");
+    let (found, summary) = remarks("-11.4");
+    let [remark] = &found[..] else { panic!("{found:?}") };
+    // Of the cube's own sides.
+    let aside = summary["probes"]["y_high"]["displacement"][1]["value"].as_f64();
+    let aside = aside.unwrap_or_else(|| panic!("{}", summary["probes"]));
+    let volume = (1.0 - 11.4 / 12.0) * (1.0 + aside / 12e-3).powi(2);
+    let told = remark.as_str().unwrap();
+    let told: f64 =
+        told.split("comes to ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!((told / volume - 1.0).abs() <= 2e-3, "{told} {volume}");
+    assert!(volume <= 0.5, "{volume}");
+}
+
+#[test]
+fn steps_of_a_given_length_are_counted_by_the_plan() {
+    let place = Place::new();
+    let numerics = "[numerics]\nend = \"0.05 s\"\noutput_interval = \"10 ms\"\nstep = \"1 ms\"\n";
+    let scene = place.scene("cube.toml", &cube("-1", numerics));
+    let said = succeed(command("plan", &scene, &[]));
+    assert!(said.contains("50, and one more for each corner"), "{said}");
+    let out = place.path("out");
+    succeed(into_folder("run", &scene, &out, &[]));
+    let summary = json(out.join("summary.json"));
+    assert!(
+        summary["work"]["steps"] == 50 || summary["work"]["steps"] == 51,
+        "{}",
+        summary["work"]
+    );
+}
+
+/// The other table has another rubber: what was written is what is proposed.
+#[test]
+fn a_table_as_a_number_is_answered_with_the_same_table() {
+    let place = Place::new();
+    for (number, other) in [("3.1", "2.3"), ("2.3", "3.1")] {
+        let text = cube("-1", "").replace("\"3.1\"", number);
+        let refused = command("check", &place.scene("cube.toml", &text), &[]).output().unwrap();
+        let said = stderr(&refused);
+        assert!(said.contains(&format!("write table = \"{number}\"")), "{said}");
+        assert!(!said.contains(&format!("write table = \"{other}\"")), "{said}");
+    }
+}
