@@ -82,7 +82,7 @@ fn angle(body: &[f64]) -> f64 {
 }
 
 /// Two bodies that turn against each other on a torsion spring, in steps many times longer than its period, do what the
-/// method's own linear algebra does of two equations without any frame: contacts and springs are told how frames turn.
+/// method's own linear algebra does of two equations without any frame.
 #[test]
 fn twist_between_turning_frames_is_that_of_the_method_without_frames() {
     let torsion = kinds().swap_remove(1);

@@ -37,7 +37,7 @@ fn a_volume_that_rubber_does_not_have_is_told() {
     let (found, summary) = remarks("-11.4");
     let [remark] = &found[..] else { panic!("{found:?}") };
     // Of the cube's own sides.
-    let aside = summary["probes"]["y_high"]["displacement"][1]["value"].as_f64();
+    let aside = summary["probes"]["y_high"]["y"]["value"].as_f64();
     let aside = aside.unwrap_or_else(|| panic!("{}", summary["probes"]));
     let volume = (1.0 - 11.4 / 12.0) * (1.0 + aside / 12e-3).powi(2);
     let told = remark.as_str().unwrap();
