@@ -97,7 +97,7 @@ fn housed(clearance: &str) -> Result<Done, CaseError> {
             "fit = { radial = \"2.5 um\" }              # interference\n",
             "fit = { radial = \"0 um\" }\nmodes_to = \"20 kHz\"\n",
         ),
-        ("end = \"2 ms\"", "end = \"0.2 s\"\naccuracy = 0.1"),
+        ("end = \"2 ms\"", "end = \"0.2 s\"\naccuracy = 0.01"),
         ("output_interval = \"20 us\"", "output_interval = \"0.1 ms\""),
         ("plots = [\"series\", \"orbit\"]", "channels = [\"races\", \"forces\", \"moments\"]"),
         ("watch = [{ name = \"mid\", at = \"0 mm\" }]", &watch),
@@ -109,7 +109,7 @@ fn housed(clearance: &str) -> Result<Done, CaseError> {
 
 fn fixed(clearance: &str) -> Result<Done, CaseError> {
     let changes: [Change; 3] = [
-        ("end = \"0.2 s\"", "end = \"0.2 s\"\naccuracy = 0.1"),
+        ("end = \"0.2 s\"", "end = \"0.2 s\"\naccuracy = 0.01"),
         ("channels = [\"races\", \"energy\"]", "channels = [\"races\", \"forces\", \"moments\"]"),
         (NO_CLEARANCE, clearance),
     ];
