@@ -130,7 +130,8 @@ fn a_skip_is_written_down_and_told() {
     ["SKIPPED a\n", "SKIPPED b\n"].into_iter().for_each(|line| write_down(&path, line));
     assert_eq!(fs::read_to_string(&path).unwrap(), "SKIPPED a\nSKIPPED b\n");
     assert_eq!(skipped_file().file_name().unwrap(), "skipped.txt");
-    assert!(skipped_file().parent().unwrap().join("CACHEDIR.TAG").exists());
+    // The folder that this very test was built into, whoever made it.
+    assert!(std::env::current_exe().unwrap().starts_with(skipped_file().parent().unwrap()));
     // The recipe of the Makefile, with a stand-in for cargo that skips and fails or not.
     let make = Path::new(env!("CARGO_MANIFEST_DIR")).join("Makefile");
     for code in [0, 3] {
