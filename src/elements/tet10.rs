@@ -4,6 +4,7 @@
 //! 2–4, 3–4. Stiffness by four quadrature points, exact for straight edges under linear stress.
 
 use super::ElementError;
+use crate::kinematics::number::Number;
 use crate::kinematics::strain::{
     Mat3, Sym3, determinant, first_piola_kirchhoff, full, green_lagrange, green_lagrange_change,
     times,
@@ -23,11 +24,11 @@ pub const POINTS: usize = 4;
 
 /// One quadrature point in the undeformed state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct Point<T = f64> {
     /// ∂N/∂X of the ten nodes, 1/m.
-    pub gradients: [Vec3; 10],
+    pub gradients: [[T; 3]; 10],
     /// Volume that the point stands for, m³.
-    pub volume: f64,
+    pub volume: T,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -180,14 +181,15 @@ impl Tet10 {
     }
 }
 
-impl Point {
+/// Of one element, or of one a lane.
+impl<T: Number> Point<T> {
     #[inline(always)]
-    pub fn displacement_gradient(&self, displacement: &[Vec3; 10]) -> Mat3 {
-        let mut h = [[0.0; 3]; 3];
+    pub fn displacement_gradient(&self, displacement: &[[T; 3]; 10]) -> Mat3<T> {
+        let mut h = [[T::of(0.0); 3]; 3];
         for n in 0..10 {
             for i in 0..3 {
                 for j in 0..3 {
-                    h[i][j] += displacement[n][i] * self.gradients[n][j];
+                    h[i][j] = h[i][j] + displacement[n][i] * self.gradients[n][j];
                 }
             }
         }
@@ -198,26 +200,26 @@ impl Point {
     #[inline(always)]
     pub fn add_forces(
         &self,
-        displacement: &[Vec3; 10],
-        stress: &impl Fn(&Sym3) -> Sym3,
-        forces: &mut [Vec3; 10],
+        displacement: &[[T; 3]; 10],
+        stress: &impl Fn(&Sym3<T>) -> Sym3<T>,
+        forces: &mut [[T; 3]; 10],
     ) {
         let h = self.displacement_gradient(displacement);
         self.add_forces_of(&first_piola_kirchhoff(&h, &stress(&green_lagrange(&h))), forces);
     }
 
     #[inline(always)]
-    fn add_forces_of(&self, p: &Mat3, forces: &mut [Vec3; 10]) {
+    fn add_forces_of(&self, p: &Mat3<T>, forces: &mut [[T; 3]; 10]) {
         let mut scaled = *p;
         for i in 0..3 {
             for j in 0..3 {
-                scaled[i][j] *= -self.volume;
+                scaled[i][j] = scaled[i][j] * -self.volume;
             }
         }
         for n in 0..10 {
             let force = times(&scaled, self.gradients[n]);
             for i in 0..3 {
-                forces[n][i] += force[i];
+                forces[n][i] = forces[n][i] + force[i];
             }
         }
     }

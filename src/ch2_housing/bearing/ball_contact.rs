@@ -53,7 +53,14 @@ pub struct BallContact {
     pub power: f64,
 }
 
-/// Contact of two balls of a `radius` (m); `None` where they are apart, which costs the distance test.
+/// Whether balls of a `radius` (m) are clear of each other, from their centres; NaN is not, and is found later.
+#[inline]
+pub fn are_apart(radius: f64, one: Vec3, other: Vec3) -> bool {
+    let between = sub(other, one);
+    dot(between, between) >= 4.0 * radius * radius
+}
+
+/// Contact of two balls of a `radius` (m); `None` where they are apart.
 #[inline]
 pub fn ball_contact(
     law: &BallContactLaw,
@@ -61,13 +68,11 @@ pub fn ball_contact(
     one: &Motion,
     other: &Motion,
 ) -> Option<BallContact> {
-    let between = sub(other.position, one.position);
-    let square = dot(between, between);
-    // NaN goes on and is found.
-    if square >= 4.0 * radius * radius {
+    if are_apart(radius, one.position, other.position) {
         return None;
     }
-    let distance = square.sqrt();
+    let between = sub(other.position, one.position);
+    let distance = norm(between);
     let overlap = 2.0 * radius - distance;
     let load = normal_load(law.stiffness, overlap);
     let normal = scale(between, 1.0 / distance);

@@ -9,7 +9,7 @@ use super::shaft_holds::{Hold, sitting};
 use super::state::{
     LEDGER, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
 };
-use crate::ch2_housing::bearing::ball_contact::{BallContact, ball_contact};
+use crate::ch2_housing::bearing::ball_contact::{BallContact, are_apart, ball_contact};
 use crate::ch2_housing::bearing::cage::AxisMotion;
 use crate::ch2_housing::bearing::cage::{CageContact, Guidance, guide_contact, pocket_contact};
 use crate::ch2_housing::bearing::contact::{ContactDamping, RaceLaw, normal_load};
@@ -257,20 +257,26 @@ impl BallSet {
         let Some(law) = bearing.ball_contact else { return };
         work.ball_tests += self.meetings.len() as u64;
         ran.add(Stage::BallContact, self.meetings.len() as u64);
+        let radius = self.laws.ball_radius;
+        let place = |ball: usize| self.layout.ball_vector(state, POSITION, ball);
+        let mut there = place(0);
         for one in 0..self.meetings.len() {
-            let other = (one + 1) % self.layout.balls;
-            let [here, there] = [one, other].map(|ball| Motion {
-                position: self.layout.ball_vector(state, POSITION, ball),
-                velocity: self.layout.ball_vector(state, VELOCITY, ball),
-                spin: self.layout.ball_vector(state, SPIN, ball),
-            });
-            let Some(contact) = ball_contact(&law, self.laws.ball_radius, &here, &there) else {
+            let other = if one + 1 == self.layout.balls { 0 } else { one + 1 };
+            let here = there;
+            there = place(other);
+            if are_apart(radius, here, there) {
                 // Nothing is written where nothing was.
                 if self.meetings[one].overlap != 0.0 {
                     self.meetings[one] = BallContact::default();
                 }
                 continue;
-            };
+            }
+            let [moving, met] = [(one, here), (other, there)].map(|(ball, position)| Motion {
+                position,
+                velocity: self.layout.ball_vector(state, VELOCITY, ball),
+                spin: self.layout.ball_vector(state, SPIN, ball),
+            });
+            let Some(contact) = ball_contact(&law, radius, &moving, &met) else { continue };
             self.meetings[one] = contact;
             self.ball_force[one] = sub(self.ball_force[one], contact.force);
             self.ball_force[other] = add(self.ball_force[other], contact.force);

@@ -102,7 +102,9 @@ pub fn now(body: &RaceBody, t: f64, mut state: BodyState) -> RaceNow {
     if moved || speed_given {
         state.spin = add_scaled(add_scaled(scale(axis, parts[0]), parts[1], e2), parts[2], e3);
     }
-    RaceNow::new(state)
+    let BodyState { position, velocity, spin, .. } = state;
+    let motion = AxisMotion { position, velocity, spin, axis };
+    RaceNow { state, motion, tilt_directions: [e2, e3], cos_lambda }
 }
 
 /// A body of an assembly as its state has it at time `t`, given motions imposed.

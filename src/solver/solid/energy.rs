@@ -1,11 +1,11 @@
 //! Strain energy of a solid.
 
-use super::model::{SolidModel, corners};
+use super::model::{Blocks, SolidModel};
 use super::tet4_blocks::Node;
-use crate::elements::tet4::{Tet4, relative};
-use crate::elements::tet10::{POINTS, Tet10};
+use super::{tet4_blocks, tet10_blocks};
+use crate::elements::tet4::relative;
+use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::green_lagrange;
-use crate::mesh::tet_mesh::Elements;
 
 /// J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,33 +34,29 @@ impl SolidLedger {
 
 /// ∫W dV from the displacements, J.
 pub fn strain_energy(model: &SolidModel, displacement: &[Node]) -> f64 {
-    let problem = &model.problem;
+    let law = model.problem.material;
+    let count = model.problem.elements.len();
     let vector = |node: u32| {
         let u = displacement[node as usize];
         [u[0], u[1], u[2]]
     };
-    let sound = "elements were checked when the model was made";
-    match &problem.elements {
-        Elements::Linear(list) => list
-            .iter()
-            .map(|element| {
-                let tet = Tet4::new(&corners(&problem.nodes, element)).expect(sound);
-                let h = tet.displacement_gradient(&relative(&element.map(vector)));
-                tet.volume * problem.material.energy_density(&green_lagrange(&h))
+    match &model.blocks {
+        Blocks::Linear(blocks) => tet4_blocks::elements(blocks)
+            .take(count)
+            .map(|(tet, nodes)| {
+                let h = tet.displacement_gradient(&relative(&nodes.map(vector)));
+                tet.volume * law.energy_density(&green_lagrange(&h))
             })
             .sum(),
-        Elements::Quadratic(list) => list
-            .iter()
-            .map(|element| {
-                let tet = Tet10::new(&corners(&problem.nodes, element)).expect(sound);
-                let moved = element.map(vector);
-                (0..POINTS)
-                    .map(|point| {
-                        let h = tet.displacement_gradient(point, &moved);
-                        tet.points[point].volume
-                            * problem.material.energy_density(&green_lagrange(&h))
-                    })
-                    .sum::<f64>()
+        Blocks::Quadratic(blocks) => tet10_blocks::elements(blocks)
+            .take(count)
+            .map(|(tet, nodes)| {
+                let moved = nodes.map(vector);
+                let of = |point: usize| {
+                    let h = tet.displacement_gradient(point, &moved);
+                    tet.points[point].volume * law.energy_density(&green_lagrange(&h))
+                };
+                (0..POINTS).map(of).sum::<f64>()
             })
             .sum(),
     }

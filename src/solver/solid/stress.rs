@@ -1,7 +1,8 @@
 //! Cauchy stresses of a deformed solid: where they are computed, over an element, and averaged to
 //! the nodes; and whether an element is turned inside out.
 
-use super::model::{SolidModel, SolidProblem, corners};
+use super::model::{Blocks, SolidModel, corners};
+use super::{tet4_blocks, tet10_blocks};
 use crate::elements::tet4::{Tet4, relative};
 use crate::elements::tet10::{Tet10, from_points};
 use crate::kinematics::strain::{Mat3, Sym3, cauchy, green_lagrange, volume_change, von_mises};
@@ -11,23 +12,17 @@ use crate::mesh::tet_mesh::Elements;
 
 /// Calls `visit` with element, undeformed volume and displacement gradient of every quadrature
 /// point.
-fn each_point(
-    problem: &SolidProblem,
-    displacement: &[Vec3],
-    mut visit: impl FnMut(usize, f64, &Mat3),
-) {
-    let sound = "elements were checked when the model was made";
-    match &problem.elements {
-        Elements::Linear(list) => {
-            for (index, nodes) in list.iter().enumerate() {
-                let tet = Tet4::new(&corners(&problem.nodes, nodes)).expect(sound);
+fn each_point(model: &SolidModel, displacement: &[Vec3], mut visit: impl FnMut(usize, f64, &Mat3)) {
+    let count = model.problem.elements.len();
+    match &model.blocks {
+        Blocks::Linear(blocks) => {
+            for (index, (tet, nodes)) in tet4_blocks::elements(blocks).take(count).enumerate() {
                 let h = tet.displacement_gradient(&relative(&corners(displacement, nodes)));
                 visit(index, tet.volume, &h);
             }
         }
-        Elements::Quadratic(list) => {
-            for (index, nodes) in list.iter().enumerate() {
-                let tet = Tet10::new(&corners(&problem.nodes, nodes)).expect(sound);
+        Blocks::Quadratic(blocks) => {
+            for (index, (tet, nodes)) in tet10_blocks::elements(blocks).take(count).enumerate() {
                 let moved = corners(displacement, nodes);
                 for (p, point) in tet.points.iter().enumerate() {
                     visit(index, point.volume, &tet.displacement_gradient(p, &moved));
@@ -45,7 +40,7 @@ fn each_point(
 pub fn point_stresses(model: &SolidModel, displacement: &[Vec3]) -> Vec<Vec<Sym3>> {
     let problem = &model.problem;
     let mut stresses = vec![Vec::new(); problem.elements.len()];
-    each_point(problem, displacement, |element, _, h| {
+    each_point(model, displacement, |element, _, h| {
         let second = problem.material.second_piola_kirchhoff(&green_lagrange(h));
         stresses[element].push(cauchy(h, &second));
     });
@@ -56,7 +51,7 @@ pub fn point_stresses(model: &SolidModel, displacement: &[Vec3]) -> Vec<Vec<Sym3
 pub fn element_stresses(model: &SolidModel, displacement: &[Vec3]) -> Vec<Sym3> {
     let problem = &model.problem;
     let mut sums = vec![([0.0; 6], 0.0); problem.elements.len()];
-    each_point(problem, displacement, |element, volume, h| {
+    each_point(model, displacement, |element, volume, h| {
         let second = problem.material.second_piola_kirchhoff(&green_lagrange(h));
         let (sum, whole) = &mut sums[element];
         *whole += volume;
@@ -70,7 +65,7 @@ pub fn element_stresses(model: &SolidModel, displacement: &[Vec3]) -> Vec<Sym3> 
 /// The first element with a quadrature point that is turned inside out, and its volume ratio there.
 pub fn first_inverted(model: &SolidModel, displacement: &[Vec3]) -> Option<(usize, f64)> {
     let mut found = None;
-    each_point(&model.problem, displacement, |element, _, h| {
+    each_point(model, displacement, |element, _, h| {
         let ratio = 1.0 + volume_change(h);
         let sound = ratio > 0.0;
         if !sound && found.is_none() {
@@ -92,7 +87,7 @@ pub struct Look {
 /// [`first_inverted`] and the largest stress in one go.
 pub fn look(model: &SolidModel, displacement: &[Vec3]) -> Look {
     let mut found = Look::default();
-    each_point(&model.problem, displacement, |element, _, h| {
+    each_point(model, displacement, |element, _, h| {
         let ratio = 1.0 + volume_change(h);
         let sound = ratio > 0.0;
         if !sound && found.inverted.is_none() {

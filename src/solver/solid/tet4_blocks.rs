@@ -51,6 +51,13 @@ pub fn blocks(elements: impl ExactSizeIterator<Item = (Tet4, [u32; 4])>) -> Vec<
     blocks
 }
 
+/// What was cut into blocks, and what filled up the last one.
+pub fn elements(blocks: &[Block]) -> impl Iterator<Item = (Tet4, &[u32; 4])> {
+    blocks
+        .iter()
+        .flat_map(|block| (0..LANES).map(|lane| (block.element_of(lane), &block.nodes[lane])))
+}
+
 impl Block {
     /// The element in one lane.
     pub fn element_of(&self, lane: usize) -> Tet4 {
