@@ -55,6 +55,15 @@ pub fn of_rubber(model: &RubberModel, displacement: &[Vec3]) -> Result<Vec<Strin
     )])
 }
 
+/// Remark on the way to an equilibrium of rubber; `part` of its loads and displacements is where the way folds.
+pub fn of_fold(part: f64) -> String {
+    format!(
+        "at {} % of the loads and displacements the stiffness was not positive definite: part of the rubber folds or \
+         jumps there, and what was found beyond is one of several equilibria; compare with a finer mesh where it is bonded",
+        to_digits(100.0 * part, 4)
+    )
+}
+
 /// Remarks on an equilibrium.
 pub fn of_equilibrium(
     model: &SolidModel,

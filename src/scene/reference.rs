@@ -217,7 +217,7 @@ bonded, `x_low` and `x_high`, and `ends`, the faces that are free; of a quarter 
 const PROFILES_INTRODUCTION: &str = "\
 ## Profiles
 Where the reference says \"or profile\", a value may change over time. A plain quantity is constant. Times count from the start
-of the run, up to 10000 s; durations are positive and times of a table increase. Statics takes the value at t = 0.
+of the run, up to 10000 s; durations are positive and times of a table increase. Statics takes the value at t = 0, of rubber that at the end of the run.
 
 ";
 

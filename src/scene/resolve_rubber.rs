@@ -15,6 +15,8 @@ use crate::solver::solid::rubber::steps::Stepping;
 const LAW: &str = "solid.material.law";
 /// B over C_R where nothing is given: that of Tables 2.3 and 3.1.
 const BULK_RATIO: f64 = 100.0;
+/// As the range of `bulk_ratio`.
+const MOST_BULK_RATIO: f64 = 1e6;
 /// N of both tables.
 const CHAIN: f64 = 8.0;
 /// Densities, kg/m³.
@@ -146,6 +148,13 @@ pub(super) fn rubber(
             let reason =
                 "rubber hardly changes its volume, and this is less than C_R of its network";
             let advice = "give at least C_R, usually 100 times that and more".to_string();
+            let problem = Problem::NotApplicable { reason, advice };
+            return Err(document.error("solid.material.bulk_modulus", problem));
+        }
+        (Some(bulk), _) if bulk > MOST_BULK_RATIO * modulus => {
+            let reason = "no rubber resists a change of volume as much, and rounding takes the digits of what is left";
+            let advice =
+                "give at most a million times C_R; many rubbers have 2000 MPa, a thousand times that".into();
             let problem = Problem::NotApplicable { reason, advice };
             return Err(document.error("solid.material.bulk_modulus", problem));
         }

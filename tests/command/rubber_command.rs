@@ -294,13 +294,18 @@ fn what_does_not_fit_rubber_is_refused() {
         (
             "check",
             with("chain = 0.9\nchain_pull = \"inverse-langevin\""),
-            &["solid.material.chain", "straight"],
+            &["solid.material.chain", "Allowed: more than 1", "straight"],
         ),
         ("check", with("bulk_ratio = 100\nbulk_modulus = \"60 MPa\""), &["together with"]),
         (
             "check",
             with("bulk_modulus = \"0.6 MPa\""),
             &["solid.material.bulk_modulus", "less than C_R", "at least C_R"],
+        ),
+        (
+            "check",
+            with("bulk_modulus = \"1e9 MPa\""),
+            &["solid.material.bulk_modulus", "at most a million times C_R"],
         ),
         (
             "check",

@@ -1,11 +1,13 @@
 //! Cubes of several cells under great strain: sides that are free or guided, ends that slide or are bonded.
 
-use super::rubber_bodies::{HELD, cube, fixed, quadratic, rubber_of};
+use super::rubber_bodies::{HELD, bonded, cube, fixed, quadratic, rubber_of};
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
 use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
+use bearing_dynamics::ch2_housing::elastomer::named;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::rubber::error::{RubberError, StepFailure};
 use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solver::solid::rubber::relaxed::{RelaxedError, relaxed};
 use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepCounts};
 
 const SIDE: f64 = 0.012;
@@ -109,5 +111,25 @@ fn free_sides_of_the_network_alone_fold() {
         // Not before half of Biot's compression nor far behind it; steps are cut down until nothing is left.
         assert!((reached - wrinkles).abs() <= 0.1, "{cells}: {reached} {wrinkles}");
         assert!(counts.undone > 20, "{counts:?}");
+    }
+}
+
+/// A bonded bushing, its inner sleeve moved aside: equilibria of the network end where the rubber folds, and how far one
+/// asks for does not change where that is.
+#[test]
+fn equilibria_end_where_they_end_however_far_is_asked() {
+    let end = |asked: f64| {
+        let (model, _) = bonded(named::table_3_1(), [4, 2, 2], Profile::Constant(asked));
+        match relaxed(&model, 0.0) {
+            Err(RelaxedError::Lost { part, .. }) => part * asked,
+            Err(other) => panic!("{asked}: {other}"),
+            Ok(found) => panic!("{asked}: all the way in {} parts", found.steps),
+        }
+    };
+    let ends = [14.5e-3, 15e-3, 17e-3, 19e-3].map(end);
+    println!("{ends:?}");
+    for one in ends {
+        // Parts are cut down to 1e-4 of what is asked for.
+        assert!((one / ends[0] - 1.0).abs() <= 3e-4, "{ends:?}");
     }
 }

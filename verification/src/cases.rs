@@ -205,27 +205,3 @@ pub fn is_timed(id: &str) -> bool {
 pub fn find(id: &str) -> Option<Case> {
     CASES.iter().copied().find(|case| case.id == id)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::fs;
-    use std::path::Path;
-
-    #[test]
-    fn what_reads_a_clock_runs_by_itself() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        for case in CASES {
-            let sources = fs::read_dir(root.join(case.id)).unwrap();
-            let sources = sources.map(|entry| entry.unwrap().path());
-            let reads = |path: &Path| {
-                let text = fs::read_to_string(path).unwrap();
-                ["Instant", "Stopwatch", ".seconds"].iter().any(|word| text.contains(word))
-            };
-            let times = sources
-                .filter(|path| path.extension().is_some_and(|ending| ending == "rs"))
-                .any(|path| reads(&path));
-            assert_eq!(times, is_timed(case.id), "{}", case.id);
-        }
-    }
-}

@@ -25,6 +25,22 @@ fn each_case_has_its_folder_and_reads_its_published_numbers_nowhere_else() {
     }
 }
 
+#[test]
+fn what_reads_a_clock_runs_by_itself() {
+    for case in cases::CASES {
+        let sources = fs::read_dir(folder().join(case.id)).unwrap();
+        let sources = sources.map(|entry| entry.unwrap().path());
+        let reads = |path: &Path| {
+            let text = fs::read_to_string(path).unwrap();
+            ["Instant", "Stopwatch", ".seconds"].iter().any(|word| text.contains(word))
+        };
+        let times = sources
+            .filter(|path| path.extension().is_some_and(|ending| ending == "rs"))
+            .any(|path| reads(&path));
+        assert_eq!(times, cases::is_timed(case.id), "{}", case.id);
+    }
+}
+
 /// A case is computed by a function that is given no published number (`case::Computation`). Here it
 /// is seen that none of them, and no helper of theirs, fetches one: the file is named once, as the
 /// field of the case, and code that computes reads no file at all.

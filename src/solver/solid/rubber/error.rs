@@ -51,6 +51,10 @@ pub enum StepFailure {
     Unstable,
     #[error("forces are not finite")]
     NotFinite,
+    #[error(
+        "the smallest of steps would change strains by {strain:.3}: equilibrium is lost or not stable"
+    )]
+    Far { strain: f64 },
     #[error("the estimated error stays above what is allowed")]
     Inaccurate,
 }

@@ -6,7 +6,7 @@
 //! that a pair of steps is taken and judged together.
 
 use super::checkpoint::{RubberCheckpoint, RubberState};
-use super::error::{RubberError, StepFailure};
+use super::error::{RubberError, StepFailure, at_rest};
 use super::model::{Moment, RubberModel};
 use super::newton::{Convergence, Search, Stop};
 use super::tangent::StepLaw;
@@ -18,6 +18,7 @@ use crate::kinematics::strain::{Sym3, double_dot, green_lagrange};
 use crate::kinematics::vec3::{Vec3, dot};
 use crate::solver::plan::{Stage, tally::Tally};
 use crate::solver::solid::model::corners;
+use crate::solver::sparse::FactorError;
 
 /// How long steps are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,13 +35,17 @@ pub struct StepOptions {
     pub stepping: Stepping,
     /// Steps are cut down to this part of the way to the next corner before giving up.
     pub smallest: f64,
+    /// Largest change of Green's strain in a step, in the mean square over the body: a longer one may leave the
+    /// equilibria that follow from rest for others.
+    pub longest_way: f64,
     pub convergence: Convergence,
 }
 
 impl Default for StepOptions {
     fn default() -> Self {
         let convergence = Convergence::default();
-        StepOptions { stepping: Stepping::Accuracy(1e-4), smallest: 1e-9, convergence }
+        let stepping = Stepping::Accuracy(1e-4);
+        StepOptions { stepping, smallest: 1e-9, longest_way: f64::INFINITY, convergence }
     }
 }
 
@@ -67,6 +72,8 @@ pub struct RubberSolid<'a> {
     scale: f64,
     volume: f64,
     pub counts: StepCounts,
+    /// Where steps first met a stiffness that is not positive definite, s.
+    pub folded: Option<f64>,
 }
 
 impl<'a> RubberSolid<'a> {
@@ -98,6 +105,7 @@ impl<'a> RubberSolid<'a> {
             scale: 0.0,
             volume: model.tets.iter().map(|tet| tet.volume()).sum(),
             counts: StepCounts::default(),
+            folded: None,
         })
     }
 
@@ -264,6 +272,7 @@ impl<'a> RubberSolid<'a> {
         watch: &mut impl FnMut(&RubberSolid),
     ) -> Result<(), RubberError> {
         let smallest = self.options.smallest * (end - self.state.time);
+        let mut longest = f64::INFINITY;
         // What stopped a step, and where that step was to end.
         let mut stopped: Option<(f64, StepFailure)> = None;
         while self.state.time < end {
@@ -274,6 +283,7 @@ impl<'a> RubberSolid<'a> {
                 Stepping::Accuracy(_) if self.next == 0.0 => rest / 50.0,
                 _ => self.next,
             };
+            let wanted = wanted.min(longest);
             // Two even steps rather than a long one and a sliver.
             let step = if wanted > rest * (1.0 - 1e-9) {
                 rest
@@ -286,6 +296,7 @@ impl<'a> RubberSolid<'a> {
             match self.attempt(step, to) {
                 Ok(longer) => {
                     stopped = stopped.filter(|(at, _)| self.state.time < *at);
+                    longest *= 1.2;
                     self.next = match self.options.stepping {
                         Stepping::Fixed(fixed) => fixed.min(2.0 * step),
                         Stepping::Accuracy(_) => longer * step,
@@ -297,8 +308,18 @@ impl<'a> RubberSolid<'a> {
                     self.counts.undone += 1;
                     self.search.tangent.forget();
                     self.next = 0.5 * step;
+                    if let StepFailure::Far { strain } = failure {
+                        // Strains grow about as the way does.
+                        longest = 0.95 * step * self.options.longest_way / strain;
+                        self.next = longest;
+                    }
+                    if failure == StepFailure::Unstable {
+                        self.folded.get_or_insert(self.state.time);
+                    }
                     // What the material cannot bear says more than iterations that find nothing just short of it.
-                    if !matches!(stopped, Some((_, StepFailure::Material { .. }))) {
+                    let is_told = matches!(stopped, Some((_, StepFailure::Material { .. })))
+                        || stopped.is_some() && matches!(failure, StepFailure::Far { .. });
+                    if !is_told {
                         stopped = Some((to, failure.clone()));
                     }
                     let gone = self.next >= smallest;
@@ -374,15 +395,54 @@ impl<'a> RubberSolid<'a> {
             for (u, v) in self.search.displacement.iter_mut().zip(&state.velocity) {
                 *u = std::array::from_fn(|i| u[i] + step * v[i]);
             }
+            self.refuse_far()?;
             match self.search.converge(at, &law, &self.options.convergence) {
                 // Rubber that hardly changes its volume goes along its tangent where it goes along no straight line.
                 Err(Stop::Step(_)) => self.search.tangent.forget(),
                 outcome => return outcome,
             }
         }
-        self.search.displacement.copy_from_slice(&state.displacement);
+        self.search.displacement.copy_from_slice(&self.state.displacement);
         self.search.predict(at, &law)?;
+        self.refuse_far()?;
         self.search.converge(at, &law, &self.options.convergence)
+    }
+
+    /// A guess that is farther from the state than a step may go.
+    fn refuse_far(&self) -> Result<(), Stop> {
+        let most = self.options.longest_way;
+        if most == f64::INFINITY {
+            return Ok(());
+        }
+        let model = self.search.model;
+        let mut sum = 0.0;
+        for (tet, nodes) in model.tets.iter().zip(&model.problem.elements) {
+            let [from, to] = [&self.state.displacement, &self.search.displacement]
+                .map(|displaced| corners(displaced, nodes));
+            for point in &tet.points {
+                let [from, to] =
+                    [&from, &to].map(|at| green_lagrange(&point.displacement_gradient(at)));
+                let change: Sym3 = std::array::from_fn(|i| to[i] - from[i]);
+                sum += point.volume * double_dot(&change, &change);
+            }
+        }
+        let strain = (sum / self.volume).sqrt();
+        let near = strain <= most;
+        if near { Ok(()) } else { Err(StepFailure::Far { strain }.into()) }
+    }
+
+    /// Whether the state that stands is at a minimum of energy, from a factorisation.
+    ///
+    /// # Errors
+    /// No memory for it.
+    pub(super) fn is_stable(&mut self) -> Result<bool, RubberError> {
+        let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia: 0.0 };
+        let tangent = &mut self.search.tangent;
+        match tangent.refresh(self.search.model, &law, &self.state.displacement, None) {
+            Ok(Ok(())) => Ok(true),
+            Ok(Err(FactorError::NotPositiveDefinite { .. })) | Err(_) => Ok(false),
+            Ok(Err(error)) => Err(at_rest(error)),
+        }
     }
 
     /// What a step of `step` s owes to the state before it.
