@@ -34,17 +34,17 @@ fn a_volume_that_rubber_does_not_have_is_told() {
         (remarks, summary)
     };
     assert!(remarks("-6").0.is_empty(), "half of its length is nothing that rubber could not bear");
-    let (found, summary) = remarks("-11.4");
+    let (found, summary) = remarks("-11.2");
     let [remark] = &found[..] else { panic!("{found:?}") };
     // Of the cube's own sides.
     let aside = summary["probes"]["y_high"]["y"]["value"].as_f64();
     let aside = aside.unwrap_or_else(|| panic!("{}", summary["probes"]));
-    let volume = (1.0 - 11.4 / 12.0) * (1.0 + aside / 12e-3).powi(2);
+    let volume = (1.0 - 11.2 / 12.0) * (1.0 + aside / 12e-3).powi(2);
     let told = remark.as_str().unwrap();
     let told: f64 =
         told.split("comes to ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!((told / volume - 1.0).abs() <= 2e-3, "{told} {volume}");
-    assert!(volume <= 0.5, "{volume}");
+    assert!(volume <= 0.8, "{volume}");
 }
 
 #[test]
