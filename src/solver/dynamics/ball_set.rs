@@ -167,21 +167,26 @@ impl BallSet {
         self.ball_rates(bearing, state, rates);
     }
 
+    /// Component by component, each over all balls.
     fn ball_rates(&self, bearing: &Bearing, state: &[f64], rates: &mut [f64]) {
-        let layout = self.layout;
-        let mass = bearing.ball.mass;
-        for ball in 0..layout.balls {
-            let force = self.ball_force[ball];
-            let moment = self.ball_moment[ball];
-            for i in 0..3 {
-                rates[layout.ball(POSITION + i) + ball] = state[layout.ball(VELOCITY + i) + ball];
-                rates[layout.ball(VELOCITY + i) + ball] = force[i] / mass;
-                rates[layout.ball(SPIN + i) + ball] = moment[i] / bearing.ball.axial;
+        let (layout, balls) = (self.layout, self.layout.balls);
+        let of = |component: usize| layout.ball(component)..layout.ball(component) + balls;
+        for i in 0..3 {
+            rates[of(POSITION + i)].copy_from_slice(&state[of(VELOCITY + i)]);
+            for (rate, force) in rates[of(VELOCITY + i)].iter_mut().zip(&self.ball_force) {
+                *rate = force[i] / bearing.ball.mass;
             }
-            let q = [0, 1, 2, 3].map(|i| state[layout.ball(ORIENTATION + i) + ball]);
-            let turning = quaternion_rate(q, layout.ball_vector(state, SPIN, ball));
-            for (i, value) in turning.into_iter().enumerate() {
-                rates[layout.ball(ORIENTATION + i) + ball] = value;
+            for (rate, moment) in rates[of(SPIN + i)].iter_mut().zip(&self.ball_moment) {
+                *rate = moment[i] / bearing.ball.axial;
+            }
+        }
+        let q = [0, 1, 2, 3].map(|i| &state[of(ORIENTATION + i)]);
+        let spin = [0, 1, 2].map(|i| &state[of(SPIN + i)]);
+        for i in 0..4 {
+            for (ball, rate) in rates[of(ORIENTATION + i)].iter_mut().enumerate() {
+                let q = [q[0][ball], q[1][ball], q[2][ball], q[3][ball]];
+                let spin = [spin[0][ball], spin[1][ball], spin[2][ball]];
+                *rate = quaternion_rate(q, spin)[i];
             }
         }
     }

@@ -81,7 +81,7 @@ impl Simulation {
         let system = &self.system;
         for (index, (set, bearing)) in system.sets.iter().zip(&system.assembly.bearings).enumerate()
         {
-            let outer = system.race_of(&self.state, index, 1).motion;
+            let outer = system.race_motion(&self.state, index, 1);
             self.watch_balls(set, bearing, &outer)?;
         }
         for (index, body) in system.assembly.bodies.iter().enumerate() {
@@ -106,7 +106,7 @@ impl Simulation {
         }
         for (index, (set, bearing)) in system.sets.iter().zip(&system.assembly.bearings).enumerate()
         {
-            let races = [0, 1].map(|side| system.race_of(&self.state, index, side).motion);
+            let races = [0, 1].map(|side| system.race_motion(&self.state, index, side));
             self.watch_travel(bearing)?;
             self.watch_races(&races, bearing)?;
             self.watch_depths(set, bearing)?;

@@ -55,7 +55,7 @@ impl Extremes {
     pub fn see(&mut self, system: &System, index: usize, time: f64, state: &[f64]) {
         let (set, bearing) = (&system.sets[index], &system.assembly.bearings[index]);
         let layout = &set.layout;
-        let [inner, outer] = [0, 1].map(|side| system.race_of(state, index, side).motion);
+        let [inner, outer] = [0, 1].map(|side| system.race_motion(state, index, side));
         let [x, y, z] = inner.position;
         self.farthest.take(norm([x - system.assembly.place_of(bearing), y, z]), 0, time);
         self.apart.take(norm(sub(inner.position, outer.position)), 0, time);
@@ -65,6 +65,8 @@ impl Extremes {
         let axes = [inner.axis, outer.axis];
         let geometry = &bearing.geometry;
         let grooves = [geometry.inner.groove_radius, geometry.outer.groove_radius];
+        let sine_of = |edge: f64| libm::sin(edge.min(std::f64::consts::FRAC_PI_2));
+        let mut edge_sines = [0, 1].map(|side: usize| sine_of(self.races[side].edge.value));
         for &pair in &set.table.active {
             let (side, ball) = (pair / layout.padded, pair % layout.padded);
             let contact = &set.table.contact[pair];
@@ -81,11 +83,12 @@ impl Extremes {
             let law = &set.laws.races[side];
             let half = law.semi_major_factor * contact.overlap.max(0.0).sqrt() / grooves[side];
             // sin(α + ε) <= sin α + ε: most contacts need no arc sine.
-            if sine.abs() + half > libm::sin(race.edge.value.min(std::f64::consts::FRAC_PI_2)) {
+            if sine.abs() + half > edge_sines[side] {
                 let angle = libm::asin(sine.abs().min(1.0));
                 if angle + half > race.edge.value {
                     race.edge = Extreme { value: angle + half, ball, time };
                     race.edge_angle = angle;
+                    edge_sines[side] = sine_of(race.edge.value);
                 }
             }
         }

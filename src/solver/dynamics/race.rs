@@ -43,7 +43,7 @@ pub fn tilts_of(axis: Vec3) -> [f64; 2] {
     [libm::atan2(-axis[2], axis[0]), libm::asin(axis[1].clamp(-1.0, 1.0))]
 }
 
-fn motion_of(state: &BodyState) -> AxisMotion {
+pub(super) fn motion_of(state: &BodyState) -> AxisMotion {
     AxisMotion {
         position: state.position,
         velocity: state.velocity,

@@ -15,6 +15,7 @@ use super::state::{
     BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, POSITION, Places, SPIN, VELOCITY,
     quaternion_rate,
 };
+use crate::ch2_housing::bearing::cage::AxisMotion;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, dot};
 use crate::solver::mount::Mount;
 use crate::solver::plan::steps::{BodySteps, Steps};
@@ -288,6 +289,15 @@ impl System {
         let mount = &self.assembly.bearings[bearing].mounts[side];
         let body = RaceNow::new(self.body_state(state, mount.body));
         self.on_body(&self.holds.bearings[bearing][side], state, &body, mount)
+    }
+
+    /// The motion of [`System::race_of`] without what follows from it.
+    pub(super) fn race_motion(&self, state: &[f64], bearing: usize, side: usize) -> AxisMotion {
+        let mount = &self.assembly.bearings[bearing].mounts[side];
+        if self.holds.bearings[bearing][side].is_none() && mount.is_direct() {
+            return race::motion_of(&self.body_state(state, mount.body));
+        }
+        self.race_of(state, bearing, side).motion
     }
 
     /// What sits at a mount of a body, bent as a state has it.
