@@ -26,7 +26,11 @@ type Farthest = [[f64; 2]; 4];
 /// How far the sleeves of a spring have gone against each other in any row; `None` where the table lacks the places of its ends.
 pub fn farthest(assembly: &Assembly, recorder: &Recorder, spring: &str) -> Option<Farthest> {
     let joint = assembly.connections.iter().find(|joint| joint.label.as_deref() == Some(spring))?;
-    let Law::SpringDashpot(law) = &joint.law else { return None };
+    let law = match &joint.law {
+        Law::SpringDashpot(law) => law,
+        // Of twist alone: places say nothing of it.
+        Law::Torsion(_) => return None,
+    };
     let [first, second] = [
         columns(assembly, recorder, &joint.ends[0])?,
         columns(assembly, recorder, &joint.ends[1])?,

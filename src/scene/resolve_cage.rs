@@ -199,7 +199,8 @@ pub(crate) fn in_run(
         race_clearance: cage.race_clearance.unwrap_or(0.0),
         length,
         force: force.unwrap_or_else(|| {
-            let reason = "the source's stiffness (5.8)";
+            let reason =
+                "the source's stiffness (5.8), which it has at each node of a flexible cage";
             reader.note("bearing.cage.contact.stiffness", "2e8 N/m", reason);
             CageForce::Penalty { stiffness: 2e8 }
         }),

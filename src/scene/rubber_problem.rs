@@ -2,7 +2,7 @@
 
 use crate::elements::tet10::{shape_functions, stiffness_rule};
 use crate::mesh::{Elements, TetMesh};
-use crate::scene::solid::{Harmonic, Held, RubberScene, SolidScene};
+use crate::scene::solid::{Harmonic, Held, MeshSource, RubberScene, SolidScene};
 use crate::scene::solid_mesh::BuiltMesh;
 use crate::scene::solid_problem::{NamedNodes, Outside, SolidSetupError, Support, outside};
 use crate::solver::profile::Profile;
@@ -41,6 +41,7 @@ pub fn rubber_setup(
         notes
             .push(format!("the scene's rubber is used, not the deck's material \"{}\"", deck.name));
     }
+    notes.extend(sliding_sleeves(scene));
     let (nodes, material) = (mesh.nodes.clone(), rubber.material.clone());
     let mut model =
         RubberModel::new(RubberProblem { nodes, elements, material, prescribed, loads })?;
@@ -52,6 +53,30 @@ pub fn rubber_setup(
     }
     let labels = built.labels.clone();
     Ok(RubberSetup { model, labels, density: scene.density, probes, supports, notes })
+}
+
+/// Sleeves of a generated bushing that are held along some axes and free along others, as nothing bonded is.
+fn sliding_sleeves(scene: &SolidScene) -> Vec<String> {
+    if !matches!(scene.mesh.source, MeshSource::Bushing(..)) {
+        return Vec::new();
+    }
+    let said = |set: &str| {
+        let own = || scene.held.iter().filter(|held| held.set == set);
+        let (held, free): (Vec<usize>, Vec<usize>) =
+            (0..3).partition(|axis| own().any(|held| held.motion[*axis].is_some()));
+        let names =
+            |of: &[usize]| of.iter().map(|i| ["x", "y", "z"][*i]).collect::<Vec<_>>().join(" and ");
+        let slides = !held.is_empty() && !free.is_empty();
+        slides.then(|| {
+            format!(
+                "the sleeve \"{set}\" is held along {} alone: its rubber slides along {}, where rubber that is bonded to a \
+                 sleeve is held along all three",
+                names(&held),
+                names(&free)
+            )
+        })
+    };
+    ["inner", "outer"].into_iter().filter_map(said).collect()
 }
 
 /// A set that vibrates has no node that another set holds along the same axis: a quarter has no answer to motion

@@ -76,3 +76,42 @@ fn a_table_as_a_number_is_answered_with_the_same_table() {
         assert!(!said.contains(&format!("write table = \"{other}\"")), "{said}");
     }
 }
+
+/// A sleeve that is held along one axis alone lets its rubber slide, which no bonded sleeve does.
+#[test]
+fn sleeves_that_let_rubber_slide_are_told() {
+    let place = Place::new();
+    let bushing = |inner: &str| {
+        format!(
+            "[solid.mesh]\ngenerate = \"bushing\"\npart = \"quarter\"\ninner_diameter = \"20 mm\"\n\
+             outer_diameter = \"36 mm\"\nlength = \"20 mm\"\norder = 2\n\
+             cells = {{ around = 3, radial = 2, axial = 1, grading = 1.5 }}\n\
+             [solid.material]\nlaw = \"elastomer\"\ntable = \"3.1\"\n\
+             [[solid.held]]\nset = \"outer\"\nx = true\ny = true\nz = true\n\
+             [[solid.held]]\nset = \"inner\"\n{inner}\n\
+             [[solid.held]]\nset = \"x_low\"\nx = true\n[[solid.held]]\nset = \"y_low\"\ny = true\n"
+        )
+    };
+    let said =
+        |inner: &str| succeed(command("check", &place.scene("b.toml", &bushing(inner)), &[]));
+    let slides = said("z = \"0.1 mm\"");
+    assert!(slides.contains("sleeve \"inner\" is held along z alone"), "{slides}");
+    assert!(!slides.contains("sleeve \"outer\""), "{slides}");
+    let bonded = said("x = true\ny = true\nz = \"0.1 mm\"");
+    assert!(!bonded.contains("sleeve"), "{bonded}");
+}
+
+/// The last row has its fields, whether or not they are due there.
+#[test]
+fn the_end_of_a_run_has_fields() {
+    let place = Place::new();
+    let numerics = "[numerics]\nend = \"0.05 s\"\noutput_interval = \"10 ms\"\nstep = \"10 ms\"\n\
+                    fields_interval = \"20 ms\"\n";
+    let out = place.path("out");
+    succeed(into_folder("run", &place.scene("cube.toml", &cube("-1", numerics)), &out, &[]));
+    let list = std::fs::read_to_string(out.join("fields.pvd")).unwrap();
+    for (time, file) in [("0.04", "fields_000002.vtu"), ("0.05", "fields_000003.vtu")] {
+        assert!(list.contains(&format!("timestep=\"{time}\"")) && list.contains(file), "{list}");
+        assert!(out.join("fields").join(file).exists(), "{file}");
+    }
+}

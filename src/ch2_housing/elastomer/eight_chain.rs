@@ -45,10 +45,11 @@ struct Strained {
     inverse: Sym3,
     /// Π = 1 − (I₁/3) C⁻¹.
     projected: Sym3,
+    /// I₁ = tr C (2.10), (3.3).
     first_invariant: f64,
     /// J^(−2/3).
     isochoric: f64,
-    /// Ī₁ − 3.
+    /// Ī₁ − 3, with Ī₁ = J^(−2/3) I₁ (2.9), (3.2).
     excess: f64,
     /// J − 1.
     volume_change: f64,

@@ -82,8 +82,17 @@ pub(super) fn write_results(
             housing_results(folder, prepared, session, &table, &mut said)?;
             said.sections.push(("remarks".into(), json!(said.remarks)));
         }
-        Prepared::Solid { .. } => solid_results(prepared, session, &mut said)?,
-        Prepared::Rubber { .. } => rubber_results(prepared, session, &mut said)?,
+        Prepared::Solid { .. } => {
+            // Of steps that stopped on the way the state at the last row is not at hand.
+            if session.status == Status::Complete {
+                write_last_fields(folder, prepared, session)?;
+            }
+            solid_results(prepared, session, &mut said)?;
+        }
+        Prepared::Rubber { .. } => {
+            write_last_fields(folder, prepared, session)?;
+            rubber_results(prepared, session, &mut said)?;
+        }
     }
     let spectra = spectra(prepared, session, &table);
     let plots = pictures(folder, prepared, session, &table, &spectra)?;
@@ -125,6 +134,16 @@ pub(super) fn write_results(
     let fields = std::fs::read_dir(folder.join(FOLDER)).map_or(0, |files| files.count() + 1);
     let files = written.len() + plots.len() + fields + said.files + 1;
     say(&format!("wrote {files} files to {}\n", folder.display()))
+}
+
+/// Fields of the last row, where none were due there.
+fn write_last_fields(folder: &Path, prepared: &Prepared, session: &mut Session) -> Fallible<()> {
+    let Some(row) = (session.recorder.rows() as u64).checked_sub(1) else { return Ok(()) };
+    if session.clock.fields_due().is_some() {
+        return Ok(());
+    }
+    let index = session.clock.rows_per_fields.map_or(0, |every| row / every + 1);
+    write_fields_file(folder, prepared, session, index)
 }
 
 fn solid_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fallible<()> {
@@ -171,10 +190,8 @@ fn housing_results(
     // Of explicit steps that stopped on the way the state at the last row is not at hand.
     let is_sound = !matches!(way, Way::Explicit) || session.status == Status::Complete;
     let is_sound = is_sound && session.recorder.rows() > 0;
-    if is_sound && session.clock.fields_due().is_none() {
-        let row = session.recorder.rows() as u64 - 1;
-        let index = session.clock.rows_per_fields.map_or(0, |every| row / every + 1);
-        write_fields_file(folder, prepared, session, index)?;
+    if is_sound {
+        write_last_fields(folder, prepared, session)?;
     }
     let mut of_all = Map::new();
     let mut remarks = Vec::new();

@@ -86,8 +86,11 @@ impl BondedPart<'_> {
             *stiffness = complex_stiffness(&model, 0.0, &[0.0], SETTLED)?[0].storage;
         }
         let [radial, axial, torsional, conical] = stiffness;
-        if let Law::SpringDashpot(law) = &mut self.spring.law {
-            law.stiffness = [axial, radial, radial, torsional, conical, conical];
+        match &mut self.spring.law {
+            Law::SpringDashpot(law) => {
+                law.stiffness = [axial, radial, radial, torsional, conical, conical];
+            }
+            Law::Torsion(law) => law.stiffness = torsional,
         }
         Ok(())
     }
@@ -473,7 +476,10 @@ impl<'p> BondedBushing<'p> {
 
 /// Largest stiffness against a shift (N/m) and a turn (N·m/rad) before anything has relaxed.
 fn sudden_stiffness(spring: &Connection) -> [f64; 2] {
-    let Law::SpringDashpot(law) = &spring.law else { return [0.0; 2] };
+    let law = match &spring.law {
+        Law::SpringDashpot(law) => law,
+        Law::Torsion(law) => return [0.0, law.stiffness],
+    };
     let of = |i: usize| {
         law.stiffness[i] + law.maxwell.iter().map(|element| element.stiffness[i]).sum::<f64>()
     };

@@ -1,5 +1,5 @@
 //! A rigid cylinder on a given path against a solid: data for equilibrium, and explicit steps of the
-//! solid with the contact's work and impulse booked.
+//! solid with the contact's work and impulse booked. Seats of races ([`crate::solver::housing::seat`]) press by the same sum.
 
 use super::explicit::{ExplicitMethod, ExplicitSolid};
 use super::model::{SolidError, SolidModel};
