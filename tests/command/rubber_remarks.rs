@@ -115,3 +115,75 @@ fn the_end_of_a_run_has_fields() {
         assert!(out.join("fields").join(file).exists(), "{file}");
     }
 }
+
+/// A rubber block, free at all its sides, under what its faces carry.
+fn block(further: &str) -> String {
+    let held = |axis: &str| format!("[[solid.held]]\nset = \"{axis}_low\"\n{axis} = true\n");
+    format!(
+        "[solid.mesh]\ngenerate = \"bar\"\nlength = \"10 mm\"\nwidth = \"10 mm\"\nheight = \"10 mm\"\norder = 2\n\
+         cells = {{ along = 2, across = 2, up = 2 }}\n[solid.material]\nlaw = \"elastomer\"\nrubber_modulus = \"1 MPa\"\n\
+         bulk_ratio = 1000\nchain = 8\n{}{}{}{further}",
+        held("x"),
+        held("y"),
+        held("z"),
+    )
+}
+
+/// Under a dead load on all faces a cube stays a cube until the load is twice its shear modulus, and then no more (Rivlin
+/// 1948): the load goes on in one part, whose end is no place to stay at.
+#[test]
+fn rivlins_cube_is_stable_up_to_twice_its_shear_modulus() {
+    let place = Place::new();
+    let pulled = |pressure: &str| {
+        let on = |axis: &str| {
+            format!("[[solid.load]]\nset = \"{axis}_high\"\npressure = \"-{pressure} MPa\"\n")
+        };
+        place.scene("rivlin.toml", &block(&["x", "y", "z"].map(on).concat()))
+    };
+    succeed(command("statics", &pulled("2.1"), &["--dry"]));
+    let refused = command("statics", &pulled("5"), &["--dry"]).output().unwrap();
+    let said = stderr(&refused);
+    assert_eq!(refused.status.code(), Some(2), "{said}");
+    let part: f64 =
+        said.split("beyond ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    // mu = 1.0851 C_R at N = 8; a bulk modulus of 1000 C_R leaves some 1e-3 of incompressibility.
+    let expected = 2.0 * 1.0851;
+    assert!((0.05 * part / expected - 1.0).abs() <= 2e-3, "{part} % of 5 MPa, {expected} MPa");
+}
+
+/// Where five terms fall short of chains that are nearly straight.
+#[test]
+fn chains_beyond_what_five_terms_hold_for_are_told() {
+    let place = Place::new();
+    let pulled = |by: &str, pull: &str| {
+        let moved = format!("[[solid.held]]\nset = \"x_high\"\nx = \"{by} mm\"\n");
+        let text = block(&moved).replace("chain = 8\n", &format!("chain = 8\n{pull}"));
+        succeed(command("statics", &place.scene("pulled.toml", &text), &["--dry"]))
+    };
+    // Incompressible rubber pulled to five times its length: chains of sqrt((25 + 2/5)/3)/sqrt(8) = 1.03; at three times 0.63.
+    let told = pulled("40", "");
+    let part: f64 =
+        told.split("network come to ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!((part / 1.03 - 1.0).abs() <= 2e-2, "{told}");
+    assert!(!pulled("20", "").contains("network come to"));
+    let exact = pulled("20", "chain_pull = \"inverse-langevin\"\n");
+    assert!(!exact.contains("network come to"), "{exact}");
+}
+
+/// A pulse that is no longer than a step of the solid.
+#[test]
+fn a_pulse_between_two_steps_is_told() {
+    let place = Place::new();
+    let struck = |duration: &str| {
+        let text = format!(
+            "[solid.mesh]\ngenerate = \"bar\"\nlength = \"4 m\"\nwidth = \"400 mm\"\nheight = \"400 mm\"\norder = 1\n\
+             cells = {{ along = 10, across = 1, up = 1 }}\n[[solid.held]]\nset = \"x_low\"\nx = true\ny = true\nz = true\n\
+             [[solid.load]]\nset = \"x_high\"\nz = {{ half_sine = \"100 kN\", duration = \"{duration}\" }}\n\
+             [numerics]\nend = \"2 ms\"\n"
+        );
+        let out = place.path(&format!("out{}", duration.replace(' ', "")));
+        succeed(into_folder("run", &place.scene("struck.toml", &text), &out, &[]))
+    };
+    assert!(struck("20 us").contains("a load or support changes within 0.00002 s, and steps are"));
+    assert!(!struck("400 us").contains("a load or support changes within"));
+}

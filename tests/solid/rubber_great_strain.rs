@@ -129,7 +129,7 @@ fn equilibria_end_where_they_end_however_far_is_asked() {
     let ends = [14.5e-3, 15e-3, 17e-3, 19e-3].map(end);
     println!("{ends:?}");
     for one in ends {
-        // Parts are cut down to 1e-4 of what is asked for.
-        assert!((one / ends[0] - 1.0).abs() <= 3e-4, "{ends:?}");
+        // Parts are cut down to 1e-7 of what is asked for.
+        assert!((one / ends[0] - 1.0).abs() <= 1e-5, "{ends:?}");
     }
 }

@@ -64,8 +64,7 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     };
     let (mut summary, series) =
         summary::rubber_statics(setup, built, (time, &found), &stress, section, &record)?;
-    let mut remarks = remarks::of_rubber(model, &found.state.displacement)?;
-    remarks.extend(found.folded.map(remarks::of_fold));
+    let remarks = remarks::of_rubber(model, &found.state.displacement)?;
     summary["remarks"] = json!(remarks);
     say_mesh_notes(built)?;
     say(&format!("relaxed, under loads and displacements of t = {} s\n", told(time)))?;

@@ -51,10 +51,12 @@ pub enum StepFailure {
     Unstable,
     #[error("forces are not finite")]
     NotFinite,
-    #[error(
-        "the smallest of steps would change strains by {strain:.3}: equilibrium is lost or not stable"
-    )]
+    #[error("a step would change strains by {strain:.3} in the mean")]
     Far { strain: f64 },
+    #[error(
+        "{:.2} % of the work of a step is lost, however short it is: the rubber jumps to another equilibrium", 100.0 * part
+    )]
+    Jump { part: f64 },
     #[error("the estimated error stays above what is allowed")]
     Inaccurate,
 }

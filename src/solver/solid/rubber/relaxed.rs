@@ -4,7 +4,7 @@ use super::checkpoint::RubberState;
 use super::error::{RubberError, StepFailure};
 use super::measures::network_energy;
 use super::model::RubberModel;
-use super::steps::{RubberSolid, StepOptions, Stepping};
+use super::steps::{RubberSolid, StepOptions, Stepping, WayLimits};
 use crate::kinematics::vec3::Vec3;
 use crate::solver::plan::{Stage, tally::Tally};
 use crate::solver::profile::Profile;
@@ -20,9 +20,6 @@ pub struct Relaxed {
     pub energy: f64,
     /// Parts that supports and loads were brought up in.
     pub steps: u64,
-    /// Part of what supports and loads ask for at which the stiffness first was not positive definite, though equilibria
-    /// go on.
-    pub folded: Option<f64>,
     pub iterations: usize,
     pub factorisations: usize,
     pub ran: Tally,
@@ -49,8 +46,10 @@ pub struct Reached {
     pub reactions: Vec<Vec3>,
 }
 
-/// Largest change of strain in a part. At 5 % a bonded bushing whose way ends at 6.87 mm of 20 mm of rubber was found beyond.
-const LONGEST_WAY: f64 = 0.02;
+/// A part changes strains by 2 % where it is not a two-hundredth of the whole: at 5 % a bonded bushing whose way ends at 6.87 mm
+/// of 20 mm of rubber was found beyond. Without jumps the trapezoidal rule misses less than a per mille of the work of such a part,
+/// or of the next shorter ones; the jump of that bushing loses 0.7 % of the work of a tenth of a millimetre.
+const WAY: WayLimits = WayLimits { strain: 0.02, short: 0.005, lost: 3e-3 };
 
 /// Supports and loads are brought up together to what they are at time `t` (s): at once, or in as many parts
 /// as it takes.
@@ -68,12 +67,8 @@ pub fn relaxed(model: &RubberModel, t: f64) -> Result<Relaxed, RelaxedError> {
         load.profile = ramp(load.profile.value(t));
     }
     let stepping = Stepping::Fixed(1.0);
-    let options = StepOptions {
-        stepping,
-        smallest: 1e-4,
-        longest_way: LONGEST_WAY,
-        ..StepOptions::default()
-    };
+    let options =
+        StepOptions { stepping, smallest: 1e-7, way: Some(WAY), ..StepOptions::default() };
     let mut solid = RubberSolid::new(&model, options)?;
     let mut reached = Vec::new();
     let ended = solid.advance(1.0, |solid| {
@@ -87,12 +82,7 @@ pub fn relaxed(model: &RubberModel, t: f64) -> Result<Relaxed, RelaxedError> {
         }
         Err(other) => return Err(other.into()),
     }
-    // The search may have gone to a state that no body stays in; where strains are small there is none.
-    if solid.counts.accepted > 1 && !solid.is_stable()? {
-        return Err(RelaxedError::Lost { part: 1.0, failure: StepFailure::Unstable, reached });
-    }
     let state = solid.state().clone();
-    let folded = solid.folded;
     let lost = |failure| RelaxedError::Lost { part: 1.0, failure, reached: Vec::new() };
     let energy = network_energy(&model, &state.displacement).map_err(lost)?;
     let (iterations, factorisations) = solid.work();
@@ -100,5 +90,5 @@ pub fn relaxed(model: &RubberModel, t: f64) -> Result<Relaxed, RelaxedError> {
     let steps = ran.take(Stage::Implicit);
     ran.add(Stage::SolidStatics, steps);
     let reactions = solid.support_forces();
-    Ok(Relaxed { state, reactions, energy, folded, steps, iterations, factorisations, ran })
+    Ok(Relaxed { state, reactions, energy, steps, iterations, factorisations, ran })
 }

@@ -7,6 +7,7 @@
 
 use super::checkpoint::{RubberCheckpoint, RubberState};
 use super::error::{RubberError, StepFailure, at_rest};
+use super::measures::network_energy;
 use super::model::{Moment, RubberModel};
 use super::newton::{Convergence, Search, Stop};
 use super::tangent::StepLaw;
@@ -30,14 +31,24 @@ pub enum Stepping {
     Accuracy(f64),
 }
 
+/// What keeps steps to the equilibria that follow from one to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WayLimits {
+    /// Largest change of Green's strain in a step, in the mean square over the body.
+    pub strain: f64,
+    /// s; shorter steps may change strains as they will.
+    pub short: f64,
+    /// Of the work of a step, what may be missing in the energy after it: a jump loses some however short the step is.
+    pub lost: f64,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepOptions {
     pub stepping: Stepping,
     /// Steps are cut down to this part of the way to the next corner before giving up.
     pub smallest: f64,
-    /// Largest change of Green's strain in a step, in the mean square over the body: a longer one may leave the
-    /// equilibria that follow from rest for others.
-    pub longest_way: f64,
+    /// Where a step may only end in an equilibrium that follows from the one before it.
+    pub way: Option<WayLimits>,
     pub convergence: Convergence,
 }
 
@@ -45,7 +56,7 @@ impl Default for StepOptions {
     fn default() -> Self {
         let convergence = Convergence::default();
         let stepping = Stepping::Accuracy(1e-4);
-        StepOptions { stepping, smallest: 1e-9, longest_way: f64::INFINITY, convergence }
+        StepOptions { stepping, smallest: 1e-9, way: None, convergence }
     }
 }
 
@@ -72,8 +83,6 @@ pub struct RubberSolid<'a> {
     scale: f64,
     volume: f64,
     pub counts: StepCounts,
-    /// Where steps first met a stiffness that is not positive definite, s.
-    pub folded: Option<f64>,
 }
 
 impl<'a> RubberSolid<'a> {
@@ -105,7 +114,6 @@ impl<'a> RubberSolid<'a> {
             scale: 0.0,
             volume: model.tets.iter().map(|tet| tet.volume()).sum(),
             counts: StepCounts::default(),
-            folded: None,
         })
     }
 
@@ -308,18 +316,13 @@ impl<'a> RubberSolid<'a> {
                     self.counts.undone += 1;
                     self.search.tangent.forget();
                     self.next = 0.5 * step;
-                    if let StepFailure::Far { strain } = failure {
+                    if let (StepFailure::Far { strain }, Some(way)) = (&failure, self.options.way) {
                         // Strains grow about as the way does.
-                        longest = 0.95 * step * self.options.longest_way / strain;
+                        longest = step * (0.9 * way.strain / strain).max(0.25);
                         self.next = longest;
                     }
-                    if failure == StepFailure::Unstable {
-                        self.folded.get_or_insert(self.state.time);
-                    }
                     // What the material cannot bear says more than iterations that find nothing just short of it.
-                    let is_told = matches!(stopped, Some((_, StepFailure::Material { .. })))
-                        || stopped.is_some() && matches!(failure, StepFailure::Far { .. });
-                    if !is_told {
+                    if !matches!(stopped, Some((_, StepFailure::Material { .. }))) {
                         stopped = Some((to, failure.clone()));
                     }
                     let gone = self.next >= smallest;
@@ -345,6 +348,9 @@ impl<'a> RubberSolid<'a> {
         let viscous = !self.search.model.problem.material.maxwell.is_empty();
         if !(self.judges() && viscous) {
             self.equilibrium(step, end)?;
+            if let Some(way) = self.options.way {
+                self.keep_to(way, step)?;
+            }
             self.accept(step, end);
             return Ok(3.0);
         }
@@ -395,7 +401,6 @@ impl<'a> RubberSolid<'a> {
             for (u, v) in self.search.displacement.iter_mut().zip(&state.velocity) {
                 *u = std::array::from_fn(|i| u[i] + step * v[i]);
             }
-            self.refuse_far()?;
             match self.search.converge(at, &law, &self.options.convergence) {
                 // Rubber that hardly changes its volume goes along its tangent where it goes along no straight line.
                 Err(Stop::Step(_)) => self.search.tangent.forget(),
@@ -404,16 +409,11 @@ impl<'a> RubberSolid<'a> {
         }
         self.search.displacement.copy_from_slice(&self.state.displacement);
         self.search.predict(at, &law)?;
-        self.refuse_far()?;
         self.search.converge(at, &law, &self.options.convergence)
     }
 
-    /// A guess that is farther from the state than a step may go.
-    fn refuse_far(&self) -> Result<(), Stop> {
-        let most = self.options.longest_way;
-        if most == f64::INFINITY {
-            return Ok(());
-        }
+    /// Whether what [`RubberSolid::equilibrium`] found is near, follows without a jump and is stable.
+    fn keep_to(&mut self, way: WayLimits, step: f64) -> Result<(), Stop> {
         let model = self.search.model;
         let mut sum = 0.0;
         for (tet, nodes) in model.tets.iter().zip(&model.problem.elements) {
@@ -427,21 +427,32 @@ impl<'a> RubberSolid<'a> {
             }
         }
         let strain = (sum / self.volume).sqrt();
-        let near = strain <= most;
-        if near { Ok(()) } else { Err(StepFailure::Far { strain }.into()) }
-    }
-
-    /// Whether the state that stands is at a minimum of energy, from a factorisation.
-    ///
-    /// # Errors
-    /// No memory for it.
-    pub(super) fn is_stable(&mut self) -> Result<bool, RubberError> {
+        let near = strain <= way.strain || step <= way.short;
+        if !near {
+            return Err(StepFailure::Far { strain }.into());
+        }
+        let nodes = self.state.displacement.iter().zip(&self.search.displacement);
+        let forces = self.state.forces.iter().zip(&self.search.internal);
+        let work: f64 = nodes
+            .zip(forces)
+            .map(|((from, to), (before, after))| {
+                let gone = std::array::from_fn(|i| to[i] - from[i]);
+                -0.5 * (dot(*before, gone) + dot(*after, gone))
+            })
+            .sum();
+        let [before, after] = [&self.state.displacement, &self.search.displacement]
+            .map(|displaced| network_energy(model, displaced));
+        let lost = work - (after? - before?);
+        let held = lost <= way.lost * work.abs();
+        if !held {
+            return Err(StepFailure::Jump { part: lost / work.abs() }.into());
+        }
         let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia: 0.0 };
-        let tangent = &mut self.search.tangent;
-        match tangent.refresh(self.search.model, &law, &self.state.displacement, None) {
-            Ok(Ok(())) => Ok(true),
-            Ok(Err(FactorError::NotPositiveDefinite { .. })) | Err(_) => Ok(false),
-            Ok(Err(error)) => Err(at_rest(error)),
+        let outcome = self.search.tangent.refresh(model, &law, &self.search.displacement, None)?;
+        match outcome {
+            Ok(()) => Ok(()),
+            Err(FactorError::NotPositiveDefinite { .. }) => Err(StepFailure::Unstable.into()),
+            Err(error) => Err(Stop::All(at_rest(error))),
         }
     }
 
