@@ -59,7 +59,7 @@ pub fn of_rubber(model: &RubberModel, displacement: &[Vec3]) -> Result<Vec<Strin
             to_digits(1.0 + far, 3)
         ));
     }
-    let chain = longest_chain(model, displacement);
+    let chain = longest_chain(model, displacement)?;
     let within = chain <= LONGEST_CHAIN;
     if !within && model.problem.material.network.pull == ChainPull::FiveTerms {
         remarks.push(format!(
@@ -116,7 +116,8 @@ pub fn of_run(session: &Session, model: &SolidModel, stresses: &Stresses) -> Vec
     of_locking(model).into_iter().chain(sudden).chain(of_law(&state, &when)).collect()
 }
 
-/// Steps that a load or a support needs from one corner of its profile to the next, or for a period.
+/// Steps that a load or a support needs from one corner of its profile to the next, or for a period: the impulse of half a sine in
+/// ten steps is off by (π/10)²/12, 0.8 %.
 const FEWEST_STEPS: f64 = 10.0;
 
 /// Loads and supports that change within a few steps (s): what they do depends on where the steps fall.

@@ -114,10 +114,10 @@ fn free_sides_of_the_network_alone_fold() {
     }
 }
 
-/// A bonded bushing, its inner sleeve moved aside: equilibria of the network end where the rubber folds, and how far one
-/// asks for does not change where that is.
+/// A bonded bushing, its inner sleeve moved aside: equilibria of the network end at a fold whether 13 or 17 mm are asked
+/// for. At once 13 mm are found beyond it; 12 mm are so still, by a jump too small to be seen (decision 54).
 #[test]
-fn equilibria_end_where_they_end_however_far_is_asked() {
+fn equilibria_end_at_a_fold_that_long_parts_pass() {
     let end = |asked: f64| {
         let (model, _) = bonded(named::table_3_1(), [4, 2, 2], Profile::Constant(asked));
         match relaxed(&model, 0.0) {
@@ -126,7 +126,7 @@ fn equilibria_end_where_they_end_however_far_is_asked() {
             Ok(found) => panic!("{asked}: all the way in {} parts", found.steps),
         }
     };
-    let ends = [14.5e-3, 17e-3].map(end);
+    let ends = [13e-3, 14.5e-3, 17e-3].map(end);
     println!("{ends:?}");
     for one in ends {
         // Parts are cut down to 1e-7 of what is asked for.

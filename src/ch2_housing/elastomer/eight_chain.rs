@@ -217,6 +217,15 @@ impl EightChain {
         2.0 * self.modulus * self.slope(0.0).map_or(f64::NAN, |[slope, _]| slope)
     }
 
+    /// Length of a chain over that of a straight one, √(Ī₁/(3N)).
+    ///
+    /// # Errors
+    /// A strain of no deformation.
+    pub fn chain_length(&self, strain: &Sym3) -> Result<f64, ElastomerError> {
+        let invariant = 3.0 + Strained::of(strain)?.excess;
+        Ok((invariant / (3.0 * self.locking)).sqrt())
+    }
+
     /// Energy of the chains alone, J/m³: (2.8) without its last term.
     ///
     /// # Errors

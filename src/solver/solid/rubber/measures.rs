@@ -7,7 +7,7 @@ use super::tangent::{at_points, in_element, mean_stresses};
 use crate::ch2_housing::elastomer::maxwell::spring_energy;
 use crate::elements::tet10::{POINTS, Tet10};
 use crate::elements::tet10_nodal;
-use crate::kinematics::strain::{Sym3, cauchy, green_lagrange, volume_change};
+use crate::kinematics::strain::{Sym3, cauchy};
 use crate::kinematics::vec3::Vec3;
 use crate::solver::solid::model::corners;
 use crate::solver::solid::stress::{at_ten_nodes, average_at_nodes};
@@ -48,20 +48,21 @@ pub fn volume_changes(model: &RubberModel, displacement: &[Vec3]) -> Result<[f64
     }))
 }
 
-/// Length of the longest chain of the network over that of a straight one, √(Ī₁/(3N)).
-pub fn longest_chain(model: &RubberModel, displacement: &[Vec3]) -> f64 {
-    let of_point = |(tet, nodes): (&Tet10, &[u32; 10])| {
-        let moved = corners(displacement, nodes);
-        tet.points.each_ref().map(|point| {
-            let h = point.displacement_gradient(&moved);
-            let [x, y, z, ..] = green_lagrange(&h);
-            let stretched = 3.0 + 2.0 * (x + y + z);
-            stretched / libm::pow(1.0 + volume_change(&h), 2.0 / 3.0)
-        })
-    };
-    let all = model.tets.iter().zip(&model.problem.elements).flat_map(of_point);
-    let most = all.fold(3.0, f64::max);
-    (most / (3.0 * model.problem.material.network.locking)).sqrt()
+/// Length of the longest chain of the network over that of a straight one.
+///
+/// # Errors
+/// An element turned inside out.
+pub fn longest_chain(model: &RubberModel, displacement: &[Vec3]) -> Result<f64, StepFailure> {
+    let network = &model.problem.material.network;
+    let mut longest = 0.0f64;
+    for (index, (tet, nodes)) in model.tets.iter().zip(&model.problem.elements).enumerate() {
+        let (strains, ..) = tet10_nodal::strains(tet, &corners(displacement, nodes));
+        for strain in &strains {
+            let length = network.chain_length(strain).map_err(in_element(model, index))?;
+            longest = longest.max(length);
+        }
+    }
+    Ok(longest)
 }
 
 /// Energy in the springs of the Maxwell elements by the law of small strain, J.

@@ -19,3 +19,4 @@ pub mod tangent;
 pub mod tet4;
 pub mod tet_forces;
 pub mod vibration;
+pub mod way;

@@ -4,7 +4,8 @@ use super::checkpoint::RubberState;
 use super::error::{RubberError, StepFailure};
 use super::measures::network_energy;
 use super::model::RubberModel;
-use super::steps::{RubberSolid, StepOptions, Stepping, WayLimits};
+use super::steps::{RubberSolid, StepOptions, Stepping};
+use super::way::WayLimits;
 use crate::kinematics::vec3::Vec3;
 use crate::solver::plan::{Stage, tally::Tally};
 use crate::solver::profile::Profile;
@@ -47,8 +48,8 @@ pub struct Reached {
 }
 
 /// A part changes strains by 2 % where it is not a two-hundredth of the whole: at 5 % a bonded bushing whose way ends at 6.87 mm
-/// of 20 mm of rubber was found beyond. Without jumps the trapezoidal rule misses less than a per mille of the work of such a part,
-/// or of the next shorter ones; the jump of that bushing loses 0.7 % of the work of a tenth of a millimetre.
+/// of 20 mm of rubber was found beyond. The jump of that bushing loses 0.7 % of the work of a tenth of a millimetre; what the
+/// trapezoidal rule misses of a smooth part falls with the square of its length, so that it passes when it is short enough.
 const WAY: WayLimits = WayLimits { strain: 0.02, short: 0.005, lost: 3e-3 };
 
 /// Supports and loads are brought up together to what they are at time `t` (s): at once, or in as many parts

@@ -6,11 +6,11 @@
 //! that a pair of steps is taken and judged together.
 
 use super::checkpoint::{RubberCheckpoint, RubberState};
-use super::error::{RubberError, StepFailure, at_rest};
-use super::measures::network_energy;
+use super::error::{RubberError, StepFailure};
 use super::model::{Moment, RubberModel};
 use super::newton::{Convergence, Search, Stop};
 use super::tangent::StepLaw;
+use super::way::WayLimits;
 use crate::ch2_housing::elastomer::maxwell::{
     DashpotFactors, StepFactors, beyond_small_strain, carried, commit, curvature_error, summed,
 };
@@ -19,7 +19,6 @@ use crate::kinematics::strain::{Sym3, double_dot, green_lagrange};
 use crate::kinematics::vec3::{Vec3, dot};
 use crate::solver::plan::{Stage, tally::Tally};
 use crate::solver::solid::model::corners;
-use crate::solver::sparse::FactorError;
 
 /// How long steps are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,17 +28,6 @@ pub enum Stepping {
     /// The estimated error of a step's Maxwell stresses stays below this part of the largest total
     /// stress so far, in the mean square over the body.
     Accuracy(f64),
-}
-
-/// What keeps steps to the equilibria that follow from one to the next.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WayLimits {
-    /// Largest change of Green's strain in a step, in the mean square over the body.
-    pub strain: f64,
-    /// s; shorter steps may change strains as they will.
-    pub short: f64,
-    /// Of the work of a step, what may be missing in the energy after it: a jump loses some however short the step is.
-    pub lost: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +61,7 @@ pub struct RubberSolid<'a> {
     pub(super) search: Search<'a>,
     pub(super) options: StepOptions,
     pub(super) state: RubberState,
-    factors: StepFactors,
+    pub(super) factors: StepFactors,
     dashpots: DashpotFactors,
     pub(super) carried: Vec<Sym3>,
     corners: Vec<f64>,
@@ -81,7 +69,7 @@ pub struct RubberSolid<'a> {
     next: f64,
     /// Largest total deviatoric stress so far, mean square over the body, Pa.
     scale: f64,
-    volume: f64,
+    pub(super) volume: f64,
     pub counts: StepCounts,
 }
 
@@ -407,53 +395,9 @@ impl<'a> RubberSolid<'a> {
                 outcome => return outcome,
             }
         }
-        self.search.displacement.copy_from_slice(&self.state.displacement);
+        self.search.displacement.copy_from_slice(&state.displacement);
         self.search.predict(at, &law)?;
         self.search.converge(at, &law, &self.options.convergence)
-    }
-
-    /// Whether what [`RubberSolid::equilibrium`] found is near, follows without a jump and is stable.
-    fn keep_to(&mut self, way: WayLimits, step: f64) -> Result<(), Stop> {
-        let model = self.search.model;
-        let mut sum = 0.0;
-        for (tet, nodes) in model.tets.iter().zip(&model.problem.elements) {
-            let [from, to] = [&self.state.displacement, &self.search.displacement]
-                .map(|displaced| corners(displaced, nodes));
-            for point in &tet.points {
-                let [from, to] =
-                    [&from, &to].map(|at| green_lagrange(&point.displacement_gradient(at)));
-                let change: Sym3 = std::array::from_fn(|i| to[i] - from[i]);
-                sum += point.volume * double_dot(&change, &change);
-            }
-        }
-        let strain = (sum / self.volume).sqrt();
-        let near = strain <= way.strain || step <= way.short;
-        if !near {
-            return Err(StepFailure::Far { strain }.into());
-        }
-        let nodes = self.state.displacement.iter().zip(&self.search.displacement);
-        let forces = self.state.forces.iter().zip(&self.search.internal);
-        let work: f64 = nodes
-            .zip(forces)
-            .map(|((from, to), (before, after))| {
-                let gone = std::array::from_fn(|i| to[i] - from[i]);
-                -0.5 * (dot(*before, gone) + dot(*after, gone))
-            })
-            .sum();
-        let [before, after] = [&self.state.displacement, &self.search.displacement]
-            .map(|displaced| network_energy(model, displaced));
-        let lost = work - (after? - before?);
-        let held = lost <= way.lost * work.abs();
-        if !held {
-            return Err(StepFailure::Jump { part: lost / work.abs() }.into());
-        }
-        let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia: 0.0 };
-        let outcome = self.search.tangent.refresh(model, &law, &self.search.displacement, None)?;
-        match outcome {
-            Ok(()) => Ok(()),
-            Err(FactorError::NotPositiveDefinite { .. }) => Err(StepFailure::Unstable.into()),
-            Err(error) => Err(Stop::All(at_rest(error))),
-        }
     }
 
     /// What a step of `step` s owes to the state before it.
