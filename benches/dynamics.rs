@@ -143,8 +143,8 @@ fn accuracy_table(name: &str, problem: &DynamicProblem, reference_step: f64) {
         let [late, late_swing, _] = compare(&found, &reference, steady);
         let steps = found.simulation.steps;
         let overlap = found.simulation.control.as_ref().map_or(f64::NAN, |c| c.memory.displacement);
-        let residual =
-            found.simulation.snapshot().map_or(f64::NAN, |s| s.residual / s.energy.contact);
+        let last = found.simulation.snapshot();
+        let residual = last.residual / last.energy.contact;
         println!(
             "{accuracy:8.0e} {steps:6} {:8} {:8.2} {:13.2} {error:9.1e} {:11.1e} {:16.1e} {:9.1e} {:21.1e} {residual:16.1e}",
             found.simulation.system.work.rejected_steps,

@@ -1,9 +1,9 @@
 //! `bearing check SCENE`.
 
-use super::{CommandResult, Outcome, assembly, echo_run, say, solid};
+use super::{Changes, CommandResult, Outcome, assembly, echo_run, say, solid};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::visible::visible_line;
-use bearing_dynamics::scene::{Assumption, DefaultUsed, Document, Subject, resolve_subject};
+use bearing_dynamics::scene::{Assumption, DefaultUsed, Subject, resolve_subject};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -12,14 +12,17 @@ use std::path::{Path, PathBuf};
 pub struct Arguments {
     /// Scene file (.toml or .json)
     scene: PathBuf,
+    #[command(flatten)]
+    changes: Changes,
     /// Print everything that was understood, in SI-based units, as JSON
     #[arg(long)]
     json: bool,
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
-    let Arguments { scene: path, json } = arguments;
-    let document = Document::read_file(path)?;
+    let Arguments { scene: path, changes, json } = arguments;
+    // What is read by programs has no notes.
+    let document = if *json { changes.read_quietly(path)?.0 } else { changes.read(path)? };
     match resolve_subject(&document)? {
         Subject::Solid(solid) => solid::check::run(path, &document, &solid, *json),
         Subject::Assembly(scene) => assembly::check::run(path, &document, *scene, *json),

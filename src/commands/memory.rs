@@ -114,6 +114,18 @@ fn duration(seconds: f64) -> String {
     }
 }
 
+/// Refuses or announces a long piece of work; whether it is long.
+pub fn announced(cost: &Cost, other: &'static str) -> Result<bool, Box<dyn Error>> {
+    refuse_beyond(cost, other)?;
+    // As fast as any machine is: no need to measure for what is quick on all.
+    let quick = Speed { operations: 1e10, bytes: 5e9 };
+    let is_long = cost.seconds(&quick) >= WORTH_A_WORD;
+    if is_long {
+        say(&format!("{}: {}\n", cost.task.name, text(cost)))?;
+    }
+    Ok(is_long)
+}
+
 /// Refuses, announces and does a long piece of work, with a bar on a terminal.
 pub fn watched<T>(
     cost: &Cost,
@@ -121,14 +133,7 @@ pub fn watched<T>(
     other: &'static str,
     work: impl FnOnce() -> T,
 ) -> Result<T, Box<dyn Error>> {
-    refuse_beyond(cost, other)?;
-    // As fast as any machine is: no need to measure for what is quick on all.
-    let quick = Speed { operations: 1e10, bytes: 5e9 };
-    if cost.seconds(&quick) < WORTH_A_WORD {
-        return Ok(work());
-    }
-    say(&format!("{}: {}\n", cost.task.name, text(cost)))?;
-    if !std::io::stderr().is_terminal() {
+    if !announced(cost, other)? || !std::io::stderr().is_terminal() {
         return Ok(work());
     }
     let (done, progress) = (AtomicBool::new(false), unknowns.progress.clone());

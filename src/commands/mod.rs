@@ -48,22 +48,41 @@ pub type CommandResult = Result<Outcome, Box<dyn Error>>;
 /// Keys of a scene that the command line replaces.
 #[derive(clap::Args)]
 pub struct Changes {
-    /// key=value in place of what the scene says, as `sweep --vary` writes one; repeat it for more
+    /// key=value in place of what the scene says, as `sweep --vary` writes one; repeat it for more keys
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
 }
 
 impl Changes {
-    /// The scene with its keys replaced.
+    /// The scene with its keys replaced; says which others had to go.
     pub fn read(&self, scene: &Path) -> Result<Document, Box<dyn Error>> {
+        let (document, notes) = self.read_quietly(scene)?;
+        notes.iter().try_for_each(|note| say(&format!("note: {note}\n")))?;
+        Ok(document)
+    }
+
+    /// The scene with its keys replaced, and what is to be said of that.
+    pub fn read_quietly(&self, scene: &Path) -> Result<(Document, Vec<String>), Box<dyn Error>> {
         let mut document = Document::read_file(scene)?;
+        let (mut keys, mut notes) = (Vec::new(), Vec::new());
         for change in &self.set {
             let (key, value) = change
                 .split_once('=')
                 .ok_or_else(|| format!("--set {change}: write --set \"key=value\""))?;
-            document.set(key.trim(), value.trim())?;
+            let key = key.trim();
+            if keys.contains(&key) {
+                return Err(format!("--set {change}: {key} is set twice; give it once").into());
+            }
+            let gone = document.set(key, value.trim())?;
+            if let Some(other) = gone.iter().find(|gone| keys.contains(*gone)) {
+                return Err(format!("--set {change}: it excludes {other}, which is set too").into());
+            }
+            notes.extend(gone.iter().map(|gone| {
+                format!("--set {change}: {gone} of the scene, which it excludes, is gone")
+            }));
+            keys.push(key);
         }
-        Ok(document)
+        Ok((document, notes))
     }
 }
 

@@ -1,14 +1,16 @@
 //! `bearing modes SCENE`.
 
 use super::asked::Asked;
-use super::{CommandResult, assembly, solid};
-use bearing_dynamics::scene::{Document, Subject, resolve_subject};
+use super::{Changes, CommandResult, assembly, solid};
+use bearing_dynamics::scene::{Subject, resolve_subject};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Scene file (.toml or .json)
     scene: PathBuf,
+    #[command(flatten)]
+    changes: Changes,
     /// Results folder [default: results/<name of the scene>-modes]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -18,8 +20,8 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
-    let Arguments { scene: path, out, dry } = arguments;
-    let document = Document::read_file(path)?;
+    let Arguments { scene: path, changes, out, dry } = arguments;
+    let document = changes.read(path)?;
     let asked = Asked { path, document: &document, out, dry: *dry };
     match resolve_subject(&document)? {
         Subject::Solid(solid) => solid::modes::run(&asked, &solid),

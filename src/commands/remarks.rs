@@ -1,6 +1,6 @@
 //! What a reader of the numbers should know: one set of remarks for equilibrium and motion.
 
-use crate::commands::scene_remarks::{at_rest, of_springs, sudden_fits};
+use crate::commands::scene_remarks::{at_rest, of_springs, on_dents, sudden_fits};
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use bearing_dynamics::scene::Scene;
@@ -13,9 +13,7 @@ use bearing_dynamics::solver::dynamics::extremes::{Extreme, Extremes};
 use bearing_dynamics::solver::dynamics::run::Simulation;
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
 use bearing_dynamics::solver::static_tables::BearingState;
-use bearing_dynamics::solver::statics::{
-    AssemblySolution, BallState, ContactState, Determinacy, StaticProblem,
-};
+use bearing_dynamics::solver::statics::{AssemblySolution, BallState, ContactState, Determinacy};
 
 /// Pressure above which ISO 76 counts on lasting dents in ball bearings, Pa.
 const STATIC_RATING: f64 = 4200e6;
@@ -54,10 +52,10 @@ impl Seen {
     }
 }
 
-/// Of an equilibrium.
+/// Of an equilibrium of a bearing alone.
 pub fn of_statics(
     scene: &Scene,
-    problem: &StaticProblem,
+    assembly: &StaticAssembly,
     solution: &AssemblySolution,
 ) -> Vec<String> {
     let mut remarks = Vec::new();
@@ -74,8 +72,10 @@ pub fn of_statics(
                 .into(),
         );
     }
-    let contacts = [&problem.inner_contact, &problem.outer_contact];
-    remarks.extend(of_balls(scene, &Still::new(contacts, &solution.bearings[0])));
+    for (bearing, state) in assembly.bearings.iter().zip(&solution.bearings) {
+        let contacts = [&bearing.inner_contact, &bearing.outer_contact];
+        remarks.extend(of_balls(scene, &Still::new(contacts, state)));
+    }
     remarks
 }
 
@@ -181,7 +181,8 @@ pub fn of_run(scene: &AssemblyScene, simulation: &Simulation) -> Vec<String> {
     let each = scene.bearings.iter().zip(bearings).map(|(placed, (bearing, extremes))| {
         named(placed, of_moving(&placed.scene, bearing, extremes))
     });
-    of_springs(scene).into_iter().chain(sudden_fits(scene)).chain(each.flatten()).collect()
+    let of_scene = of_springs(scene).into_iter().chain(on_dents(scene)).chain(sudden_fits(scene));
+    of_scene.chain(each.flatten()).collect()
 }
 
 /// With the name of the bearing that they are about.

@@ -1,12 +1,15 @@
 //! What a reader should know of what the scene asks for, whatever the numbers turn out to be: of its shafts, springs and
 //! given motions.
 
+use bearing_dynamics::ch3_bushing::dent::Dent;
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::scene::Scene;
 use bearing_dynamics::scene::assembly::{AssemblyScene, SceneBody, Spring, SpringAt};
 use bearing_dynamics::scene::housing::{FitSize, HousingMethod};
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::dynamics::run::Start;
 use bearing_dynamics::solver::profile::Profile;
+use std::f64::consts::TAU;
 
 /// Shafts of tetrahedra.
 pub fn of_shafts(scene: &AssemblyScene) -> Vec<String> {
@@ -114,6 +117,38 @@ pub fn sudden_fits(scene: &AssemblyScene) -> impl Iterator<Item = String> {
             )
         })
     })
+}
+
+/// Half of the width of a usual contact along the rolling direction, in parts of the ball's radius.
+const HALF_CONTACT: f64 = 0.02;
+
+/// Balls that stand on a dent where a run begins in the equilibrium of races that have none.
+pub fn on_dents(scene: &AssemblyScene) -> Vec<String> {
+    let in_equilibrium = scene.run().is_some_and(|run| run.options.start == Start::Equilibrium);
+    let bearings = scene.bearings.iter().filter(|_| in_equilibrium);
+    let mut said = Vec::new();
+    for placed in bearings {
+        let Scene { geometry, dynamics, ball_phase, .. } = &placed.scene;
+        let near = |dent: &&Dent| {
+            let out = if dent.side == 0 { -geometry.ball_radius } else { geometry.ball_radius };
+            let radius = geometry.pitch_radius + out;
+            let reach = dent.shape.reach() + HALF_CONTACT * geometry.ball_radius;
+            let away = |azimuth: f64| radius * libm::remainder(azimuth - dent.angle, TAU).abs();
+            !dent.shape.vanishes()
+                && geometry.azimuths(*ball_phase).into_iter().any(|at| away(at) <= reach)
+        };
+        let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
+        said.extend(dynamics.dents.iter().filter(near).map(|dent| {
+            format!(
+                "a ball stands at the dent of the {} race{of} at {:.3} deg when the run begins, in the equilibrium of races that \
+                 have no dents: the first moments are the blow of its sinking in, which nothing real makes; begin with the ball \
+                 beside it (bearing.ball_phase) or leave them out (output.window_start)",
+                ["inner", "outer"][dent.side],
+                dent.angle.to_degrees()
+            )
+        }));
+    }
+    said
 }
 
 /// Outer races that turn as they are told, whatever acts on them.

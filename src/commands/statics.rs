@@ -1,8 +1,8 @@
 //! `bearing statics SCENE`.
 
 use super::asked::Asked;
-use super::{CommandResult, assembly, solid};
-use bearing_dynamics::scene::{Document, Subject, resolve_subject};
+use super::{Changes, CommandResult, assembly, solid};
+use bearing_dynamics::scene::{Subject, resolve_subject};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -10,6 +10,8 @@ use std::time::Instant;
 pub struct Arguments {
     /// Scene file (.toml or .json)
     scene: PathBuf,
+    #[command(flatten)]
+    changes: Changes,
     /// Results folder [default: results/<name of the scene>]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -20,8 +22,8 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
-    let Arguments { scene: path, out, dry } = arguments;
-    let document = Document::read_file(path)?;
+    let Arguments { scene: path, changes, out, dry } = arguments;
+    let document = changes.read(path)?;
     let asked = Asked { path, document: &document, out, dry: *dry };
     match resolve_subject(&document)? {
         Subject::Solid(solid) => solid::statics::run(&asked, &solid),

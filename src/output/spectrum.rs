@@ -5,8 +5,8 @@
 //! and its side lobes start at −31 dB; a sine between two bins shows up to 15 % (1.42 dB) low,
 //! which the interpolated [peaks] correct.
 //!
-//! The transform picks its code by processor, so that spectra agree between machines to rounding
-//! only.
+//! The transform has one code for all processors; its sines are the system's, so that spectra agree between
+//! systems to rounding only.
 
 use realfft::RealFftPlanner;
 use std::f64::consts::TAU;

@@ -105,14 +105,18 @@ impl<'d> ItemRef<'d> {
 }
 
 impl Layer {
-    /// Takes a value; those that exclude it are taken away.
-    pub fn put(&mut self, row: usize, key: &'static Key, given: Given) {
+    /// Takes a value; those that exclude it are taken away and named.
+    pub fn put(&mut self, row: usize, key: &'static Key, given: Given) -> Vec<&'static str> {
+        let mut gone = Vec::new();
         for rival in key.rivals() {
-            if let Some((row, _)) = keys::find(rival.path) {
-                self.given[row] = None;
+            if let Some((row, _)) = keys::find(rival.path)
+                && self.given[row].take().is_some()
+            {
+                gone.push(rival.path);
             }
         }
         self.given[row] = Some(given);
+        gone
     }
 }
 
@@ -324,22 +328,21 @@ impl Document {
     /// Replaces or adds one key, as `--vary` and `[sweep]` do: `set("bearing.clearance.radial", "5 um")`.
     ///
     /// Keys that exclude it (the diametral clearance, the displacement of a coordinate that gets a
-    /// load) are taken away.
+    /// load) are taken away; gives those that the scene had.
     ///
     /// # Errors
     /// An unknown key, or a value its key does not accept.
-    pub fn set(&mut self, path: &str, text: &str) -> Result<(), SceneError> {
+    pub fn set(&mut self, path: &str, text: &str) -> Result<Vec<&'static str>, SceneError> {
         let (row, key, named) = self.row(path)?;
         let checked =
             if key.in_list() { Err(Problem::NotSweepable) } else { value::check_bare(key, text) };
         let value = checked
             .map_err(|problem| SceneError::new(Place::file(&self.source.name), path, problem))?;
         let given = Given { value, offset: None, named: named.is_some() };
-        match named {
+        Ok(match named {
             Some(name) => self.layer_of(key, name).put(row, key, given),
             None => self.layer.put(row, key, given),
-        }
-        Ok(())
+        })
     }
 
     /// Reads what to vary: a list `"5 um, 0 um"` or a range `"0 deg .. 45 deg / 91"` for a key.

@@ -211,7 +211,7 @@ pub(super) const KEYS: &[Key] = &[
     quantity("numerics.output_interval", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("a thousandth of the run"),
         "Time from one written row to the next.").example_of("0.1 ms"),
     Key::new("numerics.energy_limit", Kind::Number(above(0.0, 1.0, "")), Depends("0.01; with an `accuracy` 0.2"),
-        "Energy unaccounted for, as a part of the energy turned over, at which the run is stopped. Turned over is the largest energy in the contacts, all work and losses, and with an `accuracy` also the kinetic energy and what goes into contacts and out again from row to row.").example_of("0.01"),
+        "Energy unaccounted for, as a part of the energy turned over, at which the run is stopped. Turned over is the largest energy in the contacts, all work and losses, and with an `accuracy` also the kinetic energy and what goes into contacts and out again. It is looked at whatever rows are written (with `rk4` every 16 steps, else after each): five looks on end stop the run, at the end of a run that is shorter than that one does.").example_of("0.01"),
     Key::new("numerics.integrator", Kind::Choice(INTEGRATORS), Depends("with a `step` or a `step_fraction`, and in a housing by explicit steps, `rk4`; otherwise what the plan chooses"),
         "Time integration: classical Runge-Kutta; Dormand and Prince's explicit method of fifth order; a linearly implicit one that traction and contacts do not bind. The latter two take an `accuracy`."),
 

@@ -42,6 +42,7 @@ pub fn rubber_setup(
             .push(format!("the scene's rubber is used, not the deck's material \"{}\"", deck.name));
     }
     notes.extend(sliding_sleeves(scene));
+    keeps_between_sleeves(scene)?;
     let (nodes, material) = (mesh.nodes.clone(), rubber.material.clone());
     let mut model =
         RubberModel::new(RubberProblem { nodes, elements, material, prescribed, loads })?;
@@ -77,6 +78,40 @@ fn sliding_sleeves(scene: &SolidScene) -> Vec<String> {
         })
     };
     ["inner", "outer"].into_iter().filter_map(said).collect()
+}
+
+/// Instants between corners at which given motions are looked at.
+const LOOKS: usize = 200;
+
+/// The sleeves of a generated bushing never come so far across that its wall has no room left.
+fn keeps_between_sleeves(scene: &SolidScene) -> Result<(), SolidSetupError> {
+    let MeshSource::Bushing(body, _) = &scene.mesh.source else { return Ok(()) };
+    let wall = body.thickness;
+    let end = scene.run.as_ref().map_or(0.0, |run| run.end);
+    let profiles = scene.held.iter().flat_map(|held| held.motion.iter().flatten());
+    let even = (0..=LOOKS).map(|look| end * look as f64 / LOOKS as f64);
+    let times = profiles.flat_map(Profile::corners).filter(|time| *time <= end).chain(even);
+    let moved = |set: &str, axis: usize, time: f64| {
+        let own = scene.held.iter().filter(|held| held.set == set);
+        own.filter_map(|held| held.motion[axis].as_ref()).map(|motion| motion.value(time)).next()
+    };
+    for time in times {
+        // About X.
+        let across = [1, 2].map(|axis| {
+            let [inner, outer] = ["inner", "outer"].map(|set| moved(set, axis, time));
+            inner.zip(outer).map_or(0.0, |(inner, outer)| inner - outer)
+        });
+        let far = libm::hypot(across[0], across[1]);
+        let fits = far < wall;
+        if !fits {
+            let axis = if across[0].abs() > across[1].abs() { 1 } else { 2 };
+            let mut held = (0..).zip(&scene.held);
+            let own = held.find(|(_, held)| held.set == "inner" && held.motion[axis].is_some());
+            let (index, axis) = (own.map_or(0, |(index, _)| index), ["x", "y", "z"][axis]);
+            return Err(SolidSetupError::ThroughSleeve { index, axis, across: far, wall, time });
+        }
+    }
+    Ok(())
 }
 
 /// A set that vibrates has no node that another set holds along the same axis: a quarter has no answer to motion

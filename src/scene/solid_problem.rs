@@ -86,6 +86,12 @@ pub enum SolidSetupError {
          {LONGEST_NAME}; give the probe a shorter `name`"
     )]
     LongName { index: usize, length: usize },
+    #[error(
+        "solid.held.{axis}: the inner sleeve goes {:.4} mm across at t = {time} s, against the outer one, and the rubber \
+         between them is {:.4} mm thick: sleeves would pass through each other. Hint: ask for less, and check the unit",
+        1e3 * *.across, 1e3 * *.wall
+    )]
+    ThroughSleeve { index: usize, axis: &'static str, across: f64, wall: f64, time: f64 },
     #[error("solid.probe.name: two probes are called \"{name}\"; give one of them another `name`")]
     ProbeTwice { index: usize, name: String },
 }
@@ -110,7 +116,8 @@ impl SolidSetupError {
             SolidSetupError::NoSurface { index, .. } => {
                 About::Item { table: "solid.load", index, key: "set" }
             }
-            SolidSetupError::HeldTwice { index, axis: key, .. } => {
+            SolidSetupError::HeldTwice { index, axis: key, .. }
+            | SolidSetupError::ThroughSleeve { index, axis: key, .. } => {
                 About::Item { table: "solid.held", index, key }
             }
             SolidSetupError::LoadOnSupport { index, .. } => {

@@ -6,6 +6,7 @@
 //! - [`solid`]: flexible solids by themselves (explicit steps, equilibrium, modes); [`sparse`] their factors.
 //! - [`housing`]: bearings in flexible solids: exchange with explicit ones, condensed bores, reduction to shapes.
 //! - [`rotor`]: a flexible shaft as a beam.
+//! - [`ledger_watch`]: whether energy adds up.
 //! - [`plan`]: what is done and what is left out; [`clock`] and [`profile`]: time; [`channels`]: what is recorded.
 pub mod ball;
 pub mod ball_on_race;
@@ -18,6 +19,7 @@ pub mod dynamics;
 pub mod free_shapes;
 pub mod half_space;
 pub mod housing;
+pub mod ledger_watch;
 pub mod mount;
 pub mod plan;
 pub mod profile;

@@ -26,6 +26,9 @@ impl Search<'_, '_> {
     pub(super) fn check_balls(&self, here: &Evaluation) -> Result<(), StaticsError> {
         /// Newton's last step leaves 1e-11; anything above this is a ball still on its way.
         const SETTLED: f64 = 1e-8;
+        /// Loads in parts of a ball's own force (weight, centrifugal) from which on races press it. What less than that
+        /// lays on the far side of a groove hangs there loose, and says nothing of the others; remarks tell it.
+        const PRESSED: f64 = 2.0;
         for (bearing, of) in self.model.assembly.bearings.iter().enumerate() {
             let race = self.model.race(bearing, 0, &here.at);
             let contacts = &self.model.bearings[bearing].contacts;
@@ -38,7 +41,24 @@ impl Search<'_, '_> {
                         let unbalance = ball.unbalance;
                         return Err(StaticsError::BallNotSettled { ball: named(), unbalance });
                     }
-                    Some(_) => {}
+                    Some(settled) => {
+                        let [along, out] = plane.body_force(settled.position[1]);
+                        let own = libm::hypot(along, out);
+                        let sides = [
+                            (settled.outer_load, &settled.outer, 1.0),
+                            (settled.inner_load, &settled.inner, -1.0),
+                        ];
+                        for (load, contact, outward) in sides {
+                            let [axial, radial] = contact.normal;
+                            let held = load <= PRESSED * own || outward * radial >= 0.0;
+                            if !held {
+                                let angle = libm::atan2(axial, outward * radial);
+                                let (ball, degrees) = (named(), angle.to_degrees());
+                                let overlap = contact.overlap;
+                                return Err(StaticsError::BallOutside { ball, overlap, degrees });
+                            }
+                        }
+                    }
                     None => {
                         let (overlap, angle) = overlap_of_races(plane, &race, contacts);
                         if overlap > 0.0 && angle.abs() > std::f64::consts::FRAC_PI_2 {

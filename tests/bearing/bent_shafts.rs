@@ -91,12 +91,12 @@ pub fn run(assembly: Assembly, integrator: Integrator, stepping: Stepping, end: 
     let options =
         RunOptions { start: Start::Nominal, integrator, stepping, ..RunOptions::default() };
     let mut simulation = Simulation::new(assembly, options).unwrap();
-    simulation.snapshot().unwrap();
+    simulation.snapshot();
     while simulation.time < end * (1.0 - 1e-12) {
         let step = simulation.step_size.min(end - simulation.time);
         simulation.step_by(step).unwrap();
     }
-    simulation.snapshot().unwrap();
+    simulation.snapshot();
     simulation
 }
 

@@ -331,7 +331,7 @@ fn recorded_contact_forces_hold_the_load_and_the_energy_balances() {
     let problem = damped();
     let stepping = Stepping::Accuracy(1e-3);
     let mut simulation = motion(&problem, Integrator::Rosenbrock, stepping, 5e-3, 50).1;
-    let snapshot = simulation.snapshot().unwrap();
+    let snapshot = simulation.snapshot();
     assert!(simulation.system.sets[0].on_races[0].force[2] > 0.0);
     // Newton's law for the race, whose acceleration is what the rates say, traction included.
     let at = simulation.system.sets[0].layout.inner() + 7;

@@ -271,11 +271,11 @@ fn prescribed_tilts_are_followed_far_from_upright() {
     problem.inner.drives[3] = tilt(0.5, 20.0, 0.3);
     problem.inner.drives[4] = tilt(0.4, 27.0, 1.1);
     let mut simulation = simulation(&problem, 20e-6, Start::Nominal);
-    let first = simulation.snapshot().unwrap().energy.kinetic;
+    let first = simulation.snapshot().energy.kinetic;
     let mut turned = 0.0_f64;
     for _ in 0..2500 {
         simulation.step().unwrap();
-        let snapshot = simulation.snapshot().unwrap();
+        let snapshot = simulation.snapshot();
         let kinetic = snapshot.energy.kinetic;
         turned = turned.max((kinetic - first).abs());
         let work = ledger(&simulation, Ledger::Drives);
@@ -300,13 +300,13 @@ fn a_tilting_moment_does_work_on_its_tilt() {
     let mut simulation = simulation(&problem, 20e-6, Start::Nominal);
     let at = simulation.system.sets[0].layout.inner();
     simulation.state[at + SPIN] = 20.0;
-    let first = simulation.snapshot().unwrap().energy.kinetic;
+    let first = simulation.snapshot().energy.kinetic;
     let mut largest = [0.0_f64; 2];
     for _ in 0..2000 {
         simulation.step().unwrap();
         let tilts = tilts_of(inner_state(&simulation).axis());
         let work: f64 = moments.iter().zip(tilts).map(|(moment, tilt)| moment * tilt).sum();
-        let gained = simulation.snapshot().unwrap().energy.kinetic - first;
+        let gained = simulation.snapshot().energy.kinetic - first;
         // Fourth order of ω h = 1e-3, over 2000 steps.
         assert!((gained - work).abs() <= 1e-10, "{gained} J for {work} J");
         for (largest, tilt) in largest.iter_mut().zip(tilts) {

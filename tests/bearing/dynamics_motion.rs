@@ -27,7 +27,7 @@ fn largest_residual(simulation: &mut Simulation, steps: usize, every: usize) -> 
     for step in 0..steps {
         simulation.step().unwrap();
         if (step + 1) % every == 0 {
-            let snapshot = simulation.snapshot().unwrap();
+            let snapshot = simulation.snapshot();
             residual = residual.max(snapshot.residual.abs());
             strain = strain.max(snapshot.energy.contact);
         }
@@ -292,9 +292,9 @@ fn lost_kinetic_energy_is_in_the_ledger() {
     let mut simulation =
         Simulation::from_state(problem.clone(), fixed_step(0.5e-6, Start::Nominal), state, 0.0)
             .unwrap();
-    let before = simulation.snapshot().unwrap().energy;
+    let before = simulation.snapshot().energy;
     let (residual, _) = largest_residual(&mut simulation, 8000, 50);
-    let after = simulation.snapshot().unwrap();
+    let after = simulation.snapshot();
     let lost = before.total() - after.energy.total();
     let booked = -after.ledger.iter().sum::<f64>();
     println!("lost {lost} J, booked {booked} J, residual {residual}");
@@ -346,7 +346,7 @@ fn prescribed_histories_are_followed_and_their_work_is_booked() {
             }
             let along = Vector3::from(inner.spin).dot(&Vector3::from(inner.axis()));
             assert!((along / speed.value(t) - 1.0).abs() <= 1e-15);
-            let turned = simulation.snapshot().unwrap();
+            let turned = simulation.snapshot();
             let scale = turned.ledger.iter().map(|entry| entry.abs()).sum::<f64>();
             residual / scale
         });

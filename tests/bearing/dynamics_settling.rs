@@ -133,7 +133,7 @@ fn means(problem: &DynamicProblem, step: f64, settle_pitches: usize, pitches: us
     let samples = 100 * pitches;
     for _ in 0..samples {
         run(&mut simulation, every);
-        simulation.snapshot().unwrap();
+        simulation.snapshot();
         let set = &simulation.system.sets[0];
         // Mean deviation of the balls from equal spacing, and their mean speed of orbit.
         let (mut phase, mut orbit) = (0.0, 0.0);
@@ -212,7 +212,7 @@ fn centrifugal_force_loads_the_outer_race_at_10_000_rpm() {
     let (mut difference, mut expected, samples) = (0.0, 0.0, 2000);
     for _ in 0..samples {
         run(&mut simulation, 1);
-        simulation.snapshot().unwrap();
+        simulation.snapshot();
         for ball in 0..layout.balls {
             let table = &simulation.system.sets[0].table;
             difference += table.load[layout.padded + ball] - table.load[ball];

@@ -118,7 +118,7 @@ fn error(integrator: Integrator, stepping: Stepping) -> (f64, u64, f64) {
     for k in 0..ELEMENTS.len() {
         error = error.max((simulation.state[first + 6 * k + 2] - of[2 + k]).abs());
     }
-    let residual = simulation.snapshot().unwrap().residual;
+    let residual = simulation.snapshot().residual;
     (error / (load / RELAXED), simulation.steps, residual / (load * load / RELAXED))
 }
 

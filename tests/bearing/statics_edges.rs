@@ -96,6 +96,40 @@ fn gravity_lays_loose_balls_onto_the_races() {
     }
 }
 
+/// A groove is a whole torus to the model, whose far side no race has: one race lifted over the other presses balls there.
+#[test]
+fn a_ball_that_races_press_past_90_deg_is_an_error() {
+    // More play than the grooves are wider than the ball: centres of curvature have passed each other.
+    let mut small = table_4_1(5e-6);
+    small.inner.centre_radius -= 0.5e-3;
+    let mut found = 0;
+    for tenths in 0..40 {
+        let mut conditions = [Condition::Displacement(0.0); 5];
+        conditions[0] = Condition::Displacement(1e-4 * f64::from(tenths));
+        for gravity in [0.0, 9.81] {
+            let mut task = problem(small, conditions);
+            task.gravity = Vector3::new(0.0, 0.0, -gravity);
+            match solve(&task) {
+                Err(StaticsError::BallOutside { degrees, .. }) => {
+                    assert!(degrees.abs() > 90.0);
+                    found += 1;
+                }
+                Err(other) => panic!("{tenths}: {other}"),
+                Ok(solution) => {
+                    for ball in &solution.balls {
+                        for contact in [&ball.inner, &ball.outer] {
+                            let pressed = contact.normal_load > 2.1 * task.ball_mass * gravity;
+                            let angle = contact.contact_angle.to_degrees();
+                            assert!(!pressed || angle.abs() <= 90.0, "{tenths}: {angle}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(found > 0);
+}
+
 #[test]
 fn a_soft_direction_that_holds_is_determinate() {
     // One ball right under the load holds the race along X by the swivel of its contact line

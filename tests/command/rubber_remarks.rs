@@ -1,7 +1,13 @@
 //! What commands say of rubber beyond its numbers: a volume that its law was not made for, steps that are known, a table
 //! that was written as a number.
 
+use super::rubber_command::numerics;
+use crate::resume_common::{signal, wait};
 use crate::solid_command_common::{Place, command, into_folder, json, stderr, succeed};
+
+use std::fs;
+use std::process::Stdio;
+use std::time::Duration;
 
 /// A cube of rubber, free at its sides, whose end goes `moved` mm.
 fn cube(moved: &str, further: &str) -> String {
@@ -187,4 +193,53 @@ fn a_pulse_between_two_steps_is_told() {
     };
     assert!(struck("20 us").contains("a load or support changes within 0.00002 s, and steps are"));
     assert!(!struck("400 us").contains("a load or support changes within"));
+}
+
+/// A signal ends the way to an equilibrium at the end of a part of it; what was found stays.
+#[test]
+fn an_interrupted_equilibrium_of_rubber_keeps_its_curve() {
+    let place = Place::new();
+    // Some tens of parts of a tenth of a second each.
+    let text = numerics("0.2 s")
+        .replace("around = 3, radial = 2, axial = 1", "around = 8, radial = 4, axial = 4")
+        .replace("500 um", "5000 um");
+    let out = place.path("out");
+    let mut command = into_folder("statics", &place.scene("s.toml", &text), &out, &[]);
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(1500));
+    signal(&child, "-INT");
+    let (code, message) = wait(child);
+    assert_eq!(code, Some(2), "{message}");
+    assert!(message.contains("interrupted at ") && message.contains("in curve.csv"), "{message}");
+    let rows = fs::read_to_string(out.join("curve.csv")).unwrap().lines().count() - 1;
+    assert!(message.contains(&format!("; {rows} equilibria")) && rows > 0, "{message}");
+    assert!(!out.join("summary.json").exists());
+}
+
+/// Sleeves keep the wall of their rubber between them: across, at every time, against each other.
+#[test]
+fn sleeves_that_would_pass_through_each_other_are_refused() {
+    let place = Place::new();
+    let verdict = |verb: &str, text: &str| {
+        let output = command(verb, &place.scene("s.toml", text), &[]).output().unwrap();
+        (output.status.code(), stderr(&output))
+    };
+    let by = |way: &str| numerics("0.2 s").replace("500 um", way);
+    for verb in ["check", "plan", "statics", "run"] {
+        let (code, message) = verdict(verb, &by("8.01 mm"));
+        assert_eq!(code, Some(2), "{verb}: {message}");
+        assert!(message.contains("solid.held.z: the inner sleeve goes 8.0100 mm"), "{message}");
+        assert!(message.contains("is 8.0000 mm thick"), "{message}");
+    }
+    assert_eq!(verdict("check", &by("7.9 mm")).0, Some(0));
+    // As far as the run goes, and both sleeves together.
+    let short = by("8.01 mm").replace("0.2 s", "0.05 s");
+    let short = short.replace("fields_interval = \"0.1 s\"", "fields_interval = \"10 ms\"");
+    assert_eq!(verdict("check", &short), (Some(0), String::new()));
+    let outer = "set = \"outer\"\nx = true\ny = true\nz = true";
+    assert!(by("4 mm").contains(outer));
+    let apart = by("4.1 mm").replace(outer, &outer.replace("z = true", "z = \"-4 mm\""));
+    assert_eq!(verdict("check", &apart).0, Some(2));
+    let along = by("4.1 mm").replace(outer, &outer.replace("z = true", "z = \"4 mm\""));
+    assert_eq!(verdict("check", &along).0, Some(0));
 }

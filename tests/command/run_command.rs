@@ -178,6 +178,43 @@ fn interrupted_by_a_signal_and_resumed() {
     assert_same_results(&whole, &parts);
 }
 
+/// What does not let a run go on is named with what it was.
+#[test]
+fn a_run_that_cannot_go_on_says_what_has_changed() {
+    let place = Place::new();
+    let text = scene("end = \"1 ms\"\nstep = \"2 us\"", "plots = []");
+    let parts = place.path("parts");
+    assert_eq!(code(&run(&place.scene("scene.toml", &text), &parts, &[])), 0);
+    let longer = text.replace("\"1 ms\"", "\"2 ms\"");
+    for (from, to, told) in [
+        ("\"-250 N\"", "\"-251 N\"", "inner_race.z"),
+        ("\"1000 rpm\"", "\"1001 rpm\"", "inner_race.speed"),
+        ("mass = \"20 g\"", "mass = \"21 g\"", "bearing.cage.mass was 0.02 kg, is 0.021 kg"),
+    ] {
+        let changed = place.scene("changed.toml", &longer.replace(from, to));
+        let output = run(&changed, &parts, &["--resume"]);
+        assert_eq!(code(&output), 2);
+        let message = stderr(&output);
+        // First what was written, then what follows from it.
+        assert!(message.contains(&format!("; changed: scene.{told}")), "{message}");
+    }
+    assert_eq!(code(&run(&place.scene("longer.toml", &longer), &parts, &["--resume"])), 0);
+}
+
+/// The trial that has chosen the method is not made again: what it said stays with the run.
+#[test]
+fn a_resumed_run_keeps_the_method_of_the_plan_and_its_reason() {
+    let place = Place::new();
+    let scene = place.scene("scene.toml", &scene("end = \"2 s\"", "plots = []"));
+    let (whole, parts) = (place.path("whole"), place.path("parts"));
+    interrupted(command(&scene, &parts, &[]), 60, &parts);
+    let output = run(&scene, &parts, &["--resume"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert!(said(&output).contains("chosen: the least work in a short trial"), "{}", said(&output));
+    assert_eq!(code(&run(&scene, &whole, &[])), 0);
+    assert_same_results(&whole, &parts);
+}
+
 #[test]
 fn killed_outright_it_goes_on_from_the_last_state_kept() {
     let place = Place::new();

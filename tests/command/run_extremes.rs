@@ -3,10 +3,10 @@
 use super::run_recorder::{column, table, to_the_end};
 use crate::run_common;
 
-use bearing_dynamics::output::session::{RunRequest, Session, Status};
+use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status};
 use bearing_dynamics::output::summary::{RunReport, run_summary};
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
+use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, SimulationError, Stepping};
 use bearing_dynamics::solver::dynamics::state::POSITION;
 use bearing_dynamics::solver::profile::Profile;
 use run_common::{frictionless, jolted, request, simulation};
@@ -119,4 +119,49 @@ fn the_summary_tells_the_largest_residual_of_all_rows() {
     assert_eq!(of("energy_residual"), rows[rows.len() - 1]);
     assert_eq!(of("largest_residual"), largest);
     assert!(largest > rows[rows.len() - 1].abs(), "{rows:?}");
+}
+
+/// Where a run ends for its energy, if it does: time, energy missing and turned over.
+fn ended(energy_limit: f64, rows: f64) -> Option<[f64; 3]> {
+    let options =
+        RunOptions { stepping: Stepping::Fixed(6e-6), energy_limit, ..RunOptions::default() };
+    let wanted = RunRequest { options, end: 6e-3, output_interval: rows, ..request(6e-6, 1) };
+    let mut session = Session::start(struck(), &wanted).unwrap();
+    loop {
+        match session.advance(1) {
+            Ok(Status::Complete) => return None,
+            Ok(_) => {}
+            Err(SessionError::Simulation(SimulationError::Energy {
+                residual,
+                turned_over,
+                time,
+                ..
+            })) => return Some([time, residual, turned_over]),
+            Err(other) => panic!("{other}"),
+        }
+    }
+}
+
+/// Steps of a sixth of the fastest period lose a part of what a pulse brings: more of it is open than some limits allow and
+/// less than others, whatever rows are written.
+#[test]
+fn what_may_go_missing_does_not_hang_on_rows() {
+    let mut found = Vec::new();
+    for energy_limit in [1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0] {
+        let [fine, coarse, two] = [6e-6, 96e-6, 6e-3].map(|rows| ended(energy_limit, rows));
+        for other in [coarse, two] {
+            match (fine, other) {
+                (None, None) => {}
+                // But for rounding of the times at which the pulse is read.
+                (Some(fine), Some(other)) => {
+                    for (a, b) in fine.into_iter().zip(other) {
+                        assert!((a / b - 1.0).abs() <= 1e-9, "{energy_limit}: {fine:?} {other:?}");
+                    }
+                }
+                _ => panic!("{energy_limit}: {fine:?} {other:?}"),
+            }
+        }
+        found.push(fine.is_some());
+    }
+    assert!(found.contains(&true) && found.contains(&false), "{found:?}");
 }

@@ -314,6 +314,30 @@ fn remarks_tell_numbers_of_the_results() {
     assert!(remarks.iter().all(|r| !r.as_str().unwrap().contains("is left out")), "{remarks:?}");
 }
 
+/// A start in the equilibrium of races without dents drops a ball that stands at one.
+#[test]
+fn a_run_that_begins_with_a_ball_on_a_dent_says_so() {
+    let place = Place::new();
+    let said_at = |angle: &str, start: &str| {
+        let numerics = format!("end = \"0.1 ms\"\nstep = \"2 us\"\nstart = \"{start}\"");
+        let dent = format!(
+            "[[bearing.dent]]\nrace = \"outer\"\nangle = \"{angle}\"\ndiameter = \"500 um\"\n"
+        );
+        let text = scene(&numerics, "plots = []")
+            .replace("[bearing.cage]", &format!("{dent}[bearing.cage]"));
+        let output = run(&place.scene("scene.toml", &text), &place.path("out"), &[]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        said(&output).contains("a ball stands at the dent of the outer race")
+    };
+    // Balls every 45 deg from Y on; a dent of 0.25 mm to either side at 32 mm reaches 0.45 deg, half a contact 0.2 more.
+    for (angle, near) in
+        [("270 deg", true), ("270.5 deg", true), ("-89.5 deg", true), ("271 deg", false)]
+    {
+        assert_eq!(said_at(angle, "equilibrium"), near, "{angle}");
+    }
+    assert!(!said_at("270 deg", "nominal"));
+}
+
 /// Equilibria have races without dents: `statics` says so, a course of them is refused.
 #[test]
 fn equilibria_say_that_dents_are_left_out() {

@@ -27,6 +27,7 @@ fn record(problem: &DynamicProblem, request: &RunRequest, stopped: Stopped) -> S
         stopped,
         error: None,
         seconds: 0.0,
+        mean_steps: None,
     }
 }
 
@@ -242,7 +243,9 @@ fn a_state_of_something_else_is_refused() {
     assert!(matches!(try_with(&more_rows, problem.clone(), &wanted), StateError::Rows { .. }));
     // The file itself.
     let text = fs::read_to_string(folder.join(state::STATE)).unwrap();
-    fs::write(folder.join(state::STATE), text.replace("\"form\": 4", "\"form\": 3")).unwrap();
+    let now = format!("\"form\": {}", state::FORM);
+    assert!(text.contains(&now));
+    fs::write(folder.join(state::STATE), text.replace(&now, "\"form\": 4")).unwrap();
     assert!(matches!(read(folder), Err(StateError::Journal(JournalError::Form { .. }))));
     fs::write(folder.join(state::STATE), &text[..text.len() / 2]).unwrap();
     assert!(matches!(read(folder), Err(StateError::Journal(JournalError::Json { .. }))));

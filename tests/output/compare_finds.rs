@@ -379,6 +379,23 @@ fn a_missing_file_is_a_difference_and_a_damaged_one_an_error() {
     assert!(matches!(compare(&file, &summary, &options), Err(CompareError::KindMismatch { .. })));
 }
 
+/// A reference that lacks a table says nothing of the candidate's, and the report says so.
+#[test]
+fn files_that_only_the_candidate_has_are_named() {
+    let (_root, reference, candidate) = pair();
+    for name in ["series.csv", "series.npy"] {
+        fs::remove_file(reference.join(name)).unwrap();
+    }
+    let result = compare(&reference, &candidate, &Options::default()).unwrap();
+    assert!(result.equal, "{}", report(&result));
+    assert_eq!(result.only_in_candidate, ["series.csv: all of it"]);
+    assert!(report(&result).contains("only in the candidate:\n  series.csv: all of it"));
+    // Without its .csv the .npy is the table.
+    fs::remove_file(candidate.join("series.csv")).unwrap();
+    let result = compare(&reference, &candidate, &Options::default()).unwrap();
+    assert_eq!(result.only_in_candidate, ["series.npy: all of it"]);
+}
+
 /// What holds no results on either side is no difference of results.
 #[test]
 fn what_holds_no_results_is_an_error_and_not_a_difference() {

@@ -403,7 +403,7 @@ fn strike(problem: &DynamicProblem, blow: &Blow, speed: f64) -> Result<[f64; 3],
     let (mut depth, mut touching) = (f64::NEG_INFINITY, 0u32);
     for _ in 0..10_000 {
         simulation.step()?;
-        simulation.snapshot()?;
+        simulation.snapshot();
         let penetration = (blow.penetration)(&simulation.system);
         depth = depth.max(penetration);
         if penetration > 0.0 {

@@ -241,7 +241,7 @@ fn dip(context: &mut CaseContext, pitch: f64) -> Result<(), CaseError> {
     );
     let scene = scene(&Held::Fixed, pitch, &[])?;
     let mut simulation = Simulation::new(scene.assembly()?, request(&scene)?.options)?;
-    simulation.snapshot()?;
+    simulation.snapshot();
     let set = &simulation.system.sets[0];
     let (stiffness, table) = (set.laws.races[1].stiffness, &set.laws.dents[0].table);
     let mut rows = Vec::new();

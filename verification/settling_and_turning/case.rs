@@ -115,7 +115,7 @@ fn settled_off(lengths: &Lengths, loads: [f64; 5]) -> Result<[f64; 2], CaseError
         simulation.step()?;
         hold_azimuths(&mut simulation);
     }
-    simulation.snapshot()?;
+    simulation.snapshot();
     let expected =
         bearings::oracle(lengths, Hertz::Fit, phase).solve(&loads.map(Known::Load), None);
     let layout = simulation.system.sets[0].layout;
@@ -206,7 +206,7 @@ fn turn(problem: &DynamicProblem, known: &[Known; 5], moment: bool) -> Result<Tu
     let mut turn = Turn::default();
     for sample in 1..=PITCHES * SAMPLES {
         motion::run(&mut simulation, every)?;
-        simulation.snapshot()?;
+        simulation.snapshot();
         let set = &simulation.system.sets[0];
         let balls = BallSet::of(&simulation);
         let still = balls.oracle(&INTERFERENCE).solve(known, None);

@@ -175,7 +175,7 @@ pub fn simulate(
         last = now;
     }
     // Fails if energy went missing.
-    simulation.snapshot()?;
+    simulation.snapshot();
     motion.steps = simulation.steps;
     Ok(motion)
 }

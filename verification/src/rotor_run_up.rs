@@ -170,7 +170,7 @@ pub fn run_up(assembly: Assembly, way: &Way, end: f64) -> Result<Done, CaseError
     };
     let mut simulation = Simulation::new(assembly, options)?;
     let watch = Stopwatch::start();
-    simulation.snapshot()?;
+    simulation.snapshot();
     let (_, section) = simulation.system.assembly.shafts[0].watched[0].clone();
     let mut done = Done::default();
     let (mut next, mut stored) = (0.0, 0.0f64);
@@ -181,14 +181,14 @@ pub fn run_up(assembly: Assembly, way: &Way, end: f64) -> Result<Done, CaseError
         done.see(simulation.time, simulation.body(0).spin[0], height);
         if simulation.time >= next {
             next += 1e-3 * end;
-            let now = simulation.snapshot()?;
+            let now = simulation.snapshot();
             let energy = now.energy;
             stored = stored.max(energy.bending_kinetic + energy.bending_strain + energy.contact);
             done.residual = done.residual.max(now.residual.abs());
             done.astray = done.astray.max(astray(&simulation));
         }
     }
-    let damped = simulation.snapshot()?.ledger[Ledger::Foundation as usize].abs();
+    let damped = simulation.snapshot().ledger[Ledger::Foundation as usize].abs();
     done.residual /= stored + damped;
     done.steps = simulation.steps;
     done.seconds = watch.seconds();

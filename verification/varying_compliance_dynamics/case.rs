@@ -135,7 +135,7 @@ fn pitch(setting: &Setting) -> Result<Pitch, CaseError> {
     let mut pitch = Pitch { fewest_loaded: usize::MAX, ..Pitch::default() };
     for _ in 0..SAMPLES {
         motion::run(&mut simulation, every)?;
-        simulation.snapshot()?;
+        simulation.snapshot();
         let [_, y, z, ..] = motion::inner_coordinates(&simulation);
         pitch.dynamic.push(y, z);
         let loaded = (0..lengths.balls)

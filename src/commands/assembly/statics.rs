@@ -84,7 +84,7 @@ pub fn find_equilibrium<'s>(
         None => None,
     };
     let mut remarks = match &of_one {
-        Some((problem, _)) => remarks::of_statics(scene.common(), problem, &moment.solution),
+        Some(_) => remarks::of_statics(scene.common(), still, &moment.solution),
         None => remarks::of_assembly(scene, still, &moment.solution),
     };
     let defaults = match scene.only() {

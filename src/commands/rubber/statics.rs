@@ -3,7 +3,7 @@
 use super::{Prepared, plan, prepare, refuse_free};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
-use crate::commands::memory::watched;
+use crate::commands::memory::announced;
 use crate::commands::solid::statics::{WRITTEN, table, write};
 use crate::commands::solid::{record, say_mesh_notes, say_remarks};
 use crate::commands::{CommandResult, Outcome, placed, say};
@@ -20,12 +20,15 @@ use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::clock::told;
 use bearing_dynamics::solver::plan::tally::Tally;
 use bearing_dynamics::solver::solid::foretold;
-use bearing_dynamics::solver::solid::rubber::relaxed::{RelaxedError, relaxed};
+use bearing_dynamics::solver::solid::rubber::relaxed::{RelaxedError, relaxed_while};
 use bearing_dynamics::solver::solid::rubber::vibration::{Answer, vibrations};
+use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 pub const HARMONIC: &str = "harmonic.csv";
@@ -42,7 +45,10 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     let start = Instant::now();
     let model = &setup.model;
     let cost = foretold::rubber(model, "statics");
-    let found = watched(&cost, &model.unknowns, "", || relaxed(model, time))?;
+    announced(&cost, "")?;
+    let watch = Watch::new()?;
+    let found = relaxed_while(model, time, |part| watch.see(part));
+    watch.bar.finish_and_clear();
     let found = found.map_err(|error| keep_curve(&prepared, folder.as_deref(), error))?;
     let mut seconds =
         vec![("mesh".into(), *mesh_seconds), ("solve".into(), start.elapsed().as_secs_f64())];
@@ -85,22 +91,60 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     Ok(Outcome::Done)
 }
 
+/// A bar for the parts of loads and displacements, and whether to go on.
+struct Watch {
+    bar: ProgressBar,
+    interrupted: Arc<AtomicBool>,
+}
+
+impl Watch {
+    /// # Errors
+    /// A signal that cannot be heard.
+    fn new() -> Result<Watch, Box<dyn Error>> {
+        // Hidden by itself when standard error is not a terminal.
+        let bar = ProgressBar::new(1000);
+        let style = "{elapsed} {bar:30} {percent} % of loads and displacements, {eta} left";
+        if let Ok(style) = ProgressStyle::with_template(style) {
+            bar.set_style(style);
+        }
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let flag = interrupted.clone();
+        // Who asks twice does not want to wait for the end of a part.
+        ctrlc::set_handler(move || {
+            if flag.swap(true, Ordering::Relaxed) {
+                std::process::exit(2);
+            }
+        })?;
+        Ok(Watch { bar, interrupted })
+    }
+
+    fn see(&self, part: f64) -> bool {
+        self.bar.set_position((1000.0 * part) as u64);
+        // The last part leaves nothing to interrupt.
+        part >= 1.0 || !self.interrupted.load(Ordering::Relaxed)
+    }
+}
+
 /// Of an equilibrium that was lost on the way: writes what was found before, and says what to do.
 fn keep_curve(prepared: &Prepared, folder: Option<&Path>, error: RelaxedError) -> Box<dyn Error> {
-    let RelaxedError::Lost { reached, .. } = &error else { return error.into() };
-    const ADVICE: &str = "ask for less, refine the mesh where it is bonded, or let it take time (`bearing run`): what \
-                          folds slowly follows further in steps while Maxwell elements hold it";
+    const LOST: &str = "; ask for less, refine the mesh where it is bonded, or let it take time (`bearing run`): what \
+                        folds slowly follows further in steps while Maxwell elements hold it";
+    let (reached, advice) = match &error {
+        RelaxedError::Lost { reached, .. } => (reached, LOST),
+        RelaxedError::Stopped { reached, .. } => (reached, ""),
+        RelaxedError::Rubber(_) => return error.into(),
+    };
     let (count, text) = (reached.len(), error.to_string());
     let Some(folder) = folder.filter(|_| count > 0) else {
-        return format!("{text}; {ADVICE}").into();
+        return format!("{text}{advice}").into();
     };
     let written = remove_earlier(folder).and_then(|()| {
         let curve = summary::reached_series(&prepared.setup, reached)?;
         Ok(curve.write_csv(&folder.join(CURVE))?)
     });
     match written {
-        Ok(()) => format!("{text}; {count} equilibria up to there are in {CURVE}; {ADVICE}").into(),
-        Err(also) => format!("{text}; {CURVE} could not be written: {also}; {ADVICE}").into(),
+        Ok(()) => format!("{text}; {count} equilibria up to there are in {CURVE}{advice}").into(),
+        Err(also) => format!("{text}; {CURVE} could not be written: {also}{advice}").into(),
     }
 }
 

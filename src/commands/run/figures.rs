@@ -44,7 +44,10 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
             lines.extend(course.problem.seats.iter().map(|seat| of_bore(table, &seat.name)));
         }
         Motion::Solid(_) => {}
-        Motion::Rubber(_) => of_supports(session, table, &mut lines),
+        Motion::Rubber(moving) => {
+            let maxwell = &moving.solid.model().problem.material.maxwell;
+            of_supports(session, table, !maxwell.is_empty(), &mut lines);
+        }
     }
     if session.motion.is_balanced_whole() {
         let (most, of) = (session.watch.largest_residual, session.watch.turned_over);
@@ -86,7 +89,7 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
 }
 
 /// Largest force of each support along each axis, and what it was at the end.
-fn of_supports(session: &Session, table: &RunTable, lines: &mut Lines) {
+fn of_supports(session: &Session, table: &RunTable, has_maxwell: bool, lines: &mut Lines) {
     for support in &session.recorder.supports {
         for axis in support.axes().into_iter().map(|axis| ["x", "y", "z"][axis]) {
             let column = format!("reaction_{}_{axis}", support.name);
@@ -97,7 +100,7 @@ fn of_supports(session: &Session, table: &RunTable, lines: &mut Lines) {
         }
     }
     let lost = table.all("energy_viscous").unwrap_or_default();
-    if let Some(lost) = lost.last() {
+    if let Some(lost) = lost.last().filter(|_| has_maxwell) {
         lines.push(("held or lost by Maxwell".into(), format!("{lost:.6} J at the end")));
         let last = |name: &str| table.all(name).and_then(|all| all.last().copied()).unwrap_or(0.0);
         let of = ["maxwell", "dissipated", "finite_strain", "residual"];

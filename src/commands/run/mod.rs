@@ -1,5 +1,6 @@
 //! `bearing run SCENE`: whatever the scene has in motion, from row to row, and the folder it leaves.
 
+mod changed;
 mod figures;
 mod prepared;
 mod results;
@@ -10,7 +11,7 @@ pub use prepared::{planned_request, request};
 use super::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
 use super::{Changes, CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::session::{Motion, Session, SessionError, Status};
-use bearing_dynamics::output::state::{self, StateFile, StateRecord, Stopped};
+use bearing_dynamics::output::state::{self, StateError, StateFile, StateRecord, Stopped};
 use bearing_dynamics::scene::resolve_subject;
 use bearing_dynamics::solver::housing::bonded::BondedBushing;
 use bearing_dynamics::solver::housing::stepped::SteppedSolid;
@@ -90,9 +91,16 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         stopped: Stopped::Running,
         error: None,
         seconds: kept.as_ref().map_or(0.0, |file| file.seconds),
+        mean_steps: prepared.told(choice.as_ref()).and_then(|choice| choice.mean_steps),
     };
     let mut session = match &kept {
-        Some(file) => state::resume(&folder, file, parts, &request)?,
+        Some(file) => match state::resume(&folder, file, parts, &request) {
+            Err(error @ StateError::Scene { .. }) => {
+                let now = prepared.record(&request, None, Vec::new())?;
+                return Err(format!("{error}{}", changed::since(&folder, &now)).into());
+            }
+            other => other?,
+        },
         None => {
             remove_earlier(&folder)?;
             Session::start(parts, &request)?

@@ -322,6 +322,14 @@ impl<'s> Prepared<'s> {
         }
     }
 
+    /// What is told of the plan's choice of a method: with housings nothing, so that a run that is extended has the bytes of an
+    /// unbroken one.
+    pub fn told<'c>(&self, choice: Option<&'c Choice>) -> Option<&'c Choice> {
+        choice.filter(
+            |_| !matches!(self, Prepared::Bearings { housings, .. } if !housings.is_empty()),
+        )
+    }
+
     /// Scene, plan, assumptions and defaults, as every summary has them.
     pub fn record(
         &self,
@@ -331,9 +339,7 @@ impl<'s> Prepared<'s> {
     ) -> Fallible<RunRecord> {
         match self {
             Prepared::Bearings { lists, settings, assembly, housings, bushings, shafts, way } => {
-                let scene = lists.scene;
-                // With housings a run that is extended has the bytes of an unbroken one.
-                let choice = choice.filter(|_| housings.is_empty());
+                let (scene, choice) = (lists.scene, self.told(choice));
                 let planned = match way {
                     Way::Course(..) => plan::of_course(lists, housings, settings)?,
                     _ => {
@@ -413,8 +419,9 @@ fn planned(
         let same = |file: &StateFile| {
             file.fingerprint == state::fingerprint(&assembly.clone().into(), &request)
         };
-        if kept.is_some_and(same) {
-            return (request, Some(Choice::kept(assembly, integrator)));
+        if let Some(file) = kept.filter(|file| same(file)) {
+            let choice = Choice::kept(assembly, integrator, file.mean_steps);
+            return (request, Some(choice));
         }
     }
     let choice = choose(assembly, &request);

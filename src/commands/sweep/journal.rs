@@ -15,6 +15,33 @@ pub struct Chunk {
     /// Rows of the table, in order of their points.
     pub rows: Vec<Vec<f64>>,
     pub failures: Vec<Failure>,
+    /// Of solved points, one of each kind.
+    pub remarks: Vec<Remark>,
+}
+
+/// What is said of some points with other numbers.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Remark {
+    /// As of the first point of which it is said.
+    pub text: String,
+    pub point: usize,
+    /// Number of points of which it is said.
+    pub points: usize,
+}
+
+/// Adds what is said of points, those of a kind to the first of it.
+pub fn gather(remarks: &mut Vec<Remark>, more: impl IntoIterator<Item = Remark>) {
+    for said in more {
+        match remarks.iter_mut().find(|first| kind(&first.text) == kind(&said.text)) {
+            Some(first) => first.points += said.points,
+            None => remarks.push(said),
+        }
+    }
+}
+
+/// A remark without its numbers, lists of balls or not.
+fn kind(text: &str) -> String {
+    text.replace("balls", "ball").chars().filter(|c| c.is_alphabetic()).collect()
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]

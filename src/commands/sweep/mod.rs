@@ -17,7 +17,7 @@ use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use grid::Grid;
 use housings::Kept;
 use indicatif::{ProgressBar, ProgressStyle};
-use journal::{Chunk, Journal};
+use journal::{Chunk, Journal, Remark, gather};
 use rayon::prelude::*;
 use std::error::Error;
 use std::path::PathBuf;
@@ -127,6 +127,10 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     if first.is_ok_and(|first| first.run().is_some()) {
         say("the statics of this scene at each point, at t = 0; its run is not swept\n")?;
     }
+    for remark in report::remarks(&chunks) {
+        let Remark { text, point, points } = remark;
+        say(&format!("note: {text} (point {point}, {points} of {} in all)\n", grid.len()))?;
+    }
     let failures: Vec<_> = chunks.iter().flat_map(|chunk| &chunk.failures).collect();
     match failures.first() {
         None => Ok(Outcome::Done),
@@ -164,12 +168,14 @@ fn progress_bar(grid: &Grid, resumed: usize) -> ProgressBar {
 }
 
 fn solve_chunk(document: &Document, grid: &Grid, index: usize, size: usize, cold: bool) -> Chunk {
-    let mut chunk = Chunk { index, rows: Vec::new(), failures: Vec::new() };
+    let mut chunk = Chunk { index, rows: Vec::new(), failures: Vec::new(), remarks: Vec::new() };
     let (mut neighbour, mut kept) = (None, Kept::default());
     for point in grid.chunk_range(index, size) {
         match point::solve(document, grid, point, neighbour.as_deref(), &mut kept) {
             Ok(solved) => {
                 chunk.rows.push(solved.row);
+                let said = solved.remarks.into_iter();
+                gather(&mut chunk.remarks, said.map(|text| Remark { text, point, points: 1 }));
                 neighbour = if cold { None } else { solved.start_for_neighbour };
             }
             Err(message) => {

@@ -4,6 +4,7 @@ use super::grid::Grid;
 use super::housings::{self, Kept};
 use crate::commands::assembly::housings::{Equilibrium, equilibrium, grown};
 use crate::commands::assembly::lists::Lists;
+use crate::commands::remarks::{of_assembly as of_several, of_statics};
 use bearing_dynamics::output::Column;
 use bearing_dynamics::output::assembly_results::{key, readable};
 use bearing_dynamics::output::results::load_zone_of;
@@ -18,6 +19,8 @@ use std::error::Error;
 
 pub struct Solved {
     pub row: Vec<f64>,
+    /// What `statics` says of such a point.
+    pub remarks: Vec<String>,
     /// `None` where the position is one of many and a neighbour should look for its own.
     pub start_for_neighbour: Option<Vec<SVector<f64, 5>>>,
 }
@@ -46,16 +49,22 @@ fn solve_scene(
     let lists = Lists::of(scene);
     let Equilibrium { still, moment, .. } = equilibrium(&lists, grown(housings, bores), neighbour)?;
     let solution = moment.solution;
+    let mut remarks = match scene.one() {
+        Some(_) => of_statics(scene.common(), &still, &solution),
+        None => of_several(scene, &still, &solution),
+    };
     let determinate = solution.determinacy == Determinacy::Determinate;
     let start_for_neighbour =
         (determinate && housings.is_empty()).then(|| solution.coordinates.clone());
-    let of_housings = kept.row(&solution.seats);
+    let (of_housings, said) = kept.row(&solution.seats);
+    remarks.extend(said);
     let mut row = match scene.one() {
         Some(_) => of_bearing(&StaticSolution::from(solution)),
         None => of_assembly(&still, &readable(lists.assembly()?, &still, &solution)),
     };
     row.extend(of_housings);
-    Ok(Solved { row, start_for_neighbour })
+    row.push(remarks.len() as f64);
+    Ok(Solved { row, remarks, start_for_neighbour })
 }
 
 /// Columns that follow those of the varied keys.
@@ -95,6 +104,7 @@ pub fn columns(grid: &Grid, scene: Option<&AssemblyScene>) -> Vec<Column> {
         }
     }
     columns.extend(scene.map_or_else(Vec::new, housings::columns));
+    columns.push(Column::new("remarks", "1"));
     columns
 }
 

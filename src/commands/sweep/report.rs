@@ -1,7 +1,7 @@
 //! What a sweep leaves behind: `sweep.csv`, the same as `.npy`, and `sweep.json`.
 
 use super::grid::Grid;
-use super::journal::Chunk;
+use super::journal::{Chunk, Remark, gather};
 use super::point::columns;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::{Series, write_atomic};
@@ -68,6 +68,20 @@ pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// What is said of points, each kind once.
+pub fn remarks(chunks: &[Chunk]) -> Vec<Remark> {
+    let mut remarks = Vec::new();
+    gather(&mut remarks, chunks.iter().flat_map(|chunk| chunk.remarks.iter().cloned()));
+    remarks
+}
+
+/// The varied keys of a point with their values.
+fn values(grid: &Grid, point: usize) -> Vec<String> {
+    let axes = grid.axes.iter().zip(grid.indices(point));
+    axes.map(|(axis, index)| format!("{} = {}", axis.key, axis.value(index).unwrap_or_default()))
+        .collect()
+}
+
 pub fn write(
     folder: &Path,
     document: &Document,
@@ -94,21 +108,12 @@ pub fn write(
             entry
         })
         .collect();
-    let failures: Vec<_> = chunks
-        .iter()
-        .flat_map(|chunk| &chunk.failures)
-        .map(|failure| {
-            let at: Vec<_> = grid
-                .axes
-                .iter()
-                .zip(grid.indices(failure.point))
-                .map(|(axis, index)| {
-                    format!("{} = {}", axis.key, axis.value(index).unwrap_or_default())
-                })
-                .collect();
-            json!({ "point": failure.point, "at": at, "message": failure.message })
-        })
-        .collect();
+    let failures = chunks.iter().flat_map(|chunk| &chunk.failures).map(|failure| {
+        json!({ "point": failure.point, "at": values(grid, failure.point), "message": failure.message })
+    });
+    let remarks = remarks(chunks).into_iter().map(|Remark { text, point, points }| {
+        json!({ "remark": text, "point": point, "at": values(grid, point), "points": points })
+    });
     let summary = json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
@@ -117,7 +122,8 @@ pub fn write(
         "points": grid.len(),
         "solved": series.data().nrows(),
         "complete": record.complete,
-        "failures": failures,
+        "failures": failures.collect::<Vec<_>>(),
+        "remarks": remarks.collect::<Vec<_>>(),
         "threads": record.threads,
         "seconds": record.seconds,
     });

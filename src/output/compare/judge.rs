@@ -51,7 +51,7 @@ pub struct Judge<'a> {
     differing: usize,
     channels: Vec<ChannelResult>,
     ignored: Vec<String>,
-    only_in_candidate: Vec<String>,
+    pub(super) only_in_candidate: Vec<String>,
 }
 
 impl<'a> Judge<'a> {

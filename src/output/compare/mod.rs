@@ -192,13 +192,16 @@ pub fn compare(
     if options.default_class == Some(ToleranceClass::Ignored) {
         return Err(ToleranceError::IgnoredByDefault.into());
     }
+    let mut only_in_candidate = Vec::new();
     let pairs = if reference.is_dir() && candidate.is_dir() {
         let beside = reference.join("tolerances.json");
         if options.tolerances.is_none() && beside.exists() {
             tolerances = Tolerances::read(&beside)?;
         }
         let named = |name: String| (reference.join(&name), candidate.join(&name), name);
-        common_folders(reference, candidate)?.into_iter().map(named).collect()
+        let [names, more] = common_folders(reference, candidate)?;
+        only_in_candidate = more;
+        names.into_iter().map(named).collect()
     } else if reference.is_dir() != candidate.is_dir() {
         // A path that does not exist is named as such rather than as a file among folders.
         for path in [reference, candidate] {
@@ -216,6 +219,7 @@ pub fn compare(
     }
 
     let mut judge = Judge::new(&tolerances, options);
+    judge.only_in_candidate = only_in_candidate;
     for (reference_file, candidate_file, name) in pairs {
         judge.file = name;
         let expected = channels::read(&reference_file)?;
@@ -243,8 +247,9 @@ pub fn compare(
     judge.finish(reference)
 }
 
-/// Files of the reference folder, of which the candidate has one at least.
-fn common_folders(reference: &Path, candidate: &Path) -> Result<Vec<String>, CompareError> {
+/// Files of the reference folder, of which the candidate has one at least, and what the candidate has besides; a table
+/// that is there as `.csv` is no other as `.npy`.
+fn common_folders(reference: &Path, candidate: &Path) -> Result<[Vec<String>; 2], CompareError> {
     let [of_reference, of_candidate] = [known_files(reference)?, known_files(candidate)?];
     for (path, files) in [(reference, &of_reference), (candidate, &of_candidate)] {
         if files.is_empty() {
@@ -252,7 +257,13 @@ fn common_folders(reference: &Path, candidate: &Path) -> Result<Vec<String>, Com
         }
     }
     if of_reference.iter().any(|name| of_candidate.contains(name)) {
-        return Ok(of_reference);
+        let is_new = |name: &&String| {
+            let is_other_form = name.ends_with(".npy") && is_given_as_csv(&candidate.join(name));
+            !of_reference.contains(name) && !is_other_form
+        };
+        let more = of_candidate.iter().filter(is_new).map(|name| format!("{name}: all of it"));
+        let more = more.collect();
+        return Ok([of_reference, more]);
     }
     let (reference, candidate) = (reference.to_path_buf(), candidate.to_path_buf());
     Err(CompareError::NoCommonFile { reference, candidate, of_reference, of_candidate })

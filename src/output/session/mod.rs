@@ -4,13 +4,12 @@
 pub mod motion;
 pub mod rubber;
 pub mod size;
-pub mod watch;
 
 pub use crate::solver::dynamics::clocked::RunRequest;
+pub use crate::solver::ledger_watch::LedgerWatch;
 pub use motion::{Checkpoint, CourseParts, HousedParts, Motion, Parts, SolidParts};
 pub use rubber::{MovingRubber, RubberParts};
 pub use size::{TableSize, table_size};
-pub use watch::LedgerWatch;
 
 use crate::kinematics::vec3::Vec3;
 use crate::output::recorder::Recorder;
@@ -137,7 +136,7 @@ impl<'p> Session<'p> {
             session.watch.first = moving.solid.ledger().balance();
         }
         if !matches!(session.motion, Motion::Course(_)) {
-            session.record()?;
+            session.record(false)?;
             session.keep();
         }
         Ok(session)
@@ -176,7 +175,7 @@ impl<'p> Session<'p> {
         if session.clock.last.is_some_and(|last| done >= last) {
             session.status = Status::Complete;
             if !session.clock.is_on_grid(done) {
-                session.record()?;
+                session.record(false)?;
             }
         }
         Ok(Some(session))
@@ -255,7 +254,7 @@ impl<'p> Session<'p> {
                 // A longer run would not look here: it goes on from before.
                 self.keep();
             }
-            self.record()?;
+            self.record(arrival.completes)?;
             if on_grid {
                 self.keep();
             }
@@ -269,12 +268,15 @@ impl<'p> Session<'p> {
         Ok(())
     }
 
-    fn record(&mut self) -> Result<(), SessionError> {
+    fn record(&mut self, completes: bool) -> Result<(), SessionError> {
         let Session { motion, recorder, watch, energy_limit, .. } = self;
         match motion {
             Motion::Bearing(simulation) => {
-                let snapshot = simulation.snapshot()?;
+                let snapshot = simulation.snapshot();
                 recorder.record(simulation, &snapshot);
+                if completes {
+                    simulation.close(&snapshot)?;
+                }
             }
             Motion::Solid(moving) => {
                 recorder.record_solid(&mut moving.solid, watch, *energy_limit)?;

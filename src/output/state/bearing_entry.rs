@@ -2,14 +2,15 @@
 
 use super::entries::Refused;
 use crate::solver::dynamics::assembly::Assembly;
+use crate::solver::dynamics::balance::{Balance, ContactTurnover};
 use crate::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
 use crate::solver::dynamics::contacts::Work;
 use crate::solver::dynamics::control::Memory;
 use crate::solver::dynamics::energy::Energy;
 use crate::solver::dynamics::extremes::Extremes;
-use crate::solver::dynamics::run::ContactTurnover;
 use crate::solver::dynamics::stability::{Cause, StepLimit};
 use crate::solver::dynamics::step_watch::{Shortened, StepWatch, Stiffness};
+use crate::solver::ledger_watch::LedgerWatch;
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +39,8 @@ pub struct BearingEntry {
     pub largest_contact_energy: f64,
     /// See [`ContactTurnover`]: sum and last, J.
     pub contact_turnover: [f64; 2],
+    /// See [`LedgerWatch`]: energy turned over and the largest residual, J; looks at which it was open.
+    pub ledger: ([f64; 2], u32),
     /// Evaluations, distance tests, loaded contacts, slices, pocket tests, guide tests,
     /// ball tests, factorisations, rejected steps.
     pub work: [u64; 9],
@@ -83,7 +86,8 @@ pub struct ShortenedEntry {
 
 impl BearingEntry {
     pub(super) fn of(checkpoint: &BearingCheckpoint) -> BearingEntry {
-        let energy = &checkpoint.first_energy;
+        let balance = &checkpoint.balance;
+        let energy = &balance.first;
         let watch = &checkpoint.step_watch;
         BearingEntry {
             steps: checkpoint.steps,
@@ -120,8 +124,12 @@ impl BearingEntry {
                 .filter(|of| *of != [0.0; 3]),
             first_energy_of_bending: Some([energy.bending_kinetic, energy.bending_strain])
                 .filter(|of| *of != [0.0; 2]),
-            largest_contact_energy: checkpoint.largest_contact_energy,
-            contact_turnover: [checkpoint.contact_turnover.sum, checkpoint.contact_turnover.last],
+            largest_contact_energy: balance.largest_contact,
+            contact_turnover: [balance.turnover.sum, balance.turnover.last],
+            ledger: (
+                [balance.watch.turned_over, balance.watch.largest_residual],
+                balance.watch.open,
+            ),
             work: checkpoint.work.clone().counts().map(|count| *count),
             control: checkpoint.control.map(|memory| {
                 [memory.displacement, memory.previous_error, memory.smallest, memory.largest]
@@ -138,7 +146,8 @@ impl BearingEntry {
         let limit =
             limit.chain(watched).chain(watch.exceeded.into_iter().flatten()).chain(shortened);
         let energy = [self.step_size, self.largest_contact_energy].into_iter();
-        let energy = energy.chain(self.first_energy).chain(self.contact_turnover);
+        let energy =
+            energy.chain(self.first_energy).chain(self.contact_turnover).chain(self.ledger.0);
         let energy = energy.chain(self.first_energy_of_solids.into_iter().flatten());
         let energy = energy.chain(self.first_energy_of_bending.into_iter().flatten());
         vec![
@@ -209,23 +218,33 @@ impl BearingEntry {
             state: self.state.clone(),
             damping: self.damping.clone(),
             was_loaded: self.was_loaded.clone(),
-            first_energy: Energy {
-                kinetic,
-                contact,
-                cage_contact,
-                gravity,
-                foundation,
-                ball_contact,
-                solid_kinetic,
-                solid_strain,
-                bending_kinetic,
-                bending_strain,
-                seat,
-            },
-            largest_contact_energy: self.largest_contact_energy,
-            contact_turnover: ContactTurnover {
-                sum: self.contact_turnover[0],
-                last: self.contact_turnover[1],
+            balance: Balance {
+                first: Energy {
+                    kinetic,
+                    contact,
+                    cage_contact,
+                    gravity,
+                    foundation,
+                    ball_contact,
+                    solid_kinetic,
+                    solid_strain,
+                    bending_kinetic,
+                    bending_strain,
+                    seat,
+                },
+                // A run starts with none.
+                before: 0.0,
+                largest_contact: self.largest_contact_energy,
+                turnover: ContactTurnover {
+                    sum: self.contact_turnover[0],
+                    last: self.contact_turnover[1],
+                },
+                watch: LedgerWatch {
+                    first: 0.0,
+                    turned_over: self.ledger.0[0],
+                    largest_residual: self.ledger.0[1],
+                    open: self.ledger.1,
+                },
             },
             work,
             control: self.control.map(|[displacement, previous_error, smallest, largest]| Memory {

@@ -39,8 +39,9 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// Of `state.json`; the first one had a form of its own for each kind of run, and no number, the second room
-/// for one solid, and two places of the outer race in a course, the third room for the two races of one bearing in one.
-pub const FORM: u32 = 4;
+/// for one solid, and two places of the outer race in a course, the third room for the two races of one bearing in one, the
+/// fourth no look at a bearing's ledger between rows.
+pub const FORM: u32 = 5;
 
 /// Content of `state.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -73,6 +74,9 @@ pub struct StateFile {
     pub rows_per_fields: Option<u64>,
     /// Wall time so far, s.
     pub seconds: f64,
+    /// Of `rosenbrock` and of `dormand-prince` in the trial that has chosen one of them, s.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub mean_steps: Option<[f64; 2]>,
     /// At the start, turned over, largest residual, J, and rows on end whose ledger did not close; of
     /// runs with a solid.
     pub ledger: ([f64; 3], u32),
@@ -195,6 +199,8 @@ pub struct StateRecord {
     pub stopped: Stopped,
     pub error: Option<String>,
     pub seconds: f64,
+    /// Of the trial that has chosen the integrator, s.
+    pub mean_steps: Option<[f64; 2]>,
 }
 
 /// Writes `series.npy`, arrays and `state.json` of a session into its results folder.
@@ -281,7 +287,7 @@ pub fn resume<'p>(
         return Err(StateError::Past { time: file.time, end: request.end });
     }
     let [first, turned_over, largest_residual] = file.ledger.0;
-    let watch = LedgerWatch { first, turned_over, largest_residual, rows_open: file.ledger.1 };
+    let watch = LedgerWatch { first, turned_over, largest_residual, open: file.ledger.1 };
     let ran = ran(file).ok_or_else(|| damaged("a stage that there is not"))?;
     let sound = Sound { checkpoint, watch, rows: file.rows, ran };
     let series_path = folder.join(SERIES);
@@ -315,7 +321,8 @@ fn state_file(sound: &Sound, clock: &Clock, record: &StateRecord) -> StateFile {
         steps_per_row: clock.steps_per_row,
         rows_per_fields: clock.rows_per_fields,
         seconds: record.seconds,
-        ledger: ([watch.first, watch.turned_over, watch.largest_residual], watch.rows_open),
+        mean_steps: record.mean_steps,
+        ledger: ([watch.first, watch.turned_over, watch.largest_residual], watch.open),
         stages: stages(&sound.ran),
         bearing: None,
         solids: Vec::new(),
@@ -366,6 +373,7 @@ fn ran(file: &StateFile) -> Option<Ran> {
 fn check_finite(file: &StateFile) -> Result<(), StateError> {
     let single = [file.time, file.step, file.seconds, file.end, file.output_interval];
     let single = single.into_iter().chain(file.ledger.0).chain(file.fields_interval);
+    let single = single.chain(file.mean_steps.into_iter().flatten());
     let mut parts = vec![("time, step or energy", single.collect())];
     if let Some(bearing) = &file.bearing {
         parts.extend(bearing.numbers());

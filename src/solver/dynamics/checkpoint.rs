@@ -1,11 +1,11 @@
 //! Everything a simulation needs to go on with the same bits.
 
 use super::assembly::Assembly;
+use super::balance::Balance;
 use super::contacts::Work;
 use super::control::Memory;
-use super::energy::Energy;
 use super::extremes::Extremes;
-use super::run::{ContactTurnover, RunOptions, Simulation, SimulationError, Stepping};
+use super::run::{RunOptions, Simulation, SimulationError, Stepping};
 use super::stability::StepLimit;
 use super::state::{Layout, Places};
 use super::step_watch::StepWatch;
@@ -27,10 +27,8 @@ pub struct Checkpoint {
     /// Contact damping of each pair and whether it carried load: the history of contacts.
     pub damping: Vec<f64>,
     pub was_loaded: Vec<bool>,
-    /// Energy at the start and the largest contact energy since, J: the ledger counts from there.
-    pub first_energy: Energy,
-    pub largest_contact_energy: f64,
-    pub contact_turnover: ContactTurnover,
+    /// The ledger counts from its start.
+    pub balance: Balance,
     pub work: Work,
     /// With error control only.
     pub control: Option<Memory>,
@@ -69,9 +67,7 @@ impl Simulation {
             checkpoint.damping.extend_from_slice(&set.damping);
         }
         checkpoint.was_loaded.clone_from(&self.was_loaded);
-        checkpoint.first_energy = self.first_energy;
-        checkpoint.largest_contact_energy = self.largest_contact_energy;
-        checkpoint.contact_turnover = self.contact_turnover;
+        checkpoint.balance = self.balance;
         checkpoint.work = self.system.work;
         checkpoint.control = self.control.as_ref().map(|control| control.memory);
     }
@@ -118,11 +114,7 @@ impl Simulation {
         simulation.take_first_rates();
         simulation.system.work = checkpoint.work;
         simulation.was_loaded.copy_from_slice(&checkpoint.was_loaded);
-        // The ledger counts from there.
-        simulation.first_energy = checkpoint.first_energy;
-        simulation.ledger_before = 0.0;
-        simulation.largest_contact_energy = checkpoint.largest_contact_energy;
-        simulation.contact_turnover = checkpoint.contact_turnover;
+        simulation.balance = checkpoint.balance;
         Ok(simulation)
     }
 }

@@ -77,25 +77,23 @@ pub struct Choice {
     pub mean_steps: Option<[f64; 2]>,
     /// Work of an attempt of `rosenbrock` over that of one of `dormand-prince`.
     pub work_of_rosenbrock: f64,
-    /// Whether the run that goes on had chosen already.
-    pub kept: bool,
     /// Whether a race sits in a reduced solid.
     pub seated: bool,
 }
 
 impl Choice {
-    /// Of a run that goes on as it began.
-    pub fn kept(assembly: &Assembly, integrator: Integrator) -> Choice {
+    /// Of a run that goes on as it began, with the mean steps of the trial there.
+    pub fn kept(
+        assembly: &Assembly,
+        integrator: Integrator,
+        mean_steps: Option<[f64; 2]>,
+    ) -> Choice {
         let work_of_rosenbrock = work_of_rosenbrock(assembly);
-        let seated = !assembly.seats.is_empty();
-        Choice { integrator, mean_steps: None, work_of_rosenbrock, kept: true, seated }
+        Choice { integrator, mean_steps, work_of_rosenbrock, seated: !assembly.seats.is_empty() }
     }
 
     /// Why, as a sentence.
     pub fn reason(&self) -> String {
-        if self.kept {
-            return "as the run that goes on had chosen".into();
-        }
         let Some([implicit, explicit]) = self.mean_steps else {
             return "goes with any bearing; no trial could start".into();
         };
@@ -177,7 +175,7 @@ impl Trial {
     }
 
     fn row(&mut self) -> Result<(), SimulationError> {
-        self.simulation.snapshot()?;
+        self.simulation.snapshot();
         self.clock.count_row(self.simulation.time);
         Ok(())
     }
@@ -353,7 +351,6 @@ pub fn choose(assembly: &Assembly, request: &RunRequest) -> Choice {
         integrator: Integrator::Rosenbrock,
         mean_steps: None,
         work_of_rosenbrock,
-        kept: false,
         seated: !assembly.seats.is_empty(),
     };
     let budget = if assembly.changes() { TO_COUNT } else { TO_CHOOSE };

@@ -1,7 +1,7 @@
 //! The bearing in motion: every part a rigid body with six degrees of freedom (2.2.1, 4.2.1).
 //!
 //! `assembly` says what is simulated (a bearing alone is written as a `model`), `state` where it lies, `contacts`
-//! (with `contact_traction`) and `race` turn states into loads, `seat` and `reduced_solid` those of bodies in flexible solids, each bearing's `ball_set` into loads on its bodies, `system` into rates, `energy` into energies; `rk4`, `dormand_prince` and `rosenbrock`
+//! (with `contact_traction`) and `race` turn states into loads, `seat` and `reduced_solid` those of bodies in flexible solids, each bearing's `ball_set` into loads on its bodies, `system` into rates, `energy` into energies, which `balance` holds against what has come and gone; `rk4`, `dormand_prince` and `rosenbrock`
 //! integrate (the last through `linearised` contacts, the `arrow` matrix, each ball's `orbit_frame` and each body's `turning_frame`),
 //! `held` says whether anything holds a bearing against its loads, `bounds` where a state has lost its meaning,
 //! `control` chooses steps for an accuracy, `extremes` remembers the largest loads, `run` takes a simulation from step to step,
@@ -11,6 +11,7 @@ pub mod arrow;
 mod arrow_solids;
 mod arrow_terms;
 pub mod assembly;
+pub mod balance;
 pub mod ball_set;
 pub mod bounds;
 pub mod checkpoint;

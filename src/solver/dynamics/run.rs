@@ -1,21 +1,22 @@
 //! A simulation: state, time, step after step, watched.
 
 use super::assembly::Assembly;
+use super::balance::Balance;
 use super::contacts::Driver;
 use super::control::{Attempt, Controller};
 use super::dormand_prince::{self, DormandPrince};
-use super::energy::Energy;
 use super::extremes::Extremes;
 use super::race::RaceLoads;
 use super::rk4::RungeKutta;
 use super::rosenbrock::{self, Rosenbrock};
 use super::stability::{StepLimit, step_limit};
 use super::start;
-use super::state::{BodyState, LEDGER, Ledger};
+use super::state::{BodyState, Ledger};
 use super::step_watch::{StepWatch, Stiffness, stiffness};
 use super::system::System;
 use crate::solver::plan::{Stage, motion};
 
+pub use super::balance::Snapshot;
 pub use super::failure::SimulationError;
 
 /// Where a simulation starts.
@@ -73,7 +74,7 @@ pub struct RunOptions {
     pub driver: Driver,
     /// Energy that may go missing, as a fraction of the energy that has been turned over (largest
     /// contact energy plus all work and losses; with error control also the kinetic energy, and what
-    /// went into contacts and out again from one snapshot to the next).
+    /// went into contacts and out again from one look to the next).
     pub energy_limit: f64,
 }
 
@@ -110,37 +111,14 @@ pub struct Simulation {
     integrator: Stepper,
     attempt: Attempt,
     pub(super) was_loaded: Vec<bool>,
-    pub(super) first_energy: Energy,
-    /// What the ledger already held then, J.
-    pub(super) ledger_before: f64,
-    pub(super) largest_contact_energy: f64,
-    pub(super) contact_turnover: ContactTurnover,
+    pub(super) balance: Balance,
     pub(super) rates: Vec<f64>,
-}
-
-/// Energy that went into contacts and out again, as far as snapshots have seen it, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ContactTurnover {
-    pub sum: f64,
-    /// At the last snapshot.
-    pub last: f64,
 }
 
 enum Stepper {
     RungeKutta(RungeKutta),
     DormandPrince(DormandPrince),
     Rosenbrock(Box<Rosenbrock>),
-}
-
-/// Everything that outputs are made of, at the present time.
-#[derive(Clone, Copy, Debug)]
-pub struct Snapshot {
-    pub time: f64,
-    pub energy: Energy,
-    /// Work and losses since the start, J, in the order of [`super::state::Ledger`].
-    pub ledger: [f64; LEDGER],
-    /// Energy unaccounted for, J.
-    pub residual: f64,
 }
 
 /// # Errors
@@ -274,7 +252,7 @@ impl Simulation {
         system.ran.clear();
         system.ran.whole.add(Stage::StabilityLimit, u64::from(limit.is_some()));
         system.evaluate(time, &state, &mut rates);
-        let first_energy = system.energy(&state);
+        let balance = Balance::from_here(&system, &state);
         let mut extremes = vec![Extremes::default(); system.sets.len()];
         see(&mut extremes, &system, time, &state);
         let step_watch = StepWatch {
@@ -282,8 +260,6 @@ impl Simulation {
             stiffest: if limit.is_some() { stiffness(&system) } else { Stiffness::default() },
             ..StepWatch::default()
         };
-        let at = system.places.ledger();
-        let ledger_before = state[at..at + LEDGER].iter().sum();
         let mut was_loaded = vec![false; system.pairs()];
         system.commit_damping(&mut was_loaded);
         let control = control.map(|mut control| {
@@ -296,13 +272,7 @@ impl Simulation {
             control,
             integrator,
             attempt: Attempt::new(length),
-            largest_contact_energy: first_energy.contact + first_energy.ball_contact,
-            contact_turnover: ContactTurnover {
-                sum: 0.0,
-                last: first_energy.contact + first_energy.ball_contact,
-            },
-            first_energy,
-            ledger_before,
+            balance,
             was_loaded,
             rates,
             system,
@@ -369,12 +339,14 @@ impl Simulation {
             Some(_) => step.min(self.system.longest_past_dents(&self.state)),
             None => step,
         };
-        let Simulation { system, state, attempt, extremes, .. } = self;
+        let Simulation { system, state, attempt, extremes, balance, options, .. } = self;
+        let mut balanced = Ok(());
         let taken = match &mut self.integrator {
             Stepper::RungeKutta(integrator) => {
                 let t = self.time;
                 integrator.step(system, t, step, state, |system, state| {
                     see(extremes, system, t, state);
+                    balanced = balance.look((system, state), options, t, self.steps);
                 });
                 step
             }
@@ -390,6 +362,7 @@ impl Simulation {
                 std::mem::swap(state, &mut attempt.state);
                 // The last stage is the step itself.
                 see(extremes, system, t + taken, state);
+                balanced = balance.look((system, state), options, t + taken, self.steps);
                 taken
             }
             Stepper::Rosenbrock(integrator) => {
@@ -404,6 +377,7 @@ impl Simulation {
                 system.tidy(t + taken, state);
                 integrator.accept(system, t + taken, taken, &attempt.state, state);
                 see(extremes, system, t + taken, state);
+                balanced = balance.look((system, state), options, t + taken, self.steps);
                 taken
             }
         };
@@ -413,6 +387,7 @@ impl Simulation {
             self.take_first_rates();
         }
         self.watch()?;
+        balanced?;
         Ok(taken)
     }
 
@@ -440,37 +415,17 @@ impl Simulation {
     }
 
     /// Loads, energies and ledger at the present state.
+    pub fn snapshot(&mut self) -> Snapshot {
+        self.system.evaluate(self.time, &self.state, &mut self.rates);
+        see(&mut self.extremes, &self.system, self.time, &self.state);
+        self.balance.snapshot(&self.system, &self.state, self.time)
+    }
+
+    /// Whether the energy of a run that is over has added up, where it was too short for the looks at it to tell.
     ///
     /// # Errors
     /// More energy unaccounted for than the options allow.
-    pub fn snapshot(&mut self) -> Result<Snapshot, SimulationError> {
-        self.system.evaluate(self.time, &self.state, &mut self.rates);
-        see(&mut self.extremes, &self.system, self.time, &self.state);
-        let energy = self.system.energy(&self.state);
-        let at = self.system.places.ledger();
-        let mut ledger = [0.0; LEDGER];
-        ledger.copy_from_slice(&self.state[at..at + LEDGER]);
-        let residual = energy.total()
-            - self.first_energy.total()
-            - (ledger.iter().sum::<f64>() - self.ledger_before);
-        let strain = energy.contact + energy.ball_contact;
-        self.largest_contact_energy = self.largest_contact_energy.max(strain);
-        let mut turned_over: f64 =
-            self.largest_contact_energy + ledger.iter().map(|entry| entry.abs()).sum::<f64>();
-        let turnover = &mut self.contact_turnover;
-        turnover.sum += (strain - turnover.last).abs();
-        turnover.last = strain;
-        // Error control keeps the motion, and with it a part of the energy of all motion and of all that
-        // passes through the contacts; steps that are too long for the contacts it does not take.
-        // Without it contacts are the first to go.
-        if self.control.is_some() {
-            turned_over += energy.kinetic + turnover.sum;
-        }
-        let limit = self.options.energy_limit;
-        if residual.abs() <= limit * turned_over || turned_over == 0.0 {
-            return Ok(Snapshot { time: self.time, energy, ledger, residual });
-        }
-        let (time, step) = (self.time, self.steps);
-        Err(SimulationError::Energy { residual, turned_over, time, step, limit })
+    pub fn close(&self, last: &Snapshot) -> Result<(), SimulationError> {
+        self.balance.at_end(last.residual, &self.options, self.time, self.steps)
     }
 }

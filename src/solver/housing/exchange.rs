@@ -379,7 +379,7 @@ impl<'p> Exchange<'p> {
     /// The bodies are balanced where their time is, solids and contacts half a step later: what the
     /// contacts do to the bodies in between is added.
     fn balance(&mut self) -> Result<ExchangeSnapshot, ExchangeError> {
-        let bodies = self.simulation.snapshot()?;
+        let bodies = self.simulation.snapshot();
         let Exchange { simulation, solids, bushings, .. } = self;
         let solids: Vec<SolidSnapshot> =
             solids.iter_mut().map(|part| part.snapshot(simulation)).collect();

@@ -211,13 +211,12 @@ pub fn run_scene(text: &str) -> Outcome {
         if session.recorder.rows() > rows {
             rows = session.recorder.rows();
             let simulation = session.motion.bearing_mut().expect("a bearing moves");
-            if let Ok(snapshot) = simulation.snapshot() {
-                contact = contact.max(snapshot.energy.contact + snapshot.energy.ball_contact);
-                let turned = contact
-                    + snapshot.energy.kinetic
-                    + snapshot.ledger.iter().map(|entry| entry.abs()).sum::<f64>();
-                outcome.residual = outcome.residual.max(snapshot.residual.abs() / turned);
-            }
+            let snapshot = simulation.snapshot();
+            contact = contact.max(snapshot.energy.contact + snapshot.energy.ball_contact);
+            let turned = contact
+                + snapshot.energy.kinetic
+                + snapshot.ledger.iter().map(|entry| entry.abs()).sum::<f64>();
+            outcome.residual = outcome.residual.max(snapshot.residual.abs() / turned);
         }
         if status == Status::Complete {
             return outcome;

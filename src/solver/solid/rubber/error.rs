@@ -34,6 +34,9 @@ pub enum RubberError {
         rounded(*time)
     )]
     NoEquilibrium { time: f64, step: f64, failure: StepFailure },
+    /// The state is that of the last step.
+    #[error("stopped at t = {} s", rounded(*time))]
+    Stopped { time: f64 },
 }
 
 /// Why a step could not be taken.

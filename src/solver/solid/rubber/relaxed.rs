@@ -35,6 +35,8 @@ pub enum RelaxedError {
         "no equilibrium was found beyond {:.3} % of the given loads and displacements: {failure}", 100.0 * part
     )]
     Lost { part: f64, failure: StepFailure, reached: Vec<Reached> },
+    #[error("interrupted at {:.3} % of the given loads and displacements", 100.0 * part)]
+    Stopped { part: f64, reached: Vec<Reached> },
 }
 
 /// An equilibrium on the way.
@@ -58,6 +60,18 @@ const WAY: WayLimits = WayLimits { strain: 0.02, short: 0.005, lost: 3e-3 };
 /// # Errors
 /// No equilibrium; a body that is free to move; no memory.
 pub fn relaxed(model: &RubberModel, t: f64) -> Result<Relaxed, RelaxedError> {
+    relaxed_while(model, t, |_| true)
+}
+
+/// As [`relaxed`], as long as what is shown the part that has been reached says to go on.
+///
+/// # Errors
+/// As there; [`RelaxedError::Stopped`].
+pub fn relaxed_while(
+    model: &RubberModel,
+    t: f64,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<Relaxed, RelaxedError> {
     let ramp = |to: f64| Profile::Ramp { from: 0.0, to, start: 0.0, duration: 1.0 };
     let mut model = model.clone();
     model.problem.material.maxwell.clear();
@@ -72,14 +86,18 @@ pub fn relaxed(model: &RubberModel, t: f64) -> Result<Relaxed, RelaxedError> {
         StepOptions { stepping, smallest: 1e-7, way: Some(WAY), ..StepOptions::default() };
     let mut solid = RubberSolid::new(&model, options)?;
     let mut reached = Vec::new();
-    let ended = solid.advance(1.0, |solid| {
+    let ended = solid.advance_while(1.0, |solid| {
         let (displacement, reactions) = (solid.displacement().to_vec(), solid.support_forces());
         reached.push(Reached { part: solid.time(), displacement, reactions });
+        go_on(solid.time())
     });
     match ended {
         Ok(()) => {}
         Err(RubberError::NoEquilibrium { time, failure, .. }) => {
             return Err(RelaxedError::Lost { part: time, failure, reached });
+        }
+        Err(RubberError::Stopped { time }) => {
+            return Err(RelaxedError::Stopped { part: time, reached });
         }
         Err(other) => return Err(other.into()),
     }

@@ -1,14 +1,14 @@
-//! The energy ledger of a run with a solid in it, row by row.
+//! The energy ledger of a run, look by look: of a run with a solid in it at each row, of bearings alone whatever the rows are.
 
-/// A ledger that does not close at this many rows on end fails a run. One alone may be a blow to a
+/// A ledger that does not close at this many looks on end fails a run. One alone may be a blow to a
 /// body at rest: what a step leaves of it is much of the little that has been turned over.
-const MOST_ROWS_OPEN: u32 = 5;
+pub const MOST_OPEN: u32 = 5;
 
 /// Energy that is nothing to any body of a scene, J: some hundred times what heat gives one atom at room temperature. What
 /// rounding makes of a system at rest, before its load comes, is far below.
 const NOTHING: f64 = 1e-18;
 
-/// What the ledger has come to at a row.
+/// What the ledger has come to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LedgerWatch {
     /// Energy held less work done at the start, J: what the ledger of a solid by itself is held against.
@@ -17,20 +17,20 @@ pub struct LedgerWatch {
     pub turned_over: f64,
     /// Largest energy unaccounted for so far, J.
     pub largest_residual: f64,
-    /// Rows on end whose ledger did not close.
-    pub rows_open: u32,
+    /// Looks on end at which it did not close.
+    pub open: u32,
 }
 
 impl LedgerWatch {
-    /// Looks at a row where `residual` is unaccounted for and `turned_over` held or exchanged (J); false
+    /// Looks where `residual` is unaccounted for and `turned_over` held or exchanged (J); false
     /// where the run has to end, having missed more than `limit` of it for too long.
     pub fn see(&mut self, residual: f64, turned_over: f64, limit: f64) -> bool {
         self.turned_over = self.turned_over.max(turned_over);
         self.largest_residual = self.largest_residual.max(residual.abs());
         let closes = residual.abs() <= (limit * self.turned_over).max(NOTHING);
-        self.rows_open = if closes { 0 } else { self.rows_open + 1 };
+        self.open = if closes { 0 } else { self.open.saturating_add(1) };
         // A residual that is not a number is refused as well.
-        self.rows_open < MOST_ROWS_OPEN && residual.is_finite()
+        self.open < MOST_OPEN && residual.is_finite()
     }
 }
 
@@ -44,11 +44,22 @@ mod tests {
         (0..100).take_while(|_| watch.see(residual, turned_over, 0.2)).count()
     }
 
+    /// Looks that are open now and then end no run, those on end do.
+    #[test]
+    fn a_single_blow_ends_no_run() {
+        let mut watch = LedgerWatch::default();
+        for round in 0..20 {
+            let open = (1..MOST_OPEN).all(|_| watch.see(1.0, 2.0, 0.2));
+            assert!(open && watch.see(0.1, 2.0, 0.2), "{round}");
+        }
+        assert_eq!((watch.largest_residual, watch.turned_over), (1.0, 2.0));
+    }
+
     /// As of a rotor at rest in elements, whose load comes later: 1.6e-23 J of 3.3e-23 J.
     #[test]
     fn rounding_of_a_system_at_rest_ends_no_run() {
         assert_eq!(rows_seen(1.6e-23, 3.3e-23), 100);
-        assert_eq!(rows_seen(1.6e-9, 3.3e-9), MOST_ROWS_OPEN as usize - 1);
+        assert_eq!(rows_seen(1.6e-9, 3.3e-9), MOST_OPEN as usize - 1);
         assert_eq!(rows_seen(1.6e-23, 0.0), 100);
         assert_eq!(rows_seen(f64::NAN, 1.0), 0);
     }
