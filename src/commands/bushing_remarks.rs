@@ -2,7 +2,9 @@
 
 use bearing_dynamics::output::bushing_reach::{Beyond, beyond};
 use bearing_dynamics::output::session::Session;
-use bearing_dynamics::scene::assembly::{AssemblyScene, Spring};
+use bearing_dynamics::scene::assembly::{
+    AssemblyScene, BushingInElements, BushingStepping, Spring,
+};
 use bearing_dynamics::scene::bushing_reach::{PART, reach};
 use bearing_dynamics::solver::clock::{to_digits, told};
 use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
@@ -11,7 +13,10 @@ use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
 /// elements.
 pub fn of_bushings(scene: &AssemblyScene) -> Vec<String> {
     let said = |spring: &Spring| {
-        let of = spring.bushing.as_ref().filter(|of| of.elements.is_none())?;
+        let of = spring.bushing.as_ref()?;
+        if let Some(elements) = &of.elements {
+            return four_nodes(&spring.name, elements);
+        }
         let part = 100.0 * PART;
         Some(match reach(of) {
             Ok(all) => {
@@ -38,6 +43,17 @@ pub fn of_bushings(scene: &AssemblyScene) -> Vec<String> {
     scene.springs.iter().filter_map(said).collect()
 }
 
+/// Elements of explicit steps are stiffer than rubber, the coarser the more.
+fn four_nodes(name: &str, elements: &BushingInElements) -> Option<String> {
+    let is_explicit = matches!(elements.stepping, BushingStepping::Explicit { .. });
+    is_explicit.then(|| {
+        format!(
+            "bushing {name} moves in elements of four nodes, which are stiffer than its rubber, coarse ones by half and more: hold a \
+             run with finer cells, or with method = \"implicit\", against it"
+        )
+    })
+}
+
 /// "0.95 mm across"; nothing of a motion without end.
 fn reaching((motion, amplitude): (SleeveMotion, f64)) -> Option<String> {
     amplitude.is_finite().then(|| match motion {
@@ -50,7 +66,7 @@ fn reaching((motion, amplitude): (SleeveMotion, f64)) -> Option<String> {
     })
 }
 
-/// Bushings that a run took beyond that.
+/// What a run says of its bushings: elements that are too stiff, and springs that it took beyond where they hold.
 pub fn beyond_bushings(scene: &AssemblyScene, session: &Session) -> Vec<String> {
     let Some(assembly) = session.motion.assembly() else { return Vec::new() };
     let known = |spring: usize| reach(scene.springs[spring].bushing.as_ref()?).ok();
@@ -65,5 +81,10 @@ pub fn beyond_bushings(scene: &AssemblyScene, session: &Session) -> Vec<String> 
             100.0 * PART
         ))
     };
-    beyond(scene, assembly, &session.recorder, known).into_iter().filter_map(said).collect()
+    let of_elements = scene
+        .springs
+        .iter()
+        .filter_map(|spring| four_nodes(&spring.name, spring.bushing.as_ref()?.elements.as_ref()?));
+    let of_springs = beyond(scene, assembly, &session.recorder, known).into_iter().filter_map(said);
+    of_elements.chain(of_springs).collect()
 }

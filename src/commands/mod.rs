@@ -73,6 +73,7 @@ impl Changes {
             if keys.contains(&key) {
                 return Err(format!("--set {change}: {key} is set twice; give it once").into());
             }
+            notes.extend(reach(&document, "--set", change, key)?);
             let gone = document.set(key, value.trim())?;
             if let Some(other) = gone.iter().find(|gone| keys.contains(*gone)) {
                 return Err(format!("--set {change}: it excludes {other}, which is set too").into());
@@ -84,6 +85,39 @@ impl Changes {
         }
         Ok((document, notes))
     }
+}
+
+/// What is to be said where tables with names have their own value for a key that has none.
+///
+/// # Errors
+/// A key that reaches nothing.
+pub fn reach(
+    document: &Document,
+    flag: &str,
+    given: &str,
+    key: &str,
+) -> Result<Option<String>, Box<dyn Error>> {
+    let (own, nothing) = document.out_of_reach(key);
+    let table = key.split('.').next().unwrap_or_default();
+    let named = |name: &String| format!("[{table}.{name}]");
+    let all = own.iter().map(named).collect::<Vec<_>>().join(", ");
+    if nothing {
+        let name = &own[0];
+        let rest = &key[table.len()..];
+        return Err(format!(
+            "{flag} {given}: {key} reaches nothing, since {all} {} a value of {} own; write {table}.{name}{rest}",
+            if own.len() == 1 { "has" } else { "have" },
+            if own.len() == 1 { "its" } else { "their" }
+        )
+        .into());
+    }
+    Ok((!own.is_empty()).then(|| {
+        format!(
+            "{flag} {given}: {all} {} a value of {} own, which stays",
+            if own.len() == 1 { "has" } else { "have" },
+            if own.len() == 1 { "its" } else { "their" }
+        )
+    }))
 }
 
 /// Writes to standard output, without what a terminal would obey; a reader that went away

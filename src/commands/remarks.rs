@@ -75,6 +75,7 @@ pub fn of_statics(
     for (bearing, state) in assembly.bearings.iter().zip(&solution.bearings) {
         let contacts = [&bearing.inner_contact, &bearing.outer_contact];
         remarks.extend(of_balls(scene, &Still::new(contacts, state)));
+        remarks.extend(without_loads_of_runs(scene, &state.balls));
     }
     remarks
 }
@@ -359,6 +360,29 @@ fn gyroscopic(scene: &Scene, balls: &[BallState]) -> Option<String> {
              of {:.1} % of the loads of both contacts of a ball and moves contact angles and the race; `run` has it",
             1e3 * most[1],
             100.0 * most[0]
+        )
+    })
+}
+
+/// What acts on the inner race of a bearing alone in a run and not in an equilibrium, where it is much beside the ball loads.
+fn without_loads_of_runs(scene: &Scene, balls: &[BallState]) -> Option<String> {
+    let of = &scene.dynamics;
+    let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let speed = scene.inner_speed.unwrap_or(0.0);
+    let rotating = of.rotating_load.as_ref().map_or(0.0, |load| load.force.value(0.0).abs());
+    let all = [
+        ("its weight", of.inner.inertia.mass * gravity),
+        ("its unbalance at this speed", of.unbalance * speed * speed),
+        ("the rotating load", rotating),
+    ];
+    let loads = balls.iter().map(|b| b.inner.normal_load.max(b.outer.normal_load));
+    let largest = loads.fold(0.0, f64::max);
+    let told = all.iter().filter(|(_, force)| *force > CENTRIFUGAL * largest);
+    let told: Vec<String> = told.map(|(what, force)| format!("{what}, {force:.3} N")).collect();
+    (!told.is_empty()).then(|| {
+        format!(
+            "what acts on the inner race in a run is left out: {}; `run` has it, here give it as a load",
+            told.join("; ")
         )
     })
 }

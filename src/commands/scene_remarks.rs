@@ -5,7 +5,9 @@ use bearing_dynamics::ch3_bushing::dent::Dent;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::scene::Scene;
 use bearing_dynamics::scene::assembly::{AssemblyScene, SceneBody, Spring, SpringAt};
+use bearing_dynamics::scene::excitations::{excitations, largest};
 use bearing_dynamics::scene::housing::{FitSize, HousingMethod};
+use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::dynamics::run::Start;
 use bearing_dynamics::solver::profile::Profile;
@@ -119,8 +121,51 @@ pub fn sudden_fits(scene: &AssemblyScene) -> impl Iterator<Item = String> {
     })
 }
 
-/// Half of the width of a usual contact along the rolling direction, in parts of the ball's radius.
+/// Rows that are too far apart for what drives the scene: what they show of it is folded to other frequencies.
+pub fn between_rows(scene: &AssemblyScene, interval: f64) -> Option<String> {
+    let end = scene.run().map_or(0.0, |run| run.end);
+    let turning = |rotation: &Rotation, unbalanced: bool| match rotation {
+        Rotation::Speed(speed) if unbalanced => largest(speed, end) / TAU,
+        _ => 0.0,
+    };
+    let driven = excitations(scene).into_iter().filter(|of| !of.is_ripple);
+    let driven = driven.map(|of| (of.what, of.frequency));
+    let bodies = scene.bodies.iter().map(|body| {
+        let along = body.beam.iter().flat_map(|beam| &beam.unbalances);
+        let unbalanced = body.unbalance != 0.0 || along.clone().any(|(_, size, _)| *size != 0.0);
+        let frequency = turning(&body.race.rotation, unbalanced);
+        (format!("the unbalance of body.{}", body.name), frequency)
+    });
+    let races = scene.bearings.iter().map(|placed| {
+        let of = &placed.scene.dynamics;
+        (
+            "the unbalance of the inner race".to_string(),
+            turning(&of.inner.rotation, of.unbalance != 0.0),
+        )
+    });
+    let all = driven.chain(bodies).chain(races);
+    let (what, frequency) = all.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    folded(&what, frequency, interval)
+}
+
+/// Of something with a frequency (Hz), and rows that are `interval` s apart.
+pub fn folded(what: &str, frequency: f64, interval: f64) -> Option<String> {
+    let seen = frequency * interval <= 0.5;
+    (!seen).then(|| {
+        format!(
+            "rows are {} s apart, more than half a period of {what} ({} Hz): means, swings and spectra of rows are not those of \
+             the motion; write numerics.output_interval, {} s for eight rows a period",
+            to_digits(interval, 3),
+            to_digits(frequency, 4),
+            to_digits(0.125 / frequency, 2)
+        )
+    })
+}
+
+/// Half of the width of a usual contact along the rolling direction, in parts of the ball's radius, and more than half of its
+/// length across the groove.
 const HALF_CONTACT: f64 = 0.02;
+const HALF_LENGTH: f64 = 0.25;
 
 /// Balls that stand on a dent where a run begins in the equilibrium of races that have none.
 pub fn on_dents(scene: &AssemblyScene) -> Vec<String> {
@@ -134,7 +179,13 @@ pub fn on_dents(scene: &AssemblyScene) -> Vec<String> {
             let radius = geometry.pitch_radius + out;
             let reach = dent.shape.reach() + HALF_CONTACT * geometry.ball_radius;
             let away = |azimuth: f64| radius * libm::remainder(azimuth - dent.angle, TAU).abs();
+            // On the side that a positive contact angle has.
+            let side = if dent.side == 0 { -1.0 } else { 1.0 };
+            let groove = [&geometry.inner, &geometry.outer][dent.side].groove_radius;
+            let beside = groove * (dent.groove_angle - side * geometry.contact_angle).abs();
+            let met = beside <= dent.shape.reach() + HALF_LENGTH * geometry.ball_radius;
             !dent.shape.vanishes()
+                && met
                 && geometry.azimuths(*ball_phase).into_iter().any(|at| away(at) <= reach)
         };
         let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));

@@ -39,6 +39,22 @@ pub fn elevate(mesh: &TetMesh, curved: &[Surface]) -> Result<Elevated, MeshError
     elevate_faces(mesh, &curved)
 }
 
+/// The same where every layer of cells is curved about the X axis, between its boundaries too: an edge's node stands at the mean
+/// radius, angle and x of its ends. So no element folds where a layer is thinner than the arc of a cell is high. No node lies on the
+/// axis, and no edge across it.
+///
+/// # Errors
+/// Those of [`elevate`].
+pub fn elevate_about_x(mesh: &TetMesh) -> Result<Elevated, MeshError> {
+    elevate_by(mesh, &[], |a, b| {
+        let [from, to] = [a, b].map(|end| libm::hypot(end.y, end.z));
+        // The direction halfway is that of the sum of both directions.
+        let [y, z] = [a.y / from + b.y / to, a.z / from + b.z / to];
+        let radius = 0.5 * (from + to) / libm::hypot(y, z);
+        Vector3::new(0.5 * (a.x + b.x), radius * y, radius * z)
+    })
+}
+
 /// The same for surfaces with the faces that lie on each.
 ///
 /// # Errors
@@ -46,6 +62,15 @@ pub fn elevate(mesh: &TetMesh, curved: &[Surface]) -> Result<Elevated, MeshError
 pub fn elevate_faces(
     mesh: &TetMesh,
     curved: &[(Surface, Vec<Face>)],
+) -> Result<Elevated, MeshError> {
+    elevate_by(mesh, curved, |a, b| (a + b) * 0.5)
+}
+
+/// The same from where the nodes of edges stand that lie on no surface.
+fn elevate_by(
+    mesh: &TetMesh,
+    curved: &[(Surface, Vec<Face>)],
+    middle: impl Fn(Vector3<f64>, Vector3<f64>) -> Vector3<f64>,
 ) -> Result<Elevated, MeshError> {
     let Elements::Linear(list) = &mesh.elements else {
         return Err(MeshError::AlreadyQuadratic);
@@ -76,10 +101,10 @@ pub fn elevate_faces(
             }
         }
     }
-    let mut middles: Vec<Vector3<f64>> = straight
-        .iter()
+    let free = edges.iter().map(|&[a, b]| middle(mesh.point(a), mesh.point(b)));
+    let mut middles: Vec<Vector3<f64>> = free
         .zip(&on)
-        .map(|(&place, on)| onto_all(place, &on.iter().map(|&i| curved[i].0).collect::<Vec<_>>()))
+        .map(|(place, on)| onto_all(place, &on.iter().map(|&i| curved[i].0).collect::<Vec<_>>()))
         .collect();
 
     let quadratic: Vec<[u32; 10]> = list

@@ -1,6 +1,6 @@
 //! Amplitude spectra of channels.
 //!
-//! The mean is taken out, a Hann window laid over the rows, and amplitudes are scaled so that a
+//! The mean under a Hann window is taken out, the window laid over the rows, and amplitudes are scaled so that a
 //! sine of amplitude 1 in the middle of a bin shows as 1. The window's main lobe is four bins wide
 //! and its side lobes start at −31 dB; a sine between two bins shows up to 15 % (1.42 dB) low,
 //! which the interpolated [peaks] correct.
@@ -54,16 +54,14 @@ pub fn spectrum(values: &[f64], interval: f64) -> Option<Spectrum> {
     if count < FEWEST_ROWS {
         return None;
     }
-    let mean = values.iter().sum::<f64>() / count as f64;
-    let mut windowed: Vec<f64> = values
-        .iter()
-        .enumerate()
-        .map(|(i, value)| {
-            // Periodic form: its transform has three lines and nothing else.
-            let weight = 0.5 - 0.5 * libm::cos(TAU * i as f64 / count as f64);
-            weight * (value - mean)
-        })
-        .collect();
+    // Periodic form: its transform has three lines and nothing else.
+    let weight = |i: usize| 0.5 - 0.5 * libm::cos(TAU * i as f64 / count as f64);
+    let weighed: f64 = values.iter().enumerate().map(|(i, value)| weight(i) * value).sum();
+    let weights: f64 = (0..count).map(weight).sum();
+    // Under the window: the plain mean of a broken number of periods leaves a constant, which would stand in bin 1.
+    let mean = weighed / weights;
+    let mut windowed: Vec<f64> =
+        values.iter().enumerate().map(|(i, value)| weight(i) * (value - mean)).collect();
     let transform = RealFftPlanner::<f64>::new().plan_fft_forward(count);
     let mut lines = transform.make_output_vec();
     transform
@@ -210,6 +208,26 @@ mod tests {
         // Slower still: it is listed, and first.
         let found = peaks(&spectrum(&values(0.4), 1.0).unwrap(), 8, 0.0);
         assert_eq!(found[0].bin_frequency, 1.0 / 512.0, "{found:?}");
+    }
+
+    /// Five periods and a half leave no constant, which would be a peak where nothing moves.
+    #[test]
+    fn a_broken_number_of_periods_leaves_no_constant() {
+        for periods in [5.5, 5.25, 17.06] {
+            let sine = |i: usize| 1.2 + (TAU * periods * i as f64 / 800.0 + 0.4).sin();
+            let values: Vec<f64> = (0..800).map(sine).collect();
+            let found = spectrum(&values, 1e-4).unwrap();
+            // What a Hann window leaves of a line d bins away: below 2/(π d³).
+            for bin in 0..2 {
+                let away: f64 = periods - bin as f64;
+                let allowed = 2.0 / (std::f64::consts::PI * away.powi(3));
+                assert!(
+                    found.amplitude[bin] <= allowed,
+                    "{periods}, {bin}: {:e}",
+                    found.amplitude[bin]
+                );
+            }
+        }
     }
 
     #[test]

@@ -254,6 +254,16 @@ impl AssemblyScene {
         &self.bearings[0].scene
     }
 
+    /// The bearing alone, or in its housing, whose equilibrium is that of its inner race under what the scene writes for it:
+    /// where an outer race moves by itself, or a foundation holds a race, there is more to solve.
+    pub fn one_still(&self) -> Option<&PlacedBearing> {
+        self.one().filter(|one| {
+            let of = &one.scene.dynamics;
+            let stands = one.housing.is_some() || of.outer.is_none();
+            stands && of.inner.foundation_stiffness == [0.0; 5]
+        })
+    }
+
     /// How the housings are solved, where there are any: all the same way.
     pub fn housing_method(&self) -> Option<HousingMethod> {
         let mut housings = self.bearings.iter().filter_map(|placed| placed.housing.as_ref());

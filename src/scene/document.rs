@@ -345,6 +345,33 @@ impl Document {
         })
     }
 
+    /// Names whose own tables say another value for a key without a name, which therefore does not reach them: these, and
+    /// whether it reaches nothing at all. Nothing of a key with a name.
+    pub fn out_of_reach(&self, path: &str) -> (Vec<String>, bool) {
+        let Some((row, key, None)) = keys::find_named(path) else { return (Vec::new(), false) };
+        let Some(table) =
+            keys::NAMED.into_iter().find(|table| Some(*table) == path.split('.').next())
+        else {
+            return (Vec::new(), false);
+        };
+        let rows: Vec<usize> =
+            key.rivals().filter_map(|rival| keys::find(rival.path)).map(|(row, _)| row).collect();
+        let own = |named: &&Named| {
+            let given = &named.layer.given;
+            named.table == table
+                && (given[row].is_some() || rows.iter().any(|at| given[*at].is_some()))
+        };
+        let own: Vec<String> = self.named.iter().filter(own).map(|n| n.name.clone()).collect();
+        // Bodies and springs go by their own names, all else by those of bearings.
+        let by = if matches!(table, "body" | "spring") { table } else { "bearing" };
+        let mut names: Vec<&str> = self.names(by).chain(self.names(table)).collect();
+        names.sort_unstable();
+        names.dedup();
+        let nothing =
+            !names.is_empty() && names.iter().all(|name| own.iter().any(|own| own == name));
+        (own, nothing)
+    }
+
     /// Reads what to vary: a list `"5 um, 0 um"` or a range `"0 deg .. 45 deg / 91"` for a key.
     pub fn axis(&self, path: &str, values: &str) -> Result<SweepAxis, SceneError> {
         let (_, key, _) = self.row(path)?;

@@ -100,7 +100,8 @@ fn add_turning(
     add(found, turns.into(), largest(&load.speed, end) / TAU, false);
 }
 
-fn largest(profile: &Profile, end: f64) -> f64 {
+/// Largest size of a speed up to the end of a run.
+pub fn largest(profile: &Profile, end: f64) -> f64 {
     // Speeds are ramps and tables; a hundred looks find what counts here.
     let at = |i: u32| profile.value(end * f64::from(i) / 100.0).abs();
     (0..=100).map(at).fold(0.0, f64::max)

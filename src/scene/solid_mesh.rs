@@ -186,6 +186,12 @@ fn build_around(
             };
             let solid = generate(made).map_err(failed)?;
             let (mut mesh, pulled_back) = of_order(solid, request.order).map_err(failed)?;
+            if pulled_back > 0 {
+                notes.push(format!(
+                    "{pulled_back} mid-side nodes stay off their curved surfaces, where elements that are thinner than the arc of a \
+                     cell is high would fold: the body is a polygon there; take more cells around, or fewer through the wall"
+                ));
+            }
             if matches!(made, MeshSource::Bushing(_, cells) if cells.part == Part::Quarter) {
                 notes.push(QUARTER.to_string());
             }

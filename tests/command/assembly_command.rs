@@ -52,6 +52,33 @@ fn forces_of_both_bearings_and_the_loads_are_in_balance() {
     assert_eq!(summary["stiffness"]["coordinates"][0], "shaft.x");
 }
 
+/// A key without a name does not reach what has its own: refused where that is everything, told where it is a part.
+#[test]
+fn keys_that_named_tables_have_for_themselves_are_told() {
+    let folder = folder();
+    let out = text(&folder.path().join("out"));
+    let path = write(folder.path(), "scene.toml", &[BEARING, ENDS, SHAFT].concat());
+    let load = "body.z.load=-300 N, -5000 N";
+    let message = refused(&["sweep", &path, "--vary", load, "--out", &out]);
+    assert!(
+        message.contains("reaches nothing, since [body.shaft] has a value of its own"),
+        "{message}"
+    );
+    assert!(message.contains("write body.shaft.z.load"), "{message}");
+    let message = refused(&["statics", &path, "--set", "body.z.load=-300 N", "--dry"]);
+    assert!(message.contains("reaches nothing"), "{message}");
+    done(&["statics", &path, "--set", "body.shaft.z.load=-300 N", "--dry"]);
+    // Of one of two.
+    let own = [BEARING, ENDS, SHAFT]
+        .concat()
+        .replace("[bearing.left]", "[bearing.left]\nball_phase = \"3 deg\"");
+    let path = write(folder.path(), "own.toml", &own);
+    let said = done(&["statics", &path, "--set", "bearing.ball_phase=5 deg", "--dry"]);
+    assert!(said.contains("[bearing.left] has a value of its own, which stays"), "{said}");
+    let said = done(&["statics", &path, "--set", "bearing.right.ball_phase=5 deg", "--dry"]);
+    assert!(!said.contains("which stays"), "{said}");
+}
+
 #[test]
 fn names_and_order_change_no_physics() {
     let one = statics(&[BEARING, ENDS, SHAFT].concat());

@@ -2,14 +2,16 @@
 
 use bearing_dynamics::mesh::check::{Limits, check};
 use bearing_dynamics::mesh::generate::{
-    Cage, CageMesh, ContactBlock, Housing, HousingMesh, PillowBlock, RailRelief, Ring, RingMesh,
-    Solid, bar, contact_block, graded, ring, shaft,
+    Bushing, BushingMesh, Cage, CageMesh, ContactBlock, Housing, HousingMesh, Part, PillowBlock,
+    RailRelief, Ring, RingMesh, Solid, bar, bushing, contact_block, graded, ring, shaft,
 };
-use bearing_dynamics::mesh::measure::{Share, total_area, total_volume, tributary_areas};
+use bearing_dynamics::mesh::measure::{
+    Share, least_jacobian, total_area, total_volume, tributary_areas,
+};
 use bearing_dynamics::mesh::quality::quality;
 use bearing_dynamics::mesh::topology::surface;
-use bearing_dynamics::mesh::{MeshError, Order, TetMesh};
-use std::f64::consts::PI;
+use bearing_dynamics::mesh::{Elements, MeshError, Order, TetMesh};
+use std::f64::consts::{PI, TAU};
 
 /// The cage of Table 5.3; the width follows from the stated mass of 0.069 kg.
 const CAGE: Cage = Cage {
@@ -381,6 +383,32 @@ fn dimensions_that_do_not_fit_are_named() {
         match error {
             Some(MeshError::Dimension { what, .. }) => assert_eq!(what, expected),
             other => panic!("{expected}: {other:?}"),
+        }
+    }
+}
+
+/// Layers that are thinner than the arc of a cell is high are curved as the sleeves are, and the body keeps its volume.
+#[test]
+fn thin_walls_stay_round() {
+    for (inner, thickness, around, radial) in
+        [(60e-3, 2e-3, 12, 4), (100e-3, 1e-3, 16, 4), (71e-3, 10e-3, 16, 8), (71e-3, 10e-3, 8, 4)]
+    {
+        let body = Bushing { inner_diameter: inner, thickness, length: 20e-3 };
+        let cells = BushingMesh { around, radial, axial: 2, grading: 2.0, part: Part::Whole };
+        let made = bushing(&body, &cells).unwrap();
+        let elevated = made.quadratic().unwrap();
+        assert_eq!(elevated.pulled_back, 0, "{body:?}, {around} around");
+        let [a, b] = [0.5 * inner, 0.5 * inner + thickness];
+        let exact = PI * (b * b - a * a) * 20e-3;
+        // Parabolas in the place of arcs: of the fourth order in the angle of a cell, of each sleeve.
+        let angle = TAU / around as f64;
+        let error = total_volume(&elevated.mesh) / exact - 1.0;
+        let allowed = 2.0 * angle.powi(4) / 480.0 * (b + a) / (b - a) + 1e-12;
+        assert!(error.abs() <= allowed, "{body:?}, {around}: {error:e} of {allowed:e}");
+        let Elements::Quadratic(elements) = &elevated.mesh.elements else { panic!("ten nodes") };
+        for nodes in elements {
+            let places = nodes.map(|node| elevated.mesh.point(node));
+            assert!(least_jacobian(&places) > 0.0);
         }
     }
 }

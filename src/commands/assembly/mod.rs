@@ -60,10 +60,11 @@ pub fn defaults(scene: &AssemblyScene) -> Vec<DefaultUsed> {
     scene.defaults_used.iter().cloned().chain(scene.bearings.iter().flat_map(of_bearing)).collect()
 }
 
-/// What `statics` finds the equilibrium of; of a bearing alone under the loads that are given, its outer race held.
+/// What `statics` finds the equilibrium of; of a bearing alone under the loads that are given, its outer race held, unless that
+/// moves by itself.
 pub fn still(lists: &Lists) -> Fallible<StaticAssembly<'static>> {
-    Ok(match lists.scene.only() {
-        Some(alone) => static_problem(alone)?.assembly(),
+    Ok(match lists.scene.one_still().filter(|one| one.housing.is_none()) {
+        Some(alone) => static_problem(&alone.scene)?.assembly(),
         None => still_lists(lists.scene, lists.assembly()?),
     })
 }

@@ -76,7 +76,7 @@ pub fn find_equilibrium<'s>(
         let mesh = housings.iter().map(|housing| housing.mesh_seconds).sum();
         seconds.extend([("mesh".into(), mesh), ("condense".into(), condense)]);
     }
-    let of_one = match scene.one() {
+    let of_one = match scene.one_still() {
         Some(one) => {
             let problem = plan::of_one(one, still)?;
             Some((problem, StaticSolution::from(moment.solution.clone())))

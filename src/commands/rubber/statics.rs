@@ -2,7 +2,7 @@
 
 use super::{Prepared, plan, prepare, refuse_free};
 use crate::commands::asked::Asked;
-use crate::commands::earlier::{Writes, remove_earlier};
+use crate::commands::earlier::Writes;
 use crate::commands::memory::announced;
 use crate::commands::solid::statics::{WRITTEN, table, write};
 use crate::commands::solid::{record, say_mesh_notes, say_remarks};
@@ -138,12 +138,19 @@ fn keep_curve(prepared: &Prepared, folder: Option<&Path>, error: RelaxedError) -
     let Some(folder) = folder.filter(|_| count > 0) else {
         return format!("{text}{advice}").into();
     };
-    let written = remove_earlier(folder).and_then(|()| {
-        let curve = summary::reached_series(&prepared.setup, reached)?;
-        Ok(curve.write_csv(&folder.join(CURVE))?)
-    });
+    // Results of an earlier command stay, whatever they are of.
+    let earlier = match folder.join("summary.json").exists() {
+        true => ", beside the results that were there",
+        false => "",
+    };
+    let curve = summary::reached_series(&prepared.setup, reached);
+    let written = curve
+        .map_err(Box::<dyn Error>::from)
+        .and_then(|curve| Ok(curve.write_csv(&folder.join(CURVE))?));
     match written {
-        Ok(()) => format!("{text}; {count} equilibria up to there are in {CURVE}{advice}").into(),
+        Ok(()) => {
+            format!("{text}; {count} equilibria up to there are in {CURVE}{earlier}{advice}").into()
+        }
         Err(also) => format!("{text}; {CURVE} could not be written: {also}{advice}").into(),
     }
 }

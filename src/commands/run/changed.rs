@@ -26,7 +26,11 @@ pub fn since(folder: &Path, record: &RunRecord) -> String {
     let more = found.len().saturating_sub(MOST);
     found.truncate(MOST);
     match (found.len(), more) {
-        (0, _) => String::new(),
+        (0, _) => {
+            "; nothing of bodies and loads is otherwise: look at [numerics] (accuracy, integrator, step, start, energy_limit) and at \
+             the mesh"
+                .into()
+        }
         (_, 0) => format!("; changed: {}", found.join(", ")),
         _ => format!("; changed: {} and {more} more", found.join(", ")),
     }

@@ -186,7 +186,7 @@ fn of_bearing(simulation: &Simulation, table: &RunTable, lines: &mut Lines) {
         }
     }
     if table.all("energy_residual").is_some() {
-        let most = largest(table, "energy_residual");
+        let most = largest(table, "energy_residual").max(simulation.largest_residual());
         line("energy unaccounted for", format!("{most:.3e} J at most"));
     }
     if let Some(shortened) = simulation.step_watch.shortened {

@@ -13,6 +13,7 @@ use super::{Changes, CommandResult, Outcome, results_folder, say};
 use bearing_dynamics::output::session::{Motion, Session, SessionError, Status};
 use bearing_dynamics::output::state::{self, StateError, StateFile, StateRecord, Stopped};
 use bearing_dynamics::scene::resolve_subject;
+use bearing_dynamics::solver::clock::rounded;
 use bearing_dynamics::solver::housing::bonded::BondedBushing;
 use bearing_dynamics::solver::housing::stepped::SteppedSolid;
 use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
@@ -155,13 +156,21 @@ fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) ->
         )
         .into()),
         End::Failed(error) => {
+            let too_long = session.motion.bearing().and_then(|bearing| bearing.step_watch.exceeded);
+            let too_long = too_long.map_or(String::new(), |[ratio, time]| {
+                format!(
+                    "; the step was {ratio:.3} times the largest stable one at t = {} s",
+                    rounded(time)
+                )
+            });
             let kept = match session.motion {
                 Motion::Bearing(_) => "before that step",
                 Motion::Solid(_) | Motion::Housed(_) | Motion::Course(_) | Motion::Rubber(_) => {
                     "at the last row"
                 }
             };
-            Err(format!("{error}; the rows so far and the state {kept} are in {out}").into())
+            Err(format!("{error}{too_long}; the rows so far and the state {kept} are in {out}")
+                .into())
         }
     }
 }

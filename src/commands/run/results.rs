@@ -5,6 +5,7 @@ use super::prepared::{Fields, Prepared, SolidOf, Way};
 use crate::commands::assembly::course::{along_course, inertia_estimate, section, verdicts};
 use crate::commands::assembly::housing::Housing;
 use crate::commands::bushing_remarks::beyond_bushings;
+use crate::commands::scene_remarks::{between_rows, folded};
 use crate::commands::{remarks, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::bore::{bore_nodes, bore_series};
@@ -28,10 +29,12 @@ use bearing_dynamics::output::summary::{RunReport, write_run_results};
 use bearing_dynamics::output::table::RunTable;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::excitations::excitations;
-use bearing_dynamics::scene::{Plot, RunPlot, Scene};
+use bearing_dynamics::scene::solid::LoadKind;
+use bearing_dynamics::scene::{Plot, RunPlot, Scene, SolidScene};
 use bearing_dynamics::solver::dynamics::foretell::Choice;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::course::CourseProblem;
+use bearing_dynamics::solver::profile::Profile;
 use serde_json::{Map, Value, json};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -75,6 +78,7 @@ pub(super) fn write_results(
             if let Some(simulation) = session.motion.bearing() {
                 said.remarks = remarks::of_run(scene, simulation);
             }
+            said.remarks.extend(between_rows(scene, session.clock.row_interval()));
             said.remarks.extend(beyond_bushings(scene, session));
             if scene.common().dynamics.plots.contains(&RunPlot::RunUp) {
                 said.remarks.extend(without_run_up(&table));
@@ -147,7 +151,8 @@ fn write_last_fields(folder: &Path, prepared: &Prepared, session: &mut Session) 
 }
 
 fn solid_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fallible<()> {
-    let (Prepared::Solid { mesh, .. }, Motion::Solid(moving)) = (prepared, &session.motion) else {
+    let (Prepared::Solid { mesh, scene, .. }, Motion::Solid(moving)) = (prepared, &session.motion)
+    else {
         return Ok(());
     };
     let built = &mesh.built;
@@ -156,12 +161,14 @@ fn solid_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fal
     said.sections.push(("mass".into(), mass_section(model, built)?));
     said.sections.extend(field_sections(built, &displacement, &stress)?);
     said.remarks = of_solid::of_run(session, model, &stress);
+    said.remarks.extend(cycles_between_rows(scene, session));
     said.sections.push(("remarks".into(), json!(said.remarks)));
     Ok(())
 }
 
 fn rubber_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fallible<()> {
-    let (Prepared::Rubber { mesh, .. }, Motion::Rubber(moving)) = (prepared, &session.motion)
+    let (Prepared::Rubber { mesh, scene, .. }, Motion::Rubber(moving)) =
+        (prepared, &session.motion)
     else {
         return Ok(());
     };
@@ -170,8 +177,29 @@ fn rubber_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fa
     said.sections.push(("mass".into(), rubber_mass(&mesh.setup, built)?));
     said.sections.extend(field_sections(built, &state.displacement, &stress)?);
     said.remarks = of_solid::of_rubber(moving.solid.model(), &state.displacement)?;
+    said.remarks.extend(cycles_between_rows(scene, session));
     said.sections.push(("remarks".into(), json!(said.remarks)));
     Ok(())
+}
+
+/// Loads and supports of a solid by itself that swing faster than its rows show.
+fn cycles_between_rows(scene: &SolidScene, session: &Session) -> Option<String> {
+    let held = scene.held.iter().flat_map(|held| {
+        held.motion.iter().flatten().map(|motion| ("the set \"".to_string() + &held.set, motion))
+    });
+    let loads = scene.loads.iter().flat_map(|load| {
+        let profiles: Vec<&Profile> = match &load.kind {
+            LoadKind::Force(along) => along.iter().flatten().collect(),
+            LoadKind::Pressure(profile) => vec![profile],
+        };
+        profiles.into_iter().map(|profile| ("the load on \"".to_string() + &load.set, profile))
+    });
+    let cycles = held.chain(loads).filter_map(|(what, profile)| match profile {
+        Profile::Harmonic { frequency, .. } => Some((what + "\"", frequency.abs())),
+        _ => None,
+    });
+    let (what, frequency) = cycles.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    folded(&what, frequency, session.clock.row_interval())
 }
 
 /// Fields of the last state of housings and shafts in elements, the nodes of the bores, and what leaving out inertia costs.

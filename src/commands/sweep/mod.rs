@@ -12,7 +12,7 @@ mod point;
 mod report;
 
 use super::earlier::{Writes, claimed};
-use super::{CommandResult, Outcome, results_folder, say};
+use super::{CommandResult, Outcome, reach, results_folder, say};
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use grid::Grid;
 use housings::Kept;
@@ -56,6 +56,11 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
     let document = Document::read_file(&arguments.scene)?;
     let grid = Grid::new(&document, &arguments.vary)?;
+    for axis in &grid.axes {
+        if let Some(note) = reach(&document, "--vary", &axis.key, &axis.key)? {
+            say(&format!("note: {note}\n"))?;
+        }
+    }
     // A scene that cannot be solved at all is said before anything is written.
     grid.check(&document)?;
     let folder = claimed(&sweep_folder(arguments), Writes::Sweep)?;

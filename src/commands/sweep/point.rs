@@ -49,7 +49,7 @@ fn solve_scene(
     let lists = Lists::of(scene);
     let Equilibrium { still, moment, .. } = equilibrium(&lists, grown(housings, bores), neighbour)?;
     let solution = moment.solution;
-    let mut remarks = match scene.one() {
+    let mut remarks = match scene.one_still() {
         Some(_) => of_statics(scene.common(), &still, &solution),
         None => of_several(scene, &still, &solution),
     };
@@ -58,7 +58,7 @@ fn solve_scene(
         (determinate && housings.is_empty()).then(|| solution.coordinates.clone());
     let (of_housings, said) = kept.row(&solution.seats);
     remarks.extend(said);
-    let mut row = match scene.one() {
+    let mut row = match scene.one_still() {
         Some(_) => of_bearing(&StaticSolution::from(solution)),
         None => of_assembly(&still, &readable(lists.assembly()?, &still, &solution)),
     };
@@ -94,7 +94,7 @@ pub fn columns(grid: &Grid, scene: Option<&AssemblyScene>) -> Vec<Column> {
     for axis in &grid.axes {
         columns.push(Column::new(axis.key.clone(), super::report::unit_of(axis)));
     }
-    match scene.filter(|scene| scene.one().is_none()) {
+    match scene.filter(|scene| scene.one_still().is_none()) {
         Some(scene) => columns.extend(assembly_columns(scene)),
         None => {
             for (i, name) in COORDINATE_NAMES.iter().enumerate() {

@@ -20,7 +20,7 @@ pub use solids::{ContactBlock, Ring, RingMesh, bar, block, contact_block, ring, 
 pub use stepped::{ShaftStep, stepped_shaft};
 
 use crate::mesh::error::{MeshError, six_digits};
-use crate::mesh::quadratic::{Elevated, elevate};
+use crate::mesh::quadratic::{Elevated, elevate, elevate_about_x};
 use crate::mesh::surface::Surface;
 use crate::mesh::tet_mesh::TetMesh;
 use crate::mesh::topology::surface;
@@ -36,12 +36,30 @@ pub struct Solid {
 const ON_SURFACE: f64 = 1e-9;
 
 impl Solid {
-    /// The same body in ten-node elements with mid-side nodes on the curved surfaces.
+    /// The same body in ten-node elements with mid-side nodes on the curved surfaces. Of hollow bodies about the X axis all layers
+    /// are curved where elements between straight ones would fold.
     ///
     /// # Errors
     /// As [`elevate`].
     pub fn quadratic(&self) -> Result<Elevated, MeshError> {
-        elevate(&self.mesh, &self.curved)
+        let elevated = elevate(&self.mesh, &self.curved)?;
+        if elevated.pulled_back == 0 || !self.is_hollow_about_x() {
+            return Ok(elevated);
+        }
+        let curved = elevate_about_x(&self.mesh)?;
+        Ok(if curved.pulled_back < elevated.pulled_back { curved } else { elevated })
+    }
+
+    /// Whether it lies between cylinders about the X axis, and nothing of it on that axis.
+    fn is_hollow_about_x(&self) -> bool {
+        let about_x = |shape: &Surface| {
+            matches!(shape, Surface::Cylinder { point, axis, .. }
+                if point[1..] == [0.0; 2] && axis[1..] == [0.0; 2])
+        };
+        let innermost = self.mesh.nodes.iter().map(|node| libm::hypot(node[1], node[2]));
+        let size = self.mesh.size();
+        self.curved.iter().all(about_x)
+            && innermost.fold(f64::INFINITY, f64::min) > ON_SURFACE * size
     }
 }
 

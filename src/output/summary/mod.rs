@@ -14,6 +14,7 @@ use crate::output::state::SERIES;
 use crate::output::table::RunTable;
 use crate::solver::clock::rounded;
 use crate::solver::dynamics::control::SHARE;
+use crate::solver::dynamics::run::Simulation;
 use crate::solver::dynamics::run::{Integrator, Stepping};
 use crate::solver::solid::explicit::SolidStepping;
 use ndarray::Array2;
@@ -218,7 +219,9 @@ fn energy(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsE
         return Ok(None);
     }
     if let Some(residuals) = table.all("energy_residual") {
-        let largest = residuals.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
+        // Of every look that was taken between rows too.
+        let looked = session.motion.bearing().map_or(0.0, Simulation::largest_residual);
+        let largest = residuals.iter().fold(looked, |largest, value| largest.max(value.abs()));
         terms.insert("largest_residual".into(), quantity("largest_residual", largest, "J")?);
     }
     if session.motion.is_balanced_whole() {

@@ -51,11 +51,11 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Takes note of a state and of the contacts that a bearing has evaluated for it last.
-    pub fn see(&mut self, system: &System, index: usize, time: f64, state: &[f64]) {
+    /// Takes note of the races and contacts of a bearing as they were evaluated last.
+    pub fn see(&mut self, system: &System, index: usize, time: f64) {
         let (set, bearing) = (&system.sets[index], &system.assembly.bearings[index]);
         let layout = &set.layout;
-        let [inner, outer] = [0, 1].map(|side| system.race_motion(state, index, side));
+        let [inner, outer] = [0, 1].map(|side: usize| &set.races[side].motion);
         let [x, y, z] = inner.position;
         self.farthest.take(norm([x - system.assembly.place_of(bearing), y, z]), 0, time);
         self.apart.take(norm(sub(inner.position, outer.position)), 0, time);
@@ -82,8 +82,10 @@ impl Extremes {
             race.reversed.take(-sine, ball, time);
             let law = &set.laws.races[side];
             let half = law.semi_major_factor * contact.overlap.max(0.0).sqrt() / grooves[side];
-            // sin(α + ε) <= sin α + ε: most contacts need no arc sine.
-            if sine.abs() + half > edge_sines[side] {
+            // sin(α + ε) <= sin α + sin ε, and that is less than its series: most contacts need no arc sine.
+            let square = half * half;
+            let sine_of_half = half * (1.0 - square / 6.0 * (1.0 - square / 20.0));
+            if sine.abs() + sine_of_half > edge_sines[side] {
                 let angle = libm::asin(sine.abs().min(1.0));
                 if angle + half > race.edge.value {
                     race.edge = Extreme { value: angle + half, ball, time };

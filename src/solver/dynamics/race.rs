@@ -75,7 +75,8 @@ pub fn now(body: &RaceBody, t: f64, mut state: BodyState) -> RaceNow {
     };
     let moved = given(0).is_some() || given(1).is_some();
     if moved {
-        let mut tilts = tilts_of(state.axis());
+        let both = given(0).is_some() && given(1).is_some();
+        let mut tilts = if both { [0.0; 2] } else { tilts_of(state.axis()) };
         for (k, tilt) in tilts.iter_mut().enumerate() {
             if let Some(profile) = given(k) {
                 *tilt = profile.value(t);

@@ -185,9 +185,9 @@ fn accepted(
 }
 
 /// Every bearing's extremes take note of a state that has been evaluated.
-fn see(extremes: &mut [Extremes], system: &System, time: f64, state: &[f64]) {
+fn see(extremes: &mut [Extremes], system: &System, time: f64) {
     for (index, extremes) in extremes.iter_mut().enumerate() {
-        extremes.see(system, index, time, state);
+        extremes.see(system, index, time);
     }
 }
 
@@ -254,7 +254,7 @@ impl Simulation {
         system.evaluate(time, &state, &mut rates);
         let balance = Balance::from_here(&system, &state);
         let mut extremes = vec![Extremes::default(); system.sets.len()];
-        see(&mut extremes, &system, time, &state);
+        see(&mut extremes, &system, time);
         let step_watch = StepWatch {
             smallest: limit.map(|limit| limit.step),
             stiffest: if limit.is_some() { stiffness(&system) } else { Stiffness::default() },
@@ -345,7 +345,7 @@ impl Simulation {
             Stepper::RungeKutta(integrator) => {
                 let t = self.time;
                 integrator.step(system, t, step, state, |system, state| {
-                    see(extremes, system, t, state);
+                    see(extremes, system, t);
                     balanced = balance.look((system, state), options, t, self.steps);
                 });
                 step
@@ -361,7 +361,7 @@ impl Simulation {
                 integrator.accept();
                 std::mem::swap(state, &mut attempt.state);
                 // The last stage is the step itself.
-                see(extremes, system, t + taken, state);
+                see(extremes, system, t + taken);
                 balanced = balance.look((system, state), options, t + taken, self.steps);
                 taken
             }
@@ -376,7 +376,7 @@ impl Simulation {
                 std::mem::swap(state, &mut attempt.state);
                 system.tidy(t + taken, state);
                 integrator.accept(system, t + taken, taken, &attempt.state, state);
-                see(extremes, system, t + taken, state);
+                see(extremes, system, t + taken);
                 balanced = balance.look((system, state), options, t + taken, self.steps);
                 taken
             }
@@ -417,8 +417,13 @@ impl Simulation {
     /// Loads, energies and ledger at the present state.
     pub fn snapshot(&mut self) -> Snapshot {
         self.system.evaluate(self.time, &self.state, &mut self.rates);
-        see(&mut self.extremes, &self.system, self.time, &self.state);
+        see(&mut self.extremes, &self.system, self.time);
         self.balance.snapshot(&self.system, &self.state, self.time)
+    }
+
+    /// Largest energy unaccounted for at any look, J.
+    pub fn largest_residual(&self) -> f64 {
+        self.balance.watch.largest_residual
     }
 
     /// Whether the energy of a run that is over has added up, where it was too short for the looks at it to tell.
