@@ -110,9 +110,11 @@ pub fn peaks(spectrum: &Spectrum, count: usize, floor: f64) -> Vec<Peak> {
 
 fn parabola(spectrum: &Spectrum, k: usize) -> Peak {
     let bins = &spectrum.amplitude;
-    // A neighbour of exactly zero would send the parabola to infinity.
-    let log = |k: usize| libm::log(bins[k].max(f64::MIN_POSITIVE));
-    let [a, b, c] = [log(k - 1), log(k), log(k + 1)];
+    // Neighbours of a sine's highest bin have a fifth of it at least: those of rounding, zero perhaps, would send the
+    // parabola to infinity.
+    let log = |k: usize, least: f64| libm::log(bins[k].max(least));
+    let least = f64::max(0.1 * bins[k], f64::MIN_POSITIVE);
+    let [a, b, c] = [k - 1, k, k + 1].map(|k| log(k, least));
     let bend = a - 2.0 * b + c;
     let shift = if bend < 0.0 { 0.5 * (a - c) / bend } else { 0.0 };
     Peak {
@@ -145,6 +147,16 @@ mod tests {
         }
     }
 
+    /// Between two bins of nothing a bin of rounding is no larger than it is.
+    #[test]
+    fn a_bin_between_zeros_is_no_peak_beyond_itself() {
+        let mut amplitude = vec![0.0; 64];
+        (amplitude[20], amplitude[21], amplitude[40]) = (1e-14, 3e-16, 2.0);
+        let found = peaks(&Spectrum { bin_width: 1.0, amplitude }, 4, 0.0);
+        assert_eq!((found.len(), found[0].bin_frequency), (1, 40.0), "{found:?}");
+        assert!(found[0].amplitude <= 2.0 * 1.2, "{found:?}");
+    }
+
     #[test]
     fn interpolation_finds_sines_between_bins() {
         // Bias of the parabola under this window, largest between two bins: with W(1/2) = 0.8488
@@ -170,7 +182,9 @@ mod tests {
     fn bins_are_those_of_the_definition() {
         // The discrete Fourier transform as a plain sum.
         let values: Vec<f64> = (0..37).map(|i| ((i * i * 7) % 23) as f64).collect();
-        let mean = values.iter().sum::<f64>() / 37.0;
+        let weight = |i: usize| 0.5 - 0.5 * (TAU * i as f64 / 37.0).cos();
+        let sum = |of: &dyn Fn(usize) -> f64| (0..37).map(of).sum::<f64>();
+        let mean = sum(&|i| weight(i) * values[i]) / sum(&weight);
         let spectrum = spectrum(&values, 0.5).unwrap();
         assert!((spectrum.bin_width - 1.0 / 18.5).abs() <= 1e-15);
         for (k, amplitude) in spectrum.amplitude.iter().enumerate() {
