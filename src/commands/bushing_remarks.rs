@@ -48,7 +48,7 @@ fn four_nodes(name: &str, elements: &BushingInElements) -> Option<String> {
     let is_explicit = matches!(elements.stepping, BushingStepping::Explicit { .. });
     is_explicit.then(|| {
         format!(
-            "bushing {name} moves in elements of four nodes, which are stiffer than its rubber, coarse ones by half and more: hold a \
+            "bushing {name} moves in elements of four nodes, which are stiffer than its rubber, the coarser the more: hold a \
              run with finer cells, or with method = \"implicit\", against it"
         )
     })

@@ -34,6 +34,8 @@ use serde_json::Value;
 use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a command came to when nothing stood in its way.
 pub enum Outcome {
@@ -85,6 +87,21 @@ impl Changes {
         }
         Ok((document, notes))
     }
+}
+
+/// Whether the process was told to stop; `again` is what a second signal does.
+///
+/// # Errors
+/// Signals that cannot be heard.
+pub fn interruption(again: fn()) -> Result<Arc<AtomicBool>, Box<dyn Error>> {
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = interrupted.clone();
+    ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            again();
+        }
+    })?;
+    Ok(interrupted)
 }
 
 /// What is to be said where tables with names have their own value for a key that has none.

@@ -128,7 +128,7 @@ pub fn between_rows(scene: &AssemblyScene, interval: f64) -> Option<String> {
         Rotation::Speed(speed) if unbalanced => largest(speed, end) / TAU,
         _ => 0.0,
     };
-    let driven = excitations(scene).into_iter().filter(|of| !of.is_ripple);
+    let driven = excitations(scene).into_iter().filter(|of| of.repeats && !of.is_ripple);
     let driven = driven.map(|of| (of.what, of.frequency));
     let bodies = scene.bodies.iter().map(|body| {
         let along = body.beam.iter().flat_map(|beam| &beam.unbalances);
@@ -153,8 +153,8 @@ pub fn folded(what: &str, frequency: f64, interval: f64) -> Option<String> {
     let seen = frequency * interval <= 0.5;
     (!seen).then(|| {
         format!(
-            "rows are {} s apart, more than half a period of {what} ({} Hz): means, swings and spectra of rows are not those of \
-             the motion; write numerics.output_interval, {} s for eight rows a period",
+            "rows are {} s apart, more than half a period of {what} ({} Hz): means, swings and spectra of rows may be none of \
+             the motion's; write numerics.output_interval, {} s for eight rows a period",
             to_digits(interval, 3),
             to_digits(frequency, 4),
             to_digits(0.125 / frequency, 2)

@@ -138,8 +138,8 @@ fn of_sudden(model: &SolidModel, step: f64) -> Option<String> {
 
 /// Shortest time between two corners, or the period, s; infinite where there is neither. Jumps take no time.
 fn shortest_change(profile: &Profile) -> f64 {
-    if let Profile::Harmonic { frequency, .. } = profile {
-        return 1.0 / frequency.abs();
+    if profile.cycles() > 0.0 {
+        return 1.0 / profile.cycles();
     }
     let mut corners = profile.corners();
     corners.sort_by(f64::total_cmp);

@@ -12,6 +12,8 @@ pub struct Excitation {
     pub what: String,
     /// Hz.
     pub frequency: f64,
+    /// Whether it goes on and on, as a ramp does not.
+    pub repeats: bool,
     /// Whether it is the ripple of a load that goes from ball to ball: how much that displaces shows only along a
     /// course.
     pub is_ripple: bool,
@@ -68,23 +70,31 @@ fn of_bearing(
     let balls = placed.scene.geometry.ball_count as f64;
     let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
     let passing = format!("balls{of} passing the load");
-    add(found, passing, balls * against_balls, true);
+    let (frequency, repeats, is_ripple) = (balls * against_balls, true, true);
+    if frequency > 0.0 {
+        found.push(Excitation { what: passing, frequency, repeats, is_ripple });
+    }
     if let Some(ramp) = placed.housing.as_ref().and_then(|housing| housing.settings.fit_ramp) {
         add(found, format!("the fit{of} that grows in"), 0.5 / ramp, false);
     }
 }
 
-fn add(found: &mut Vec<Excitation>, what: String, frequency: f64, is_ripple: bool) {
+fn add(found: &mut Vec<Excitation>, what: String, frequency: f64, repeats: bool) {
     if frequency > 0.0 {
-        found.push(Excitation { what, frequency, is_ripple });
+        found.push(Excitation { what, frequency, repeats, is_ripple: false });
     }
+}
+
+/// A load or motion that is given over time.
+fn add_profile(found: &mut Vec<Excitation>, what: String, profile: &Profile) {
+    add(found, what, frequency(profile), profile.cycles() > 0.0);
 }
 
 fn add_drives(found: &mut Vec<Excitation>, key: &str, body: &RaceBody) {
     let names = ["x", "y", "z", "tilt_y", "tilt_z"];
     for (name, drive) in names.iter().zip(&body.drives) {
         let (Drive::Load(profile) | Drive::Motion(profile)) = drive;
-        add(found, format!("{key}.{name}"), frequency(profile), false);
+        add_profile(found, format!("{key}.{name}"), profile);
     }
 }
 
@@ -96,8 +106,8 @@ fn add_turning(
     end: f64,
 ) {
     let Some(load) = load else { return };
-    add(found, format!("{key}.rotating_load.force"), frequency(&load.force), false);
-    add(found, turns.into(), largest(&load.speed, end) / TAU, false);
+    add_profile(found, format!("{key}.rotating_load.force"), &load.force);
+    add(found, turns.into(), largest(&load.speed, end) / TAU, true);
 }
 
 /// Largest size of a speed up to the end of a run.

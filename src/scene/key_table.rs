@@ -36,7 +36,7 @@ const STEEL_MODULUS: Need = Default { value: "210 GPa", reason: "bearing steel" 
 const STEEL_POISSON: Need = Default { value: "0.3", reason: "bearing steel" };
 pub(super) const STEEL_DENSITY: Need = Default { value: "7850 kg/m^3", reason: "bearing steel" };
 const ZERO_LENGTH: Need = Default { value: "0 um", reason: "its nominal place" };
-const ZERO_TILT: Need = Default { value: "0 deg", reason: "the outer race is fixed, not tilted" };
+const ZERO_TILT: Need = Default { value: "0 deg", reason: "its nominal place" };
 const ONE_CONFORMITY: Need =
     Depends("exactly one of `groove_radius`, `conformity` and `osculation`");
 const CLEARANCE_NEED: Need = Depends(

@@ -25,12 +25,17 @@ impl LedgerWatch {
     /// Looks where `residual` is unaccounted for and `turned_over` held or exchanged (J); false
     /// where the run has to end, having missed more than `limit` of it for too long.
     pub fn see(&mut self, residual: f64, turned_over: f64, limit: f64) -> bool {
-        self.turned_over = self.turned_over.max(turned_over);
-        self.largest_residual = self.largest_residual.max(residual.abs());
-        let closes = residual.abs() <= (limit * self.turned_over).max(NOTHING);
+        let closes = self.closes(residual, turned_over, limit);
         self.open = if closes { 0 } else { self.open.saturating_add(1) };
         // A residual that is not a number is refused as well.
         self.open < MOST_OPEN && residual.is_finite()
+    }
+
+    /// Whether it closes at one look by itself.
+    pub fn closes(&mut self, residual: f64, turned_over: f64, limit: f64) -> bool {
+        self.turned_over = self.turned_over.max(turned_over);
+        self.largest_residual = self.largest_residual.max(residual.abs());
+        residual.abs() <= (limit * self.turned_over).max(NOTHING)
     }
 }
 

@@ -72,6 +72,14 @@ impl Profile {
         }
     }
 
+    /// Frequency of one that repeats itself, Hz; 0 of all others.
+    pub fn cycles(&self) -> f64 {
+        match self {
+            Profile::Harmonic { frequency, .. } => frequency.abs(),
+            _ => 0.0,
+        }
+    }
+
     /// The same with its time counted from `t0` (s).
     pub fn from_time(&self, t0: f64) -> Profile {
         let mut later = self.clone();

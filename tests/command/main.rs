@@ -51,6 +51,7 @@ mod run_remarks;
 mod run_resume;
 mod run_speeds;
 mod run_step_watch;
+mod scene_remarks;
 mod shaft_in_elements;
 mod solid_command;
 mod solid_command_errors;

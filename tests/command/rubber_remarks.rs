@@ -1,9 +1,9 @@
-//! What commands say of rubber beyond its numbers: a volume that its law was not made for, steps that are known, a table
+//! What commands say and keep of rubber beyond its numbers, where it fails or is interrupted too: a volume that its law was not made for, steps that are known, a table
 //! that was written as a number.
 
-use super::rubber_command::numerics;
+use super::rubber_command::{RUBBER, numerics};
 use crate::resume_common::{signal, wait};
-use crate::solid_command_common::{Place, command, into_folder, json, stderr, succeed};
+use crate::solid_command_common::{Place, column, command, into_folder, json, stderr, succeed};
 
 use std::fs;
 use std::process::Stdio;
@@ -242,4 +242,44 @@ fn sleeves_that_would_pass_through_each_other_are_refused() {
     assert_eq!(verdict("check", &apart).0, Some(2));
     let along = by("4.1 mm").replace(outer, &outer.replace("z = true", "z = \"4 mm\""));
     assert_eq!(verdict("check", &along).0, Some(0));
+}
+
+#[test]
+fn a_run_of_rubber_that_fails_keeps_the_last_row() {
+    let place = Place::new();
+    // A bar pressed to less than nothing, by chains that cannot be longer than straight.
+    let held = |set: &str, x: &str| {
+        format!("[[solid.held]]\nset = \"{set}\"\nx = {x}\ny = true\nz = true\n")
+    };
+    let text = format!(
+        "[solid.mesh]\ngenerate = \"bar\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\nheight = \"10 mm\"\norder = 2\n\
+         cells = {{ along = 2, across = 1, up = 1 }}\n[solid.material]\nlaw = \"elastomer\"\ntable = \"3.1\"\n\
+         chain_pull = \"inverse-langevin\"\n{}{}{}",
+        held("x_low", "true"),
+        held("x_high", "{ ramp = [\"0 mm\", \"-60 mm\"], duration = \"0.1 s\" }"),
+        numerics("0.2 s").replace(RUBBER, "")
+    );
+    let out = place.path("out");
+    let output = into_folder("run", &place.scene("s.toml", &text), &out, &[]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let message = stderr(&output);
+    assert!(message.contains("no equilibrium was found after t = "), "{message}");
+    assert!(message.contains("the state at the last row"), "{message}");
+    let (summary, state) = (json(out.join("summary.json")), json(out.join("state.json")));
+    assert_eq!((&summary["complete"], &state["stopped"]), (&false.into(), &"failed".into()));
+    assert_eq!(summary["output"]["rows"], column(&out, "time").len());
+    let output = command("statics", &place.scene("s.toml", &text), &[]).output().unwrap();
+    let message = stderr(&output);
+    assert!(message.contains("% of the given loads and displacements"), "{message}");
+    assert!(message.contains("ask for less"), "{message}");
+    // What was found on the way stays, each further than the one before.
+    let still = place.path("still");
+    let output =
+        into_folder("statics", &place.scene("s.toml", &text), &still, &[]).output().unwrap();
+    assert!(stderr(&output).contains("equilibria up to there are in curve.csv"));
+    let curve = fs::read_to_string(still.join("curve.csv")).unwrap();
+    let first = curve.lines().filter_map(|line| line.split(',').next()?.parse().ok());
+    let parts: Vec<f64> = first.collect();
+    assert!(parts.len() > 1 && parts.is_sorted() && parts[parts.len() - 1] < 1.0, "{parts:?}");
+    assert!(curve.contains("reaction_x_high_x") && !still.join("series.csv").exists(), "{curve}");
 }

@@ -6,7 +6,7 @@ use crate::commands::earlier::Writes;
 use crate::commands::memory::announced;
 use crate::commands::solid::statics::{WRITTEN, table, write};
 use crate::commands::solid::{record, say_mesh_notes, say_remarks};
-use crate::commands::{CommandResult, Outcome, placed, say};
+use crate::commands::{CommandResult, Outcome, interruption, placed, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::rubber_stresses;
 use bearing_dynamics::output::remarks;
@@ -107,15 +107,8 @@ impl Watch {
         if let Ok(style) = ProgressStyle::with_template(style) {
             bar.set_style(style);
         }
-        let interrupted = Arc::new(AtomicBool::new(false));
-        let flag = interrupted.clone();
         // Who asks twice does not want to wait for the end of a part.
-        ctrlc::set_handler(move || {
-            if flag.swap(true, Ordering::Relaxed) {
-                std::process::exit(2);
-            }
-        })?;
-        Ok(Watch { bar, interrupted })
+        Ok(Watch { bar, interrupted: interruption(|| std::process::exit(2))? })
     }
 
     fn see(&self, part: f64) -> bool {

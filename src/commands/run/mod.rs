@@ -9,7 +9,7 @@ mod texts;
 pub use prepared::{planned_request, request};
 
 use super::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
-use super::{Changes, CommandResult, Outcome, results_folder, say};
+use super::{Changes, CommandResult, Outcome, interruption, results_folder, say};
 use bearing_dynamics::output::session::{Motion, Session, SessionError, Status};
 use bearing_dynamics::output::state::{self, StateError, StateFile, StateRecord, Stopped};
 use bearing_dynamics::scene::resolve_subject;
@@ -22,7 +22,6 @@ use prepared::{Prepared, check_end};
 use results::{Seconds, write_fields_file, write_results};
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -81,9 +80,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let (request, choice) = prepared.request(kept.as_ref())?;
     let mut seconds = Seconds { read: start.elapsed().as_secs_f64(), ..Seconds::default() };
 
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let flag = interrupted.clone();
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))?;
+    let interrupted = interruption(|| {})?;
 
     let start = Instant::now();
     let parts = prepared.parts(usize::from(arguments.threads))?;

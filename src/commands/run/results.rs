@@ -185,19 +185,16 @@ fn rubber_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fa
 /// Loads and supports of a solid by itself that swing faster than its rows show.
 fn cycles_between_rows(scene: &SolidScene, session: &Session) -> Option<String> {
     let held = scene.held.iter().flat_map(|held| {
-        held.motion.iter().flatten().map(|motion| ("the set \"".to_string() + &held.set, motion))
+        held.motion.iter().flatten().map(|motion| (format!("the set \"{}\"", held.set), motion))
     });
     let loads = scene.loads.iter().flat_map(|load| {
         let profiles: Vec<&Profile> = match &load.kind {
             LoadKind::Force(along) => along.iter().flatten().collect(),
             LoadKind::Pressure(profile) => vec![profile],
         };
-        profiles.into_iter().map(|profile| ("the load on \"".to_string() + &load.set, profile))
+        profiles.into_iter().map(|profile| (format!("the load on \"{}\"", load.set), profile))
     });
-    let cycles = held.chain(loads).filter_map(|(what, profile)| match profile {
-        Profile::Harmonic { frequency, .. } => Some((what + "\"", frequency.abs())),
-        _ => None,
-    });
+    let cycles = held.chain(loads).map(|(what, profile)| (what, profile.cycles()));
     let (what, frequency) = cycles.max_by(|a, b| a.1.total_cmp(&b.1))?;
     folded(&what, frequency, session.clock.row_interval())
 }

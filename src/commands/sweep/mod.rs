@@ -12,7 +12,7 @@ mod point;
 mod report;
 
 use super::earlier::{Writes, claimed};
-use super::{CommandResult, Outcome, reach, results_folder, say};
+use super::{CommandResult, Outcome, interruption, reach, results_folder, say};
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use grid::Grid;
 use housings::Kept;
@@ -21,8 +21,7 @@ use journal::{Chunk, Journal, Remark, gather};
 use rayon::prelude::*;
 use std::error::Error;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// Points in a chunk: enough for warm starts to pay, few enough to lose little when interrupted.
@@ -80,9 +79,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let resumed = journal.finished();
     report::remove_earlier(&folder)?;
 
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let flag = interrupted.clone();
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))?;
+    let interrupted = interruption(|| {})?;
     let progress = progress_bar(&grid, resumed);
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;

@@ -79,24 +79,30 @@ impl Balance {
         {
             return Ok(());
         }
-        let Snapshot { energy, ledger, residual, .. } = self.snapshot(system, state, time);
-        let contact = energy.contact + energy.ball_contact;
+        let now = self.snapshot(system, state, time);
+        let turned_over = self.turned_over(&now, options);
+        // Bodies that nothing has touched have what rounding leaves.
+        if turned_over == 0.0 || self.watch.see(now.residual, turned_over, options.energy_limit) {
+            return Ok(());
+        }
+        Err(self.unaccounted(now.residual, options, time, steps + 1))
+    }
+
+    /// Energy held or exchanged so far, J, the present state included.
+    fn turned_over(&mut self, now: &Snapshot, options: &RunOptions) -> f64 {
+        let contact = now.energy.contact + now.energy.ball_contact;
         self.largest_contact = self.largest_contact.max(contact);
         self.turnover.sum += (contact - self.turnover.last).abs();
         self.turnover.last = contact;
-        let mut turned_over =
-            self.largest_contact + ledger.iter().map(|entry| entry.abs()).sum::<f64>();
+        let exchanged: f64 = now.ledger.iter().map(|entry| entry.abs()).sum();
         // Error control keeps the motion, and with it a part of the energy of all motion and of all that
         // passes through the contacts; steps that are too long for the contacts it does not take.
         // Without it contacts are the first to go.
-        if matches!(options.stepping, Stepping::Accuracy(_)) {
-            turned_over += energy.kinetic + self.turnover.sum;
-        }
-        // Bodies that nothing has touched have what rounding leaves.
-        if turned_over == 0.0 || self.watch.see(residual, turned_over, options.energy_limit) {
-            return Ok(());
-        }
-        Err(self.unaccounted(residual, options, time, steps + 1))
+        let of_motion = match options.stepping {
+            Stepping::Accuracy(_) => now.energy.kinetic + self.turnover.sum,
+            Stepping::Fixed(_) | Stepping::FractionOfLimit(_) => 0.0,
+        };
+        self.largest_contact + exchanged + of_motion
     }
 
     /// Of a run that ends before so many looks that one too many could have been open: its last state alone.
@@ -104,19 +110,18 @@ impl Balance {
     /// # Errors
     /// More energy unaccounted for than the options allow.
     pub(super) fn at_end(
-        &self,
-        residual: f64,
+        mut self,
+        last: &Snapshot,
         options: &RunOptions,
-        time: f64,
         steps: u64,
     ) -> Result<(), SimulationError> {
-        let is_short = steps < u64::from(MOST_OPEN) * LOOK_EVERY;
-        let closes = residual.abs() <= options.energy_limit * self.watch.turned_over
-            || self.watch.turned_over == 0.0;
-        if is_short && !closes {
-            return Err(self.unaccounted(residual, options, time, steps));
+        let every = if options.integrator == Integrator::RungeKutta { LOOK_EVERY } else { 1 };
+        let turned_over = self.turned_over(last, options);
+        let is_told = steps >= u64::from(MOST_OPEN) * every || turned_over == 0.0;
+        if is_told || self.watch.closes(last.residual, turned_over, options.energy_limit) {
+            return Ok(());
         }
-        Ok(())
+        Err(self.unaccounted(last.residual, options, last.time, steps))
     }
 
     fn unaccounted(

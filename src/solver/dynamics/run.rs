@@ -431,6 +431,6 @@ impl Simulation {
     /// # Errors
     /// More energy unaccounted for than the options allow.
     pub fn close(&self, last: &Snapshot) -> Result<(), SimulationError> {
-        self.balance.at_end(last.residual, &self.options, self.time, self.steps)
+        self.balance.at_end(last, &self.options, self.steps)
     }
 }

@@ -1,0 +1,122 @@
+//! What commands say of what a scene asks for: dents at the start, rows beside what turns, what statics have and have not.
+
+use super::run_command::{bearing, code, run, said, scene};
+use crate::solid_command_common::{Place, json, stderr};
+
+use std::fs;
+
+/// A start in the equilibrium of races without dents drops a ball that stands at one.
+#[test]
+fn a_run_that_begins_with_a_ball_on_a_dent_says_so() {
+    let place = Place::new();
+    let said_in = |groove: &str, angle: &str, start: &str| {
+        let numerics = format!("end = \"0.1 ms\"\nstep = \"2 us\"\nstart = \"{start}\"");
+        let dent = format!(
+            "[[bearing.dent]]\nrace = \"outer\"\nangle = \"{angle}\"\ndiameter = \"500 um\"\n\
+             groove_angle = \"{groove}\"\n"
+        );
+        let text = scene(&numerics, "plots = []")
+            .replace("[bearing.cage]", &format!("{dent}[bearing.cage]"));
+        let output = run(&place.scene("scene.toml", &text), &place.path("out"), &[]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        said(&output).contains("a ball stands at the dent of the outer race")
+    };
+    let said_at = |angle: &str, start: &str| said_in("0 deg", angle, start);
+    // A groove of 6.3 mm: 15 deg are 1.7 mm beside its bottom, where contacts reach, 30 deg are 3.3 mm.
+    assert!(said_in("15 deg", "270 deg", "equilibrium"));
+    assert!(!said_in("30 deg", "270 deg", "equilibrium"));
+    // Balls every 45 deg from Y on; a dent of 0.25 mm to either side at 32 mm reaches 0.45 deg, half a contact 0.2 more.
+    for (angle, near) in
+        [("270 deg", true), ("270.5 deg", true), ("-89.5 deg", true), ("271 deg", false)]
+    {
+        assert_eq!(said_at(angle, "equilibrium"), near, "{angle}");
+    }
+    assert!(!said_at("270 deg", "nominal"));
+}
+
+/// Rows beat with what turns: a window of them says nothing of it.
+#[test]
+fn rows_that_are_too_far_apart_are_told() {
+    let place = Place::new();
+    let said_with = |interval: &str, load: &str| {
+        let numerics = format!("end = \"2 ms\"\nstep = \"2 us\"\noutput_interval = \"{interval}\"");
+        let text = scene(&numerics, "plots = []").replace("{ load = \"-250 N\" }", load);
+        let output = run(&place.scene("scene.toml", &text), &place.path("out"), &[]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        said(&output)
+    };
+    let swing = "{ load = { mean = \"-250 N\", amplitude = \"50 N\", frequency = \"1000 Hz\" } }";
+    let told = said_with("0.6 ms", swing);
+    assert!(told.contains("half a period of inner_race.z (1000 Hz)"), "{told}");
+    assert!(!said_with("0.4 ms", swing).contains("half a period"));
+    assert!(!said_with("0.6 ms", "{ load = \"-250 N\" }").contains("half a period"));
+    // What comes once has no period, however fast it comes.
+    let once =
+        "{ load = { ramp = [\"-250 N\", \"-300 N\"], start = \"1 ms\", duration = \"0.1 ms\" } }";
+    assert!(!said_with("0.6 ms", once).contains("half a period"));
+}
+
+/// What a run has on the inner race and an equilibrium has not.
+#[test]
+fn statics_say_what_runs_have_besides() {
+    let place = Place::new();
+    let said_of = |mass: &str| {
+        let text = scene("end = \"1 ms\"", "plots = []").replace(
+            "speed = \"1000 rpm\"",
+            &format!("speed = \"1000 rpm\"\nadded_mass = \"{mass}\""),
+        );
+        let path = place.scene("scene.toml", &text);
+        said(&bearing(&["statics", path.to_str().unwrap(), "--dry"]))
+    };
+    let heavy = said_of("20 kg");
+    assert!(heavy.contains("in a run is left out: its weight, 19"), "{heavy}");
+    assert!(!said_of("0.1 kg").contains("in a run is left out"));
+}
+
+/// An outer race that moves by itself is part of the equilibrium, as it is where a run starts.
+#[test]
+fn statics_of_a_moving_outer_race_are_the_start_of_its_run() {
+    let place = Place::new();
+    let outer = "[outer_race]\nmotion = \"5-dof\"\nz = { load = \"-1000 N\" }\n[outer_race.foundation]\n\
+                 stiffness = { x = \"1e7 N/m\", y = \"1e7 N/m\", z = \"1e7 N/m\", tilt_y = \"1e4 N m/rad\", tilt_z = \"1e4 N m/rad\" }\n";
+    let text = scene("end = \"20 us\"\nstep = \"2 us\"\noutput_interval = \"10 us\"", "plots = []")
+        .replace(
+            "gravity = [\"0 m/s^2\", \"0 m/s^2\", \"-9.80665 m/s^2\"]",
+            "gravity = [\"0 m/s^2\", \"0 m/s^2\", \"0 m/s^2\"]",
+        )
+        .replace("[traction]", &format!("{outer}[traction]"));
+    let path = place.scene("scene.toml", &text);
+    let (still, moving) = (place.path("still"), place.path("moving"));
+    let [path, still_text] = [&path, &still].map(|path| path.to_str().unwrap());
+    let output = bearing(&["statics", path, "--out", still_text]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert_eq!(code(&run(path.as_ref(), &moving, &[])), 0);
+    let rows = fs::read_to_string(moving.join("series.csv")).unwrap();
+    let header: Vec<&str> = rows.lines().next().unwrap().split(',').collect();
+    let first: Vec<&str> = rows.lines().nth(1).unwrap().split(',').collect();
+    let at = |name: &str| {
+        let column = header.iter().position(|column| column.starts_with(name)).unwrap();
+        first[column].parse::<f64>().unwrap()
+    };
+    let summary = json(still.join("summary.json"));
+    // 1250 N on 1e7 N/m; balls that go round push besides, 0.04 N here.
+    assert!((at("outer_z") + 125e-6).abs() <= 1e-8, "{}", at("outer_z"));
+    for (body, column) in [("inner_race", "inner_z"), ("outer_race", "outer_z")] {
+        let still = &summary["bodies"][body]["position"]["z"];
+        assert_eq!(still["unit"], "m");
+        let off = still["value"].as_f64().unwrap() - at(column);
+        assert!(off.abs() <= 1e-8, "{body}: {off:e}");
+    }
+    let said = said(&bearing(&[
+        "sweep",
+        path,
+        "--vary",
+        "outer_race.z.load=-1000 N, 0 N",
+        "--out",
+        place.path("sweep").to_str().unwrap(),
+    ]));
+    assert!(said.contains("2 points"), "{said}");
+    let table = fs::read_to_string(place.path("sweep").join("sweep.csv")).unwrap();
+    let [one, other] = [1, 2].map(|row| table.lines().nth(row).unwrap().split_once(',').unwrap().1);
+    assert_ne!(one.split_once(',').unwrap().1, other.split_once(',').unwrap().1);
+}
