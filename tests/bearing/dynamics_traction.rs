@@ -47,7 +47,8 @@ fn pure_spin_of_a_ball_is_braked_by_three_eighths() {
         let (moment, system) = spin_moment(&problem, &layout, &state);
         let exact: f64 = [0, layout.padded]
             .map(|pair| {
-                let hertz = [&problem.inner_contact, &problem.outer_contact][pair / layout.padded];
+                let hertz =
+                    [&problem.inner_contact, &problem.outer_contact][layout.race_and_ball(pair).0];
                 let load = system.sets[0].table.load[pair];
                 let ellipse =
                     bearing_dynamics::ch2_housing::bearing::hertz::contact_ellipse(hertz, load);

@@ -2,12 +2,12 @@
 //! races, each other and the cage.
 
 use super::assembly::Bearing;
-use super::contacts::{self, ContactLaws, ContactTable, Driver, Want, Work};
+use super::contacts::{self, ContactLaws, ContactTable, Driver, Want, Work, lane};
 use super::dents;
 use super::race::{RaceLoads, RaceNow, mounted};
 use super::shaft_holds::{Hold, sitting};
 use super::state::{
-    LEDGER, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
+    LANES, LEDGER, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
 };
 use crate::ch2_housing::bearing::ball_contact::{BallContact, are_apart, ball_contact};
 use crate::ch2_housing::bearing::cage::AxisMotion;
@@ -167,26 +167,37 @@ impl BallSet {
         self.ball_rates(bearing, state, rates);
     }
 
-    /// Component by component, each over all balls.
+    /// Over blocks of [`LANES`] balls, component by component; those that only fill the last block stand still.
     fn ball_rates(&self, bearing: &Bearing, state: &[f64], rates: &mut [f64]) {
-        let (layout, balls) = (self.layout, self.layout.balls);
-        let of = |component: usize| layout.ball(component)..layout.ball(component) + balls;
-        for i in 0..3 {
-            rates[of(POSITION + i)].copy_from_slice(&state[of(VELOCITY + i)]);
-            for (rate, force) in rates[of(VELOCITY + i)].iter_mut().zip(&self.ball_force) {
-                *rate = force[i] / bearing.ball.mass;
+        let layout = self.layout;
+        for first in (0..layout.padded).step_by(LANES) {
+            let count = LANES.min(layout.balls - first);
+            let at = |component: usize| layout.ball(component) + first;
+            let mut put = |component: usize, values: &[f64; LANES]| {
+                rates[at(component)..at(component) + LANES].copy_from_slice(values);
+            };
+            let q = [0, 1, 2, 3].map(|i| lane(&layout, state, ORIENTATION + i, first));
+            let spin = [0, 1, 2].map(|i| lane(&layout, state, SPIN + i, first));
+            let mut turning = [[0.0; LANES]; 4];
+            for l in 0..LANES {
+                let q = [q[0][l], q[1][l], q[2][l], q[3][l]];
+                let rate = quaternion_rate(q, [spin[0][l], spin[1][l], spin[2][l]]);
+                for i in 0..4 {
+                    turning[i][l] = rate[i];
+                }
             }
-            for (rate, moment) in rates[of(SPIN + i)].iter_mut().zip(&self.ball_moment) {
-                *rate = moment[i] / bearing.ball.axial;
+            for (i, turning) in turning.iter().enumerate() {
+                put(ORIENTATION + i, turning);
             }
-        }
-        let q = [0, 1, 2, 3].map(|i| &state[of(ORIENTATION + i)]);
-        let spin = [0, 1, 2].map(|i| &state[of(SPIN + i)]);
-        for i in 0..4 {
-            for (ball, rate) in rates[of(ORIENTATION + i)].iter_mut().enumerate() {
-                let q = [q[0][ball], q[1][ball], q[2][ball], q[3][ball]];
-                let spin = [spin[0][ball], spin[1][ball], spin[2][ball]];
-                *rate = quaternion_rate(q, spin)[i];
+            for i in 0..3 {
+                put(POSITION + i, &lane(&layout, state, VELOCITY + i, first));
+                let (mut force, mut moment) = ([0.0; LANES], [0.0; LANES]);
+                for l in 0..count {
+                    force[l] = self.ball_force[first + l][i];
+                    moment[l] = self.ball_moment[first + l][i];
+                }
+                put(VELOCITY + i, &force.map(|force| force / bearing.ball.mass));
+                put(SPIN + i, &moment.map(|moment| moment / bearing.ball.axial));
             }
         }
     }
@@ -198,7 +209,7 @@ impl BallSet {
         }
         let has_traction = self.steps.traction;
         for &pair in &self.table.active {
-            let (side, ball) = (pair / self.layout.padded, pair % self.layout.padded);
+            let (side, ball) = self.layout.race_and_ball(pair);
             let contact = &self.table.contact[pair];
             let load = self.table.load[pair];
             let mut force = scale(contact.normal, -load);
@@ -223,7 +234,7 @@ impl BallSet {
         }
         // What a dent pushes along the surface goes through the ball's centre.
         for dented in &self.table.dented {
-            let (side, ball) = (dented.pair / self.layout.padded, dented.pair % self.layout.padded);
+            let (side, ball) = self.layout.race_and_ball(dented.pair);
             self.ball_force[ball] = add(self.ball_force[ball], dented.aside);
             let centre = self.layout.ball_vector(state, POSITION, ball);
             let race = self.races[side].motion.position;

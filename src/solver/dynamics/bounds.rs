@@ -366,30 +366,22 @@ impl Simulation {
     fn watch_depths(&self, set: &BallSet, bearing: &Bearing) -> Result<(), SimulationError> {
         let BallSet { layout, table, .. } = set;
         let radius = bearing.geometry.ball_radius;
-        let allowed = HERTZ_SCALE * radius;
-        let deep = |depth: f64, balls: bool, names: &dyn Fn() -> [String; 2]| {
-            // NaN is too deep.
-            if depth <= allowed {
-                return Ok(());
-            }
-            let ([one, other], time, step) = (names(), self.time, self.steps);
-            let advice = self.advice(bearing, balls);
-            Err(SimulationError::Inside { one, other, depth, allowed, time, step, advice })
-        };
-        let check = |depth: f64, names: &dyn Fn() -> [String; 2]| deep(depth, false, names);
         let named = |ball: usize| format!("ball {}{}", ball + 1, bearing.suffix());
         let body = |index: usize| self.system.assembly.bodies[index].name.clone();
         for &pair in &table.active {
-            let (side, ball) = (pair / layout.padded, pair % layout.padded);
+            let (side, ball) = layout.race_and_ball(pair);
             let race = bearing.mounts[side].body;
-            check(table.contact[pair].overlap, &|| [named(ball), body(race)])?;
+            let depth = table.contact[pair].overlap;
+            self.watch_depth(bearing, depth, false, || [named(ball), body(race)])?;
         }
         if let Some(cage) = &bearing.cage {
             for (ball, contact) in set.pockets.iter().enumerate() {
-                check(contact.penetration, &|| [named(ball), body(cage.body)])?;
+                let depth = contact.penetration;
+                self.watch_depth(bearing, depth, false, || [named(ball), body(cage.body)])?;
             }
             for contact in &set.guides {
-                check(contact.penetration, &|| [body(cage.body), "its guiding race".into()])?;
+                let names = || [body(cage.body), "its guiding race".into()];
+                self.watch_depth(bearing, contact.penetration, false, names)?;
             }
         }
         let place = |ball: usize| layout.ball_vector(&self.state, POSITION, ball);
@@ -401,9 +393,28 @@ impl Simulation {
             if are_apart(radius, here, there) {
                 continue;
             }
-            let between = norm(sub(there, here));
-            deep(2.0 * radius - between, true, &|| [named(one), named(other)])?;
+            let depth = 2.0 * radius - norm(sub(there, here));
+            self.watch_depth(bearing, depth, true, || [named(one), named(other)])?;
         }
         Ok(())
+    }
+
+    /// How deep two parts of a bearing lie in each other.
+    #[inline(always)]
+    fn watch_depth(
+        &self,
+        bearing: &Bearing,
+        depth: f64,
+        between_balls: bool,
+        names: impl Fn() -> [String; 2],
+    ) -> Result<(), SimulationError> {
+        let allowed = HERTZ_SCALE * bearing.geometry.ball_radius;
+        // NaN is too deep.
+        if depth <= allowed {
+            return Ok(());
+        }
+        let ([one, other], time, step) = (names(), self.time, self.steps);
+        let advice = self.advice(bearing, between_balls);
+        Err(SimulationError::Inside { one, other, depth, allowed, time, step, advice })
     }
 }

@@ -46,7 +46,7 @@ fn sliding_of(
     pair: usize,
     contact: &RaceContact,
 ) -> Sliding {
-    let (race, ball) = (pair / layout.padded, pair % layout.padded);
+    let (race, ball) = layout.race_and_ball(pair);
     sliding(
         &ball_motion(layout, state, ball),
         &races[race],
@@ -69,7 +69,7 @@ pub(super) fn traction_plain(
     let motions = races.map(race_motion);
     let axes = races.map(|now| now.motion.axis);
     for &pair in &table.active {
-        let race = pair / layout.padded;
+        let (race, _) = layout.race_and_ball(pair);
         let contact = &table.contact[pair];
         let sliding = sliding_of(laws, layout, state, &motions, &axes, pair, contact);
         let width = semi_major(laws, race, contact.overlap);
@@ -156,7 +156,7 @@ fn lanes_of<const SLOPES: bool>(
         // What the law needs of the entrainment speed; lanes without a pair slide nowhere.
         let mut rolling = [1.0; LANES];
         for (l, &pair) in block.iter().enumerate() {
-            let race = pair / layout.padded;
+            let (race, _) = layout.race_and_ball(pair);
             let here = sliding_of(laws, layout, state, &motions, &axes, pair, &contact[pair]);
             slip[0][l] = here.slip[0];
             slip[1][l] = here.slip[1];

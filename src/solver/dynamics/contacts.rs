@@ -229,7 +229,7 @@ fn detect_plain<const DAMPED: bool>(
 
 /// [`LANES`] values of one component, from ball `first` on.
 #[inline(always)]
-fn lane(layout: &Layout, state: &[f64], component: usize, first: usize) -> [f64; LANES] {
+pub(super) fn lane(layout: &Layout, state: &[f64], component: usize, first: usize) -> [f64; LANES] {
     let at = layout.ball(component) + first;
     let mut values = [0.0; LANES];
     values.copy_from_slice(&state[at..at + LANES]);

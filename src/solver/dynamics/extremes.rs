@@ -68,7 +68,7 @@ impl Extremes {
         let sine_of = |edge: f64| libm::sin(edge.min(std::f64::consts::FRAC_PI_2));
         let mut edge_sines = [0, 1].map(|side: usize| sine_of(self.races[side].edge.value));
         for &pair in &set.table.active {
-            let (side, ball) = (pair / layout.padded, pair % layout.padded);
+            let (side, ball) = layout.race_and_ball(pair);
             let contact = &set.table.contact[pair];
             let race = &mut self.races[side];
             let load = set.table.load[pair];

@@ -84,7 +84,7 @@ fn stiffness_of(system: &System, set: &BallSet, bearing: &Bearing) -> Stiffness 
     let at_surface = per_mass + radius * radius / bearing.ball.axial;
     let mut most = Stiffness::default();
     for &pair in &set.table.active {
-        let law = &set.laws.races[pair / set.layout.padded];
+        let law = &set.laws.races[set.layout.race_and_ball(pair).0];
         let overlap = set.table.contact[pair].overlap.max(0.0);
         let elastic = normal_load(law.stiffness, overlap);
         let slope = match &set.laws.traction {

@@ -72,7 +72,7 @@ fn races_hold(name: &str, point: &mut Point, judge_slopes: bool) {
     let geometry = point.system.assembly.bearings[0].geometry;
     let mut judged = 0;
     for pair in point.system.sets[0].table.active.clone() {
-        let (side, ball) = (pair / layout.padded, pair % layout.padded);
+        let (side, ball) = layout.race_and_ball(pair);
         let (block, lane) = (ball / LANES, ball % LANES);
         let contact = point.linearised.blocks[block].contacts[side].clone();
         let here = point.system.sets[0].table.sliding[pair];

@@ -263,7 +263,7 @@ fn contact_angle(set: &BallSet, bearing: &Bearing, side: usize) -> f64 {
     let table = &set.table;
     let sign = if side == 0 { -1.0 } else { 1.0 };
     let (mut sum, mut load) = (0.0, 0.0);
-    for &pair in table.active.iter().filter(|&&pair| pair / set.layout.padded == side) {
+    for &pair in table.active.iter().filter(|&&pair| set.layout.race_and_ball(pair).0 == side) {
         let sine = sign * dot(table.contact[pair].normal, set.races[side].motion.axis);
         sum += table.load[pair] * libm::asin(sine.clamp(-1.0, 1.0));
         load += table.load[pair];
