@@ -4,12 +4,13 @@ use crate::commands::scene_remarks::{at_rest, of_springs, on_dents, sudden_fits}
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use bearing_dynamics::scene::Scene;
-use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
+use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing, SceneBody};
 use bearing_dynamics::scene::statics::{ball_mass, orbital_speed};
 use bearing_dynamics::solver::clock::told;
 use bearing_dynamics::solver::dynamics::assembly::Bearing;
 use bearing_dynamics::solver::dynamics::bounds::FARTHEST_BENT;
 use bearing_dynamics::solver::dynamics::extremes::{Extreme, Extremes};
+use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::dynamics::run::Simulation;
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
 use bearing_dynamics::solver::static_tables::BearingState;
@@ -96,6 +97,7 @@ pub fn of_assembly(
         ));
     }
     remarks.extend(bent_far(assembly, solution));
+    remarks.extend(without_unbalances(scene, solution));
     if solution.saddles_left > 0 {
         remarks.push(
             "an unstable position was left for one beside it; its mirror image is an equilibrium too".into(),
@@ -108,6 +110,19 @@ pub fn of_assembly(
         remarks.extend(named(placed, of_balls(&placed.scene, &still)));
     }
     remarks
+}
+
+/// Of motions about an equilibrium: what speed does to balls and is not in it.
+pub fn of_balls_at_speed(scene: &AssemblyScene, solution: &AssemblySolution) -> Vec<String> {
+    let bearings = scene.bearings.iter().zip(&solution.bearings);
+    let said = bearings.map(|(placed, state)| {
+        let own = [
+            gyroscopic(&placed.scene, &state.balls),
+            without_centrifugal(&placed.scene, &state.balls),
+        ];
+        named(placed, own.into_iter().flatten().collect())
+    });
+    said.flatten().collect()
 }
 
 /// The section that is turned most against its body, where that is more than small bending stands for.
@@ -383,6 +398,32 @@ fn without_loads_of_runs(scene: &Scene, balls: &[BallState]) -> Option<String> {
         format!(
             "what acts on the inner race in a run is left out: {}; `run` has it, here give it as a load",
             told.join("; ")
+        )
+    })
+}
+
+/// Unbalances of bodies, which a run has from its start on, where they are much beside the ball loads.
+fn without_unbalances(scene: &AssemblyScene, solution: &AssemblySolution) -> Option<String> {
+    let of_body = |body: &SceneBody| {
+        let Rotation::Speed(speed) = &body.race.rotation else { return None };
+        let square = speed.value(0.0).powi(2);
+        let along = body.beam.iter().flat_map(|beam| &beam.unbalances).map(|of| of.1.abs());
+        let force = along.fold(body.unbalance.abs(), f64::max) * square;
+        Some((force, format!("body {}", body.name)))
+    };
+    let of_race = |placed: &PlacedBearing| {
+        let speed = placed.scene.inner_speed.unwrap_or(0.0);
+        let name = placed.name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
+        (placed.scene.dynamics.unbalance.abs() * speed * speed, format!("the inner race{name}"))
+    };
+    let all = scene.bodies.iter().filter_map(of_body).chain(scene.bearings.iter().map(of_race));
+    let (force, body) = all.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let balls = solution.bearings.iter().flat_map(|state| &state.balls);
+    let largest = balls
+        .fold(0.0, |most: f64, ball| most.max(ball.inner.normal_load).max(ball.outer.normal_load));
+    (force > CENTRIFUGAL * largest).then(|| {
+        format!(
+            "unbalances at the speed at t = 0 are left out, the largest one, of {body}, with {force:.3} N; `run` has them from its start on"
         )
     })
 }

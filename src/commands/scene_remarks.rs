@@ -8,6 +8,7 @@ use bearing_dynamics::scene::assembly::{AssemblyScene, SceneBody, Spring, Spring
 use bearing_dynamics::scene::excitations::{excitations, largest};
 use bearing_dynamics::scene::housing::{FitSize, HousingMethod};
 use bearing_dynamics::solver::clock::to_digits;
+use bearing_dynamics::solver::dynamics::connection::uneven;
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::dynamics::run::Start;
 use bearing_dynamics::solver::profile::Profile;
@@ -69,7 +70,6 @@ pub fn of_springs(scene: &AssemblyScene) -> Vec<String> {
         }
     };
     let bare = |name: &str| name.trim_start_matches("body.").to_string();
-    let uneven = |of: &[f64; 6]| of[1] != of[2] || of[4] != of[5];
     let said = |spring: &Spring| {
         let [from, to] = spring.ends.map(|end| end.at);
         let uneven_element = spring.maxwell.iter().any(|element| uneven(&element.stiffness));

@@ -74,7 +74,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("spring.stiffness.x", FOUNDATION, NONE, "Spring along X of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.stiffness.y", FOUNDATION, NONE, "Spring along Y of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.stiffness.z", FOUNDATION, NONE, "Spring along Z of the first body.").hint(FOUNDATION_HINT),
-    Key::new("spring.stiffness.turn_x", TILT_FOUNDATION, NO_TURN, "Spring against turns about X of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.stiffness.turn_x", TILT_FOUNDATION, NO_TURN, "Spring against turns about X of the first body, up to 160 deg: beyond that a run ends, as no wound spring is known.").hint(FOUNDATION_HINT),
     Key::new("spring.stiffness.turn_y", TILT_FOUNDATION, NO_TURN, "Spring against turns about Y of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.stiffness.turn_z", TILT_FOUNDATION, NO_TURN, "Spring against turns about Z of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.x", DASHPOT, NO_DASHPOT, "Dashpot along X of the first body.").hint(FOUNDATION_HINT),

@@ -197,7 +197,8 @@ body and a spring do not share one.
 Races sit on bodies (`inner_on`, `outer_on`) at places along their axes (`inner_at`, `outer_at`); a race that sits on none is a body of its own, as
 `[inner_race]` or `[outer_race]` say. Columns, tables and plots of a bearing begin with its name, `left_inner_z`, those of a body with its own, `shaft_z`.
 X of races, balls and cage counts from where the bearing sits (`inner_at`) in all results, of equilibria and runs; that of a body from the origin. A
-`reversed` bearing is read in the scene's axes as well: azimuths, tilts, speeds and slip; only contact angles are its own.
+`reversed` bearing is read in the scene's axes as well: azimuths, tilts, speeds and slip; only contact angles are its own, and what is said of its parts, `ball_phase` and
+dents.
 
 Several bearings run in `quasi-static` housings too, one equilibrium after the other; an outer race with `axial = \"free\"` has one only where nothing pushes it
 along its axis, though a `reduced` run slides it.

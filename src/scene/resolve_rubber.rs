@@ -5,6 +5,7 @@ use crate::ch2_housing::elastomer::maxwell::Maxwell;
 use crate::ch2_housing::elastomer::{Elastomer, ElastomerError, named};
 use crate::scene::document::Document;
 use crate::scene::error::{Problem, SceneError};
+use crate::scene::keys;
 use crate::scene::resolve::Reader;
 use crate::scene::resolve_solid::{item_number, missing};
 use crate::scene::solid::{Harmonic, Law, MeshSource, RubberScene, RunSteps};
@@ -128,7 +129,11 @@ pub(super) fn rubber(
         Some(_) => Some(named::table_3_1()),
         None => None,
     };
-    let given = |key: &str| reader.given_number(&path(key));
+    // A bushing has fewer of these keys than a solid.
+    let given = |key: &str| {
+        let path = path(key);
+        keys::find(&path).and_then(|_| reader.given_number(&path))
+    };
     let [modulus, chain, ratio, bulk] =
         ["rubber_modulus", "chain", "bulk_ratio", "bulk_modulus"].map(given);
     let modulus = match modulus.or(base.as_ref().map(|base| base.network.modulus)) {

@@ -34,9 +34,6 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
         if let Some(given) = document.first_below(part) {
             return refused(given, "the body bends (`beam`)", advice);
         }
-        if document.value(part).is_some() {
-            return refused(part, "the body bends (`beam`)", advice);
-        }
     }
     let mut number = |key: &str| reader.number(&format!("{TABLE}.{key}")).unwrap_or(0.0);
     let [youngs_modulus, poisson_ratio, density] =
@@ -252,9 +249,7 @@ fn in_elements(reader: &mut Reader) -> Result<Option<RaceJoint>, SceneError> {
     // Its body is the elements: there is no rigid one to push or hold.
     for part in ["x", "y", "z", "tilt_y", "tilt_z", "foundation"] {
         let part = format!("body.{part}");
-        let given =
-            document.first_below(&part).or_else(|| document.value(&part).map(|_| &part[..]));
-        if let Some(key) = given {
+        if let Some(key) = document.first_below(&part) {
             let reason = "the shaft is its elements, which loads meet at sections";
             return refused(
                 key,

@@ -4,7 +4,7 @@ use super::dynamics::connection::{Connection, Row};
 use super::dynamics::race::{self, RaceNow};
 use super::static_model::{Evaluation, Five, Model};
 use crate::kinematics::Pose;
-use crate::kinematics::vec3::{Vec3, add, cross, sub};
+use crate::kinematics::vec3::{Vec3, add, cross, dot, sub};
 use nalgebra::{DMatrix, Vector3};
 
 /// A body, about what its tilts turn it, and the axes of its coordinates.
@@ -44,13 +44,19 @@ impl<'m> Joined<'m> {
     /// Adds what each row does with this size of it.
     fn add_rows(&self, rows: &[Row], size: impl Fn(&Row) -> f64, to: &mut DMatrix<f64>) {
         for row in rows.iter().filter(|row| size(row) != 0.0) {
-            let levers = [0, 1].map(|end| self.conjugate(end, row.on[end][0], row.on[end][1]));
-            for (a, one) in self.firsts.into_iter().enumerate() {
-                for (b, other) in self.firsts.into_iter().enumerate() {
-                    let (Some(one), Some(other)) = (one, other) else { continue };
-                    let mut block = to.fixed_view_mut::<5, 5>(one, other);
-                    block += levers[a] * levers[b].transpose() * size(row);
-                }
+            self.add_product([row, row], size(row), to);
+        }
+    }
+
+    /// Adds what pushes along one row by so much for what has gone along another.
+    fn add_product(&self, rows: [&Row; 2], size: f64, to: &mut DMatrix<f64>) {
+        let levers =
+            rows.map(|row| [0, 1].map(|end| self.conjugate(end, row.on[end][0], row.on[end][1])));
+        for (a, one) in self.firsts.into_iter().enumerate() {
+            for (b, other) in self.firsts.into_iter().enumerate() {
+                let (Some(one), Some(other)) = (one, other) else { continue };
+                let mut block = to.fixed_view_mut::<5, 5>(one, other);
+                block += levers[0][a] * levers[1][b].transpose() * size;
             }
         }
     }
@@ -69,6 +75,24 @@ pub(super) fn add_connection(model: &Model, connection: &Connection, here: &mut 
         rows -= joined.conjugate(end, loads.force, loads.moment);
     }
     joined.add_rows(&connection.rows(ends), |row| row.stiffness, &mut here.stiffness);
+}
+
+/// What its dashpots do because they turn with the first body, that body's spin `spin` (per rad/s of the speed that is asked for),
+/// where the stiffness is: a place q that stands still moves by −Ω × q in their axes, −c (q̇ − Ω × q). They are alike along Y and Z.
+pub(super) fn add_circulation(
+    model: &Model,
+    connection: &Connection,
+    spin: f64,
+    here: &mut Evaluation,
+) {
+    let joined = Joined::new(model, connection, here);
+    let rows = connection.rows([&joined.ends[0], &joined.ends[1]]);
+    // A reversed end has its own X the other way.
+    let spin = spin * dot(joined.ends[0].motion.axis, joined.bodies[0].0.motion.axis);
+    for [y, z] in [[&rows[1], &rows[2]], [&rows[4], &rows[5]]] {
+        joined.add_product([y, z], spin * y.damping, &mut here.stiffness);
+        joined.add_product([z, y], -spin * y.damping, &mut here.stiffness);
+    }
 }
 
 /// Its dashpots, where the stiffness is.

@@ -3,16 +3,18 @@
 //!
 //! Balls are springs without mass, a condensed housing takes part with the mass of its shapes under its race.
 //! Axes do not spin with the bodies, which are of revolution: M, C, G and K stand still. With spin Ω about X a body of axial inertia
-//! J makes moments J Ω against the rates of its tilts; its shapes have those of [`super::dynamics::shaft`].
+//! J makes moments J Ω against the rates of its tilts; its shapes have those of [`super::dynamics::shaft`]. Dashpots that begin at
+//! a body that spins turn with it, and feed whirl above the critical speed as damping inside the shaft does.
 
 use super::dynamics::assembly::{Assembly, Body};
+use super::dynamics::connection::Connection;
 use super::dynamics::model::Rotation;
 use super::dynamics::shaft::ElasticShaft;
 use super::housing::inertia::{HousingMass, MovingBody, mass_matrix};
 use super::rotor::beam::STATION;
 use super::rotor::model::{RotorError, RotorModel, Vibrations};
 use super::static_assembly::{Place, StaticAssembly};
-use super::static_connection::add_damping;
+use super::static_connection::{add_circulation, add_damping};
 use super::static_model::{Evaluation, Model};
 use super::static_shaft::{Moved, onto_unknowns, sections};
 use super::statics::AssemblySolution;
@@ -46,7 +48,7 @@ fn final_speed(assembly: &Assembly, body: &Body) -> f64 {
 /// Small motions about `found`, the equilibrium of `still`; the bodies that take part, in the order of its unknowns.
 ///
 /// # Errors
-/// Nothing that moves, a body without mass, an equilibrium that is none.
+/// Nothing that moves, a body without mass, an equilibrium that is none, springs that turn and differ along their Y and Z.
 pub fn whirling(
     assembly: &Assembly,
     still: &StaticAssembly,
@@ -94,7 +96,18 @@ pub fn whirling(
         let body = bodies.iter().position(|of| of.body == shaft.body);
         bending(&mut all, shaft, (body.map(|body| 5 * body), first), ratio(shaft.body));
     }
-    all.damping += dashpots(&model, &here, &moved);
+    // Those of the model hold sections of bodies that bend; which body spins is known of the assembly's.
+    let spins = assembly.connections.iter().map(|of| ratio(of.ends[0].body));
+    let spins: Vec<(&Connection, f64)> = model.assembly.connections.iter().zip(spins).collect();
+    if let Some((uneven, _)) = spins.iter().find(|(of, spin)| *spin != 0.0 && of.is_uneven()) {
+        return Err(RotorError::Uneven { name: uneven.name.clone() });
+    }
+    all.damping += over_unknowns(&model, &here, &moved, |here| {
+        spins.iter().for_each(|(of, _)| add_damping(&model, of, here));
+    });
+    all.circulating += over_unknowns(&model, &here, &moved, |here| {
+        spins.iter().for_each(|&(of, spin)| add_circulation(&model, of, spin, here));
+    });
     let (places, rows) = told(&model, still, &moved);
     let stations = (0..places.len()).map(|place| place as f64).collect();
     let model = RotorModel::of(&all, MODES, stations, Some(&rows))?;
@@ -152,12 +165,15 @@ fn bending(
     }
 }
 
-/// Dashpots of connections over the unknowns.
-fn dashpots(model: &Model, here: &Evaluation, moved: &[Moved]) -> DMatrix<f64> {
+/// A matrix over the unknowns, of what is added over bodies and sections.
+fn over_unknowns(
+    model: &Model,
+    here: &Evaluation,
+    moved: &[Moved],
+    add: impl Fn(&mut Evaluation),
+) -> DMatrix<f64> {
     let mut here = here.clone();
-    for connection in &model.assembly.connections {
-        add_damping(model, connection, &mut here);
-    }
+    add(&mut here);
     onto_unknowns(model, moved, &mut here);
     here.stiffness
 }

@@ -58,3 +58,4 @@ mod solid_command_errors;
 mod solid_command_numbers;
 mod solid_command_resume;
 mod sweep_journal;
+mod turning_springs;

@@ -455,3 +455,22 @@ fn long_lists_of_names_are_wrapped_and_cut() {
     let longest = text.lines().map(str::len).max().unwrap();
     assert!(longest <= 110 && text.lines().count() <= 12, "{longest}: {text}");
 }
+
+/// What ParaView reads is not compared, and that is said.
+#[test]
+fn fields_are_not_compared_and_that_is_said() {
+    let root = tempfile::tempdir().unwrap();
+    let [a, b] = ["a", "b"].map(|name| root.path().join(name));
+    for folder in [&a, &b] {
+        fs::create_dir(folder).unwrap();
+        fs::write(folder.join("summary.json"), r#"{"x": 1.0}"#).unwrap();
+    }
+    let said = |a: &Path, b: &Path| {
+        let result = compared(a, b, ToleranceClass::Mixed);
+        assert!(result.equal);
+        result.ignored
+    };
+    assert!(said(&a, &b).is_empty());
+    fs::create_dir(a.join("fields")).unwrap();
+    assert_eq!(said(&a, &b), ["fields: fields in .vtu files are not compared"]);
+}

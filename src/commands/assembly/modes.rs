@@ -9,6 +9,7 @@ use super::whirl::{Spinning, rpm};
 use super::{Fallible, plan, record};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
+use crate::commands::remarks::of_balls_at_speed;
 use crate::commands::scene_remarks::at_rest;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
@@ -21,6 +22,7 @@ use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly, StaticBod
 use bearing_dynamics::solver::statics::AssemblySolution;
 use bearing_dynamics::solver::vibrations::whirling;
 use serde_json::json;
+use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -66,7 +68,10 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         say(&spinning.text())?;
         remarks.extend(spinning.remarks());
         remarks.extend(of_other_speed(scene, assembly, spinning.whirling.top_speed));
+        remarks.extend(of_one_speed(scene, spinning.whirling.top_speed));
     }
+    remarks.extend(of_balls_at_speed(scene, solution));
+    remarks.extend(beyond_shapes(assembly, found.iter().map(frequency)));
     if found.iter().any(|mode| frequency(mode) == 0.0) {
         remarks.push(
             "a frequency of zero is of a motion that no contact and no spring brings back".into(),
@@ -82,6 +87,8 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     remarks.push(
         match spinning {
             None => "about the equilibrium at t = 0, nothing turning; balls are springs without mass",
+            Some(_) if flung(scene) => "about the equilibrium at t = 0, which has the balls' centrifugal force, modes without what turning does besides; balls \
+                        are springs without mass and contacts do not damp",
             Some(_) => "about the equilibrium at t = 0, modes with nothing turning; balls are springs without mass and contacts do not damp",
         }
         .into(),
@@ -132,7 +139,7 @@ fn of_other_speed(scene: &AssemblyScene, assembly: &Assembly, top: f64) -> Optio
     });
     let first =
         speeds.fold(0.0, |first: f64, now| if now.abs() > first.abs() { now } else { first });
-    let flung = scene.bearings.iter().any(|placed| placed.scene.centrifugal);
+    let flung = flung(scene);
     let [first, last] = [first, top].map(|speed| to_digits(rpm(speed), 6));
     let balls = match flung {
         true => format!("the balls' centrifugal force is that at {first} rpm, too"),
@@ -143,6 +150,36 @@ fn of_other_speed(scene: &AssemblyScene, assembly: &Assembly, top: f64) -> Optio
             "whirl is at {last} rpm, where the speed ends, about the equilibrium at t = 0, where it is {first} rpm: {balls}; \
              write speed = \"{last} rpm\" for the equilibrium there{}",
             if flung { "" } else { ", with ball_forces.centrifugal = true" }
+        )
+    })
+}
+
+/// Whether the equilibrium has the centrifugal force of balls.
+fn flung(scene: &AssemblyScene) -> bool {
+    scene.bearings.iter().any(|placed| placed.scene.centrifugal)
+}
+
+/// What a reader should know of other speeds than the scene's, `top` (rad/s), where bearings are stiff as that makes them.
+fn of_one_speed(scene: &AssemblyScene, top: f64) -> Option<String> {
+    (flung(scene) && top != 0.0).then(|| {
+        format!(
+            "bearings are as stiff at every speed as the balls' centrifugal force makes them at the start: critical speeds and the Campbell diagram \
+             hold near {} rpm alone; give each speed of interest as the scene's",
+            to_digits(rpm(top), 6)
+        )
+    })
+}
+
+/// Motions above those that a shaft's natural shapes reach.
+fn beyond_shapes(assembly: &Assembly, found: impl Iterator<Item = f64>) -> Option<String> {
+    let limits = assembly.shafts.iter().map(|shaft| (shaft.shapes.cut.above / TAU, shaft.body));
+    let (limit, body) = limits.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let beyond = found.filter(|frequency| *frequency > limit).count();
+    (beyond > 0).then(|| {
+        format!(
+            "{beyond} of the modes, those above {limit:.0} Hz, are no natural ones: natural shapes of {} are left out from there on, and the shapes that \
+             answer loads swing too fast; body.NAME.beam.below has more of them",
+            assembly.bodies[body].name
         )
     })
 }

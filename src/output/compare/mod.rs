@@ -9,7 +9,8 @@
 //!
 //! Strings, booleans and bare integers must be equal; numbers may differ by their
 //! [`tolerance`]. Never compared, because they say how and not what: names in
-//! [`IGNORED_NAMES`] and those that start with [`IGNORED_PREFIX`], and [`PROGRAM_NAME`].
+//! [`IGNORED_NAMES`] and those that start with [`IGNORED_PREFIX`], and [`PROGRAM_NAME`]; nor, and that is said, fields
+//! in `.vtu` files.
 //!
 //! Two things more are no difference. A `.npy` file that the candidate lacks while both sides have
 //! the `.csv` file of the same name: one form of a table is enough. And, in every class but
@@ -23,6 +24,7 @@ pub mod report;
 pub mod tolerance;
 pub mod unloaded;
 
+use crate::output::fields;
 use crate::output::json::JsonError;
 use crate::output::series::SeriesError;
 use crate::scene::keys;
@@ -220,6 +222,10 @@ pub fn compare(
 
     let mut judge = Judge::new(&tolerances, options);
     judge.only_in_candidate = only_in_candidate;
+    if reference.join(fields::FOLDER).is_dir() {
+        judge.file = fields::FOLDER.into();
+        judge.leave_out("fields in .vtu files are not compared");
+    }
     for (reference_file, candidate_file, name) in pairs {
         judge.file = name;
         let expected = channels::read(&reference_file)?;

@@ -1,5 +1,5 @@
 //! Where a state has lost its meaning: values that are not finite, balls outside their races, a race
-//! or a cage that has left its bearing, a bearing that has flown off, parts inside each other. Looked at at the start and once a step.
+//! or a cage that has left its bearing, a bearing that has flown off, springs beyond their reach, parts inside each other. Looked at at the start and once a step.
 
 use super::assembly::{Bearing, Caged};
 use super::ball_set::{BallSet, neighbours};
@@ -15,6 +15,7 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot, norm, sub};
 use crate::solver::clock::to_digits;
 use crate::solver::statics::COORDINATE_NAMES;
+use std::f64::consts::PI;
 
 /// How deep parts may lie in each other, in ball radii. Pressure in a Hertz contact of balls follows
 /// from δ/r alone: steel on steel would carry 20 GPa at this depth, five times what leaves a dent (ISO 76),
@@ -62,6 +63,9 @@ const FARTHEST_TILT: f64 = 0.1;
 /// wrong by θ²/2, half a percent.
 pub const FARTHEST_BENT: f64 = 0.1;
 
+/// How far the springs of a connection know turns, rad: up to half a turn either way, beyond which a wound spring would jump to the other side.
+const FARTHEST_TURN: f64 = 0.9 * PI;
+
 /// How deep a cage may lie in balls or its guide at a start in equilibrium where no contact of a race is deeper, in ball radii.
 const CAGE_AT_START: f64 = 1e-3;
 
@@ -101,6 +105,7 @@ impl Simulation {
             }
         }
         self.watch_bending()?;
+        self.watch_springs()?;
         for (index, seat) in system.assembly.seats.iter().enumerate() {
             self.watch_seat(index, seat)?;
         }
@@ -143,6 +148,33 @@ impl Simulation {
                 time: self.time,
                 step: self.steps,
             });
+        }
+        Ok(())
+    }
+
+    /// Springs between bodies, which hold nothing that has gone so far, as they were evaluated last.
+    fn watch_springs(&self) -> Result<(), SimulationError> {
+        let system = &self.system;
+        for (index, connection) in system.assembly.connections.iter().enumerate() {
+            let [stretch, turn] = system.reach(index);
+            for (how, distance, unit, allowed) in
+                [("stretched", stretch, "m", FARTHEST), ("turned", turn, "rad", FARTHEST_TURN)]
+            {
+                // NaN is too far.
+                if distance <= allowed {
+                    continue;
+                }
+                let (spring, time, step) = (connection.name.clone(), self.time, self.steps);
+                return Err(SimulationError::SpringBeyond {
+                    spring,
+                    how,
+                    distance,
+                    unit,
+                    allowed,
+                    time,
+                    step,
+                });
+            }
         }
         Ok(())
     }

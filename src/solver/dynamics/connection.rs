@@ -109,6 +109,29 @@ impl Connection {
         }
     }
 
+    /// How far its springs are stretched and turned at most, m and rad, of directions that have a spring.
+    pub fn reach(&self, ends: [&RaceNow; 2]) -> [f64; 2] {
+        match &self.law {
+            Law::SpringDashpot(law) => {
+                let axes = axes(ends);
+                let arm = sub(ends[1].motion.position, ends[0].motion.position);
+                let turn = turn_between(ends).0;
+                let far = |first: usize, gone: [f64; 3]| {
+                    let held = (0..3).filter(|i| law.stiffness[first + i] != 0.0);
+                    // NaN stays.
+                    held.map(|i| gone[i].abs()).fold(0.0, |most, one| {
+                        if one <= most || most.is_nan() { most } else { one }
+                    })
+                };
+                let stretch = [0, 1, 2].map(|i| dot(axes[i], arm) - law.rest[i]);
+                [far(0, stretch), far(3, turn.into())]
+            }
+            Law::Torsion(law) => {
+                [0.0, if law.stiffness == 0.0 { 0.0 } else { twist(ends).0.abs() }]
+            }
+        }
+    }
+
     /// Those that it has.
     pub fn maxwell(&self) -> &[MaxwellElement] {
         match &self.law {
@@ -141,6 +164,14 @@ impl Connection {
         }
     }
 
+    /// Whether its springs or dashpots along the first end's Y differ from those along Z, or about them.
+    pub fn is_uneven(&self) -> bool {
+        match &self.law {
+            Law::SpringDashpot(law) => uneven(&law.stiffness) || uneven(&law.damping),
+            Law::Torsion(_) => false,
+        }
+    }
+
     /// Whether nothing of it pushes or brakes, so that it may be left out.
     pub fn is_void(&self) -> bool {
         match &self.law {
@@ -151,6 +182,11 @@ impl Connection {
             Law::Torsion(law) => law.stiffness == 0.0 && law.damping == 0.0,
         }
     }
+}
+
+/// Whether values along and about the axes X, Y, Z differ between Y and Z.
+pub fn uneven(of: &[f64; 6]) -> bool {
+    of[1] != of[2] || of[4] != of[5]
 }
 
 /// How the second end is turned against the first, in the first one's axes, rad, and how that changes with an angular

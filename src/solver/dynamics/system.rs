@@ -120,15 +120,22 @@ impl System {
 
     /// What a connection does in a state; call after [`System::evaluate`] at the same state.
     pub fn pull(&self, state: &[f64], connection: usize) -> Pull {
-        let (at, holds) = (self.connections[connection], &self.holds.connections[connection]);
+        let (at, ends) = (self.connections[connection], self.ends(connection));
         let connection = &self.assembly.connections[connection];
         let elongated = &state[at..at + 6 * connection.maxwell().len()];
-        let end = |i: usize| {
-            let mount = &connection.ends[i];
-            sitting(&holds[i], &self.bodies[mount.body], mount)
-        };
-        let ends = [end(0), end(1)];
-        connection.pull([&ends[0], &ends[1]], elongated)
+        connection.pull(ends.each_ref(), elongated)
+    }
+
+    /// [`Connection::reach`] as evaluated last.
+    pub(super) fn reach(&self, connection: usize) -> [f64; 2] {
+        self.assembly.connections[connection].reach(self.ends(connection).each_ref())
+    }
+
+    /// Both ends of a connection as evaluated last.
+    fn ends(&self, connection: usize) -> [RaceNow; 2] {
+        let holds = &self.holds.connections[connection];
+        let ends = &self.assembly.connections[connection].ends;
+        [0, 1].map(|end| sitting(&holds[end], &self.bodies[ends[end].body], &ends[end]))
     }
 
     /// Rates of the whole state vector at time `t`.

@@ -78,6 +78,11 @@ pub enum RotorError {
     Unstable,
     #[error("the eigenvalues at {speed} rad/s have not been found in {iterations} iterations")]
     Eigenvalues { speed: f64, iterations: usize },
+    #[error(
+        "{name} turns with the body where it begins and is not alike along y and z: what it does changes as the body turns, and \
+         motions about the equilibrium have no frequencies. Hint: make it alike along both, or begin it at a body that does not turn"
+    )]
+    Uneven { name: String },
     #[error("nothing holds or bends: a rigid shaft that moves freely has no critical speed")]
     Unheld,
     #[error(
