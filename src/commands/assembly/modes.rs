@@ -6,7 +6,7 @@
 use super::housings::{self, Equilibrium};
 use super::lists::Lists;
 use super::whirl::{Spinning, rpm};
-use super::{Fallible, plan, record};
+use super::{plan, record};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::remarks::of_balls_at_speed;
@@ -18,9 +18,10 @@ use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::housing::inertia::{HousingMass, MovingBody, housing_mass, modes};
+use bearing_dynamics::solver::rotor::model::RotorError;
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly, StaticBody};
 use bearing_dynamics::solver::statics::AssemblySolution;
-use bearing_dynamics::solver::vibrations::whirling;
+use bearing_dynamics::solver::vibrations::{Whirling, whirling};
 use serde_json::json;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -63,7 +64,16 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     }
     say(&text)?;
     let mut remarks: Vec<String> = at_rest(scene).collect();
-    let spinning = spinning(assembly, still, solution, &bodies, &masses)?;
+    let spinning = match spinning(assembly, still, solution, &bodies, &masses) {
+        Ok(spinning) => spinning.map(Spinning::new).transpose()?,
+        // Motions at rest are what they are.
+        Err(why @ RotorError::Uneven { .. }) => {
+            remarks
+                .push(format!("whirl, critical speeds and a Campbell diagram are not told: {why}"));
+            None
+        }
+        Err(error) => return Err(error.into()),
+    };
     if let Some(spinning) = &spinning {
         say(&spinning.text())?;
         remarks.extend(spinning.remarks());
@@ -123,12 +133,12 @@ fn spinning(
     solution: &AssemblySolution,
     bodies: &[MovingBody],
     masses: &[HousingMass],
-) -> Fallible<Option<Spinning>> {
+) -> Result<Option<Whirling>, RotorError> {
     let turns = |of: &MovingBody| matches!(assembly.bodies[of.body].driven().map(|race| &race.rotation), Some(Rotation::Speed(speed)) if !speed.is_zero());
     if !bodies.iter().any(turns) {
         return Ok(None);
     }
-    Ok(Some(Spinning::new(whirling(assembly, still, solution, bodies, masses)?)?))
+    whirling(assembly, still, solution, bodies, masses).map(Some)
 }
 
 /// What a reader should know where whirl is that of the speed at the end, `top` (rad/s), and the equilibrium that of another at t = 0.
