@@ -45,10 +45,19 @@ pub(super) fn bushing(
         let advice = "give a larger one; both are those of the rubber";
         return Err(refused("spring.bushing.outer_diameter", reason, advice));
     }
-    let mut cells = |key: &str| {
-        reader.number(&format!("{TABLE}.cells.{key}")).map_or(0, |count| count as usize)
+    let [usual_radial, usual_axial] = usual_cells(thickness, length);
+    let around = reader.number("spring.bushing.cells.around").map_or(0, |count| count as usize);
+    let mut cells = |key: &str, usual: usize| {
+        let path = format!("{TABLE}.cells.{key}");
+        reader.given_number(&path).map_or_else(
+            || {
+                reader.note(&path, &usual.to_string(), "as long and thick as the bushing is");
+                usual
+            },
+            |count| count as usize,
+        )
     };
-    let [around, radial, axial] = ["around", "radial", "axial"].map(&mut cells);
+    let [radial, axial] = [cells("radial", usual_radial), cells("axial", usual_axial)];
     let all = around * radial * axial;
     if all > MOST_CELLS {
         let reason = format!("{around} × {radial} × {axial} are {all} cells");
@@ -85,6 +94,17 @@ pub(super) fn bushing(
         BushingInElements { density, stepping, window_phase }
     });
     Ok(Some((of, spring.law)))
+}
+
+/// Cells across the wall and along half of the length, where nothing is given: about as many of them, where they tell most. All
+/// stiffnesses are within 1.1 % of an oracle's (case `bushing_sleeve_motions`); 4 by 4 of thin sleeves and flat discs are 3 to 5.5 % off.
+fn usual_cells(thickness: f64, length: f64) -> [usize; 2] {
+    match 0.5 * length / thickness {
+        slender if slender >= 12.0 => [2, 12],
+        slender if slender >= 6.0 => [2, 8],
+        slender if slender <= 0.3 => [8, 2],
+        _ => [4, 4],
+    }
 }
 
 /// Keys that not every method uses, and which do.

@@ -7,13 +7,14 @@ use bearing_dynamics::mesh::generate::{Bushing, Part};
 use bearing_dynamics::solver::solid::rubber::sleeve::{SleeveMotion, sleeve_stiffness};
 
 use crate::bushings::{
-    BULK_RATIO, BUSHING, BUSHING_3_3, MODULUS, complex_shear, quarter, rubber, section,
-    shear_over_modulus,
+    BEARING_ON_BUSHING, BULK_RATIO, BUSHING, BUSHING_3_3, MODULUS, complex_shear, quarter, rubber,
+    section, shear_over_modulus,
 };
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
+use crate::motion::changed_scene;
 use crate::oracles::bonded_bushing::{Motion, stiffness};
 
 pub const CASE: Case = Case {
@@ -94,7 +95,65 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         &["bushing", "motion", "ours", "oracle", "relaxed, %", "10 Hz, %"],
         rows,
     );
+    usual_meshes(context)?;
     long(context)
+}
+
+/// Diameters and lengths of bushings in mm, from a sleeve thin as a sheet to a flat disc.
+const PROPORTIONS: [[f64; 3]; 6] = [
+    [30.0, 34.0, 60.0],
+    [60.0, 70.0, 80.0],
+    [30.0, 38.0, 40.0],
+    [20.0, 60.0, 20.0],
+    [20.0, 60.0, 10.0],
+    [20.0, 100.0, 10.0],
+];
+
+/// What a scene that gives no cells computes with, from thin sleeves to flat discs.
+fn usual_meshes(context: &mut CaseContext) -> Result<(), CaseError> {
+    let (mut rows, mut worst) = (Vec::new(), 0.0f64);
+    for [inner, outer, length] in PROPORTIONS {
+        let sizes = format!(
+            "inner_diameter = \"{inner} mm\"\nouter_diameter = \"{outer} mm\"\nlength = \"{length} mm\"\ntable"
+        );
+        let shipped =
+            "inner_diameter = \"71 mm\"\nouter_diameter = \"91 mm\"\nlength = \"20 mm\"\ntable";
+        let scene = changed_scene(BEARING_ON_BUSHING, &[(shipped, &sizes)])?;
+        let [spring] = &scene.springs[..] else { return Err(CaseError::message("one spring")) };
+        let ours = [1, 0, 3, 4].map(|i| spring.stiffness[i]);
+        let thickness = 0.5e-3 * (outer - inner);
+        let body = Bushing { inner_diameter: 1e-3 * inner, thickness, length: 1e-3 * length };
+        for (own, (_, of, name, unit)) in ours.into_iter().zip(MOTIONS) {
+            let shear = complex_shear(0.0, 0.0);
+            let exact = stiffness(section(&body), of, shear, BULK_RATIO * MODULUS, DEGREE, 3).re;
+            let gap = (own / exact - 1.0).abs();
+            worst = if gap <= worst || worst.is_nan() { worst } else { gap };
+            rows.push(vec![
+                format!("{inner}/{outer} × {length} mm"),
+                format!("{name}, {unit}"),
+                format!("{own:.4e}"),
+                format!("{exact:.4e}"),
+                format!("{:.2}", 100.0 * gap),
+            ]);
+        }
+    }
+    context.check(
+        Check::new(
+            "usual_meshes",
+            "relaxed stiffnesses of scenes that give no cells, largest distance",
+            "1",
+            worst,
+        )
+        .independent(0.0, "one Fourier component, polynomials of degree 5")
+        .absolute(0.015, "what some three hundred cells leave, from thin sleeves to flat discs"),
+    );
+    context.table(
+        "usual_cells",
+        "Relaxed stiffness of scenes that give no cells, from thin sleeves to flat discs",
+        &["bushing", "motion", "ours", "oracle", "distance, %"],
+        rows,
+    );
+    Ok(())
 }
 
 /// Torsion shears alone, so that its closed form holds at any length.
