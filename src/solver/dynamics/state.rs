@@ -194,8 +194,7 @@ impl Layout {
         self.first + component * self.padded
     }
 
-    /// Race (0 inner, 1 outer) and ball of a pair, as [`ContactTable`](super::contacts::ContactTable) counts them; without
-    /// a division, of which an evaluation would take three for each loaded pair.
+    /// Race (0 inner, 1 outer) and ball of a pair, as [`ContactTable`](super::contacts::ContactTable) counts them.
     #[inline(always)]
     pub fn race_and_ball(&self, pair: usize) -> (usize, usize) {
         let outer = pair >= self.padded;

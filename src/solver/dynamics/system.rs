@@ -172,14 +172,8 @@ impl System {
         }
         let connections: &[Connection] =
             if self.steps.springs { &self.assembly.connections } else { &[] };
-        for ((connection, &at), holds) in
-            connections.iter().zip(&self.connections).zip(&holds.connections)
-        {
-            let end = |i: usize| {
-                let mount = &connection.ends[i];
-                sitting(&holds[i], &self.bodies[mount.body], mount)
-            };
-            let ends = [end(0), end(1)];
+        for (index, connection) in connections.iter().enumerate() {
+            let (at, ends) = (self.connections[index], self.ends(index));
             let elements = connection.maxwell();
             let elongated = &state[at..at + 6 * elements.len()];
             let pull = connection.pull([&ends[0], &ends[1]], elongated);
@@ -192,7 +186,8 @@ impl System {
             ledger[Ledger::Foundation as usize] += pull.loss;
             for (end, mount) in connection.ends.iter().enumerate() {
                 let sits = (&ends[end], &self.bodies[mount.body]);
-                let loads = handed_on((&holds[end], mount), sits, &pull.on[end], bent, rates);
+                let hold = &holds.connections[index][end];
+                let loads = handed_on((hold, mount), sits, &pull.on[end], bent, rates);
                 self.loads[mount.body].add(&loads);
             }
             self.ran.whole.add(Stage::Springs, 1);
