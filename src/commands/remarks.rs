@@ -1,16 +1,18 @@
 //! What a reader of the numbers should know: one set of remarks for equilibrium and motion.
 
-use crate::commands::scene_remarks::{at_rest, of_springs, on_dents, sudden_fits};
+use crate::commands::scene_remarks::{at_rest, moving_starts, of_springs, on_dents, sudden_fits};
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use bearing_dynamics::scene::Scene;
-use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing, SceneBody};
+use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing, SceneBody, Spring};
 use bearing_dynamics::scene::statics::{ball_mass, orbital_speed};
 use bearing_dynamics::solver::clock::told;
 use bearing_dynamics::solver::dynamics::assembly::Bearing;
 use bearing_dynamics::solver::dynamics::bounds::FARTHEST_BENT;
+use bearing_dynamics::solver::dynamics::connection::Connection;
 use bearing_dynamics::solver::dynamics::extremes::{Extreme, Extremes};
 use bearing_dynamics::solver::dynamics::model::Rotation;
+use bearing_dynamics::solver::dynamics::race::{self, mounted};
 use bearing_dynamics::solver::dynamics::run::Simulation;
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
 use bearing_dynamics::solver::static_tables::BearingState;
@@ -29,6 +31,9 @@ const FAR: f64 = 0.1;
 const GYROSCOPIC: f64 = 0.01;
 /// Centrifugal force on a ball, as a part of the largest ball load, from which on leaving it out is worth a word.
 const CENTRIFUGAL: f64 = 0.05;
+
+/// Part of a bushing's wall that small displacements are far beyond.
+const FAR_IN_WALL: f64 = 0.3;
 
 /// What remarks are made of; times are those of a run, s.
 #[derive(Clone, Debug, Default)]
@@ -98,6 +103,7 @@ pub fn of_assembly(
     }
     remarks.extend(bent_far(assembly, solution));
     remarks.extend(without_unbalances(scene, solution));
+    remarks.extend(pressed_through(scene, assembly, solution));
     if solution.saddles_left > 0 {
         remarks.push(
             "an unstable position was left for one beside it; its mirror image is an equilibrium too".into(),
@@ -198,6 +204,7 @@ pub fn of_run(scene: &AssemblyScene, simulation: &Simulation) -> Vec<String> {
         named(placed, of_moving(&placed.scene, bearing, extremes))
     });
     let of_scene = of_springs(scene).into_iter().chain(on_dents(scene)).chain(sudden_fits(scene));
+    let of_scene = of_scene.chain(moving_starts(scene));
     of_scene.chain(each.flatten()).collect()
 }
 
@@ -400,6 +407,31 @@ fn without_loads_of_runs(scene: &Scene, balls: &[BallState]) -> Option<String> {
             told.join("; ")
         )
     })
+}
+
+/// Bushings that are pushed through more of their wall than small displacements are.
+fn pressed_through(
+    scene: &AssemblyScene,
+    assembly: &StaticAssembly,
+    solution: &AssemblySolution,
+) -> Vec<String> {
+    let said = |(spring, connection): (&Spring, &Connection)| {
+        let wall = spring.bushing.as_ref()?.body.thickness;
+        let ends = connection
+            .ends
+            .map(|mount| mounted(&race::fixed(&solution.coordinates[mount.body].into()), &mount));
+        let [gone, _] = connection.reach([&ends[0], &ends[1]]);
+        (gone > FAR_IN_WALL * wall).then(|| {
+            let beyond = if gone >= wall { ", beyond it: nothing but its springs is there" } else { "" };
+            format!(
+                "bushing {} is pushed by {:.3} mm, its wall is {:.3} mm{beyond}; its springs are of small displacements",
+                spring.name,
+                1e3 * gone,
+                1e3 * wall
+            )
+        })
+    };
+    scene.springs.iter().zip(&assembly.connections).filter_map(said).collect()
 }
 
 /// Unbalances of bodies, which a run has from its start on, where they are much beside the ball loads.

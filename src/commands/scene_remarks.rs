@@ -9,9 +9,10 @@ use bearing_dynamics::scene::excitations::{excitations, largest};
 use bearing_dynamics::scene::housing::{FitSize, HousingMethod};
 use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::connection::uneven;
-use bearing_dynamics::solver::dynamics::model::Rotation;
+use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::run::Start;
 use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solver::statics::COORDINATE_NAMES;
 use std::f64::consts::TAU;
 
 /// Shafts of tetrahedra.
@@ -119,6 +120,33 @@ pub fn sudden_fits(scene: &AssemblyScene) -> impl Iterator<Item = String> {
             )
         })
     })
+}
+
+/// Loads that change from t = 0 on where a run starts with the velocity of its equilibrium.
+pub fn moving_starts(scene: &AssemblyScene) -> Option<String> {
+    let turns = scene.bearings.iter().any(|placed| placed.scene.inner_speed.unwrap_or(0.0) != 0.0);
+    if !turns || scene.run().is_none_or(|run| run.options.start != Start::Equilibrium) {
+        return None;
+    }
+    let bodies = scene.bodies.iter().map(|body| (format!("body.{}", body.name), &body.race));
+    let races = scene.bearings.iter().flat_map(|placed| {
+        let of = &placed.scene.dynamics;
+        let name = placed.name.as_ref().map_or(String::new(), |name| format!(".{name}"));
+        let inner = Some((format!("inner_race{name}"), &of.inner));
+        inner.into_iter().chain(of.outer.as_ref().map(|outer| (format!("outer_race{name}"), outer)))
+    });
+    let changing = |(key, race): (String, &RaceBody)| {
+        let mut loads = race.drives.iter().zip(COORDINATE_NAMES);
+        loads.find_map(|(drive, coordinate)| match drive {
+            Drive::Load(load) if load.rate(0.0) != 0.0 => Some(format!("{key}.{coordinate}")),
+            _ => None,
+        })
+    };
+    let first = bodies.chain(races).find_map(changing)?;
+    Some(format!(
+        "the load {first} changes from t = 0 on: the run starts with the velocity at which its equilibrium moves on then, a blow where the load \
+         has just begun; to start at rest let it begin later (`start`) or smoothly (`smooth_ramp`), or write numerics.start = \"nominal\""
+    ))
 }
 
 /// Rows that are too far apart for what drives the scene: what they show of it is folded to other frequencies.

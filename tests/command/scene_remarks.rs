@@ -120,3 +120,55 @@ fn statics_of_a_moving_outer_race_are_the_start_of_its_run() {
     let [one, other] = [1, 2].map(|row| table.lines().nth(row).unwrap().split_once(',').unwrap().1);
     assert_ne!(one.split_once(',').unwrap().1, other.split_once(',').unwrap().1);
 }
+
+/// Springs of a bushing know nothing of its wall.
+#[test]
+fn statics_say_how_far_a_bushing_is_pushed() {
+    let shipped = crate::command_line_common::scene("bearing_on_bushing.toml");
+    let said_under = |load: &str| {
+        let set = format!("inner_race.z.load={load}");
+        let output = bearing(&["statics", &shipped, "--dry", "--set", &set]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        said(&output)
+    };
+    // Some 1.7e6 N/m across, a wall of 10 mm.
+    assert!(!said_under("-1000 N").contains("is pushed by"));
+    let far = said_under("-8000 N");
+    assert!(far.contains("bushing mount is pushed by") && !far.contains("beyond it"), "{far}");
+    assert!(said_under("-20000 N").contains("its wall is 10.000 mm, beyond it"));
+}
+
+/// A load that has just begun would move the equilibrium at once.
+#[test]
+fn a_load_that_changes_from_the_start_on_is_told() {
+    let place = Place::new();
+    let ramp = |start: &str| {
+        format!("{{ load = {{ ramp = [\"0 N\", \"-250 N\"], duration = \"10 ms\"{start} }} }}")
+    };
+    let told = |load: &str, start: &str| {
+        let numerics = format!("end = \"0.1 ms\"\nstep = \"2 us\"\nstart = \"{start}\"");
+        let text = scene(&numerics, "plots = []").replace("{ load = \"-250 N\" }", load);
+        let output = run(&place.scene("scene.toml", &text), &place.path("out"), &[]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        said(&output).contains("the load inner_race.z changes from t = 0 on")
+    };
+    assert!(told(&ramp(""), "equilibrium"));
+    assert!(!told(&ramp(", start = \"1 ms\""), "equilibrium"));
+    assert!(!told(&ramp(""), "nominal"));
+    assert!(!told("{ load = \"-250 N\" }", "equilibrium"));
+}
+
+/// A loose race that spins is held by nothing: there are no motions to tell, which is no error.
+#[test]
+fn modes_of_a_loose_race_that_spins_are_none() {
+    let place = Place::new();
+    let text = scene("end = \"1 ms\"", "plots = []")
+        .replace("\"-5 um\"", "\"10 um\"")
+        .replace("z = { load = \"-250 N\" }\n", "")
+        .replace("tilt_y = { tilt = \"0.05 deg\" }\ntilt_z = { tilt = \"0 deg\" }\n", "")
+        .replace("\"-9.80665 m/s^2\"", "\"0 m/s^2\"");
+    let scene = place.scene("scene.toml", &text);
+    let output = bearing(&["modes", scene.to_str().unwrap(), "--dry"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert!(said(&output).contains("nothing holds what spins in this equilibrium"));
+}

@@ -114,8 +114,8 @@ fn springs_beyond_their_reach_end_a_run() {
     let wound = disc("from = \"ground\"\nto = \"disc\"", "{ y = \"1 N s/m\" }", "end = \"20 ms\"")
         .replace("turn_y = \"2000", "turn_x = \"1 N m/rad\", turn_y = \"2000");
     for (text, how) in [
-        (flying, "the spring mount is stretched by 1.0"),
-        (wound, "the spring mount is turned by 2.8"),
+        (flying, "m, more than 1 m, up to which it is a spring"),
+        (wound, "the spring mount is turned by 160.0"),
     ] {
         let scene = place.scene("scene.toml", &text);
         let out = place.path("out");

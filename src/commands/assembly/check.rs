@@ -7,7 +7,9 @@ use super::{defaults, housings, lines};
 use crate::commands::check::{Line, say_json, say_lines};
 use crate::commands::echo::through;
 use crate::commands::run::{planned_request, request};
-use crate::commands::scene_remarks::{of_shafts, of_springs, sudden_fits, turning_races};
+use crate::commands::scene_remarks::{
+    moving_starts, of_shafts, of_springs, sudden_fits, turning_races,
+};
 use crate::commands::{CommandResult, echo_run};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::session::table_size;
@@ -191,6 +193,7 @@ fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, Str
         said.extend(turning_races(scene).map(|said| ("note", said)));
     }
     said.extend(sudden_fits(scene).map(|said| ("note", said)));
+    said.extend(moving_starts(scene).map(|said| ("note", said)));
     if !housings.is_empty() || scene.has_shafts_in_elements() {
         let fields = match run.fields_interval {
             Some(interval) => format!("every {interval} s"),

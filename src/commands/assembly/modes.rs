@@ -20,7 +20,7 @@ use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::housing::inertia::{HousingMass, MovingBody, housing_mass, modes};
 use bearing_dynamics::solver::rotor::model::RotorError;
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly, StaticBody};
-use bearing_dynamics::solver::statics::AssemblySolution;
+use bearing_dynamics::solver::statics::{AssemblySolution, Determinacy};
 use bearing_dynamics::solver::vibrations::{Whirling, whirling};
 use serde_json::json;
 use std::f64::consts::TAU;
@@ -72,6 +72,14 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
                 .push(format!("whirl, critical speeds and a Campbell diagram are not told: {why}"));
             None
         }
+        Err(RotorError::Unstable) if solution.determinacy != Determinacy::Determinate => {
+            remarks.push(
+                "whirl, critical speeds and a Campbell diagram are not told: nothing holds what spins in this equilibrium, as bearings without load are no \
+                 springs; give it a load or preload"
+                    .into(),
+            );
+            None
+        }
         Err(error) => return Err(error.into()),
     };
     if let Some(spinning) = &spinning {
@@ -90,7 +98,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     if scene.springs.iter().any(|spring| !spring.maxwell.is_empty()) {
         remarks.push(
             "Maxwell elements take no part: what swings faster than they relax meets their stiffness too, and swings faster than \
-             here"
+             here; where they turn with a body that spins, they feed its whirl above the critical speed besides (`run` has both)"
                 .into(),
         );
     }

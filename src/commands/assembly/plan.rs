@@ -11,7 +11,9 @@ use crate::commands::bushing_remarks::of_bushings;
 use crate::commands::plan::say_plan;
 use crate::commands::plan_step::{note, refused, step_lines};
 use crate::commands::run::{self, planned_request};
-use crate::commands::scene_remarks::{of_shafts, of_springs, sudden_fits, turning_races};
+use crate::commands::scene_remarks::{
+    moving_starts, of_shafts, of_springs, sudden_fits, turning_races,
+};
 use crate::commands::{CommandResult, Outcome, memory};
 use bearing_dynamics::output::session::{RunRequest, table_size};
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
@@ -62,6 +64,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
     notes.extend(of_bushings(scene).iter().map(|said| note("bushing", said)));
     notes.extend(turning_races(scene).map(|said| note("outer race", &said)));
     notes.extend(sudden_fits(scene).map(|said| note("fit", &said)));
+    notes.extend(moving_starts(scene).map(|said| note("start", &said)));
     for housing in &housings {
         notes.extend(housing.notes().iter().map(|said| note("housing mesh", said)));
     }

@@ -222,9 +222,16 @@ pub fn compare(
 
     let mut judge = Judge::new(&tolerances, options);
     judge.only_in_candidate = only_in_candidate;
-    if reference.join(fields::FOLDER).is_dir() {
+    let has_fields = |path: &Path| path.join(fields::FOLDER).is_dir();
+    let without = match [reference, candidate].map(has_fields) {
+        [false, false] => None,
+        [true, true] => Some(""),
+        [true, false] => Some("; the candidate has none"),
+        [false, true] => Some("; the reference has none"),
+    };
+    if let Some(without) = without {
         judge.file = fields::FOLDER.into();
-        judge.leave_out("fields in .vtu files are not compared");
+        judge.leave_out(&format!("fields in .vtu files are not compared{without}"));
     }
     for (reference_file, candidate_file, name) in pairs {
         judge.file = name;

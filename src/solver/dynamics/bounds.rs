@@ -64,7 +64,7 @@ const FARTHEST_TILT: f64 = 0.1;
 pub const FARTHEST_BENT: f64 = 0.1;
 
 /// How far the springs of a connection know turns, rad: up to half a turn either way, beyond which a wound spring would jump to the other side.
-const FARTHEST_TURN: f64 = 0.9 * PI;
+const FARTHEST_TURN: f64 = 160.0 / 180.0 * PI;
 
 /// How deep a cage may lie in balls or its guide at a start in equilibrium where no contact of a race is deeper, in ball radii.
 const CAGE_AT_START: f64 = 1e-3;
@@ -157,24 +157,18 @@ impl Simulation {
         let system = &self.system;
         for (index, connection) in system.assembly.connections.iter().enumerate() {
             let [stretch, turn] = system.reach(index);
-            for (how, distance, unit, allowed) in
-                [("stretched", stretch, "m", FARTHEST), ("turned", turn, "rad", FARTHEST_TURN)]
-            {
-                // NaN is too far.
-                if distance <= allowed {
-                    continue;
-                }
-                let (spring, time, step) = (connection.name.clone(), self.time, self.steps);
-                return Err(SimulationError::SpringBeyond {
-                    spring,
-                    how,
-                    distance,
-                    unit,
-                    allowed,
-                    time,
-                    step,
-                });
-            }
+            // NaN is too far.
+            let beyond = |gone: f64, allowed: f64| !(gone <= allowed);
+            let how = if beyond(stretch, FARTHEST) {
+                format!("stretched by {} m, more than {FARTHEST} m", to_digits(stretch, 6))
+            } else if beyond(turn, FARTHEST_TURN) {
+                let [turn, allowed] = [turn, FARTHEST_TURN].map(|of| to_digits(of.to_degrees(), 6));
+                format!("turned by {turn} deg, more than {allowed} deg")
+            } else {
+                continue;
+            };
+            let (spring, time, step) = (connection.name.clone(), self.time, self.steps);
+            return Err(SimulationError::SpringBeyond { spring, how, time, step });
         }
         Ok(())
     }

@@ -111,19 +111,11 @@ pub enum SimulationError {
         step: u64,
     },
     #[error(
-        "{spring} is {how} by {distance:.3e} {unit} at t = {at} s, step {step}, farther than the {allowed:.3e} {unit} up to which it is a spring: \
-         what it joins has left its place (whirl that grows? loads and their units?), or turns round where the spring holds it (turn_x)",
+        "{spring} is {how}, up to which it is a spring, at t = {at} s, step {step}: what it joins has left its place (whirl that grows? \
+         loads and their units? a load that changes from the start on?), or turns round where the spring holds it (turn_x)",
         at = told(*time)
     )]
-    SpringBeyond {
-        spring: String,
-        how: &'static str,
-        distance: f64,
-        unit: &'static str,
-        allowed: f64,
-        time: f64,
-        step: u64,
-    },
+    SpringBeyond { spring: String, how: String, time: f64, step: u64 },
     #[error(
         "{body} has left {seat} at t = {at} s, step {step}: it is {distance:.3e} m off {way}, where {allowed:.3e} m \
          are left of its seat",
