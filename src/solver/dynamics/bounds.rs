@@ -158,14 +158,15 @@ impl Simulation {
         for (index, connection) in system.assembly.connections.iter().enumerate() {
             let [stretch, turn] = system.reach(index);
             // NaN is too far.
-            let beyond = |gone: f64, allowed: f64| !(gone <= allowed);
-            let how = if beyond(stretch, FARTHEST) {
-                format!("stretched by {} m, more than {FARTHEST} m", to_digits(stretch, 6))
-            } else if beyond(turn, FARTHEST_TURN) {
+            let (reaches, turns) = (stretch <= FARTHEST, turn <= FARTHEST_TURN);
+            if reaches && turns {
+                continue;
+            }
+            let how = if reaches {
                 let [turn, allowed] = [turn, FARTHEST_TURN].map(|of| to_digits(of.to_degrees(), 6));
                 format!("turned by {turn} deg, more than {allowed} deg")
             } else {
-                continue;
+                format!("stretched by {} m, more than {FARTHEST} m", to_digits(stretch, 6))
             };
             let (spring, time, step) = (connection.name.clone(), self.time, self.steps);
             return Err(SimulationError::SpringBeyond { spring, how, time, step });
