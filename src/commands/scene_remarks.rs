@@ -125,7 +125,11 @@ pub fn sudden_fits(scene: &AssemblyScene) -> impl Iterator<Item = String> {
 /// Loads that change from t = 0 on where a run starts with the velocity of its equilibrium.
 pub fn moving_starts(scene: &AssemblyScene) -> Option<String> {
     let turns = scene.bearings.iter().any(|placed| placed.scene.inner_speed.unwrap_or(0.0) != 0.0);
-    if !turns || scene.run().is_none_or(|run| run.options.start != Start::Equilibrium) {
+    // Equilibria that follow each other have no velocity.
+    let mut housings = scene.bearings.iter().filter_map(|placed| placed.housing.as_ref());
+    let still = housings.any(|of| of.settings.method == HousingMethod::QuasiStatic);
+    let nominal = scene.run().is_none_or(|run| run.options.start != Start::Equilibrium);
+    if !turns || still || nominal {
         return None;
     }
     let bodies = scene.bodies.iter().map(|body| (format!("body.{}", body.name), &body.race));
