@@ -386,6 +386,11 @@ fn gyroscopic(scene: &Scene, balls: &[BallState]) -> Option<String> {
     })
 }
 
+/// N.
+fn largest_load(balls: &[BallState]) -> f64 {
+    balls.iter().map(|b| b.inner.normal_load.max(b.outer.normal_load)).fold(0.0, f64::max)
+}
+
 /// What acts on the inner race of a bearing alone in a run and not in an equilibrium, where it is much beside the ball loads.
 fn without_loads_of_runs(scene: &Scene, balls: &[BallState]) -> Option<String> {
     let of = &scene.dynamics;
@@ -397,8 +402,7 @@ fn without_loads_of_runs(scene: &Scene, balls: &[BallState]) -> Option<String> {
         ("its unbalance at this speed", of.unbalance * speed * speed),
         ("the rotating load", rotating),
     ];
-    let loads = balls.iter().map(|b| b.inner.normal_load.max(b.outer.normal_load));
-    let largest = loads.fold(0.0, f64::max);
+    let largest = largest_load(balls);
     let told = all.iter().filter(|(_, force)| *force > CENTRIFUGAL * largest);
     let told: Vec<String> = told.map(|(what, force)| format!("{what}, {force:.3} N")).collect();
     (!told.is_empty()).then(|| {
@@ -450,9 +454,8 @@ fn without_unbalances(scene: &AssemblyScene, solution: &AssemblySolution) -> Opt
     };
     let all = scene.bodies.iter().filter_map(of_body).chain(scene.bearings.iter().map(of_race));
     let (force, body) = all.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let balls = solution.bearings.iter().flat_map(|state| &state.balls);
-    let largest = balls
-        .fold(0.0, |most: f64, ball| most.max(ball.inner.normal_load).max(ball.outer.normal_load));
+    let largest =
+        solution.bearings.iter().map(|state| largest_load(&state.balls)).fold(0.0, f64::max);
     (force > CENTRIFUGAL * largest).then(|| {
         format!(
             "unbalances at the speed at t = 0 are left out, the largest one, of {body}, with {force:.3} N; `run` has them from its start on"
@@ -467,8 +470,7 @@ fn without_centrifugal(scene: &Scene, balls: &[BallState]) -> Option<String> {
         return None;
     }
     let force = ball_mass(scene) * speed * speed * scene.geometry.pitch_radius;
-    let loads = balls.iter().map(|b| b.inner.normal_load.max(b.outer.normal_load));
-    let largest = loads.fold(0.0, f64::max);
+    let largest = largest_load(balls);
     // NaN says nothing.
     (force > CENTRIFUGAL * largest).then(|| {
         let part = if largest > 0.0 {

@@ -5,8 +5,9 @@ use bearing_dynamics::ch3_bushing::dent::Dent;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::scene::Scene;
 use bearing_dynamics::scene::assembly::{AssemblyScene, SceneBody, Spring, SpringAt};
-use bearing_dynamics::scene::excitations::{excitations, largest};
+use bearing_dynamics::scene::excitations::{driven, excitations, largest};
 use bearing_dynamics::scene::housing::{FitSize, HousingMethod};
+use bearing_dynamics::scene::statics::orbital_speed;
 use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::connection::uneven;
 use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
@@ -124,7 +125,7 @@ pub fn sudden_fits(scene: &AssemblyScene) -> impl Iterator<Item = String> {
 
 /// Loads that change from t = 0 on where a run starts with the velocity of its equilibrium.
 pub fn moving_starts(scene: &AssemblyScene) -> Option<String> {
-    let turns = scene.bearings.iter().any(|placed| placed.scene.inner_speed.unwrap_or(0.0) != 0.0);
+    let turns = scene.bearings.iter().any(|placed| orbital_speed(&placed.scene) != 0.0);
     // Equilibria that follow each other have no velocity.
     let mut housings = scene.bearings.iter().filter_map(|placed| placed.housing.as_ref());
     let still = housings.any(|of| of.settings.method == HousingMethod::QuasiStatic);
@@ -132,13 +133,6 @@ pub fn moving_starts(scene: &AssemblyScene) -> Option<String> {
     if !turns || still || nominal {
         return None;
     }
-    let bodies = scene.bodies.iter().map(|body| (format!("body.{}", body.name), &body.race));
-    let races = scene.bearings.iter().flat_map(|placed| {
-        let of = &placed.scene.dynamics;
-        let name = placed.name.as_ref().map_or(String::new(), |name| format!(".{name}"));
-        let inner = Some((format!("inner_race{name}"), &of.inner));
-        inner.into_iter().chain(of.outer.as_ref().map(|outer| (format!("outer_race{name}"), outer)))
-    });
     let changing = |(key, race): (String, &RaceBody)| {
         let mut loads = race.drives.iter().zip(COORDINATE_NAMES);
         loads.find_map(|(drive, coordinate)| match drive {
@@ -146,7 +140,7 @@ pub fn moving_starts(scene: &AssemblyScene) -> Option<String> {
             _ => None,
         })
     };
-    let first = bodies.chain(races).find_map(changing)?;
+    let first = driven(scene).find_map(changing)?;
     Some(format!(
         "the load {first} changes from t = 0 on: the run starts with the velocity at which its equilibrium moves on then, a blow where the load \
          has just begun; to start at rest let it begin later (`start`) or smoothly (`smooth_ramp`), or write numerics.start = \"nominal\""

@@ -23,9 +23,11 @@ pub struct Excitation {
 pub fn excitations(scene: &AssemblyScene) -> Vec<Excitation> {
     let mut found = Vec::new();
     let end = scene.run().map_or(0.0, |run| run.end);
+    for (key, race) in driven(scene) {
+        add_drives(&mut found, &key, race);
+    }
     for body in &scene.bodies {
         let key = format!("body.{}", body.name);
-        add_drives(&mut found, &key, &body.race);
         add_turning(
             &mut found,
             &key,
@@ -38,6 +40,20 @@ pub fn excitations(scene: &AssemblyScene) -> Vec<Excitation> {
         of_bearing(&mut found, scene, placed, end);
     }
     found
+}
+
+/// Bodies, and races that are bodies of their own, with the key of the table that drives them.
+pub fn driven(scene: &AssemblyScene) -> impl Iterator<Item = (String, &RaceBody)> {
+    let bodies = scene.bodies.iter().map(|body| (format!("body.{}", body.name), &body.race));
+    let races = scene.bearings.iter().flat_map(|placed| {
+        let of = &placed.scene.dynamics;
+        let name = placed.name.as_ref().map_or(String::new(), |name| format!(".{name}"));
+        let own = |side: usize| matches!(placed.carriers[side], Carrier::Own { .. });
+        let inner = own(0).then(|| (format!("inner_race{name}"), &of.inner));
+        let outer = of.outer.as_ref().filter(|_| own(1));
+        inner.into_iter().chain(outer.map(|outer| (format!("outer_race{name}"), outer)))
+    });
+    bodies.chain(races)
 }
 
 fn of_bearing(
@@ -57,7 +73,6 @@ fn of_bearing(
                 Some(name) => format!("the load's turns on {name}"),
                 None => "the load's turns".into(),
             };
-            add_drives(found, &key, &dynamics.inner);
             add_turning(found, &key, &turns, &dynamics.rotating_load, end);
             &dynamics.rotating_load
         }

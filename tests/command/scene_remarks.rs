@@ -50,6 +50,16 @@ fn rows_that_are_too_far_apart_are_told() {
     assert!(told.contains("half a period of inner_race.z (1000 Hz)"), "{told}");
     assert!(!said_with("0.4 ms", swing).contains("half a period"));
     assert!(!said_with("0.6 ms", "{ load = \"-250 N\" }").contains("half a period"));
+    // An outer race that moves by itself is driven, too.
+    let outer = format!(
+        "[outer_race]\nmotion = \"5-dof\"\nz = {swing}\nfoundation = {{ stiffness = {{ x = \"1e8 N/m\", y = \"1e8 N/m\", \
+         z = \"1e8 N/m\", tilt_y = \"1e5 N m/rad\", tilt_z = \"1e5 N m/rad\" }} }}\n[ball_forces]"
+    );
+    let text = scene("end = \"2 ms\"\nstep = \"2 us\"\noutput_interval = \"0.6 ms\"", "plots = []");
+    let text = text.replace("[ball_forces]", &outer);
+    let output = run(&place.scene("scene.toml", &text), &place.path("out"), &[]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert!(said(&output).contains("half a period of outer_race.z (1000 Hz)"), "{}", said(&output));
     // What comes once has no period, however fast it comes.
     let once =
         "{ load = { ramp = [\"-250 N\", \"-300 N\"], start = \"1 ms\", duration = \"0.1 ms\" } }";

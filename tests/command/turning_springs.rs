@@ -176,8 +176,10 @@ fn modes_say_which_of_them_are_beyond_the_natural_shapes() {
         let output = bearing(&["modes", scene, "--out", out.to_str().unwrap(), "--set", &set]);
         assert_eq!(code(&output), 0, "{}", stderr(&output));
         let said = said(&output);
-        let note =
-            said.lines().find(|line| line.contains("are no natural ones")).map(str::to_string);
+        let note = said
+            .lines()
+            .find(|line| line.contains("beyond the natural shapes"))
+            .map(str::to_string);
         let modes = json(out.join("summary.json"))["modes"].as_array().unwrap().clone();
         let found: Vec<f64> = modes.iter().map(|mode| number(&mode["frequency"])).collect();
         (note, found)

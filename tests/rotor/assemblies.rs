@@ -28,25 +28,34 @@ fn beam() -> Beam {
     Beam { discs: vec![DISC], ..Beam::new(vec![steel(0.4, 0.03, 0.0)]) }
 }
 
-/// Springs between the ground and a shaft with an overhung disc.
-fn assembly(internal_damping: f64) -> Assembly {
-    let holds = PLACES.map(|at| (at, true));
-    let (rigid, shapes) = free_shaft(&beam(), Kept::ALL, &holds, &[]).unwrap();
-    let body = |name: &str, mobility, x: f64| Body {
+fn body(name: &str, mobility: Mobility, x: f64) -> Body {
+    Body {
         name: name.into(),
         label: None,
         mobility,
         rest: [x, 0.0, 0.0, 0.0, 0.0],
         rotating_load: None,
         unbalance: 0.0,
-    };
-    let spinning = RaceBody {
-        inertia: Inertia { mass: rigid.mass, axial: rigid.axial, transverse: rigid.transverse },
+    }
+}
+
+/// Spins as given, free otherwise.
+fn spinning(inertia: Inertia, speed: f64) -> Mobility {
+    let race = RaceBody {
+        inertia,
         drives: [0; 5].map(|_| Drive::Load(Profile::ZERO)),
-        rotation: Rotation::Speed(Profile::Constant(SPEED)),
+        rotation: Rotation::Speed(Profile::Constant(speed)),
         foundation_stiffness: [0.0; 5],
         foundation_damping: [0.0; 5],
     };
+    Mobility::Driven(race.into())
+}
+
+/// Springs between the ground and a shaft with an overhung disc.
+fn assembly(internal_damping: f64) -> Assembly {
+    let holds = PLACES.map(|at| (at, true));
+    let (rigid, shapes) = free_shaft(&beam(), Kept::ALL, &holds, &[]).unwrap();
+    let inertia = Inertia { mass: rigid.mass, axial: rigid.axial, transverse: rigid.transverse };
     let springs = PLACES.map(|at| Connection {
         name: "a spring".into(),
         label: None,
@@ -62,7 +71,7 @@ fn assembly(internal_damping: f64) -> Assembly {
     });
     Assembly {
         bodies: vec![
-            body("the shaft", Mobility::Driven(spinning.into()), rigid.centre),
+            body("the shaft", spinning(inertia, SPEED), rigid.centre),
             body(GROUND, Mobility::Fixed, 0.0),
         ],
         connections: springs.to_vec(),
@@ -223,21 +232,6 @@ fn two_rigid(from_ground: bool, backward: f64) -> (Assembly, Vec<MovingBody>) {
         Inertia { mass: 2.0, axial: 4e-3, transverse: 5e-3 },
         Inertia { mass: 3.0, axial: 2e-3, transverse: 7e-3 },
     ];
-    let body = |name: &str, mobility| Body {
-        name: name.into(),
-        label: None,
-        mobility,
-        rest: [0.0; 5],
-        rotating_load: None,
-        unbalance: 0.0,
-    };
-    let driven = |inertia: Inertia, speed: f64| RaceBody {
-        inertia,
-        drives: [0; 5].map(|_| Drive::Load(Profile::ZERO)),
-        rotation: Rotation::Speed(Profile::Constant(speed)),
-        foundation_stiffness: [0.0; 5],
-        foundation_damping: [0.0; 5],
-    };
     let springs = [0, 1].into_iter().flat_map(|of| {
         ARMS.map(|along| {
             let mut ends = [of, 2].map(|body| Mount { along, ..Mount::at_centre(body) });
@@ -252,9 +246,9 @@ fn two_rigid(from_ground: bool, backward: f64) -> (Assembly, Vec<MovingBody>) {
     let assembly = Assembly {
         connections: springs.collect(),
         bodies: vec![
-            body("one", Mobility::Driven(driven(inertia[0], SPEED).into())),
-            body("other", Mobility::Driven(driven(inertia[1], backward * SPEED).into())),
-            body(GROUND, Mobility::Fixed),
+            body("one", spinning(inertia[0], SPEED), 0.0),
+            body("other", spinning(inertia[1], backward * SPEED), 0.0),
+            body(GROUND, Mobility::Fixed, 0.0),
         ],
         ..Assembly::default()
     };

@@ -188,15 +188,15 @@ fn of_one_speed(scene: &AssemblyScene, top: f64) -> Option<String> {
     })
 }
 
-/// Motions above those that a shaft's natural shapes reach.
+/// Motions above what the natural shapes of the shaft with the fewest of them reach.
 fn beyond_shapes(assembly: &Assembly, found: impl Iterator<Item = f64>) -> Option<String> {
     let limits = assembly.shafts.iter().map(|shaft| (shaft.shapes.cut.above / TAU, shaft.body));
     let (limit, body) = limits.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let beyond = found.filter(|frequency| *frequency > limit).count();
     (beyond > 0).then(|| {
         format!(
-            "{beyond} of the modes, those above {limit:.0} Hz, are no natural ones: natural shapes of {} are left out from there on, and the shapes that \
-             answer loads swing too fast; body.NAME.beam.below has more of them",
+            "{beyond} of the modes, those above {limit:.0} Hz, reach beyond the natural shapes of {}: what is left of it there are shapes that \
+             answer loads, which swing too fast; body.NAME.beam.below has more natural ones",
             assembly.bodies[body].name
         )
     })
