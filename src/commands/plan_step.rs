@@ -5,7 +5,7 @@ use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::solver::clock::{given_steps, to_digits, whole_steps};
 use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::clocked::RunRequest;
-use bearing_dynamics::solver::dynamics::foretell::{FARTHEST_OFF, WITHIN, foretell};
+use bearing_dynamics::solver::dynamics::foretell::{FARTHEST_OFF, Foretold, WITHIN, foretell};
 use bearing_dynamics::solver::dynamics::run::{
     Integrator, RunOptions, Simulation, SimulationError, Stepping,
 };
@@ -65,7 +65,10 @@ fn steps(assembly: &Assembly, request: &RunRequest, step: f64) -> String {
 /// How many steps, and where the number comes from.
 fn foretold(assembly: &Assembly, request: &RunRequest) -> String {
     match foretell(assembly, request) {
-        Err(error) => format!("WARNING: the run will be refused: {error}"),
+        Err(error) => refused(&error),
+        Ok(Foretold { failure: Some((at, error)), .. }) => {
+            format!("WARNING: a trial ended at t = {at:.3e} s, as the run will: {error}")
+        }
         Ok(found) if found.whole => {
             format!(
                 "{} steps to t = {} s, counted in a trial of the whole run",

@@ -59,11 +59,11 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
         .iter()
         .map(|name| body(document, name, ball, needs_mass, &mut defaults_used))
         .collect::<Result<Vec<_>, _>>()?;
-    refuse_places_off_shafts(document, &bearings, &resolved)?;
     let springs = document
         .names("spring")
         .map(|name| spring(document, name, (&bodies, &bearings), &mut defaults_used))
         .collect::<Result<Vec<_>, _>>()?;
+    refuse_places_off_shafts(document, (&bearings, &springs), &resolved)?;
     name_what_holds(&mut bearings, &springs);
     let scene = AssemblyScene { bearings, bodies: resolved, springs, defaults_used };
     refuse_free_bodies(document, &scene)?;
@@ -381,7 +381,8 @@ fn body(
         let [mass, axial, transverse] =
             parts.each_ref().map(|k| reader.given_number(k).map_or_else(|| missing(k), Ok));
         let inertia = Inertia { mass: mass?, axial: axial?, transverse: transverse? };
-        check_inertia(&reader, &parts[1], inertia.axial, inertia.transverse)?;
+        check_inertia(inertia.axial, inertia.transverse)
+            .map_err(|problem| reader.document.error(&parts[1], problem))?;
         inertia
     } else {
         NO_INERTIA

@@ -235,7 +235,7 @@ fn given_inertia(reader: &Reader) -> Result<Option<[f64; 2]>, SceneError> {
     let because = " beside the other moment of inertia";
     let axial = reader.required_number(keys[0], because)?;
     let transverse = reader.required_number(keys[1], because)?;
-    check_inertia(reader, keys[0], axial, transverse)?;
+    check_inertia(axial, transverse).map_err(|problem| reader.document.error(keys[0], problem))?;
     Ok(Some([axial, transverse]))
 }
 

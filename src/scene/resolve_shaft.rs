@@ -3,11 +3,12 @@
 use crate::ch4_rotor::disc::Inertia as DiscInertia;
 use crate::mesh::Order;
 use crate::scene::assembly::{
-    AssemblyScene, Carrier, PlacedBearing, RaceJoint, SceneBeam, SceneBody, SpringAt,
+    AssemblyScene, Carrier, PlacedBearing, RaceJoint, SceneBeam, SceneBody, Spring, SpringAt,
 };
 use crate::scene::document::{Document, ItemRef};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::Reader;
+use crate::scene::resolve_dynamics::check_inertia;
 use crate::scene::resolve_solid::{item_number, item_profile, item_text, missing};
 use crate::scene::scopes::unfit;
 use crate::solver::profile::Profile;
@@ -148,27 +149,37 @@ fn beside(at: f64, [start, end]: [f64; 2], of: &str) -> Option<Problem> {
     Some(Problem::Refused { reason, advice: "places count from the body's centre".into() })
 }
 
-/// Races sit on the shafts that carry them.
+/// Races sit on the shafts that carry them, springs end at them.
 ///
 /// # Errors
-/// The first that sits beside its shaft.
+/// The first that is beside its shaft.
 pub(super) fn refuse_places_off_shafts(
     document: &Document,
-    bearings: &[PlacedBearing],
+    (bearings, springs): (&[PlacedBearing], &[Spring]),
     bodies: &[SceneBody],
 ) -> Result<(), SceneError> {
+    let off = |index: usize, at: f64| {
+        let beam = bodies[index].beam.as_ref()?;
+        let ends = [beam.start, beam.start + beam.beam.length()];
+        beside(at, ends, &format!("body {}", bodies[index].name))
+    };
     for placed in bearings {
         for (carrier, key) in placed.carriers.into_iter().zip(["inner_at", "outer_at"]) {
             let Carrier::Body { index, at } = carrier else { continue };
-            let Some(beam) = &bodies[index].beam else { continue };
-            let ends = [beam.start, beam.start + beam.beam.length()];
-            let of = format!("body {}", bodies[index].name);
-            let Some(problem) = beside(at, ends, &of) else { continue };
+            let Some(problem) = off(index, at) else { continue };
             let key = format!("bearing.{key}");
             return Err(match &placed.name {
                 Some(name) => document.scoped(name).error(&key, problem),
                 None => document.error(&key, problem),
             });
+        }
+    }
+    for spring in springs {
+        for (end, key) in spring.ends.iter().zip(["spring.from_at", "spring.to_at"]) {
+            let SpringAt::Body(index) = end.at else { continue };
+            if let Some(problem) = off(index, end.along) {
+                return Err(document.scoped(&spring.name).error(key, problem));
+            }
         }
     }
     Ok(())
@@ -333,6 +344,7 @@ fn disc(item: ItemRef, at: f64, density: f64) -> Result<BeamDisc, SceneError> {
             return Err(item.error(name, Problem::Exclusive { rival: "mass".into(), advice }));
         }
         let [axial, transverse] = ["axial", "transverse"].map(|name| given(name).unwrap_or(0.0));
+        check_inertia(axial, transverse).map_err(|problem| item.error("axial", problem))?;
         return Ok(BeamDisc { at, mass, axial, transverse });
     }
     let outer = required(item, "outer_diameter", "outer_diameter = \"200 mm\"")?;

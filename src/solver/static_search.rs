@@ -407,7 +407,8 @@ impl<'a, 'b> Search<'a, 'b> {
     /// identity added as makes it so; never longer than `radius`.
     fn newton_step(&self, scaled: &Scaled, radius: f64) -> DVector<f64> {
         let Scaled { gradient, stiffness } = scaled;
-        let largest = stiffness.diagonal().amax();
+        // Not of shapes: those of high frequency are stiffer than anything a body stands on, by any factor.
+        let largest = stiffness.diagonal().rows(0, self.model.bodies_end()).amax();
         let floor = if largest > 0.0 { largest } else { gradient.amax() / radius };
         let hints = self.hints(stiffness);
         let mut shift = 0.0;

@@ -116,3 +116,24 @@ fn steps_that_windows_cut_are_told() {
     let part = plan("step_fraction = 0.95\nwindow_phase = 0.01\n", "");
     assert!(part.contains("housing.step_fraction = 0.95 comes to 0."), "{part}");
 }
+
+/// However many shapes a shaft has, and however stiff: steps of the search go by what bodies stand on.
+#[test]
+fn an_equilibrium_is_found_with_any_number_of_shapes() {
+    let found = |below: &str| {
+        let words = "damping = \"20 1/s\"";
+        let with = format!("{words}\nbelow = \"{below}\"");
+        let said = said_of(&["statics", "--dry"], "stepped_rotor.toml", &[(words, &with)]);
+        let last = said.lines().last().unwrap().to_string();
+        let iterations: usize = last.split(' ').next().unwrap().parse().unwrap();
+        let x = said.lines().find(|line| line.trim_start().starts_with("x ")).unwrap();
+        (iterations, x.to_string())
+    };
+    let few = found("3 kHz");
+    for below in ["10 kHz", "300 kHz", "1000 kHz"] {
+        let more = found(below);
+        // A start in the air takes some fifteen; without a place to go it was two thousand.
+        assert!(more.0 <= few.0 + 5, "{below}: {more:?} {few:?}");
+        assert_eq!(more.1, few.1, "{below}");
+    }
+}

@@ -124,6 +124,11 @@ fn springs_beyond_their_reach_end_a_run() {
         assert!(stderr(&output).contains(how), "{}", stderr(&output));
         assert!(column(&out, "disc_y").len() > 10);
     }
+    // What a trial comes to is told instead of how many steps the run would take.
+    let output = bearing(&["plan", place.path("scene.toml").to_str().unwrap()]);
+    let told = said(&output);
+    assert!(told.contains("as the run will: the spring mount is turned by 160.0"), "{told}");
+    assert!(!told.contains("steps to t = "), "{told}");
 }
 
 /// Whirl is of the bearings' stiffness at one speed, with or without the balls' centrifugal force.

@@ -146,6 +146,13 @@ fn damping_that_turns_along_feeds_whirl_above_the_critical_speed() {
             .unwrap();
         assert_eq!(same.damping_ratio() < 0.0, grows, "{part}: {}", same.eigenvalue);
     }
+    // Rounding damps nothing, and feeds nothing: to the bit, and not as −0.
+    free.shafts[0].internal_damping = 0.0;
+    let whirls = whirl(&free).model.whirls(1.5 * first.speed, 30).unwrap();
+    assert_eq!(whirls.len(), 30);
+    for whirl in whirls {
+        assert_eq!(whirl.damping_ratio().to_bits(), 0, "{}", whirl.eigenvalue);
+    }
 }
 
 /// A shaft that goes round as it spins does not bend to and fro: what brakes its bending as its spinning material feels it, is not

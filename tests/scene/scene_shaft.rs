@@ -115,6 +115,19 @@ fn faults_of_beams_say_what_is_wrong() {
             "width",
         ),
         (beam(&format!("{whole}disc = [{{ at = \"0 mm\" }}]")), "outer_diameter"),
+        (
+            beam(&format!(
+                "{whole}disc = [{{ at = \"0 mm\", mass = \"1 kg\", axial = \"2.1e-3 kg m^2\", transverse = \"1e-3 kg m^2\" }}]"
+            )),
+            "body.beam.disc.axial: a moment of inertia of 0.0021 kg m^2 about the axis is more than twice",
+        ),
+        (
+            format!(
+                "{}[spring.stay]\nfrom = \"ground\"\nto = \"shaft\"\nto_at = \"-200.1 mm\"\nstiffness = {{ z = \"1e6 N/m\" }}\n",
+                beam(whole)
+            ),
+            "spring.stay.to_at: refused: -200.1000 mm is not on body shaft, which goes from -200.0000 to 200.0000 mm",
+        ),
         (beam(&format!("{whole}mesh = {{ around = 16 }}")), "add order = 2"),
         (beam(&format!("{whole}mesh = {{ order = 2, around = 12 }}")), "multiple of 8"),
         (beam(&format!("{whole}mesh = {{ order = 3 }}")), "order"),

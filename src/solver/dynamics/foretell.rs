@@ -57,7 +57,7 @@ fn work_of_rosenbrock(assembly: &Assembly) -> f64 {
 }
 
 /// What a trial says of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Foretold {
     /// Accepted steps of the whole run.
     pub steps: f64,
@@ -67,13 +67,16 @@ pub struct Foretold {
     pub looks: usize,
     /// Whether the trial was the whole run.
     pub whole: bool,
+    /// What ended the trial on its way from the start, as it will the run, and when, s.
+    pub failure: Option<(f64, SimulationError)>,
 }
 
 /// What the trial says of the two methods with error control.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
     pub integrator: Integrator,
-    /// Mean step of `rosenbrock` and of `dormand-prince`, s; none where no trial could start, or none was made.
+    /// Mean step of `rosenbrock` and of `dormand-prince`, s (0 of one that came to nothing); none where no trial could start or
+    /// got anywhere, or none was made.
     pub mean_steps: Option<[f64; 2]>,
     /// Work of an attempt of `rosenbrock` over that of one of `dormand-prince`.
     pub work_of_rosenbrock: f64,
@@ -95,8 +98,13 @@ impl Choice {
     /// Why, as a sentence.
     pub fn reason(&self) -> String {
         let Some([implicit, explicit]) = self.mean_steps else {
-            return "goes with any bearing; no trial could start".into();
+            return "goes with any bearing; no trial could start, or get anywhere".into();
         };
+        if explicit == 0.0 {
+            return format!(
+                "steps of {implicit:.1e} s in a short trial, where dormand-prince came to nothing"
+            );
+        }
         if self.seated {
             return format!(
                 "a race in a seat: steps of {implicit:.1e} s, and quiet in force; dormand-prince, at its stability \
@@ -232,16 +240,26 @@ fn of_other(trial: &Trial, integrator: Integrator) -> Option<f64> {
     Some(rate.max(1.0 / trial.clock.row_interval()))
 }
 
+/// What a trial saw.
+#[derive(Default)]
+struct Seen {
+    stretches: Vec<Stretch>,
+    /// Attempts.
+    spent: u64,
+    /// How often it began.
+    begun: usize,
+    /// What ended it on its way from the start, and when, s.
+    failure: Option<(f64, SimulationError)>,
+}
+
 fn look_through(
     assembly: &Assembly,
     request: &RunRequest,
     budget: u64,
     other: Option<Integrator>,
-) -> Result<(Vec<Stretch>, u64, usize), SimulationError> {
+) -> Result<Seen, SimulationError> {
     let times = looks(assembly, request.end);
-    let mut stretches: Vec<Stretch> = Vec::new();
-    let mut spent = 0;
-    let mut begun = 0;
+    let Seen { mut stretches, mut spent, mut begun, mut failure } = Seen::default();
     let mut scale = 0.0;
     let mut under_way: Option<(Trial, f64)> = None;
     for (index, pair) in times.windows(2).enumerate() {
@@ -280,7 +298,11 @@ fn look_through(
                 through = true;
                 break;
             }
-            if trial.advance().is_err() {
+            if let Err(error) = trial.advance() {
+                // What begins anew in equilibrium, later on, need not be what the run comes to.
+                if offset == 0.0 {
+                    failure = Some((trial.simulation.time, error));
+                }
                 break;
             }
             if trial.tried() - before <= left / 2 {
@@ -310,7 +332,7 @@ fn look_through(
             under_way = Some((trial, offset));
         }
     }
-    Ok((stretches, spent, begun))
+    Ok(Seen { stretches, spent, begun, failure })
 }
 
 /// Steps of a run whose steps follow from an accuracy or from the stability limit.
@@ -318,7 +340,8 @@ fn look_through(
 /// # Errors
 /// What keeps the run from starting.
 pub fn foretell(assembly: &Assembly, request: &RunRequest) -> Result<Foretold, SimulationError> {
-    let (mut stretches, taken, looks) = look_through(assembly, request, TO_COUNT, None)?;
+    let Seen { mut stretches, spent: taken, begun: looks, failure } =
+        look_through(assembly, request, TO_COUNT, None)?;
     // Steps from the limit do not grow again. What rang where the first look left off goes on; an explicit
     // method with error control is bound by traction rather, which rolling faster makes gentler.
     let options = &request.options;
@@ -337,7 +360,7 @@ pub fn foretell(assembly: &Assembly, request: &RunRequest) -> Result<Foretold, S
     let steps = stretches.iter().map(Stretch::steps).sum();
     let covered: f64 = stretches.iter().map(|s| s.covered).sum();
     let whole = looks == 1 && covered >= request.end * (1.0 - 1e-6);
-    Ok(Foretold { steps, taken, covered, looks, whole })
+    Ok(Foretold { steps, taken, covered, looks, whole, failure })
 }
 
 /// The method with error control that takes less work, by a trial that is short enough to be made
@@ -354,11 +377,14 @@ pub fn choose(assembly: &Assembly, request: &RunRequest) -> Choice {
         seated: !assembly.seats.is_empty(),
     };
     let budget = if assembly.changes() { TO_COUNT } else { TO_CHOOSE };
-    let Ok((stretches, ..)) =
+    let Ok(Seen { stretches, .. }) =
         look_through(assembly, &request, budget, Some(Integrator::DormandPrince))
     else {
         return nothing;
     };
+    if stretches.iter().all(|stretch| stretch.attempts == 0.0) {
+        return nothing;
+    }
     let mut attempts = [0.0; 2];
     for stretch in &stretches {
         // Where the other one came to nothing this one is needed.

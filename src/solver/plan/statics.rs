@@ -27,7 +27,7 @@ pub fn items(assembly: &StaticAssembly, solids: Vec<Item>, centrifugal: &str) ->
         }
     }
     items.push(match springs_to_ground(assembly) {
-        0 => Item::skips(Stage::Foundation, Subject::Whole, "no spring to the ground"),
+        0 => Item::skips(Stage::Foundation, Subject::Whole, "no body has a foundation"),
         some => {
             Item::does(Stage::Foundation, Subject::Whole, format!("{some} springs to the ground"))
                 .costing(some as u64)

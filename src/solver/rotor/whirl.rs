@@ -28,7 +28,8 @@ impl Whirl {
 
     /// Part of critical damping; below 0 the motion grows.
     pub fn damping_ratio(&self) -> f64 {
-        -self.eigenvalue.re / self.eigenvalue.norm()
+        // 0, not −0, where nothing damps.
+        0.0 - self.eigenvalue.re / self.eigenvalue.norm()
     }
 
     /// How alike two motions' shapes are, 0 to 1.
@@ -79,7 +80,8 @@ impl RotorModel {
         Ok(whirls.map(|whirl| Whirl { direction: side * whirl.direction, ..whirl }).collect())
     }
 
-    /// Of (D p, ṗ) with D the natural frequencies: skew-symmetric without damping, so that nothing is badly scaled.
+    /// Of (D p, ṗ) with D the natural frequencies: skew-symmetric without damping, so that nothing is badly scaled. A growth
+    /// that rounding alone would leave is 0.
     fn eigenvalues(
         &self,
         speed: f64,
@@ -104,12 +106,14 @@ impl RotorModel {
             .into_iter()
             .find_map(|times| Schur::try_new(state.clone(), times * f64::EPSILON, iterations));
         let schur = schur.ok_or(RotorError::Eigenvalues { speed, iterations })?;
-        let mut values: Vec<Complex<f64>> = schur
-            .complex_eigenvalues()
-            .iter()
-            .copied()
-            .filter(|value| value.im > ROUNDING * least)
-            .collect();
+        let rounding = 2.0 * modes as f64 * f64::EPSILON * state.amax();
+        let settled = |value: &Complex<f64>| match value.re.abs() <= rounding {
+            true => Complex::new(0.0, value.im),
+            false => *value,
+        };
+        let oscillates = |value: &Complex<f64>| value.im > ROUNDING * least;
+        let mut values: Vec<Complex<f64>> =
+            schur.complex_eigenvalues().iter().map(settled).filter(oscillates).collect();
         values.sort_by(|a, b| a.im.total_cmp(&b.im));
         Ok(values)
     }
