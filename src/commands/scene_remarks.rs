@@ -257,8 +257,9 @@ pub fn at_rest(scene: &AssemblyScene) -> impl Iterator<Item = String> {
         let slowest = maxwell.iter().map(|element| element.relaxation_time).fold(0.0, f64::max);
         match (*damping != [0.0; 6], slowest > 0.0) {
             (_, true) => Some(format!(
-                "spring {name}: its Maxwell elements have relaxed, as they have some {slowest} s after the last change; \
-                 dashpots push nothing at rest"
+                "spring {name}: its Maxwell elements have relaxed, as they have some {} s after the last change; \
+                 dashpots push nothing at rest",
+                to_digits(slowest, 3)
             )),
             (true, false) => Some(format!("spring {name}: its dashpots push nothing at rest")),
             (false, false) => None,

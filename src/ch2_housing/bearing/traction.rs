@@ -130,7 +130,7 @@ pub fn coefficient_and_slope(law: &TractionLaw, slip: f64, entrainment: f64) -> 
 
 /// Coulomb's law rounded off, and its slope.
 #[inline(always)]
-pub fn regularised(coefficient: f64, speed: f64, slip: f64) -> (f64, f64) {
+fn regularised(coefficient: f64, speed: f64, slip: f64) -> (f64, f64) {
     let square = slip * slip + speed * speed;
     let root = square.sqrt();
     (coefficient * slip / root, coefficient * speed * speed / (square * root))
@@ -141,9 +141,50 @@ pub fn regularised(coefficient: f64, speed: f64, slip: f64) -> (f64, f64) {
 /// symmetric matrix that has no negative eigenvalue: tt, ts, tn, ss, sn, nn.
 pub type TractionSlope = [f64; 6];
 
-/// Adds the slope of one slice, whose force [`add_slice`] adds. `friction` gives coefficient and
-/// slope. Beyond the peak of the friction curve its slope counts as zero, so that the derivatives
-/// only ever dissipate.
+/// How the force of a slice with a share of the load changes with its sliding, over the load: with sliding across that there is,
+/// s/m, and what sliding along it adds, over the square of the speed, (s/m)³.
+pub type Steepness = [f64; 2];
+
+/// Of a friction coefficient with its slope over the sliding speed, at the speed's `square`. Beyond the peak of the friction
+/// curve its slope counts as zero, so that the derivatives only ever dissipate.
+#[inline(always)]
+pub fn steepness(square: f64, share: f64, friction: impl Fn(f64) -> (f64, f64)) -> Steepness {
+    let speed = square.sqrt();
+    let (coefficient, rise) = friction(speed);
+    let rise = if rise > 0.0 { rise } else { 0.0 };
+    // The secant κ/u tends to the tangent; 1e-12 m/s is far below any creep.
+    let crept = speed > 1e-12;
+    let per = 1.0 / if crept { speed } else { 1e-12 };
+    let secant = share * if crept { coefficient * per } else { rise };
+    [secant, (share * rise - secant) * per * per]
+}
+
+/// The same of Coulomb's law rounded off.
+#[inline(always)]
+pub fn rounded_steepness(
+    square: f64,
+    share: f64,
+    coefficient: f64,
+    regularisation_speed: f64,
+) -> Steepness {
+    let square = square + regularisation_speed * regularisation_speed;
+    let secant = share * coefficient / square.sqrt();
+    [secant, -secant / square]
+}
+
+/// Of any law, at an entrainment speed (m/s).
+#[inline(always)]
+fn steepness_of(law: &TractionLaw, square: f64, share: f64, entrainment: f64) -> Steepness {
+    match law {
+        TractionLaw::Constant { coefficient, regularisation_speed } => {
+            rounded_steepness(square, share, *coefficient, *regularisation_speed)
+        }
+        law => steepness(square, share, |speed| coefficient_and_slope(law, speed, entrainment)),
+    }
+}
+
+/// Adds the slope of one slice, whose force [`add_slice`] adds. `friction` gives the slice's [`Steepness`] from the square of the
+/// sliding speed and the share.
 #[inline(always)]
 pub fn add_slope(
     sum: &TractionSlope,
@@ -152,19 +193,12 @@ pub fn add_slope(
     y: f64,
     sagitta: f64,
     share: f64,
-    friction: impl Fn(f64) -> (f64, f64),
+    friction: impl Fn(f64, f64) -> Steepness,
 ) -> TractionSlope {
     let [spin_t, spin_s, spin_n] = relative_spin;
     let slip_t = slip[0] - spin_n * y - spin_s * sagitta;
     let slip_s = slip[1] + spin_t * sagitta;
-    let speed = (slip_t * slip_t + slip_s * slip_s).sqrt();
-    let (coefficient, rise) = friction(speed);
-    let rise = if rise > 0.0 { rise } else { 0.0 };
-    // The secant κ/u tends to the tangent; 1e-12 m/s is far below any creep.
-    let crept = speed > 1e-12;
-    let per = 1.0 / if crept { speed } else { 1e-12 };
-    let secant = share * if crept { coefficient * per } else { rise };
-    let steep = (share * rise - secant) * per * per;
+    let [secant, steep] = friction(slip_t * slip_t + slip_s * slip_s, share);
     let tt = secant + steep * slip_t * slip_t;
     let ts = steep * slip_t * slip_s;
     let ss = secant + steep * slip_s * slip_s;
@@ -289,8 +323,47 @@ pub struct SliceSum {
     pub power: f64,
 }
 
+/// What a slice with a share of the load puts up against sliding, over the load: force over the sliding speed, s/m, and the power
+/// it takes, m/s.
+pub type Resistance = [f64; 2];
+
+/// Of a friction coefficient over the sliding speed, at the speed's `square`.
+#[inline(always)]
+pub fn resistance(square: f64, share: f64, coefficient: impl Fn(f64) -> f64) -> Resistance {
+    let speed = square.sqrt();
+    // Where nothing slides nothing is divided by zero: friction is zero there.
+    let divisor = if speed > 1e-300 { speed } else { 1e-300 };
+    let per_speed = share * coefficient(speed) / divisor;
+    [per_speed, per_speed * speed * speed]
+}
+
+/// The same of Coulomb's law rounded off: κ u/√(u² + u₀²) over u needs neither u nor a division by it, half of what a slice takes.
+#[inline(always)]
+pub fn rounded_resistance(
+    square: f64,
+    share: f64,
+    coefficient: f64,
+    regularisation_speed: f64,
+) -> Resistance {
+    let root = (square + regularisation_speed * regularisation_speed).sqrt();
+    let per_speed = share * coefficient / root;
+    [per_speed, per_speed * square]
+}
+
+/// Of any law, at an entrainment speed (m/s).
+#[inline(always)]
+fn resistance_of(law: &TractionLaw, square: f64, share: f64, entrainment: f64) -> Resistance {
+    match law {
+        TractionLaw::Constant { coefficient, regularisation_speed } => {
+            rounded_resistance(square, share, *coefficient, *regularisation_speed)
+        }
+        law => resistance(square, share, |speed| coefficient(law, speed, entrainment)),
+    }
+}
+
 /// Adds one slice at `y` (m from the middle) with a `share` of the load. `sagitta` is how far the
-/// curved contact surface lies towards the ball there (Heathcote), zero for a plane one.
+/// curved contact surface lies towards the ball there (Heathcote), zero for a plane one. `friction` gives the slice's
+/// [`Resistance`] from the square of the sliding speed and the share.
 #[inline(always)]
 pub fn add_slice(
     sum: &SliceSum,
@@ -299,15 +372,12 @@ pub fn add_slice(
     y: f64,
     sagitta: f64,
     share: f64,
-    friction: impl Fn(f64) -> f64,
+    friction: impl Fn(f64, f64) -> Resistance,
 ) -> SliceSum {
     let [spin_t, spin_s, spin_n] = relative_spin;
     let slip_t = slip[0] - spin_n * y - spin_s * sagitta;
     let slip_s = slip[1] + spin_t * sagitta;
-    let speed = (slip_t * slip_t + slip_s * slip_s).sqrt();
-    // Where nothing slides nothing is divided by zero: friction is zero there.
-    let divisor = if speed > 1e-300 { speed } else { 1e-300 };
-    let per_speed = share * friction(speed) / divisor;
+    let [per_speed, power] = friction(slip_t * slip_t + slip_s * slip_s, share);
     let along = -per_speed * slip_t;
     let across = -per_speed * slip_s;
     SliceSum {
@@ -320,7 +390,7 @@ pub fn add_slice(
             sum.curvature_moment[0] + sagitta * across,
             sum.curvature_moment[1] - sagitta * along,
         ],
-        power: sum.power - per_speed * speed * speed,
+        power: sum.power - power,
     }
 }
 
@@ -366,7 +436,7 @@ pub fn integrate(
     for (middle, share) in slices.middle.iter().zip(&slices.share) {
         let y = middle * semi_major;
         let sagitta = y * y * curvature;
-        let friction = |speed: f64| coefficient(law, speed, sliding.entrainment);
+        let friction = |square, share| resistance_of(law, square, share, sliding.entrainment);
         sum = add_slice(&sum, sliding.slip, sliding.relative_spin, y, sagitta, *share, friction);
     }
     sum
@@ -384,7 +454,7 @@ pub fn integrate_slope(
     for (middle, share) in slices.middle.iter().zip(&slices.share) {
         let y = middle * semi_major;
         let sagitta = y * y * curvature;
-        let friction = |speed: f64| coefficient_and_slope(law, speed, sliding.entrainment);
+        let friction = |square, share| steepness_of(law, square, share, sliding.entrainment);
         sum = add_slope(&sum, sliding.slip, sliding.relative_spin, y, sagitta, *share, friction);
     }
     sum
@@ -416,6 +486,33 @@ mod tests {
         assert!((at - 0.12).abs() <= 5e-4, "peak {at} at {peak}");
         assert!(curve.coefficient(peak * 0.99) < at && curve.coefficient(peak * 1.01) < at);
         assert_eq!(curve.coefficient(0.0), 0.0);
+    }
+
+    /// From rest, where it is the slope, over speeds far below the rounding and far above it.
+    #[test]
+    fn rounded_friction_needs_no_division_by_the_speed() {
+        let (share, kappa, u0) = (0.3, 0.07, 0.02);
+        let [at_rest, power] = rounded_resistance(0.0, share, kappa, u0);
+        assert!((at_rest / (share * kappa / u0) - 1.0).abs() <= 1e-15, "{at_rest}");
+        assert_eq!(power, 0.0);
+        let law = TractionLaw::Constant { coefficient: kappa, regularisation_speed: u0 };
+        for exponent in -120..40 {
+            let square = libm::exp2(0.5 * f64::from(exponent));
+            let own = rounded_resistance(square, share, kappa, u0);
+            let by_speed = resistance(square, share, |speed| coefficient(&law, speed, 1.0));
+            for (a, b) in own.into_iter().zip(by_speed) {
+                // Four roundings of one way, eight of the other.
+                assert!((a / b - 1.0).abs() <= 8.0 * f64::EPSILON, "{square:e}: {a} {b}");
+            }
+            let own = rounded_steepness(square, share, kappa, u0);
+            let by_speed =
+                steepness(square, share, |speed| coefficient_and_slope(&law, speed, 1.0));
+            assert!((own[0] / by_speed[0] - 1.0).abs() <= 8.0 * f64::EPSILON, "{square:e}");
+            // What sliding along adds is a difference in the one way: rounding over the square of a speed that is far below the
+            // rounding's.
+            let error = (own[1] - by_speed[1]).abs() * square;
+            assert!(error <= 8.0 * f64::EPSILON * own[0], "{square:e}: {error:e}");
+        }
     }
 
     #[test]

@@ -75,7 +75,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         Err(RotorError::Unstable) if solution.determinacy != Determinacy::Determinate => {
             remarks.push(
                 "whirl, critical speeds and a Campbell diagram are not told: nothing holds what spins in this equilibrium, as bearings without load are no \
-                 springs; give it a load or preload"
+                 springs and no spring holds it to the ground; give it a load or preload"
                     .into(),
             );
             None

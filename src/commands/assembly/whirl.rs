@@ -125,7 +125,7 @@ impl Spinning {
     /// What grows, if anything does.
     pub fn remarks(&self) -> Vec<String> {
         let loose = self.whirling.model.is_loose().then(|| {
-            "nothing holds what spins across its axis in this equilibrium, as bearings without load are no springs: whirl and critical \
+            "nothing holds what spins across its axis in this equilibrium, as bearings without load are no springs and no spring holds it to the ground: whirl and critical \
              speeds are those of a free rotor; give it its weight (gravity), a load or preload, or run it up"
                 .to_string()
         });

@@ -6,9 +6,9 @@ use super::race::RaceNow;
 use super::state::{LANES, Layout, POSITION, SPIN, VELOCITY};
 use crate::ch2_housing::bearing::contact::RaceContact;
 use crate::ch2_housing::bearing::traction::{
-    Motion, SliceSum, Sliding, TractionLaw, TractionSlope, add_slice, add_slope, coefficient,
-    coefficient_and_slope, integrate, integrate_slope, per_entrainment, regularised, sliding,
-    traction_force,
+    Motion, Resistance, SliceSum, Sliding, Steepness, TractionLaw, TractionSlope, add_slice,
+    add_slope, coefficient, coefficient_and_slope, integrate, integrate_slope, per_entrainment,
+    resistance, rounded_resistance, rounded_steepness, sliding, steepness, traction_force,
 };
 use crate::kinematics::vec3::Vec3;
 
@@ -98,43 +98,47 @@ pub(super) fn traction_lanes<const SLOPES: bool>(
         TractionLaw::SlideToRoll { curve, entrainment_floor } => {
             let (curve, floor) = (*curve, *entrainment_floor);
             let prepare = |entrainment| per_entrainment(entrainment, floor);
-            let friction = |slip: f64, per_rolling: f64| {
-                let (value, slope) = curve.coefficient_and_slope(slip * per_rolling);
-                (value, slope * per_rolling)
+            let slopes = |square, share, per_rolling: f64| {
+                steepness(square, share, |slip| {
+                    let (value, slope) = curve.coefficient_and_slope(slip * per_rolling);
+                    (value, slope * per_rolling)
+                })
             };
-            lanes_of::<SLOPES>(laws, layout, state, races, table, prepare, friction);
+            let friction = |square, share, per_rolling: f64| {
+                resistance(square, share, |slip| curve.coefficient(slip * per_rolling))
+            };
+            lanes_of::<SLOPES>(laws, layout, state, races, table, prepare, (friction, slopes));
         }
         TractionLaw::SlipSpeed { curve } => {
             let curve = *curve;
-            let friction = |slip, _| curve.coefficient_and_slope(slip);
-            lanes_of::<SLOPES>(laws, layout, state, races, table, |_| 0.0, friction);
+            let slopes = |square, share, _| {
+                steepness(square, share, |slip| curve.coefficient_and_slope(slip))
+            };
+            let friction =
+                |square, share, _| resistance(square, share, |slip| curve.coefficient(slip));
+            lanes_of::<SLOPES>(laws, layout, state, races, table, |_| 0.0, (friction, slopes));
         }
         TractionLaw::Constant { coefficient, regularisation_speed } => {
             let (coefficient, speed) = (*coefficient, *regularisation_speed);
-            let friction = |slip, _| regularised(coefficient, speed, slip);
-            lanes_of::<SLOPES>(laws, layout, state, races, table, |_| 0.0, friction);
+            let slopes = |square, share, _| rounded_steepness(square, share, coefficient, speed);
+            let friction = |square, share, _| rounded_resistance(square, share, coefficient, speed);
+            lanes_of::<SLOPES>(laws, layout, state, races, table, |_| 0.0, (friction, slopes));
         }
         law @ TractionLaw::Table { .. } => {
-            let friction = |slip, entrainment| {
-                if SLOPES {
-                    coefficient_and_slope(law, slip, entrainment)
-                } else {
-                    (coefficient(law, slip, entrainment), 0.0)
-                }
+            let slopes = |square, share, entrainment| {
+                steepness(square, share, |slip| coefficient_and_slope(law, slip, entrainment))
             };
-            lanes_of::<SLOPES>(
-                laws,
-                layout,
-                state,
-                races,
-                table,
-                |entrainment| entrainment,
-                friction,
-            );
+            let friction = |square, share, entrainment| {
+                resistance(square, share, |slip| coefficient(law, slip, entrainment))
+            };
+            let prepare = |entrainment| entrainment;
+            lanes_of::<SLOPES>(laws, layout, state, races, table, prepare, (friction, slopes));
         }
     }
 }
 
+/// `friction` gives the resistance of a slice at the square of a sliding speed, with its share of the load and what `prepare` made
+/// of the entrainment speed; `slopes` its steepness of the same.
 #[inline(always)]
 fn lanes_of<const SLOPES: bool>(
     laws: &ContactLaws,
@@ -143,7 +147,10 @@ fn lanes_of<const SLOPES: bool>(
     races: [&RaceNow; 2],
     table: &mut ContactTable,
     prepare: impl Fn(f64) -> f64,
-    friction: impl Fn(f64, f64) -> (f64, f64) + Copy,
+    (friction, slopes): (
+        impl Fn(f64, f64, f64) -> Resistance + Copy,
+        impl Fn(f64, f64, f64) -> Steepness + Copy,
+    ),
 ) {
     let motions = races.map(race_motion);
     let axes = races.map(|now| now.motion.axis);
@@ -168,11 +175,18 @@ fn lanes_of<const SLOPES: bool>(
             curvature[l] = laws.curvature[race];
             sliding[pair] = here;
         }
-        let (sums, slopes) =
-            slice_lanes::<SLOPES>(laws, &slip, &spin, &width, &curvature, &rolling, friction);
+        let (sums, steep) = slice_lanes::<SLOPES>(
+            laws,
+            &slip,
+            &spin,
+            &width,
+            &curvature,
+            &rolling,
+            (friction, slopes),
+        );
         for (l, &pair) in block.iter().enumerate() {
             if SLOPES {
-                slope[pair] = slopes[l];
+                slope[pair] = steep[l];
             }
             traction[pair] =
                 traction_force(&sums[l], &sliding[pair], contact[pair].normal, load[pair]);
@@ -189,7 +203,10 @@ fn slice_lanes<const SLOPES: bool>(
     width: &[f64; LANES],
     curvature: &[f64; LANES],
     prepared: &[f64; LANES],
-    friction: impl Fn(f64, f64) -> (f64, f64) + Copy,
+    (friction, slopes): (
+        impl Fn(f64, f64, f64) -> Resistance + Copy,
+        impl Fn(f64, f64, f64) -> Steepness + Copy,
+    ),
 ) -> ([SliceSum; LANES], [TractionSlope; LANES]) {
     // One array for each sum: an array of arrays would keep the loop from becoming vector code.
     let mut rolling = [0.0; LANES];
@@ -217,8 +234,8 @@ fn slice_lanes<const SLOPES: bool>(
             };
             let here = [slip[0][l], slip[1][l]];
             let turning = [spin[0][l], spin[1][l], spin[2][l]];
-            let coefficient = |speed| friction(speed, prepared[l]).0;
-            let after = add_slice(&before, here, turning, y, sagitta, *share, coefficient);
+            let friction = |square, share| friction(square, share, prepared[l]);
+            let after = add_slice(&before, here, turning, y, sagitta, *share, friction);
             rolling[l] = after.rolling;
             transverse[l] = after.transverse;
             moment[l] = after.moment;
@@ -226,9 +243,9 @@ fn slice_lanes<const SLOPES: bool>(
             power[l] = after.power;
             if SLOPES {
                 let before = [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]];
-                let friction = |speed| friction(speed, prepared[l]);
+                let slopes = |square, share| slopes(square, share, prepared[l]);
                 [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]] =
-                    add_slope(&before, here, turning, y, sagitta, *share, friction);
+                    add_slope(&before, here, turning, y, sagitta, *share, slopes);
             }
         }
     }
