@@ -11,7 +11,7 @@ pub enum StaticsError {
     #[error(
         "no equilibrium: {body} leaves its place along {coordinate} \
          ({travel:.3e} m, farther than the {room:.3e} m it has); nothing holds it \
-         against the load in this direction: hold the coordinate by a displacement or a spring{start}, turn the load, \
+         against the load in this direction, or not against so much of it: hold the coordinate by a displacement or a spring{start}, turn the load or take less of it, \
          or start a motion in nominal positions (numerics.start = \"nominal\")",
         start = no_hold(coordinate)
     )]

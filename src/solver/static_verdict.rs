@@ -3,9 +3,10 @@
 
 use super::ball::overlap_of_races;
 use super::housing::bore_equilibrium::BoreState;
-use super::static_assembly::{Place, StaticBearing};
+use super::static_assembly::{Loaded, Place, StaticAssembly, StaticBearing};
 use super::static_model::{Evaluation, Five};
 use super::static_search::Search;
+use super::static_shaft::SectionPlace;
 use super::statics::{COORDINATE_NAMES, Determinacy, StaticsError};
 use crate::ch2_housing::bearing::contact::normal_load;
 use nalgebra::{DVector, SymmetricEigen, Vector3};
@@ -108,7 +109,8 @@ impl Search<'_, '_> {
             for i in (0..5).filter(|&i| self.free[first + i]) {
                 let travel = (here.at[first + i] - from[i]) * self.model.scale[first + i];
                 // NaN leaves here too.
-                if travel.is_nan() || travel.abs() > body.room {
+                let near = travel.abs() <= body.room;
+                if !near && !self.is_held_near(index, i, &from, here) {
                     let body = &self.model.assembly.bodies[index];
                     return Err(StaticsError::NoEquilibrium {
                         body: body.name.clone(),
@@ -123,6 +125,32 @@ impl Search<'_, '_> {
             }
         }
         Ok(())
+    }
+
+    /// Whether a section at which something takes hold of a body that bends is within the body's room of where it was in a straight
+    /// shaft, along coordinate `i`: the body's centre goes as far as the shaft bends.
+    fn is_held_near(&self, body: usize, i: usize, from: &Five, here: &Evaluation) -> bool {
+        let StaticAssembly { bodies, bearings, connections, shafts, .. } = self.model.assembly;
+        let Place::Loaded(Loaded { room, .. }) = &bodies[body].place else { return false };
+        let takes_hold = |section: usize| {
+            let mounts = bearings.iter().flat_map(|bearing| &bearing.mounts);
+            let ends = connections.iter().flat_map(|connection| &connection.ends);
+            mounts.chain(ends).any(|mount| mount.body == section)
+        };
+        let sections = bodies.iter().enumerate().filter(|(index, _)| takes_hold(*index));
+        i < 3
+            && sections
+                .filter_map(|(index, place)| match &place.place {
+                    Place::Section(of) if shafts[of.shaft].body == body => {
+                        Some((of, self.model.unknowns[index]?))
+                    }
+                    _ => None,
+                })
+                .any(|(of, first)| {
+                    let straight = vec![0.0; shafts[of.shaft].springs.len()];
+                    let before = SectionPlace::new(of, from, &straight).coordinates[i];
+                    (here.at[first + i] - before).abs() <= *room
+                })
     }
 
     /// Every race within a part of its radius of its place in its bore.

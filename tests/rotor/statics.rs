@@ -13,7 +13,7 @@ use bearing_dynamics::solver::static_assembly::{
     Loaded, Place, StaticAssembly, StaticBearing, StaticBody, StaticSection, StaticShaft,
 };
 use bearing_dynamics::solver::statics::{
-    AssemblySolution, Condition, StaticOptions, solve_assembly,
+    AssemblySolution, Condition, StaticOptions, StaticsError, solve_assembly,
 };
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -86,10 +86,9 @@ fn solve(assembly: &StaticAssembly) -> AssemblySolution {
     solve_assembly(assembly, None, &StaticOptions::default()).unwrap()
 }
 
-/// A shaft on two springs, loaded at mid-span: springs, bending and shear in series.
-#[test]
-fn a_shaft_on_springs_bends_as_beam_theory_says() {
-    let mut on_springs = assembly(0.0, 1.0, [-0.2, 0.2, 0.0], Kept::STATIC, 3000.0);
+/// A shaft on springs at its ends, loaded downwards at mid-span.
+fn on_springs(force: f64) -> StaticAssembly<'static> {
+    let mut on_springs = assembly(0.0, 1.0, [-0.2, 0.2, 0.0], Kept::STATIC, force);
     on_springs.bearings.clear();
     for end in 0..2 {
         let ends = [Mount::at_centre(3 + end), Mount::at_centre(end)];
@@ -99,7 +98,13 @@ fn a_shaft_on_springs_bends_as_beam_theory_says() {
         let law = Law::SpringDashpot(SpringDashpot { stiffness, ..SpringDashpot::default() });
         on_springs.connections.push(Connection { name: String::new(), label: None, ends, law });
     }
-    let solution = solve(&on_springs);
+    on_springs
+}
+
+/// Springs, bending and shear in series.
+#[test]
+fn a_shaft_on_springs_bends_as_beam_theory_says() {
+    let solution = solve(&on_springs(3000.0));
     let [_, moment, shear] = full(0.03);
     let ends = -1500.0 / 5e7;
     let bent = -3000.0 * (0.4f64.powi(3) / (48.0 * E * moment) + 0.4 / (4.0 * shear));
@@ -113,6 +118,23 @@ fn a_shaft_on_springs_bends_as_beam_theory_says() {
     ] {
         assert!((ours / theirs - 1.0).abs() <= 1e-8, "{ours} {theirs}");
     }
+}
+
+/// A body has 5 mm before nothing seems to hold it; the middle of a shaft that bends goes farther, its ends do not.
+#[test]
+fn a_shaft_that_bends_far_is_held_where_it_is_held() {
+    let (force, [_, moment, shear]) = (40e3, full(0.03));
+    let bent = on_springs(force);
+    let middle = solve(&bent).coordinates[2][2];
+    let straight = -0.5 * force / 5e7;
+    let theirs = straight - force * (0.4f64.powi(3) / (48.0 * E * moment) + 0.4 / (4.0 * shear));
+    assert!(theirs < -6e-3, "{theirs}");
+    // Slopes of 0.05: a hundredth of their square and more is what beam theory leaves out.
+    assert!((middle / theirs - 1.0).abs() <= 3e-3, "{middle} {theirs}");
+    let mut loose = on_springs(force);
+    loose.connections.clear();
+    let error = solve_assembly(&loose, None, &StaticOptions::default()).unwrap_err();
+    assert!(matches!(error, StaticsError::NoEquilibrium { coordinate: "z", .. }), "{error}");
 }
 
 /// The forces of both bearings on the shaft and its load cancel, and natural shapes beside static answers change nothing.
