@@ -56,6 +56,11 @@ pub struct Changes {
 }
 
 impl Changes {
+    /// The same changes as they are written behind a command.
+    pub fn again(&self) -> String {
+        self.set.iter().map(|change| format!(" --set \"{change}\"")).collect()
+    }
+
     /// The scene with its keys replaced; says which others had to go.
     pub fn read(&self, scene: &Path) -> Result<Document, Box<dyn Error>> {
         let (document, notes) = self.read_quietly(scene)?;
@@ -188,4 +193,16 @@ pub fn results_folder(scene: &Path, given: &Option<PathBuf>) -> PathBuf {
         let name = scene.file_stem().unwrap_or(scene.as_os_str());
         Path::new("results").join(name)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn changes_are_written_as_they_were_given() {
+        let set = vec!["inner_race.z.load=-700 N".into(), "bearing.balls=9".into()];
+        let again = Changes { set }.again();
+        assert_eq!(again, " --set \"inner_race.z.load=-700 N\" --set \"bearing.balls=9\"");
+    }
 }

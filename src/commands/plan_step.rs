@@ -88,7 +88,9 @@ fn foretold(assembly: &Assembly, request: &RunRequest) -> String {
             },
             found.covered,
             1.0 / WITHIN
-        ),
+        ) + &found.doubt.map_or(String::new(), |(at, error)| {
+            format!("; WARNING: a look that began in equilibrium later on ended at t = {at:.3e} s: {error}")
+        }),
     }
 }
 

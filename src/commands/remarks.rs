@@ -1,8 +1,11 @@
 //! What a reader of the numbers should know: one set of remarks for equilibrium and motion.
 
-use crate::commands::scene_remarks::{at_rest, moving_starts, of_springs, on_dents, sudden_fits};
+use crate::commands::scene_remarks::{
+    at_rest, moving_starts, of_springs, on_dents, sudden_fits, torques_on_unbalances,
+};
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
+use bearing_dynamics::scene::CageInRun;
 use bearing_dynamics::scene::Scene;
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing, SceneBody, Spring};
 use bearing_dynamics::scene::statics::{ball_mass, orbital_speed};
@@ -81,7 +84,7 @@ pub fn of_statics(
     for (bearing, state) in assembly.bearings.iter().zip(&solution.bearings) {
         let contacts = [&bearing.inner_contact, &bearing.outer_contact];
         remarks.extend(of_balls(scene, &Still::new(contacts, state)));
-        remarks.extend(without_loads_of_runs(scene, &state.balls));
+        remarks.extend(without_loads_of_runs(scene, &state.balls, !assembly.seats.is_empty()));
     }
     remarks
 }
@@ -204,7 +207,7 @@ pub fn of_run(scene: &AssemblyScene, simulation: &Simulation) -> Vec<String> {
         named(placed, of_moving(&placed.scene, bearing, extremes))
     });
     let of_scene = of_springs(scene).into_iter().chain(on_dents(scene)).chain(sudden_fits(scene));
-    let of_scene = of_scene.chain(moving_starts(scene));
+    let of_scene = of_scene.chain(moving_starts(scene)).chain(torques_on_unbalances(scene));
     of_scene.chain(each.flatten()).collect()
 }
 
@@ -265,9 +268,14 @@ fn shared(scene: &Scene, contacts: [&HertzContact; 2], seen: &Seen) -> Vec<Strin
     if highest > STATIC_RATING {
         remarks.push(format!(
             "a contact pressure of {:.0} MPa{where_}{} is above the 4200 MPa at which ISO 76 counts on lasting \
-             dents; the model is elastic: check loads, speeds, clearance and their units",
+             dents; the model is elastic: check loads, speeds, clearance and their units{}",
             1e-6 * highest,
-            seen.when(of)
+            seen.when(of),
+            if between && matches!(scene.dynamics.cage, CageInRun::LeftOut(_)) {
+                "; without [bearing.cage] nothing keeps balls apart, and they drift together"
+            } else {
+                ""
+            }
         ));
     }
     remarks.extend(far_apart(scene, seen));
@@ -391,20 +399,21 @@ fn largest_load(balls: &[BallState]) -> f64 {
     balls.iter().map(|b| b.inner.normal_load.max(b.outer.normal_load)).fold(0.0, f64::max)
 }
 
-/// What acts on the inner race of a bearing alone in a run and not in an equilibrium, where it is much beside the ball loads.
-fn without_loads_of_runs(scene: &Scene, balls: &[BallState]) -> Option<String> {
+/// What acts on the inner race of a bearing alone in a run and not in an equilibrium, where it is much beside the ball loads. In a
+/// housing weight and rotating load count.
+fn without_loads_of_runs(scene: &Scene, balls: &[BallState], housed: bool) -> Option<String> {
     let of = &scene.dynamics;
     let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
     let speed = scene.inner_speed.unwrap_or(0.0);
     let rotating = of.rotating_load.as_ref().map_or(0.0, |load| load.force.value(0.0).abs());
     let all = [
-        ("its weight", of.inner.inertia.mass * gravity),
-        ("its unbalance at this speed", of.unbalance * speed * speed),
-        ("the rotating load", rotating),
+        ("its weight", of.inner.inertia.mass * gravity, housed),
+        ("its unbalance at this speed", of.unbalance * speed * speed, false),
+        ("the rotating load", rotating, housed),
     ];
     let largest = largest_load(balls);
-    let told = all.iter().filter(|(_, force)| *force > CENTRIFUGAL * largest);
-    let told: Vec<String> = told.map(|(what, force)| format!("{what}, {force:.3} N")).collect();
+    let told = all.iter().filter(|(_, force, counts)| !counts && *force > CENTRIFUGAL * largest);
+    let told: Vec<String> = told.map(|(what, force, _)| format!("{what}, {force:.3} N")).collect();
     (!told.is_empty()).then(|| {
         format!(
             "what acts on the inner race in a run is left out: {}; `run` has it, here give it as a load",

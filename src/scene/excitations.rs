@@ -78,10 +78,16 @@ fn of_bearing(
         }
         Carrier::Body { index, .. } => &scene.bodies[index].rotating_load,
     };
-    let mut against_balls = load.as_ref().map_or(0.0, |load| largest(&load.speed, end) / TAU);
-    if let Rotation::Speed(speed) = &dynamics.inner.rotation {
-        against_balls += kinematic_ratios(&placed.scene).cage * largest(speed, end) / TAU;
-    }
+    let cage = kinematic_ratios(&placed.scene).cage;
+    // The load turns past balls that turn too, one way or the other.
+    let against_balls = most(end, |t| {
+        let load = load.as_ref().map_or(0.0, |load| load.speed.value(t));
+        let balls = match &dynamics.inner.rotation {
+            Rotation::Speed(speed) => cage * speed.value(t),
+            Rotation::Torque(_) => 0.0,
+        };
+        load - balls
+    }) / TAU;
     let balls = placed.scene.geometry.ball_count as f64;
     let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
     let passing = format!("balls{of} passing the load");
@@ -127,9 +133,12 @@ fn add_turning(
 
 /// Largest size of a speed up to the end of a run.
 pub fn largest(profile: &Profile, end: f64) -> f64 {
-    // Speeds are ramps and tables; a hundred looks find what counts here.
-    let at = |i: u32| profile.value(end * f64::from(i) / 100.0).abs();
-    (0..=100).map(at).fold(0.0, f64::max)
+    most(end, |t| profile.value(t))
+}
+
+/// The largest size of what changes over time. Speeds are ramps and tables; a hundred looks find what counts here.
+fn most(end: f64, of: impl Fn(f64) -> f64) -> f64 {
+    (0..=100).map(|i| of(end * f64::from(i) / 100.0).abs()).fold(0.0, f64::max)
 }
 
 /// Of a swing that rises and falls as fast as the profile does, Hz; 0 for a constant one.

@@ -121,14 +121,16 @@ const KEPT: usize = 8;
 
 /// The spring of a bushing whose `misses` are zero; else the key to blame, and why.
 fn fitted(of: &BushingOfSpring) -> Result<BushingSpring, (&'static str, String)> {
-    let mut kept = FITTED.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, spring)) = kept.iter().find(|(other, _)| other == of) {
+    let kept = || FITTED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, spring)) = kept().iter().find(|(other, _)| other == of) {
         return Ok(spring.clone());
     }
+    // Nobody waits for it meanwhile: threads of a sweep have bushings of their own.
     let solid = mesh_of(&of.body, &of.mesh).and_then(|solid| solid.quadratic());
     let solid = solid.map_err(|error| ("spring.bushing.cells", error.to_string()))?;
     let found = bushing_spring(&solid.mesh, Part::Quarter, &of.material, TAU * of.fastest);
     let spring = found.map_err(|error| (TABLE, error.to_string()))?;
+    let mut kept = kept();
     if kept.len() == KEPT {
         kept.remove(0);
     }

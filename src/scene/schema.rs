@@ -66,9 +66,9 @@ fn table_schema(path: &str) -> Map<String, Value> {
                     .rivals()
                     .filter(|rival| rival.table() == key.table() && row(rival.path) > row(key.path))
                     .map(Key::name);
-                exclusive.extend(
-                    later_rivals.map(|rival| json!({ "not": { "required": [name, rival] } })),
-                );
+                exclusive.extend(later_rivals.map(
+                    |rival| json!({ "not": { "type": "object", "required": [name, rival] } }),
+                ));
                 match keys::find_table(&full) {
                     Some(_) => key_or_table_schema(key, &full),
                     None => key_schema(key),
@@ -100,8 +100,9 @@ fn table_schema(path: &str) -> Map<String, Value> {
         schema.insert("required".into(), Value::Array(required));
     }
     if path.is_empty() {
-        let one_of = ["bearing", "solid"].map(|part| json!({ "required": [part] }));
-        exclusive.push(json!({ "oneOf": one_of }));
+        // Both of a bearing in its housing.
+        let any_of = ["bearing", "solid"].map(|part| json!({ "required": [part] }));
+        exclusive.push(json!({ "anyOf": any_of }));
     }
     if path == "bearing" {
         exclusive.push(kinds_schema());
@@ -133,7 +134,9 @@ fn named_schema(path: &str) -> Value {
         }
     }
     let only_named = ["body", "spring"].contains(&path);
-    let named = if only_named { plain.clone() } else { inherited.clone() };
+    let mut named = if only_named { plain.clone() } else { inherited.clone() };
+    // What one needs may stand beside the names.
+    named.remove("required");
     inherited.insert("additionalProperties".into(), Value::Object(named));
     if !only_named {
         let alone = json!({ "if": { "propertyNames": { "enum": known } }, "then": plain });

@@ -121,7 +121,7 @@ impl Profile {
         match self {
             Profile::Constant(_) => 0.0,
             Profile::Ramp { from, to, start, duration } => {
-                let inside = t >= *start && t < start + duration;
+                let inside = is_inside(t, *start, *duration);
                 if inside { (to - from) / duration } else { 0.0 }
             }
             Profile::SmoothRamp { from, to, start, duration } => {
@@ -136,7 +136,7 @@ impl Profile {
             }
             Profile::HalfSine { peak, start, duration, .. } => {
                 let f = (t - start) / duration;
-                let inside = (0.0..=1.0).contains(&f);
+                let inside = is_inside(t, *start, *duration);
                 if inside { peak * PI / duration * libm::cos(PI * f) } else { 0.0 }
             }
         }
@@ -157,7 +157,7 @@ impl Profile {
             }
             Profile::HalfSine { peak, start, duration, .. } => {
                 let f = (t - start) / duration;
-                let inside = (0.0..=1.0).contains(&f);
+                let inside = is_inside(t, *start, *duration);
                 let pulsation = PI / duration;
                 if inside { -peak * pulsation * pulsation * libm::sin(PI * f) } else { 0.0 }
             }
@@ -203,6 +203,11 @@ impl Profile {
             Profile::Table { points } => points.iter().map(|point| point[0]).collect(),
         }
     }
+}
+
+/// Whether a time is within a stretch; its end belongs to what follows, as a run that has come there goes on.
+fn is_inside(t: f64, start: f64, duration: f64) -> bool {
+    t >= start && t < start + duration
 }
 
 /// How much of a ramp lies behind, 0 to 1; a ramp of no duration is a step.

@@ -138,3 +138,30 @@ fn every_profile_of_a_problem_has_its_corners_there() {
         check(&beside, &ramp);
     }
 }
+
+/// At a corner rate and acceleration are those of what follows: a run that has come there goes on with them, and books the jump.
+#[test]
+fn at_a_corner_rates_are_of_what_follows() {
+    let corners = [(0.3, 0.4), (3e-3, 7e-3), (4e-3, 13e-3), (0.1, 0.2), (1e-3, 0.5e-3)];
+    for (start, duration) in corners {
+        let (from, to) = (1.0, 3.0);
+        for profile in [
+            Profile::Ramp { from, to, start, duration },
+            Profile::SmoothRamp { from, to, start, duration },
+            Profile::HalfSine { base: from, peak: to, start, duration },
+            Profile::Table { points: vec![[start, from], [start + duration, to], [1.0, 0.0]] },
+        ] {
+            for corner in profile.corners() {
+                let after = corner + 1e-9 * duration;
+                let steep = (to / duration, to / duration.powi(2));
+                let rate = (profile.rate(corner) - profile.rate(after)).abs() / steep.0;
+                let bend = (profile.acceleration(corner) - profile.acceleration(after)).abs();
+                // What changes smoothly does so by a billionth of its way.
+                assert!(
+                    rate <= 1e-7 && bend / steep.1 <= 1e-6,
+                    "{profile:?} at {corner}: {rate:e} {bend:e}"
+                );
+            }
+        }
+    }
+}

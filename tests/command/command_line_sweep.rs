@@ -91,6 +91,42 @@ fn remarks_of_points_are_counted_and_told() {
     assert_eq!(told, counts.iter().sum::<f64>());
 }
 
+/// A race beside the middle of its bearing makes an assembly of it, whose table has other columns: no row stands under another's header.
+#[test]
+fn rows_with_other_columns_are_no_rows() {
+    let root = tempdir().unwrap();
+    let path = write(root.path(), "scene.toml", DEEP_GROOVE);
+    let out = root.path().join("out");
+    let vary = "bearing.inner_at=0 mm .. 5 mm / 6";
+    let run = bearing(&["sweep", &path, "--vary", vary, "--out", &text(&out)]);
+    assert_eq!(run.code, Some(2), "{}", run.stderr);
+    assert!(run.stderr.contains("5 of 6 points") && run.stderr.contains("other columns"));
+    let sweep = table(&out);
+    assert_eq!(column(&sweep, "point").to_vec(), [0.0]);
+    let alone = root.path().join("alone");
+    let vary = "bearing.inner_at=1 mm .. 5 mm / 5";
+    done(&["sweep", &path, "--vary", vary, "--out", &text(&alone)]);
+    assert_eq!(column(&table(&alone), "point").len(), 5);
+}
+
+/// Where a shaft's centre of mass moves from point to point, its neighbour's place is no place to begin.
+#[test]
+fn a_neighbour_far_away_loses_no_point() {
+    let root = tempdir().unwrap();
+    let vary = "body.rotor.beam.density=4 g/cm^3, 7.85 g/cm^3, 12 g/cm^3";
+    let shipped = scene("stepped_rotor.toml");
+    let tables = [&[][..], &["--cold"]].map(|how| {
+        let out = root.path().join(how.concat());
+        done(&[&["sweep", &shipped, "--vary", vary, "--out", &text(&out)], how].concat());
+        table(&out)
+    });
+    let [warm, cold] = [&tables[0], &tables[1]].map(|table| column(table, "rotor_z").to_vec());
+    for (warm, cold) in warm.iter().zip(&cold) {
+        assert!((warm - cold).abs() <= 1e-6 * cold.abs(), "{warm} {cold}");
+    }
+    assert_eq!((warm.len(), cold.len()), (3, 3));
+}
+
 #[test]
 fn warm_starts_do_not_move_the_solution() {
     let root = tempdir().unwrap();

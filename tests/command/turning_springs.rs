@@ -219,3 +219,45 @@ fn statics_of_bodies_say_that_unbalances_are_left_out() {
     assert!(told.contains("the largest one, of body disc, with 3947.842 N"), "{told}");
     assert!(!statics(&own).contains("unbalances"));
 }
+
+/// Maxwell elements are relaxed in `modes`, which says how much stiffer springs are at the lowest frequency that it finds.
+#[test]
+fn modes_say_how_far_relaxed_springs_are_off() {
+    let place = Place::new();
+    let relaxing = "[[spring.mount.maxwell]]\nrelaxation_time = \"3 ms\"\ny = \"5e5 N/m\"\n";
+    let text = disc("from = \"ground\"\nto = \"disc\"", "{}", "end = \"1 ms\"") + relaxing;
+    let scene = place.scene("scene.toml", &text);
+    let output = bearing(&["modes", scene.to_str().unwrap(), "--dry"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let told = said(&output);
+    let told = told.lines().find(|line| line.contains("Maxwell elements take no part")).unwrap();
+    let number = |before: &str, after: &str| -> f64 {
+        let (_, rest) = told.split_once(before).unwrap();
+        rest.split_once(after).unwrap().0.parse().unwrap()
+    };
+    let square = (TAU * number("at ", " Hz") * 3e-3).powi(2);
+    let times = 1.0 + 5e5 / 2e5 * square / (1.0 + square);
+    // Told to three digits.
+    assert!((number("spring mount is ", " times") / times - 1.0).abs() <= 5e-3, "{told} {times}");
+}
+
+/// What an unbalance takes of the spin that a torque gives is left out, and told by all that read a run.
+#[test]
+fn unbalances_under_torques_are_told() {
+    let place = Place::new();
+    let spinning = disc("from = \"ground\"\nto = \"disc\"", "{}", "end = \"1 ms\"");
+    let text =
+        spinning.replace("speed = \"6000 rpm\"", "torque = \"0.1 N m\"\nunbalance = \"1e-4 kg m\"");
+    let scene = place.scene("scene.toml", &text);
+    let path = scene.to_str().unwrap();
+    let told = "a torque turns the body disc, which has an unbalance";
+    for command in ["check", "plan"] {
+        let output = bearing(&[command, path]);
+        assert!(said(&output).contains(told), "{command}: {}", said(&output));
+    }
+    let output = run(&scene, &place.path("out"), &[]);
+    assert!(said(&output).contains(told), "{}", said(&output));
+    let at_a_speed = place.scene("speed.toml", &spinning);
+    let output = bearing(&["check", at_a_speed.to_str().unwrap()]);
+    assert!(!said(&output).contains("a torque turns"), "{}", said(&output));
+}

@@ -32,6 +32,31 @@ fn every_key_is_in_the_schema_and_described() {
     }
 }
 
+/// What stands for a table may be a text too, a housing is a bearing and a solid, and what one spring needs may stand beside all names.
+#[test]
+fn the_schema_refuses_no_scene_that_is_read() {
+    let schema = schema::json_schema();
+    fn refusals(value: &Value, seen: &mut usize) {
+        if let Some(refused) = value.get("not").filter(|refused| refused.get("required").is_some())
+        {
+            assert_eq!(refused["type"], "object", "{refused}");
+            *seen += 1;
+        }
+        match value {
+            Value::Object(all) => all.values().for_each(|inner| refusals(inner, seen)),
+            Value::Array(all) => all.iter().for_each(|inner| refusals(inner, seen)),
+            _ => {}
+        }
+    }
+    let mut seen = 0;
+    refusals(&schema, &mut seen);
+    assert!(seen > 10, "{seen}");
+    let top = &schema["allOf"][0];
+    assert!(top.get("anyOf").is_some() && top.get("oneOf").is_none(), "{top}");
+    let named = &schema["properties"]["spring"]["additionalProperties"];
+    assert!(named["properties"]["from"].is_object() && named.get("required").is_none());
+}
+
 #[test]
 fn no_object_of_the_schema_lets_unknown_keys_through() {
     let schema = schema::json_schema();

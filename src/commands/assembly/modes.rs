@@ -13,7 +13,7 @@ use crate::commands::remarks::of_balls_at_speed;
 use crate::commands::scene_remarks::at_rest;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
-use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::scene::assembly::{AssemblyScene, Spring};
 use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
 use bearing_dynamics::solver::dynamics::model::Rotation;
@@ -63,7 +63,14 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         let _ = writeln!(text, "{:>4} {:>20.6}  {most}", index + 1, frequency(mode));
     }
     say(&text)?;
-    let mut remarks: Vec<String> = at_rest(scene).collect();
+    let mut remarks: Vec<String> = found
+        .iter()
+        .map(frequency)
+        .find(|lowest| *lowest > 0.0)
+        .and_then(|lowest| relaxed(scene, lowest))
+        .into_iter()
+        .collect();
+    remarks.extend(at_rest(scene));
     let spinning = match spinning(assembly, still, solution, &bodies, &masses) {
         Ok(spinning) => spinning.map(Spinning::new).transpose()?,
         // Motions at rest are what they are.
@@ -93,13 +100,6 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     if found.iter().any(|mode| frequency(mode) == 0.0) {
         remarks.push(
             "a frequency of zero is of a motion that no contact and no spring brings back".into(),
-        );
-    }
-    if scene.springs.iter().any(|spring| !spring.maxwell.is_empty()) {
-        remarks.push(
-            "Maxwell elements take no part: what swings faster than they relax meets their stiffness too, and swings faster than \
-             here; where they turn with a body that spins, they feed its whirl above the critical speed besides (`run` has both)"
-                .into(),
         );
     }
     remarks.push(
@@ -175,6 +175,33 @@ fn of_other_speed(scene: &AssemblyScene, assembly: &Assembly, top: f64) -> Optio
 /// Whether the equilibrium has the centrifugal force of balls.
 fn flung(scene: &AssemblyScene) -> bool {
     scene.bearings.iter().any(|placed| placed.scene.centrifugal)
+}
+
+/// How far springs with Maxwell elements, which are taken relaxed, are off at the lowest frequency that was found, Hz.
+fn relaxed(scene: &AssemblyScene, lowest: f64) -> Option<String> {
+    let times = |spring: &Spring| {
+        let stiffer = |axis: usize| {
+            let parts = spring.maxwell.iter().map(|element| {
+                let turns = (TAU * lowest * element.relaxation_time).powi(2);
+                element.stiffness[axis] * turns / (1.0 + turns)
+            });
+            let more: f64 = parts.sum();
+            if more > 0.0 { 1.0 + more / spring.stiffness[axis] } else { 1.0 }
+        };
+        (0..6).map(stiffer).fold(1.0, f64::max)
+    };
+    let all = scene.springs.iter().map(|spring| (times(spring), spring));
+    let (most, spring) = all.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (most > 1.0).then(|| {
+        format!(
+            "Maxwell elements take no part: at {lowest:.4} Hz, the lowest frequency here, spring {} is {} times as stiff as it is taken (relaxed), and \
+             stiffer at higher ones. Frequencies, whirl and critical speeds that it decides are too low by up to the root of that, and its \
+             damping is left out; where it turns with a body that spins, it feeds whirl besides. `run` has all of it; here give springs the \
+             stiffness that they have at the frequency of interest",
+            spring.name,
+            if most.is_finite() { to_digits(most, 3).to_string() } else { "infinitely many".into() }
+        )
+    })
 }
 
 /// What a reader should know of other speeds than the scene's, `top` (rad/s), where bearings are stiff as that makes them.

@@ -148,8 +148,9 @@ fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) ->
         End::Complete => Ok(Outcome::Done),
         End::Interrupted => Err(format!(
             "interrupted at {}; what there is so far is in {out}. To go on: bearing run {scene} \
-             --out {out} --resume",
-            texts::place(session)
+             --out {out}{} --resume",
+            texts::place(session),
+            arguments.changes.again()
         )
         .into()),
         End::Failed(error) => {

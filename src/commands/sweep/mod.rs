@@ -13,6 +13,7 @@ mod report;
 
 use super::earlier::{Writes, claimed};
 use super::{CommandResult, Outcome, interruption, reach, results_folder, say};
+use bearing_dynamics::output::Column;
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use grid::Grid;
 use housings::Kept;
@@ -20,6 +21,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use journal::{Chunk, Journal, Remark, gather};
 use rayon::prelude::*;
 use std::error::Error;
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -28,6 +30,8 @@ use std::time::Instant;
 const CHUNK: usize = 64;
 /// The same with a housing, where a point takes a hundred times as long.
 const HOUSED_CHUNK: usize = 16;
+/// Where each point has another bushing, whose springs take a second.
+const BUSHING_CHUNK: usize = 2;
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -53,6 +57,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
+    let interrupted = interruption(|| {})?;
     let document = Document::read_file(&arguments.scene)?;
     let grid = Grid::new(&document, &arguments.vary)?;
     for axis in &grid.axes {
@@ -71,15 +76,20 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         _ => None,
     };
     let subject = first.as_ref().ok().cloned().or_else(whole);
+    let columns = point::columns(&grid, subject.as_ref());
     let housed = subject.as_ref().is_some_and(|scene| scene.housing_method().is_some());
-    let size = if housed { HOUSED_CHUNK } else { CHUNK };
+    let bushings = grid.axes.iter().any(|axis| axis.key.contains(".bushing."));
+    let size = match (bushings, housed) {
+        (true, _) => BUSHING_CHUNK,
+        (false, true) => HOUSED_CHUNK,
+        (false, false) => CHUNK,
+    };
     let fingerprint = grid.fingerprint(&document, &mesh, arguments.cold);
     let points = |index| grid.chunk_range(index, size).len();
     let journal = Journal::open(&folder, &fingerprint, grid.chunks(size), points, arguments.fresh)?;
     let resumed = journal.finished();
     report::remove_earlier(&folder)?;
 
-    let interrupted = interruption(|| {})?;
     let progress = progress_bar(&grid, resumed);
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
@@ -89,9 +99,17 @@ pub fn run(arguments: &Arguments) -> CommandResult {
             if interrupted.load(Ordering::Relaxed) {
                 return Ok(());
             }
-            let chunk = solve_chunk(&document, &grid, index, size, arguments.cold);
-            progress.inc(grid.chunk_range(index, size).len() as u64);
-            journal.append(chunk)?;
+            let going_on = || {
+                progress.inc(1);
+                !interrupted.load(Ordering::Relaxed)
+            };
+            let solver = (&document, &grid, &columns[..]);
+            let range = grid.chunk_range(index, size);
+            match solve_chunk(solver, (index, range), arguments.cold, going_on) {
+                Some(chunk) => journal.append(chunk)?,
+                // What is left of a chunk is solved again.
+                None => return Ok(()),
+            }
             Ok(())
         })
     });
@@ -104,7 +122,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         threads: pool.current_num_threads(),
         seconds: start.elapsed().as_secs_f64(),
         complete: done == grid.len(),
-        subject,
+        columns,
     };
     report::write(&folder, &document, &grid, &chunks, &record)?;
     if !record.complete {
@@ -169,15 +187,26 @@ fn progress_bar(grid: &Grid, resumed: usize) -> ProgressBar {
     bar
 }
 
-fn solve_chunk(document: &Document, grid: &Grid, index: usize, size: usize, cold: bool) -> Chunk {
+/// All points of a chunk, unless it does not go on.
+fn solve_chunk(
+    (document, grid, header): (&Document, &Grid, &[Column]),
+    (index, range): (usize, Range<usize>),
+    cold: bool,
+    going_on: impl Fn() -> bool,
+) -> Option<Chunk> {
     let mut chunk = Chunk { index, rows: Vec::new(), failures: Vec::new(), remarks: Vec::new() };
     let (mut neighbour, mut kept) = (None, Kept::default());
-    for point in grid.chunk_range(index, size) {
-        match point::solve(document, grid, point, neighbour.as_deref(), &mut kept) {
+    let last = range.end - 1;
+    for point in range {
+        match point::solve(document, grid, (point, header), neighbour.as_deref(), &mut kept) {
             Ok(solved) => {
                 chunk.rows.push(solved.row);
                 let said = solved.remarks.into_iter();
-                gather(&mut chunk.remarks, said.map(|text| Remark { text, point, points: 1 }));
+                let mut here = Vec::new();
+                gather(&mut here, said.map(|text| Remark { text, point, points: 1 }));
+                // Two bodies may have one kind of remark each: it is of one point.
+                let once = here.into_iter().map(|remark| Remark { points: 1, ..remark });
+                gather(&mut chunk.remarks, once);
                 neighbour = if cold { None } else { solved.start_for_neighbour };
             }
             Err(message) => {
@@ -185,6 +214,9 @@ fn solve_chunk(document: &Document, grid: &Grid, index: usize, size: usize, cold
                 neighbour = None;
             }
         }
+        if !going_on() && point < last {
+            return None;
+        }
     }
-    chunk
+    Some(chunk)
 }

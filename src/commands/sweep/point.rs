@@ -29,11 +29,18 @@ pub struct Solved {
 pub fn solve(
     document: &Document,
     grid: &Grid,
-    point: usize,
+    (point, header): (usize, &[Column]),
     neighbour: Option<&[SVector<f64, 5>]>,
     kept: &mut Kept,
 ) -> Result<Solved, String> {
-    solve_scene(&grid.scene(document, point).map_err(|error| error.to_string())?, neighbour, kept)
+    let scene = grid.scene(document, point).map_err(|error| error.to_string())?;
+    // A race beside the middle of its bearing, or one that moves, makes an assembly of a bearing alone.
+    if columns(grid, Some(&scene)) != header {
+        return Err("bodies are loaded here that are not at the first point, or the other way round, and its results have other columns: \
+                    sweep what has one kind of results by itself"
+            .into());
+    }
+    solve_scene(&scene, neighbour, kept)
         .map(|solved| Solved { row: [start_of_row(grid, point), solved.row].concat(), ..solved })
         .map_err(|error| error.to_string())
 }

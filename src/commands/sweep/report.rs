@@ -2,10 +2,8 @@
 
 use super::grid::Grid;
 use super::journal::{Chunk, Remark, gather};
-use super::point::columns;
 use bearing_dynamics::output::results::pretty;
-use bearing_dynamics::output::{Series, write_atomic};
-use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::output::{Column, Series, write_atomic};
 use bearing_dynamics::scene::keys::{self, Kind};
 use bearing_dynamics::scene::units::{parse_number, parse_quantity};
 use bearing_dynamics::scene::{Document, SweepAxis};
@@ -18,8 +16,7 @@ pub struct Record {
     pub threads: usize,
     pub seconds: f64,
     pub complete: bool,
-    /// What the scene is of, for the columns.
-    pub subject: Option<AssemblyScene>,
+    pub columns: Vec<Column>,
 }
 
 /// The unit in which an axis is written: that of its first value, or `choice` for words.
@@ -89,7 +86,7 @@ pub fn write(
     chunks: &[Chunk],
     record: &Record,
 ) -> Result<(), Box<dyn Error>> {
-    let columns = columns(grid, record.subject.as_ref());
+    let columns = record.columns.clone();
     let width = columns.len();
     let flat: Vec<f64> = chunks.iter().flat_map(|chunk| &chunk.rows).flatten().copied().collect();
     let table = Array2::from_shape_vec((flat.len() / width, width), flat)?;

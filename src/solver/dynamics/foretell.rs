@@ -69,6 +69,8 @@ pub struct Foretold {
     pub whole: bool,
     /// What ended the trial on its way from the start, as it will the run, and when, s.
     pub failure: Option<(f64, SimulationError)>,
+    /// The same of a look that began anew in equilibrium, as the run does not.
+    pub doubt: Option<(f64, SimulationError)>,
 }
 
 /// What the trial says of the two methods with error control.
@@ -250,6 +252,8 @@ struct Seen {
     begun: usize,
     /// What ended it on its way from the start, and when, s.
     failure: Option<(f64, SimulationError)>,
+    /// The same of a look that began anew.
+    doubt: Option<(f64, SimulationError)>,
 }
 
 fn look_through(
@@ -259,7 +263,7 @@ fn look_through(
     other: Option<Integrator>,
 ) -> Result<Seen, SimulationError> {
     let times = looks(assembly, request.end);
-    let Seen { mut stretches, mut spent, mut begun, mut failure } = Seen::default();
+    let Seen { mut stretches, mut spent, mut begun, mut failure, mut doubt } = Seen::default();
     let mut scale = 0.0;
     let mut under_way: Option<(Trial, f64)> = None;
     for (index, pair) in times.windows(2).enumerate() {
@@ -299,10 +303,10 @@ fn look_through(
                 break;
             }
             if let Err(error) = trial.advance() {
+                let at = trial.simulation.time + offset;
                 // What begins anew in equilibrium, later on, need not be what the run comes to.
-                if offset == 0.0 {
-                    failure = Some((trial.simulation.time, error));
-                }
+                let ended = if offset == 0.0 { &mut failure } else { &mut doubt };
+                ended.get_or_insert((at, error));
                 break;
             }
             if trial.tried() - before <= left / 2 {
@@ -332,7 +336,7 @@ fn look_through(
             under_way = Some((trial, offset));
         }
     }
-    Ok(Seen { stretches, spent, begun, failure })
+    Ok(Seen { stretches, spent, begun, failure, doubt })
 }
 
 /// Steps of a run whose steps follow from an accuracy or from the stability limit.
@@ -340,7 +344,7 @@ fn look_through(
 /// # Errors
 /// What keeps the run from starting.
 pub fn foretell(assembly: &Assembly, request: &RunRequest) -> Result<Foretold, SimulationError> {
-    let Seen { mut stretches, spent: taken, begun: looks, failure } =
+    let Seen { mut stretches, spent: taken, begun: looks, failure, doubt } =
         look_through(assembly, request, TO_COUNT, None)?;
     // Steps from the limit do not grow again. What rang where the first look left off goes on; an explicit
     // method with error control is bound by traction rather, which rolling faster makes gentler.
@@ -360,7 +364,7 @@ pub fn foretell(assembly: &Assembly, request: &RunRequest) -> Result<Foretold, S
     let steps = stretches.iter().map(Stretch::steps).sum();
     let covered: f64 = stretches.iter().map(|s| s.covered).sum();
     let whole = looks == 1 && covered >= request.end * (1.0 - 1e-6);
-    Ok(Foretold { steps, taken, covered, looks, whole, failure })
+    Ok(Foretold { steps, taken, covered, looks, whole, failure, doubt })
 }
 
 /// The method with error control that takes less work, by a trial that is short enough to be made
