@@ -3,7 +3,7 @@
 use bearing_dynamics::output::bushing_reach::{Beyond, beyond};
 use bearing_dynamics::output::session::Session;
 use bearing_dynamics::scene::assembly::{
-    AssemblyScene, BushingInElements, BushingStepping, Spring,
+    AssemblyScene, BushingInElements, BushingStepping, Spring, SpringAt, SpringEnd,
 };
 use bearing_dynamics::scene::bushing_reach::{PART, reach};
 use bearing_dynamics::solver::clock::{to_digits, told};
@@ -40,7 +40,39 @@ pub fn of_bushings(scene: &AssemblyScene) -> Vec<String> {
             }
         })
     };
-    scene.springs.iter().filter_map(said).collect()
+    let beside = scene.springs.iter().filter_map(|spring| beside_its_race(scene, spring));
+    scene.springs.iter().filter_map(said).chain(beside).collect()
+}
+
+/// A bushing that does not go round the outer race that it ends at, or stands beside it.
+fn beside_its_race(scene: &AssemblyScene, spring: &Spring) -> Option<String> {
+    let of = &spring.bushing.as_ref()?.body;
+    let at_race = |end: &SpringEnd| match end.at {
+        SpringAt::Race { bearing, side: 1 } => Some((&scene.bearings[bearing].scene, end.along)),
+        _ => None,
+    };
+    let (race, along) = spring.ends.iter().find_map(at_race)?;
+    let sizes = &race.dimensions;
+    let race_diameter = 2.0 * sizes.outer_radius.unwrap_or(race.geometry.race_radii().1);
+    let race_length = sizes.length.unwrap_or(2.0 * race.geometry.ball_radius);
+    let millimetres = |length: f64| told(1e3 * length);
+    if of.inner_diameter < race_diameter * (1.0 - 1e-9) {
+        return Some(format!(
+            "the rubber of bushing {} begins at a diameter of {} mm, inside the outer race that it holds, of {} mm: check both",
+            spring.name,
+            millimetres(of.inner_diameter),
+            millimetres(race_diameter)
+        ));
+    }
+    let farthest = 0.5 * (of.length + race_length);
+    (along.abs() > farthest).then(|| {
+        format!(
+            "bushing {} holds the outer race {} mm beside the race's middle, farther than both are long: check `from_at` and `to_at`, which \
+             count from the middle of what they belong to, of the ground along X",
+            spring.name,
+            millimetres(along.abs())
+        )
+    })
 }
 
 /// Elements of explicit steps are stiffer than rubber, the coarser the more.

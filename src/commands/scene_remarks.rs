@@ -4,11 +4,11 @@
 use bearing_dynamics::ch3_bushing::dent::Dent;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::scene::Scene;
-use bearing_dynamics::scene::assembly::{AssemblyScene, SceneBody, Spring, SpringAt};
+use bearing_dynamics::scene::assembly::{AssemblyScene, Carrier, SceneBody, Spring, SpringAt};
 use bearing_dynamics::scene::excitations::{driven, excitations, largest};
 use bearing_dynamics::scene::housing::{FitSize, HousingMethod};
 use bearing_dynamics::scene::statics::orbital_speed;
-use bearing_dynamics::solver::clock::to_digits;
+use bearing_dynamics::solver::clock::{to_digits, told};
 use bearing_dynamics::solver::dynamics::connection::uneven;
 use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::run::Start;
@@ -37,7 +37,32 @@ pub fn of_shafts(scene: &AssemblyScene) -> Vec<String> {
             body.name, mesh.around, mesh.radial
         ))
     };
-    scene.bodies.iter().filter_map(said).collect()
+    scene.bodies.iter().filter_map(said).chain(too_thick(scene)).collect()
+}
+
+/// Shafts that are thicker than the groove of an inner race on them.
+fn too_thick(scene: &AssemblyScene) -> impl Iterator<Item = String> {
+    scene.bearings.iter().filter_map(|placed| {
+        let Carrier::Body { index, at } = placed.carriers[0] else { return None };
+        let body = &scene.bodies[index];
+        let beam = body.beam.as_ref()?;
+        let mut from = beam.start;
+        let segment = beam.beam.segments.iter().find(|segment| {
+            from += segment.length;
+            at <= from
+        })?;
+        let groove = 2.0 * placed.scene.geometry.race_radii().0;
+        (segment.outer_diameter > groove).then(|| {
+            let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
+            format!(
+                "body.{} is {} mm thick where the inner race{of} sits, whose groove has a diameter of {} mm: it does not go through; check \
+                 segments, `inner_at` and their units",
+                body.name,
+                told(1e3 * segment.outer_diameter),
+                told(1e3 * groove)
+            )
+        })
+    })
 }
 
 /// What a shaft that starts straight meets at once.

@@ -3,7 +3,7 @@
 //! | file | content |
 //! |---|---|
 //! | `scene.toml` or `scene.json` | the scene as it was given |
-//! | `resolved.json` | the same in SI units with every default filled in |
+//! | `resolved.json` | the same with every value and its unit, every default filled in |
 //! | `summary.json`, `series.csv`, `series.npy`, `series.columns.json` | the expected results |
 //! | `tolerances.json` | how far a candidate may be from them |
 //! | `README.txt` | how to use the pack |
@@ -43,7 +43,7 @@ pub struct PackInput<'a> {
     pub scene_name: &'a str,
     /// As the user wrote it, to the byte.
     pub scene_text: &'a str,
-    /// The scene in SI units; `null` stands for a part left out.
+    /// The scene with units and defaults; `null` stands for a part left out.
     pub resolved: &'a Value,
     pub class: ToleranceClass,
 }
@@ -192,7 +192,7 @@ fn readme(input: &PackInput) -> String {
     format!(
         "Case pack: a bearing, and the results to hold another implementation against.
 
-1. Solve {scene} with your program (resolved.json has the same in SI units, defaults filled in).
+1. Solve {scene} with your program (resolved.json has the same with every value and its unit, defaults filled in).
 2. Write summary.json and series.csv of the same form into a folder, say candidate (series.npy
    with series.columns.json holds the same table once more and may be left out).
    Copy the parts of summary.json that only repeat the input (scene, assumptions).

@@ -68,7 +68,7 @@ pub(super) const KEYS: &[Key] = &[
 
 #[rustfmt::skip]
 pub(super) const TABLES: &[Table] = &[
-    table("body.beam", "The body bends: a Timoshenko beam of round segments with rigid discs, which gives it its `inertia`. Bearings and springs take hold of its sections; `load` and `unbalance` stand at a place. Loads on the body's own coordinates and its `foundation` act as weight does, on all its mass, and bend nothing. It bends and stretches, and does not twist.",
+    table("body.beam", "The body bends: a Timoshenko beam of round segments with rigid discs, which gives it its `inertia`. Bearings and springs take hold of its sections; `load` and `unbalance` stand at a place. Loads on the body's own coordinates and its `foundation` act as weight does, on all its mass: it bends between what holds it against them. It bends and stretches, and does not twist.",
         "[body.shaft.beam]\nsegments = [{ length = \"400 mm\", outer_diameter = \"30 mm\" }]"),
     list_table("body.beam.segments", "Its segments one after the other, along X.",
         "[[body.shaft.beam.segments]]\nlength = \"400 mm\"\nouter_diameter = \"30 mm\""),

@@ -4,11 +4,11 @@ use crate::scene::assembly::{Carrier, PlacedBearing, SIX, Spring, SpringAt, Spri
 use crate::scene::document::{Document, ItemRef};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::key_table_assembly::{GROUND, OWN_RACES};
+use crate::scene::keys::nearest;
 use crate::scene::resolve::{Reader, text};
 use crate::scene::resolve_bushing::bushing;
 use crate::scene::resolve_solid::{item_number, missing};
 use crate::scene::resolved::DefaultUsed;
-use crate::scene::scopes::no_such;
 use crate::solver::dynamics::connection::MaxwellElement;
 
 /// A spring between two bodies, a body and the ground, or a race that is a body of its own.
@@ -96,7 +96,7 @@ fn race(
                 format!("write one of {}", each.join(", ")),
             ));
         }
-        return Err(reader.document.error(key, no_such(name, "body", bodies.iter().copied())));
+        return Err(reader.document.error(key, no_such_end(name, bodies, bearings)));
     };
     let placed = &bearings[bearing];
     if let Carrier::Body { index, .. } = placed.carriers[side] {
@@ -112,6 +112,27 @@ fn race(
         return Err(refused("the outer race is fixed".into(), advice));
     }
     Ok(SpringAt::Race { bearing, side })
+}
+
+/// What a spring may begin or end at instead.
+fn no_such_end(name: &str, bodies: &[&str], bearings: &[PlacedBearing]) -> Problem {
+    let mut known: Vec<String> = bodies.iter().map(|body| body.to_string()).collect();
+    for placed in bearings {
+        let moves = [true, placed.scene.dynamics.outer.is_some() && placed.housing.is_none()];
+        for (side, race) in OWN_RACES.iter().enumerate() {
+            if moves[side] && matches!(placed.carriers[side], Carrier::Own { .. }) {
+                let of = placed.name.as_ref().map_or(String::new(), |name| format!("{name}."));
+                known.push(format!("{of}{race}"));
+            }
+        }
+    }
+    known.push(GROUND.into());
+    let advice = match nearest(name, known.iter().map(String::as_str), 0.5) {
+        Some(nearest) => format!("did you mean {nearest}?"),
+        None => "write one of them; a race is named where it moves by itself".into(),
+    };
+    let reason = format!("a spring does not end at {name:?}, it may at: {}", known.join(", "));
+    Problem::Refused { reason, advice }
 }
 
 fn maxwell(item: ItemRef) -> Result<MaxwellElement, SceneError> {

@@ -206,6 +206,14 @@ impl Search<'_, '_> {
         let on_it = |bearing: &&StaticBearing| bearing.mounts[0].body == body;
         let bearing = self.model.assembly.bearings.iter().find(on_it);
         let under = bearing.map(|bearing| bearing.mounts[1].body);
+        // A race that is looked for against one that is held begins there.
+        let looked_for = matches!(&self.model.assembly.bodies[body].place, Place::Loaded(of) if of.start.is_none());
+        if let (Some(under), true) = (under, looked_for)
+            && let Place::Held(pose) = &self.model.assembly.bodies[under].place
+        {
+            let [x, y, z] = pose.position.into();
+            return Five::from([x, y, z, 0.0, 0.0]);
+        }
         let Some((under, first)) = under.and_then(|u| Some((u, self.model.unknowns[u]?))) else {
             return Five::zeros();
         };

@@ -137,3 +137,28 @@ fn an_equilibrium_is_found_with_any_number_of_shapes() {
         assert_eq!(more.1, few.1, "{below}");
     }
 }
+
+/// What cannot stand where it is written is told: a shaft thicker than the race on it, rubber inside its race or beside it.
+#[test]
+fn parts_that_do_not_go_together_are_told() {
+    let shaft = |diameter: &str| {
+        let to = format!("outer_diameter = \"{diameter}\"");
+        said_of(&["check"], "stepped_rotor.toml", &[("outer_diameter = \"46 mm\"", &to)])
+    };
+    // The groove of the 6208 has 48 mm.
+    assert!(shaft("48.1 mm").contains(
+        "is 48.1 mm thick where the inner race of bearing fan sits, whose groove has a diameter of 48 mm"
+    ));
+    assert!(!shaft("47.9 mm").contains("does not go through"));
+    let plan = |from: &str, to: &str| said_of(&["plan"], "bearing_on_bushing.toml", &[(from, to)]);
+    let inside = plan("inner_diameter = \"71 mm\"", "inner_diameter = \"70.9 mm\"");
+    assert!(inside.contains(
+        "begins at a diameter of 70.9 mm, inside the outer race that it holds, of 71 mm"
+    ));
+    let beside = plan("[spring.mount.bushing]", "from_at = \"50 mm\"\n[spring.mount.bushing]");
+    assert!(
+        beside.contains("bushing mount holds the outer race 50 mm beside the race's middle"),
+        "{beside}"
+    );
+    assert!(!plan("inner_diameter = \"71 mm\"", "inner_diameter = \"71.0 mm\"").contains("inside the outer race"));
+}
