@@ -264,7 +264,7 @@ fn bad_assemblies_are_refused() {
         (
             "a spring to nowhere",
             format!("{whole}\n[spring.s]\nfrom = \"axle\"\nstiffness = {{ x = \"1 N/m\" }}\n"),
-            vec!["spring.s.from", "no body \"axle\""],
+            vec!["spring.s.from", "does not end at \"axle\"", "it may at: shaft, ground"],
         ),
         (
             "a spring to itself",

@@ -110,8 +110,11 @@ fn what_cannot_be_is_told() {
             [("table = \"3.1\"", "table = \"3.1\"\nmethod = \"implicit\"\nstep_fraction = 0.5")],
             "the chosen method does not use it",
         ),
-        ([("to = \"outer_race\"", "to = \"outer_rac\"")], "no body"),
-        ([("to = \"outer_race\"", "to = \"right.outer_race\"")], "no body"),
+        ([("to = \"outer_race\"", "to = \"outer_rac\"")], "did you mean outer_race?"),
+        (
+            [("to = \"outer_race\"", "to = \"right.outer_race\"")],
+            "it may at: inner_race, outer_race, ground",
+        ),
         (
             [("motion = \"5-dof\"\nspeed = \"0 rpm\"", "motion = \"fixed\"")],
             "the outer race is fixed",
