@@ -120,17 +120,19 @@ fn a_shaft_on_springs_bends_as_beam_theory_says() {
     }
 }
 
-/// A body has 5 mm before nothing seems to hold it; the middle of a shaft that bends goes farther, its ends do not.
+/// A body has 5 mm before nothing seems to hold it; the centre of mass of a shaft that bends goes farther, its ends do not.
 #[test]
 fn a_shaft_that_bends_far_is_held_where_it_is_held() {
-    let (force, [_, moment, shear]) = (40e3, full(0.03));
+    let (force, [_, moment, shear]) = (60e3, full(0.03));
     let bent = on_springs(force);
-    let middle = solve(&bent).coordinates[2][2];
+    let solution = solve(&bent);
+    assert!(solution.coordinates[5][2] < -5e-3, "{}", solution.coordinates[5]);
+    let middle = solution.coordinates[2][2];
     let straight = -0.5 * force / 5e7;
     let theirs = straight - force * (0.4f64.powi(3) / (48.0 * E * moment) + 0.4 / (4.0 * shear));
     assert!(theirs < -6e-3, "{theirs}");
-    // Slopes of 0.05: a hundredth of their square and more is what beam theory leaves out.
-    assert!((middle / theirs - 1.0).abs() <= 3e-3, "{middle} {theirs}");
+    // Slopes of 0.07: their square is what beam theory leaves out.
+    assert!((middle / theirs - 1.0).abs() <= 8e-3, "{middle} {theirs}");
     let mut loose = on_springs(force);
     loose.connections.clear();
     let error = solve_assembly(&loose, None, &StaticOptions::default()).unwrap_err();
