@@ -5,10 +5,9 @@ use crate::commands::scene_remarks::{
 };
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
-use bearing_dynamics::scene::CageInRun;
-use bearing_dynamics::scene::Scene;
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing, SceneBody, Spring};
 use bearing_dynamics::scene::statics::{ball_mass, orbital_speed};
+use bearing_dynamics::scene::{CageInRun, Scene};
 use bearing_dynamics::solver::clock::told;
 use bearing_dynamics::solver::dynamics::assembly::Bearing;
 use bearing_dynamics::solver::dynamics::bounds::FARTHEST_BENT;

@@ -46,19 +46,22 @@ fn too_thick(scene: &AssemblyScene) -> impl Iterator<Item = String> {
         let Carrier::Body { index, at } = placed.carriers[0] else { return None };
         let body = &scene.bodies[index];
         let beam = body.beam.as_ref()?;
-        let mut from = beam.start;
-        let segment = beam.beam.segments.iter().find(|segment| {
-            from += segment.length;
-            at <= from
-        })?;
+        let mut end = beam.start;
+        let here = beam.beam.segments.iter().filter(|segment| {
+            let start = end;
+            end += segment.length;
+            start <= at && at <= end
+        });
+        // At a shoulder the race may sit on the thinner side.
+        let diameter = here.map(|segment| segment.outer_diameter).reduce(f64::min)?;
         let groove = 2.0 * placed.scene.geometry.race_radii().0;
-        (segment.outer_diameter > groove).then(|| {
+        (diameter > groove).then(|| {
             let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
             format!(
                 "body.{} is {} mm thick where the inner race{of} sits, whose groove has a diameter of {} mm: it does not go through; check \
                  segments, `inner_at` and their units",
                 body.name,
-                told(1e3 * segment.outer_diameter),
+                told(1e3 * diameter),
                 told(1e3 * groove)
             )
         })

@@ -201,17 +201,18 @@ impl Search<'_, '_> {
         Ok(states)
     }
 
-    /// How far the body under a body's first outer race has gone: it takes the inner one along.
+    /// How far the body under a body's first outer race has gone, which takes the inner one along; where it is held, for a race that is
+    /// looked for there.
     fn carried(&self, body: usize, here: &Evaluation) -> Five {
         let on_it = |bearing: &&StaticBearing| bearing.mounts[0].body == body;
         let bearing = self.model.assembly.bearings.iter().find(on_it);
         let under = bearing.map(|bearing| bearing.mounts[1].body);
-        // A race that is looked for against one that is held begins there.
-        let looked_for = matches!(&self.model.assembly.bodies[body].place, Place::Loaded(of) if of.start.is_none());
-        if let (Some(under), true) = (under, looked_for)
+        if let Some(under) = under
+            && let Place::Loaded(of) = &self.model.assembly.bodies[body].place
+            && of.start.is_none()
             && let Place::Held(pose) = &self.model.assembly.bodies[under].place
         {
-            let [x, y, z] = pose.position.into();
+            let [x, y, z] = of.axes().point_to_body(&pose.position).into();
             return Five::from([x, y, z, 0.0, 0.0]);
         }
         let Some((under, first)) = under.and_then(|u| Some((u, self.model.unknowns[u]?))) else {

@@ -287,8 +287,6 @@ pub fn solve_assembly_in<'b>(
         Err(StaticsError::NotConverged { .. }) if near.is_none() => {
             unload(assembly, bores, options)
         }
-        // A neighbour may be far from where this one's bodies are: its shaft has another centre of mass, or another place.
-        Err(_) if near.is_some() => solve_assembly_in(assembly, bores, None, options),
         result => result,
     }
 }

@@ -7,7 +7,7 @@ mod random_scenes;
 
 use bearing_dynamics::ch2_housing::bearing::ball_contact::{ball_contact, peak_pressure};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
-use bearing_dynamics::ch2_housing::bearing::traction::Motion;
+use bearing_dynamics::ch2_housing::bearing::slices::Motion;
 use bearing_dynamics::solver::dynamics::assembly::BallMeeting;
 use bearing_dynamics::solver::dynamics::bounds::HERTZ_SCALE;
 use bearing_dynamics::solver::dynamics::contacts::Driver;

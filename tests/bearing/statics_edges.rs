@@ -40,6 +40,19 @@ fn a_load_that_nothing_holds_is_an_error_with_the_direction() {
     assert!(tilted.to_string().contains("tilt_y = { tilt = \"0 deg\" } holds it"), "{tilted}");
 }
 
+/// What a race has room for counts from where the outer one is held: moved along with it, however far, it carries the same.
+#[test]
+fn a_race_is_looked_for_where_the_outer_one_is_held() {
+    let mut conditions = FREE;
+    conditions[0] = Condition::Load(100.0);
+    let here = solve(&problem(table_4_1(5e-6), conditions)).unwrap();
+    let mut moved = problem(table_4_1(5e-6), conditions);
+    // Farther than the ball is large.
+    moved.outer_pose.position.x = 8e-3;
+    let there = solve(&moved).unwrap();
+    assert!((there.coordinates[0] - here.coordinates[0] - 8e-3).abs() <= 1e-12);
+}
+
 #[test]
 fn infinite_and_missing_numbers_are_refused() {
     for bad in [f64::NAN, f64::INFINITY] {

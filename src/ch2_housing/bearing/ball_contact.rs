@@ -5,7 +5,7 @@
 //! surface speed, so that friction is Coulomb's, rounded off as elsewhere.
 
 use super::contact::normal_load;
-use super::traction::Motion;
+use super::slices::Motion;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
 
 /// How two balls push and rub.

@@ -10,4 +10,5 @@ pub mod frequencies;
 pub mod geometry;
 pub mod hertz;
 pub mod inertia;
+pub mod slices;
 pub mod traction;

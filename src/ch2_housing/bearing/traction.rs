@@ -1,14 +1,8 @@
-//! Traction between ball and race: the friction coefficient, and its integral over the contact
-//! ellipse.
-//!
-//! The source varies the sliding speed along the major axis only (2.2.1): the ellipse is cut into
-//! slices across it, each with the share of the normal load that Hertz's pressure gives it,
-//! q(y) = (3W/4a)(1 − y²/a²), and with the slip at its own y.
+//! Laws of friction between ball and race: the coefficient over the sliding (2.2.1), and what it makes of a slice of a contact
+//! ([`slices`](super::slices)).
 //!
 //! The pieces are scalar functions without branches: one contact calls them in turn, the fast path
 //! calls them over lanes of contacts, and both get the same bits.
-
-use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 
 /// How the friction coefficient follows from the sliding.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,11 +130,6 @@ fn regularised(coefficient: f64, speed: f64, slip: f64) -> (f64, f64) {
     (coefficient * slip / root, coefficient * speed * speed / (square * root))
 }
 
-/// How traction falls with more sliding: negated derivatives of the force along t and s and of the
-/// moment about n by both slips and the relative spin, over the normal load. Upper triangle of a
-/// symmetric matrix that has no negative eigenvalue: tt, ts, tn, ss, sn, nn.
-pub type TractionSlope = [f64; 6];
-
 /// How the force of a slice with a share of the load changes with its sliding, over the load: with sliding across that there is,
 /// s/m, and what sliding along it adds, over the square of the speed, (s/m)³.
 pub type Steepness = [f64; 2];
@@ -174,36 +163,18 @@ pub fn rounded_steepness(
 
 /// Of any law, at an entrainment speed (m/s).
 #[inline(always)]
-fn steepness_of(law: &TractionLaw, square: f64, share: f64, entrainment: f64) -> Steepness {
+pub(super) fn steepness_of(
+    law: &TractionLaw,
+    square: f64,
+    share: f64,
+    entrainment: f64,
+) -> Steepness {
     match law {
         TractionLaw::Constant { coefficient, regularisation_speed } => {
             rounded_steepness(square, share, *coefficient, *regularisation_speed)
         }
         law => steepness(square, share, |speed| coefficient_and_slope(law, speed, entrainment)),
     }
-}
-
-/// Adds the slope of one slice, whose force [`add_slice`] adds. `friction` gives the slice's [`Steepness`] from the square of the
-/// sliding speed and the share.
-#[inline(always)]
-pub fn add_slope(
-    sum: &TractionSlope,
-    slip: [f64; 2],
-    relative_spin: Vec3,
-    y: f64,
-    sagitta: f64,
-    share: f64,
-    friction: impl Fn(f64, f64) -> Steepness,
-) -> TractionSlope {
-    let [spin_t, spin_s, spin_n] = relative_spin;
-    let slip_t = slip[0] - spin_n * y - spin_s * sagitta;
-    let slip_s = slip[1] + spin_t * sagitta;
-    let [secant, steep] = friction(slip_t * slip_t + slip_s * slip_s, share);
-    let tt = secant + steep * slip_t * slip_t;
-    let ts = steep * slip_t * slip_s;
-    let ss = secant + steep * slip_s * slip_s;
-    let [a, b, c, d, e, k] = *sum;
-    [a + tt, b + ts, c - y * tt, d + ss, e - y * ts, k + y * y * tt]
 }
 
 /// 1/U with the floor under U, s/m; one division a contact serves all its slices.
@@ -221,106 +192,6 @@ fn interpolate(points: &[[f64; 2]], slip: f64) -> f64 {
         (None, Some(first)) => first[1] * slip / first[0],
         (None, None) => 0.0,
     }
-}
-
-/// Slices across the major axis: middle of each (y/a) and its share of the normal load.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Slices {
-    pub middle: Vec<f64>,
-    pub share: Vec<f64>,
-}
-
-impl Slices {
-    /// `count` slices of equal width; each share is the exact integral of Hertz's pressure over
-    /// the slice, so that the shares add up to one.
-    pub fn new(count: usize) -> Slices {
-        let width = 2.0 / count as f64;
-        // ∫ (3/4)(1 − η²) dη.
-        let integral = |eta: f64| 0.75 * (eta - eta * eta * eta / 3.0);
-        let edge = |i: usize| -1.0 + width * i as f64;
-        Slices {
-            middle: (0..count).map(|i| -1.0 + width * (i as f64 + 0.5)).collect(),
-            share: (0..count).map(|i| integral(edge(i + 1)) - integral(edge(i))).collect(),
-        }
-    }
-}
-
-/// Motion of a rigid body, inertial axes: m, m/s, rad/s.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Motion {
-    pub position: Vec3,
-    pub velocity: Vec3,
-    pub spin: Vec3,
-}
-
-/// Sliding of a ball on a race at the middle of the contact and how it changes across it.
-///
-/// t is the rolling direction (about the race's axis), n the outward normal of the ball, s = n × t.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sliding {
-    pub rolling_direction: Vec3,
-    pub transverse_direction: Vec3,
-    /// From the ball centre to the contact point.
-    pub arm_on_ball: Vec3,
-    /// From the race's centre to the contact point.
-    pub arm_on_race: Vec3,
-    /// Slip of the ball's surface over the race's at the middle: t and s part, m/s.
-    pub slip: [f64; 2],
-    /// Relative spin about t, s and n, rad/s.
-    pub relative_spin: Vec3,
-    /// Mean speed of both surfaces through the contact, m/s, ≥ 0.
-    pub entrainment: f64,
-}
-
-/// Sliding at a contact with outward ball normal `normal` and overlap `overlap`; `axis` is the
-/// race's axis and `outward` the unit vector from it to the ball.
-#[inline(always)]
-pub fn sliding(
-    ball: &Motion,
-    race: &Motion,
-    axis: Vec3,
-    outward: Vec3,
-    normal: Vec3,
-    reach: f64,
-) -> Sliding {
-    let rolling_direction = cross(axis, outward);
-    let transverse_direction = cross(normal, rolling_direction);
-    let arm_on_ball = scale(normal, reach);
-    let between = sub(ball.position, race.position);
-    let arm_on_race = add(between, arm_on_ball);
-    let ball_surface = add(ball.velocity, cross(ball.spin, arm_on_ball));
-    let race_surface = add(race.velocity, cross(race.spin, arm_on_race));
-    let slip = sub(ball_surface, race_surface);
-    let relative = sub(ball.spin, race.spin);
-    // The contact travels round the race with the ball.
-    let travel = dot(sub(ball.velocity, race.velocity), rolling_direction)
-        * (dot(arm_on_race, outward) / dot(between, outward))
-        + dot(race.velocity, rolling_direction);
-    let through = dot(add(ball_surface, race_surface), rolling_direction) - 2.0 * travel;
-    Sliding {
-        rolling_direction,
-        transverse_direction,
-        arm_on_ball,
-        arm_on_race,
-        slip: [dot(slip, rolling_direction), dot(slip, transverse_direction)],
-        relative_spin: [
-            dot(relative, rolling_direction),
-            dot(relative, transverse_direction),
-            dot(relative, normal),
-        ],
-        entrainment: 0.5 * through.abs(),
-    }
-}
-
-/// What the slices add up to, per unit of normal load: traction on the ball along t and s, moment
-/// about n and, from the curvature of the contact, about t and s (m), and power lost (m/s).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SliceSum {
-    pub rolling: f64,
-    pub transverse: f64,
-    pub moment: f64,
-    pub curvature_moment: [f64; 2],
-    pub power: f64,
 }
 
 /// What a slice with a share of the load puts up against sliding, over the load: force over the sliding speed, s/m, and the power
@@ -352,112 +223,18 @@ pub fn rounded_resistance(
 
 /// Of any law, at an entrainment speed (m/s).
 #[inline(always)]
-fn resistance_of(law: &TractionLaw, square: f64, share: f64, entrainment: f64) -> Resistance {
+pub(super) fn resistance_of(
+    law: &TractionLaw,
+    square: f64,
+    share: f64,
+    entrainment: f64,
+) -> Resistance {
     match law {
         TractionLaw::Constant { coefficient, regularisation_speed } => {
             rounded_resistance(square, share, *coefficient, *regularisation_speed)
         }
         law => resistance(square, share, |speed| coefficient(law, speed, entrainment)),
     }
-}
-
-/// Adds one slice at `y` (m from the middle) with a `share` of the load. `sagitta` is how far the
-/// curved contact surface lies towards the ball there (Heathcote), zero for a plane one. `friction` gives the slice's
-/// [`Resistance`] from the square of the sliding speed and the share.
-#[inline(always)]
-pub fn add_slice(
-    sum: &SliceSum,
-    slip: [f64; 2],
-    relative_spin: Vec3,
-    y: f64,
-    sagitta: f64,
-    share: f64,
-    friction: impl Fn(f64, f64) -> Resistance,
-) -> SliceSum {
-    let [spin_t, spin_s, spin_n] = relative_spin;
-    let slip_t = slip[0] - spin_n * y - spin_s * sagitta;
-    let slip_s = slip[1] + spin_t * sagitta;
-    let [per_speed, power] = friction(slip_t * slip_t + slip_s * slip_s, share);
-    let along = -per_speed * slip_t;
-    let across = -per_speed * slip_s;
-    SliceSum {
-        rolling: sum.rolling + along,
-        transverse: sum.transverse + across,
-        // y s × (along t + across s) = −y along n.
-        moment: sum.moment - y * along,
-        // −sagitta n × (along t + across s), the moment that brakes the ball (Heathcote).
-        curvature_moment: [
-            sum.curvature_moment[0] + sagitta * across,
-            sum.curvature_moment[1] - sagitta * along,
-        ],
-        power: sum.power - power,
-    }
-}
-
-/// Force and moment of the traction on the ball, in inertial axes; the race feels the opposite
-/// force at the same point and the opposite moment.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TractionForce {
-    pub force: Vec3,
-    /// Moment about the contact point, N·m: about the normal, if the contact is plane.
-    pub moment: Vec3,
-    /// Power taken from the bodies, W, ≤ 0.
-    pub power: f64,
-}
-
-#[inline(always)]
-pub fn traction_force(
-    sum: &SliceSum,
-    sliding: &Sliding,
-    normal: Vec3,
-    normal_load: f64,
-) -> TractionForce {
-    let rolling = scale(sliding.rolling_direction, sum.rolling * normal_load);
-    let [about_t, about_s] = sum.curvature_moment;
-    let about_normal = scale(normal, sum.moment * normal_load);
-    let braking = add_scaled(about_normal, about_t * normal_load, sliding.rolling_direction);
-    TractionForce {
-        force: add_scaled(rolling, sum.transverse * normal_load, sliding.transverse_direction),
-        moment: add_scaled(braking, about_s * normal_load, sliding.transverse_direction),
-        power: sum.power * normal_load,
-    }
-}
-
-/// All slices of one contact, in order. `semi_major` in m; `curvature` is 1/(2R) of the deformed
-/// surface across the groove (1/m), zero leaves the Heathcote term out.
-pub fn integrate(
-    law: &TractionLaw,
-    slices: &Slices,
-    sliding: &Sliding,
-    semi_major: f64,
-    curvature: f64,
-) -> SliceSum {
-    let mut sum = SliceSum::default();
-    for (middle, share) in slices.middle.iter().zip(&slices.share) {
-        let y = middle * semi_major;
-        let sagitta = y * y * curvature;
-        let friction = |square, share| resistance_of(law, square, share, sliding.entrainment);
-        sum = add_slice(&sum, sliding.slip, sliding.relative_spin, y, sagitta, *share, friction);
-    }
-    sum
-}
-
-/// Slopes of all slices of one contact, in order; arguments as of [`integrate`].
-pub fn integrate_slope(
-    law: &TractionLaw,
-    slices: &Slices,
-    sliding: &Sliding,
-    semi_major: f64,
-    curvature: f64,
-) -> TractionSlope {
-    let mut sum = TractionSlope::default();
-    for (middle, share) in slices.middle.iter().zip(&slices.share) {
-        let y = middle * semi_major;
-        let sagitta = y * y * curvature;
-        let friction = |square, share| steepness_of(law, square, share, sliding.entrainment);
-        sum = add_slope(&sum, sliding.slip, sliding.relative_spin, y, sagitta, *share, friction);
-    }
-    sum
 }
 
 #[cfg(test)]
@@ -512,35 +289,6 @@ mod tests {
             // rounding's.
             let error = (own[1] - by_speed[1]).abs() * square;
             assert!(error <= 8.0 * f64::EPSILON * own[0], "{square:e}: {error:e}");
-        }
-    }
-
-    #[test]
-    fn pure_spin_gives_three_eighths_of_the_moment() {
-        // ∫ κ q(y) |y| dy = 3κWa/8 for constant κ, any slip direction the same size.
-        let law = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 1e-12 };
-        let sliding = Sliding { relative_spin: [0.0, 0.0, 30.0], ..Sliding::default() };
-        let semi_major = 1.5e-3;
-        let mut errors = Vec::new();
-        for count in [15, 45, 135] {
-            let sum = integrate(&law, &Slices::new(count), &sliding, semi_major, 0.0);
-            let exact = -3.0 * 0.07 * semi_major / 8.0;
-            errors.push((sum.moment / exact - 1.0).abs());
-            assert!(sum.rolling.abs() <= 1e-15 && sum.transverse.abs() <= 1e-15);
-        }
-        // Slices of equal width: second order.
-        assert!(errors[0] <= 6e-3, "{errors:?}");
-        for pair in errors.windows(2) {
-            let order = (pair[0] / pair[1]).ln() / 3f64.ln();
-            assert!((order - 2.0).abs() <= 0.15, "{errors:?}");
-        }
-    }
-
-    #[test]
-    fn shares_add_up_to_the_load() {
-        for count in [1, 2, 15, 101] {
-            let sum: f64 = Slices::new(count).share.iter().sum();
-            assert!((sum - 1.0).abs() <= 1e-14);
         }
     }
 

@@ -27,6 +27,9 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::time::Instant;
 
+/// Below this frequency (Hz) motions are those of what nothing brings back, but for rounding.
+const RIGID: f64 = 1e-2;
+
 pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let Asked { path, document, .. } = asked;
     scene.check_smooth()?;
@@ -66,7 +69,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let mut remarks: Vec<String> = found
         .iter()
         .map(frequency)
-        .find(|lowest| *lowest > 0.0)
+        .find(|lowest| *lowest > RIGID)
         .and_then(|lowest| relaxed(scene, lowest))
         .into_iter()
         .collect();

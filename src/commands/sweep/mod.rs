@@ -30,8 +30,9 @@ use std::time::Instant;
 const CHUNK: usize = 64;
 /// The same with a housing, where a point takes a hundred times as long.
 const HOUSED_CHUNK: usize = 16;
-/// Where each point has another bushing, whose springs take a second.
-const BUSHING_CHUNK: usize = 2;
+/// Where each point takes seconds, for a bushing's springs or the shapes of a shaft of tetrahedra: a signal waits for two at most, and
+/// threads have something to share.
+const SLOW_CHUNK: usize = 2;
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -79,8 +80,10 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let columns = point::columns(&grid, subject.as_ref());
     let housed = subject.as_ref().is_some_and(|scene| scene.housing_method().is_some());
     let bushings = grid.axes.iter().any(|axis| axis.key.contains(".bushing."));
-    let size = match (bushings, housed) {
-        (true, _) => BUSHING_CHUNK,
+    let mut bodies = subject.iter().flat_map(|scene| &scene.bodies);
+    let meshed = bodies.any(|body| body.beam.as_ref().is_some_and(|of| of.beam.mesh.is_some()));
+    let size = match (bushings || meshed, housed) {
+        (true, _) => SLOW_CHUNK,
         (false, true) => HOUSED_CHUNK,
         (false, false) => CHUNK,
     };
@@ -99,17 +102,11 @@ pub fn run(arguments: &Arguments) -> CommandResult {
             if interrupted.load(Ordering::Relaxed) {
                 return Ok(());
             }
-            let going_on = || {
-                progress.inc(1);
-                !interrupted.load(Ordering::Relaxed)
-            };
-            let solver = (&document, &grid, &columns[..]);
             let range = grid.chunk_range(index, size);
-            match solve_chunk(solver, (index, range), arguments.cold, going_on) {
-                Some(chunk) => journal.append(chunk)?,
-                // What is left of a chunk is solved again.
-                None => return Ok(()),
-            }
+            let points = range.len() as u64;
+            let chunk = solve_chunk((&document, &grid, &columns), (index, range), arguments.cold);
+            progress.inc(points);
+            journal.append(chunk)?;
             Ok(())
         })
     });
@@ -187,16 +184,13 @@ fn progress_bar(grid: &Grid, resumed: usize) -> ProgressBar {
     bar
 }
 
-/// All points of a chunk, unless it does not go on.
 fn solve_chunk(
     (document, grid, header): (&Document, &Grid, &[Column]),
     (index, range): (usize, Range<usize>),
     cold: bool,
-    going_on: impl Fn() -> bool,
-) -> Option<Chunk> {
+) -> Chunk {
     let mut chunk = Chunk { index, rows: Vec::new(), failures: Vec::new(), remarks: Vec::new() };
     let (mut neighbour, mut kept) = (None, Kept::default());
-    let last = range.end - 1;
     for point in range {
         match point::solve(document, grid, (point, header), neighbour.as_deref(), &mut kept) {
             Ok(solved) => {
@@ -214,9 +208,6 @@ fn solve_chunk(
                 neighbour = None;
             }
         }
-        if !going_on() && point < last {
-            return None;
-        }
     }
-    Some(chunk)
+    chunk
 }

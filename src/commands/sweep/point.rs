@@ -54,7 +54,12 @@ fn solve_scene(
     *kept = std::mem::take(kept).take(scene)?;
     let (housings, bores) = kept.parts();
     let lists = Lists::of(scene);
-    let Equilibrium { still, moment, .. } = equilibrium(&lists, grown(housings, bores), neighbour)?;
+    let found = |near| equilibrium(&lists, grown(housings, bores), near);
+    let Equilibrium { still, moment, .. } = match found(neighbour) {
+        // A neighbour may be far from where bodies are here: its shaft has another centre of mass, its race another place.
+        Err(_) if neighbour.is_some() => found(None)?,
+        found => found?,
+    };
     let solution = moment.solution;
     let mut remarks = match scene.one_still() {
         Some(_) => of_statics(scene.common(), &still, &solution),

@@ -15,7 +15,7 @@ use crate::ch2_housing::bearing::cage::{CageContact, Guidance, guide_contact, po
 use crate::ch2_housing::bearing::contact::{ContactDamping, RaceLaw, normal_load};
 use crate::ch2_housing::bearing::geometry::Raceway;
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
-use crate::ch2_housing::bearing::traction::{Motion, Slices};
+use crate::ch2_housing::bearing::slices::{Motion, Slices};
 use crate::kinematics::vec3::{Vec3, add, cross, scale, sub};
 use crate::solver::dent_table::DentError;
 use crate::solver::mount::Mount;

@@ -5,10 +5,13 @@ use super::contacts::{ContactLaws, ContactTable, Want};
 use super::race::RaceNow;
 use super::state::{LANES, Layout, POSITION, SPIN, VELOCITY};
 use crate::ch2_housing::bearing::contact::RaceContact;
+use crate::ch2_housing::bearing::slices::{
+    Motion, SliceSum, Sliding, TractionSlope, add_slice, add_slope, integrate, integrate_slope,
+    sliding, traction_force,
+};
 use crate::ch2_housing::bearing::traction::{
-    Motion, Resistance, SliceSum, Sliding, Steepness, TractionLaw, TractionSlope, add_slice,
-    add_slope, coefficient, coefficient_and_slope, integrate, integrate_slope, per_entrainment,
-    resistance, rounded_resistance, rounded_steepness, sliding, steepness, traction_force,
+    Resistance, Steepness, TractionLaw, coefficient, coefficient_and_slope, per_entrainment,
+    resistance, rounded_resistance, rounded_steepness, steepness,
 };
 use crate::kinematics::vec3::Vec3;
 

@@ -12,9 +12,8 @@ use super::state::{LANES, Layout, POSITION, VELOCITY};
 use crate::ch2_housing::bearing::contact::{
     RaceContact, RaceLaw, damped_load, normal_load, race_contact,
 };
-use crate::ch2_housing::bearing::traction::{
-    Slices, Sliding, TractionForce, TractionLaw, TractionSlope,
-};
+use crate::ch2_housing::bearing::slices::{Slices, Sliding, TractionForce, TractionSlope};
+use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::kinematics::vec3::sub;
 use crate::solver::plan::Stage;
 use crate::solver::plan::steps::BearingSteps;

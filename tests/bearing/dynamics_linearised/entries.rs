@@ -8,9 +8,8 @@ use crate::common::table_4_1;
 use bearing_dynamics::ch2_housing::bearing::cage::{
     CageContact, CageForce, cage_energy, cage_load, cage_stiffness,
 };
-use bearing_dynamics::ch2_housing::bearing::traction::{
-    ExponentialCurve, Slices, Sliding, integrate, integrate_slope,
-};
+use bearing_dynamics::ch2_housing::bearing::slices::{Slices, Sliding, integrate, integrate_slope};
+use bearing_dynamics::ch2_housing::bearing::traction::ExponentialCurve;
 use bearing_dynamics::solver::dynamics::assembly::CAGE;
 use bearing_dynamics::solver::dynamics::state::LANES;
 

@@ -5,7 +5,7 @@ mod energy;
 use super::Recorder;
 use super::seat::{SeatRow, prefix, seat_columns};
 use crate::ch2_housing::bearing::cage::Guidance;
-use crate::ch2_housing::bearing::traction::{Motion, Sliding, sliding};
+use crate::ch2_housing::bearing::slices::{Motion, Sliding, sliding};
 use crate::kinematics::vec3::{dot, scale, sub};
 use crate::output::series::Column;
 use crate::solver::channels::ChannelGroup;
