@@ -1,8 +1,6 @@
 //! What a reader of the numbers should know: one set of remarks for equilibrium and motion.
 
-use crate::commands::scene_remarks::{
-    at_rest, moving_starts, of_springs, on_dents, sudden_fits, torques_on_unbalances,
-};
+use crate::commands::scene_remarks::{at_rest, moving_starts, of_springs, on_dents, sudden_fits};
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing, SceneBody, Spring};
@@ -206,7 +204,7 @@ pub fn of_run(scene: &AssemblyScene, simulation: &Simulation) -> Vec<String> {
         named(placed, of_moving(&placed.scene, bearing, extremes))
     });
     let of_scene = of_springs(scene).into_iter().chain(on_dents(scene)).chain(sudden_fits(scene));
-    let of_scene = of_scene.chain(moving_starts(scene)).chain(torques_on_unbalances(scene));
+    let of_scene = of_scene.chain(moving_starts(scene));
     of_scene.chain(each.flatten()).collect()
 }
 

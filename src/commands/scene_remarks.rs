@@ -175,31 +175,6 @@ pub fn moving_starts(scene: &AssemblyScene) -> Option<String> {
     ))
 }
 
-/// Unbalances of what a torque turns: they push the body and take nothing of its spin.
-pub fn torques_on_unbalances(scene: &AssemblyScene) -> Option<String> {
-    let by_torque = |rotation: &Rotation| matches!(rotation, Rotation::Torque(_));
-    let bodies = scene.bodies.iter().filter(|body| by_torque(&body.race.rotation));
-    let mut bodies = bodies.filter(|body| {
-        let mut along = body.beam.iter().flat_map(|beam| &beam.unbalances);
-        body.unbalance != 0.0 || along.any(|(_, size, _)| *size != 0.0)
-    });
-    let mut races = scene.bearings.iter().filter(|placed| {
-        let of = &placed.scene.dynamics;
-        of.unbalance != 0.0 && by_torque(&of.inner.rotation)
-    });
-    let body = bodies.next().map(|body| format!("body {}", body.name));
-    let race = || {
-        let name = races.next()?.name.as_ref();
-        Some(format!("inner race{}", name.map_or(String::new(), |name| format!(" of {name}"))))
-    };
-    body.or_else(race).map(|first| {
-        format!(
-            "a torque turns the {first}, which has an unbalance: what that takes of the spin is left out, no resonance holds a run-up back, and \
-             work_drives has work of the unbalance that the torque does not do; give a speed in place of the torque where that matters"
-        )
-    })
-}
-
 /// Rows that are too far apart for what drives the scene: what they show of it is folded to other frequencies.
 pub fn between_rows(scene: &AssemblyScene, interval: f64) -> Option<String> {
     let end = scene.run().map_or(0.0, |run| run.end);

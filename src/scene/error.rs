@@ -249,6 +249,11 @@ pub enum Problem {
     )]
     ImpossibleInertia { axial: f64, transverse: f64 },
     #[error(
+        "an unbalance of {unbalance} kg m is more than a body of {mass} kg can have whose moment of inertia about its axis is {axial} \
+         kg m^2. Allowed: less than {:.4e} kg m, the root of their product, where a torque turns it. Hint: check the units of both", (mass * axial).sqrt()
+    )]
+    ImpossibleUnbalance { unbalance: f64, mass: f64, axial: f64 },
+    #[error(
         "the friction curve rises to {peak:.3}. Allowed: up to 2. Hint: the rise `b` is too large for the decay `c`"
     )]
     FrictionTooLarge { peak: f64 },

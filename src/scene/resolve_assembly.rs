@@ -11,7 +11,9 @@ use crate::scene::housing::HousingMethod;
 use crate::scene::key_table_assembly::OWN_RACES;
 use crate::scene::keys;
 use crate::scene::resolve::{Reader, resolve_bearing, text};
-use crate::scene::resolve_dynamics::{check_inertia, foundation, rotating_load, rotation};
+use crate::scene::resolve_dynamics::{
+    check_inertia, check_unbalance, foundation, rotating_load, rotation,
+};
 use crate::scene::resolve_housing::in_housing;
 use crate::scene::resolve_shaft::{beam, refuse_places_off_shafts, refuse_springs_on_elements};
 use crate::scene::resolve_solid::{refuse_fields, refuse_solid};
@@ -396,6 +398,10 @@ fn body(
     };
     let rotating_load = rotating_load(&mut reader, "body")?;
     let unbalance = reader.given_number("body.unbalance").unwrap_or(0.0);
+    if unbalance != 0.0 {
+        check_unbalance(&race, unbalance)
+            .map_err(|problem| reader.document.error("body.unbalance", problem))?;
+    }
     reader.note_named(defaults);
     let beam = beam.map(Box::new);
     Ok(SceneBody { name: name.into(), race, rotating_load, unbalance, beam })

@@ -48,13 +48,16 @@ pub(crate) fn dynamics(
         CageInRun::Body(body) => gap_in_pockets(parts.geometry, &body.contacts).is_none(),
         CageInRun::LeftOut(_) => true,
     };
+    let unbalance = reader.given_number("inner_race.unbalance").unwrap_or(0.0);
+    check_unbalance(&inner, unbalance)
+        .map_err(|problem| reader.document.error("inner_race.unbalance", problem))?;
     Ok(Dynamics {
         inner,
         shoulders,
         outer,
         cage,
         rotating_load: rotating_load(reader, "inner_race")?,
-        unbalance: reader.given_number("inner_race.unbalance").unwrap_or(0.0),
+        unbalance,
         traction: resolve_contact::traction(reader)?,
         // Checked by the key table: 1 to 201.
         slices: reader.number("traction.slices").unwrap_or(15.0) as usize,
@@ -309,6 +312,17 @@ pub(crate) fn check_inertia(axial: f64, transverse: f64) -> Result<(), Problem> 
     match axial <= 2.0 * transverse * (1.0 + 1e-9) {
         true => Ok(()),
         false => Err(Problem::ImpossibleInertia { axial, transverse }),
+    }
+}
+
+/// A mass m beside the axis by r, with u = m r, has a moment of inertia m r² = u²/m of its own, which is part of the body's. A given
+/// speed asks for none, and equilibria for no inertia at all.
+pub(crate) fn check_unbalance(race: &RaceBody, unbalance: f64) -> Result<(), Problem> {
+    let Inertia { mass, axial, .. } = race.inertia;
+    let given = matches!(race.rotation, Rotation::Speed(_)) || mass == 0.0;
+    match given || unbalance * unbalance < mass * axial {
+        true => Ok(()),
+        false => Err(Problem::ImpossibleUnbalance { unbalance, mass, axial }),
     }
 }
 

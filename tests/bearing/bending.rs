@@ -470,7 +470,7 @@ fn stretching_is_damped_inside_and_outside() {
     let steps = ShaftSteps { loads: false, damping: true };
     let entries = [gone, speed];
     let mut ran = Tally::default();
-    let done = shaft.rates(steps, 0.0, 0.0, (&body, &entries), &mut rates, &mut ran);
+    let done = shaft.rates(steps, 0.0, Some(0.0), (&body, &entries), &mut rates, &mut ran);
     let pushed = -frequency * frequency * gone - (outside + inside) * speed;
     // Rounding.
     assert!((rates[1] / pushed - 1.0).abs() <= 1e-14 && rates[0] == speed, "{rates:?} {pushed}");

@@ -194,6 +194,8 @@ proptest! {
             }
             body.rotation = Rotation::Torque(Profile::Constant(0.1));
         }
+        // Under a torque an unbalance has kinetic energy of its own: `the_ledger_balances_the_energy` has it.
+        whole.unbalance = 0.0;
         let state = random_state(&whole, seed);
         let t = 0.013;
         let (system, rates) = evaluated(&whole, Driver::Lanes, t, &state);
@@ -228,7 +230,7 @@ proptest! {
                         body.drives = [0.0; 5].map(|zero| Drive::Load(Profile::Constant(zero)));
                         body.rotation = Rotation::Torque(Profile::ZERO);
                     }
-                    (without.rotating_load, without.unbalance) = (None, 0.0);
+                    without.rotating_load = None;
                 }
             }
             let power = kinetic_power(&before, t, &state) - kinetic_power(&without, t, &state);

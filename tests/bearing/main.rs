@@ -37,5 +37,6 @@ mod shaft_stiffness;
 mod shafts;
 mod statics_edges;
 mod statics_laws;
+mod torque_and_unbalance;
 mod turning_frames;
 mod work_counts;

@@ -240,24 +240,3 @@ fn modes_say_how_far_relaxed_springs_are_off() {
     // Told to three digits.
     assert!((number("spring mount is ", " times") / times - 1.0).abs() <= 5e-3, "{told} {times}");
 }
-
-/// What an unbalance takes of the spin that a torque gives is left out, and told by all that read a run.
-#[test]
-fn unbalances_under_torques_are_told() {
-    let place = Place::new();
-    let spinning = disc("from = \"ground\"\nto = \"disc\"", "{}", "end = \"1 ms\"");
-    let text =
-        spinning.replace("speed = \"6000 rpm\"", "torque = \"0.1 N m\"\nunbalance = \"1e-4 kg m\"");
-    let scene = place.scene("scene.toml", &text);
-    let path = scene.to_str().unwrap();
-    let told = "a torque turns the body disc, which has an unbalance";
-    for command in ["check", "plan"] {
-        let output = bearing(&[command, path]);
-        assert!(said(&output).contains(told), "{command}: {}", said(&output));
-    }
-    let output = run(&scene, &place.path("out"), &[]);
-    assert!(said(&output).contains(told), "{}", said(&output));
-    let at_a_speed = place.scene("speed.toml", &spinning);
-    let output = bearing(&["check", at_a_speed.to_str().unwrap()]);
-    assert!(!said(&output).contains("a torque turns"), "{}", said(&output));
-}

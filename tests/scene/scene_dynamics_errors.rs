@@ -105,6 +105,13 @@ const CASES: &[Case] = &[
     ("inertia without mass", r#"{ mass = "0.2 kg", axial"#, "{ axial", 27, &["inner_race.inertia.mass: missing"]),
     ("inertias exchanged by a factor", r#"transverse = "6e-5 kg m^2" }"#, r#"transverse = "6e-6 kg m^2" }"#, 27,
         &["more than twice", "no body has", "exchanged"]),
+    ("more unbalance than there is inertia", r#"speed = { smooth_ramp = ["0 rpm", "600 rpm"], duration = "0.3 s" }
+inertia = { mass = "0.2 kg", axial = "1e-4 kg m^2", transverse = "6e-5 kg m^2" }
+rotating_load = { force = "250 N", speed = "50 rpm" }
+unbalance = "900 g mm""#, r#"torque = "1 N m"
+inertia = { mass = "0.2 kg", axial = "1e-4 kg m^2", transverse = "6e-5 kg m^2" }
+rotating_load = { force = "250 N", speed = "50 rpm" }
+unbalance = "9000 g mm""#, 29, &["inner_race.unbalance", "more than a body of 0.2 kg can have", "less than 4.4721e-3 kg m", "units"]),
     ("shoulder under the groove", "\"26.3 mm\"", "\"23 mm\"", 6, &["bearing.inner_race.shoulder_radius", "more than the groove bottom's radius"]),
     ("shoulder over the balls", "\"26.3 mm\"", "\"31 mm\"", 6, &["less than the pitch radius", "30 mm"]),
     ("unknown motion", "\"5-dof\"", "\"5dof\"", 31, &["unknown value", "did you mean `5-dof`"]),

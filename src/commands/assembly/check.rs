@@ -8,7 +8,7 @@ use crate::commands::check::{Line, say_json, say_lines};
 use crate::commands::echo::through;
 use crate::commands::run::{planned_request, request};
 use crate::commands::scene_remarks::{
-    moving_starts, of_shafts, of_springs, sudden_fits, torques_on_unbalances, turning_races,
+    moving_starts, of_shafts, of_springs, sudden_fits, turning_races,
 };
 use crate::commands::{CommandResult, echo_run};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
@@ -194,7 +194,6 @@ fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, Str
     }
     said.extend(sudden_fits(scene).map(|said| ("note", said)));
     said.extend(moving_starts(scene).map(|said| ("note", said)));
-    said.extend(torques_on_unbalances(scene).map(|said| ("note", said)));
     if !housings.is_empty() || scene.has_shafts_in_elements() {
         let fields = match run.fields_interval {
             Some(interval) => format!("every {interval} s"),

@@ -12,7 +12,7 @@ use crate::commands::plan::say_plan;
 use crate::commands::plan_step::{note, refused, step_lines};
 use crate::commands::run::{self, planned_request};
 use crate::commands::scene_remarks::{
-    moving_starts, of_shafts, of_springs, sudden_fits, torques_on_unbalances, turning_races,
+    moving_starts, of_shafts, of_springs, sudden_fits, turning_races,
 };
 use crate::commands::{CommandResult, Outcome, memory};
 use bearing_dynamics::output::session::{RunRequest, table_size};
@@ -65,7 +65,6 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
     notes.extend(turning_races(scene).map(|said| note("outer race", &said)));
     notes.extend(sudden_fits(scene).map(|said| note("fit", &said)));
     notes.extend(moving_starts(scene).map(|said| note("start", &said)));
-    notes.extend(torques_on_unbalances(scene).map(|said| note("unbalance", &said)));
     for housing in &housings {
         notes.extend(housing.notes().iter().map(|said| note("housing mesh", said)));
     }

@@ -2,6 +2,7 @@
 
 use super::state::{POSITION, SPIN, VELOCITY};
 use super::system::System;
+use super::unbalance::{bent_of, energies};
 use crate::ch2_housing::bearing::cage::cage_energy;
 use crate::ch2_housing::bearing::contact::strain_energy;
 use crate::ch2_housing::bearing::inertia::Inertia;
@@ -104,6 +105,13 @@ impl System {
             energy.solid_kinetic += of.kinetic;
             energy.solid_strain += of.strain;
             energy.gravity += of.gravity;
+        }
+        for index in self.steps.moving.iter().copied().filter(|&of| self.steps.bodies[of].swings) {
+            let bent = bent_of(assembly, &self.shafts, index, state).map(|(_, bent)| bent);
+            let of = (&assembly.bodies[index], &self.bodies[index]);
+            let [kinetic, weight] = energies(of, bent, assembly.gravity);
+            energy.kinetic += kinetic;
+            energy.gravity += weight;
         }
         for (index, shaft) in assembly.shafts.iter().enumerate() {
             let of = shaft.energy(self.bent(state, index));

@@ -51,3 +51,4 @@ mod static_sections;
 pub mod step_watch;
 pub mod system;
 pub mod turning_frame;
+pub mod unbalance;

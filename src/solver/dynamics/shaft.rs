@@ -22,6 +22,7 @@
 
 use super::race::{RaceLoads, RaceNow};
 use super::reduced_solid::ModalEnergy;
+use super::unbalance::{directions, turning_momentum};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 use crate::solver::mount::Mount;
 use crate::solver::plan::Stage;
@@ -262,12 +263,13 @@ impl ElasticShaft {
     }
 
     /// Rates of the amplitudes under springs, gyroscopic moments, damping, loads and unbalances; what holds the shaft
-    /// adds to them. `acceleration` of a given spin, rad/s².
+    /// adds to them. `acceleration` of a given spin, rad/s²; `None` where a torque drives it, whose unbalances work within the body
+    /// ([`super::unbalance`]).
     pub fn rates(
         &self,
         steps: ShaftSteps,
         t: f64,
-        acceleration: f64,
+        acceleration: Option<f64>,
         (body, entries): (&RaceNow, &[f64]),
         rates: &mut [f64],
         ran: &mut Tally,
@@ -351,32 +353,38 @@ impl ElasticShaft {
     fn load(
         &self,
         t: f64,
-        acceleration: f64,
+        acceleration: Option<f64>,
         (body, bend): (&RaceNow, &Bend),
         pushed: &mut [f64],
         done: &mut ShaftRates,
     ) {
         let mount = Mount::at_centre(self.body);
-        let mut push = |section: &Section, force: &dyn Fn(&SectionNow) -> Vec3| {
+        let mut push = |section: &Section, works: bool, force: &dyn Fn(&SectionNow) -> Vec3| {
             let now = section.place(body, &mount, bend);
             let force = force(&now);
-            done.driven += dot(force, now.race.motion.velocity);
+            if works {
+                done.driven += dot(force, now.race.motion.velocity);
+            }
             let loads = RaceLoads { force, moment: [0.0; 3] };
             done.on_body.add(&section.take((body, bend), &now, &loads, pushed));
         };
         for load in &self.loads {
-            push(&load.section, &|_| [0, 1, 2].map(|i| load.force[i].value(t)));
+            push(&load.section, true, &|_| [0, 1, 2].map(|i| load.force[i].value(t)));
         }
         let spin = dot(body.motion.spin, body.motion.axis);
         for unbalance in &self.unbalances {
-            push(&unbalance.section, &|now| {
+            push(&unbalance.section, acceleration.is_some(), &|now| {
+                let now = &now.race.state;
+                let [outwards, forward] = directions(&now.orientation, unbalance.angle);
                 // m e Ω² outwards and m e dΩ/dt backwards.
-                let (sin, cos) = libm::sincos(unbalance.angle);
-                let turned = |y: f64, z: f64| -> Vec3 {
-                    (now.race.state.orientation * nalgebra::Vector3::new(0.0, y, z)).into()
-                };
-                let outwards = scale(turned(cos, sin), unbalance.size * spin * spin);
-                add_scaled(outwards, -unbalance.size * acceleration, turned(-sin, cos))
+                match acceleration {
+                    Some(rate) => add_scaled(
+                        scale(outwards, unbalance.size * spin * spin),
+                        -unbalance.size * rate,
+                        forward,
+                    ),
+                    None => turning_momentum(unbalance.size, spin, now.spin, forward),
+                }
             });
         }
     }

@@ -15,13 +15,13 @@ use super::state::{
     BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, POSITION, Places, SPIN, VELOCITY,
     quaternion_rate,
 };
+use super::unbalance::{Swing, bent_of, directions, turning_momentum};
 use crate::ch2_housing::bearing::cage::AxisMotion;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, dot};
 use crate::solver::mount::Mount;
 use crate::solver::plan::steps::{BodySteps, Steps};
 use crate::solver::plan::tally::{Ran, Tally};
 use crate::solver::plan::{Item, Stage, motion};
-use nalgebra::Vector3;
 
 /// An assembly with everything precomputed and room to work in.
 pub struct System {
@@ -53,6 +53,7 @@ pub struct System {
     /// that no stage sees what comes after. Infinite otherwise.
     pub latest: f64,
     loads: Vec<RaceLoads>,
+    swing: Swing,
 }
 
 impl System {
@@ -82,6 +83,7 @@ impl System {
             sets,
             outside: vec![None; bodies.len()],
             loads: vec![RaceLoads::default(); bodies.len()],
+            swing: Swing::new(&assembly),
             bodies,
             work: Work::default(),
             ran: Ran::new(
@@ -194,7 +196,7 @@ impl System {
         }
         self.solid_rates(t, state, rates, &mut ledger);
         for moving in 0..self.steps.moving.len() {
-            self.body_rates(self.steps.moving[moving], t, rates, &mut ledger);
+            self.body_rates(self.steps.moving[moving], t, state, rates, &mut ledger);
         }
         let at = self.places.ledger();
         rates[at..at + LEDGER].copy_from_slice(&ledger);
@@ -214,8 +216,9 @@ impl System {
             let (shaft, at) = (&self.assembly.shafts[index], self.shafts[index]);
             let body = &self.assembly.bodies[shaft.body];
             let acceleration = match body.driven().map(|driven| &driven.rotation) {
-                Some(Rotation::Speed(profile)) => profile.rate(time),
-                Some(Rotation::Torque(_)) | None => 0.0,
+                Some(Rotation::Speed(profile)) => Some(profile.rate(time)),
+                Some(Rotation::Torque(_)) => None,
+                None => Some(0.0),
             };
             let entries = at..at + shaft.entries();
             let (now, own) = (&self.bodies[shaft.body], &mut self.ran.bodies[shaft.body]);
@@ -334,7 +337,14 @@ impl System {
     }
 
     /// Rates of one body under the loads that have been summed.
-    fn body_rates(&mut self, index: usize, t: f64, rates: &mut [f64], ledger: &mut [f64; LEDGER]) {
+    fn body_rates(
+        &mut self,
+        index: usize,
+        t: f64,
+        state: &[f64],
+        rates: &mut [f64],
+        ledger: &mut [f64; LEDGER],
+    ) {
         let body = &self.assembly.bodies[index];
         let now = &self.bodies[index];
         let steps = self.steps.bodies[index];
@@ -353,8 +363,8 @@ impl System {
             Mobility::Driven(driven) => {
                 let t = t.min(self.latest);
                 let BodyState { velocity, spin, .. } = now.state;
-                if let Some(turning) = turning_force(body, now, t, steps, own) {
-                    loads.force = add(loads.force, turning);
+                if let Some([turning, within]) = turning_force(body, now, t, steps, own) {
+                    loads.force = add(loads.force, add(turning, within));
                     ledger[Ledger::Drives as usize] += dot(turning, velocity);
                 }
                 if let Some(outside) = &self.outside[index] {
@@ -364,6 +374,21 @@ impl System {
                     own.add(Stage::Impulses, 1);
                 }
                 let rest = steps.foundation.then_some(&body.rest);
+                if steps.swings {
+                    let bent = bent_of(&self.assembly, &self.shafts, index, state);
+                    let pushes = match bent {
+                        Some((at, (shaft, _))) => {
+                            &mut rates[at + shaft.amplitudes()..at + shaft.entries()]
+                        }
+                        None => &mut [],
+                    };
+                    let bent = bent.map(|(_, bent)| bent);
+                    let gravity = self.steps.gravity.then_some(self.assembly.gravity);
+                    self.swing.update((body, now), bent, gravity, pushes, &mut loads);
+                    let mut uncounted = Tally::default();
+                    let free = race::rates(driven, t, now, rest, &loads, &mut uncounted);
+                    self.swing.add_to((driven, now), &free, pushes, &mut loads);
+                }
                 let result = race::rates(driven, t, now, rest, &loads, own);
                 ledger[Ledger::Drives as usize] += result.drive_power;
                 ledger[Ledger::Foundation as usize] += result.foundation_power;
@@ -422,14 +447,15 @@ impl System {
     }
 }
 
-/// Rotating load and unbalance of a body, N; `None` where neither is planned.
+/// Rotating load and unbalance of a body, N, and that of an unbalance which works within it, as a torque turns it; `None` where
+/// neither is planned.
 fn turning_force(
     body: &Body,
     now: &RaceNow,
     t: f64,
     steps: BodySteps,
     ran: &mut Tally,
-) -> Option<Vec3> {
+) -> Option<[Vec3; 2]> {
     if !(steps.rotating_load || steps.unbalance) {
         return None;
     }
@@ -438,20 +464,25 @@ fn turning_force(
         turning = load.force(t);
         ran.add(Stage::RotatingLoad, 1);
     }
+    let mut within = [0.0; 3];
     if steps.unbalance {
         ran.add(Stage::Unbalance, 1);
         // m e Ω² along the body's own Y, which turns with it, and m e dΩ/dt against its Z.
-        let state = &now.state;
-        let direction = |of: Vector3<f64>| -> Vec3 { (state.orientation * of).into() };
-        let speed = dot(state.spin, now.motion.axis);
+        let [outwards, forward] = directions(&now.state.orientation, 0.0);
+        let speed = dot(now.state.spin, now.motion.axis);
         let centrifugal = body.unbalance * speed * speed;
-        turning = add_scaled(turning, centrifugal, direction(Vector3::y()));
-        if let Some(Rotation::Speed(profile)) = body.driven().map(|driven| &driven.rotation) {
-            let lagging = body.unbalance * profile.rate(t);
-            turning = add_scaled(turning, -lagging, direction(Vector3::z()));
+        match body.driven().map(|driven| &driven.rotation) {
+            Some(Rotation::Torque(_)) => {
+                within = turning_momentum(body.unbalance, speed, now.state.spin, forward);
+            }
+            Some(Rotation::Speed(profile)) => {
+                turning = add_scaled(turning, centrifugal, outwards);
+                turning = add_scaled(turning, -body.unbalance * profile.rate(t), forward);
+            }
+            None => turning = add_scaled(turning, centrifugal, outwards),
         }
     }
-    Some(turning)
+    Some([turning, within])
 }
 
 fn write_body(

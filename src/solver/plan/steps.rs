@@ -4,6 +4,7 @@ use super::solid::SolidSteps;
 use super::{Item, Stage, Subject, does};
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::shaft::{ElasticShaft, ShaftSteps};
+use crate::solver::dynamics::unbalance::swings;
 
 /// Of one bearing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +24,8 @@ pub struct BodySteps {
     pub foundation: bool,
     pub rotating_load: bool,
     pub unbalance: bool,
+    /// An unbalance takes part in the spin, which a torque drives.
+    pub swings: bool,
 }
 
 /// Of a whole assembly.
@@ -63,6 +66,7 @@ impl Steps {
                 foundation: of(Stage::Foundation),
                 rotating_load: of(Stage::RotatingLoad),
                 unbalance: of(Stage::Unbalance),
+                swings: swings(assembly, index),
             }
         };
         let bodies = 0..assembly.bodies.len();
