@@ -87,12 +87,33 @@ pub(super) fn add_circulation(
 ) {
     let joined = Joined::new(model, connection, here);
     let rows = connection.rows([&joined.ends[0], &joined.ends[1]]);
-    // A reversed end has its own X the other way.
-    let spin = spin * dot(joined.ends[0].motion.axis, joined.bodies[0].0.motion.axis);
+    let spin = spin_of(model, connection, spin, here);
     for [y, z] in [[&rows[1], &rows[2]], [&rows[4], &rows[5]]] {
         joined.add_product([y, z], spin * y.damping, &mut here.stiffness);
         joined.add_product([z, y], -spin * y.damping, &mut here.stiffness);
     }
+}
+
+/// How far the ends go along its six directions for a unit of each coordinate, those of sections behind the unknowns.
+pub(super) fn levers(model: &Model, connection: &Connection, here: &Evaluation) -> DMatrix<f64> {
+    let joined = Joined::new(model, connection, here);
+    let rows = connection.rows([&joined.ends[0], &joined.ends[1]]);
+    let mut levers = DMatrix::zeros(rows.len(), model.coordinates);
+    for (i, row) in rows.iter().enumerate() {
+        for (end, first) in joined.firsts.into_iter().enumerate() {
+            let Some(first) = first else { continue };
+            let own = joined.conjugate(end, row.on[end][0], row.on[end][1]);
+            let mut part = levers.fixed_view_mut::<1, 5>(i, first);
+            part += own.transpose();
+        }
+    }
+    levers
+}
+
+/// The spin of its first end's axes where the body below turns by `spin`: a reversed end has its own X the other way.
+pub(super) fn spin_of(model: &Model, connection: &Connection, spin: f64, here: &Evaluation) -> f64 {
+    let joined = Joined::new(model, connection, here);
+    spin * dot(joined.ends[0].motion.axis, joined.bodies[0].0.motion.axis)
 }
 
 /// Its dashpots, where the stiffness is.

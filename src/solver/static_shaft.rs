@@ -260,6 +260,22 @@ pub(super) fn onto_unknowns(model: &Model, moved: &[Moved], here: &mut Evaluatio
     here.stiffness.resize_mut(unknowns, unknowns, 0.0);
 }
 
+/// Takes rows over sections, behind the unknowns, to the unknowns.
+pub(super) fn rows_onto_unknowns(
+    model: &Model,
+    moved: &[Moved],
+    mut rows: DMatrix<f64>,
+) -> DMatrix<f64> {
+    for Moved { own, motion, columns, .. } in moved {
+        let block = rows.columns(*own, 5).into_owned();
+        for &(j, to) in columns {
+            let mut column = rows.column_mut(to);
+            column += &block * motion.column(j);
+        }
+    }
+    rows.columns(0, model.scale.len()).into_owned()
+}
+
 /// Columns of a section's motion, and where the unknowns of each are.
 fn columns((body, shaft): Firsts, count: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..count).filter_map(move |i| Some((i, if i < 5 { body? + i } else { shaft + i - 5 })))

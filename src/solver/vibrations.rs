@@ -4,19 +4,21 @@
 //! Balls are springs without mass, a condensed housing takes part with the mass of its shapes under its race.
 //! Axes do not spin with the bodies, which are of revolution: M, C, G and K stand still. With spin Ω about X a body of axial inertia
 //! J makes moments J Ω against the rates of its tilts; its shapes have those of [`super::dynamics::shaft`]. Dashpots that begin at
-//! a body that spins turn with it, and feed whirl above the critical speed as damping inside the shaft does.
+//! a body that spins turn with it, and feed whirl above the critical speed as damping inside the shaft does; so do Maxwell elements.
 
 use super::dynamics::assembly::{Assembly, Body};
-use super::dynamics::connection::Connection;
+use super::dynamics::connection::{Connection, MaxwellElement};
 use super::dynamics::model::Rotation;
 use super::dynamics::shaft::ElasticShaft;
-use super::housing::inertia::{HousingMass, MovingBody, mass_matrix};
+use super::housing::inertia::{HousingMass, Mode, MovingBody, mass_matrix, modes};
 use super::rotor::beam::STATION;
+use super::rotor::critical::Critical;
 use super::rotor::model::{RotorError, RotorModel, Vibrations};
+use super::rotor::relaxing::Relaxing;
 use super::static_assembly::{Place, StaticAssembly};
-use super::static_connection::{add_circulation, add_damping};
+use super::static_connection::{add_circulation, add_damping, levers, spin_of};
 use super::static_model::{Evaluation, Model};
-use super::static_shaft::{Moved, onto_unknowns, sections};
+use super::static_shaft::{Moved, onto_unknowns, rows_onto_unknowns, sections};
 use super::statics::AssemblySolution;
 use nalgebra::{DMatrix, DVector};
 
@@ -32,6 +34,9 @@ pub struct Whirling {
     pub top_speed: f64,
     /// Whose it is, where others turn at other speeds.
     pub fastest: Option<String>,
+    vibrations: Vibrations,
+    /// y, z and tilts of each place for a unit of every coordinate.
+    rows: DMatrix<f64>,
 }
 
 /// Speed that is given at the end of all that changes, rad/s.
@@ -76,6 +81,7 @@ pub fn whirling(
         gyroscopic: DMatrix::zeros(size, size),
         circulating: DMatrix::zeros(size, size),
         pairs: Vec::new(),
+        relaxing: Vec::new(),
         free: (0..size).filter(|&i| i >= 5 * bodies.len() || bodies[i / 5].free[i % 5]).collect(),
         mass,
     };
@@ -108,10 +114,100 @@ pub fn whirling(
     all.circulating += over_unknowns(&model, &here, &moved, |here| {
         spins.iter().for_each(|&(of, spin)| add_circulation(&model, of, spin, here));
     });
+    all.relaxing = relaxing(&model, &here, &moved, &spins);
     let (places, rows) = told(&model, still, &moved);
-    let stations = (0..places.len()).map(|place| place as f64).collect();
+    let stations: Vec<f64> = (0..places.len()).map(|place| place as f64).collect();
     let model = RotorModel::of(&all, MODES, stations, Some(&rows))?;
-    Ok(Whirling { model, places, top_speed, fastest: named })
+    Ok(Whirling { model, places, top_speed, fastest: named, vibrations: all, rows })
+}
+
+impl Whirling {
+    /// [`RotorModel::critical_speeds_of`] this, up to `limit`, rad/s.
+    ///
+    /// # Errors
+    /// As that.
+    pub fn critical_speeds(&self, limit: f64) -> Result<Vec<Critical>, RotorError> {
+        if self.vibrations.relaxing.is_empty() {
+            return self.model.critical_speeds();
+        }
+        let (stations, rows) = (&self.model.stations, Some(&self.rows));
+        RotorModel::critical_speeds_of(&self.vibrations, MODES, stations, rows, limit)
+    }
+}
+
+/// Natural motions with nothing turning and nothing damping, slowest first: each with the stiffness that springs which relax store at
+/// its own frequency, towards which it comes down from that of springs that have not relaxed.
+pub fn natural_motions(
+    still: &StaticAssembly,
+    found: &AssemblySolution,
+    bodies: &[MovingBody],
+    housings: &[HousingMass],
+) -> Vec<Mode> {
+    let model = Model::new(still);
+    let here = placed(&model, found);
+    let moved = sections(&model, &here.at);
+    let standing: Vec<(&Connection, f64)> =
+        model.assembly.connections.iter().map(|of| (of, 0.0)).collect();
+    let elements = relaxing(&model, &here, &moved, &standing);
+    let with = |frequency: f64| {
+        let mut stiffness = found.with_shapes.clone();
+        elements.iter().for_each(|of| stiffness += of.storage(frequency));
+        modes(&stiffness, bodies, housings)
+    };
+    let mut all = with(f64::INFINITY);
+    if elements.is_empty() {
+        return all;
+    }
+    let mut last: Vec<Mode> = Vec::new();
+    for (number, mode) in all.iter_mut().enumerate() {
+        // One of a pair of the same frequency (along Y and Z, say) is found with the other.
+        let slower = last.get(number.wrapping_sub(1)).zip(last.get(number));
+        if let Some((one, other)) = slower
+            && other.square - one.square <= PAIR * one.square
+        {
+            *mode = other.clone();
+            continue;
+        }
+        for _ in 0..ROUNDS {
+            last = with(mode.square.max(0.0).sqrt());
+            let change = (last[number].square - mode.square).abs();
+            *mode = last[number].clone();
+            if change <= SETTLED * mode.square.abs() {
+                break;
+            }
+        }
+    }
+    all
+}
+
+/// Rounds in which a frequency is looked for at the stiffness of the last one, and the part of its square by which it still
+/// changes then.
+const ROUNDS: usize = 200;
+const SETTLED: f64 = 1e-10;
+/// Squares of frequencies closer than this part are of a pair.
+const PAIR: f64 = 1e-8;
+
+/// Maxwell elements over the unknowns.
+fn relaxing(
+    model: &Model,
+    here: &Evaluation,
+    moved: &[Moved],
+    spins: &[(&Connection, f64)],
+) -> Vec<Relaxing> {
+    let of = |&(of, spin): &(&Connection, f64)| {
+        let elements = of.maxwell();
+        let levers = (!elements.is_empty())
+            .then(|| rows_onto_unknowns(model, moved, levers(model, of, here)));
+        let spin = if spin == 0.0 { 0.0 } else { spin_of(model, of, spin, here) };
+        let element = |element: &MaxwellElement| Relaxing {
+            levers: levers.clone().unwrap_or_default(),
+            stiffness: element.stiffness,
+            relaxation_time: element.relaxation_time,
+            spin,
+        };
+        elements.iter().map(element).collect::<Vec<_>>()
+    };
+    spins.iter().flat_map(of).collect()
 }
 
 /// Everything where an equilibrium has it.

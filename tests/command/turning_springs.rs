@@ -3,6 +3,7 @@
 use super::run_command::{bearing, code, run, said};
 use crate::solid_command_common::{Place, column, json, number, stderr};
 
+use nalgebra::Complex;
 use std::f64::consts::TAU;
 
 /// A bearing that touches nothing: a scene has one.
@@ -220,23 +221,92 @@ fn statics_of_bodies_say_that_unbalances_are_left_out() {
     assert!(!statics(&own).contains("unbalances"));
 }
 
-/// Maxwell elements are relaxed in `modes`, which says how much stiffer springs are at the lowest frequency that it finds.
+/// Maxwell elements beside the springs of 2 kg, turning at Ω with it: m λ² + k + k_e (λ − iΩ)/(λ − iΩ + 1/τ) = 0 grows; standing still
+/// (Ω = 0) it dies out. So say `modes` and a run.
 #[test]
-fn modes_say_how_far_relaxed_springs_are_off() {
+fn a_maxwell_element_that_turns_feeds_whirl_in_modes_and_in_a_run() {
     let place = Place::new();
-    let relaxing = "[[spring.mount.maxwell]]\nrelaxation_time = \"3 ms\"\ny = \"5e5 N/m\"\n";
-    let text = disc("from = \"ground\"\nto = \"disc\"", "{}", "end = \"1 ms\"") + relaxing;
-    let scene = place.scene("scene.toml", &text);
-    let output = bearing(&["modes", scene.to_str().unwrap(), "--dry"]);
+    let relaxing =
+        "[[spring.mount.maxwell]]\nrelaxation_time = \"3 ms\"\ny = \"5e5 N/m\"\nz = \"5e5 N/m\"\n";
+    let [mass, spring, element, time] = [2.0, 2e5, 5e5, 3e-3];
+    for (ends, turning) in
+        [("from = \"disc\"", TAU * 100.0), ("from = \"ground\"\nto = \"disc\"", 0.0)]
+    {
+        let lag = |value: Complex<f64>| value - Complex::new(0.0, turning);
+        let balance = |value: Complex<f64>| {
+            value * value * mass + spring + element * (lag(value) / (lag(value) + 1.0 / time))
+        };
+        // Newton's method from what hardly relaxes, standing still, or has relaxed, once a turn.
+        let stiff = if turning == 0.0 { spring + element } else { spring };
+        let mut value = Complex::new(0.0, (stiff / mass).sqrt());
+        for _ in 0..50 {
+            let slope = (balance(value + 1e-4) - balance(value - 1e-4)) / 2e-4;
+            value -= balance(value) / slope;
+        }
+        assert!(balance(value).norm() <= 1e-6 * spring);
+        assert_eq!(value.re > 0.0, turning != 0.0);
+        let ratio = -value.re / value.norm();
+
+        let text = disc(ends, "{}", "end = \"0.1 s\"") + relaxing;
+        let scene = place.scene("scene.toml", &text);
+        let out = place.path("modes");
+        let output = bearing(&["modes", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let summary = json(out.join("summary.json"));
+        let whirls = summary["rotor"]["whirl"].as_array().unwrap().iter();
+        let off = whirls.map(|whirl| {
+            let [frequency, found] = ["frequency", "damping_ratio"].map(|key| number(&whirl[key]));
+            (frequency * TAU / value.im - 1.0).abs() + (found / ratio - 1.0).abs()
+        });
+        let nearest = off.fold(f64::INFINITY, f64::min);
+        assert!(nearest <= 1e-6, "{value}: {nearest:e}");
+        assert_eq!(said(&output).contains(" grows at 6000.0 rpm"), turning != 0.0);
+        let has = said(&output);
+        assert!(has.contains("have in each of the modes"), "{has}");
+
+        let out = place.path("run");
+        let output = run(&scene, &out, &[]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let [y, z] = ["disc_y", "disc_z"].map(|name| column(&out, name));
+        if turning != 0.0 {
+            // By then the other motions have died away.
+            let radius = |row: usize| libm::hypot(y[row], z[row]);
+            let found = (radius(1000) / radius(700)).ln() / 0.03;
+            assert!((found / value.re - 1.0).abs() <= 2e-3, "{found} {value}");
+        } else {
+            // Along Z a sum of e^{λt}, e^{λ*t} and e^{rt}, r = −1/τ − 2 Re λ, each 1 ms after the other by the same factors.
+            let rate = -1.0 / time - 2.0 * value.re;
+            let [swing, relax] = [(value * 1e-3).exp(), Complex::new((rate * 1e-3).exp(), 0.0)];
+            let [twice, square] = [2.0 * swing.re, swing.norm_sqr()];
+            let factors = [twice + relax.re, -(square + relax.re * twice), square * relax.re];
+            let largest = z.iter().fold(0.0, |most: f64, z| most.max(z.abs()));
+            for at in (20..400).step_by(10) {
+                let sum: f64 = (0..3).map(|k| factors[k] * z[at + 20 - 10 * k]).sum();
+                let off = (z[at + 30] - sum).abs();
+                assert!(off <= 1e-4 * largest, "{at}: {off:e} of {largest:e}");
+            }
+        }
+    }
+}
+
+/// Dashpots so strong that tilts die out without swinging at rest, and whirl at speed: a line of the diagram has nothing there.
+#[test]
+fn a_motion_that_swings_at_speed_alone_has_a_line_of_zeros_below() {
+    let place = Place::new();
+    let strong = r#"{ y = "2000 N s/m", z = "2000 N s/m", turn_y = "30 N m s/rad", turn_z = "30 N m s/rad" }"#;
+    let fast = disc("from = \"ground\"\nto = \"disc\"", strong, "end = \"1 ms\"");
+    let scene = place.scene("scene.toml", &fast.replace("6000 rpm", "60000 rpm"));
+    let out = place.path("modes");
+    let output = bearing(&["modes", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
-    let told = said(&output);
-    let told = told.lines().find(|line| line.contains("Maxwell elements take no part")).unwrap();
-    let number = |before: &str, after: &str| -> f64 {
-        let (_, rest) = told.split_once(before).unwrap();
-        rest.split_once(after).unwrap().0.parse().unwrap()
-    };
-    let square = (TAU * number("at ", " Hz") * 3e-3).powi(2);
-    let times = 1.0 + 5e5 / 2e5 * square / (1.0 + square);
-    // Told to three digits.
-    assert!((number("spring mount is ", " times") / times - 1.0).abs() <= 5e-3, "{told} {times}");
+    let text = std::fs::read_to_string(out.join("campbell.csv")).unwrap();
+    let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|value| value.parse().unwrap()).collect())
+        .collect();
+    let lines = (names.len() - 1) / 3;
+    let silent = |row: &Vec<f64>| (0..lines).any(|k| row[1 + 3 * k..4 + 3 * k] == [0.0, 0.0, 1.0]);
+    assert!(silent(&rows[0]) && !silent(&rows[50]), "{text}");
 }

@@ -3,7 +3,9 @@
 use crate::beam::steel;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, GROUND, Mobility};
-use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::solver::dynamics::connection::{
+    Connection, Law, MaxwellElement, SpringDashpot,
+};
 use bearing_dynamics::solver::dynamics::equilibrium::{at_start, static_assembly};
 use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::shaft::ElasticShaft;
@@ -12,9 +14,11 @@ use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc};
 use bearing_dynamics::solver::rotor::model::{Rotor, RotorError, RotorModel, Support};
+use bearing_dynamics::solver::rotor::relaxing::Relaxing;
 use bearing_dynamics::solver::rotor::unbalance::Unbalance;
+use bearing_dynamics::solver::rotor::whirl::Whirl;
 use bearing_dynamics::solver::shaft_shapes::{Kept, free_shaft};
-use bearing_dynamics::solver::vibrations::{Whirling, whirling};
+use bearing_dynamics::solver::vibrations::{Whirling, natural_motions, whirling};
 use nalgebra::{Complex, DMatrix, Matrix2, Matrix4, RowVector2, Vector2};
 
 const SPEED: f64 = 900.0;
@@ -291,6 +295,162 @@ fn dashpots_turn_with_the_body_that_they_begin_at() {
     }
 }
 
+const RELAXES: [(f64, f64); 2] = [(3e5, 1e-3), (1e5, 20e-3)];
+
+/// The same with two Maxwell elements beside each spring and in the place of its dashpot, over y + iz, tilt_y + i tilt_z and the
+/// elongation s of each: ṡ = ẋ − iω(x − s) − s/τ.
+fn relaxing_eigenvalues(rigid: &Inertia, speed: f64, turning: f64) -> Vec<Complex<f64>> {
+    let i = Complex::i();
+    let one = |re: f64| Complex::new(re, 0.0);
+    let [_, k, _, _, kt, _] = EVEN;
+    // Along each arm, then about the centre for each arm.
+    let places: Vec<[Complex<f64>; 2]> = ARMS
+        .iter()
+        .map(|a| [one(1.0), -i * *a])
+        .chain(ARMS.iter().map(|_| [one(0.0), one(1.0)]))
+        .collect();
+    let size = 4 + places.len() * RELAXES.len();
+    let masses = [rigid.mass, rigid.transverse];
+    let mut whole = DMatrix::<Complex<f64>>::zeros(size, size);
+    (0..2).for_each(|j| whole[(j, 2 + j)] = one(1.0));
+    whole[(3, 3)] = i * speed * rigid.axial / rigid.transverse;
+    let mut at = 4;
+    for (number, place) in places.iter().enumerate() {
+        let pushes = [place[0].conj(), place[1].conj()];
+        let (spring, arm) = if number < 2 { (k, 1.0) } else { (kt, 0.01) };
+        for (row, push) in pushes.iter().enumerate() {
+            for (column, of) in place.iter().enumerate() {
+                whole[(2 + row, column)] -= push * of * spring / masses[row];
+            }
+        }
+        for (stiffness, time) in RELAXES {
+            for j in 0..2 {
+                whole[(2 + j, at)] = -pushes[j] * (stiffness * arm / masses[j]);
+                whole[(at, 2 + j)] = place[j];
+                whole[(at, j)] = -i * turning * place[j];
+            }
+            whole[(at, at)] = i * turning - one(1.0 / time);
+            at += 1;
+        }
+    }
+    let triangle = whole.schur().unpack().1;
+    (0..size).map(|k| triangle[(k, k)]).collect()
+}
+
+fn two_on_relaxing(from_ground: bool, backward: f64) -> (Assembly, Vec<MovingBody>) {
+    let (mut assembly, moving) = two_rigid(from_ground, backward);
+    for connection in &mut assembly.connections {
+        let Law::SpringDashpot(law) = &mut connection.law else { panic!("springs") };
+        law.damping = [0.0; 6];
+        let element = |&(k, relaxation_time): &(f64, f64)| MaxwellElement {
+            stiffness: [0.0, k, k, 0.0, 0.01 * k, 0.01 * k],
+            relaxation_time,
+        };
+        law.maxwell = RELAXES.iter().map(element).collect();
+    }
+    (assembly, moving)
+}
+
+/// Maxwell elements have states of their own, standing still or turning with a body; motions that only decay are not told.
+#[test]
+fn maxwell_elements_take_part_in_whirl() {
+    let backward = -0.4;
+    for from_ground in [true, false] {
+        let (assembly, moving) = two_on_relaxing(from_ground, backward);
+        let still = static_assembly(&assembly, 0.0, &[]);
+        let found = at_start(&assembly).unwrap();
+        let ours = whirling(&assembly, &still, &found, &moving, &[]).unwrap();
+        let whirls = ours.model.whirls(SPEED, 100).unwrap();
+        let (mut grown, mut damped): (usize, f64) = (0, 0.0);
+        let mut count = 0;
+        for (of, part) in moving.iter().zip([1.0, backward]) {
+            let turning = if from_ground { 0.0 } else { part * SPEED };
+            let all = relaxing_eigenvalues(&of.inertia, part * SPEED, turning);
+            let i = Complex::<f64>::i();
+            // As many states as places and elements, two for each way that a rigid body moves: two a pair of places relax against each other
+            // alone.
+            let alone = |value: &Complex<f64>| {
+                RELAXES
+                    .iter()
+                    .any(|(_, time)| (value + 1.0 / time - i * turning).norm() <= 1e-6 / time)
+            };
+            let told = |value: &Complex<f64>| value.im.abs() > -value.re;
+            assert_eq!(all.iter().filter(|value| alone(value)).count(), 4);
+            for expected in all.into_iter().filter(|value| told(value) && !alone(value)) {
+                let expected = Complex::new(expected.re, expected.im.abs());
+                let nearest = whirls.iter().map(|of| (of.eigenvalue - expected).norm());
+                let nearest = nearest.fold(f64::INFINITY, f64::min) / expected.norm();
+                println!("{from_ground} {expected} {nearest:e}");
+                assert!(nearest <= 1e-9, "{expected}: {nearest:e}");
+                grown += usize::from(expected.re > 0.0);
+                damped = damped.max(-expected.re / expected.norm());
+                count += 1;
+            }
+        }
+        // And nothing besides, but for the two along the axis.
+        let across = whirls.iter().filter(|whirl| whirl.across > 0.5).count();
+        assert_eq!(across, count);
+        assert_eq!(grown > 0, !from_ground);
+        assert!(damped > 0.1, "{damped}");
+    }
+}
+
+/// Bodies that hang along Y alone, by springs that relax: natural frequencies are roots of m ω² = k + Σ k_e (ωτ)²/(1 + (ωτ)²), and so
+/// are critical speeds, along Z besides; of springs that turn along these have relaxed.
+#[test]
+fn modes_and_critical_speeds_have_what_springs_store() {
+    for from_ground in [true, false] {
+        let (mut assembly, mut moving) = two_on_relaxing(from_ground, 0.0);
+        // Without arms displacements and tilts are apart.
+        assembly
+            .connections
+            .iter_mut()
+            .for_each(|of| of.ends.iter_mut().for_each(|end| end.along = 0.0));
+        moving.iter_mut().for_each(|of| of.free = [false, true, true, false, false]);
+        let still = static_assembly(&assembly, 0.0, &[]);
+        let found = at_start(&assembly).unwrap();
+        let stored = |frequency: f64| {
+            let part = |(k, time): &(f64, f64)| {
+                let turns = (frequency * time).powi(2);
+                k * turns / (1.0 + turns)
+            };
+            // Two springs each.
+            2.0 * (EVEN[1] + RELAXES.iter().map(part).sum::<f64>())
+        };
+        let root = |mass: f64| {
+            let (mut below, mut above) = (1.0, 1e4);
+            for _ in 0..100 {
+                let middle: f64 = 0.5 * (below + above);
+                let slow = mass * middle * middle < stored(middle);
+                (below, above) = if slow { (middle, above) } else { (below, middle) };
+            }
+            below
+        };
+        let mut expected: Vec<f64> =
+            moving.iter().flat_map(|of| [root(of.inertia.mass); 2]).collect();
+        expected.sort_by(f64::total_cmp);
+        let modes = natural_motions(&still, &found, &moving, &[]);
+        assert_eq!(modes.len(), 4);
+        for (mode, expected) in modes.iter().zip(&expected) {
+            let found = mode.square.sqrt();
+            assert!((found / expected - 1.0).abs() <= 1e-9, "{found} {expected}");
+        }
+        let whirl = whirling(&assembly, &still, &found, &moving, &[]).unwrap();
+        let critical = whirl.critical_speeds(1e4).unwrap();
+        if !from_ground {
+            // The body that turns; the other one's springs stand still.
+            let [turns, stands] = [0, 1].map(|body| moving[body].inertia.mass);
+            let relaxed = (2.0 * EVEN[1] / turns).sqrt();
+            expected = vec![relaxed, relaxed, root(stands), root(stands)];
+            expected.sort_by(f64::total_cmp);
+        }
+        assert_eq!(critical.len(), 4);
+        for (found, expected) in critical.iter().zip(&expected) {
+            assert!((found.speed / expected - 1.0).abs() <= 1e-8, "{} {expected}", found.speed);
+        }
+    }
+}
+
 /// Springs that turn and differ across have no frequencies about an equilibrium.
 #[test]
 fn uneven_springs_that_turn_are_refused() {
@@ -347,4 +507,66 @@ fn dashpots_turn_with_the_shaft_that_they_begin_at() {
         assert!(across.len() >= 6);
     }
     assert!(grown > 0);
+}
+
+/// Maxwell elements on a shaft that bends, standing still and turning along: all stations of its beam, with the elements there.
+#[test]
+fn maxwell_elements_take_part_in_whirl_of_a_shaft_that_bends() {
+    let element =
+        MaxwellElement { stiffness: [0.0, 2e7, 2e7, 0.0, 300.0, 300.0], relaxation_time: 2e-3 };
+    for turns in [false, true] {
+        let mut own = assembly(0.0);
+        for connection in &mut own.connections {
+            let Law::SpringDashpot(law) = &mut connection.law else { panic!("springs") };
+            law.stiffness = [3e7, 2e7, 2e7, 0.0, 500.0, 500.0];
+            law.damping = [0.0; 6];
+            law.maxwell = vec![element];
+            if turns {
+                connection.ends.reverse();
+                law.rest[0] = -law.rest[0];
+            }
+        }
+        let ours = whirl(&own).model;
+        let supports = PLACES.map(|at| Support {
+            at,
+            // Shapes are those of springs that have not relaxed.
+            stiffness: Matrix4::from_diagonal(&[4e7, 4e7, 800.0, 800.0].into()),
+            damping: Matrix4::zeros(),
+        });
+        let rotor = Rotor { supports: supports.to_vec(), modes: 1000, ..Rotor::new(beam()) };
+        let mut theirs = RotorModel::new(&rotor).unwrap();
+        for at in PLACES {
+            let station =
+                theirs.stations.iter().position(|place| (place - at).abs() < 1e-9).unwrap();
+            let mut levers = DMatrix::zeros(6, theirs.natural.len());
+            for (row, i) in [(1, 0), (2, 1), (4, 2), (5, 3)] {
+                levers.row_mut(row).copy_from(&theirs.basis.row(4 * station + i));
+            }
+            let of = Relaxing {
+                levers,
+                stiffness: element.stiffness,
+                relaxation_time: element.relaxation_time,
+                spin: if turns { 1.0 } else { 0.0 },
+            };
+            theirs.stiffness -= of.storage(f64::INFINITY);
+            theirs.relaxing.push(of);
+        }
+        for speed in [0.3 * SPEED, 2.0 * SPEED] {
+            // Motions that the elements brake by more are made of what either set of shapes leaves out of their pulls.
+            let swings = |whirl: &Whirl| whirl.across > 0.5 && whirl.damping_ratio() < 0.5;
+            let [own, other] = [&ours, &theirs].map(|model| {
+                let whirls = model.whirls(speed, 12).unwrap().into_iter();
+                whirls.filter(swings).collect::<Vec<_>>()
+            });
+            for (own, other) in own.iter().zip(&other).take(6) {
+                let apart = (own.eigenvalue - other.eigenvalue).norm() / other.frequency();
+                println!("{} {} {apart:e}", own.eigenvalue, other.eigenvalue);
+                // Static answers follow no pull that has a phase of its own: what our shapes leave out of all stations, most where
+                // the elements brake much; 2e-5 at 0.02 of critical damping.
+                assert!(apart <= 1e-3, "{apart:e}");
+                assert!((own.direction - other.direction).abs() <= 1e-3);
+            }
+            assert!(own.len() >= 6 && other.len() >= 6);
+        }
+    }
 }

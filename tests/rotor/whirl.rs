@@ -295,10 +295,12 @@ fn no_motion_is_on_two_lines_of_the_campbell_diagram() {
     let model = RotorModel::new(&rotor).unwrap();
     for top in [200.0, 1000.0, 3000.0, 1e4, 3e4] {
         let campbell = model.campbell(&[0.0, 0.5 * top, top], 6).unwrap();
-        for at in 0..3 {
-            for (index, line) in campbell.lines.iter().enumerate() {
-                for other in &campbell.lines[..index] {
-                    let alike = line[at].likeness(&other[at]);
+        for (index, line) in campbell.lines.iter().enumerate() {
+            // Where speeds are too far apart to follow a motion its line ends.
+            assert!(line.len() == 3 || top == 3e4, "{top} {index}");
+            for other in &campbell.lines[..index] {
+                for (at, (one, other)) in line.iter().rev().zip(other.iter().rev()).enumerate() {
+                    let alike = one.likeness(other);
                     assert!(alike <= 1.0 - 1e-6, "{top} {at} {index}: {alike}");
                 }
             }

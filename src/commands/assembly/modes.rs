@@ -13,22 +13,20 @@ use crate::commands::remarks::of_balls_at_speed;
 use crate::commands::scene_remarks::at_rest;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
-use bearing_dynamics::scene::assembly::{AssemblyScene, Spring};
+use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
+use bearing_dynamics::solver::dynamics::connection::Connection;
 use bearing_dynamics::solver::dynamics::model::Rotation;
-use bearing_dynamics::solver::housing::inertia::{HousingMass, MovingBody, housing_mass, modes};
+use bearing_dynamics::solver::housing::inertia::{HousingMass, MovingBody, housing_mass};
 use bearing_dynamics::solver::rotor::model::RotorError;
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly, StaticBody};
 use bearing_dynamics::solver::statics::{AssemblySolution, Determinacy};
-use bearing_dynamics::solver::vibrations::{Whirling, whirling};
+use bearing_dynamics::solver::vibrations::{Whirling, natural_motions, whirling};
 use serde_json::json;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::time::Instant;
-
-/// Below this frequency (Hz) motions are those of what nothing brings back, but for rounding.
-const RIGID: f64 = 1e-2;
 
 pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let Asked { path, document, .. } = asked;
@@ -54,7 +52,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         }
     }
     let solution = &moment.solution;
-    let found = modes(&solution.with_shapes, &bodies, &masses);
+    let found = natural_motions(still, solution, &bodies, &masses);
     if found.is_empty() {
         let hint = "give it: body.NAME.inertia";
         return Err(format!("{}: a body has no mass. Hint: {hint}", path.display()).into());
@@ -66,14 +64,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         let _ = writeln!(text, "{:>4} {:>20.6}  {most}", index + 1, frequency(mode));
     }
     say(&text)?;
-    let mut remarks: Vec<String> = found
-        .iter()
-        .map(frequency)
-        .find(|lowest| *lowest > RIGID)
-        .and_then(|lowest| relaxed(scene, lowest))
-        .into_iter()
-        .collect();
-    remarks.extend(at_rest(scene));
+    let mut remarks: Vec<String> = at_rest(scene).collect();
     let spinning = match spinning(assembly, still, solution, &bodies, &masses) {
         Ok(spinning) => spinning.map(Spinning::new).transpose()?,
         // Motions at rest are what they are.
@@ -92,6 +83,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         }
         Err(error) => return Err(error.into()),
     };
+    remarks.extend(relaxing(assembly, spinning.is_some()).map(String::from));
     if let Some(spinning) = &spinning {
         say(&spinning.text())?;
         remarks.extend(spinning.remarks());
@@ -137,6 +129,12 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     Ok(Outcome::Done)
 }
 
+/// Whether a speed is given to a body that is not zero throughout.
+fn has_speed(body: &Body) -> bool {
+    let rotation = body.driven().map(|race| &race.rotation);
+    matches!(rotation, Some(Rotation::Speed(speed)) if !speed.is_zero())
+}
+
 /// Whirl, where a body that moves spins.
 fn spinning(
     assembly: &Assembly,
@@ -145,8 +143,7 @@ fn spinning(
     bodies: &[MovingBody],
     masses: &[HousingMass],
 ) -> Result<Option<Whirling>, RotorError> {
-    let turns = |of: &MovingBody| matches!(assembly.bodies[of.body].driven().map(|race| &race.rotation), Some(Rotation::Speed(speed)) if !speed.is_zero());
-    if !bodies.iter().any(turns) {
+    if !bodies.iter().any(|of| has_speed(&assembly.bodies[of.body])) {
         return Ok(None);
     }
     whirling(assembly, still, solution, bodies, masses).map(Some)
@@ -180,30 +177,25 @@ fn flung(scene: &AssemblyScene) -> bool {
     scene.bearings.iter().any(|placed| placed.scene.centrifugal)
 }
 
-/// How far springs with Maxwell elements, which are taken relaxed, are off at the lowest frequency that was found, Hz.
-fn relaxed(scene: &AssemblyScene, lowest: f64) -> Option<String> {
-    let times = |spring: &Spring| {
-        let stiffer = |axis: usize| {
-            let parts = spring.maxwell.iter().map(|element| {
-                let turns = (TAU * lowest * element.relaxation_time).powi(2);
-                element.stiffness[axis] * turns / (1.0 + turns)
-            });
-            let more: f64 = parts.sum();
-            if more > 0.0 { 1.0 + more / spring.stiffness[axis] } else { 1.0 }
-        };
-        (0..6).map(stiffer).fold(1.0, f64::max)
-    };
-    let all = scene.springs.iter().map(|spring| (times(spring), spring));
-    let (most, spring) = all.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (most > 1.0).then(|| {
-        format!(
-            "Maxwell elements take no part: at {lowest:.4} Hz, the lowest frequency here, spring {} is {} times as stiff as it is taken (relaxed), and \
-             stiffer at higher ones. Frequencies, whirl and critical speeds that it decides are too low by up to the root of that, and its \
-             damping is left out; where it turns with a body that spins, it feeds whirl besides. `run` has all of it; here give springs the \
-             stiffness that they have at the frequency of interest",
-            spring.name,
-            if most.is_finite() { to_digits(most, 3).to_string() } else { "infinitely many".into() }
-        )
+/// What springs with Maxwell elements do in what is told.
+fn relaxing(assembly: &Assembly, whirls: bool) -> Option<&'static str> {
+    let mut with = assembly.connections.iter().filter(|of| !of.maxwell().is_empty()).peekable();
+    with.peek()?;
+    let turns = |of: &Connection| has_speed(&assembly.bodies[of.ends[0].body]);
+    Some(match (whirls, with.any(turns)) {
+        (false, _) => {
+            "springs with Maxwell elements have in each of the modes the stiffness that they store at its frequency; what they damp is not told \
+             where nothing spins"
+        }
+        (true, false) => {
+            "springs with Maxwell elements have in each of the modes and critical speeds the stiffness that they store at its frequency; whirl and \
+             the Campbell diagram have what they damp, too"
+        }
+        (true, true) => {
+            "springs with Maxwell elements have in each of the modes the stiffness that they store at its frequency; whirl and the Campbell diagram \
+             have what they damp, too. Those that turn with a body have relaxed at critical speeds, as forward whirl once a turn stands still in their \
+             axes; backward ones are higher"
+        }
     })
 }
 

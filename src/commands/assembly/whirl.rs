@@ -56,7 +56,7 @@ impl Spinning {
         whirls.retain(is_whirl);
         whirls.truncate(LINES);
         let within = |of: &Critical| of.speed <= 2.0 * top.abs() && is_whirl(&of.whirl);
-        let critical = model.critical_speeds();
+        let critical = whirling.critical_speeds(2.0 * top.abs());
         let critical = critical.map(|all| all.into_iter().filter(within).collect());
         let mut campbell = model.campbell(&speeds, LINES)?;
         // Where a motion along the axis crosses one across it, the two are one for a while.
@@ -188,7 +188,12 @@ impl Spinning {
         }));
         let value = |(row, column): (usize, usize)| {
             let Some(column) = column.checked_sub(1) else { return self.campbell.speeds[row] };
-            let whirl = &self.campbell.lines[column / 3][row];
+            let line = &self.campbell.lines[column / 3];
+            // Below the speeds at which it swings a motion dies out without.
+            let above = row.checked_sub(self.campbell.speeds.len() - line.len());
+            let Some(whirl) = above.map(|row| &line[row]) else {
+                return [0.0, 0.0, 1.0][column % 3];
+            };
             [whirl.frequency() / TAU, whirl.direction, whirl.damping_ratio()][column % 3]
         };
         let data = Array2::from_shape_fn((self.campbell.speeds.len(), columns.len()), value);

@@ -14,7 +14,8 @@ pub fn campbell(title: &str, of: &Campbell) -> Result<String, PlotError> {
     let mut highest = 0.0f64;
     let mut curves: Vec<Curve> = Vec::new();
     for (number, line) in of.lines.iter().enumerate() {
-        let points = of.speeds.iter().zip(line);
+        // Down to where it swings no more.
+        let points = of.speeds[of.speeds.len() - line.len()..].iter().zip(line);
         let points: Vec<[f64; 2]> =
             points.map(|(&speed, whirl)| [rpm(speed), whirl.frequency() / TAU]).collect();
         highest = points.iter().fold(highest, |most, point| most.max(point[1]));

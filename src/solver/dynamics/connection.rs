@@ -164,10 +164,15 @@ impl Connection {
         }
     }
 
-    /// Whether its springs or dashpots along the first end's Y differ from those along Z, or about them.
+    /// Whether its springs, dashpots or Maxwell elements along the first end's Y differ from those along Z, or about them.
     pub fn is_uneven(&self) -> bool {
         match &self.law {
-            Law::SpringDashpot(law) => uneven(&law.stiffness) || uneven(&law.damping),
+            Law::SpringDashpot(law) => {
+                let mut elements = law.maxwell.iter();
+                uneven(&law.stiffness)
+                    || uneven(&law.damping)
+                    || elements.any(|element| uneven(&element.stiffness))
+            }
             Law::Torsion(_) => false,
         }
     }

@@ -6,6 +6,7 @@ pub mod beam;
 pub mod critical;
 pub mod meshed;
 pub mod model;
+pub mod relaxing;
 mod round;
 pub mod solid;
 pub mod unbalance;

@@ -4,6 +4,8 @@
 //! supports and damping stand still too. Damping in the turning shaft itself, which feeds whirl above the critical speed, is not here.
 
 use super::beam::{Beam, BeamError, BeamMatrices, STATION, station_at};
+use super::critical::Critical;
+use super::relaxing::Relaxing;
 use crate::solver::free_shapes::lowest;
 use nalgebra::{DMatrix, DVector, Matrix4};
 use thiserror::Error;
@@ -105,6 +107,18 @@ pub struct Vibrations {
     pub pairs: Vec<[usize; 2]>,
     /// Coordinates that may move.
     pub free: Vec<usize>,
+    /// Springs that relax, whose stiffness is not in that above.
+    pub relaxing: Vec<Relaxing>,
+}
+
+impl Vibrations {
+    /// With what these of the springs that relax store of an oscillation at `frequency`, rad/s or infinite, and nothing that relaxes.
+    fn stiffened(&self, frequency: f64, which: impl Fn(&Relaxing) -> bool) -> Vibrations {
+        let mut stiff = Vibrations { relaxing: Vec::new(), ..self.clone() };
+        let those = self.relaxing.iter().filter(|of| which(of));
+        those.for_each(|of| stiff.stiffness += of.storage(frequency));
+        stiff
+    }
 }
 
 /// What turns over its natural motions at rest, p̈ + (C + Ω G) ṗ + (K + Ω S) p = Bᵀ loads, q = B p.
@@ -121,9 +135,14 @@ pub struct RotorModel {
     pub stiffness: DMatrix<f64>,
     /// S.
     pub circulating: DMatrix<f64>,
+    pub relaxing: Vec<Relaxing>,
     /// Bᵀ M R B, R a quarter turn from Y to Z: ±i on a motion that whirls in circles, forward and backward.
     pub(super) quarter_turn: DMatrix<f64>,
 }
+
+/// Rounds in which a speed is looked for at the stiffness of the last one, and the part of it by which it still changes then.
+const ROUNDS: usize = 200;
+const SETTLED: f64 = 1e-10;
 
 /// Below this part of the stiffness a frequency counts as that of a rigid motion: what rounding leaves.
 const RIGID: f64 = 1e-12;
@@ -163,6 +182,7 @@ impl RotorModel {
             circulating: DMatrix::zeros(size, size),
             pairs,
             free,
+            relaxing: Vec::new(),
         };
         RotorModel::of(&vibrations, rotor.modes, matrices.stations, None)
     }
@@ -178,7 +198,10 @@ impl RotorModel {
         stations: Vec<f64>,
         sections: Option<&DMatrix<f64>>,
     ) -> Result<RotorModel, RotorError> {
-        let (basis, natural) = natural_motions(vibrations, modes)?;
+        // Shapes are those of springs that have not relaxed.
+        let stiff = (!vibrations.relaxing.is_empty())
+            .then(|| vibrations.stiffened(f64::INFINITY, |_| true));
+        let (basis, natural) = natural_motions(stiff.as_ref().unwrap_or(vibrations), modes)?;
         let Vibrations { mass, stiffness, damping, gyroscopic, circulating, pairs, .. } =
             vibrations;
         let project = |matrix: &DMatrix<f64>| basis.transpose() * matrix * &basis;
@@ -199,6 +222,7 @@ impl RotorModel {
             gyroscopic: project(gyroscopic),
             circulating: project(circulating),
             stiffness: modal_stiffness,
+            relaxing: vibrations.relaxing.iter().map(|of| of.over(&basis)).collect(),
             quarter_turn: basis.transpose() * mass * turned,
             basis: match sections {
                 Some(sections) => sections * &basis,
@@ -206,6 +230,48 @@ impl RotorModel {
             },
             natural,
         })
+    }
+
+    /// Critical speeds up to `limit`, rad/s, and those above it that have not been looked at closer: springs that relax have the stiffness
+    /// that they store at the frequency of each. From that of springs that have not relaxed each speed comes down to its own. Those that turn
+    /// have relaxed: a motion that whirls once a turn stands still in their axes.
+    ///
+    /// # Errors
+    /// As [`RotorModel::of`] and [`RotorModel::critical_speeds`].
+    pub fn critical_speeds_of(
+        vibrations: &Vibrations,
+        modes: usize,
+        stations: &[f64],
+        sections: Option<&DMatrix<f64>>,
+        limit: f64,
+    ) -> Result<Vec<Critical>, RotorError> {
+        let at = |frequency: f64| {
+            let stiff = vibrations.stiffened(frequency, |of| of.spin == 0.0);
+            RotorModel::of(&stiff, modes, stations.to_vec(), sections)?.critical_speeds()
+        };
+        let mut found = at(f64::INFINITY)?;
+        if vibrations.relaxing.iter().all(|of| of.spin != 0.0) {
+            return Ok(found);
+        }
+        let least = at(0.0)?;
+        for (number, critical) in found.iter_mut().enumerate() {
+            if least.get(number).is_none_or(|least| least.speed > limit) {
+                break;
+            }
+            for _ in 0..ROUNDS {
+                let mut all = at(critical.speed)?;
+                if number >= all.len() {
+                    break;
+                }
+                let next = all.swap_remove(number);
+                let change = (next.speed - critical.speed).abs();
+                *critical = next;
+                if change <= SETTLED * critical.speed {
+                    break;
+                }
+            }
+        }
+        Ok(found)
     }
 
     /// Whether nothing brings back a motion across the axis.

@@ -59,11 +59,12 @@ impl RotorModel {
             }
         }
         let spin = Complex::new(0.0, speed);
-        let dynamic = DMatrix::from_fn(modes, modes, |i, j| {
+        let mut dynamic = DMatrix::from_fn(modes, modes, |i, j| {
             let inertia = if i == j { spin * spin } else { Complex::new(0.0, 0.0) };
             let rate = self.damping[(i, j)] + speed * self.gyroscopic[(i, j)];
             inertia + spin * rate + self.stiffness[(i, j)] + speed * self.circulating[(i, j)]
         });
+        self.relaxing.iter().for_each(|of| dynamic += of.stiffness_at(spin, speed));
         dynamic.lu().solve(&load)
     }
 

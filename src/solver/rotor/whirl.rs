@@ -2,6 +2,7 @@
 
 use super::beam::STATION;
 use super::model::{RotorError, RotorModel};
+use super::relaxing::Relaxing;
 use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -56,7 +57,7 @@ impl Whirl {
 pub struct Campbell {
     /// rad/s.
     pub speeds: Vec<f64>,
-    /// Ascending by frequency at the last speed; one motion for each speed.
+    /// Ascending by frequency at the last speed; one motion for each speed down to where it swings no more.
     pub lines: Vec<Vec<Whirl>>,
 }
 
@@ -64,23 +65,38 @@ pub struct Campbell {
 const ITERATIONS: usize = 100;
 
 impl RotorModel {
-    /// The lowest `count` oscillating motions at spin `speed` (rad/s about X), ascending by frequency.
+    /// The lowest `count` oscillating motions, without those by which springs relax, at spin `speed` (rad/s about X), ascending by frequency.
     ///
     /// # Errors
     /// Eigenvalues that are not found.
     pub fn whirls(&self, speed: f64, count: usize) -> Result<Vec<Whirl>, RotorError> {
+        self.motions(speed, count, |value| !self.decays(value))
+    }
+
+    fn motions(
+        &self,
+        speed: f64,
+        count: usize,
+        which: impl Fn(&Complex<f64>) -> bool,
+    ) -> Result<Vec<Whirl>, RotorError> {
         let damping = &self.damping + &self.gyroscopic * speed;
         let stiffness = &self.stiffness + &self.circulating * speed;
         let values = self.eigenvalues(speed, &damping, &stiffness)?;
-        let lowest = values.into_iter().take(count).enumerate();
+        let values = values.into_iter().filter(which).enumerate();
         let both = [&damping, &stiffness];
         // Of a shaft that spins the other way it is the other circle; −0, where its Campbell lines begin, is its side too.
         let side = 1f64.copysign(speed);
-        let whirls = lowest.map(|(number, value)| self.whirl(value, both, number));
-        Ok(whirls.map(|whirl| Whirl { direction: side * whirl.direction, ..whirl }).collect())
+        let whirls = values.filter_map(|(number, value)| self.whirl(value, (speed, both), number));
+        let whirls = whirls.map(|whirl| Whirl { direction: side * whirl.direction, ..whirl });
+        Ok(whirls.take(count).collect())
     }
 
-    /// Of (D p, ṗ) with D the natural frequencies: skew-symmetric without damping, so that nothing is badly scaled. A growth
+    /// Whether a motion is how springs relax, turned a little by what spins: it dies out faster than it turns, and has no resonance.
+    fn decays(&self, value: &Complex<f64>) -> bool {
+        !self.relaxing.is_empty() && -value.re > value.im
+    }
+
+    /// Of (D p, ṗ) and the states of springs that relax, with D the natural frequencies: skew-symmetric without damping, so that nothing is badly scaled. A growth
     /// that rounding alone would leave is 0.
     fn eigenvalues(
         &self,
@@ -92,7 +108,14 @@ impl RotorModel {
         let least = self.natural.iter().copied().find(|&natural| natural > 0.0).unwrap_or(1.0);
         let scale: Vec<f64> =
             self.natural.iter().map(|natural| natural.max(1e-3 * least)).collect();
-        let mut state = DMatrix::zeros(2 * modes, 2 * modes);
+        let states: usize = self.relaxing.iter().map(Relaxing::states).sum();
+        let size = 2 * modes + states;
+        let mut state = DMatrix::zeros(size, size);
+        let mut first = 2 * modes;
+        for of in &self.relaxing {
+            of.put(speed, &scale, first, &mut state);
+            first += of.states();
+        }
         for i in 0..modes {
             state[(i, modes + i)] = scale[i];
             for j in 0..modes {
@@ -100,7 +123,7 @@ impl RotorModel {
                 state[(modes + i, modes + j)] = -damping[(i, j)];
             }
         }
-        let iterations = ITERATIONS * 2 * modes;
+        let iterations = ITERATIONS * size;
         // Motions that nothing brings back fall together at zero, where the last digit may not settle.
         let schur = [1.0, 1e3, 1e6]
             .into_iter()
@@ -118,20 +141,22 @@ impl RotorModel {
         Ok(values)
     }
 
-    /// Shape of the `number`-th eigenvalue by inverse iteration on λ²I + λ(C + ΩG) + K + ΩS.
+    /// Shape of the `number`-th eigenvalue by inverse iteration on λ²I + λ(C + ΩG) + K + ΩS and what springs that relax are at λ. [`None`] of an
+    /// eigenvalue that moves nothing: springs that relax against each other.
     fn whirl(
         &self,
         value: Complex<f64>,
-        [damping, stiffness]: [&DMatrix<f64>; 2],
+        (speed, [damping, stiffness]): (f64, [&DMatrix<f64>; 2]),
         number: usize,
-    ) -> Whirl {
+    ) -> Option<Whirl> {
         let modes = self.natural.len();
         // So far beside the eigenvalue that the factors exist, so near that two steps leave nothing of the others.
         let near = value * Complex::new(1.0 + 1e-11, 1e-11);
-        let pencil = DMatrix::from_fn(modes, modes, |i, j| {
+        let mut pencil = DMatrix::from_fn(modes, modes, |i, j| {
             let inertia = if i == j { near * near } else { Complex::new(0.0, 0.0) };
             inertia + near * damping[(i, j)] + stiffness[(i, j)]
         });
+        self.relaxing.iter().for_each(|of| pencil += of.stiffness_at(near, speed));
         let factors = pencil.lu();
         // Both directions of whirl are in it; one more than the other, in turns, so that two motions of one frequency (at
         // rest) are not found as one.
@@ -139,6 +164,7 @@ impl RotorModel {
         let side = if number.is_multiple_of(2) { -0.9 } else { 0.9 };
         let turned = &self.quarter_turn * &start * side;
         let mut modal = start.zip_map(&turned, Complex::new);
+        let mut grown = 0.0;
         for _ in 0..3 {
             let Some(next) = factors.solve(&modal) else { break };
             let norm = next.norm();
@@ -146,8 +172,10 @@ impl RotorModel {
                 break;
             }
             modal = next.unscale(norm);
+            grown = norm;
         }
-        self.motion(value, modal)
+        let moves = self.relaxing.is_empty() || grown * near.norm_sqr() > MOVES;
+        moves.then(|| self.motion(value, modal))
     }
 
     /// A motion of the natural ones' combination `modal`.
@@ -179,20 +207,24 @@ impl RotorModel {
     /// Eigenvalues that are not found.
     pub fn campbell(&self, speeds: &[f64], count: usize) -> Result<Campbell, RotorError> {
         let mut lines: Vec<Vec<Whirl>> = Vec::new();
+        let mut followed = 1;
         for &speed in speeds.iter().rev() {
             if lines.is_empty() {
                 lines = self.whirls(speed, count)?.into_iter().map(|whirl| vec![whirl]).collect();
                 continue;
             }
-            // Lines cross: a few more than there are lines to choose from.
-            let mut found = self.whirls(speed, 2 * count)?;
-            for line in &mut lines {
+            // Lines cross: a few more than there are lines to choose from, also among what dies out quickly at this speed.
+            let most = if self.relaxing.is_empty() { 2 * count } else { 4 * count };
+            let mut found = self.motions(speed, most, |_| true)?;
+            for line in lines.iter_mut().filter(|line| line.len() == followed) {
                 let last = line.last().expect("a line has begun");
                 let best = (0..found.len())
                     .max_by(|&a, &b| last.likeness(&found[a]).total_cmp(&last.likeness(&found[b])));
-                let Some(best) = best else { break };
-                line.push(found.remove(best));
+                if let Some(best) = best.filter(|&best| last.likeness(&found[best]) > ALIKE) {
+                    line.push(found.remove(best));
+                }
             }
+            followed += 1;
         }
         for line in &mut lines {
             line.reverse();
@@ -200,6 +232,12 @@ impl RotorModel {
         Ok(Campbell { speeds: speeds.to_vec(), lines })
     }
 }
+
+/// Motions less alike than this are not the same.
+const ALIKE: f64 = 0.1;
+/// So close to an eigenvalue, 1e-11 of it, the answer to a load is some 1e11 times the load over λ²; where it is less than this, λ is
+/// no eigenvalue of what has mass.
+const MOVES: f64 = 1e5;
 
 /// A frequency below this part of the lowest one with a stiffness is none: what rounding leaves of a rigid motion, whose two
 /// eigenvalues fall together.

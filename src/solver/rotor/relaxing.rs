@@ -1,0 +1,105 @@
+//! Springs in series with dashpots (Maxwell elements) in small motions: their stiffness at a frequency, and states of their own.
+//!
+//! With x = L q how far an element's ends have gone along its six directions, its spring is elongated by s: ṡ = ẋ − s/τ, and pulls by
+//! Lᵀ k s. One that turns with a body at Ω feels rates in the axes that turn: ṡ = ẋ − Ω × (x − s) − s/τ, which feeds whirl above a
+//! critical speed as a dashpot that turns does.
+
+use nalgebra::{Complex, DMatrix, SMatrix};
+
+/// One element of one connection.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Relaxing {
+    /// L: six rows, over coordinates.
+    pub levers: DMatrix<f64>,
+    /// k, N/m and N·m/rad; of one that turns alike along Y and Z.
+    pub stiffness: [f64; 6],
+    /// τ, s.
+    pub relaxation_time: f64,
+    /// Ω over the speed that is asked for.
+    pub spin: f64,
+}
+
+/// Y and Z of displacements and of turns.
+const PAIRS: [[usize; 2]; 2] = [[1, 2], [4, 5]];
+
+impl Relaxing {
+    /// What it stores of an oscillation at `frequency` (rad/s, or infinite) beside what the spring beside it does, over coordinates;
+    /// of what stands still or turns alike.
+    pub fn storage(&self, frequency: f64) -> DMatrix<f64> {
+        let turns = (frequency * self.relaxation_time).powi(2);
+        let part = if turns.is_finite() { turns / (1.0 + turns) } else { 1.0 };
+        let stored = DMatrix::from_fn(6, self.levers.ncols(), |i, j| {
+            part * self.stiffness[i] * self.levers[(i, j)]
+        });
+        self.levers.tr_mul(&stored)
+    }
+
+    /// The same over other coordinates, of which each column of `basis` is one.
+    pub(super) fn over(&self, basis: &DMatrix<f64>) -> Relaxing {
+        Relaxing { levers: &self.levers * basis, ..*self }
+    }
+
+    /// Directions in which it pulls.
+    fn directions(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..6).filter(|&i| self.stiffness[i] != 0.0 && self.levers.row(i).amax() > 0.0)
+    }
+
+    /// How many states it has.
+    pub(super) fn states(&self) -> usize {
+        self.directions().count()
+    }
+
+    /// Writes its rows and columns into the matrix of (D p, ṗ, …), D = `scale`, at speed `speed`; its states, √k s, begin at `first`.
+    pub(super) fn put(&self, speed: f64, scale: &[f64], first: usize, state: &mut DMatrix<f64>) {
+        let modes = scale.len();
+        let mut own = [None; 6];
+        for (number, i) in self.directions().enumerate() {
+            own[i] = Some(first + number);
+        }
+        for i in self.directions() {
+            let Some(at) = own[i] else { continue };
+            let root = self.stiffness[i].sqrt();
+            for (j, lever) in self.levers.row(i).iter().enumerate() {
+                state[(modes + j, at)] = -root * lever;
+                state[(at, modes + j)] = root * lever;
+            }
+            state[(at, at)] = -1.0 / self.relaxation_time;
+        }
+        let turning = self.spin * speed;
+        for [y, z] in PAIRS {
+            // Ω × (x − s) of the one is what the other has gone.
+            for (to, of, turning) in [(y, z, turning), (z, y, -turning)] {
+                let Some(at) = own[to].filter(|_| turning != 0.0) else { continue };
+                let root = self.stiffness[to].sqrt();
+                for (j, lever) in self.levers.row(of).iter().enumerate() {
+                    state[(at, j)] += turning * root * lever / scale[j];
+                }
+                if let Some(other) = own[of] {
+                    state[(at, other)] -= turning;
+                }
+            }
+        }
+    }
+
+    /// Complex stiffness Lᵀ k Z L of a motion e^{λt} at speed `speed`.
+    pub(super) fn stiffness_at(&self, value: Complex<f64>, speed: f64) -> DMatrix<Complex<f64>> {
+        let relaxes = 1.0 / self.relaxation_time;
+        let follows = |value: Complex<f64>| value / (value + relaxes);
+        let mut elongated = SMatrix::<Complex<f64>, 6, 6>::zeros();
+        elongated[(0, 0)] = follows(value);
+        elongated[(3, 3)] = follows(value);
+        let turning = Complex::new(0.0, self.spin * speed);
+        // On circles either way it is one number each.
+        let [forward, backward] = [follows(value - turning), follows(value + turning)];
+        for [y, z] in PAIRS {
+            let own = (forward + backward) * 0.5;
+            let across = Complex::new(0.0, 0.5) * (forward - backward);
+            (elongated[(y, y)], elongated[(z, z)]) = (own, own);
+            (elongated[(y, z)], elongated[(z, y)]) = (across, -across);
+        }
+        let levers = self.levers.map(|lever| Complex::new(lever, 0.0));
+        let pulls =
+            SMatrix::<Complex<f64>, 6, 6>::from_fn(|i, j| elongated[(i, j)] * self.stiffness[i]);
+        levers.tr_mul(&(pulls * &levers))
+    }
+}
