@@ -454,16 +454,22 @@ fn modes_and_critical_speeds_have_what_springs_store() {
 /// Springs that turn and differ across have no frequencies about an equilibrium.
 #[test]
 fn uneven_springs_that_turn_are_refused() {
-    let (mut assembly, moving) = two_rigid(false, 0.0);
-    let Law::SpringDashpot(law) = &mut assembly.connections[1].law else { panic!("springs") };
-    law.damping[5] *= 2.0;
-    let still = static_assembly(&assembly, 0.0, &[]);
-    let found = at_start(&assembly).unwrap();
-    let refused = whirling(&assembly, &still, &found, &moving, &[]);
-    assert!(matches!(refused, Err(RotorError::Uneven { .. })), "{:?}", refused.err());
-    // At the body that stands still they may.
-    assembly.connections[1].ends.reverse();
-    assert!(whirling(&assembly, &still, &found, &moving, &[]).is_ok());
+    for relaxing in [false, true] {
+        let (mut assembly, moving) =
+            if relaxing { two_on_relaxing(false, 0.0) } else { two_rigid(false, 0.0) };
+        let Law::SpringDashpot(law) = &mut assembly.connections[1].law else { panic!("springs") };
+        match relaxing {
+            false => law.damping[5] *= 2.0,
+            true => law.maxwell[1].stiffness[1] *= 2.0,
+        }
+        let still = static_assembly(&assembly, 0.0, &[]);
+        let found = at_start(&assembly).unwrap();
+        let refused = whirling(&assembly, &still, &found, &moving, &[]);
+        assert!(matches!(refused, Err(RotorError::Uneven { .. })), "{:?}", refused.err());
+        // At the body that stands still they may.
+        assembly.connections[1].ends.reverse();
+        assert!(whirling(&assembly, &still, &found, &moving, &[]).is_ok());
+    }
 }
 
 /// The same on a shaft that bends: all stations of its beam, with what each dashpot does as it turns along.

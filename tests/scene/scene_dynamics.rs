@@ -165,7 +165,7 @@ fn profiles_are_what_they_say() {
         tilt_z = { tilt = "0.1 deg" }
         torque = { smooth_ramp = ["0 N m", "1 N m"], duration = "1 s" }
         added_mass = "0.5 kg"
-        inertia = { mass = "0.2 kg", axial = "1 kg mm^2", transverse = "1e-6 kg m^2" }
+        inertia = { mass = "0.2 kg", axial = "10 kg mm^2", transverse = "1e-5 kg m^2" }
         unbalance = "900 g mm"
         "#,
     );
@@ -186,7 +186,7 @@ fn profiles_are_what_they_say() {
     let ramp = Profile::SmoothRamp { from: 0.0, to: 1.0, start: 0.0, duration: 1.0 };
     assert_eq!(inner.rotation, Rotation::Torque(ramp));
     let inertia = (inner.inertia.mass, inner.inertia.axial, inner.inertia.transverse);
-    assert_eq!(inertia, (0.7, 1e-6, 1e-6));
+    assert_eq!(inertia, (0.7, 1e-5, 1e-5));
     assert_eq!(problem.unbalance, 9e-4);
 }
 

@@ -184,8 +184,8 @@ fn relaxing(assembly: &Assembly, whirls: bool) -> Option<&'static str> {
     let turns = |of: &Connection| has_speed(&assembly.bodies[of.ends[0].body]);
     Some(match (whirls, with.any(turns)) {
         (false, _) => {
-            "springs with Maxwell elements have in each of the modes the stiffness that they store at its frequency; what they damp is not told \
-             where nothing spins"
+            "springs with Maxwell elements have in each of the modes the stiffness that they store at its frequency; what they damp is \
+             told of whirl alone"
         }
         (true, false) => {
             "springs with Maxwell elements have in each of the modes and critical speeds the stiffness that they store at its frequency; whirl and \

@@ -383,7 +383,7 @@ impl System {
                         None => &mut [],
                     };
                     let bent = bent.map(|(_, bent)| bent);
-                    let gravity = self.steps.gravity.then_some(self.assembly.gravity);
+                    let gravity = self.assembly.gravity;
                     self.swing.update((body, now), bent, gravity, pushes, &mut loads);
                     let mut uncounted = Tally::default();
                     let free = race::rates(driven, t, now, rest, &loads, &mut uncounted);
@@ -475,11 +475,13 @@ fn turning_force(
             Some(Rotation::Torque(_)) => {
                 within = turning_momentum(body.unbalance, speed, now.state.spin, forward);
             }
-            Some(Rotation::Speed(profile)) => {
+            given => {
                 turning = add_scaled(turning, centrifugal, outwards);
-                turning = add_scaled(turning, -body.unbalance * profile.rate(t), forward);
+                if let Some(Rotation::Speed(profile)) = given {
+                    let lagging = body.unbalance * profile.rate(t);
+                    turning = add_scaled(turning, -lagging, forward);
+                }
             }
-            None => turning = add_scaled(turning, centrifugal, outwards),
         }
     }
     Some([turning, within])

@@ -107,7 +107,7 @@ impl Swing {
         &mut self,
         of: (&Body, &RaceNow),
         bent: Option<Bent>,
-        gravity: Option<Vec3>,
+        gravity: Vec3,
         pushes: &mut [f64],
         loads: &mut RaceLoads,
     ) {
@@ -116,7 +116,7 @@ impl Swing {
         on_shapes.fill(0.0);
         each(of, bent, |(size, [outwards, forward], _), section| {
             let force = RaceLoads { force: scale(forward, size), moment: [0.0; 3] };
-            let moment = gravity.map_or([0.0; 3], |g| scale(cross(outwards, g), size));
+            let moment = scale(cross(outwards, gravity), size);
             let weight = RaceLoads { force: [0.0; 3], moment };
             match section {
                 None => {
