@@ -13,6 +13,7 @@ mod arrow_terms;
 pub mod assembly;
 pub mod balance;
 pub mod ball_set;
+mod body_rates;
 pub mod bounds;
 pub mod checkpoint;
 pub mod clocked;
