@@ -145,6 +145,19 @@ pub fn watched<T>(
     }))
 }
 
+/// Does work that says nothing of how far it is; a terminal is told that it is on, and for how long.
+pub fn spun<T>(what: String, work: impl FnOnce() -> T) -> T {
+    // Hidden where standard error is no terminal.
+    let spinner = ProgressBar::new_spinner().with_message(what);
+    if let Ok(style) = ProgressStyle::with_template("{elapsed} {spinner} {msg}") {
+        spinner.set_style(style);
+    }
+    spinner.enable_steady_tick(LOOK);
+    let done = work();
+    spinner.finish_and_clear();
+    done
+}
+
 struct Told<'a>(&'a AtomicBool);
 
 impl Drop for Told<'_> {
