@@ -136,6 +136,6 @@ pub(super) const TABLES: &[Table] = &[
     table("spring.bushing.cells", "Cells of its mesh, a quarter of it; they crowd at sleeves and ends.", "cells = { around = 16, radial = 4, axial = 4 }"),
     list_table("spring.bushing.maxwell", "Maxwell elements of the rubber in place of those of `table`; as many as wanted.",
         "[[spring.mount.bushing.maxwell]]\ngamma = 0.492\nrelaxation_time = \"10 s\""),
-    list_table("spring.maxwell", "Springs in series with dashpots beside those of `stiffness`, which then is what is left at rest: rubber, by its Prony series. As many as wanted. In motion each has a state of its own; in an equilibrium all have relaxed.",
+    list_table("spring.maxwell", "Springs in series with dashpots beside those of `stiffness`, which then is what is left at rest: rubber, by its Prony series. As many as wanted. In motion and in `modes` each has a state of its own; in an equilibrium all have relaxed.",
         "[[spring.mount.maxwell]]\nrelaxation_time = \"10 ms\"\ny = \"2e6 N/m\"\nz = \"2e6 N/m\""),
 ];

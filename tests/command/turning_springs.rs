@@ -310,3 +310,25 @@ fn a_motion_that_swings_at_speed_alone_has_a_line_of_zeros_below() {
     let silent = |row: &Vec<f64>| (0..lines).any(|k| row[1 + 3 * k..4 + 3 * k] == [0.0, 0.0, 1.0]);
     assert!(silent(&rows[0]) && !silent(&rows[50]), "{text}");
 }
+
+/// A torque gives no speed up to which whirl could be told.
+#[test]
+fn modes_of_what_a_torque_turns_say_that_they_want_a_speed() {
+    let place = Place::new();
+    let given = disc("from = \"ground\"\nto = \"disc\"", "{}", "end = \"1 ms\"");
+    for (text, told) in [
+        (given.replace("speed = \"6000 rpm\"", "torque = \"0.1 N m\""), true),
+        (given.replace("speed = \"6000 rpm\"", "torque = \"0 N m\""), false),
+        (given, false),
+    ] {
+        let scene = place.scene("scene.toml", &text);
+        let output = bearing(&["modes", scene.to_str().unwrap(), "--dry"]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let said = said(&output);
+        assert_eq!(
+            said.contains("a torque turns the body disc, at a speed that a run finds"),
+            told,
+            "{said}"
+        );
+    }
+}

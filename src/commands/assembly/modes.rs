@@ -83,6 +83,9 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         }
         Err(error) => return Err(error.into()),
     };
+    if spinning.is_none() {
+        remarks.extend(by_torque(assembly));
+    }
     remarks.extend(relaxing(assembly, spinning.is_some()).map(String::from));
     if let Some(spinning) = &spinning {
         say(&spinning.text())?;
@@ -133,6 +136,20 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
 fn has_speed(body: &Body) -> bool {
     let rotation = body.driven().map(|race| &race.rotation);
     matches!(rotation, Some(Rotation::Speed(speed)) if !speed.is_zero())
+}
+
+/// Why there is no whirl of what a torque turns.
+fn by_torque(assembly: &Assembly) -> Option<String> {
+    let turned = |body: &&Body| {
+        let rotation = body.driven().map(|race| &race.rotation);
+        matches!(rotation, Some(Rotation::Torque(torque)) if !torque.is_zero())
+    };
+    let body = assembly.bodies.iter().find(turned)?;
+    Some(format!(
+        "a torque turns {}, at a speed that a run finds: whirl, critical speeds and a Campbell diagram are told up to a given one; write speed = \"... rpm\" \
+         in the place of the torque",
+        body.name
+    ))
 }
 
 /// Whirl, where a body that moves spins.
