@@ -11,8 +11,9 @@ use crate::scene::solid::SolidScene;
 use crate::scene::statics::still_lists;
 use crate::solver::dynamics::assembly::{Assembly, Body, CAGE, GROUND, INNER, Mobility, OUTER};
 use crate::solver::dynamics::connection::{Connection, Law, MaxwellElement, SpringDashpot};
-use crate::solver::dynamics::model::{Drive, RaceBody, RotatingLoad};
+use crate::solver::dynamics::model::{Drive, RaceBody, RotatingLoad, Rotation};
 use crate::solver::dynamics::shaft::{ElasticShaft, ShaftLoad, Unbalance};
+use crate::solver::dynamics::unbalance::least_inertia;
 use crate::solver::mount::Mount;
 use crate::solver::profile::Profile;
 use crate::solver::rotor::beam::Beam;
@@ -437,9 +438,8 @@ fn bend(all: &mut Assembly, index: usize, of: &SceneBeam) -> Result<(), FreeShaf
     let watched: Vec<f64> = of.watched.iter().map(|(_, at)| at - of.start).collect();
     let (rigid, shapes) = free_shaft(&of.beam, of.kept, &holds, &watched)?;
     let centre = of.start + rigid.centre;
-    let body = &mut all.bodies[index];
-    move_along(body, centre);
-    if let Some(race) = body.driven_mut() {
+    move_along(&mut all.bodies[index], centre);
+    if let Some(race) = all.bodies[index].driven_mut() {
         let RigidPart { mass, axial, transverse, .. } = rigid;
         race.inertia = Inertia { mass, axial, transverse };
         if of.absolute {
@@ -469,6 +469,13 @@ fn bend(all: &mut Assembly, index: usize, of: &SceneBeam) -> Result<(), FreeShaf
         watched: watched.collect(),
         shapes: shapes.clone(),
     };
+    let by_torque =
+        all.bodies[index].driven().is_some_and(|race| matches!(race.rotation, Rotation::Torque(_)));
+    let least = least_inertia(&shaft, rigid.mass, rigid.transverse);
+    let possible = least < rigid.axial;
+    if by_torque && !possible {
+        return Err(FreeShaftError::Unbalances { least, axial: rigid.axial });
+    }
     all.shafts.push(shaft);
     Ok(())
 }

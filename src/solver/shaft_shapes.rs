@@ -246,6 +246,11 @@ pub enum FreeShaftError {
     Beam(#[from] BeamError),
     #[error(transparent)]
     Shapes(#[from] ShapesError),
+    #[error(
+        "its unbalances, which a torque turns, are masses of {least} kg m^2 about the axis at least, and the shaft has {axial} in all. \
+         Hint: check their units, or give the disc that carries them ([[body.NAME.beam.disc]])"
+    )]
+    Unbalances { least: f64, axial: f64 },
 }
 
 /// How many shapes a shaft gets.

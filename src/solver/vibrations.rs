@@ -14,13 +14,14 @@ use super::housing::inertia::{HousingMass, Mode, MovingBody, mass_matrix, modes}
 use super::rotor::beam::STATION;
 use super::rotor::critical::Critical;
 use super::rotor::model::{RotorError, RotorModel, Vibrations};
-use super::rotor::relaxing::Relaxing;
+use super::rotor::relaxing::{Relaxing, settled};
 use super::static_assembly::{Place, StaticAssembly};
 use super::static_connection::{add_circulation, add_damping, levers, spin_of};
 use super::static_model::{Evaluation, Model};
 use super::static_shaft::{Moved, onto_unknowns, rows_onto_unknowns, sections};
 use super::statics::AssemblySolution;
 use nalgebra::{DMatrix, DVector};
+use std::convert::Infallible;
 
 /// Shapes that motions are made of: with those of two bearings and a shaft between them all that whirl below some kHz.
 const MODES: usize = 36;
@@ -159,7 +160,9 @@ pub fn natural_motions(
         return all;
     }
     let mut last: Vec<Mode> = Vec::new();
-    for (number, mode) in all.iter_mut().enumerate() {
+    let rigid = RIGID * all.last().map_or(0.0, |fastest| fastest.square);
+    let moving = all.iter_mut().enumerate().filter(|(_, mode)| mode.square > rigid);
+    for (number, mode) in moving {
         // One of a pair of the same frequency (along Y and Z, say) is found with the other.
         let slower = last.get(number.wrapping_sub(1)).zip(last.get(number));
         if let Some((one, other)) = slower
@@ -168,22 +171,24 @@ pub fn natural_motions(
             *mode = other.clone();
             continue;
         }
-        for _ in 0..ROUNDS {
-            last = with(mode.square.max(0.0).sqrt());
-            let change = (last[number].square - mode.square).abs();
-            *mode = last[number].clone();
-            if change <= SETTLED * mode.square.abs() {
-                break;
-            }
+        let value = |square: f64| -> Result<f64, Infallible> {
+            last = with(square.sqrt());
+            Ok(last[number].square)
+        };
+        let Ok(square) = settled(mode.square.max(0.0), value);
+        *mode = last[number].clone();
+        if square.is_none() {
+            // Relaxed, nothing brings it back.
+            mode.square = 0.0;
+            last.clear();
         }
     }
+    all.sort_by(|a, b| a.square.total_cmp(&b.square));
     all
 }
 
-/// Rounds in which a frequency is looked for at the stiffness of the last one, and the part of its square by which it still
-/// changes then.
-const ROUNDS: usize = 200;
-const SETTLED: f64 = 1e-10;
+/// Squares of frequencies below this part of the largest one are of what nothing brings back, but for rounding.
+const RIGID: f64 = 1e-14;
 /// Squares of frequencies closer than this part are of a pair.
 const PAIR: f64 = 1e-8;
 

@@ -265,3 +265,17 @@ fn bent_shafts_under_a_torque_close_their_books() {
         }
     }
 }
+
+/// Free fall along the axis turns and tilts nothing.
+#[test]
+fn a_rotor_that_falls_along_its_axis_does_not_tilt() {
+    let mut assembly = turned(0.3, 1e-3);
+    assembly.gravity = [-WEIGHT, 0.0, 0.0];
+    let falling = body(&run(&assembly, 2e-5, 1000));
+    assembly.gravity = [0.0; 3];
+    let floating = body(&run(&assembly, 2e-5, 1000));
+    assert!(falling.spin[1].abs() + falling.spin[2].abs() <= 1e-12, "{:?}", falling.spin);
+    assert!((falling.spin[0] - floating.spin[0]).abs() <= 1e-12 * floating.spin[0]);
+    let fallen = 0.5 * WEIGHT * 0.02 * 0.02;
+    assert!((falling.position[0] + fallen).abs() <= 1e-12, "{}", falling.position[0]);
+}

@@ -294,3 +294,35 @@ mesh = { order = 1, method = "explicit" }
     assert_eq!(facing(&assembly), [[false; 2], [true; 2]]);
     assert_eq!(facing(&assembly), facing(&reduced));
 }
+
+/// Masses beside the axis have more inertia than a thin shaft without a disc: under a torque, which would have to turn them, that is
+/// refused; with the disc it is not, nor at a given speed.
+#[test]
+fn unbalances_that_a_torque_cannot_turn_are_refused() {
+    let shaft = |drive: &str, size: &str, disc: &str| {
+        format!(
+            r#"{drive}
+[body.shaft.beam]
+start = "-200 mm"
+segments = [{{ length = "400 mm", outer_diameter = "25 mm" }}]
+{disc}
+unbalance = [{{ at = "100 mm", size = "{size}" }}]
+"#
+        )
+    };
+    let torque = "torque = \"1 N m\"";
+    let disc = r#"disc = [{ at = "100 mm", outer_diameter = "200 mm", inner_diameter = "25 mm", width = "20 mm" }]"#;
+    let error = read(&shaft(torque, "2e-2 kg m", "")).unwrap_err();
+    assert!(
+        error.contains("body.shaft.beam: its unbalances, which a torque turns, are masses of"),
+        "{error}"
+    );
+    assert!(error.contains("give the disc that carries them"), "{error}");
+    for sound in [
+        shaft(torque, "2e-2 kg m", disc),
+        shaft("speed = \"1000 rpm\"", "2e-2 kg m", ""),
+        shaft(torque, "1e-4 kg m", ""),
+    ] {
+        read(&sound).unwrap();
+    }
+}

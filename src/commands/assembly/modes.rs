@@ -210,8 +210,8 @@ fn relaxing(assembly: &Assembly, whirls: bool) -> Option<&'static str> {
         }
         (true, true) => {
             "springs with Maxwell elements have in each of the modes the stiffness that they store at its frequency; whirl and the Campbell diagram \
-             have what they damp, too. Those that turn with a body have relaxed at critical speeds, as forward whirl once a turn stands still in their \
-             axes; backward ones are higher"
+             have what they damp, too. At critical speeds those that turn have the stiffness that forward whirl once a turn finds in their axes, relaxed \
+             where they turn as fast; backward ones are higher"
         }
     })
 }

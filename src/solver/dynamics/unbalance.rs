@@ -14,7 +14,7 @@
 use super::assembly::{Assembly, Body};
 use super::model::{Drive, RaceBody, Rotation};
 use super::race::{RaceLoads, RaceNow, RaceRates};
-use super::shaft::{Bend, ElasticShaft, SectionNow};
+use super::shaft::{Bend, ElasticShaft, Section, SectionNow};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 use crate::solver::mount::Mount;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -39,6 +39,24 @@ pub fn swings(assembly: &Assembly, body: usize) -> bool {
     by_torque && (of.unbalance != 0.0 || assembly.shafts.iter().any(on_shaft))
 }
 
+/// b·M⁻¹b of the unbalances of a shaft that does not bend yet, kg·m²: the inertia about the axis that such masses have at least where
+/// they sit, on a shaft of this mass (kg) and moment of inertia across the axis (kg·m²) and its shapes.
+pub fn least_inertia(shaft: &ElasticShaft, mass: f64, transverse: f64) -> f64 {
+    let along = |direction: usize| {
+        let parts = shaft.unbalances.iter().map(|of| {
+            let (sin, cos) = libm::sincos(of.angle);
+            (of.size * [cos, sin][direction], &of.section)
+        });
+        let parts: Vec<(f64, &Section)> = parts.collect();
+        let sum = |of: &dyn Fn(&Section) -> f64| {
+            parts.iter().map(|(size, section)| size * of(section)).sum::<f64>().powi(2)
+        };
+        let rigid = sum(&|_| 1.0) / mass + sum(&|section| section.along) / transverse;
+        rigid + (0..shaft.count()).map(|k| sum(&|section| section.deflection[k])).sum::<f64>()
+    };
+    along(0) + along(1)
+}
+
 /// A shaft that bends, its entries in the state.
 pub(super) type Bent<'s> = (&'s ElasticShaft, &'s [f64]);
 
@@ -61,7 +79,7 @@ type Turning<'t> = (f64, [Vec3; 2], &'t RaceNow);
 fn each(
     (body, now): (&Body, &RaceNow),
     bent: Option<Bent>,
-    mut act: impl FnMut(Turning, Option<(&super::shaft::Section, &SectionNow, &Bend)>),
+    mut act: impl FnMut(Turning, Option<(&Section, &SectionNow, &Bend)>),
 ) {
     if body.unbalance != 0.0 {
         act((body.unbalance, directions(&now.state.orientation, 0.0), now), None);
@@ -116,7 +134,10 @@ impl Swing {
         on_shapes.fill(0.0);
         each(of, bent, |(size, [outwards, forward], _), section| {
             let force = RaceLoads { force: scale(forward, size), moment: [0.0; 3] };
-            let moment = scale(cross(outwards, gravity), size);
+            // About the axis: across it weight is balanced by what the mass does as the body tilts, which is left out.
+            let axis = of.1.motion.axis;
+            let pull = add_scaled(gravity, -dot(gravity, axis), axis);
+            let moment = scale(cross(outwards, pull), size);
             let weight = RaceLoads { force: [0.0; 3], moment };
             match section {
                 None => {

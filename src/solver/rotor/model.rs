@@ -5,7 +5,7 @@
 
 use super::beam::{Beam, BeamError, BeamMatrices, STATION, station_at};
 use super::critical::Critical;
-use super::relaxing::Relaxing;
+use super::relaxing::{Relaxing, settled};
 use crate::solver::free_shapes::lowest;
 use nalgebra::{DMatrix, DVector, Matrix4};
 use thiserror::Error;
@@ -112,11 +112,10 @@ pub struct Vibrations {
 }
 
 impl Vibrations {
-    /// With what these of the springs that relax store of an oscillation at `frequency`, rad/s or infinite, and nothing that relaxes.
-    fn stiffened(&self, frequency: f64, which: impl Fn(&Relaxing) -> bool) -> Vibrations {
+    /// With what the springs that relax store of an oscillation, each at its own frequency (rad/s or infinite), and nothing that relaxes.
+    fn stiffened(&self, frequency: impl Fn(&Relaxing) -> f64) -> Vibrations {
         let mut stiff = Vibrations { relaxing: Vec::new(), ..self.clone() };
-        let those = self.relaxing.iter().filter(|of| which(of));
-        those.for_each(|of| stiff.stiffness += of.storage(frequency));
+        self.relaxing.iter().for_each(|of| stiff.stiffness += of.storage(frequency(of)));
         stiff
     }
 }
@@ -139,10 +138,6 @@ pub struct RotorModel {
     /// Bᵀ M R B, R a quarter turn from Y to Z: ±i on a motion that whirls in circles, forward and backward.
     pub(super) quarter_turn: DMatrix<f64>,
 }
-
-/// Rounds in which a speed is looked for at the stiffness of the last one, and the part of it by which it still changes then.
-const ROUNDS: usize = 200;
-const SETTLED: f64 = 1e-10;
 
 /// Below this part of the stiffness a frequency counts as that of a rigid motion: what rounding leaves.
 const RIGID: f64 = 1e-12;
@@ -199,8 +194,8 @@ impl RotorModel {
         sections: Option<&DMatrix<f64>>,
     ) -> Result<RotorModel, RotorError> {
         // Shapes are those of springs that have not relaxed.
-        let stiff = (!vibrations.relaxing.is_empty())
-            .then(|| vibrations.stiffened(f64::INFINITY, |_| true));
+        let stiff =
+            (!vibrations.relaxing.is_empty()).then(|| vibrations.stiffened(|_| f64::INFINITY));
         let (basis, natural) = natural_motions(stiff.as_ref().unwrap_or(vibrations), modes)?;
         let Vibrations { mass, stiffness, damping, gyroscopic, circulating, pairs, .. } =
             vibrations;
@@ -232,9 +227,8 @@ impl RotorModel {
         })
     }
 
-    /// Critical speeds up to `limit`, rad/s, and those above it that have not been looked at closer: springs that relax have the stiffness
-    /// that they store at the frequency of each. From that of springs that have not relaxed each speed comes down to its own. Those that turn
-    /// have relaxed: a motion that whirls once a turn stands still in their axes.
+    /// Critical speeds up to `limit`, rad/s, and some above it: springs that relax have the stiffness that they store at the frequency that
+    /// forward whirl once a turn has in their axes, that of the speed where they stand still and none where they turn at the speed.
     ///
     /// # Errors
     /// As [`RotorModel::of`] and [`RotorModel::critical_speeds`].
@@ -245,32 +239,43 @@ impl RotorModel {
         sections: Option<&DMatrix<f64>>,
         limit: f64,
     ) -> Result<Vec<Critical>, RotorError> {
-        let at = |frequency: f64| {
-            let stiff = vibrations.stiffened(frequency, |of| of.spin == 0.0);
+        let at = |speed: f64| {
+            let seen = |of: &Relaxing| match of.spin {
+                1.0 => 0.0,
+                spin => (1.0 - spin).abs() * speed,
+            };
+            let stiff = vibrations.stiffened(seen);
             RotorModel::of(&stiff, modes, stations.to_vec(), sections)?.critical_speeds()
         };
-        let mut found = at(f64::INFINITY)?;
-        if vibrations.relaxing.iter().all(|of| of.spin != 0.0) {
-            return Ok(found);
+        let stiffest = at(f64::INFINITY)?;
+        if vibrations.relaxing.iter().all(|of| of.spin == 1.0) {
+            return Ok(stiffest);
         }
-        let least = at(0.0)?;
-        for (number, critical) in found.iter_mut().enumerate() {
-            if least.get(number).is_none_or(|least| least.speed > limit) {
+        // A speed that springs give which have relaxed less than at the limit is not below it.
+        let limited = at(limit)?;
+        let mut found = Vec::new();
+        for (number, critical) in stiffest.iter().enumerate() {
+            // What has come to be held by nothing is no longer counted.
+            let of = |all: &[Critical]| (number + all.len()).checked_sub(stiffest.len());
+            if of(&limited).is_some_and(|own| limited[own].speed > limit) {
                 break;
             }
-            for _ in 0..ROUNDS {
-                let mut all = at(critical.speed)?;
-                if number >= all.len() {
-                    break;
-                }
-                let next = all.swap_remove(number);
-                let change = (next.speed - critical.speed).abs();
-                *critical = next;
-                if change <= SETTLED * critical.speed {
-                    break;
-                }
+            let mut last = critical.clone();
+            let value = |square: f64| -> Result<f64, RotorError> {
+                let mut all = at(square.sqrt())?;
+                Ok(match of(&all) {
+                    Some(own) => {
+                        last = all.swap_remove(own);
+                        last.speed * last.speed
+                    }
+                    None => 0.0,
+                })
+            };
+            if settled(critical.speed * critical.speed, value)?.is_some() {
+                found.push(last);
             }
         }
+        found.sort_by(|a, b| a.speed.total_cmp(&b.speed));
         Ok(found)
     }
 

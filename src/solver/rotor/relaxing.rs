@@ -4,7 +4,7 @@
 //! Lᵀ k s. One that turns with a body at Ω feels rates in the axes that turn: ṡ = ẋ − Ω × (x − s) − s/τ, which feeds whirl above a
 //! critical speed as a dashpot that turns does.
 
-use nalgebra::{Complex, DMatrix, SMatrix};
+use nalgebra::{Complex, DMatrix, DVector, SMatrix};
 
 /// One element of one connection.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,3 +103,74 @@ impl Relaxing {
         levers.tr_mul(&(pulls * &levers))
     }
 }
+
+impl Relaxing {
+    /// Σ k |dz/dλ| |x|², z the part of x that its springs are elongated by: beside 2 |λ| |p|² of what has mass, whose rates these are, it
+    /// says how much of a motion e^{λt} of the natural ones' combination p, of norm 1, is the springs' own relaxing.
+    pub(super) fn yielding(
+        &self,
+        value: Complex<f64>,
+        speed: f64,
+        modal: &DVector<Complex<f64>>,
+    ) -> f64 {
+        let relaxes = 1.0 / self.relaxation_time;
+        let slope = |value: Complex<f64>| relaxes / (value + relaxes).norm_sqr();
+        let turning = Complex::new(0.0, self.spin * speed);
+        let gone = |i: usize| -> Complex<f64> {
+            self.levers.row(i).iter().zip(modal.iter()).map(|(lever, p)| p * *lever).sum()
+        };
+        let along = [0, 3].map(|i| self.stiffness[i] * slope(value) * gone(i).norm_sqr());
+        let across = PAIRS.map(|[y, z]| {
+            let (in_y, in_z) = (gone(y), gone(z) * Complex::i());
+            let circles = slope(value - turning) * (in_y + in_z).norm_sqr()
+                + slope(value + turning) * (in_y - in_z).norm_sqr();
+            0.25 * (self.stiffness[y] + self.stiffness[z]) * circles
+        });
+        along.iter().chain(&across).sum()
+    }
+}
+
+/// The largest s at which `value` is s: ω² that a stiffness gives, as a function of the ω² at which springs store it. `above` is a
+/// value of springs that have not relaxed, below which it falls slower and slower towards it (the storage of a Maxwell element is concave
+/// over ω²), so that secants stay above; where one does not its step is halved. [`None`] where it comes down to nothing.
+///
+/// # Errors
+/// Those of `value`.
+pub(crate) fn settled<E>(
+    above: f64,
+    mut value: impl FnMut(f64) -> Result<f64, E>,
+) -> Result<Option<f64>, E> {
+    let mut before = (above, value(above)? - above);
+    if before.1.abs() <= SETTLED * above {
+        return Ok(Some(above));
+    }
+    let mut now = (above + before.1, 0.0);
+    for _ in 0..ROUNDS {
+        let gone = now.0 > NOTHING * above;
+        if !gone {
+            return Ok(None);
+        }
+        now.1 = value(now.0)? - now.0;
+        // Past it: half way back, as often as it takes.
+        while now.1 > SETTLED * now.0 {
+            let middle = 0.5 * (now.0 + before.0);
+            if before.0 - middle <= SETTLED * middle {
+                return Ok(Some(middle));
+            }
+            now = (middle, value(middle)? - middle);
+        }
+        let step = now.1 * (now.0 - before.0) / (now.1 - before.1);
+        if now.1.abs() <= SETTLED * now.0 && step.abs() <= 1e3 * SETTLED * now.0 || step == 0.0 {
+            return Ok(Some(now.0));
+        }
+        before = now;
+        now = (now.0 - if step.is_finite() { step } else { -now.1 }, 0.0);
+    }
+    Ok(Some(now.0))
+}
+
+/// Part by which s still changes once it has settled, and below which, of what it was, it is nothing; rounds of secants, a dozen are
+/// usual.
+const SETTLED: f64 = 1e-13;
+const NOTHING: f64 = 1e-13;
+const ROUNDS: usize = 200;

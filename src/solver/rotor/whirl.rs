@@ -142,7 +142,7 @@ impl RotorModel {
     }
 
     /// Shape of the `number`-th eigenvalue by inverse iteration on λ²I + λ(C + ΩG) + K + ΩS and what springs that relax are at λ. [`None`] of an
-    /// eigenvalue that moves nothing: springs that relax against each other.
+    /// eigenvalue that is the springs': relaxing against each other, or more than what has mass swings.
     fn whirl(
         &self,
         value: Complex<f64>,
@@ -174,7 +174,11 @@ impl RotorModel {
             modal = next.unscale(norm);
             grown = norm;
         }
-        let moves = self.relaxing.is_empty() || grown * near.norm_sqr() > MOVES;
+        let moves = self.relaxing.is_empty() || {
+            let yielding = self.relaxing.iter().map(|of| of.yielding(near, speed, &modal));
+            let swings = value.re > 0.0 || yielding.sum::<f64>() <= YIELDING * 2.0 * near.norm();
+            swings && grown * near.norm_sqr() > MOVES
+        };
         moves.then(|| self.motion(value, modal))
     }
 
@@ -213,8 +217,8 @@ impl RotorModel {
                 lines = self.whirls(speed, count)?.into_iter().map(|whirl| vec![whirl]).collect();
                 continue;
             }
-            // Lines cross: a few more than there are lines to choose from, also among what dies out quickly at this speed.
-            let most = if self.relaxing.is_empty() { 2 * count } else { 4 * count };
+            // Lines cross: a few more than there are lines to choose from, or all where what dies out at this speed is among them.
+            let most = if self.relaxing.is_empty() { 2 * count } else { usize::MAX };
             let mut found = self.motions(speed, most, |_| true)?;
             for line in lines.iter_mut().filter(|line| line.len() == followed) {
                 let last = line.last().expect("a line has begun");
@@ -235,6 +239,8 @@ impl RotorModel {
 
 /// Motions less alike than this are not the same.
 const ALIKE: f64 = 0.1;
+/// Times that springs may have more part in a motion by relaxing than what swings has; what grows is told in any case.
+const YIELDING: f64 = 3.0;
 /// So close to an eigenvalue, 1e-11 of it, the answer to a load is some 1e11 times the load over λ²; where it is less than this, λ is
 /// no eigenvalue of what has mass.
 const MOVES: f64 = 1e5;
