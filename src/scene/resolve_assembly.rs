@@ -68,6 +68,7 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
     refuse_places_off_shafts(document, (&bearings, &springs), &resolved)?;
     name_what_holds(&mut bearings, &springs);
     let scene = AssemblyScene { bearings, bodies: resolved, springs, defaults_used };
+    refuse_shared_columns(document, &scene)?;
     refuse_free_bodies(document, &scene)?;
     refuse_springs_on_elements(document, &scene)?;
     if scene.housing_method().is_none() && !scene.has_shafts_in_elements() {
@@ -329,6 +330,25 @@ fn refuse_mixed_methods(document: &Document, bearings: &[PlacedBearing]) -> Resu
     let reason = "this housing and another are solved in different ways".into();
     let advice = "give all the same method, in [housing]".into();
     Err(document.scoped(name).error("housing.method", Problem::Refused { reason, advice }))
+}
+
+/// Bodies whose columns would be called as those of a race or a cage.
+fn refuse_shared_columns(document: &Document, scene: &AssemblyScene) -> Result<(), SceneError> {
+    for body in &scene.bodies {
+        for placed in &scene.bearings {
+            let before = placed.name.as_ref().map_or(String::new(), |name| format!("{name}_"));
+            let parts = [("inner", "inner race"), ("outer", "outer race"), ("cage", "cage")];
+            let same = parts.into_iter().find(|(part, _)| format!("{before}{part}") == body.name);
+            let Some((_, part)) = same else { continue };
+            let of =
+                placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
+            let reason = format!("columns of the {part}{of} begin with this name");
+            let advice = "choose another name, such as hub".into();
+            let problem = Problem::Refused { reason, advice };
+            return Err(document.error_of_name("body", &body.name, problem));
+        }
+    }
+    Ok(())
 }
 
 /// Bodies that nothing is joined to.

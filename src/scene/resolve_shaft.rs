@@ -343,6 +343,10 @@ fn disc(item: ItemRef, at: f64, density: f64) -> Result<BeamDisc, SceneError> {
             let advice = format!("keep `mass` or `{name}`");
             return Err(item.error(name, Problem::Exclusive { rival: "mass".into(), advice }));
         }
+        if given("axial").is_some() && given("transverse").is_none() {
+            let because = " beside `axial`";
+            return Err(missing(item, "transverse", because, "transverse = \"0.05 kg m^2\""));
+        }
         let [axial, transverse] = ["axial", "transverse"].map(|name| given(name).unwrap_or(0.0));
         check_inertia(axial, transverse).map_err(|problem| item.error("axial", problem))?;
         return Ok(BeamDisc { at, mass, axial, transverse });

@@ -292,6 +292,14 @@ fn bad_assemblies_are_refused() {
             vec!["body.loose", "nothing is joined to this body"],
         ),
         (
+            "a body named as a race's columns",
+            whole.replace("shaft", "left_inner"),
+            vec![
+                "body.left_inner",
+                "columns of the inner race of bearing left begin with this name",
+            ],
+        ),
+        (
             "a name used twice",
             format!("{whole}\n[spring.left]\nfrom = \"shaft\"\nstiffness = {{ x = \"1 N/m\" }}\n"),
             vec!["spring.left", "a bearing has this name as well"],

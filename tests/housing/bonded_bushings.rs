@@ -391,3 +391,75 @@ fn a_resumed_run_has_the_same_bits() {
         assert!(a.data().iter().map(bits).eq(b.data().iter().map(bits)), "{method}");
     }
 }
+
+/// Shafts that bend start bent, whatever stands beside them: energies at the start of a disc's weight on bearings in bushings, two of
+/// them with Maxwell elements in the state, are those on the fitted springs.
+#[test]
+fn a_shaft_that_bends_starts_bent_beside_rubber_in_elements() {
+    let scene = |method: &str| -> AssemblyScene {
+        let bushing = format!(
+            r#"inner_diameter = "71.054 mm"
+outer_diameter = "91 mm"
+length = "30 mm"
+table = "3.1"
+method = "{method}"
+cells = {{ around = 6, radial = 2, axial = 4 }}"#
+        );
+        let text = format!(
+            r#"[bearing]
+kind = "deep-groove"
+balls = 8
+clearance = {{ radial = "5 um" }}
+ball = {{ radius = "5.953 mm" }}
+inner_race = {{ radius = "20.047 mm", groove_radius = "6.013 mm" }}
+outer_race = {{ groove_radius = "6.310 mm", outer_radius = "35.527 mm" }}
+[bearing.left]
+inner_at = "-200 mm"
+[bearing.right]
+inner_at = "200 mm"
+[body.rotor]
+speed = "0 rpm"
+[body.rotor.beam]
+start = "-230 mm"
+segments = [{{ length = "460 mm", outer_diameter = "30 mm" }}]
+load = [{{ at = "0 mm", z = "-150 N" }}]
+[outer_race]
+motion = "5-dof"
+[spring.one]
+from = "ground"
+to = "left.outer_race"
+from_at = "-200 mm"
+[spring.one.bushing]
+{bushing}
+[spring.other]
+from = "ground"
+to = "right.outer_race"
+from_at = "200 mm"
+[spring.other.bushing]
+{bushing}
+[traction]
+law = "none"
+[numerics]
+end = "1 ms"
+output_interval = "10 us"
+"#
+        );
+        let document = Document::read_str(&text, Format::Toml, "scene").unwrap();
+        match resolve_subject(&document).unwrap() {
+            Subject::Assembly(scene) => *scene,
+            Subject::Solid(_) => panic!("no bearing"),
+        }
+    };
+    let starts = ["reduced", "explicit", "implicit"].map(|method| {
+        let made = Made::of(&scene(method), 2e-5);
+        let session = made.run();
+        ["energy_bending_strain", "energy_contact"].map(|name| column(&session, name)[0])
+    });
+    let [bent, pressed] = starts[0];
+    assert!(bent > 1e-3 * pressed, "{starts:?}");
+    for of in &starts[1..] {
+        // Coarse elements around are stiffer in a tilt than the fitted springs.
+        assert!((of[0] / bent - 1.0).abs() <= 0.02, "{starts:?}");
+        assert!((of[1] / pressed - 1.0).abs() <= 0.02, "{starts:?}");
+    }
+}

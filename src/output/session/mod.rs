@@ -40,6 +40,10 @@ pub enum SessionError {
         interval = size.shortest
     )]
     TooLarge { size: TableSize },
+    #[error(
+        "two columns would be called {0:?}: name the bodies, bearings, springs or places otherwise of which they are"
+    )]
+    SharedColumn(String),
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     #[error(transparent)]

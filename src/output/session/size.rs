@@ -3,6 +3,7 @@
 use super::{Parts, RunRequest, SessionError};
 use crate::output::recorder::Recorder;
 use crate::solver::clock::to_digits;
+use std::collections::HashSet;
 
 /// Most values of a table: kept in memory, copied for the results and written twice.
 pub(super) const MOST_VALUES: f64 = 1e8;
@@ -41,6 +42,11 @@ pub(super) fn size_of(
     recorder: &Recorder,
     request: &RunRequest,
 ) -> Result<TableSize, SessionError> {
+    let mut names = HashSet::new();
+    let twice = recorder.columns().iter().find(|column| !names.insert(&column.name));
+    if let Some(column) = twice {
+        return Err(SessionError::SharedColumn(column.name.clone()));
+    }
     let columns = recorder.columns().len();
     let rows = (request.end / request.output_interval).ceil() + 1.0;
     let shortest = request.end * columns as f64 / MOST_VALUES;

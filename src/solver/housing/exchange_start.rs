@@ -9,6 +9,7 @@ use super::stepped_shaft::SteppedShaft;
 use crate::solver::dynamics::assembly::{Assembly, Body};
 use crate::solver::dynamics::race;
 use crate::solver::dynamics::run::Simulation;
+use crate::solver::dynamics::shaft::ElasticShaft;
 use crate::solver::dynamics::start;
 use crate::solver::dynamics::state::{BODY, BodyState, Places};
 use crate::solver::plan::Stage;
@@ -149,8 +150,10 @@ fn held_start(
         held.bodies[*body].hold();
     }
     let mut state = start::at_equilibrium(&held)?;
+    // What the springs' elements have in the state stands after that of the other connections, before shafts that bend.
     let [own, with_springs] = [assembly, &held].map(|of| Places::of(of).ledger());
-    state.drain(own..with_springs);
+    let bent: usize = assembly.shafts.iter().map(ElasticShaft::entries).sum();
+    state.drain(own - bent..with_springs - bent);
     for &body in in_solids {
         if held.bodies[body].driven().is_some() {
             // It turns, and balls roll with it.
