@@ -1,11 +1,10 @@
 //! Whirl of an assembly about its equilibrium against that of the same shaft on supports.
 
 use crate::beam::steel;
+use crate::relaxing::two_on_relaxing;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, GROUND, Mobility};
-use bearing_dynamics::solver::dynamics::connection::{
-    Connection, Law, MaxwellElement, SpringDashpot,
-};
+use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::solver::dynamics::equilibrium::{at_start, static_assembly};
 use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
 use bearing_dynamics::solver::dynamics::shaft::ElasticShaft;
@@ -14,21 +13,19 @@ use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc};
 use bearing_dynamics::solver::rotor::model::{Rotor, RotorError, RotorModel, Support};
-use bearing_dynamics::solver::rotor::relaxing::Relaxing;
 use bearing_dynamics::solver::rotor::unbalance::Unbalance;
-use bearing_dynamics::solver::rotor::whirl::Whirl;
 use bearing_dynamics::solver::shaft_shapes::{Kept, free_shaft};
-use bearing_dynamics::solver::vibrations::{Whirling, natural_motions, whirling};
+use bearing_dynamics::solver::vibrations::{Whirling, whirling};
 use nalgebra::{Complex, DMatrix, Matrix2, Matrix4, RowVector2, Vector2};
 
-const SPEED: f64 = 900.0;
+pub const SPEED: f64 = 900.0;
 const DISC: BeamDisc = BeamDisc { at: 0.4, mass: 3.0, axial: 0.02, transverse: 0.011 };
 const STIFFNESS: [f64; 6] = [3e7, 4e7, 2e7, 0.0, 500.0, 800.0];
 const DAMPING: [f64; 6] = [10.0, 200.0, 100.0, 0.0, 0.05, 0.02];
 /// Where springs hold it, and how much of it brakes bending with the shaft and without.
-const PLACES: [f64; 2] = [0.05, 0.3];
+pub const PLACES: [f64; 2] = [0.05, 0.3];
 
-fn beam() -> Beam {
+pub fn beam() -> Beam {
     Beam { discs: vec![DISC], ..Beam::new(vec![steel(0.4, 0.03, 0.0)]) }
 }
 
@@ -56,7 +53,7 @@ fn spinning(inertia: Inertia, speed: f64) -> Mobility {
 }
 
 /// Springs between the ground and a shaft with an overhung disc.
-fn assembly(internal_damping: f64) -> Assembly {
+pub fn assembly(internal_damping: f64) -> Assembly {
     let holds = PLACES.map(|at| (at, true));
     let (rigid, shapes) = free_shaft(&beam(), Kept::ALL, &holds, &[]).unwrap();
     let inertia = Inertia { mass: rigid.mass, axial: rigid.axial, transverse: rigid.transverse };
@@ -84,7 +81,7 @@ fn assembly(internal_damping: f64) -> Assembly {
     }
 }
 
-fn whirl(assembly: &Assembly) -> Whirling {
+pub fn whirl(assembly: &Assembly) -> Whirling {
     let still = static_assembly(assembly, 0.0, &[]);
     let found = at_start(assembly).unwrap();
     let inertia = *assembly.bodies[0].inertia().unwrap();
@@ -233,12 +230,12 @@ fn eigenvalues(rigid: &Inertia, speed: f64, turning: f64) -> Vec<Complex<f64>> {
     (0..4).map(|k| triangle[(k, k)]).collect()
 }
 
-const EVEN: [f64; 6] = [1e6, 2e5, 2e5, 0.0, 800.0, 800.0];
+pub const EVEN: [f64; 6] = [1e6, 2e5, 2e5, 0.0, 800.0, 800.0];
 const BRAKES: [f64; 6] = [0.0, 100.0, 100.0, 0.0, 0.3, 0.3];
-const ARMS: [f64; 2] = [-0.05, 0.12];
+pub const ARMS: [f64; 2] = [-0.05, 0.12];
 
 /// Two rigid bodies of which one turns the other way round and slower, each on two springs that begin at the ground, or at the body.
-fn two_rigid(from_ground: bool, backward: f64) -> (Assembly, Vec<MovingBody>) {
+pub fn two_rigid(from_ground: bool, backward: f64) -> (Assembly, Vec<MovingBody>) {
     let inertia = [
         Inertia { mass: 2.0, axial: 4e-3, transverse: 5e-3 },
         Inertia { mass: 3.0, axial: 2e-3, transverse: 7e-3 },
@@ -292,198 +289,6 @@ fn dashpots_turn_with_the_body_that_they_begin_at() {
             }
         }
         assert_eq!(grown > 0, !from_ground);
-    }
-}
-
-const RELAXES: [(f64, f64); 2] = [(3e5, 1e-3), (1e5, 20e-3)];
-
-/// The same with two Maxwell elements beside each spring and in the place of its dashpot, over y + iz, tilt_y + i tilt_z and the
-/// elongation s of each: ṡ = ẋ − iω(x − s) − s/τ. With each eigenvalue the part that places and velocities have in it (participation).
-fn relaxing_eigenvalues(rigid: &Inertia, speed: f64, turning: f64) -> Vec<(Complex<f64>, f64)> {
-    let i = Complex::i();
-    let one = |re: f64| Complex::new(re, 0.0);
-    let [_, k, _, _, kt, _] = EVEN;
-    // Along each arm, then about the centre for each arm.
-    let places: Vec<[Complex<f64>; 2]> = ARMS
-        .iter()
-        .map(|a| [one(1.0), -i * *a])
-        .chain(ARMS.iter().map(|_| [one(0.0), one(1.0)]))
-        .collect();
-    let size = 4 + places.len() * RELAXES.len();
-    let masses = [rigid.mass, rigid.transverse];
-    let mut whole = DMatrix::<Complex<f64>>::zeros(size, size);
-    (0..2).for_each(|j| whole[(j, 2 + j)] = one(1.0));
-    whole[(3, 3)] = i * speed * rigid.axial / rigid.transverse;
-    let mut at = 4;
-    for (number, place) in places.iter().enumerate() {
-        let pushes = [place[0].conj(), place[1].conj()];
-        let (spring, arm) = if number < 2 { (k, 1.0) } else { (kt, 0.01) };
-        for (row, push) in pushes.iter().enumerate() {
-            for (column, of) in place.iter().enumerate() {
-                whole[(2 + row, column)] -= push * of * spring / masses[row];
-            }
-        }
-        for (stiffness, time) in RELAXES {
-            for j in 0..2 {
-                whole[(2 + j, at)] = -pushes[j] * (stiffness * arm / masses[j]);
-                whole[(at, 2 + j)] = place[j];
-                whole[(at, j)] = -i * turning * place[j];
-            }
-            whole[(at, at)] = i * turning - one(1.0 / time);
-            at += 1;
-        }
-    }
-    let triangle = whole.clone().schur().unpack().1;
-    let share = |value: Complex<f64>| {
-        let apart = &whole - DMatrix::from_diagonal_element(size, size, value);
-        let parts = apart.svd(true, true);
-        let [left, right] = [parts.u.unwrap().adjoint(), parts.v_t.unwrap()];
-        let part = |i: usize| (left[(size - 1, i)] * right[(size - 1, i)].conj()).norm();
-        (0..4).map(part).sum::<f64>() / (0..size).map(part).sum::<f64>()
-    };
-    (0..size).map(|k| (triangle[(k, k)], share(triangle[(k, k)]))).collect()
-}
-
-fn two_on_relaxing(from_ground: bool, backward: f64) -> (Assembly, Vec<MovingBody>) {
-    let (mut assembly, moving) = two_rigid(from_ground, backward);
-    for connection in &mut assembly.connections {
-        let Law::SpringDashpot(law) = &mut connection.law else { panic!("springs") };
-        law.damping = [0.0; 6];
-        let element = |&(k, relaxation_time): &(f64, f64)| MaxwellElement {
-            stiffness: [0.0, k, k, 0.0, 0.01 * k, 0.01 * k],
-            relaxation_time,
-        };
-        law.maxwell = RELAXES.iter().map(element).collect();
-    }
-    (assembly, moving)
-}
-
-/// Maxwell elements have states of their own, standing still or turning with a body; motions that only decay are not told.
-#[test]
-fn maxwell_elements_take_part_in_whirl() {
-    let backward = -0.4;
-    for from_ground in [true, false] {
-        let (assembly, moving) = two_on_relaxing(from_ground, backward);
-        let still = static_assembly(&assembly, 0.0, &[]);
-        let found = at_start(&assembly).unwrap();
-        let ours = whirling(&assembly, &still, &found, &moving, &[]).unwrap();
-        let whirls = ours.model.whirls(SPEED, 100).unwrap();
-        let (mut grown, mut damped): (usize, f64) = (0, 0.0);
-        let mut count = 0;
-        for (of, part) in moving.iter().zip([1.0, backward]) {
-            let turning = if from_ground { 0.0 } else { part * SPEED };
-            let all = relaxing_eigenvalues(&of.inertia, part * SPEED, turning);
-            for (expected, share) in all {
-                // A motion and its conjugate are one: it is told with a positive frequency.
-                let expected = Complex::new(expected.re, expected.im.abs());
-                let nearest = whirls.iter().map(|of| (of.eigenvalue - expected).norm());
-                let nearest = nearest.fold(f64::INFINITY, f64::min) / expected.norm();
-                let told = nearest <= 1e-9;
-                println!("{from_ground} {expected} {share} {nearest:e}");
-                // Those of the springs are not told, nor what dies out faster than it turns.
-                assert!(
-                    told || share < 0.6 || expected.im < -expected.re,
-                    "{expected}: {nearest:e}"
-                );
-                assert!(!told || share > 0.4, "{expected} {share}");
-                count += usize::from(told);
-                grown += usize::from(told && expected.re > 0.0);
-                damped = damped.max(if told { -expected.re / expected.norm() } else { 0.0 });
-            }
-        }
-        // And nothing besides.
-        let across = whirls.iter().filter(|whirl| whirl.across > 0.5).count();
-        assert_eq!(across, count);
-        assert!(count >= 8);
-        assert_eq!(grown > 0, !from_ground);
-        assert!(damped > 0.1, "{damped}");
-    }
-}
-
-/// Bodies that move along Y and Z alone, by springs that relax: natural frequencies are roots of m ω² = k + Σ k_e (ωτ)²/(1 + (ωτ)²), and so
-/// are critical speeds; of springs that turn by a part p of the speed with (1 − p) ω in the place of ω. Relaxed to nothing, too, and where
-/// that leaves a motion that does not swing.
-#[test]
-fn modes_and_critical_speeds_have_what_springs_store() {
-    let pair = |element: MaxwellElement, k: f64| (k, vec![element]);
-    let one = |k: f64, relaxation_time: f64| MaxwellElement {
-        stiffness: [0.0, k, k, 0.0, 0.0, 0.0],
-        relaxation_time,
-    };
-    let both = RELAXES.map(|(k, time)| one(k, time)).to_vec();
-    let laws = [
-        (EVEN[1], both.clone()),
-        (0.0, both),
-        // Masses of 2 kg nearly stop swinging, by the last ones wholly.
-        pair(one(4e5, 2.236e-3), 1.0),
-        pair(one(4e5, 2.2e-3), 1.0),
-        pair(one(2e5, 1e-3), 0.0),
-    ];
-    for (relaxed, elements) in laws {
-        for (from_ground, part) in [(true, 0.0), (false, 0.0), (false, 0.5), (false, -0.4)] {
-            let (mut assembly, mut moving) = two_on_relaxing(from_ground, part);
-            for connection in &mut assembly.connections {
-                // Without arms displacements and tilts are apart.
-                connection.ends.iter_mut().for_each(|end| end.along = 0.0);
-                let Law::SpringDashpot(law) = &mut connection.law else { panic!("springs") };
-                (law.stiffness[1], law.stiffness[2]) = (relaxed, relaxed);
-                law.maxwell.clone_from(&elements);
-            }
-            moving.iter_mut().for_each(|of| of.free = [false, true, true, false, false]);
-            let still = static_assembly(&assembly, 0.0, &[]);
-            let found = at_start(&assembly).unwrap();
-            // The largest root, from above; two springs each.
-            let root = |mass: f64, seen: f64| -> Option<f64> {
-                let excess = |square: f64| {
-                    let part = |of: &MaxwellElement| {
-                        let turns = square * (seen * of.relaxation_time).powi(2);
-                        of.stiffness[1] * turns / (1.0 + turns)
-                    };
-                    2.0 * (relaxed + elements.iter().map(part).sum::<f64>()) - mass * square
-                };
-                let (mut above, mut below) = (1e9, 1e9);
-                while excess(below) <= 0.0 {
-                    if below < 1e-3 {
-                        return None;
-                    }
-                    (above, below) = (below, below * (1.0 - 1e-4));
-                }
-                for _ in 0..100 {
-                    let middle = 0.5 * (below + above);
-                    if excess(middle) > 0.0 { below = middle } else { above = middle }
-                }
-                Some(below.sqrt())
-            };
-            let masses = moving.iter().map(|of| of.inertia.mass);
-            let mut expected: Vec<f64> =
-                masses.flat_map(|mass| [root(mass, 1.0).unwrap_or(0.0); 2]).collect();
-            expected.sort_by(f64::total_cmp);
-            let modes = natural_motions(&still, &found, &moving, &[]);
-            let mut swings: Vec<f64> = modes.iter().map(|mode| mode.square.sqrt()).collect();
-            swings.sort_by(f64::total_cmp);
-            assert_eq!(swings.len(), 4);
-            for (found, expected) in swings.iter().zip(&expected) {
-                // Where a motion nearly stops swinging the root is one of two that lie close.
-                assert!((found - expected).abs() <= 1e-5 * expected, "{found} {expected}");
-            }
-            let spins = if from_ground { [0.0; 2] } else { [1.0, part] };
-            let own = moving.iter().zip(spins);
-            let own = own.filter_map(|(of, spin)| root(of.inertia.mass, (1.0 - spin).abs()));
-            let mut expected: Vec<f64> = own.flat_map(|speed| [speed; 2]).collect();
-            expected.sort_by(f64::total_cmp);
-            let whirl = whirling(&assembly, &still, &found, &moving, &[]).unwrap();
-            let critical = whirl.critical_speeds(1e4);
-            if expected.is_empty() {
-                assert!(critical.is_err() || critical.is_ok_and(|none| none.is_empty()));
-                continue;
-            }
-            let critical = critical.unwrap();
-            assert_eq!(critical.len(), expected.len(), "{expected:?} {critical:?}");
-            for (found, expected) in critical.iter().zip(&expected) {
-                let off = (found.speed / expected - 1.0).abs();
-                assert!(off <= 1e-5, "{} {expected}", found.speed);
-            }
-        }
     }
 }
 
@@ -549,66 +354,4 @@ fn dashpots_turn_with_the_shaft_that_they_begin_at() {
         assert!(across.len() >= 6);
     }
     assert!(grown > 0);
-}
-
-/// Maxwell elements on a shaft that bends, standing still and turning along: all stations of its beam, with the elements there.
-#[test]
-fn maxwell_elements_take_part_in_whirl_of_a_shaft_that_bends() {
-    let element =
-        MaxwellElement { stiffness: [0.0, 2e7, 2e7, 0.0, 300.0, 300.0], relaxation_time: 2e-3 };
-    for turns in [false, true] {
-        let mut own = assembly(0.0);
-        for connection in &mut own.connections {
-            let Law::SpringDashpot(law) = &mut connection.law else { panic!("springs") };
-            law.stiffness = [3e7, 2e7, 2e7, 0.0, 500.0, 500.0];
-            law.damping = [0.0; 6];
-            law.maxwell = vec![element];
-            if turns {
-                connection.ends.reverse();
-                law.rest[0] = -law.rest[0];
-            }
-        }
-        let ours = whirl(&own).model;
-        let supports = PLACES.map(|at| Support {
-            at,
-            // Shapes are those of springs that have not relaxed.
-            stiffness: Matrix4::from_diagonal(&[4e7, 4e7, 800.0, 800.0].into()),
-            damping: Matrix4::zeros(),
-        });
-        let rotor = Rotor { supports: supports.to_vec(), modes: 1000, ..Rotor::new(beam()) };
-        let mut theirs = RotorModel::new(&rotor).unwrap();
-        for at in PLACES {
-            let station =
-                theirs.stations.iter().position(|place| (place - at).abs() < 1e-9).unwrap();
-            let mut levers = DMatrix::zeros(6, theirs.natural.len());
-            for (row, i) in [(1, 0), (2, 1), (4, 2), (5, 3)] {
-                levers.row_mut(row).copy_from(&theirs.basis.row(4 * station + i));
-            }
-            let of = Relaxing {
-                levers,
-                stiffness: element.stiffness,
-                relaxation_time: element.relaxation_time,
-                spin: if turns { 1.0 } else { 0.0 },
-            };
-            theirs.stiffness -= of.storage(f64::INFINITY);
-            theirs.relaxing.push(of);
-        }
-        for speed in [0.3 * SPEED, 2.0 * SPEED] {
-            // Motions that the elements brake by more are made of what either set of shapes leaves out of their pulls.
-            let swings = |whirl: &Whirl| whirl.across > 0.5 && whirl.damping_ratio() < 0.5;
-            let [own, other] = [&ours, &theirs].map(|model| {
-                let whirls = model.whirls(speed, 12).unwrap().into_iter();
-                whirls.filter(swings).collect::<Vec<_>>()
-            });
-            for (own, other) in own.iter().zip(&other).take(6) {
-                let apart = (own.eigenvalue - other.eigenvalue).norm() / other.frequency();
-                println!("{} {} {apart:e}", own.eigenvalue, other.eigenvalue);
-                // Static answers follow no pull that has a phase of its own: what our shapes leave out of all stations, most where
-                // the elements brake much; 2e-5 at 0.02 of critical damping.
-                assert!(apart <= 1e-3, "{apart:e}");
-                assert!((own.direction - other.direction).abs() <= 1e-3);
-            }
-            assert!(own.len() >= 6 && other.len() >= 6);
-        }
-    }
 }

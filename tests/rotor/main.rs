@@ -6,6 +6,7 @@ mod common;
 mod assemblies;
 mod beam;
 mod in_elements;
+mod relaxing;
 mod run_ups;
 mod solid_shaft;
 mod statics;

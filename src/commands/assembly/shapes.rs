@@ -5,7 +5,7 @@ use super::course::percent;
 use super::housing::Housing;
 use super::housings::{Largest, at_start, condensed, seats};
 use super::lists::Lists;
-use crate::commands::memory::{self, spun};
+use crate::commands::memory::spun;
 use crate::commands::plan_step::note;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::session::Motion;
@@ -24,8 +24,6 @@ use bearing_dynamics::solver::housing::reduced_start::{
     self, add_housing, ball_frequency, put_in_equilibrium,
 };
 use bearing_dynamics::solver::plan::tally::Tally;
-use bearing_dynamics::solver::solid::foretold;
-use bearing_dynamics::solver::solid::tangent::Unknowns;
 use std::time::Instant;
 
 /// Housings as shapes, and the assembly with them.
@@ -172,9 +170,6 @@ impl Shapes {
         for (index, (housing, reduction)) in housings.iter().zip(&self.reductions).enumerate() {
             let (of, cut) = (housing.before(), &reduction.cut_off);
             said.push(note("shapes of the housing", &format!("{of}{}", text(cut))));
-            let model = &housing.setup.model;
-            let cost = foretold::modes(model, &Unknowns::new(model), cut.natural + 1);
-            said.push(note("natural shapes take", &format!("{of}{}", memory::text(&cost))));
             said.push(note(
                 "cut off",
                 &format!("{of}{}", cut_off(scene, &self.made_for(index), cut)),

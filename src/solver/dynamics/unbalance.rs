@@ -1,4 +1,4 @@
-//! Unbalances of bodies: a mass beside the axis, small against the body, with u = m e (kg·m).
+//! Unbalances of bodies (4.3.4): a mass beside the axis, small against the body, with u = m e (kg·m).
 //!
 //! Where the speed is given its force u (Ω² n − Ω̇ τ) is known, n outwards and τ the way it goes round. Where a torque turns the
 //! body Ω̇ is not: besides its own kinetic energy, which the body's has, the mass gives u Ω τ·v, v the velocity where it sits. With q̇ all

@@ -54,10 +54,8 @@ impl Relaxing {
         let modes = scale.len();
         let mut own = [None; 6];
         for (number, i) in self.directions().enumerate() {
-            own[i] = Some(first + number);
-        }
-        for i in self.directions() {
-            let Some(at) = own[i] else { continue };
+            let at = first + number;
+            own[i] = Some(at);
             let root = self.stiffness[i].sqrt();
             for (j, lever) in self.levers.row(i).iter().enumerate() {
                 state[(modes + j, at)] = -root * lever;
@@ -102,9 +100,7 @@ impl Relaxing {
             SMatrix::<Complex<f64>, 6, 6>::from_fn(|i, j| elongated[(i, j)] * self.stiffness[i]);
         levers.tr_mul(&(pulls * &levers))
     }
-}
 
-impl Relaxing {
     /// Σ k |dz/dλ| |x|², z the part of x that its springs are elongated by: beside 2 |λ| |p|² of what has mass, whose rates these are, it
     /// says how much of a motion e^{λt} of the natural ones' combination p, of norm 1, is the springs' own relaxing.
     pub(super) fn yielding(
@@ -160,7 +156,10 @@ pub(crate) fn settled<E>(
             now = (middle, value(middle)? - middle);
         }
         let step = now.1 * (now.0 - before.0) / (now.1 - before.1);
-        if now.1.abs() <= SETTLED * now.0 && step.abs() <= 1e3 * SETTLED * now.0 || step == 0.0 {
+        let near = now.1.abs() <= SETTLED * now.0 && step.abs() <= 1e3 * SETTLED * now.0;
+        // What is near and comes no nearer is rounding of the value.
+        let rounding = now.1.abs() <= ROUNDING * now.0 && now.1.abs() >= before.1.abs();
+        if near || step == 0.0 || rounding {
             return Ok(Some(now.0));
         }
         before = now;
@@ -173,4 +172,6 @@ pub(crate) fn settled<E>(
 /// usual.
 const SETTLED: f64 = 1e-13;
 const NOTHING: f64 = 1e-13;
+/// Part of s to which a value may be rounded: a slow motion's among fast ones.
+const ROUNDING: f64 = 1e-9;
 const ROUNDS: usize = 200;
