@@ -2,7 +2,8 @@
 
 use crate::scene::about::About;
 use crate::scene::error::{Place, Problem, SceneError};
-use crate::scene::keys::{self, KEYS, Key};
+use crate::scene::items::Item;
+use crate::scene::keys::{self, KEYS, Key, Leads};
 use crate::scene::source::{self, Format, Source};
 use crate::scene::sweep::{self, SweepAxis};
 use crate::scene::tree::{self, Entry, Node, Value};
@@ -64,44 +65,6 @@ pub(super) struct Given {
     pub offset: Option<usize>,
     /// Whether it stands in a table with a name.
     pub named: bool,
-}
-
-/// One table of a list of tables.
-#[derive(Clone, Debug)]
-pub(super) struct Item {
-    pub table: &'static str,
-    offset: usize,
-    given: Vec<(usize, Given)>,
-}
-
-/// One table of a list of tables, with the document it stands in.
-#[derive(Clone, Copy)]
-pub(crate) struct ItemRef<'d> {
-    document: &'d Document,
-    item: &'d Item,
-}
-
-impl<'d> ItemRef<'d> {
-    /// The checked value of a key of this table by its own name.
-    pub fn value(&self, name: &str) -> Option<&'d Checked> {
-        let path = format!("{}.{name}", self.item.table);
-        let row = keys::find(&path).map(|(row, _)| row)?;
-        self.item.given.iter().find(|(given, _)| *given == row).map(|(_, given)| &given.value)
-    }
-
-    /// An error about a key of this table, or about the table.
-    pub fn error(&self, name: &str, problem: Problem) -> SceneError {
-        let path = format!("{}.{name}", self.item.table);
-        self.document.source.error(self.offset(name), &path, problem)
-    }
-
-    /// Where a key of this table has its value; of one that is not given, where the table begins.
-    fn offset(&self, name: &str) -> usize {
-        let path = format!("{}.{name}", self.item.table);
-        let row = keys::find(&path).map(|(row, _)| row);
-        let own = self.item.given.iter().find(|(given, _)| Some(*given) == row);
-        own.and_then(|(_, given)| given.offset).unwrap_or(self.item.offset)
-    }
 }
 
 impl Layer {
@@ -194,7 +157,7 @@ impl Document {
         Ok(())
     }
 
-    fn checked(&self, key: &'static Key, node: &Node) -> Result<Given, SceneError> {
+    pub(super) fn checked(&self, key: &'static Key, node: &Node) -> Result<Given, SceneError> {
         let value = value::check(key, node).map_err(|error| {
             let dot = if error.within.is_empty() { "" } else { "." };
             let place = format!("{}{dot}{}", self.shown(key.path, true), error.within);
@@ -203,7 +166,7 @@ impl Document {
         Ok(Given { value, offset: Some(node.offset), named: self.scope.is_some() })
     }
 
-    fn unknown_key(&self, table: &str, entry: &Entry) -> SceneError {
+    pub(super) fn unknown_key(&self, table: &str, entry: &Entry) -> SceneError {
         let nearest = keys::nearest_key(table, &entry.name);
         let allowed = keys::children(table).join(", ");
         let full = match table {
@@ -214,35 +177,7 @@ impl Document {
         self.source.error(entry.offset, &format!("{full}{}", entry.name), problem)
     }
 
-    /// Takes the tables of a list of tables.
-    fn fill_list(
-        &mut self,
-        table: &'static keys::Table,
-        full: &str,
-        entry: &Entry,
-    ) -> Result<(), SceneError> {
-        let Value::List(tables) = &entry.node.value else {
-            return Err(self.not_a_list(table, full, &entry.node));
-        };
-        for node in tables {
-            let Value::Table(entries) = &node.value else {
-                return Err(self.not_a_list(table, full, node));
-            };
-            let mut given = Vec::new();
-            for entry in entries {
-                let own = format!("{full}.{}", entry.name);
-                let known = if entry.name.contains('.') { None } else { keys::find(&own) };
-                let Some((row, key)) = known else {
-                    return Err(self.unknown_key(full, entry));
-                };
-                given.push((row, self.checked(key, &entry.node)?));
-            }
-            self.layer.items.push(Item { table: table.path, offset: node.offset, given });
-        }
-        Ok(())
-    }
-
-    fn not_a_list(&self, table: &keys::Table, full: &str, node: &Node) -> SceneError {
+    pub(super) fn not_a_list(&self, table: &keys::Table, full: &str, node: &Node) -> SceneError {
         let problem = Problem::WrongKind {
             expected: format!("a list of tables, [[{full}]]"),
             found: node.value.description().to_string(),
@@ -333,22 +268,24 @@ impl Document {
     /// # Errors
     /// An unknown key, or a value its key does not accept.
     pub fn set(&mut self, path: &str, text: &str) -> Result<Vec<&'static str>, SceneError> {
-        let (row, key, named) = self.row(path)?;
-        let checked =
-            if key.in_list() { Err(Problem::NotSweepable) } else { value::check_bare(key, text) };
-        let value = checked
+        let leads = self.row(path)?;
+        let Leads { row, key, name, item } = leads;
+        let value = value::check_bare(key, text)
             .map_err(|problem| SceneError::new(Place::file(&self.source.name), path, problem))?;
-        let given = Given { value, offset: None, named: named.is_some() };
-        Ok(match named {
-            Some(name) => self.layer_of(key, name).put(row, key, given),
-            None => self.layer.put(row, key, given),
+        let given = Given { value, offset: None, named: name.is_some() };
+        Ok(match (item, name) {
+            (Some(_), _) => self.put_item(&leads, given),
+            (None, Some(name)) => self.layer_of(key, name).put(row, key, given),
+            (None, None) => self.layer.put(row, key, given),
         })
     }
 
     /// Names whose own tables say another value for a key without a name, which therefore does not reach them: these, and
     /// whether it reaches nothing at all. Nothing of a key with a name.
     pub fn out_of_reach(&self, path: &str) -> (Vec<String>, bool) {
-        let Some((row, key, None)) = keys::find_named(path) else { return (Vec::new(), false) };
+        let Some(Leads { row, key, name: None, .. }) = keys::find_named(path) else {
+            return (Vec::new(), false);
+        };
         let Some(table) =
             keys::NAMED.into_iter().find(|table| Some(*table) == path.split('.').next())
         else {
@@ -357,9 +294,10 @@ impl Document {
         let rows: Vec<usize> =
             key.rivals().filter_map(|rival| keys::find(rival.path)).map(|(row, _)| row).collect();
         let own = |named: &&Named| {
-            let given = &named.layer.given;
-            named.table == table
-                && (given[row].is_some() || rows.iter().any(|at| given[*at].is_some()))
+            let Layer { given, items, .. } = &named.layer;
+            let says = given[row].is_some() || rows.iter().any(|at| given[*at].is_some());
+            let lists = key.in_list() && items.iter().any(|item| item.table == key.table());
+            named.table == table && (says || lists)
         };
         let own: Vec<String> = self.named.iter().filter(own).map(|n| n.name.clone()).collect();
         // Bodies and springs go by their own names, all else by those of bearings.
@@ -374,19 +312,19 @@ impl Document {
 
     /// Reads what to vary: a list `"5 um, 0 um"` or a range `"0 deg .. 45 deg / 91"` for a key.
     pub fn axis(&self, path: &str, values: &str) -> Result<SweepAxis, SceneError> {
-        let (_, key, _) = self.row(path)?;
-        sweep::axis_of_text(path, key, values)
+        let leads = self.row(path)?;
+        sweep::axis_of_text(path, &leads, values)
             .map_err(|problem| SceneError::new(Place::file(&self.source.name), path, problem))
     }
 
-    /// Row of a key, and the name of a table that the path leads into.
-    fn row<'p>(&self, path: &'p str) -> Result<(usize, &'static Key, Option<&'p str>), SceneError> {
+    /// Where a path leads in this scene.
+    fn row<'p>(&self, path: &'p str) -> Result<Leads<'p>, SceneError> {
         let error = |problem| SceneError::new(Place::file(&self.source.name), path, problem);
-        let (row, key, name) =
-            keys::find_named(path).ok_or_else(|| error(sweep::unknown_key(path)))?;
-        match name.and_then(|name| self.refused_name(key, name)) {
+        let leads = keys::find_named(path).ok_or_else(|| error(sweep::unknown_key(path)))?;
+        let wrong_name = leads.name.and_then(|name| self.refused_name(leads.key, name));
+        match wrong_name.or_else(|| self.refused_item(path, &leads)) {
             Some(problem) => Err(error(problem)),
-            None => Ok((row, key, name)),
+            None => Ok(leads),
         }
     }
 
@@ -421,12 +359,6 @@ impl Document {
         row.and_then(|row| self.layer.given[row].as_ref()).map(|given| &given.value)
     }
 
-    /// The tables of a list of tables, in the order of the file.
-    pub(crate) fn items<'d>(&'d self, table: &'d str) -> impl Iterator<Item = ItemRef<'d>> {
-        let of = self.layer.items.iter().filter(move |item| item.table == table);
-        of.map(|item| ItemRef { document: self, item })
-    }
-
     /// The first given key or table at or below the path, for instance `solid`.
     pub(crate) fn first_below(&self, path: &str) -> Option<&'static str> {
         let below = |known: &str| {
@@ -449,9 +381,7 @@ impl Document {
 
     /// An error about a key or table: at its value, else at the innermost table that would hold it.
     pub(crate) fn error(&self, path: &str, problem: Problem) -> SceneError {
-        let own = keys::find(path).and_then(|(row, _)| self.layer.given[row].as_ref());
-        let shown = self.shown(path, own.is_some_and(|given| given.named));
-        SceneError::new(self.place_of_key(path), &shown, problem)
+        SceneError::new(self.place_of_key(path), &self.shown(path, self.is_named(path)), problem)
     }
 
     pub(super) fn error_at(&self, offset: usize, path: &str, problem: Problem) -> SceneError {

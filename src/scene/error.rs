@@ -58,6 +58,22 @@ pub(crate) fn shortened(text: &str) -> String {
     short
 }
 
+fn tables(count: usize) -> String {
+    match count {
+        0 => "no tables".to_string(),
+        1 => "one table".to_string(),
+        _ => format!("{count} tables"),
+    }
+}
+
+fn numbers(count: usize) -> String {
+    match count {
+        0 => "nothing".to_string(),
+        1 => "1".to_string(),
+        _ => format!("1 to {count}"),
+    }
+}
+
 fn meant(nearest: &Option<String>, otherwise: &str) -> String {
     match nearest {
         Some(nearest) => format!("did you mean `{nearest}`?"),
@@ -276,6 +292,12 @@ pub enum Problem {
         "this key cannot be varied. Hint: vary a number, a quantity or a choice, such as bearing.clearance.radial"
     )]
     NotSweepable,
+    #[error(
+        "this key stands in a list of tables. Hint: say in which of them by its number, counted from 1, such as {example}"
+    )]
+    WhichItem { example: String },
+    #[error("this list has {}. Allowed: {}. Hint: {advice}", tables(*.count), numbers(*.count))]
+    NoSuchItem { count: usize, advice: &'static str },
 }
 
 fn because(reason: &str) -> String {

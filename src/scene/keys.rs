@@ -322,16 +322,38 @@ pub fn find(path: &str) -> Option<(usize, &'static Key)> {
 pub const NAMED: [&str; 7] =
     ["bearing", "inner_race", "outer_race", "body", "spring", "housing", "solid"];
 
-/// Row of the key that a path with or without a name leads to, and the name:
-/// `bearing.left.clearance.radial`.
-pub fn find_named(path: &str) -> Option<(usize, &'static Key, Option<&str>)> {
-    if let Some((row, key)) = find(path) {
-        return Some((row, key, None));
+/// Where a dotted path leads.
+#[derive(Clone, Copy, Debug)]
+pub struct Leads<'p> {
+    pub row: usize,
+    pub key: &'static Key,
+    /// Name of the table it leads into: `left` of `bearing.left.clearance.radial`.
+    pub name: Option<&'p str>,
+    /// Which one of a list of tables, counted from 1: 2 of `body.shaft.beam.disc.2.mass`.
+    pub item: Option<usize>,
+}
+
+/// The key that a path leads to, with or without a name and a number in a list.
+pub fn find_named(path: &str) -> Option<Leads<'_>> {
+    let mut parts: Vec<&str> = path.split('.').collect();
+    let is_number = |part: &&str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+    let at = parts.iter().position(is_number);
+    let item = match at {
+        Some(at) => Some(parts.remove(at).parse().ok()?),
+        None => None,
+    };
+    // Names of keys of a list follow its number at once.
+    let fits = |key: &Key, parts: usize| at.is_none_or(|at| key.in_list() && at == parts - 1);
+    if let Some((row, key)) = find(&parts.join(".")).filter(|(_, key)| fits(key, parts.len())) {
+        return Some(Leads { row, key, name: None, item });
     }
-    let (table, rest) = path.split_once('.')?;
-    let (name, rest) = rest.split_once('.')?;
-    let (row, key) = find(&format!("{table}.{rest}")).filter(|_| NAMED.contains(&table))?;
-    Some((row, key, Some(name)))
+    if parts.len() < 3 || !NAMED.contains(&parts[0]) {
+        return None;
+    }
+    let count = parts.len();
+    let name = parts.remove(1);
+    let (row, key) = find(&parts.join(".")).filter(|(_, key)| fits(key, count))?;
+    Some(Leads { row, key, name: Some(name), item })
 }
 
 pub fn find_table(path: &str) -> Option<&'static Table> {

@@ -188,7 +188,8 @@ Axes: X axial, Y lateral, Z up. Ball azimuths run from +Y towards +Z.
 holds for all names that do not say otherwise, key by key and in tables inside it too: `[bearing]` is what all bearings have in common,
 `[solid.left.mesh]` changes of `[solid.mesh]` what it says. Lists are taken whole: `[[solid.left.held]]` stands in place of all `[[solid.held]]`
 for that housing, and so do `set`, `load` and `probe`. Keys of `--vary` and `[sweep]` take names too, `bearing.left.clearance.radial`, also those
-of a table that the scene does not have, `housing.left.fit.radial`.
+of a table that the scene does not have, `housing.left.fit.radial`; tables of a list go by their numbers, counted from 1: `body.shaft.beam.disc.1.mass`
+is the mass of the first disc.
 
 A name begins with a letter and has letters, digits and underscores, up to 32. `inner_race`, `outer_race`, `ground`, `inner` and `outer` have a
 meaning of their own and are no names; one that is much like a key or table beside it (`[bearing.cagee]`) is taken for a mistyped one; a bearing, a

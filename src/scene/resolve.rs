@@ -206,8 +206,10 @@ impl<'d> Reader<'d> {
     }
 
     pub fn missing(&self, path: &str, because: &str) -> SceneError {
-        let example = keys::find(path)
-            .map(|(_, key)| format!("`{} = {}`{}", key.name(), key.example(), below(key.table())));
+        let example = keys::find(path).map(|(_, key)| {
+            let table = self.document.shown(key.table(), self.document.is_named(path));
+            format!("`{} = {}`{}", key.name(), key.example(), below(&table))
+        });
         let problem =
             Problem::Missing { because: because.to_string(), example: example.unwrap_or_default() };
         self.document.error(path, problem)

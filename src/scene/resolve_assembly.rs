@@ -15,6 +15,7 @@ use crate::scene::resolve_dynamics::{
     check_inertia, check_unbalance, foundation, rotating_load, rotation,
 };
 use crate::scene::resolve_housing::in_housing;
+use crate::scene::resolve_places::{refuse_races_apart, refuse_shared_places};
 use crate::scene::resolve_shaft::{beam, refuse_places_off_shafts, refuse_springs_on_elements};
 use crate::scene::resolve_solid::{refuse_fields, refuse_solid};
 use crate::scene::resolve_spring::spring;
@@ -66,6 +67,7 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
         .map(|name| spring(document, name, (&bodies, &bearings), &mut defaults_used))
         .collect::<Result<Vec<_>, _>>()?;
     refuse_places_off_shafts(document, (&bearings, &springs), &resolved)?;
+    refuse_races_apart(document, &bearings, &resolved)?;
     name_what_holds(&mut bearings, &springs);
     let scene = AssemblyScene { bearings, bodies: resolved, springs, defaults_used };
     refuse_shared_columns(document, &scene)?;
@@ -287,38 +289,6 @@ fn name_defaults(
         list.retain(|used| !told.contains(used));
         told.extend(list.iter().filter(|used| !of_bearing(&used.key)).cloned());
     }
-}
-
-/// Two bearings whose balls would be in one place of a body.
-fn refuse_shared_places(document: &Document, bearings: &[PlacedBearing]) -> Result<(), SceneError> {
-    for (index, one) in bearings.iter().enumerate() {
-        for other in &bearings[..index] {
-            for side in [0, 1] {
-                let (Carrier::Body { index: a, at }, Carrier::Body { index: b, at: there }) =
-                    (one.carriers[side], other.carriers[side])
-                else {
-                    continue;
-                };
-                let room = one.scene.geometry.ball_radius + other.scene.geometry.ball_radius;
-                let (Some(name), Some(second)) = (&one.name, &other.name) else { continue };
-                if a == b && (at - there).abs() < room {
-                    let reason = format!(
-                        "its balls would run in those of bearing {second}: they are {:.4} mm apart on the \
-                         same body, less than a ball diameter",
-                        1e3 * (at - there).abs()
-                    );
-                    let key = ["inner_at", "outer_at"][side];
-                    let advice = format!("give each its place, such as {key} = \"60 mm\"");
-                    return Err(document.error_of_name(
-                        "bearing",
-                        name,
-                        Problem::Refused { reason, advice },
-                    ));
-                }
-            }
-        }
-    }
-    Ok(())
 }
 
 /// Housings that are solved in different ways.

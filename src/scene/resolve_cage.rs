@@ -39,6 +39,23 @@ pub(crate) fn cage(
         let problem = Problem::BallExceedsPocket { pocket, ball: geometry.ball_radius };
         return Err(reader.document.error("bearing.cage.pocket_radius", problem));
     }
+    if let Some(pocket) = cage.pocket_radius {
+        // Half of what there is from pocket to pocket where their centres are.
+        let pitch = reader.given_number("bearing.cage.pocket_pitch_radius");
+        let room =
+            pitch.unwrap_or(geometry.pitch_radius) * libm::sin(PI / geometry.ball_count as f64);
+        if pocket >= room {
+            let problem = Problem::WrongOrder {
+                value: pocket,
+                relation: "less than",
+                other_name: "half the distance between centres of pockets",
+                other: room,
+                advice: "pockets would run into each other, with no bar between them; check radius, not diameter, and the \
+                         number of balls",
+            };
+            return Err(reader.document.error("bearing.cage.pocket_radius", problem));
+        }
+    }
     if let (Some(inner), Some(outer)) = (cage.inner_radius, cage.outer_radius)
         && inner >= outer
     {

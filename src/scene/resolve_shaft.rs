@@ -5,8 +5,9 @@ use crate::mesh::Order;
 use crate::scene::assembly::{
     AssemblyScene, Carrier, PlacedBearing, RaceJoint, SceneBeam, SceneBody, Spring, SpringAt,
 };
-use crate::scene::document::{Document, ItemRef};
+use crate::scene::document::Document;
 use crate::scene::error::{Problem, SceneError};
+use crate::scene::items::ItemRef;
 use crate::scene::resolve::Reader;
 use crate::scene::resolve_dynamics::check_inertia;
 use crate::scene::resolve_solid::{item_number, item_profile, item_text, missing};

@@ -3,8 +3,9 @@
 use crate::mesh::generate::Part;
 use crate::mesh::{Order, Surface};
 use crate::scene::assembly::AssemblyScene;
-use crate::scene::document::{Document, ItemRef};
+use crate::scene::document::Document;
 use crate::scene::error::{Problem, SceneError};
+use crate::scene::items::ItemRef;
 use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_assembly::{assembly, is_assembly};
 use crate::scene::resolve_housing::in_housing;

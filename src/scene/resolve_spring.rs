@@ -1,8 +1,9 @@
 //! From the keys of a spring to what it joins, where, and how stiff it is.
 
 use crate::scene::assembly::{Carrier, PlacedBearing, SIX, Spring, SpringAt, SpringEnd, race_at};
-use crate::scene::document::{Document, ItemRef};
+use crate::scene::document::Document;
 use crate::scene::error::{Problem, SceneError};
+use crate::scene::items::ItemRef;
 use crate::scene::key_table_assembly::{GROUND, OWN_RACES};
 use crate::scene::keys::nearest;
 use crate::scene::resolve::{Reader, text};

@@ -1,7 +1,8 @@
 //! Tables with names: `[bearing.left]` is what `[bearing]` says with its own keys laid over it.
 
-use crate::scene::document::{Document, Item, Layer, Named};
+use crate::scene::document::{Document, Layer, Named};
 use crate::scene::error::{Problem, SceneError};
+use crate::scene::items::Item;
 use crate::scene::keys::{self, Key};
 use crate::scene::tree::{Entry, Value};
 
@@ -58,6 +59,19 @@ impl Document {
             },
             _ => path.to_string(),
         }
+    }
+
+    /// Whether a key stands in a table with a name; one that is not given, whether its table has something of one.
+    pub(super) fn is_named(&self, path: &str) -> bool {
+        let is_own = |row: usize| self.layer.given[row].as_ref().is_some_and(|given| given.named);
+        if let Some((row, _)) = keys::find(path).filter(|(row, _)| self.layer.given[*row].is_some())
+        {
+            return is_own(row);
+        }
+        let table = path.rsplit_once('.').map_or(path, |(table, _)| table);
+        let in_it =
+            |known: &str| known.strip_prefix(table).is_some_and(|rest| rest.starts_with('.'));
+        keys::KEYS.iter().enumerate().any(|(row, key)| in_it(key.path) && is_own(row))
     }
 
     /// Names of one kind of table, in the order of the file.

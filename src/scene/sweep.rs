@@ -1,7 +1,8 @@
 //! Values a sweep runs through: lists `5 um, 0 um, -5 um` and ranges `0 deg .. 45 deg / 91`.
 
 use crate::scene::error::{Problem, shortened};
-use crate::scene::keys::{self, Key, Kind};
+use crate::scene::items::which_item;
+use crate::scene::keys::{self, Key, Kind, Leads};
 use crate::scene::tree::{Node, Value};
 use crate::scene::units::{parse_number, parse_quantity, plain};
 use crate::scene::value::{ValueError, check_bare};
@@ -69,10 +70,12 @@ pub(crate) fn axis_of_node(
     key_offset: usize,
     node: &Node,
 ) -> Result<SweepAxis, ValueError> {
-    let (_, key, _) = keys::find_named(path).ok_or_else(|| (key_offset, unknown_key(path)))?;
+    let leads = keys::find_named(path).ok_or_else(|| (key_offset, unknown_key(path)))?;
+    let key = leads.key;
     let items = match &node.value {
         Value::Text(text) => {
-            return axis_of_text(path, key, text).map_err(|problem| (node.offset, problem).into());
+            return axis_of_text(path, &leads, text)
+                .map_err(|problem| (node.offset, problem).into());
         }
         Value::List(items) => items,
         other => {
@@ -84,7 +87,7 @@ pub(crate) fn axis_of_node(
             return Err((node.offset, problem).into());
         }
     };
-    refuse_unsweepable(key).map_err(|problem| (key_offset, problem))?;
+    refuse_unsweepable(path, &leads).map_err(|problem| (key_offset, problem))?;
     if items.is_empty() {
         return Err((node.offset, bad(&"[]", "the list is empty")).into());
     }
@@ -105,12 +108,9 @@ pub(crate) fn axis_of_node(
 }
 
 /// Axis from one text: a list with commas, or a range `low .. high / count`.
-pub(crate) fn axis_of_text(
-    path: &str,
-    key: &'static Key,
-    text: &str,
-) -> Result<SweepAxis, Problem> {
-    refuse_unsweepable(key)?;
+pub(crate) fn axis_of_text(path: &str, leads: &Leads, text: &str) -> Result<SweepAxis, Problem> {
+    refuse_unsweepable(path, leads)?;
+    let key = leads.key;
     let values = match text.split_once("..") {
         Some((low, rest)) => range(key, text, low, rest)?,
         None => {
@@ -173,9 +173,9 @@ fn range(key: &'static Key, text: &str, low: &str, rest: &str) -> Result<SweepVa
     }
 }
 
-fn refuse_unsweepable(key: &Key) -> Result<(), Problem> {
-    match key.kind {
-        _ if key.in_list() => Err(Problem::NotSweepable),
+fn refuse_unsweepable(path: &str, leads: &Leads) -> Result<(), Problem> {
+    match leads.key.kind {
+        _ if leads.key.in_list() && leads.item.is_none() => Err(which_item(path)),
         Kind::Text
         | Kind::Choices(_)
         | Kind::Vector(..)

@@ -201,12 +201,20 @@ impl Search<'_, '_> {
         Ok(states)
     }
 
+    /// The body itself, or the one of which it is a section.
+    fn whole(&self, body: usize) -> usize {
+        match &self.model.assembly.bodies[body].place {
+            Place::Section(of) => self.model.assembly.shafts[of.shaft].body,
+            Place::Held(_) | Place::Loaded(_) => body,
+        }
+    }
+
     /// How far the body under a body's first outer race has gone, which takes the inner one along; where it is held, for a race that is
     /// looked for there.
     fn carried(&self, body: usize, here: &Evaluation) -> Five {
-        let on_it = |bearing: &&StaticBearing| bearing.mounts[0].body == body;
+        let on_it = |bearing: &&StaticBearing| self.whole(bearing.mounts[0].body) == body;
         let bearing = self.model.assembly.bearings.iter().find(on_it);
-        let under = bearing.map(|bearing| bearing.mounts[1].body);
+        let under = bearing.map(|bearing| self.whole(bearing.mounts[1].body));
         if let Some(under) = under
             && let Place::Loaded(of) = &self.model.assembly.bodies[body].place
             && of.start.is_none()

@@ -139,6 +139,32 @@ fn a_shaft_that_bends_far_is_held_where_it_is_held() {
     assert!(matches!(error, StaticsError::NoEquilibrium { coordinate: "z", .. }), "{error}");
 }
 
+/// Three balls' radii deep, a shaft and the races on their springs sink together: nothing has left its place.
+#[test]
+fn a_shaft_sinks_with_the_races_that_carry_it() {
+    let held = assembly(0.0, 1.0, [-0.2, 0.2, 0.0], Kept::STATIC, 300.0);
+    let mut soft = held.clone();
+    for (body, x) in [(3, -0.2), (4, 0.2)] {
+        let mut race = loaded([Condition::Displacement(0.0); 5]);
+        let Place::Loaded(own) = &mut race else { panic!("a race") };
+        own.conditions[0] = Condition::Displacement(x);
+        own.conditions[2] = Condition::Load(0.0);
+        own.springs[2] = 1e4;
+        (own.start, own.room) = (Some([x, 0.0, 0.0, 0.0, 0.0]), 1.0);
+        soft.bodies[body].place = race;
+    }
+    let [held, soft] = [solve(&held), solve(&soft)];
+    for body in [0, 1, 2, 5] {
+        let sunk = soft.coordinates[body][2] - held.coordinates[body][2];
+        // 1e-8 of 300 N on 1e4 N/m.
+        assert!((sunk + 0.015).abs() <= 3e-10, "{body}: {sunk}");
+    }
+    for (held, soft) in held.bearings.iter().zip(&soft.bearings) {
+        let off = (held.forces[0] - soft.forces[0]).norm();
+        assert!(off <= 1e-7 * held.forces[0].norm(), "{off:e}");
+    }
+}
+
 /// The forces of both bearings on the shaft and its load cancel, and natural shapes beside static answers change nothing.
 #[test]
 fn static_answers_are_exact_whatever_natural_shapes_stand_beside_them() {

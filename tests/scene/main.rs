@@ -13,6 +13,8 @@ mod scene_dynamics;
 mod scene_dynamics_errors;
 mod scene_errors;
 mod scene_fuzz;
+mod scene_lists;
+mod scene_places;
 mod scene_read;
 mod scene_shaft;
 mod scene_to_problem;

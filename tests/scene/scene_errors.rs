@@ -210,6 +210,13 @@ fn cases() -> Vec<Case> {
             16,
             &["pocket", "5.9555 mm"],
         ),
+        toml(
+            "pockets that run into each other",
+            "\"6.2 mm\"",
+            "\"10 mm\"",
+            16,
+            &["pocket", "9.94976924 mm", "no bar between them"],
+        ),
         Case {
             name: "ball larger than the gap",
             text: changed(

@@ -119,7 +119,7 @@ fn faults_of_beams_say_what_is_wrong() {
             beam(&format!(
                 "{whole}disc = [{{ at = \"0 mm\", mass = \"1 kg\", axial = \"2.1e-3 kg m^2\", transverse = \"1e-3 kg m^2\" }}]"
             )),
-            "body.beam.disc.axial: a moment of inertia of 0.0021 kg m^2 about the axis is more than twice",
+            "body.shaft.beam.disc.1.axial: a moment of inertia of 0.0021 kg m^2 about the axis is more than twice",
         ),
         (
             format!(
@@ -127,6 +127,13 @@ fn faults_of_beams_say_what_is_wrong() {
                 beam(whole)
             ),
             "spring.stay.to_at: refused: -200.1000 mm is not on body shaft, which goes from -200.0000 to 200.0000 mm",
+        ),
+        // Which one of a list, counted from 1.
+        (
+            beam(&format!(
+                "{whole}load = [{{ at = \"0 mm\", z = \"1 N\" }}, {{ at = \"20\", z = \"1 N\" }}]"
+            )),
+            "body.shaft.beam.load.2.at: \"20\" has no unit",
         ),
         (beam(&format!("{whole}mesh = {{ around = 16 }}")), "add order = 2"),
         (beam(&format!("{whole}mesh = {{ order = 2, around = 12 }}")), "multiple of 8"),

@@ -41,13 +41,14 @@ impl Grid {
             .into());
         }
         for (i, axis) in axes.iter().enumerate() {
-            let Some((_, key, name)) = keys::find_named(&axis.key) else { continue };
+            let Some(leads) = keys::find_named(&axis.key) else { continue };
             for other in &axes[..i] {
                 if other.key == axis.key {
                     return Err(format!("{} is varied twice", axis.key).into());
                 }
-                let excludes = keys::find_named(&other.key).is_some_and(|(_, second, of)| {
-                    of == name && key.rivals().any(|rival| rival.path == second.path)
+                let excludes = keys::find_named(&other.key).is_some_and(|second| {
+                    (second.name, second.item) == (leads.name, leads.item)
+                        && leads.key.rivals().any(|rival| rival.path == second.key.path)
                 });
                 if excludes {
                     return Err(format!(

@@ -50,7 +50,7 @@ pub fn number_of(axis: &SweepAxis, index: usize) -> f64 {
 }
 
 fn kind_of(axis: &SweepAxis) -> Option<Kind> {
-    keys::find_named(&axis.key).map(|(_, key, _)| key.kind)
+    keys::find_named(&axis.key).map(|leads| leads.key.kind)
 }
 
 /// Removes the table of an earlier sweep, which would pass for this one's until that is written.

@@ -143,10 +143,15 @@ impl Stretch {
     }
 }
 
-/// Times at which looks begin, the end last.
-fn looks(assembly: &Assembly, end: f64) -> Vec<f64> {
+/// Times at which looks begin, the end last. What starts in nominal positions is looked at where it has settled, too: until
+/// balls are pressed nothing is stiff.
+fn looks(assembly: &Assembly, request: &RunRequest) -> Vec<f64> {
+    let end = request.end;
     if !assembly.changes() {
-        return vec![0.0, end];
+        return match request.options.start {
+            Start::Equilibrium => vec![0.0, end],
+            Start::Nominal => vec![0.0, 0.5 * end, end],
+        };
     }
     let mut times: Vec<f64> = assembly.corners().into_iter().filter(|t| *t < end).collect();
     if times.len() > CORNERS {
@@ -262,7 +267,7 @@ fn look_through(
     budget: u64,
     other: Option<Integrator>,
 ) -> Result<Seen, SimulationError> {
-    let times = looks(assembly, request.end);
+    let times = looks(assembly, request);
     let Seen { mut stretches, mut spent, mut begun, mut failure, mut doubt } = Seen::default();
     let mut scale = 0.0;
     let mut under_way: Option<(Trial, f64)> = None;
@@ -380,7 +385,8 @@ pub fn choose(assembly: &Assembly, request: &RunRequest) -> Choice {
         work_of_rosenbrock,
         seated: !assembly.seats.is_empty(),
     };
-    let budget = if assembly.changes() { TO_COUNT } else { TO_CHOOSE };
+    let settled = request.options.start == Start::Equilibrium && !assembly.changes();
+    let budget = if settled { TO_CHOOSE } else { TO_COUNT };
     let Ok(Seen { stretches, .. }) =
         look_through(assembly, &request, budget, Some(Integrator::DormandPrince))
     else {

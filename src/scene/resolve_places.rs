@@ -1,0 +1,81 @@
+//! Whether bearings sit where they can.
+
+use crate::scene::assembly::{Carrier, PlacedBearing, SceneBody};
+use crate::scene::document::Document;
+use crate::scene::error::{Problem, SceneError};
+use crate::solver::dynamics::bounds::race_limit;
+use crate::solver::dynamics::model::Drive;
+
+/// Two bearings whose balls would be in one place of a body.
+pub(super) fn refuse_shared_places(
+    document: &Document,
+    bearings: &[PlacedBearing],
+) -> Result<(), SceneError> {
+    for (index, one) in bearings.iter().enumerate() {
+        for other in &bearings[..index] {
+            for side in [0, 1] {
+                let (Carrier::Body { index: a, at }, Carrier::Body { index: b, at: there }) =
+                    (one.carriers[side], other.carriers[side])
+                else {
+                    continue;
+                };
+                let room = one.scene.geometry.ball_radius + other.scene.geometry.ball_radius;
+                let (Some(name), Some(second)) = (&one.name, &other.name) else { continue };
+                if a == b && (at - there).abs() < room {
+                    let reason = format!(
+                        "its balls would run in those of bearing {second}: they are {:.4} mm apart on the \
+                         same body, less than a ball diameter",
+                        1e3 * (at - there).abs()
+                    );
+                    let key = ["inner_at", "outer_at"][side];
+                    let advice = format!("give each its place, such as {key} = \"60 mm\"");
+                    return Err(document.error_of_name(
+                        "bearing",
+                        name,
+                        Problem::Refused { reason, advice },
+                    ));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Races that do not stand about each other where bodies are put: no ball reaches both.
+pub(super) fn refuse_races_apart(
+    document: &Document,
+    bearings: &[PlacedBearing],
+    bodies: &[SceneBody],
+) -> Result<(), SceneError> {
+    for placed in bearings {
+        // Bodies stand at the origin, or where they are held.
+        let [inner, outer] = placed.carriers.map(|carrier| match carrier {
+            Carrier::Own { at } => at,
+            Carrier::Body { index, at } => match &bodies[index].race.drives[0] {
+                Drive::Motion(motion) => motion.value(0.0) + at,
+                Drive::Load(_) => at,
+            },
+        });
+        let (apart, allowed) = ((inner - outer).abs(), race_limit(&placed.scene.geometry));
+        if apart <= allowed {
+            continue;
+        }
+        let reason = format!(
+            "its inner race stands at {:.4} mm along the axis and its outer one at {:.4} mm, which is {:.4} mm apart; balls reach \
+             both within {:.4} mm",
+            1e3 * inner,
+            1e3 * outer,
+            1e3 * apart,
+            1e3 * allowed
+        );
+        let advice = "places count from the centre of the body that carries a race: give both the same `inner_at` and \
+                      `outer_at`, or leave `outer_at` out"
+            .into();
+        let problem = Problem::Refused { reason, advice };
+        return Err(match &placed.name {
+            Some(name) => document.error_of_name("bearing", name, problem),
+            None => document.error("bearing.outer_at", problem),
+        });
+    }
+    Ok(())
+}
