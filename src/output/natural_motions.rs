@@ -17,8 +17,14 @@ pub fn frequency(mode: &Mode) -> f64 {
     mode.square.max(0.0).sqrt() / TAU
 }
 
-/// Names of the coordinates of what takes part: `shaft_z`.
-pub fn names(still: &StaticAssembly, bodies: &[MovingBody], moving: &Assembly) -> Vec<String> {
+/// Names of the coordinates of what takes part: `shaft_z`; housings as they begin names of columns, and how many natural shapes each
+/// takes part with.
+pub fn names(
+    still: &StaticAssembly,
+    bodies: &[MovingBody],
+    moving: &Assembly,
+    housings: &[(String, usize)],
+) -> Vec<String> {
     let of = |of: &MovingBody| {
         let body = key(&still.bodies[of.body].name);
         COORDINATE_NAMES.map(|name| format!("{body}_{name}"))
@@ -31,6 +37,9 @@ pub fn names(still: &StaticAssembly, bodies: &[MovingBody], moving: &Assembly) -
         }
         let stretches = shaft.amplitudes() - 2 * shaft.count();
         names.extend((1..=stretches).map(|k| format!("{body}_stretch_{k}")));
+    }
+    for (before, count) in housings {
+        names.extend((1..=*count).map(|k| format!("{before}housing_shape_{k}")));
     }
     names
 }

@@ -1,7 +1,8 @@
 //! Small motions of an assembly about its equilibrium, what spins spinning: stiffness is that of the search for
 //! equilibria, nothing of it by differences.
 //!
-//! Balls are springs without mass, a condensed housing takes part with the mass of its shapes under its race.
+//! Balls are springs without mass, a housing takes part with the shapes that follow its race, and with what it does while that stands
+//! still ([`super::housing::held_motions`]).
 //! Axes do not spin with the bodies, which are of revolution: M, C, G and K stand still. With spin Ω about X a body of axial inertia
 //! J makes moments J Ω against the rates of its tilts; its shapes have those of [`super::dynamics::shaft`]. Dashpots that begin at
 //! a body that spins turn with it, and feed whirl above the critical speed as damping inside the shaft does; so do Maxwell elements.
@@ -10,7 +11,7 @@ use super::dynamics::assembly::{Assembly, Body};
 use super::dynamics::connection::{Connection, MaxwellElement};
 use super::dynamics::model::Rotation;
 use super::dynamics::shaft::ElasticShaft;
-use super::housing::inertia::{HousingMass, Mode, MovingBody, mass_matrix, modes};
+use super::housing::inertia::{HousingMass, Mode, MovingBody, add_housings, modes, with_housings};
 use super::rotor::beam::STATION;
 use super::rotor::critical::Critical;
 use super::rotor::model::{RotorError, RotorModel, Vibrations};
@@ -70,14 +71,13 @@ pub fn whirling(
     let one_speed = speeds.iter().all(|speed| *speed == 0.0 || *speed == top_speed);
     let named = (!one_speed).then(|| assembly.bodies[fastest].name.clone());
     let model = Model::new(still);
-    let size = model.scale.len();
+    let known = model.scale.len();
     let here = placed(&model, found);
     let moved = sections(&model, &here.at);
-    let mut mass = DMatrix::identity(size, size);
-    let own = mass_matrix(bodies, housings);
-    mass.view_mut((0, 0), (own.nrows(), own.ncols())).copy_from(&own);
+    let [stiffness, mass] = with_housings(&found.with_shapes, bodies, housings);
+    let size = mass.nrows();
     let mut all = Vibrations {
-        stiffness: found.with_shapes.clone(),
+        stiffness,
         damping: DMatrix::zeros(size, size),
         gyroscopic: DMatrix::zeros(size, size),
         circulating: DMatrix::zeros(size, size),
@@ -109,14 +109,23 @@ pub fn whirling(
     if let Some((uneven, _)) = spins.iter().find(|(of, spin)| *spin != 0.0 && of.is_uneven()) {
         return Err(RotorError::Uneven { name: uneven.name.clone() });
     }
-    all.damping += over_unknowns(&model, &here, &moved, |here| {
+    let of_springs = over_unknowns(&model, &here, &moved, |here| {
         spins.iter().for_each(|(of, _)| add_damping(&model, of, here));
     });
-    all.circulating += over_unknowns(&model, &here, &moved, |here| {
+    let mut known_part = all.damping.view_mut((0, 0), (known, known));
+    known_part += of_springs;
+    add_housings(&mut all.damping, known, housings, |of| of.damping);
+    let of_springs = over_unknowns(&model, &here, &moved, |here| {
         spins.iter().for_each(|&(of, spin)| add_circulation(&model, of, spin, here));
     });
+    let mut known_part = all.circulating.view_mut((0, 0), (known, known));
+    known_part += of_springs;
     all.relaxing = relaxing(&model, &here, &moved, &spins);
+    for of in &mut all.relaxing {
+        of.levers = of.levers.clone().resize_horizontally(size, 0.0);
+    }
     let (places, rows) = told(&model, still, &moved);
+    let rows = rows.resize_horizontally(size, 0.0);
     let stations: Vec<f64> = (0..places.len()).map(|place| place as f64).collect();
     let model = RotorModel::of(&all, MODES, stations, Some(&rows))?;
     Ok(Whirling { model, places, top_speed, fastest: named, vibrations: all, rows })

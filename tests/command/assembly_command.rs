@@ -312,7 +312,7 @@ fn bad_assemblies_are_refused() {
         (
             "several bodies and no word of which",
             format!("{whole}\n[body.other]\n"),
-            vec!["bearing.inner_on", "several bodies: shaft, other"],
+            vec!["bearing.left.inner_on", "several bodies: shaft, other"],
         ),
         (
             "loads on a race that is part of a shaft",

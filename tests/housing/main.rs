@@ -20,6 +20,7 @@ mod housing_nonlinear;
 mod housing_reduced;
 mod housing_seats;
 mod housing_threads;
+mod modes_in_housings;
 mod reduced_laws;
 mod reduced_presses;
 mod reduced_steps;

@@ -32,6 +32,8 @@ pub struct Spinning {
     /// Up to twice that speed, or why there are none.
     critical: Result<Vec<Critical>, RotorError>,
     campbell: Campbell,
+    /// Whether housings swing along.
+    housed: bool,
 }
 
 pub fn rpm(speed: f64) -> f64 {
@@ -42,13 +44,8 @@ fn is_whirl(whirl: &Whirl) -> bool {
     whirl.across > ACROSS
 }
 
-/// After what a line says, where that is not plain whirl.
-fn kind(whirl: &Whirl) -> &'static str {
-    if whirl.across < 0.5 { ", mostly along the axis" } else { "" }
-}
-
 impl Spinning {
-    pub fn new(whirling: Whirling) -> Fallible<Spinning> {
+    pub fn new(whirling: Whirling, housed: bool) -> Fallible<Spinning> {
         let top = whirling.top_speed;
         let model = &whirling.model;
         let speeds: Vec<f64> = (0..SPEEDS).map(|i| top * i as f64 / (SPEEDS - 1) as f64).collect();
@@ -67,7 +64,16 @@ impl Spinning {
             |line: &Vec<Whirl>| line.iter().any(|whirl| whirl.frequency() <= FAR * top.abs());
         let shown = campbell.lines.iter().enumerate().filter(|(i, line)| *i < first || near(line));
         campbell.lines = shown.map(|(_, line)| line.clone()).collect();
-        Ok(Spinning { whirls, critical, campbell, whirling })
+        Ok(Spinning { whirls, critical, campbell, whirling, housed })
+    }
+
+    /// After what a line says, where that is not plain whirl.
+    fn kind(&self, whirl: &Whirl) -> &'static str {
+        match whirl.across < 0.5 {
+            true if self.housed => ", mostly along the axis or of a housing",
+            true => ", mostly along the axis",
+            false => "",
+        }
     }
 
     /// The place that a motion moves most.
@@ -99,7 +105,7 @@ impl Spinning {
                 whirl.damping_ratio(),
                 whirl.turns(),
                 self.most(whirl),
-                kind(whirl)
+                self.kind(whirl)
             );
         }
         let _ = writeln!(text, "\ncritical speeds up to twice that, without damping");
@@ -115,7 +121,7 @@ impl Spinning {
                     rpm(of.speed),
                     of.whirl.turns(),
                     self.most(&of.whirl),
-                    kind(&of.whirl)
+                    self.kind(&of.whirl)
                 );
             }),
         }

@@ -249,6 +249,18 @@ impl<'a> BoreSearch<'a> {
         loads
     }
 
+    /// Change of the nodes' loads, N, where something moves the nodes outwards by so much (m) and the race stands still, while the same
+    /// nodes touch as in the last answer: of the nodes by themselves, to which the bore's answer to the change adds.
+    pub fn loads_against(&self, outward: &[f64]) -> Vec<f64> {
+        let mut loads = vec![0.0; self.levers.len()];
+        if let Some(Contact { nodes, factor, .. }) = &self.contact {
+            let mut on_nodes: Vec<f64> = nodes.iter().map(|&i| -outward[i]).collect();
+            factor.solve_columns(&mut on_nodes, 1);
+            nodes.iter().zip(on_nodes).for_each(|(&i, load)| loads[i] = load);
+        }
+        loads
+    }
+
     /// The race at a given pose: y, z (m), tilts (rad).
     ///
     /// # Errors

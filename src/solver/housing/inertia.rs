@@ -41,11 +41,24 @@ impl InertiaEstimate {
 pub type Coordinates = DVector<f64>;
 
 /// Mass of a housing along y, z and the tilts of a race in it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct HousingMass {
     /// Place of the race's body in the list of those that take part.
     pub race: usize,
     pub mass: Matrix4<f64>,
+    /// What it does beside following its race: none for an estimate.
+    pub held: Vec<HeldMotion>,
+    /// α of a damping α M of its elements, 1/s.
+    pub damping: f64,
+}
+
+/// How a housing swings while its race stands still, of a modal mass of 1 kg: see [`super::held_motions`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldMotion {
+    /// ω², 1/s².
+    pub square: f64,
+    /// Mass that it shares with y, z and the tilts of the race, √kg and m √kg.
+    pub shared: [f64; 4],
 }
 
 /// One natural motion about an equilibrium.
@@ -61,38 +74,67 @@ pub struct Mode {
     pub housings: Vec<f64>,
 }
 
-/// Over the five coordinates of each body.
-pub fn mass_matrix(bodies: &[MovingBody], housings: &[HousingMass]) -> DMatrix<f64> {
-    let count = 5 * bodies.len();
-    let mut mass = DMatrix::<f64>::zeros(count, count);
+/// A stiffness over the coordinates of the bodies, and amplitudes of shapes (of 1 kg) behind them, with what housings do beside
+/// following their races behind those; and the mass that goes with it.
+pub fn with_housings(
+    stiffness: &DMatrix<f64>,
+    bodies: &[MovingBody],
+    housings: &[HousingMass],
+) -> [DMatrix<f64>; 2] {
+    let known = stiffness.nrows();
+    let count = known + housings.iter().map(|of| of.held.len()).sum::<usize>();
+    let mut whole = DMatrix::zeros(count, count);
+    whole.view_mut((0, 0), (known, known)).copy_from(stiffness);
+    let mut mass = DMatrix::zeros(count, count);
     for (of, MovingBody { inertia, .. }) in bodies.iter().enumerate() {
         for (i, own) in diagonal(inertia).into_iter().enumerate() {
             mass[(5 * of + i, 5 * of + i)] = own;
         }
     }
-    for HousingMass { race, mass: own } in housings {
-        let mut block = mass.fixed_view_mut::<4, 4>(5 * race + 1, 5 * race + 1);
-        block += own;
+    (5 * bodies.len()..known).for_each(|shape| mass[(shape, shape)] = 1.0);
+    let squares = housings.iter().flat_map(|of| &of.held).map(|motion| motion.square);
+    (known..).zip(squares).for_each(|(at, square)| whole[(at, at)] = square);
+    add_housings(&mut mass, known, housings, |_| 1.0);
+    [whole, mass]
+}
+
+/// Adds the mass of housings, whose motions with races at rest begin at `first`, `times` as much of each.
+pub fn add_housings(
+    to: &mut DMatrix<f64>,
+    first: usize,
+    housings: &[HousingMass],
+    times: impl Fn(&HousingMass) -> f64,
+) {
+    let mut at = first;
+    for of in housings {
+        let (race, times) = (5 * of.race + 1, times(of));
+        let mut block = to.fixed_view_mut::<4, 4>(race, race);
+        block += of.mass * times;
+        for HeldMotion { shared, .. } in &of.held {
+            to[(at, at)] += times;
+            for (i, shared) in shared.iter().enumerate() {
+                to[(race + i, at)] += times * shared;
+                to[(at, race + i)] += times * shared;
+            }
+            at += 1;
+        }
     }
-    mass
 }
 
 /// Natural motions about an equilibrium with this stiffness over the coordinates of the bodies, and amplitudes of shapes
-/// behind them, slowest first. None of
+/// behind them, slowest first; those of housings come last. None of
 /// a mass matrix that is not positive.
 pub fn modes(
     stiffness: &DMatrix<f64>,
     bodies: &[MovingBody],
     housings: &[HousingMass],
 ) -> Vec<Mode> {
-    let of_bodies = mass_matrix(bodies, housings);
-    let (own, count) = (of_bodies.nrows(), stiffness.nrows());
-    // Shapes have a mass of 1 kg.
-    let mut mass = DMatrix::identity(count, count);
-    mass.view_mut((0, 0), (own, own)).copy_from(&of_bodies);
+    let (own, known) = (5 * bodies.len(), stiffness.nrows());
+    let [stiffness, mass] = with_housings(stiffness, bodies, housings);
+    let count = stiffness.nrows();
     let kept: Vec<usize> = (0..count).filter(|&i| i >= own || bodies[i / 5].free[i % 5]).collect();
     let picked = |of: &DMatrix<f64>| of.select_rows(&kept).select_columns(&kept);
-    let (stiffness, mass) = (picked(stiffness), picked(&mass));
+    let (stiffness, mass) = (picked(&stiffness), picked(&mass));
     let Some(factor) = mass.clone().cholesky() else { return Vec::new() };
     let lower = factor.l();
     let half = lower.solve_lower_triangular(&stiffness).unwrap_or_else(|| stiffness.clone());
@@ -109,11 +151,18 @@ pub fn modes(
             let shape = lower.transpose().solve_upper_triangular(&column).unwrap_or(column);
             let momentum = whole(&(&mass * &shape));
             let shape = whole(&shape);
-            let share = |HousingMass { race, mass }: &HousingMass| {
+            let mut at = known;
+            let mut share = |HousingMass { race, mass, held, .. }: &HousingMass| {
                 let own = shape.fixed_rows::<4>(5 * race + 1);
-                (own.transpose() * mass * own)[(0, 0)]
+                let mut part = (own.transpose() * mass * own)[(0, 0)];
+                for HeldMotion { shared, .. } in held {
+                    let with_race: f64 = shared.iter().zip(own.iter()).map(|(m, x)| m * x).sum();
+                    part += shape[at] * (shape[at] + 2.0 * with_race);
+                    at += 1;
+                }
+                part
             };
-            let housings = housings.iter().map(share).collect();
+            let housings = housings.iter().map(&mut share).collect();
             Mode { square: eigen.eigenvalues[k], momentum, housings, shape }
         })
         .collect();
@@ -161,5 +210,5 @@ pub fn housing_mass(search: &BoreSearch, race: usize) -> HousingMass {
         let pairs = shapes[i].iter().zip(&shapes[j]).zip(&bore.mass);
         pairs.map(|((u, v), mass)| mass * dot(*u, *v)).sum()
     });
-    HousingMass { race, mass }
+    HousingMass { race, mass, held: Vec::new(), damping: 0.0 }
 }

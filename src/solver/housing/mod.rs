@@ -22,6 +22,7 @@ pub mod course_search;
 pub mod exchange;
 mod exchange_start;
 mod exchange_window;
+pub mod held_motions;
 pub mod housed;
 pub mod inertia;
 pub mod presses;

@@ -185,7 +185,7 @@ fn own_forces(solid: &ReducedSolid, t: f64) -> Vec<f64> {
 const AT_FIRST: usize = 8;
 const MOST: usize = 400;
 /// Residual of natural shapes: their frequencies are known to its square, and shapes stay as orthogonal.
-const RESIDUAL: f64 = 1e-7;
+pub const NATURAL_RESIDUAL: f64 = 1e-7;
 
 /// Natural shapes (lumped masses) up to a frequency, and the frequency of the first one beyond, Hz.
 ///
@@ -202,7 +202,7 @@ pub fn natural_shapes(
     let unknowns = bore.unknowns();
     let mut count = AT_FIRST.min(unknowns.count);
     loop {
-        let options = ModeOptions { count, mass: MassMatrix::Lumped, tolerance: RESIDUAL };
+        let options = ModeOptions { count, mass: MassMatrix::Lumped, tolerance: NATURAL_RESIDUAL };
         let mut modes = modes_over(model, unknowns, &options)?.modes;
         let kept = modes.iter().filter(|mode| mode.frequency <= frequency).count();
         if let Some(next) = modes.get(kept).map(|mode| mode.frequency) {

@@ -1,0 +1,105 @@
+//! How a housing swings while the race in it stands still: what static shapes under the race's motion leave out.
+//!
+//! About an equilibrium the bore's nodes that touch hang on the race by their contact springs, P = Σ K n nᵀ. The shapes that follow
+//! the race are orthogonal, under K + P, to all that vanish at it; the motions of the two share mass alone (Craig and Bampton 1968,
+//! the race's four coordinates as the interface). Those with the race at rest are combined of (K + P)⁻¹ M φ for the natural shapes φ
+//! of the housing without contact, ω² M φ = K φ: up to a factor that is φ less the answer to the loads with which the race keeps the nodes
+//! in contact where they are, so that nothing has to be factorised again.
+
+use super::bore_equilibrium::BoreSearch;
+use super::inertia::{HeldMotion, HousingMass, housing_mass};
+use super::reduce::{NATURAL_RESIDUAL, ReduceError, natural_shapes};
+use crate::kinematics::vec3::{Vec3, add, dot};
+use crate::solver::solid::model::SolidModel;
+use crate::solver::solid::modes::{Mode, ModeOptions, modes_over};
+use crate::solver::solid::tangent::MassMatrix;
+use nalgebra::{DMatrix, SymmetricEigen};
+use std::f64::consts::TAU;
+
+/// Natural shapes of a housing that are made use of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Natural {
+    /// So many of the lowest.
+    Lowest(usize),
+    /// Up to this frequency, Hz.
+    UpTo(f64),
+}
+
+/// A housing that takes part with all of its motions up to a frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SwingingHousing {
+    pub mass: HousingMass,
+    /// Of the first natural shape that is left out, Hz: what swings nearly as fast is told too fast.
+    pub first_left_out: f64,
+}
+
+/// The housing `model` of a search about the last equilibrium of its bore, the race being the body of number `race` among those that
+/// take part.
+///
+/// # Errors
+/// Natural shapes that are not found.
+pub fn swinging_housing(
+    model: &SolidModel,
+    search: &BoreSearch,
+    race: usize,
+    natural: Natural,
+) -> Result<SwingingHousing, ReduceError> {
+    let bore = search.bore();
+    let (shapes, first_left_out) = match natural {
+        Natural::UpTo(frequency) => natural_shapes(model, bore, frequency)?,
+        Natural::Lowest(wanted) => {
+            let count = (wanted + 1).min(bore.unknowns().count);
+            let (mass, tolerance) = (MassMatrix::Lumped, NATURAL_RESIDUAL);
+            let options = ModeOptions { count, mass, tolerance };
+            let mut shapes = modes_over(model, bore.unknowns(), &options)?.modes;
+            let next = (shapes.len() > wanted).then(|| shapes.pop()).flatten();
+            (shapes, next.map_or(f64::INFINITY, |mode| mode.frequency))
+        }
+    };
+    let mut mass = housing_mass(search, race);
+    mass.held = held_motions(search, &shapes);
+    mass.damping = model.problem.damping;
+    Ok(SwingingHousing { mass, first_left_out })
+}
+
+/// Motions with the race at rest, combined of what natural shapes (lumped masses) become under a unit of their own inertia.
+fn held_motions(search: &BoreSearch, natural: &[Mode]) -> Vec<HeldMotion> {
+    let bore = search.bore();
+    let held: Vec<Vec<Vec3>> = natural.iter().map(|mode| held_back(search, &mode.shape)).collect();
+    let followers = search.loads_by_pose().map(|loads| bore.response(&loads));
+    let inner = |a: &[Vec3], b: &[Vec3]| -> f64 {
+        a.iter().zip(b).zip(&bore.mass).map(|((u, v), mass)| mass * dot(*u, *v)).sum()
+    };
+    let count = held.len();
+    // (K + P) χ_l = ω_l² M φ_l.
+    let stiffness = DMatrix::from_fn(count, count, |k, l| {
+        (TAU * natural[l].frequency).powi(2) * inner(&held[k], &natural[l].shape)
+    });
+    let mass = DMatrix::from_fn(count, count, |k, l| inner(&held[k], &held[l]));
+    let shared = DMatrix::from_fn(4, count, |i, l| inner(&followers[i], &held[l]));
+    let Some(factor) = mass.cholesky() else { return Vec::new() };
+    let lower = factor.l();
+    let over = |of: DMatrix<f64>| lower.solve_lower_triangular(&of).unwrap_or(of);
+    let both = over(over(0.5 * (&stiffness + stiffness.transpose())).transpose());
+    let eigen = SymmetricEigen::new(0.5 * (&both + both.transpose()));
+    let shared = over(shared.transpose()).transpose() * &eigen.eigenvectors;
+    let of = |k: usize| HeldMotion {
+        square: eigen.eigenvalues[k],
+        shared: std::array::from_fn(|i| shared[(i, k)]),
+    };
+    let mut all: Vec<HeldMotion> = (0..count).map(of).collect();
+    all.sort_by(|a, b| a.square.total_cmp(&b.square));
+    all
+}
+
+/// A displacement of all nodes with what the race, which stands still, does against it where nodes touch.
+fn held_back(search: &BoreSearch, shape: &[Vec3]) -> Vec<Vec3> {
+    let bore = search.bore();
+    let outward = bore.nodes.iter().map(|node| {
+        let out = bore.to_world([0.0, node.normal[0], node.normal[1]]);
+        dot(shape[node.node as usize], out)
+    });
+    let loads = search.loads_against(&outward.collect::<Vec<_>>());
+    let answer = bore.response(&loads);
+    shape.iter().zip(answer).map(|(own, answer)| add(*own, answer)).collect()
+}

@@ -1,0 +1,62 @@
+//! What `modes` says of housings that swing.
+
+use super::run_command::{bearing, code, said};
+use crate::solid_command_common::{Place, json, number, shipped};
+
+use std::f64::consts::TAU;
+
+/// A damping α M of the elements of both housings takes α s/2ω of a motion of which they have the part s; nothing else damps here. The
+/// lowest motion is that of a housing, which swings along the axis with a race in its bore.
+#[test]
+fn whirl_is_damped_by_what_damps_a_housing() {
+    let place = Place::new();
+    let out = place.path("out");
+    let alpha = 200.0;
+    let scene = shipped("shaft_in_two_housings.toml");
+    let scene = scene.to_str().unwrap();
+    let set = format!("solid.damping={alpha} 1/s");
+    let output = bearing(&["modes", scene, "--set", &set, "--out", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 0);
+    let summary = json(out.join("summary.json"));
+    let modes: Vec<[f64; 2]> = summary["modes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|mode| [number(&mode["frequency"]), number(&mode["housings_share"])])
+        .collect();
+    let whirls = summary["rotor"]["whirl"].as_array().unwrap();
+    let mut seen = Vec::new();
+    for whirl in whirls {
+        let frequency = number(&whirl["frequency"]);
+        // At 1000 rpm next to nothing turns the motions into others.
+        let off = |mode: &&[f64; 2]| (mode[0] / frequency - 1.0).abs();
+        let [_, share] = modes.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
+        let expected = alpha * share / (2.0 * TAU * frequency);
+        let error = (number(&whirl["damping_ratio"]) - expected).abs();
+        // Damping couples motions, to second order of 200/s over the distance of 2π 40 Hz between the nearest two.
+        assert!(error <= 0.02 * expected + 1e-6, "{frequency}: {error:e} {expected:e}");
+        seen.push(*share);
+    }
+    assert!(seen.len() == 8 && seen[0] > 0.9 && seen[1] < 0.1, "{seen:?}");
+    let text = said(&output);
+    assert!(text.contains("left_housing_shape_1"), "{text}");
+    assert!(text.contains("mostly along the axis or of a housing"), "{text}");
+}
+
+/// A reduced housing says up to which frequency its natural shapes take part; others have the lowest dozen.
+#[test]
+fn natural_shapes_of_housings_are_counted() {
+    let scene = shipped("housing_a_rotating_load.toml");
+    let scene = scene.to_str().unwrap();
+    let with = |more: &[&str]| {
+        let text =
+            said(&bearing(&[&["modes", scene, "--set", "housing.method=reduced"], more].concat()));
+        let shape = |line: &&str| line.contains("housing_shape_");
+        (text.lines().filter(shape).count(), text)
+    };
+    let (dozen, text) = with(&[]);
+    assert!(dozen == 12 && text.contains("and 12 natural ones"), "{text}");
+    let (fewer, text) = with(&["--set", "housing.modes_to=30 kHz"]);
+    assert!((1..12).contains(&fewer), "{text}");
+    assert!(text.contains(&format!("and {fewer} natural ones")), "{text}");
+}
