@@ -244,6 +244,16 @@ impl<'a, 'b> Search<'a, 'b> {
         }
     }
 
+    /// Work of the loads from where coordinates count, each by its size, J.
+    fn worked(&self, of: &Evaluation) -> f64 {
+        let unknowns = self.loads.iter().zip(of.at.iter());
+        let sections = self.model.section_loads().flat_map(|(first, loads)| {
+            loads.iter().enumerate().map(move |(i, load)| load * of.at[first + i])
+        });
+        let sections: f64 = sections.map(f64::abs).sum();
+        unknowns.map(|(load, at)| (load * at).abs()).sum::<f64>() + sections
+    }
+
     /// Largest unbalanced load over the free coordinates, N.
     pub(super) fn residual(&self, here: &Evaluation) -> f64 {
         (0..self.free.len())
@@ -341,8 +351,9 @@ impl<'a, 'b> Search<'a, 'b> {
             let assembly = self.model.assembly;
             let springs = !(assembly.connections.is_empty() && assembly.shafts.is_empty());
             if springs || !assembly.seats.is_empty() {
-                // Springs may hold far more energy than contacts.
-                noise += 16.0 * f64::EPSILON * here.energy.abs().max(there.energy.abs());
+                // Springs may hold far more energy than contacts, of which the loads' work may leave little.
+                let size = |of: &Evaluation| of.energy.abs() + 2.0 * self.worked(of);
+                noise += 16.0 * f64::EPSILON * size(here).max(size(&there));
             }
             noise += here.without_energy * step.norm();
             let quieter = self.residual(&there) < residual;

@@ -15,10 +15,11 @@ use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
 use bearing_dynamics::solver::dynamics::equilibrium::{conditions, given_speed, static_assembly};
 use bearing_dynamics::solver::dynamics::run::RunOptions;
 use bearing_dynamics::solver::dynamics::shaft::{ElasticShaft, ShaftLoad};
-use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::condensed::{CondensedBore, beyond_normals};
 use bearing_dynamics::solver::housing::course::{CourseProblem, CourseSeat, Moment};
 use bearing_dynamics::solver::housing::course_search::CourseSearch;
 use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, SolidPart};
+use bearing_dynamics::solver::housing::true_distances::solve_with_true_distances;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::static_assembly::StaticAssembly;
 use bearing_dynamics::solver::statics::{
@@ -220,7 +221,14 @@ fn start_of_steps(assembly: &mut Assembly, housings: &[Housing]) -> Fallible<Vec
     }
     let bores = condensed(housings)?;
     let seats = grown(housings, &bores);
-    let found = at_start(assembly, &seats)?;
+    let mut still = static_assembly(assembly, 0.0, &[]);
+    seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
+    let found = solve_with_true_distances(&still, |index, state| {
+        let bore = seats[index].bore;
+        let displacement = bore.displacement(&state.loads);
+        let moved = bore.nodes.iter().map(|node| displacement[node.node as usize]);
+        beyond_normals(bore, moved, &state.pose).collect()
+    })?;
     let mut displacements = Vec::with_capacity(housings.len());
     for (seat, state) in seats.iter().zip(&found.seats) {
         let body = seat.body(assembly);

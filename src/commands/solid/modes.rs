@@ -35,7 +35,7 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     let model = SolidModel::labelled(setup.problem.clone(), setup.labels.clone())?;
     let options = ModeOptions { mass: scene.mode_mass, ..ModeOptions::new(scene.mode_count) };
     let unknowns = Unknowns::new(&model);
-    let cost = foretold::modes(&model, &unknowns, options.count);
+    let cost = foretold::modes(&model, &unknowns, scene.mode_count);
     let found = watched(&cost, &unknowns, "", || modes_over(&model, &unknowns, &options))??;
     let seconds = vec![
         ("mesh".into(), prepared.mesh_seconds),

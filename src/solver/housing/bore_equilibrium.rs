@@ -117,7 +117,7 @@ pub struct BoreState {
     pub load: [f64; 4],
     /// ∂load/∂pose while the same nodes touch, symmetric.
     pub stiffness: Matrix4<f64>,
-    /// In the solid by contact, and in the penalty springs, J.
+    /// In the solid under contact, its own loads and weight, and in the penalty springs, J.
     pub elastic_energy: f64,
     pub contact_energy: f64,
     pub touching: usize,
@@ -171,6 +171,8 @@ pub struct BoreSearch<'a> {
     levers: Vec<[f64; 4]>,
     /// 1/K of each node, m/N.
     softness: Vec<f64>,
+    /// How much farther each node is from the race than motions along normals that stay make it, m.
+    beyond: Vec<f64>,
     contact: Option<Contact>,
     pose: [f64; 4],
     /// R − d of each node with the race at its pose and the bore as its own loads leave it, m.
@@ -199,6 +201,7 @@ impl<'a> BoreSearch<'a> {
             penalty,
             levers,
             softness,
+            beyond: vec![0.0; count],
             contact: None,
             pose: [0.0; 4],
             overlap: vec![0.0; count],
@@ -210,6 +213,11 @@ impl<'a> BoreSearch<'a> {
 
     pub fn bore(&self) -> &'a CondensedBore {
         self.bore
+    }
+
+    /// Takes each node to be farther from the race than motions along normals that stay make it, m.
+    pub fn keep_beyond(&mut self, beyond: Vec<f64>) {
+        self.beyond = beyond;
     }
 
     /// Nodes of the bore that touched last, ascending: all that the next answer starts from.
@@ -279,7 +287,7 @@ impl<'a> BoreSearch<'a> {
         check_finite("the race's radius", fit.radius)?;
         self.pose = pose;
         for (i, node) in self.bore.nodes.iter().enumerate() {
-            let before = fit.radius - node.distance - self.bore.own[i];
+            let before = fit.radius - node.distance - self.bore.own[i] - self.beyond[i];
             self.overlap[i] = before + race_motion(node, &pose);
         }
         self.settle()?;
@@ -292,7 +300,8 @@ impl<'a> BoreSearch<'a> {
         }
         // Of the sum, and of the pose.
         let travel = norm([0.0, pose[0], pose[1]]);
-        let rounding = 8.0 * f64::EPSILON * (sum + stiffness.diagonal().rows(0, 2).amax() * travel);
+        let of_sum = 8.0 * f64::EPSILON * (sum + stiffness.diagonal().rows(0, 2).amax() * travel);
+        let rounding = of_sum + self.left_out();
         Ok(BoreAnswer { energy, load, stiffness, rounding })
     }
 
@@ -370,6 +379,13 @@ impl<'a> BoreSearch<'a> {
         }
     }
 
+    /// What nodes would carry at most that overlap by no more than rounding of distances, and are left out of contact, N.
+    fn left_out(&self) -> f64 {
+        let nodes = self.overlap.iter().zip(&self.moves).zip(&self.loads).zip(&self.softness);
+        let out = nodes.filter(|(((g, u), load), _)| **load == 0.0 && *g > *u);
+        out.map(|(((g, u), _), softness)| (g - u) / softness).sum()
+    }
+
     fn make_contact(&mut self, nodes: Vec<usize>) -> Result<(), BoreError> {
         if nodes.is_empty() {
             self.contact = None;
@@ -426,11 +442,13 @@ impl<'a> BoreSearch<'a> {
             }
         }
         let half_work = |of: &[f64]| 0.5 * of.iter().zip(loads).map(|(u, p)| u * p).sum::<f64>();
+        // Both displacements of the solid, and what the loads of the one do along the other.
+        let both: f64 = bore.own.iter().zip(loads).map(|(own, p)| own * p).sum();
         let squeeze: Vec<f64> = self.softness.iter().zip(loads).map(|(c, p)| c * p).collect();
         Ok(BoreState {
             pose,
             penetration,
-            elastic_energy: half_work(&self.moves),
+            elastic_energy: bore.own_energy + both + half_work(&self.moves),
             contact_energy: half_work(&squeeze),
             outward,
             load: load.into(),

@@ -109,6 +109,8 @@ pub struct CondensedBore {
     pub asymmetry: f64,
     /// Outward displacement of the nodes under the solid's own loads and weight, m.
     pub own: Vec<f64>,
+    /// What these have stored in the solid before anything touches it, J.
+    pub own_energy: f64,
     pub sizes: Sizes,
     /// Lumped masses of the solid's nodes, kg.
     pub mass: Vec<f64>,
@@ -263,9 +265,13 @@ pub fn condense_over(
         .iter()
         .zip(&outward)
         .map(|(node, &outward)| dot(own_displacement[node.node as usize], outward));
+    // Half of what loads that have always been there do along the way that they made.
+    let work = forces.iter().zip(&own_displacement);
+    let work: f64 = work.map(|([x, y, z, _], u)| dot([*x, *y, *z], *u)).sum();
     Ok(CondensedBore {
         reach: *reach,
         own: own.collect(),
+        own_energy: 0.5 * work,
         nodes,
         compliance,
         asymmetry,
@@ -339,18 +345,25 @@ impl CondensedBore {
 /// each node of the solid) and the race at its pose (y, z in m, tilts in rad), are from those that
 /// normals kept fixed give: the largest difference over the bore's nodes, m.
 pub fn geometry_error(bore: &CondensedBore, displacement: &[Vec3], pose: &[f64; 4]) -> f64 {
-    let moved = Frame::new(&placed(&bore.reach.nominal, pose));
-    let mut largest = 0.0f64;
-    for node in &bore.nodes {
-        let u = displacement[node.node as usize];
+    let moved = bore.nodes.iter().map(|node| displacement[node.node as usize]);
+    beyond_normals(bore, moved, pose).fold(0.0, |largest: f64, beyond| largest.max(beyond.abs()))
+}
+
+/// By how much each node is farther from the race's axis than its motion along its normal and that of the race make it, m; `moved` are
+/// the displacements of the bore's nodes in the world, m.
+pub fn beyond_normals<'a>(
+    bore: &'a CondensedBore,
+    moved: impl Iterator<Item = Vec3> + 'a,
+    pose: &'a [f64; 4],
+) -> impl Iterator<Item = f64> + 'a {
+    let race = Frame::new(&placed(&bore.reach.nominal, pose));
+    bore.nodes.iter().zip(moved).map(move |(node, u)| {
         let place = add(add(bore.reach.nominal.position.into(), bore.to_world(node.arm)), u);
-        let [_, y, z] = moved.seen(place);
+        let [_, y, z] = race.seen(place);
         let exact = (y * y + z * z).sqrt() - node.distance;
         let outward = in_world(&bore.frame, node.normal);
-        let kept = dot(u, outward) - race_motion(node, pose);
-        largest = largest.max((exact - kept).abs());
-    }
-    largest
+        exact - (dot(u, outward) - race_motion(node, pose))
+    })
 }
 
 /// Outward motion of the race's surface at a node for small coordinates of the race: y, z (m) and

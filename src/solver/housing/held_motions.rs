@@ -8,11 +8,10 @@
 
 use super::bore_equilibrium::BoreSearch;
 use super::inertia::{HeldMotion, HousingMass, housing_mass};
-use super::reduce::{NATURAL_RESIDUAL, ReduceError, natural_shapes};
+use super::reduce::{ReduceError, lowest_shapes, natural_shapes};
 use crate::kinematics::vec3::{Vec3, add, dot};
 use crate::solver::solid::model::SolidModel;
-use crate::solver::solid::modes::{Mode, ModeOptions, modes_over};
-use crate::solver::solid::tangent::MassMatrix;
+use crate::solver::solid::modes::Mode;
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::TAU;
 
@@ -47,14 +46,7 @@ pub fn swinging_housing(
     let bore = search.bore();
     let (shapes, first_left_out) = match natural {
         Natural::UpTo(frequency) => natural_shapes(model, bore, frequency)?,
-        Natural::Lowest(wanted) => {
-            let count = (wanted + 1).min(bore.unknowns().count);
-            let (mass, tolerance) = (MassMatrix::Lumped, NATURAL_RESIDUAL);
-            let options = ModeOptions { count, mass, tolerance };
-            let mut shapes = modes_over(model, bore.unknowns(), &options)?.modes;
-            let next = (shapes.len() > wanted).then(|| shapes.pop()).flatten();
-            (shapes, next.map_or(f64::INFINITY, |mode| mode.frequency))
-        }
+        Natural::Lowest(count) => lowest_shapes(model, bore, count)?,
     };
     let mut mass = housing_mass(search, race);
     mass.held = held_motions(search, &shapes);

@@ -33,3 +33,4 @@ pub mod seat;
 pub mod seat_friction;
 pub mod stepped;
 pub mod stepped_shaft;
+pub mod true_distances;

@@ -12,10 +12,11 @@
 //! that ring against it. So many are kept that under none of them more than a given part of the compliance of bore and contact is
 //! left out. The masses are the lumped ones, as of explicit steps.
 
-use super::condensed::{CondensedBore, rim};
+use super::bore_equilibrium::BoreState;
+use super::condensed::{CondensedBore, beyond_normals, rim};
 use super::presses::{NOTHING_NEW, Presses, patterns};
 use crate::ch2_housing::bore_contact::Penalty;
-use crate::kinematics::vec3::{Vec3, add_scaled, dot};
+use crate::kinematics::vec3::{Vec3, add_scaled, dot, scale};
 use crate::solver::dense::DenseSymmetric;
 use crate::solver::dynamics::reduced_solid::{ModalLoad, ReducedSolid, Surface, SurfaceNode};
 use crate::solver::dynamics::seat::Seat;
@@ -23,7 +24,7 @@ use crate::solver::mount::Mount;
 use crate::solver::plan::tally::Tally;
 use crate::solver::profile::Profile;
 use crate::solver::solid::model::SolidModel;
-use crate::solver::solid::modes::{Mode, ModeError, ModeOptions, modes_over};
+use crate::solver::solid::modes::{Mode, ModeError, ModeOptions, Wanted, modes_over};
 use crate::solver::solid::tangent::MassMatrix;
 use crate::solver::sparse::FactorError;
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
@@ -145,6 +146,16 @@ impl Reduction {
         self.solid.rest(&forces)
     }
 
+    /// By how much each node of the bore is farther from the race than motions along normals make it where a search left both, m: of
+    /// its own normal alone, as shapes move it.
+    pub fn beyond_normals(&self, bore: &CondensedBore, state: &BoreState) -> Vec<f64> {
+        let surface = &self.solid.surfaces[0];
+        let mut outward = vec![0.0; surface.nodes.len()];
+        surface.along_normals(&self.rest(&state.loads), &mut outward);
+        let moved = surface.nodes.iter().zip(outward).map(|(node, out)| scale(node.normal, out));
+        beyond_normals(bore, moved, &state.pose).collect()
+    }
+
     /// The race of `mount` in the bore.
     pub fn seat(
         &self,
@@ -181,11 +192,10 @@ fn own_forces(solid: &ReducedSolid, t: f64) -> Vec<f64> {
     forces
 }
 
-/// Natural shapes that are looked for at first, and the most that are kept.
-const AT_FIRST: usize = 8;
+/// The most natural shapes that are kept.
 const MOST: usize = 400;
 /// Residual of natural shapes: their frequencies are known to its square, and shapes stay as orthogonal.
-pub const NATURAL_RESIDUAL: f64 = 1e-7;
+const RESIDUAL: f64 = 1e-7;
 
 /// Natural shapes (lumped masses) up to a frequency, and the frequency of the first one beyond, Hz.
 ///
@@ -199,27 +209,41 @@ pub fn natural_shapes(
     if !(frequency > 0.0 && frequency.is_finite()) {
         return Err(ReduceError::Frequency { frequency });
     }
-    let unknowns = bore.unknowns();
-    let mut count = AT_FIRST.min(unknowns.count);
-    loop {
-        let options = ModeOptions { count, mass: MassMatrix::Lumped, tolerance: NATURAL_RESIDUAL };
-        let mut modes = modes_over(model, unknowns, &options)?.modes;
-        let kept = modes.iter().filter(|mode| mode.frequency <= frequency).count();
-        if let Some(next) = modes.get(kept).map(|mode| mode.frequency) {
-            modes.truncate(kept);
-            return Ok((modes, next));
+    natural(model, bore, Wanted::UpTo { frequency, most: MOST }).map_err(|error| match error {
+        ModeError::MoreThan { most, frequency } => ReduceError::TooMany { most, frequency },
+        other => other.into(),
+    })
+}
+
+/// The lowest natural shapes (lumped masses), so many, and the frequency of the first one beyond, Hz.
+///
+/// # Errors
+/// What [`modes_over`] finds wrong.
+pub fn lowest_shapes(
+    model: &SolidModel,
+    bore: &CondensedBore,
+    count: usize,
+) -> Result<(Vec<Mode>, f64), ReduceError> {
+    let wanted = Wanted::Lowest((count + 1).min(bore.unknowns().count));
+    Ok(natural(model, bore, wanted)?)
+}
+
+/// All but the last one of what is wanted, and the frequency of that, Hz; infinite where there is nothing beyond.
+fn natural(
+    model: &SolidModel,
+    bore: &CondensedBore,
+    wanted: Wanted,
+) -> Result<(Vec<Mode>, f64), ModeError> {
+    let options = ModeOptions { wanted, mass: MassMatrix::Lumped, tolerance: RESIDUAL };
+    let mut modes = modes_over(model, bore.unknowns(), &options)?.modes;
+    let is_last = match wanted {
+        Wanted::Lowest(count) => count == modes.len() && count < bore.unknowns().count,
+        Wanted::UpTo { frequency, .. } => {
+            modes.last().is_some_and(|mode| mode.frequency > frequency)
         }
-        if count == unknowns.count {
-            return Ok((modes, f64::INFINITY));
-        }
-        if count >= MOST {
-            return Err(ReduceError::TooMany { most: MOST, frequency });
-        }
-        // About as many more as a plate has.
-        let top = modes.last().map_or(frequency, |mode| mode.frequency);
-        let guess = (1.2 * count as f64 * (frequency / top).max(1.0)) as usize;
-        count = guess.clamp(count + count / 8, 8 * count).min(MOST).min(unknowns.count);
-    }
+    };
+    let next = if is_last { modes.pop() } else { None };
+    Ok((modes, next.map_or(f64::INFINITY, |mode| mode.frequency)))
 }
 
 /// A force on the solid and what its natural shapes leave of the static answer.

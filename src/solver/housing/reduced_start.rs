@@ -3,6 +3,7 @@
 use super::bore_equilibrium::Fit;
 use super::condensed::CondensedBore;
 use super::reduce::Reduction;
+use super::true_distances::solve_with_true_distances;
 use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::solver::dynamics::assembly::{Assembly, Bearing};
@@ -11,7 +12,7 @@ use crate::solver::dynamics::seat::Seat;
 use crate::solver::mount::Mount;
 use crate::solver::profile::Profile;
 use crate::solver::static_assembly::StaticSeat;
-use crate::solver::statics::{AssemblySolution, StaticOptions, StaticsError, solve_assembly};
+use crate::solver::statics::{AssemblySolution, StaticsError};
 use std::f64::consts::TAU;
 
 /// Adds a reduced housing and the seat of a body in it. The housing starts still and undeformed, the body where its
@@ -43,7 +44,8 @@ pub struct Housing<'h> {
 /// Puts bodies in seats, and the solids of these, where they are in equilibrium under the loads at t = 0. There is one
 /// housing for each seat, in their order.
 ///
-/// A bore is taken as the shapes have it, so that nothing rings of what they leave out.
+/// A bore is taken as the shapes have it, so that nothing rings of what they leave out, and its nodes as far from the race as the
+/// motion has them.
 ///
 /// # Errors
 /// No equilibrium.
@@ -74,7 +76,10 @@ pub fn put_in_equilibrium(
             })
             .collect();
         still.seats = seats;
-        solve_assembly(&still, None, &StaticOptions::default())
+        solve_with_true_distances(&still, |index, state| {
+            let Housing { reduction, bore, .. } = &housings[index];
+            reduction.beyond_normals(bore, state)
+        })
     };
     for (housing, (compliance, own)) in housings.iter_mut().zip(as_it_was) {
         (housing.bore.compliance, housing.bore.own) = (compliance, own);

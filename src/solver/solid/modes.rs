@@ -10,10 +10,18 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::TAU;
 use thiserror::Error;
 
+/// Which modes are looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wanted {
+    /// So many of the lowest, those of no frequency included.
+    Lowest(usize),
+    /// All up to a frequency (Hz), at most so many, and the first one beyond.
+    UpTo { frequency: f64, most: usize },
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModeOptions {
-    /// How many modes, those of no frequency included.
-    pub count: usize,
+    pub wanted: Wanted,
     pub mass: MassMatrix,
     /// Largest residual ‖K x − λ M x‖ over ‖(λ − shift) M x‖.
     pub tolerance: f64,
@@ -21,7 +29,8 @@ pub struct ModeOptions {
 
 impl ModeOptions {
     pub fn new(count: usize) -> ModeOptions {
-        ModeOptions { count, mass: MassMatrix::Consistent, tolerance: 1e-8 }
+        let wanted = Wanted::Lowest(count);
+        ModeOptions { wanted, mass: MassMatrix::Consistent, tolerance: 1e-8 }
     }
 }
 
@@ -31,6 +40,8 @@ pub enum ModeError {
     Factor(#[from] FactorError),
     #[error("{wanted} modes are asked for, but the body has only {unknowns} free components")]
     TooMany { wanted: usize, unknowns: usize },
+    #[error("the body has more than {most} natural modes up to {frequency} Hz")]
+    MoreThan { most: usize, frequency: f64 },
     #[error(
         "only the lowest {found} of the {wanted} natural modes asked for were found to full accuracy, with \
          {vectors} trial vectors; ask for {found} or fewer (modes.count), and check the mesh's worst elements \
@@ -99,8 +110,10 @@ pub fn modes_over(
     options: &ModeOptions,
 ) -> Result<Modes, ModeError> {
     let size = unknowns.count;
-    if options.count > size {
-        return Err(ModeError::TooMany { wanted: options.count, unknowns: size });
+    if let Wanted::Lowest(wanted) = options.wanted
+        && wanted > size
+    {
+        return Err(ModeError::TooMany { wanted, unknowns: size });
     }
     let mut masses = mass_pattern(&model.problem, unknowns);
     mass(model, unknowns, options.mass, &mut masses);
@@ -110,19 +123,34 @@ pub fn modes_over(
     shifted.add_scaled(-shift, &masses);
     let factor = unknowns.factor(&shifted)?;
 
-    // Short thick bodies have many modes close to each other; a small one may take more trials.
-    let most = (4 * options.count + 60).max((FREE_TRIALS / size).min(MOST_TRIALS)).min(size);
     let mut krylov = Krylov::new(&masses, &factor);
     krylov.start(size.min(BLOCK));
-    let (mut before, mut looked) = (Vec::new(), 0);
+    let (mut before, mut looked, mut count) = (Vec::new(), 0, 1);
     loop {
+        if let Wanted::Lowest(wanted) = options.wanted {
+            count = wanted;
+        }
+        // Short thick bodies have many modes close to each other; a small one may take more trials.
+        let most =
+            |count: usize| (4 * count + 60).max((FREE_TRIALS / size).min(MOST_TRIALS)).min(size);
         // A look costs the cube of the basis, a block little: large ones are looked at each time they have grown by a part.
-        if krylov.basis.len() < looked + looked / 16 && krylov.grow(most) {
+        if krylov.basis.len() < looked + looked / 16 && krylov.grow(most(count)) {
             continue;
         }
         looked = krylov.basis.len();
         // Residuals are looked at once the values stand still: these settle twice as fast as shapes.
-        let values = krylov.largest(options.count);
+        let mut values = krylov.largest();
+        if let Wanted::UpTo { frequency, most } = options.wanted {
+            // They come down as the space grows.
+            let limit = (TAU * frequency).powi(2);
+            let within = values.iter().filter(|&&inverse| shift + 1.0 / inverse <= limit).count();
+            if within > most {
+                return Err(ModeError::MoreThan { most, frequency });
+            }
+            count = (within + 1).min(size);
+        }
+        let most = most(count);
+        values.truncate(count);
         let still = |(now, old): (&f64, &f64)| (now - old).abs() <= STILL * now.abs();
         let settling = before.len() == values.len() && values.iter().zip(&before).all(still);
         let last = krylov.basis.len() >= most;
@@ -130,7 +158,7 @@ pub fn modes_over(
         if !settling && !last && krylov.grow(most) {
             continue;
         }
-        let found = krylov.ritz(options.count);
+        let found = krylov.ritz(count);
         let checked: Vec<_> = found
             .into_iter()
             .map(|(vector, inverse)| {
@@ -141,7 +169,7 @@ pub fn modes_over(
             .collect();
         let settled = checked.iter().filter(|mode| mode.2 <= options.tolerance).count();
         let solves = krylov.solves;
-        if settled >= options.count {
+        if settled >= count {
             let mut modes: Vec<Mode> = checked
                 .into_iter()
                 .map(|(value, vector, residual)| Mode {
@@ -160,7 +188,7 @@ pub fn modes_over(
         if krylov.basis.len() >= most || !krylov.grow(most) {
             return Err(ModeError::NotConverged {
                 found: settled,
-                wanted: options.count,
+                wanted: count,
                 vectors: krylov.basis.len(),
             });
         }
@@ -218,8 +246,17 @@ struct Krylov<'a> {
     solves: usize,
 }
 
+/// In eight sums side by side, which a processor adds at once.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    let mut sums = [0.0; 8];
+    let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
+    for (a, b) in a.zip(b) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    sums.iter().sum::<f64>() + rest
 }
 
 impl<'a> Krylov<'a> {
@@ -314,12 +351,11 @@ impl<'a> Krylov<'a> {
         self.take(images)
     }
 
-    /// The largest eigenvalues of the inverse within the space.
-    fn largest(&self, wanted: usize) -> Vec<f64> {
+    /// Eigenvalues of the inverse within the space, largest first.
+    fn largest(&self) -> Vec<f64> {
         let mut values: Vec<f64> =
             self.projected.clone().symmetric_eigenvalues().iter().copied().collect();
         values.sort_by(|a, b| b.total_cmp(a));
-        values.truncate(wanted);
         values
     }
 
