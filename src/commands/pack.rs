@@ -2,6 +2,7 @@
 
 use super::assembly::statics::find_equilibrium;
 use super::earlier::{Writes, claimed};
+use super::sweep::housings::mesh_files;
 use super::{CommandResult, Outcome, say};
 use bearing_dynamics::output::compare::tolerance::ToleranceClass;
 use bearing_dynamics::output::pack::{PackInput, refuse_foreign_files, write_pack};
@@ -33,13 +34,16 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let stem = path.file_stem().unwrap_or(path.as_os_str());
     let folder = arguments.out.clone().unwrap_or_else(|| Path::new("packs").join(stem));
     let folder = claimed(&folder, Writes::Pack)?;
-    refuse_foreign_files(&folder, &name)?;
+    let files = mesh_files(&scene)?;
+    let own: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    refuse_foreign_files(&folder, &name, &own)?;
     let read = start.elapsed().as_secs_f64();
     let found = find_equilibrium(&document, &scene, read)?;
     let record = &found.record;
     let input = PackInput {
         scene_name: &name,
         scene_text: document.text(),
+        files: &files,
         resolved: &record.scene,
         class: ToleranceClass::F64Reordered,
     };
@@ -49,8 +53,8 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     } else {
         ""
     };
-    let files = manifest.sha256.len() + 1;
-    say(&format!("wrote {files} files to {}{of_run}\n", folder.display()))?;
+    let count = manifest.sha256.len() + 1;
+    say(&format!("wrote {count} files to {}{of_run}\n", folder.display()))?;
     Ok(Outcome::Done)
 }
 

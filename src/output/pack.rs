@@ -3,6 +3,7 @@
 //! | file | content |
 //! |---|---|
 //! | `scene.toml` or `scene.json` | the scene as it was given |
+//! | meshes | where the scene has them, in folders of the same names |
 //! | `resolved.json` | the same with every value and its unit, every default filled in |
 //! | `summary.json`, `series.csv`, `series.npy`, `series.columns.json` | the expected results |
 //! | `tolerances.json` | how far a candidate may be from them |
@@ -43,6 +44,8 @@ pub struct PackInput<'a> {
     pub scene_name: &'a str,
     /// As the user wrote it, to the byte.
     pub scene_text: &'a str,
+    /// Files that it is read with, by their paths from it, and their bytes.
+    pub files: &'a [(String, Vec<u8>)],
     /// The scene with units and defaults; `null` stands for a part left out.
     pub resolved: &'a Value,
     pub class: ToleranceClass,
@@ -52,6 +55,11 @@ pub struct PackInput<'a> {
 pub enum PackError {
     #[error("{name:?} is no plain file name")]
     SceneName { name: String },
+    #[error(
+        "solid.mesh.file: {name:?} is not in the scene's folder or below it, where it could be packed with the scene. Hint: put the mesh \
+         beside the scene and write its name alone"
+    )]
+    Elsewhere { name: String },
     #[error(
         "{} exists and holds {found:?}, which is not part of a case pack; name another folder with --out",
         folder.display()
@@ -88,7 +96,11 @@ pub fn write_pack(
     if !is_plain_name(input.scene_name) || EXPECTED.contains(&input.scene_name) {
         return Err(PackError::SceneName { name: input.scene_name.to_string() });
     }
-    refuse_foreign_files(folder, input.scene_name)?;
+    if let Some((name, _)) = input.files.iter().find(|(name, _)| !is_packed(name, input)) {
+        return Err(PackError::Elsewhere { name: name.clone() });
+    }
+    let own: Vec<&str> = input.files.iter().map(|(name, _)| name.as_str()).collect();
+    refuse_foreign_files(folder, input.scene_name, &own)?;
     let mut tolerances = default_tolerances(input.class);
     // A tolerance may only name what the summary has.
     if input.class != ToleranceClass::F64Exact
@@ -110,8 +122,18 @@ pub fn write_pack(
     for (name, text) in &texts {
         write_atomic(&folder.join(name), text.as_bytes())?;
     }
+    for (name, bytes) in input.files {
+        let path = folder.join(name);
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent).map_err(|source| PackError::Read {
+                path: parent.to_path_buf(),
+                source: source.into(),
+            })?;
+        }
+        write_atomic(&path, bytes)?;
+    }
     let mut sha256 = BTreeMap::new();
-    for name in EXPECTED.into_iter().chain([input.scene_name]) {
+    for name in EXPECTED.into_iter().chain([input.scene_name]).chain(own) {
         sha256.insert(name.to_string(), hash(&folder.join(name))?);
     }
     let version = env!("CARGO_PKG_VERSION").to_string();
@@ -148,7 +170,7 @@ pub fn verify_pack(folder: &Path) -> Result<Manifest, PackError> {
         }
     }
     for (name, expected) in &manifest.sha256 {
-        if !is_plain_name(name) {
+        if !is_below(name) {
             return Err(PackError::SceneName { name: name.clone() });
         }
         let found = hash(&folder.join(name))?;
@@ -215,27 +237,45 @@ either (class f64-exact excepted): no law says where in its room such a ball is.
 }
 
 fn is_plain_name(name: &str) -> bool {
-    let mut components = Path::new(name).components();
-    matches!((components.next(), components.next()), (Some(Component::Normal(_)), None))
+    is_below(name) && Path::new(name).components().count() == 1
+}
+
+/// Whether a path leads to a file in the folder that it counts from or below it, which is not the manifest.
+fn is_below(name: &str) -> bool {
+    let mut parts = Path::new(name).components();
+    let written: Vec<&str> = name.split('/').collect();
+    parts.clone().count() == written.len()
+        && parts.all(|part| matches!(part, Component::Normal(_)))
         && name != MANIFEST
+}
+
+/// Whether a pack can have a file that its scene is read with.
+fn is_packed(name: &str, input: &PackInput) -> bool {
+    is_below(name) && name != input.scene_name && !EXPECTED.contains(&name)
 }
 
 /// A pack may be written over an older pack, not into a folder with something else in it.
 ///
 /// # Errors
 /// [`PackError::Foreign`] with the first such file; a folder that cannot be read.
-pub fn refuse_foreign_files(folder: &Path, scene_name: &str) -> Result<(), PackError> {
+pub fn refuse_foreign_files(
+    folder: &Path,
+    scene_name: &str,
+    files: &[&str],
+) -> Result<(), PackError> {
     if !folder.exists() {
         return Ok(());
     }
     for name in file_names(folder)? {
-        if name != MANIFEST && name != scene_name && !EXPECTED.contains(&name.as_str()) {
+        let known = [MANIFEST, scene_name].into_iter().chain(EXPECTED).chain(files.iter().copied());
+        if known.into_iter().all(|known| known != name) {
             return Err(PackError::Foreign { folder: folder.to_path_buf(), found: name });
         }
     }
     Ok(())
 }
 
+/// Of all files in a folder and below it, by their paths from it.
 fn file_names(folder: &Path) -> Result<Vec<String>, PackError> {
     let failed = |source: std::io::Error| PackError::Read {
         path: folder.to_path_buf(),
@@ -243,7 +283,13 @@ fn file_names(folder: &Path) -> Result<Vec<String>, PackError> {
     };
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
-        names.push(entry.map_err(failed)?.file_name().to_string_lossy().into_owned());
+        let entry = entry.map_err(failed)?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if entry.file_type().map_err(failed)?.is_dir() {
+            names.extend(file_names(&entry.path())?.into_iter().map(|own| format!("{name}/{own}")));
+        } else {
+            names.push(name);
+        }
     }
     names.sort();
     Ok(names)

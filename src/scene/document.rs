@@ -168,6 +168,7 @@ impl Document {
 
     pub(super) fn unknown_key(&self, table: &str, entry: &Entry) -> SceneError {
         let nearest = keys::nearest_key(table, &entry.name);
+        let nearest = nearest.map(|path| self.shown(&path, self.is_in_named_table(&path)));
         let allowed = keys::children(table).join(", ");
         let full = match table {
             "" => String::new(),

@@ -42,10 +42,10 @@ pub enum HousingSetupError {
     NoBore { bore: String, known: Vec<String> },
     #[error(
         "housing.width: none of the {count} nodes of the bore lies under the outer race, which is \
-         {:.4} mm wide about x = {:.4} mm. Hint: check width, position and the mesh's unit",
+         {:.4} mm wide about x = {:.4} mm: {lies}. Hint: {MOVE}; check width, position and the mesh's unit, too",
         1e3 * *.width, 1e3 * *.centre
     )]
-    BesideTheRace { count: usize, width: f64, centre: f64 },
+    BesideTheRace { count: usize, width: f64, centre: f64, lies: Lies },
     #[error(
         "housing.bore: \"{bore}\" is flat: its {faces} faces, {:.4} mm^2, all look along ({:.3}, {:.3}, {:.3}). A bore \
          is a cylinder about the race's axis. The solid's surfaces are: {}",
@@ -60,10 +60,10 @@ pub enum HousingSetupError {
     FarFromTheRace { bore: String, radius: f64, race: f64 },
     #[error(
         "housing.bore: nodes of \"{bore}\" are {:.4} to {:.4} mm from the bearing's axis, X through its \
-         centre: no bore about it. Hint: move the mesh, or check the name of the surface",
+         centre: no bore about it; {lies}. Hint: {MOVE}; check the name of the surface, too",
         1e3 * *.nearest, 1e3 * *.farthest
     )]
-    NotRound { bore: String, nearest: f64, farthest: f64 },
+    NotRound { bore: String, nearest: f64, farthest: f64, lies: Lies },
     #[error(
         "housing.bore: the edges of \"{bore}\" are straight: its mid-side nodes, where the race touches, lie \
          up to {:.3} um inside the cylinder of radius {:.4} mm through its corners; edges this long have arcs \
@@ -82,10 +82,10 @@ pub enum HousingSetupError {
     OutOfRound { bore: String, radius: f64, off: f64, limit: f64 },
     #[error(
         "housing.width: nodes of the bore stand for {share:.2} of the seat of a race {:.4} mm wide, and it \
-         should be {} to {}. Hint: refine the mesh along the axis, or let rows of nodes lie at the race's edges",
-        1e3 * *.width, SHARES.start(), SHARES.end()
+         should be {} to {}{}",
+        1e3 * *.width, SHARES.start(), SHARES.end(), seat_hint(.beside)
     )]
-    CoarseSeat { width: f64, share: f64 },
+    CoarseSeat { width: f64, share: f64, beside: Option<String> },
     #[error(
         "housing.width: the {count} nodes of the bore under the outer race, {:.4} mm wide, lie in one row around it, \
          {:+.4} mm from its middle: nothing there resists its tilt, and it takes two rows at least. Hint: more rows \
@@ -112,6 +112,48 @@ pub enum HousingSetupError {
          {axis} = true, or method = \"explicit\" in [housing]"
     )]
     MovedSupport { index: usize, axis: &'static str },
+}
+
+/// What to do about a mesh that is not where its bearing is.
+const MOVE: &str = "solid.mesh.origin names the point of the mesh's own coordinates that comes to the bearing's centre, solid.mesh.axis the \
+                    axis of the mesh that is the bore's";
+
+fn seat_hint(beside: &Option<String>) -> String {
+    match beside {
+        Some(beside) => format!(": {beside}, and where the mesh lies: {MOVE}"),
+        None => {
+            ". Hint: refine the mesh along the axis, or let rows of nodes lie at the race's edges"
+                .into()
+        }
+    }
+}
+
+/// Where the nodes of a surface lie from the race's centre, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lies {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Lies {
+    fn of(seen: &[[f64; 3]]) -> Lies {
+        let mut lies = Lies { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
+        for place in seen {
+            for (i, at) in place.iter().enumerate() {
+                lies.low[i] = lies.low[i].min(*at);
+                lies.high[i] = lies.high[i].max(*at);
+            }
+        }
+        lies
+    }
+}
+
+impl std::fmt::Display for Lies {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let along = |i: usize| format!("{:.4} to {:.4}", 1e3 * self.low[i], 1e3 * self.high[i]);
+        let [x, y, z] = [0, 1, 2].map(along);
+        write!(f, "from the bearing's centre it lies at X {x}, Y {y}, Z {z} mm")
+    }
 }
 
 impl HousingSetupError {
@@ -198,7 +240,8 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     let distances: Vec<f64> = seen.iter().filter(|at| is_under(at)).map(distance).collect();
     if distances.is_empty() {
         let centre = nominal.position.x;
-        return Err(HousingSetupError::BesideTheRace { count: nodes.len(), width, centre });
+        let (count, lies) = (nodes.len(), Lies::of(&seen));
+        return Err(HousingSetupError::BesideTheRace { count, width, centre, lies });
     }
     let corners = place.corner_cylinder(mesh, faces);
     let mean = distances.iter().sum::<f64>() / distances.len() as f64;
@@ -233,7 +276,8 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     let under = nodes.iter().zip(&seen).filter(|(_, at)| is_under(at));
     let under: Vec<Vector3<f64>> = under.map(|(node, _)| Vector3::from(node.place)).collect();
     let Some(cylinder) = fit_cylinder(&under, place.axis()).filter(|_| round) else {
-        return Err(HousingSetupError::NotRound { bore, nearest, farthest });
+        let lies = Lies::of(&seen);
+        return Err(HousingSetupError::NotRound { bore, nearest, farthest, lies });
     };
     let radius = cylinder.radius;
     let off = under.iter().map(|at| cylinder.outside(*at).abs()).fold(0.0, f64::max);
@@ -246,7 +290,8 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     let share = share_of_seat(&nodes, &seen, width, ends[1] - ends[0]);
     let stands_for_it = SHARES.contains(&share);
     if !stands_for_it {
-        return Err(HousingSetupError::CoarseSeat { width, share });
+        let beside = overhang(width, ends);
+        return Err(HousingSetupError::CoarseSeat { width, share, beside });
     }
     if let Some(at) = one_row(&nodes, &seen, width) {
         return Err(HousingSetupError::OneRow { count: distances.len(), width, at });
@@ -262,6 +307,7 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     }
     let mut notes = Vec::new();
     notes.extend(overhang(width, ends));
+    notes.extend(beside_the_axis(off_centre, interference));
     let under = nodes.iter().zip(&seen).filter(|(_, at)| is_under(at)).map(|(node, _)| node.node);
     notes.extend(held_nodes(&bore, under.collect(), &solid)?);
     notes.extend(rigid_rings(scene, radius, interference));
@@ -294,6 +340,19 @@ fn overhang(width: f64, [low, high]: [f64; 2]) -> Option<String> {
             1e3 * beside,
             1e3 * low,
             1e3 * high
+        )
+    })
+}
+
+/// A bore whose axis lies beside the race's centre by more than its fit, m.
+fn beside_the_axis(off: f64, interference: f64) -> Option<String> {
+    /// What drawings and meshes round.
+    const ROUNDED: f64 = 1e-6;
+    (off > interference.abs() + ROUNDED).then(|| {
+        format!(
+            "the bore's axis lies {:.4} um beside the race's centre, more than the fit: an explicit run that begins undeformed has the \
+             race so deep in the wall. If that is not meant, check solid.mesh.origin",
+            1e6 * off
         )
     })
 }

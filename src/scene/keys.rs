@@ -356,6 +356,17 @@ pub fn find_named(path: &str) -> Option<Leads<'_>> {
     Some(Leads { row, key, name: Some(name), item })
 }
 
+/// A path without what may be the name of a table, and that: `spring.stiffness` and `mount` of `spring.mount.stiffness`.
+pub fn without_name(path: &str) -> (String, Option<&str>) {
+    let parts: Vec<&str> = path.split('.').collect();
+    match parts[..] {
+        [table, name, _, ..] if NAMED.contains(&table) && !children(table).contains(&name) => {
+            ([&[table], &parts[2..]].concat().join("."), Some(name))
+        }
+        _ => (path.to_string(), None),
+    }
+}
+
 pub fn find_table(path: &str) -> Option<&'static Table> {
     TABLES.iter().find(|table| table.path == path)
 }
@@ -388,11 +399,16 @@ pub fn nearest_key(path: &str, name: &str) -> Option<String> {
         return Some(dotted(sibling));
     }
     let last = name.rsplit('.').next().unwrap_or(name);
-    let elsewhere = nearest(last, KEYS.iter().map(Key::name), 0.8);
+    let elsewhere = nearest(last, KEYS.iter().map(Key::name), 0.8).or_else(|| {
+        let tables = TABLES.iter().filter_map(|table| table.path.rsplit('.').next());
+        nearest(last, tables, 0.8)
+    });
     // Of several keys with that name, the one whose whole path is most alike.
     let full = dotted(name);
     let found = elsewhere.and_then(|name| {
-        let same_name = || KEYS.iter().map(|key| key.path).filter(|path| path.ends_with(name));
+        let known = || KEYS.iter().map(|key| key.path).chain(TABLES.iter().map(|table| table.path));
+        let is_name = move |path: &&str| path.rsplit('.').next() == Some(name);
+        let same_name = || known().filter(is_name);
         // One of the same part of the scene, if there is any.
         let top = |path: &str| path.split('.').next().unwrap_or_default().to_string();
         let beside = same_name().filter(|path| top(path) == top(&full));

@@ -61,6 +61,12 @@ impl Document {
         }
     }
 
+    /// Whether a path is of the tables with a name that is being read.
+    pub(super) fn is_in_named_table(&self, path: &str) -> bool {
+        let top = path.split('.').next();
+        self.layer.tables.first().is_some_and(|(table, _)| Some(*table) == top)
+    }
+
     /// Whether a key stands in a table with a name; one that is not given, whether its table has something of one.
     pub(super) fn is_named(&self, path: &str) -> bool {
         let is_own = |row: usize| self.layer.given[row].as_ref().is_some_and(|given| given.named);

@@ -193,12 +193,21 @@ fn bad(written: &dyn std::fmt::Display, reason: &str) -> Problem {
 
 /// An unknown dotted key on the command line or in `[sweep]`.
 pub(crate) fn unknown_key(path: &str) -> Problem {
-    let (table, name) = path.rsplit_once('.').unwrap_or(("", path));
-    let nearest = keys::nearest_key(table, name);
-    let allowed = if keys::find_table(path).is_some() {
-        keys::children(path).iter().map(|name| format!("{path}.{name}")).collect::<Vec<_>>()
-    } else {
-        vec!["a dotted key such as bearing.clearance.radial".to_string()]
-    };
-    Problem::UnknownKey { nearest, allowed: allowed.join(", ") }
+    if keys::find_table(path).is_some() {
+        let inside =
+            keys::children(path).iter().map(|name| format!("{path}.{name}")).collect::<Vec<_>>();
+        return Problem::UnknownKey { nearest: None, allowed: inside.join(", ") };
+    }
+    // The key is looked for without the name of its table, and told with it.
+    let (plain, name) = keys::without_name(path);
+    let (table, key) = plain.rsplit_once('.').unwrap_or(("", &plain));
+    let nearest =
+        keys::nearest_key(table, key).map(|nearest| match (name, nearest.split_once('.')) {
+            (Some(name), Some((top, rest))) if plain.split('.').next() == Some(top) => {
+                format!("{top}.{name}.{rest}")
+            }
+            _ => nearest,
+        });
+    let allowed = "a dotted key such as bearing.clearance.radial".to_string();
+    Problem::UnknownKey { nearest, allowed }
 }

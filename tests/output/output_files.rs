@@ -209,6 +209,7 @@ fn pack(folder: &Path, class: ToleranceClass) {
     let input = PackInput {
         scene_name: "scene.toml",
         scene_text: "title = \"deep groove\"\n",
+        files: &[("mesh/housing.msh".into(), b"$MeshFormat".to_vec())],
         resolved: &resolved,
         class,
     };
@@ -234,7 +235,7 @@ fn a_pack_accepts_its_own_results_and_notices_any_change_to_its_files() {
         assert_eq!(result.equal, class != ToleranceClass::F64Exact);
     }
     let manifest = verify_pack(&folder).unwrap();
-    assert_eq!(manifest.sha256.len(), 8);
+    assert_eq!(manifest.sha256.len(), 9);
     for name in manifest.sha256.keys() {
         let path = folder.join(name);
         let bytes = fs::read(&path).unwrap();
@@ -262,6 +263,7 @@ fn the_hash_is_sha256() {
     let input = PackInput {
         scene_name: "scene.toml",
         scene_text: "abc",
+        files: &[],
         resolved: &json!({}),
         class: ToleranceClass::Mixed,
     };
@@ -278,6 +280,7 @@ fn a_pack_does_not_mix_with_other_files() {
         let input = PackInput {
             scene_name: name,
             scene_text: "",
+            files: &[],
             resolved: &resolved,
             class: ToleranceClass::Mixed,
         };
@@ -287,6 +290,21 @@ fn a_pack_does_not_mix_with_other_files() {
         let result = write_pack(root.path(), &input, &run(), written);
         assert!(matches!(result, Err(PackError::Foreign { .. })));
     }
+    // Meshes that are elsewhere, or would be taken for parts of the pack.
+    for name in ["../a.msh", "/a.msh", "b/../a.msh", "./a.msh", "summary.json", "scene.toml"] {
+        let files = [(name.to_string(), Vec::new())];
+        let resolved = json!({});
+        let input = PackInput {
+            scene_name: "scene.toml",
+            scene_text: "",
+            files: &files,
+            resolved: &resolved,
+            class: ToleranceClass::Mixed,
+        };
+        let result = write_pack(&root.path().join("new"), &input, &run(), written);
+        assert!(matches!(result, Err(PackError::Elsewhere { .. })), "{name:?}");
+    }
+    assert!(!root.path().join("new").exists());
 }
 
 /// What a killed process left goes, what another one may be writing stays, and so does the rest.

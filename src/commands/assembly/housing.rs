@@ -7,13 +7,15 @@ use crate::commands::solid::mesh_notes;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::ch4_rotor::bore_friction::BoreFriction;
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::mesh::read::LengthUnit;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
 use bearing_dynamics::scene::housing_problem::{
     HousingSetup, check_constant, check_supports, setup,
 };
+use bearing_dynamics::scene::solid::{MeshPlace, MeshSource};
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
-use bearing_dynamics::solver::clock::rounded;
+use bearing_dynamics::solver::clock::{rounded, to_digits};
 use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
 use bearing_dynamics::solver::housing::condensed::{
     CondensedBore, Sizes, condense_over, cost, sizes,
@@ -184,6 +186,28 @@ impl Housing {
         format!("{} nodes, {} elements of {nodes_each}", mesh.nodes.len(), mesh.elements.len())
     }
 
+    /// Where its mesh comes from and how it is put in its place; nothing of one that is made there.
+    fn place_text(&self) -> String {
+        let mesh = &self.scene.solid.mesh;
+        let from = match &mesh.source {
+            MeshSource::File { name, unit: LengthUnit::Millimetre, .. } => {
+                format!(", {name} in mm")
+            }
+            MeshSource::File { name, .. } => format!(", {name} in m"),
+            _ => String::new(),
+        };
+        let MeshPlace { origin, axis, .. } = mesh.place;
+        let moved = origin != [0.0; 3] || axis != 0;
+        let put = moved.then(|| {
+            let [x, y, z] = origin.map(|at| to_digits(1e3 * at, 7));
+            format!(
+                ": its ({x}, {y}, {z}) mm at the bearing's centre, its {} along X",
+                ["X", "Y", "Z"][axis]
+            )
+        });
+        format!("{from}{}", put.unwrap_or_default())
+    }
+
     /// What a plan says of it, solid number `index`, solved this way.
     pub fn items(&self, index: usize, method: &Method) -> Vec<Item> {
         let problem = &self.setup.solid.problem;
@@ -200,7 +224,7 @@ impl Housing {
     /// Mesh, mass and seat, a line each.
     pub fn lines(&self) -> Vec<(String, String)> {
         let Housing { scene: HousedScene { housing, .. }, setup, .. } = self;
-        let said = format!("{}; {}", self.mesh_text(), method(housing.method));
+        let said = format!("{}{}; {}", self.mesh_text(), self.place_text(), method(housing.method));
         let mut lines = vec![(self.label(), said)];
         let mut line = |label: &str, said: String| lines.push((label.into(), said));
         for note in mesh_notes(&self.built) {

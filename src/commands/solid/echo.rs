@@ -197,6 +197,9 @@ fn mesh(scene: &SolidScene) -> Echo {
     if let Some(order) = request.order {
         echo["order"] = json!(if order == Order::Linear { 1 } else { 2 });
     }
+    // Where a bearing sits on the axis comes to the place of a housing's mesh.
+    echo["origin"] = vector(&request.place.origin, "m")?;
+    echo["axis"] = json!(["x", "y", "z"][request.place.axis]);
     echo["renumber"] = json!(request.renumber);
     echo["largest_aspect"] = quantity("largest_aspect", request.largest_aspect, "1")?;
     echo["cavities"] = json!(request.cavities);

@@ -111,13 +111,18 @@ impl Kept {
     }
 }
 
-/// Content of the mesh files that a scene's housings are read from.
-pub fn mesh_files(scene: &AssemblyScene) -> Result<Vec<u8>, Box<dyn Error>> {
-    let mut all = Vec::new();
+/// Names and content of the mesh files that a scene's housings are read from.
+pub fn mesh_files(scene: &AssemblyScene) -> Result<Vec<(String, Vec<u8>)>, Box<dyn Error>> {
+    let mut all: Vec<(String, Vec<u8>)> = Vec::new();
     for housing in scene.bearings.iter().filter_map(|placed| placed.housing.as_ref()) {
-        let MeshSource::File { path, .. } = &housing.solid.mesh.source else { continue };
+        let MeshSource::File { path, name, .. } = &housing.solid.mesh.source else { continue };
+        if all.iter().any(|(known, _)| known == name) {
+            continue;
+        }
         let content = input_file::read(path, LARGEST_DATA);
-        all.extend(content.map_err(|error| format!("cannot read {}: {error}", path.display()))?);
+        let content =
+            content.map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+        all.push((name.clone(), content));
     }
     Ok(all)
 }

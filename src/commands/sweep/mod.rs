@@ -6,7 +6,7 @@
 //! journal, from which the same command resumes.
 
 mod grid;
-mod housings;
+pub(super) mod housings;
 mod journal;
 mod point;
 mod report;
@@ -70,7 +70,8 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     grid.check(&document)?;
     let folder = claimed(&sweep_folder(arguments), Writes::Sweep)?;
     let first = grid.scene(&document, 0);
-    let mesh = first.as_ref().map_or(Ok(Vec::new()), housings::mesh_files)?;
+    let meshes = first.as_ref().map_or(Ok(Vec::new()), housings::mesh_files)?;
+    let mesh: Vec<u8> = meshes.into_iter().flat_map(|(_, content)| content).collect();
     // All points agree on what the scene is of.
     let whole = || match resolve_subject(&document) {
         Ok(Subject::Assembly(scene)) => Some(*scene),

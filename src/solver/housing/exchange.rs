@@ -107,7 +107,8 @@ pub enum ExchangeError {
     LeftBore { race: String, way: &'static str, distance: f64, allowed: f64, time: f64, step: u64 },
     #[error(
         "{race} and its bore have moved by {moved:.3e} m at t = {time} s since nodes farther than {reach:.3e} m from touching \
-         were left out, within {LOOK} windows; take a larger reach"
+         were left out, within {LOOK} windows: far more than what is in equilibrium there moves. Hint: does the race start in the wall of \
+         its bore (fit, solid.mesh.origin)? Is a load, or its unit, far too large?"
     )]
     Outrun { race: String, moved: f64, reach: f64, time: f64 },
 }
