@@ -245,6 +245,14 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     }
     let corners = place.corner_cylinder(mesh, faces);
     let mean = distances.iter().sum::<f64>() / distances.len() as f64;
+    let farthest = distances.iter().copied().fold(0.0, f64::max);
+    let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
+    // Written as it is so that a place that is not a number is refused as well.
+    let round = farthest - nearest <= FAR_OFF * mean;
+    if !round {
+        let lies = Lies::of(&seen);
+        return Err(HousingSetupError::NotRound { bore, nearest, farthest, lies });
+    }
     // Straight edges would make a coarse bore look far too small.
     let size = corners.map_or(mean, |corners| corners.radius);
     let sizes = &scene.bearing.dimensions;
@@ -269,13 +277,9 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
             return Err(HousingSetupError::StraightBore { bore, radius, inside, sagitta, missing });
         }
     }
-    let farthest = distances.iter().copied().fold(0.0, f64::max);
-    let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
-    // Written as it is so that a place that is not a number is refused as well.
-    let round = farthest - nearest <= FAR_OFF * mean;
     let under = nodes.iter().zip(&seen).filter(|(_, at)| is_under(at));
     let under: Vec<Vector3<f64>> = under.map(|(node, _)| Vector3::from(node.place)).collect();
-    let Some(cylinder) = fit_cylinder(&under, place.axis()).filter(|_| round) else {
+    let Some(cylinder) = fit_cylinder(&under, place.axis()) else {
         let lies = Lies::of(&seen);
         return Err(HousingSetupError::NotRound { bore, nearest, farthest, lies });
     };

@@ -360,7 +360,11 @@ pub fn find_named(path: &str) -> Option<Leads<'_>> {
 pub fn without_name(path: &str) -> (String, Option<&str>) {
     let parts: Vec<&str> = path.split('.').collect();
     match parts[..] {
-        [table, name, _, ..] if NAMED.contains(&table) && !children(table).contains(&name) => {
+        [table, name, _, ..]
+            if NAMED.contains(&table)
+                && !children(table).contains(&name)
+                && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') =>
+        {
             ([&[table], &parts[2..]].concat().join("."), Some(name))
         }
         _ => (path.to_string(), None),

@@ -204,7 +204,10 @@ pub(crate) fn unknown_key(path: &str) -> Problem {
     let nearest =
         keys::nearest_key(table, key).map(|nearest| match (name, nearest.split_once('.')) {
             (Some(name), Some((top, rest))) if plain.split('.').next() == Some(top) => {
-                format!("{top}.{name}.{rest}")
+                Some(format!("{top}.{name}.{rest}"))
+                    // What stands in the place of a name need not be one.
+                    .filter(|named| named != path)
+                    .unwrap_or(nearest)
             }
             _ => nearest,
         });

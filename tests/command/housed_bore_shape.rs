@@ -15,7 +15,7 @@ use std::fs;
 
 const BORE: f64 = 35.527e-3;
 
-fn annulus(around: usize, order: Order) -> TetMesh {
+pub fn annulus(around: usize, order: Order) -> TetMesh {
     let housing = Housing::Annulus { bore_radius: BORE, outer_radius: 50e-3, depth: 20e-3 };
     let cells = HousingMesh { around, radial: 1, axial: 2, radial_growth: 1.0 };
     let solid = housing.solid(&cells).unwrap();
@@ -26,7 +26,7 @@ fn annulus(around: usize, order: Order) -> TetMesh {
 }
 
 /// A scene whose housing is this mesh, as a file.
-fn with_mesh(place: &Place, mesh: &TetMesh, order: u32, further: &str) -> String {
+pub fn with_mesh(place: &Place, mesh: &TetMesh, order: u32, further: &str) -> String {
     fs::write(place.path("housing.msh"), write_gmsh(mesh).unwrap()).unwrap();
     let made = RING.split("generate").nth(1).unwrap().split("order = 1").next().unwrap();
     let file = format!("file = \"housing.msh\"\nunit = \"m\"\norder = {order}");
@@ -41,7 +41,7 @@ fn check(place: &Place, text: &str) -> (String, Value) {
 }
 
 /// Message of a scene that must be refused with one line.
-fn refused(place: &Place, text: &str) -> String {
+pub fn refused(place: &Place, text: &str) -> String {
     let output = command("check", &place.scene("scene.toml", text), &[]).output().unwrap();
     let message = stderr(&output);
     assert_eq!(output.status.code(), Some(2), "{message}");
@@ -54,7 +54,7 @@ fn seat(echo: &Value, name: &str) -> f64 {
 }
 
 /// Places of the bore's nodes, changed.
-fn reshaped(mut mesh: TetMesh, change: impl Fn([f64; 3]) -> [f64; 3]) -> TetMesh {
+pub fn reshaped(mut mesh: TetMesh, change: impl Fn([f64; 3]) -> [f64; 3]) -> TetMesh {
     for node in mesh.node_sets["bore"].clone() {
         let at = &mut mesh.nodes[node as usize];
         *at = change(*at);

@@ -41,6 +41,7 @@ mod housed_command_sweep;
 mod housed_friction;
 mod housed_reduced;
 mod housed_starts;
+mod housing_meshes;
 mod modes_of_housings;
 mod plan_words;
 mod rubber_command;

@@ -99,3 +99,22 @@ maxwell = [{ relaxation_time = "1 s", z = "1 N/m" }, { relaxation_time = "2 s", 
     let first = |index: usize| resolved(&document).springs[index].maxwell[0].relaxation_time;
     assert_eq!([first(0), first(1)], [5.0, 1.0]);
 }
+
+/// Suggestions have the name of the table, and are not what was written.
+#[test]
+fn suggestions_can_be_followed() {
+    let mut document = stepped_rotor();
+    for (key, meant) in [
+        ("body.rotor.beam.dampin", "`body.rotor.beam.damping`"),
+        ("bearing.fan.clearance.radail", "`bearing.fan.clearance.radial`"),
+        ("inner_race.load.z", "`inner_race.z`"),
+        ("bearing.clearance", "Allowed here: bearing.clearance.radial"),
+        ("body.rotor.beam.load[1].z", "`body.rotor.beam.load.z`"),
+    ] {
+        let error = document.set(key, "1 um").unwrap_err().to_string();
+        assert!(error.contains(meant) && !error.contains(&format!("mean `{key}`")), "{error}");
+    }
+    let text = "[spring.mount]\nfrom = \"ground\"\n[spring.mount.stiffnes]\nx = \"1 N/m\"\n";
+    let error = Document::read_str(text, Format::Toml, "scene.toml").unwrap_err().to_string();
+    assert!(error.contains("did you mean `spring.mount.stiffness`?"), "{error}");
+}

@@ -70,7 +70,15 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     };
     let (mut summary, series) =
         summary::rubber_statics(setup, built, (time, &found), &stress, section, &record)?;
-    let remarks = remarks::of_rubber(model, &found.state.displacement)?;
+    let mut remarks = remarks::of_rubber(model, &found.state.displacement)?;
+    let moved = found.state.displacement.iter().flatten().any(|u| u.abs() > STILL);
+    if answers.is_some() && moved {
+        remarks.push(
+            "small vibrations are about the undeformed solid, not about the equilibrium that is told with them, where their stiffness is another. For K' at 0 Hz \
+             there take the difference of two equilibria a little apart, for others a `run` with this displacement as the mean"
+                .into(),
+        );
+    }
     summary["remarks"] = json!(remarks);
     say_mesh_notes(built)?;
     say(&format!("relaxed, under loads and displacements of t = {} s\n", told(time)))?;
@@ -90,6 +98,9 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     say(&format!("wrote {files} files to {}\n", folder.display()))?;
     Ok(Outcome::Done)
 }
+
+/// Displacement that is none, m: what rounding leaves of a sine at its end.
+const STILL: f64 = 1e-12;
 
 /// A bar for the parts of loads and displacements, and whether to go on.
 struct Watch {

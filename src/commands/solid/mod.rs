@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod echo;
+pub mod left_out;
 pub mod modes;
 pub mod plan;
 pub mod statics;

@@ -1,6 +1,6 @@
 //! `bearing modes`: natural frequencies and mode shapes of a solid.
 
-use super::{plan, prepare, record, say_mesh_notes, say_remarks};
+use super::{left_out, plan, prepare, record, say_mesh_notes, say_remarks};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::watched;
@@ -44,7 +44,8 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     let mut record = record(scene, plan::items(scene, &prepared, plan::Of::Modes), seconds)?;
     record.ran.solids = vec![found.ran];
     let (mut summary, series) = summary::modes(&model, built, &found, &record)?;
-    let remarks = remarks::of_modes(&model, &found);
+    let mut remarks = remarks::of_modes(&model, &found);
+    remarks.extend(left_out::of_motion(scene));
     summary["remarks"] = json!(remarks);
     say_mesh_notes(built)?;
     let mut text = "mode        frequency, Hz\n".to_string();

@@ -1,6 +1,6 @@
 //! `bearing statics` of a solid.
 
-use super::{Prepared, plan, prepare, record, say_mesh_notes, say_remarks};
+use super::{Prepared, left_out, plan, prepare, record, say_mesh_notes, say_remarks};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::watched;
@@ -65,7 +65,9 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     record.ran.solids = vec![solution.ran];
     let (mut summary, series) =
         summary::statics(&model, setup, built, &solution, &stress, &record)?;
-    let remarks = remarks::of_equilibrium(&model, &solution.displacement, &stress);
+    let mut remarks = remarks::of_equilibrium(&model, &solution.displacement, &stress);
+    remarks.extend(left_out::of_time(&setup.problem, 0.0, "at t = 0, where `statics` looks"));
+    remarks.extend(left_out::of_motion(scene));
     summary["remarks"] = json!(remarks);
     say_mesh_notes(built)?;
     say(&table(&summary))?;
