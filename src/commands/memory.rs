@@ -5,10 +5,10 @@ use bearing_dynamics::solver::solid::tangent::Unknowns;
 use bearing_dynamics::solver::sparse::{Cost, Progress, Speed, TooLarge};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::error::Error;
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Solutions that take longer than so many seconds are announced.
 const WORTH_A_WORD: f64 = 5.0;
@@ -145,9 +145,11 @@ pub fn watched<T>(
     }))
 }
 
-/// Does work that says nothing of how far it is; a terminal is told that it is on, and for how long.
+/// Does work that says nothing of how far it is; a terminal is told that it is on, and for how long, a log once it takes long.
 pub fn spun<T>(what: String, work: impl FnOnce() -> T) -> T {
-    // Hidden where standard error is no terminal.
+    if !std::io::stderr().is_terminal() {
+        return told_once(&what, work);
+    }
     let spinner = ProgressBar::new_spinner().with_message(what);
     if let Ok(style) = ProgressStyle::with_template("{elapsed} {spinner} {msg}") {
         spinner.set_style(style);
@@ -156,6 +158,32 @@ pub fn spun<T>(what: String, work: impl FnOnce() -> T) -> T {
     let done = work();
     spinner.finish_and_clear();
     done
+}
+
+/// Says in a log what takes longer than some seconds.
+fn told_once<T>(what: &str, work: impl FnOnce() -> T) -> T {
+    let done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let waiting = scope.spawn(|| {
+            let end = Instant::now() + Duration::from_secs_f64(WORTH_A_WORD);
+            while !done.load(Ordering::Relaxed) {
+                match end.checked_duration_since(Instant::now()) {
+                    Some(left) => std::thread::park_timeout(left),
+                    None => {
+                        let _ = writeln!(std::io::stderr(), "{what} …");
+                        return;
+                    }
+                }
+            }
+        });
+        let found = {
+            // Whatever becomes of the work, nobody waits for what is not said.
+            let _done = Told(&done);
+            work()
+        };
+        waiting.thread().unpark();
+        found
+    })
 }
 
 struct Told<'a>(&'a AtomicBool);

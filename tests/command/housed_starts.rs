@@ -1,6 +1,6 @@
 //! Runs of housed bearings begin at rest.
 
-use crate::solid_command_common::{Place, column, into_folder, shipped, succeed};
+use crate::solid_command_common::{Place, column, command, into_folder, shipped, succeed};
 
 /// A race that is loose by 40 µm goes that far across to where it is carried, where nodes are 11 nm beside where normals that stay
 /// have them. Balls and bore push it as hard at the start, whatever method takes the steps; off by the force with which balls are held
@@ -29,5 +29,27 @@ fn a_loose_race_starts_in_equilibrium() {
             assert!((balls - carried).abs() <= 0.1, "{method} {axis}: {balls}");
             assert!((balls + bore).abs() <= 0.1, "{method} {axis}: {balls} {bore}");
         }
+    }
+}
+
+/// `statics` says where nodes that touch are beside where normals have them by much of what the race is pressed in.
+#[test]
+fn distances_that_normals_leave_out_are_told() {
+    let scene = shipped("housing_c_tet10.toml");
+    let said = |young: &str, fit: &str| {
+        let sets = [
+            &format!("solid.material.youngs_modulus={young}"),
+            &format!("housing.fit.radial={fit}"),
+            "inner_race.rotating_load.force=2500 N",
+        ];
+        let sets: Vec<&str> = sets.into_iter().flat_map(|set| ["--set", set]).collect();
+        succeed(command("statics", &scene, &[vec!["--dry"], sets].concat()))
+    };
+    let words = "beside where normals that stay have them";
+    for (young, fit, told) in
+        [("70 GPa", "-40 um", true), ("70 GPa", "0 um", false), ("210 GPa", "5 um", false)]
+    {
+        let said = said(young, fit);
+        assert_eq!(said.contains(words), told, "{young} {fit}: {said}");
     }
 }

@@ -1,6 +1,7 @@
 //! What leaving out inertia costs where equilibria follow one another: estimates, and what is said of them.
 
 use super::Fallible;
+use crate::commands::memory::spun;
 use bearing_dynamics::output::assembly_results::key;
 use bearing_dynamics::output::summary::housing::{inertia_section, largest_error};
 use bearing_dynamics::scene::assembly::AssemblyScene;
@@ -105,8 +106,11 @@ pub fn along_course(scene: &AssemblyScene, course: &CourseProblem) -> Fallible<V
         seats: races.iter().zip(&course.seats).map(of).collect(),
         bodies,
     };
-    let found = course_inertia(&looks, &mut CourseSearch::of(&course.seats), |search, time| {
-        course.find(search, time).map(|moment| moment.solution)
+    let what = format!("inertia that the course leaves out, looked for at {} places", looks.count);
+    let found = spun(what, || {
+        course_inertia(&looks, &mut CourseSearch::of(&course.seats), |search, time| {
+            course.find(search, time).map(|moment| moment.solution)
+        })
     })?;
     let body = |place: usize| &course.assembly.bodies[looks.bodies[place].body];
     let told = |place: &usize| races.contains(place) || body(*place).label.is_some();

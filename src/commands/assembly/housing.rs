@@ -6,6 +6,7 @@ use crate::commands::placed;
 use crate::commands::solid::mesh_notes;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::ch4_rotor::bore_friction::BoreFriction;
+use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::mesh::read::LengthUnit;
 use bearing_dynamics::scene::Document;
@@ -16,9 +17,9 @@ use bearing_dynamics::scene::housing_problem::{
 use bearing_dynamics::scene::solid::{MeshPlace, MeshSource};
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
 use bearing_dynamics::solver::clock::{rounded, to_digits};
-use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
+use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreState};
 use bearing_dynamics::solver::housing::condensed::{
-    CondensedBore, Sizes, condense_over, cost, sizes,
+    CondensedBore, Sizes, beyond_normals, condense_over, cost, sizes,
 };
 use bearing_dynamics::solver::housing::course::CourseSeat;
 use bearing_dynamics::solver::housing::seat::Seat;
@@ -206,6 +207,33 @@ impl Housing {
             )
         });
         format!("{from}{}", put.unwrap_or_default())
+    }
+
+    /// Where normals that stay leave distances wrong by much of what the race is pressed in, its bore being so with all nodes displaced (m).
+    pub fn beyond_normals(
+        &self,
+        bore: &CondensedBore,
+        displacement: &[Vec3],
+        state: &BoreState,
+    ) -> Option<String> {
+        /// Part of the deepest penetration that is worth a word.
+        const MUCH: f64 = 0.05;
+        let moved = bore.nodes.iter().map(|node| displacement[node.node as usize]);
+        let touching = beyond_normals(bore, moved, &state.pose)
+            .zip(&state.loads)
+            .filter(|(_, load)| **load > 0.0);
+        let off = touching.fold(0.0, |most: f64, (beyond, _)| most.max(beyond.abs()));
+        let deepest = state.deepest();
+        (deepest > 0.0 && off > MUCH * deepest).then(|| {
+            format!(
+                "{}nodes of the bore that touch are up to {} nm beside where normals that stay have them, and the race is pressed in by {} nm: pressure and \
+                 penetration are not to be relied on, the race's place is off by about as much. Hint: runs with method = \"explicit\" have the true \
+                 distances",
+                self.before(),
+                to_digits(1e9 * off, 3),
+                to_digits(1e9 * deepest, 3)
+            )
+        })
     }
 
     /// What a plan says of it, solid number `index`, solved this way.

@@ -11,7 +11,7 @@ use super::whirl::{Spinning, rpm};
 use super::{plan, record};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
-use crate::commands::memory::spun;
+use crate::commands::memory::{refuse_beyond, spun};
 use crate::commands::remarks::of_balls_at_speed;
 use crate::commands::scene_remarks::at_rest;
 use crate::commands::{CommandResult, Outcome, say};
@@ -25,6 +25,7 @@ use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
 use bearing_dynamics::solver::housing::held_motions::{Natural, SwingingHousing, swinging_housing};
 use bearing_dynamics::solver::housing::inertia::{HousingMass, MovingBody};
 use bearing_dynamics::solver::rotor::model::RotorError;
+use bearing_dynamics::solver::solid::foretold;
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly, StaticBody};
 use bearing_dynamics::solver::statics::{AssemblySolution, Determinacy};
 use bearing_dynamics::solver::vibrations::{Whirling, natural_motions, whirling};
@@ -161,6 +162,8 @@ fn swinging(housing: &Housing, bore: &BoreSearch, race: usize) -> Fallible<Swing
         Some(frequency) => Natural::UpTo(frequency),
         None => Natural::Lowest(NATURAL),
     };
+    let cost = foretold::modes(&housing.setup.model, bore.bore().unknowns(), NATURAL + 1);
+    refuse_beyond(&cost, "")?;
     let what = format!("{}natural shapes of the housing", housing.before());
     let work = || swinging_housing(&housing.setup.model, bore, race, natural);
     Ok(spun(what, work)?)

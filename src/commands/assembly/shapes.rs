@@ -5,7 +5,7 @@ use super::course::percent;
 use super::housing::Housing;
 use super::housings::{Largest, at_start, condensed, seats};
 use super::lists::Lists;
-use crate::commands::memory::spun;
+use crate::commands::memory::{refuse_beyond, spun};
 use crate::commands::plan_step::note;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::session::Motion;
@@ -24,6 +24,7 @@ use bearing_dynamics::solver::housing::reduced_start::{
     self, add_housing, ball_frequency, put_in_equilibrium,
 };
 use bearing_dynamics::solver::plan::tally::Tally;
+use bearing_dynamics::solver::solid::foretold;
 use std::time::Instant;
 
 /// Housings as shapes, and the assembly with them.
@@ -45,6 +46,9 @@ const BEYOND: f64 = 1.25;
 /// Frequencies of the housing that are kept, over that of a ball between its races.
 const BEYOND_BALLS: f64 = 2.0;
 
+/// Natural shapes whose memory is foretold: a block of steel has some dozens up to the frequency of a ball.
+const FORETOLD: usize = 40;
+
 /// Reduces a housing for a bearing whose balls are under `struck` (N).
 fn reduction(
     housing: &Housing,
@@ -63,6 +67,9 @@ fn reduction(
         housing.before(),
         to_digits(modes_to, 4)
     );
+    // Their number is not known before.
+    let cost = foretold::modes(&housing.setup.model, bore.unknowns(), FORETOLD);
+    refuse_beyond(&cost, ", a quasi-static housing (method = \"quasi-static\" in [housing])")?;
     let work = || reduce(&housing.setup.model, bore, settings.penalty, &loads, &options);
     Ok(spun(what, work)?)
 }

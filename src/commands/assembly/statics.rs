@@ -114,6 +114,7 @@ pub fn find_equilibrium<'s>(
         let model = &own.housing.setup.model;
         let said = of_solid::of_equilibrium(model, &own.displacement, &own.stress);
         of_housings.extend(said.iter().map(|said| format!("{}{said}", own.housing.before())));
+        of_housings.extend(own.housing.beyond_normals(bore, &own.displacement, state));
         own.record(bore, moment, &mut record)?;
         settled.push(own);
     }

@@ -98,12 +98,15 @@ pub(super) fn write_results(
             rubber_results(prepared, session, &mut said)?;
         }
     }
+    let remarks = start.elapsed().as_secs_f64();
+    let start = Instant::now();
     let spectra = spectra(prepared, session, &table);
     let plots = pictures(folder, prepared, session, &table, &spectra)?;
     let mut stages = vec![
         ("read".into(), seconds.read),
         ("start".into(), seconds.start),
         ("simulate".into(), seconds.simulate),
+        ("remarks".into(), remarks),
         ("plots".into(), start.elapsed().as_secs_f64()),
     ];
     stages.extend(prepared.seconds());
@@ -225,6 +228,13 @@ fn housing_results(
         match way {
             Way::Course(bores, _) => {
                 sections.extend(equilibrium(&bores[number], housing, session, number)?);
+                if let Motion::Course(course) = &session.motion
+                    && let Some(moment) = &course.latest
+                {
+                    let (state, displacement) =
+                        (&moment.solution.seats[number], course.displacement(number));
+                    remarks.extend(housing.beyond_normals(&bores[number], &displacement, state));
+                }
             }
             Way::Reduced(shapes) => {
                 let cut = &shapes.reductions[number].cut_off;
