@@ -89,7 +89,7 @@ fn under_a_bent_shaft_it_starts_in_the_common_equilibrium() {
             let [ours, theirs] =
                 [&reduced, &course].map(|of| column(&of.join("series.csv"), name)[0]);
             println!("{which} {name}: {:.1e}", ours / theirs - 1.0);
-            assert!((ours / theirs - 1.0).abs() <= EXACT, "{which} {name}: {ours:e} {theirs:e}");
+            assert!((ours / theirs - 1.0).abs() <= NEAR, "{which} {name}: {ours:e} {theirs:e}");
         }
     }
 }
@@ -117,8 +117,9 @@ fn starts(fit: &str, changes: &[(&str, &str)], held: &[(&str, f64)]) {
     }
 }
 
-/// Shapes answer to the pressure at the start as the condensed housing does: what differs is the rounding of two searches.
-const EXACT: f64 = 1e-10;
+/// Shapes answer to the pressure at the start as the condensed housing does. What differs is that a run starts with the distances of its
+/// steps, a course with those that normals which stay make: 1e-10 m for ways of a micrometre across nodes and tilts of a milliradian.
+const NEAR: f64 = 1e-4;
 
 /// What presses the race may come from elsewhere than its loads: here the place of the other race puts more on it. Without an answer of
 /// their own to that pressure shapes have it 4 % off.
@@ -130,7 +131,7 @@ fn a_load_on_the_race_itself_starts_in_the_common_equilibrium() {
         ("\"5-dof\"\n", "\"5-dof\"\nz = { load = \"-3000 N\" }\n"),
     ];
     // In motion a race that moves aside touches a little elsewhere, by its way over the radius.
-    starts("-2.5 um", &changes, &[("outer_z", EXACT), ("bore_peak_pressure", 2e-4)]);
+    starts("-2.5 um", &changes, &[("outer_z", NEAR), ("bore_peak_pressure", 2e-4)]);
 }
 
 /// A moment far beyond what forces with levers come to.
@@ -143,7 +144,7 @@ fn a_moment_on_a_race_starts_in_the_common_equilibrium() {
         ("tilt_z = { tilt = \"0 deg\" }\n", ""),
     ];
     // Equilibria are linear in the tilt. In motion a race tilted by θ stands off by R θ²/2 more.
-    let held = [("outer_z", EXACT), ("outer_tilt_y", EXACT), ("bore_peak_pressure", 5e-3)];
+    let held = [("outer_z", NEAR), ("outer_tilt_y", NEAR), ("bore_peak_pressure", 5e-3)];
     starts("0.5 um", &changes, &held);
 }
 

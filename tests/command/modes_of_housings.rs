@@ -59,4 +59,6 @@ fn natural_shapes_of_housings_are_counted() {
     let (fewer, text) = with(&["--set", "housing.modes_to=30 kHz"]);
     assert!((1..12).contains(&fewer), "{text}");
     assert!(text.contains(&format!("and {fewer} natural ones")), "{text}");
+    let (none, text) = with(&["--set", "housing.modes_to=100 Hz"]);
+    assert!(none == 0 && text.contains("and 0 natural ones"), "{text}");
 }

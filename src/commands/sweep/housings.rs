@@ -111,9 +111,12 @@ impl Kept {
     }
 }
 
-/// Names and content of the mesh files that a scene's housings are read from.
-pub fn mesh_files(scene: &AssemblyScene) -> Result<Vec<(String, Vec<u8>)>, Box<dyn Error>> {
-    let mut all: Vec<(String, Vec<u8>)> = Vec::new();
+/// Names, as the scene has them, and content.
+pub type MeshFiles = Vec<(String, Vec<u8>)>;
+
+/// The mesh files that a scene's housings are read from.
+pub fn mesh_files(scene: &AssemblyScene) -> Result<MeshFiles, Box<dyn Error>> {
+    let mut all = MeshFiles::new();
     for housing in scene.bearings.iter().filter_map(|placed| placed.housing.as_ref()) {
         let MeshSource::File { path, name, .. } = &housing.solid.mesh.source else { continue };
         if all.iter().any(|(known, _)| known == name) {

@@ -56,6 +56,9 @@ pub fn swinging_housing(
 
 /// Motions with the race at rest, combined of what natural shapes (lumped masses) become under a unit of their own inertia.
 fn held_motions(search: &BoreSearch, natural: &[Mode]) -> Vec<HeldMotion> {
+    if natural.is_empty() {
+        return Vec::new();
+    }
     let bore = search.bore();
     let held: Vec<Vec<Vec3>> = natural.iter().map(|mode| held_back(search, &mode.shape)).collect();
     let followers = search.loads_by_pose().map(|loads| bore.response(&loads));
