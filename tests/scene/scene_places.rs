@@ -21,17 +21,6 @@ fn fault(text: &str) -> Option<String> {
     resolve_subject(&document).err().map(|error| error.to_string())
 }
 
-#[test]
-fn balls_of_two_bearings_do_not_run_in_each_other() {
-    let two = |key: &str, other: &str| {
-        let rest = "inner_on = \"shaft\"\nouter_on = \"frame\"\n";
-        fault(&format!("[bearing.a]\n{rest}{key}\n[bearing.b]\n{rest}{other}\n"))
-    };
-    let close = two("inner_at = \"20 mm\"", "inner_at = \"31.9 mm\"").unwrap();
-    assert!(close.contains("they are 11.9000 mm apart on the same body"), "{close}");
-    assert_eq!(two("inner_at = \"20 mm\"", "inner_at = \"32.1 mm\""), None);
-}
-
 /// A ball's radius and what the grooves leave, 6 mm and 0.55 mm.
 #[test]
 fn races_of_a_bearing_stand_about_each_other() {
