@@ -127,11 +127,17 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     );
     if !masses.is_empty() {
         let natural: Vec<String> = of_housings.iter().map(|(_, count)| count.to_string()).collect();
+        let within = match first_left_out.is_finite() {
+            true => format!(
+                "; motions are told too fast, by less than 1 % up to {} Hz, eight tenths of where the first natural shape that is left out swings",
+                to_digits(0.8 * first_left_out, 4)
+            ),
+            false => String::new(),
+        };
         remarks.push(format!(
-            "housings take part with the shapes that follow their races and {} natural ones (housing.modes_to of reduced ones says up to which frequency); \
-             motions are told too fast, by less than 1 % up to {} Hz, eight tenths of where the first natural shape that is left out swings",
-            natural.join(" and "),
-            to_digits(0.8 * first_left_out, 4)
+            "housings take part with the shapes that follow their races and {} natural ones (housing.modes_to of reduced ones says up to which \
+             frequency){within}",
+            natural.join(" and ")
         ));
     }
     remarks.iter().try_for_each(|remark| say(&format!("note: {remark}\n")))?;

@@ -300,8 +300,7 @@ impl<'a> BoreSearch<'a> {
         }
         // Of the sum, and of the pose.
         let travel = norm([0.0, pose[0], pose[1]]);
-        let of_sum = 8.0 * f64::EPSILON * (sum + stiffness.diagonal().rows(0, 2).amax() * travel);
-        let rounding = of_sum + self.left_out();
+        let rounding = 8.0 * f64::EPSILON * (sum + stiffness.diagonal().rows(0, 2).amax() * travel);
         Ok(BoreAnswer { energy, load, stiffness, rounding })
     }
 
@@ -377,13 +376,6 @@ impl<'a> BoreSearch<'a> {
             flipped.iter().for_each(|&i| inside[i] = !inside[i]);
             self.make_contact((0..count).filter(|&i| inside[i]).collect())?;
         }
-    }
-
-    /// What nodes would carry at most that overlap by no more than rounding of distances, and are left out of contact, N.
-    fn left_out(&self) -> f64 {
-        let nodes = self.overlap.iter().zip(&self.moves).zip(&self.loads).zip(&self.softness);
-        let out = nodes.filter(|(((g, u), load), _)| **load == 0.0 && *g > *u);
-        out.map(|(((g, u), _), softness)| (g - u) / softness).sum()
     }
 
     fn make_contact(&mut self, nodes: Vec<usize>) -> Result<(), BoreError> {
