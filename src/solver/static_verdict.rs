@@ -215,7 +215,8 @@ impl Search<'_, '_> {
         let on_it = |bearing: &&StaticBearing| self.whole(bearing.mounts[0].body) == body;
         let bearing = self.model.assembly.bearings.iter().find(on_it);
         let under = bearing.map(|bearing| self.whole(bearing.mounts[1].body));
-        if let Some(under) = under
+        let is_race = bearing.is_some_and(|bearing| bearing.mounts[0].body == body);
+        if let Some(under) = under.filter(|_| is_race)
             && let Place::Loaded(of) = &self.model.assembly.bodies[body].place
             && of.start.is_none()
             && let Place::Held(pose) = &self.model.assembly.bodies[under].place
