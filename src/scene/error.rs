@@ -296,8 +296,11 @@ pub enum Problem {
         "this key stands in a list of tables. Hint: say in which of them by its number, counted from 1, such as {example}"
     )]
     WhichItem { example: String },
-    #[error("this list has {}. Allowed: {}. Hint: {advice}", tables(*.count), numbers(*.count))]
-    NoSuchItem { count: usize, advice: &'static str },
+    #[error(
+        "this list has {}. Allowed: {}. Hint: {}",
+        tables(*.count), numbers(*.count), if *.count == 0 { "write the list in the scene" } else { "check the number" }
+    )]
+    NoSuchItem { count: usize },
 }
 
 fn because(reason: &str) -> String {

@@ -106,9 +106,8 @@ impl Document {
             0 => list(&self.layer),
             own => own,
         };
-        let advice = if count == 0 { "write the list in the scene" } else { "check the number" };
         let within = (1..=count).contains(&number);
-        (!within).then_some(Problem::NoSuchItem { count, advice })
+        (!within).then_some(Problem::NoSuchItem { count })
     }
 
     /// Replaces or adds a key of one table of a list that is there; a name that has the list of all takes it for its own.

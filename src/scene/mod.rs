@@ -28,6 +28,7 @@ pub mod dynamics;
 pub mod error;
 pub mod excitations;
 pub mod housing;
+pub mod housing_error;
 pub mod housing_problem;
 pub mod input_file;
 mod items;

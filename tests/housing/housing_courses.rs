@@ -7,7 +7,7 @@ use bearing_dynamics::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::solver::dynamics::model::RotatingLoad;
-use bearing_dynamics::solver::housing::bore_equilibrium::Fit;
+use bearing_dynamics::solver::housing::bore_equilibrium::{BoreError, Fit};
 use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, SeatLooks, course_inertia,
 };
@@ -16,9 +16,11 @@ use bearing_dynamics::solver::housing::inertia::{
     InertiaEstimate, Mode, estimate, housing_mass, modes,
 };
 use bearing_dynamics::solver::housing::quasi_static::{Course, history};
+use bearing_dynamics::solver::housing::true_distances::solve_with_true_distances;
 use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::statics::Condition;
+use bearing_dynamics::solver::statics::{Condition, StaticsError};
 use housing_common::*;
+use std::cell::Cell;
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 fn one_turn(points: usize) -> Course {
@@ -259,4 +261,20 @@ fn inertia_about_the_axis_is_no_inertia_of_tilts() {
     // So heavy that it tilts by itself: a quarter of the frequency for sixteen times the inertia.
     let ratio = of(1.0, 1e6).lowest / of(1.0, 16e6).lowest;
     assert!((ratio - 4.0).abs() <= 1e-3, "{ratio}");
+}
+
+/// Distances that do not stay from round to round are no equilibrium to start from.
+#[test]
+fn distances_that_do_not_settle_are_an_error() {
+    let bore = condensed(&RING, &COARSE, Order::Linear, YOUNG);
+    let problem = bearing(loads([0.0, 0.0, -2.5, 0.0, 0.0]));
+    let still = lists(&problem, &bore, Penalty::default(), &fit(5e-6), [0.0; 3]);
+    let round = Cell::new(0);
+    let ended = solve_with_true_distances(&still, |_, state| {
+        round.set(round.get() + 1);
+        vec![1e-9 * f64::from(round.get() % 2); state.loads.len()]
+    });
+    let Err(StaticsError::Seat { source, .. }) = ended else { panic!("{ended:?}") };
+    assert_eq!(source, BoreError::FarAcross { rounds: round.get() as usize });
+    assert!(solve_with_true_distances(&still, |_, state| vec![0.0; state.loads.len()]).is_ok());
 }

@@ -83,6 +83,11 @@ pub enum BoreError {
          which nodes were kept; condense with a larger travel"
     )]
     BeyondReach { motion: f64, travel: f64 },
+    #[error(
+        "the race goes so far across its nodes that their distances do not settle in {rounds} rounds. Hint: less load, a stiffer \
+         housing, or a start in nominal positions (numerics.start = \"nominal\")"
+    )]
+    FarAcross { rounds: usize },
     #[error("contact has not settled after {changes} changes of the nodes that touch")]
     NotSettled { changes: usize },
     #[error("node {node} of the bore is to touch; it has {count} nodes")]

@@ -4,7 +4,7 @@
 //! some nanometres, of the some ten by which a node is pressed in. A motion that started there would begin with a blow. What is left out
 //! depends little on the loads, so that it is taken from one equilibrium for the next until nothing changes.
 
-use super::bore_equilibrium::{BoreSearch, BoreState};
+use super::bore_equilibrium::{BoreError, BoreSearch, BoreState};
 use crate::solver::static_assembly::StaticAssembly;
 use crate::solver::statics::{AssemblySolution, StaticOptions, StaticsError, solve_assembly_in};
 
@@ -18,7 +18,7 @@ const ROUNDS: usize = 25;
 /// stay make it, m ([`super::condensed::beyond_normals`]).
 ///
 /// # Errors
-/// No equilibrium.
+/// No equilibrium; distances that do not settle.
 pub fn solve_with_true_distances<'b>(
     still: &StaticAssembly<'b>,
     beyond: impl Fn(usize, &BoreState) -> Vec<f64>,
@@ -30,19 +30,22 @@ pub fn solve_with_true_distances<'b>(
     let mut found = solve_assembly_in(still, &mut bores, None, &options)?;
     let mut known: Vec<Vec<f64>> =
         found.seats.iter().map(|state| vec![0.0; state.loads.len()]).collect();
+    let mut moving = None;
     for _ in 0..ROUNDS {
         let next: Vec<Vec<f64>> =
             found.seats.iter().enumerate().map(|(index, state)| beyond(index, state)).collect();
-        let settled = next.iter().zip(&known).zip(&found.seats).all(|((next, known), state)| {
+        let moves = next.iter().zip(&known).zip(&found.seats).position(|((next, known), state)| {
             let allowed = SETTLED * state.deepest() + ROUNDING;
-            next.iter().zip(known).all(|(next, known)| (next - known).abs() <= allowed)
+            !next.iter().zip(known).all(|(next, known)| (next - known).abs() <= allowed)
         });
-        if settled {
-            break;
+        moving = moves.map(|index| still.seats[index].suffix());
+        if moving.is_none() {
+            return Ok(found);
         }
         bores.iter_mut().zip(&next).for_each(|(bore, next)| bore.keep_beyond(next.clone()));
         found = solve_assembly_in(still, &mut bores, Some(&found.coordinates), &options)?;
         known = next;
     }
-    Ok(found)
+    let source = BoreError::FarAcross { rounds: ROUNDS };
+    Err(StaticsError::Seat { of: moving.unwrap_or_default(), source })
 }
