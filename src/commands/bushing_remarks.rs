@@ -40,12 +40,11 @@ pub fn of_bushings(scene: &AssemblyScene) -> Vec<String> {
             }
         })
     };
-    let beside = scene.springs.iter().filter_map(|spring| beside_its_race(scene, spring));
-    scene.springs.iter().filter_map(said).chain(beside).collect()
+    scene.springs.iter().filter_map(said).collect()
 }
 
 /// A bushing that does not go round the outer race that it ends at, or stands beside it.
-fn beside_its_race(scene: &AssemblyScene, spring: &Spring) -> Option<String> {
+pub fn beside_its_race(scene: &AssemblyScene, spring: &Spring) -> Option<String> {
     let of = &spring.bushing.as_ref()?.body;
     let at_race = |end: &SpringEnd| match end.at {
         SpringAt::Race { bearing, side: 1 } => Some((&scene.bearings[bearing].scene, end.along)),
@@ -105,9 +104,18 @@ pub fn beyond_bushings(scene: &AssemblyScene, session: &Session) -> Vec<String> 
     let said = |beyond: Beyond| {
         let went = reaching((beyond.motion, beyond.reached))?;
         let holds = reaching((beyond.motion, beyond.holds))?;
+        let wall = scene.springs[beyond.spring].bushing.as_ref()?.body.thickness;
+        let through = matches!(beyond.motion, SleeveMotion::Radial) && beyond.reached >= wall;
+        let through = match through {
+            true => format!(
+                "; its wall is {} mm, beyond it nothing but springs is there",
+                to_digits(1e3 * wall, 3)
+            ),
+            false => String::new(),
+        };
         Some(format!(
             "bushing {} went {went} at t = {} s: its springs, fitted to small vibrations, are off by {} % from {holds} on, \
-             and more beyond",
+             and more beyond{through}",
             scene.springs[beyond.spring].name,
             told(beyond.time),
             100.0 * PART

@@ -19,6 +19,7 @@ pub mod rubber;
 pub mod run;
 mod scene_remarks;
 pub mod schema;
+mod size_remarks;
 pub mod solid;
 pub mod statics;
 pub mod sweep;

@@ -88,9 +88,20 @@ fn foretold(assembly: &Assembly, request: &RunRequest) -> String {
             },
             found.covered,
             1.0 / WITHIN
-        ) + &found.doubt.map_or(String::new(), |(at, error)| {
+        ) + drifting(assembly)
+            + &found.doubt.map_or(String::new(), |(at, error)| {
             format!("; WARNING: a look that began in equilibrium later on ended at t = {at:.3e} s: {error}")
         }),
+    }
+}
+
+/// What no trial sees.
+fn drifting(assembly: &Assembly) -> &'static str {
+    match assembly.bearings.iter().all(|bearing| bearing.cage.is_some()) {
+        true => "",
+        false => {
+            "; balls without a cage drift, and where they come to strike one another a hundred times as many"
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a reader of the numbers should know: one set of remarks for equilibrium and motion.
 
 use crate::commands::scene_remarks::{at_rest, moving_starts, of_springs, on_dents, sudden_fits};
+use crate::commands::size_remarks::{of_bearing, of_sizes};
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing, SceneBody, Spring};
@@ -64,7 +65,7 @@ pub fn of_statics(
     assembly: &StaticAssembly,
     solution: &AssemblySolution,
 ) -> Vec<String> {
-    let mut remarks = Vec::new();
+    let mut remarks = of_bearing(scene);
     if let Determinacy::Indeterminate { free_directions } = &solution.determinacy {
         remarks.push(format!(
             "indeterminate: {} of the race's directions meet no stiffness, the position shown is one \
@@ -92,7 +93,8 @@ pub fn of_assembly(
     assembly: &StaticAssembly,
     solution: &AssemblySolution,
 ) -> Vec<String> {
-    let mut remarks = of_springs(scene);
+    let mut remarks = of_sizes(scene);
+    remarks.extend(of_springs(scene));
     remarks.extend(at_rest(scene));
     if let Determinacy::Indeterminate { free_directions } = &solution.determinacy {
         remarks.push(format!(
@@ -203,7 +205,8 @@ pub fn of_run(scene: &AssemblyScene, simulation: &Simulation) -> Vec<String> {
     let each = scene.bearings.iter().zip(bearings).map(|(placed, (bearing, extremes))| {
         named(placed, of_moving(&placed.scene, bearing, extremes))
     });
-    let of_scene = of_springs(scene).into_iter().chain(on_dents(scene)).chain(sudden_fits(scene));
+    let of_scene = of_sizes(scene).into_iter().chain(of_springs(scene)).chain(on_dents(scene));
+    let of_scene = of_scene.chain(sudden_fits(scene));
     let of_scene = of_scene.chain(moving_starts(scene));
     of_scene.chain(each.flatten()).collect()
 }

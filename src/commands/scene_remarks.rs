@@ -3,11 +3,11 @@
 
 use bearing_dynamics::ch3_bushing::dent::Dent;
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::scene::Scene;
 use bearing_dynamics::scene::assembly::{AssemblyScene, Carrier, SceneBody, Spring, SpringAt};
 use bearing_dynamics::scene::excitations::{driven, excitations, largest};
 use bearing_dynamics::scene::housing::{FitSize, HousingMethod};
 use bearing_dynamics::scene::statics::orbital_speed;
+use bearing_dynamics::scene::{RunPlot, Scene};
 use bearing_dynamics::solver::clock::{to_digits, told};
 use bearing_dynamics::solver::dynamics::connection::uneven;
 use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
@@ -182,7 +182,10 @@ pub fn between_rows(scene: &AssemblyScene, interval: f64) -> Option<String> {
         Rotation::Speed(speed) if unbalanced => largest(speed, end) / TAU,
         _ => 0.0,
     };
-    let driven = excitations(scene).into_iter().filter(|of| of.repeats && !of.is_ripple);
+    // Balls that pass are seen where spectra are looked at.
+    let spectra = scene.common().dynamics.plots.contains(&RunPlot::Spectrum);
+    let driven =
+        excitations(scene).into_iter().filter(|of| of.repeats && (spectra || !of.is_ripple));
     let driven = driven.map(|of| (of.what, of.frequency));
     let bodies = scene.bodies.iter().map(|body| {
         let along = body.beam.iter().flat_map(|beam| &beam.unbalances);

@@ -100,16 +100,22 @@ fn name_what_holds(bearings: &mut [PlacedBearing], springs: &[Spring]) {
 
 /// What bodies cannot have where equilibria follow one another.
 fn refuse_inertia(document: &Document, scene: &AssemblyScene) -> Result<(), SceneError> {
+    const UNBALANCE: &str = "an unbalance is inertia";
     const WHAT: [(&str, &str); 2] = [
         ("body.torque", "without inertia no speed follows from a torque"),
-        ("body.unbalance", "an unbalance is inertia"),
+        ("body.unbalance", UNBALANCE),
     ];
+    let refused = |reason: &str| {
+        let advice = "leave it out, or write method = \"explicit\" in [housing]".into();
+        Problem::Refused { reason: reason.into(), advice }
+    };
     for body in &scene.bodies {
         let scoped = document.scoped(&body.name);
         if let Some((key, reason)) = WHAT.iter().find(|(key, _)| scoped.value(key).is_some()) {
-            let reason = (*reason).to_string();
-            let advice = "leave it out, or write method = \"explicit\" in [housing]".into();
-            return Err(scoped.error(key, Problem::Refused { reason, advice }));
+            return Err(scoped.error(key, refused(reason)));
+        }
+        if let Some(of_section) = scoped.items("body.beam.unbalance").next() {
+            return Err(of_section.error("size", refused(UNBALANCE)));
         }
     }
     Ok(())

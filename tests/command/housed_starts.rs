@@ -32,24 +32,41 @@ fn a_loose_race_starts_in_equilibrium() {
     }
 }
 
-/// `statics` says where nodes that touch are beside where normals have them by much of what the race is pressed in.
+/// `statics` and reduced runs say where nodes that touch are beside where normals have them by much of what the race is pressed in.
 #[test]
 fn distances_that_normals_leave_out_are_told() {
     let scene = shipped("housing_c_tet10.toml");
-    let said = |young: &str, fit: &str| {
+    let place = Place::new();
+    let sets = |young: &str, fit: &str| {
         let sets = [
-            &format!("solid.material.youngs_modulus={young}"),
-            &format!("housing.fit.radial={fit}"),
-            "inner_race.rotating_load.force=2500 N",
+            format!("solid.material.youngs_modulus={young}"),
+            format!("housing.fit.radial={fit}"),
+            "inner_race.rotating_load.force=2500 N".into(),
         ];
-        let sets: Vec<&str> = sets.into_iter().flat_map(|set| ["--set", set]).collect();
-        succeed(command("statics", &scene, &[vec!["--dry"], sets].concat()))
+        sets.into_iter().flat_map(|set| ["--set".into(), set]).collect::<Vec<String>>()
     };
     let words = "beside where normals that stay have them";
     for (young, fit, told) in
         [("70 GPa", "-40 um", true), ("70 GPa", "0 um", false), ("210 GPa", "5 um", false)]
     {
-        let said = said(young, fit);
+        let sets = sets(young, fit);
+        let sets: Vec<&str> =
+            ["--dry"].into_iter().chain(sets.iter().map(String::as_str)).collect();
+        let said = succeed(command("statics", &scene, &sets));
+        assert_eq!(said.contains(words), told, "{young} {fit}: {said}");
+    }
+    // Reduced, it moves along normals in steps, too: the loose race goes as far across.
+    for (young, fit, told) in [("70 GPa", "-40 um", true), ("210 GPa", "5 um", false)] {
+        let more = [
+            "housing.method=reduced",
+            "solid.mesh.cells.around=24",
+            "numerics.end=20 us",
+            "numerics.output_interval=10 us",
+        ];
+        let mut sets = sets(young, fit);
+        sets.extend(more.into_iter().flat_map(|set| ["--set".into(), set.into()]));
+        let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+        let said = succeed(into_folder("run", &scene, &place.path(fit), &sets));
         assert_eq!(said.contains(words), told, "{young} {fit}: {said}");
     }
 }

@@ -165,3 +165,51 @@ fn parts_that_do_not_go_together_are_told() {
             .contains("inside the outer race")
     );
 }
+
+/// Sizes that are allowed and hardly meant are told by every command: an osculation read as a conformity, a cage in a wrong unit, rubber
+/// that begins inside its race, springs fitted for slower motions, contacts without spin.
+#[test]
+fn sizes_that_are_hardly_meant_are_told() {
+    let bushing = "bearing_on_bushing.toml";
+    let cage = "cage_600rpm.toml";
+    let mass = "mass = \"0.069 kg\"";
+    let blow = "z = { load = { half_sine = \"-500 N\", base = \"0 N\", start = \"20 ms\", duration = \"0.5 ms\" } }";
+    let swings =
+        "z = { load = { mean = \"-300 N\", amplitude = \"1 N\", frequency = \"200 Hz\" } }";
+    for (shipped, changes, words) in [
+        (
+            cage,
+            vec![(
+                "[bearing.inner_race]\ngroove_radius = \"6.600 mm\"",
+                "[bearing.inner_race]\nconformity = 0.952",
+            )],
+            "inner groove's radius is 0.952 of the ball's diameter",
+        ),
+        (cage, vec![(mass, "mass = \"69 kg\"")], "mm long around balls of 11.91 mm"),
+        (cage, vec![(mass, "mass = \"0.069 g\"")], "mm long around balls of 11.91 mm"),
+        (
+            bushing,
+            vec![("inner_diameter = \"71 mm\"", "inner_diameter = \"70.9 mm\"")],
+            "inside the outer race that it holds",
+        ),
+        (
+            bushing,
+            vec![
+                ("inner_diameter = \"71 mm\"", "inner_diameter = \"71 mm\"\nfastest = \"100 Hz\""),
+                (blow, swings),
+            ],
+            "(200 Hz) is faster than the 100 Hz to which the springs of mount answer",
+        ),
+    ] {
+        for command in if shipped == bushing { vec!["check", "plan"] } else { vec!["check"] } {
+            let told = said_of(&[command], shipped, &changes);
+            assert_eq!(told.matches(words).count(), 1, "{command}: {told}");
+        }
+        let as_shipped = said_of(&["check"], shipped, &[]);
+        assert!(!as_shipped.contains(words), "{as_shipped}");
+        let told = said_of(&["statics", "--dry"], shipped, &changes);
+        assert!(told.contains(words), "statics: {told}");
+    }
+    let told = said_of(&["check"], cage, &[("slices = 15", "slices = 1")]);
+    assert!(told.contains("friction from spin is left out"), "{told}");
+}

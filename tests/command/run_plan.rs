@@ -208,6 +208,8 @@ fn foretold_steps_are_within_the_stated_factor() {
         ("plain", &sliding(), accurate(Integrator::Rosenbrock), 50e-3),
         ("plain", &frictionless(), accurate(Integrator::DormandPrince), 50e-3),
         ("pressed", &pressed(1e-6), (Integrator::RungeKutta, Stepping::FractionOfLimit(0.5)), 4e-3),
+        // Its trial looks so often at what limits the step that it stops before it has taken half of its steps.
+        ("sliding", &sliding(), (Integrator::RungeKutta, Stepping::FractionOfLimit(0.5)), 20e-3),
     ] {
         let options =
             RunOptions { integrator, stepping, energy_limit: 1.0, ..RunOptions::default() };

@@ -168,7 +168,7 @@ fn circle(turn: f64, damping: f64, corners: Vec<f64>) -> CourseInertia {
     let fit = fit(5e-6);
     let steel = hollow_cylinder(32e-3, 35.5e-3, 20e-3, 7850.0);
     let bodies = moving([steel; 2], [false, true, true, true, true]);
-    let seats = vec![SeatLooks { race: OUTER, damping }];
+    let seats = vec![SeatLooks { race: OUTER, natural: Vec::new(), damping }];
     let looks = CourseLooks { start: 0.0, end: turn, count: 360, corners, bodies, seats };
     let found = course_inertia(&looks, &mut search(&bore).search, |search, time| {
         let angle = TAU * time / turn;

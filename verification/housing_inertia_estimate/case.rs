@@ -12,6 +12,7 @@ use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, SeatLooks, course_inertia,
 };
 use bearing_dynamics::solver::housing::housed::{OUTER, lists, moving};
+use bearing_dynamics::solver::housing::reduce::lowest_shapes;
 use bearing_dynamics::solver::statics::{Condition, StaticProblem};
 
 use crate::case::{Case, CaseError, Tier};
@@ -37,6 +38,8 @@ const TURNS: [f64; 3] = [4e-3, 8e-3, 16e-3];
 const CELLS: [usize; 3] = [24, 2, 2];
 /// Places at which both are compared, and looks of the estimate, in a turn.
 const POINTS: usize = 720;
+/// Natural shapes of the housing that the estimate knows.
+const NATURAL: usize = 4;
 /// m, with which no node of the bore lets go.
 const TIGHT: f64 = 1e-6;
 /// 1/s, in the housing: ringing lasts for about a millisecond.
@@ -85,6 +88,7 @@ fn find(mesh: &TetMesh, variant: &Variant) -> Result<Found, CaseError> {
     turning.places = Vec::new();
     let mut model = housings::solid(mesh)?;
     let bore = housings::condensed(mesh, &model)?;
+    let (natural, _) = lowest_shapes(&model, &bore, NATURAL)?;
     let looks = CourseLooks {
         start: 0.0,
         end,
@@ -97,7 +101,7 @@ fn find(mesh: &TetMesh, variant: &Variant) -> Result<Found, CaseError> {
             ],
             [false, true, true, true, true],
         ),
-        seats: vec![SeatLooks { race: OUTER, damping: variant.damping }],
+        seats: vec![SeatLooks { race: OUTER, natural, damping: variant.damping }],
     };
     let mut search = housings::search(&bore);
     let (bearing, fit) = (housings::bearing()?, housings::fit(turning.interference));

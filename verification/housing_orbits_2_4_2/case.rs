@@ -11,9 +11,11 @@ use bearing_dynamics::output::plots::{Curve, OrbitPlot, orbit};
 use bearing_dynamics::solver::dynamics::model::RotatingLoad;
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreState;
 use bearing_dynamics::solver::housing::condensed::geometry_error;
+use bearing_dynamics::solver::housing::held_motions::swinging_housing;
 use bearing_dynamics::solver::housing::housed::{OUTER, moving};
-use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate, housing_mass};
+use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate};
 use bearing_dynamics::solver::housing::quasi_static::{Course, history};
+use bearing_dynamics::solver::housing::reduce::lowest_shapes;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::stress::nodal_stresses;
 
@@ -126,7 +128,8 @@ fn turn(
     let outer_race = hollow_cylinder(31.953e-3, BORE_RADIUS, WIDTH, Material::STEEL.density);
     let inner_race = hollow_cylinder(15e-3, 22e-3, 12e-3, Material::STEEL.density);
     let last = &moments[POINTS - 1].state;
-    let housing = housing_mass(search.bore(), OUTER);
+    let (natural, _) = lowest_shapes(&solid, &bore, 4)?;
+    let housing = swinging_housing(search.bore(), OUTER, &natural, 0.0);
     let inertia =
         estimate(&last.stiffness, &moving([inner_race, outer_race], [true; 5]), &[housing]);
     let drawn = pictures.map(|magnification| {

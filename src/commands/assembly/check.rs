@@ -10,6 +10,7 @@ use crate::commands::run::{planned_request, request};
 use crate::commands::scene_remarks::{
     moving_starts, of_shafts, of_springs, sudden_fits, turning_races,
 };
+use crate::commands::size_remarks::of_sizes;
 use crate::commands::{CommandResult, echo_run};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::session::table_size;
@@ -98,6 +99,7 @@ fn of_scene(
         of_shafts(scene).into_iter().for_each(|said| line("note", said));
         of_springs(scene).into_iter().for_each(|said| line("note", said));
     }
+    of_sizes(scene).into_iter().for_each(|said| line("note", said));
     for (label, value) in of_run(scene, housings) {
         line(label, value);
     }

@@ -1,6 +1,8 @@
 //! What leaving out inertia costs where equilibria follow one another: estimates, and what is said of them.
 
 use super::Fallible;
+use super::housing::Housing;
+use super::modes::natural_shapes;
 use crate::commands::memory::spun;
 use bearing_dynamics::output::assembly_results::key;
 use bearing_dynamics::output::summary::housing::{inertia_section, largest_error};
@@ -9,14 +11,15 @@ use bearing_dynamics::scene::excitations::{Excitation, excitations};
 use bearing_dynamics::scene::housing::HousingMethod;
 use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::equilibrium::conditions;
+use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::course::{CourseProblem, CourseSeat, Moment};
 use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, SeatLooks, course_inertia,
 };
 use bearing_dynamics::solver::housing::course_search::CourseSearch;
-use bearing_dynamics::solver::housing::inertia::{
-    InertiaEstimate, MovingBody, estimate, housing_mass,
-};
+use bearing_dynamics::solver::housing::held_motions::swinging_housing;
+use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, MovingBody, estimate};
+use bearing_dynamics::solver::solid::modes::Mode;
 use bearing_dynamics::solver::statics::Condition;
 use serde_json::{Map, Value};
 use std::f64::consts::TAU;
@@ -53,26 +56,44 @@ fn most_loaded(scene: &AssemblyScene, course: &CourseProblem) -> f64 {
     times.max_by(|a, b| load(*a).total_cmp(&load(*b))).unwrap_or(0.0)
 }
 
+/// Natural shapes of the housing of each seat of a course.
+pub type Natural = [Vec<Mode>];
+
+/// So many are taken: the lowest motion of a pillow block is told to 1e-5 with four.
+const NATURAL: usize = 4;
+
+/// Those of housings that are condensed as `bores`.
+pub fn natural(housings: &[Housing], bores: &[CondensedBore]) -> Fallible<Vec<Vec<Mode>>> {
+    let of = |(housing, bore)| Ok(natural_shapes(housing, bore, NATURAL)?.0);
+    housings.iter().zip(bores).map(of).collect()
+}
+
 /// What leaving out inertia costs, about the equilibrium under the largest load.
 pub fn inertia_estimate(
     scene: &AssemblyScene,
     course: &CourseProblem,
+    natural: &Natural,
 ) -> Fallible<Option<InertiaEstimate>> {
     let mut search = CourseSearch::of(&course.seats);
     let found = course.find(&mut search, most_loaded(scene, course))?;
-    Ok(estimate_at(course, &search, &found))
+    Ok(estimate_at(course, natural, &search, &found))
 }
 
 /// About an equilibrium. Nothing for a race that nothing holds.
 pub fn estimate_at(
     course: &CourseProblem,
+    natural: &Natural,
     search: &CourseSearch,
     found: &Moment,
 ) -> Option<InertiaEstimate> {
     let bodies = course.moving();
-    let seats = search.bores().iter().zip(races_in_bores(course, &bodies));
-    let housings: Vec<_> = seats.map(|(bore, race)| housing_mass(bore, race)).collect();
-    let found = estimate(&found.solution.stiffness, &bodies, &housings);
+    let seats = races_in_bores(course, &bodies).into_iter().zip(&course.seats);
+    let housings = search.bores().iter().zip(seats).zip(natural);
+    let swinging = |((bore, (race, seat)), shapes): ((_, (_, &CourseSeat)), &Vec<Mode>)| {
+        swinging_housing(bore, race, shapes, seat.damping)
+    };
+    let housings: Vec<_> = housings.map(swinging).collect();
+    let found = estimate(&found.solution.with_shapes, &bodies, &housings);
     Some(found).filter(|found| found.lowest > 0.0 && found.lowest.is_finite())
 }
 
@@ -87,7 +108,11 @@ const LOOKS: [f64; 3] = [720.0, 2880.0, 720.0];
 
 /// What inertia would add along the scene's run, to races in bores and bodies with names. Nothing for one in which
 /// nothing moves.
-pub fn along_course(scene: &AssemblyScene, course: &CourseProblem) -> Fallible<Vec<Along>> {
+pub fn along_course(
+    scene: &AssemblyScene,
+    course: &CourseProblem,
+    natural: &Natural,
+) -> Fallible<Vec<Along>> {
     let Some(run) = scene.run() else { return Ok(Vec::new()) };
     if excitations(scene).is_empty() {
         return Ok(Vec::new());
@@ -97,13 +122,17 @@ pub fn along_course(scene: &AssemblyScene, course: &CourseProblem) -> Fallible<V
     let [a_turn, most, fewest] = LOOKS;
     let bodies = course.moving();
     let races = races_in_bores(course, &bodies);
-    let of = |(race, seat): (&usize, &CourseSeat)| SeatLooks { race: *race, damping: seat.damping };
+    let of = |((race, seat), shapes): ((&usize, &CourseSeat), &Vec<Mode>)| SeatLooks {
+        race: *race,
+        natural: shapes.clone(),
+        damping: seat.damping,
+    };
     let looks = CourseLooks {
         start: 0.0,
         end: run.end,
         count: (a_turn * turns).clamp(fewest, most) as usize,
         corners: course.assembly.corners(),
-        seats: races.iter().zip(&course.seats).map(of).collect(),
+        seats: races.iter().zip(&course.seats).zip(natural).map(of).collect(),
         bodies,
     };
     let what = format!("inertia that the course leaves out, looked for at {} places", looks.count);
@@ -140,13 +169,18 @@ pub fn section(
     Ok(section)
 }
 
-/// The error estimate in words, for each body along the course where there is one, else of what drives fastest.
+/// The error estimate in words: of the body along the course that it matters most for, of others that it is worth a word for; without a
+/// course, of what drives fastest.
 pub fn verdicts(scene: &AssemblyScene, estimate: &InertiaEstimate, along: &[Along]) -> Vec<String> {
+    let mut along: Vec<&Along> = along.iter().collect();
+    along.sort_by(|a, b| b.inertia.of_displacement().total_cmp(&a.inertia.of_displacement()));
     let frequency = format!("lowest natural frequency about {} Hz", to_digits(estimate.lowest, 4));
-    let first = format!("{frequency}{}", verdict(scene, estimate, along.first()));
+    let first = format!("{frequency}{}", verdict(scene, estimate, along.first().copied()));
     let of =
         |along: &Along| verdict(scene, estimate, Some(along)).trim_start_matches("; ").to_string();
-    std::iter::once(first).chain(along.iter().skip(1).map(of)).collect()
+    let counts = |of: &&Along| !(0.0..=WORTH_A_WORD).contains(&of.inertia.of_displacement());
+    let others = along.into_iter().skip(1).filter(counts);
+    std::iter::once(first).chain(others.map(of)).collect()
 }
 
 /// What follows the frequency.
@@ -169,7 +203,7 @@ fn verdict(scene: &AssemblyScene, estimate: &InertiaEstimate, along: Option<&Alo
         }
         Some(Along { body, inertia }) => {
             said += &format!("; {}", course_text(body, inertia));
-            let part = inertia.expected() / inertia.displacement.max(inertia.swing);
+            let part = inertia.of_displacement();
             said += &format!("; that is {} of its displacement", percent(part));
             (part, inertia.part(inertia.expected()))
         }
@@ -207,8 +241,24 @@ fn verdict(scene: &AssemblyScene, estimate: &InertiaEstimate, along: Option<&Alo
 /// A swing below this part of the displacement is what equilibria leave over, no motion.
 const ROUNDING: f64 = 1e-8;
 
-/// Parts of what inertia adds, over the swing of the body.
+/// Parts of what inertia adds, over the swing of the body where that is more.
 fn course_text(body: &str, course: &CourseInertia) -> String {
+    let expected = course.expected();
+    if expected.is_finite() && expected > course.swing {
+        let length = |length: f64| format!("{} nm", to_digits(1e9 * length, 2));
+        return format!(
+            "{body} swings by {} along the course and would ring by about {} besides (acceleration {}, a start at rest {}, {} kinks of the \
+             contact and the loads up to {}), at most {}, at {} Hz until damping takes it",
+            length(course.swing),
+            length(expected),
+            length(course.steady),
+            length(course.start),
+            course.kinks,
+            length(course.largest_kink),
+            length(course.bound),
+            to_digits(course.frequency, 3)
+        );
+    }
     let part = |length: f64| percent(course.part(length));
     format!(
         "of {body}'s swing of {} nm: acceleration {}, a start at rest {}, {} kinks of the contact and the loads up to {}; \

@@ -17,6 +17,7 @@ use bearing_dynamics::scene::housing_problem::{
 use bearing_dynamics::scene::solid::{MeshPlace, MeshSource};
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
 use bearing_dynamics::solver::clock::{rounded, to_digits};
+use bearing_dynamics::solver::dynamics::system::System;
 use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreState};
 use bearing_dynamics::solver::housing::condensed::{
     CondensedBore, Sizes, beyond_normals, condense_over, cost, sizes,
@@ -216,14 +217,35 @@ impl Housing {
         displacement: &[Vec3],
         state: &BoreState,
     ) -> Option<String> {
-        /// Part of the deepest penetration that is worth a word.
-        const MUCH: f64 = 0.05;
         let moved = bore.nodes.iter().map(|node| displacement[node.node as usize]);
         let touching = beyond_normals(bore, moved, &state.pose)
             .zip(&state.loads)
             .filter(|(_, load)| **load > 0.0);
-        let off = touching.fold(0.0, |most: f64, (beyond, _)| most.max(beyond.abs()));
-        let deepest = state.deepest();
+        self.off_normals(touching.map(|(beyond, _)| beyond), state.deepest())
+    }
+
+    /// The same of what moves in steps, reduced, as last evaluated.
+    pub fn beyond_normals_in_steps(
+        &self,
+        system: &System,
+        number: usize,
+        displacement: &[Vec3],
+        t: f64,
+    ) -> Option<String> {
+        let mut seats = system.assembly.seats.iter().zip(&system.seats);
+        let (seat, now) = seats.find(|(seat, _)| seat.solid == number)?;
+        let solid = &system.assembly.solids[number];
+        let touching: Vec<[f64; 2]> =
+            now.beyond_normals(seat, solid, t, |node| displacement[node as usize]).collect();
+        let deepest = touching.iter().fold(0.0, |most: f64, [_, depth]| most.max(*depth));
+        self.off_normals(touching.iter().map(|[beyond, _]| *beyond), deepest)
+    }
+
+    /// What is said of nodes that touch and are so far beside where normals have them, the deepest pressed in so far; m.
+    fn off_normals(&self, beyond: impl Iterator<Item = f64>, deepest: f64) -> Option<String> {
+        /// Part of the deepest penetration that is worth a word.
+        const MUCH: f64 = 0.05;
+        let off = beyond.fold(0.0, |most: f64, beyond| most.max(beyond.abs()));
         (deepest > 0.0 && off > MUCH * deepest).then(|| {
             format!(
                 "{}nodes of the bore that touch are up to {} nm beside where normals that stay have them, and the race is pressed in by {} nm: pressure and \

@@ -21,11 +21,14 @@ use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
 use bearing_dynamics::solver::dynamics::connection::Connection;
 use bearing_dynamics::solver::dynamics::model::Rotation;
-use bearing_dynamics::solver::housing::bore_equilibrium::BoreSearch;
-use bearing_dynamics::solver::housing::held_motions::{Natural, SwingingHousing, swinging_housing};
+use bearing_dynamics::solver::housing::condensed::CondensedBore;
+use bearing_dynamics::solver::housing::held_motions::{
+    Natural, natural_shapes_of, swinging_housing,
+};
 use bearing_dynamics::solver::housing::inertia::{HousingMass, MovingBody};
 use bearing_dynamics::solver::rotor::model::RotorError;
 use bearing_dynamics::solver::solid::foretold;
+use bearing_dynamics::solver::solid::modes::Mode as NaturalShape;
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly, StaticBody};
 use bearing_dynamics::solver::statics::{AssemblySolution, Determinacy};
 use bearing_dynamics::solver::vibrations::{Whirling, natural_motions, whirling};
@@ -57,11 +60,12 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         for ((seat, bore), housing) in seats {
             let race = bodies.iter().position(|of| of.body == seat.body(assembly));
             let Some(race) = race else { continue };
-            let swinging = swinging(housing, bore, race)?;
-            first_left_out = first_left_out.min(swinging.first_left_out);
+            let (natural, beyond) = natural_shapes(housing, bore.bore(), NATURAL)?;
+            first_left_out = first_left_out.min(beyond);
             let before = housing.name.as_ref().map_or(String::new(), |name| format!("{name}_"));
-            of_housings.push((before, swinging.mass.held.len()));
-            masses.push(swinging.mass);
+            let mass = swinging_housing(bore, race, &natural, seat.damping);
+            of_housings.push((before, mass.held.len()));
+            masses.push(mass);
         }
     }
     let solution = &moment.solution;
@@ -162,17 +166,21 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
 /// they cost less than condensing its bore.
 const NATURAL: usize = 12;
 
-/// A housing with its natural motions, about the equilibrium of its bore.
-fn swinging(housing: &Housing, bore: &BoreSearch, race: usize) -> Fallible<SwingingHousing> {
+/// Natural shapes of a housing that take part, `usual` of the lowest where the scene does not say up to which frequency, and the frequency
+/// of the first one that does not, Hz.
+pub(super) fn natural_shapes(
+    housing: &Housing,
+    bore: &CondensedBore,
+    usual: usize,
+) -> Fallible<(Vec<NaturalShape>, f64)> {
     let natural = match housing.scene.housing.modes_to {
         Some(frequency) => Natural::UpTo(frequency),
-        None => Natural::Lowest(NATURAL),
+        None => Natural::Lowest(usual),
     };
-    let cost = foretold::modes(&housing.setup.model, bore.bore().unknowns(), NATURAL + 1);
-    refuse_beyond(&cost, "")?;
+    let model = &housing.setup.model;
+    refuse_beyond(&foretold::modes_of_held(model, bore.unknowns(), usual + 1), "")?;
     let what = format!("{}natural shapes of the housing", housing.before());
-    let work = || swinging_housing(&housing.setup.model, bore, race, natural);
-    Ok(spun(what, work)?)
+    Ok(spun(what, || natural_shapes_of(model, bore, natural))?)
 }
 
 /// Whether a speed is given to a body that is not zero throughout.

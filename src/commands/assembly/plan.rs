@@ -1,7 +1,7 @@
 //! `bearing plan` of bearings and what they sit on and in: what the scene's way of solving does, and what another one
 //! of the housings would cost.
 
-use super::course::{along_course, inertia_estimate, verdicts};
+use super::course::{along_course, inertia_estimate, natural, verdicts};
 use super::housing::Housing;
 use super::lists::Lists;
 use super::shapes::{Shapes, shapes};
@@ -14,6 +14,7 @@ use crate::commands::run::{self, planned_request};
 use crate::commands::scene_remarks::{
     moving_starts, of_shafts, of_springs, sudden_fits, turning_races,
 };
+use crate::commands::size_remarks::of_sizes;
 use crate::commands::{CommandResult, Outcome, memory};
 use bearing_dynamics::output::session::{RunRequest, table_size};
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
@@ -59,6 +60,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         }
         (Some(settings), _) => of_steps(lists, &housings, reduced.as_ref(), settings)?,
     };
+    notes.extend(of_sizes(scene).iter().map(|said| note("size", said)));
     notes.extend(of_shafts(scene).iter().map(|said| note("shaft", said)));
     notes.extend(of_springs(scene).iter().map(|said| note("spring", said)));
     notes.extend(of_bushings(scene).iter().map(|said| note("bushing", said)));
@@ -298,11 +300,12 @@ fn equilibrium_notes(lists: &Lists, housings: &[Housing]) -> Fallible<Vec<String
     }
     let bores = housings::condensed(housings)?;
     let course = housings::course(lists.assembly()?.clone(), housings, &bores);
-    let Some(estimate) = inertia_estimate(scene, &course)? else {
+    let natural = natural(housings, &bores)?;
+    let Some(estimate) = inertia_estimate(scene, &course, &natural)? else {
         planned.push(note(name, "nothing holds the outer race under the largest load"));
         return Ok(planned);
     };
-    let (along, missing) = match along_course(scene, &course) {
+    let (along, missing) = match along_course(scene, &course, &natural) {
         Ok(along) => (along, String::new()),
         Err(error) => (Vec::new(), format!("; no estimate along the course: {error}")),
     };

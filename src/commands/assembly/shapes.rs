@@ -68,7 +68,7 @@ fn reduction(
         to_digits(modes_to, 4)
     );
     // Their number is not known before.
-    let cost = foretold::modes(&housing.setup.model, bore.unknowns(), FORETOLD);
+    let cost = foretold::modes_of_held(&housing.setup.model, bore.unknowns(), FORETOLD);
     refuse_beyond(&cost, ", a quasi-static housing (method = \"quasi-static\" in [housing])")?;
     let work = || reduce(&housing.setup.model, bore, settings.penalty, &loads, &options);
     Ok(spun(what, work)?)

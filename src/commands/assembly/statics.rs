@@ -1,6 +1,6 @@
 //! `bearing statics` of bearings and what they sit on and in: one equilibrium of all at t = 0.
 
-use super::course::{estimate_at, section, verdicts};
+use super::course::{estimate_at, natural, section, verdicts};
 use super::housing::Housing;
 use super::housings::{self, Equilibrium};
 use super::lists::Lists;
@@ -69,8 +69,10 @@ pub fn find_equilibrium<'s>(
     let lists = Lists::of(scene);
     let found = housings::equilibrium(&lists, housings::grown(&housings, &bores), None)?;
     let Equilibrium { still, moment, in_bores } = &found;
-    let estimate =
-        in_bores.as_ref().and_then(|(course, search)| estimate_at(course, search, moment));
+    let estimate = match in_bores {
+        Some((course, search)) => estimate_at(course, &natural(&housings, &bores)?, search, moment),
+        None => None,
+    };
     let mut seconds = vec![("read".into(), read), ("solve".into(), start.elapsed().as_secs_f64())];
     if !housings.is_empty() {
         let mesh = housings.iter().map(|housing| housing.mesh_seconds).sum();

@@ -2,7 +2,9 @@
 
 use super::figures::key_figures;
 use super::prepared::{Fields, Prepared, SolidOf, Way};
-use crate::commands::assembly::course::{along_course, inertia_estimate, section, verdicts};
+use crate::commands::assembly::course::{
+    along_course, inertia_estimate, natural, section, verdicts,
+};
 use crate::commands::assembly::housing::Housing;
 use crate::commands::bushing_remarks::beyond_bushings;
 use crate::commands::scene_remarks::{between_rows, folded};
@@ -258,6 +260,11 @@ fn housing_results(
                 _ => of_solid::of_motion(model, &displacement, &stress),
             };
             remarks.extend(own.iter().map(|said| format!("{}{said}", housing.before())));
+            if let Motion::Bearing(moving) = &session.motion {
+                let (system, t) = (&moving.system, moving.time);
+                let off = housing.beyond_normals_in_steps(system, number, &displacement, t);
+                remarks.extend(off);
+            }
             let nodes = bore_nodes(&session.motion, number, model);
             bore_series(&nodes)?.write_csv(&folder.join(housing.bore_file()))?;
             said.files += 1;
@@ -276,8 +283,8 @@ fn housing_results(
         said.sections.push(("housing_remarks".into(), json!(remarks)));
     }
     said.remarks.append(&mut remarks);
-    if let Motion::Course(course) = &session.motion {
-        inertia_results(scene, &course.problem, said)?;
+    if let (Motion::Course(course), Way::Course(bores, _)) = (&session.motion, way) {
+        inertia_results(scene, &course.problem, (housings, bores), said)?;
     }
     Ok(())
 }
@@ -309,9 +316,21 @@ fn equilibrium(
 }
 
 /// What leaving out inertia costs. A course that was found is kept, whatever becomes of the estimate.
-fn inertia_results(scene: &AssemblyScene, course: &CourseProblem, said: &mut Said) -> Fallible<()> {
-    let inertia = inertia_estimate(scene, course);
-    let along = along_course(scene, course);
+fn inertia_results(
+    scene: &AssemblyScene,
+    course: &CourseProblem,
+    (housings, bores): (&[Housing], &[CondensedBore]),
+    said: &mut Said,
+) -> Fallible<()> {
+    let natural = match natural(housings, bores) {
+        Ok(natural) => natural,
+        Err(why) => {
+            said.lines.push(format!("inertia left out       no estimate: {why}"));
+            return Ok(());
+        }
+    };
+    let inertia = inertia_estimate(scene, course, &natural);
+    let along = along_course(scene, course, &natural);
     let none = Vec::new();
     let bodies = along.as_ref().unwrap_or(&none);
     if let Ok(Some(estimate)) = &inertia {

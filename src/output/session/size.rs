@@ -13,7 +13,7 @@ pub(super) const MOST_VALUES: f64 = 1e8;
 pub struct TableSize {
     pub rows: f64,
     pub columns: usize,
-    /// Shortest output interval that is not refused, s.
+    /// An output interval that is not refused, s: the shortest one, to two digits upwards.
     pub shortest: f64,
 }
 
@@ -49,7 +49,10 @@ pub(super) fn size_of(
     }
     let columns = recorder.columns().len();
     let rows = (request.end / request.output_interval).ceil() + 1.0;
-    let shortest = request.end * columns as f64 / MOST_VALUES;
+    // A row more than intervals.
+    let shortest = request.end / (MOST_VALUES / columns as f64 - 2.0).max(1.0);
+    let digit = libm::pow(10.0, libm::log10(shortest).floor() - 1.0);
+    let shortest = (shortest / digit).ceil() * digit;
     let size = TableSize { rows, columns, shortest };
     // NaN is too much.
     if rows * columns as f64 <= MOST_VALUES {

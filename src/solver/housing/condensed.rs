@@ -13,6 +13,7 @@ use crate::solver::plan::{Stage, tally::Tally};
 use crate::solver::solid::equilibrium_error::{Pivot, free_text};
 use crate::solver::solid::foretold;
 use crate::solver::solid::model::SolidModel;
+use crate::solver::solid::modes::{ModeError, ModeOptions, Modes, modes_of_held};
 use crate::solver::solid::tangent::{PRESCRIBED, Unknowns, pattern, stiffness};
 use crate::solver::sparse::{Cost, Factor, FactorError};
 use nalgebra::Vector3;
@@ -306,7 +307,30 @@ impl CondensedBore {
             scatter(&self.unknowns, node, force, &mut right);
         }
         self.factor.solve(&mut right);
-        (0..self.mass.len() as u32).map(|node| gather(&self.unknowns, node, &right)).collect()
+        self.field(&right)
+    }
+
+    /// The same under many loads: the factors are read once for each dozen of them.
+    pub fn responses_to(&self, loads: &[Vec<(u32, Vec3)>]) -> Vec<Vec<Vec3>> {
+        let size = self.unknowns.count;
+        let mut all = Vec::with_capacity(loads.len());
+        for block in loads.chunks(BLOCK) {
+            let mut right = vec![0.0; block.len() * size];
+            for (forces, column) in block.iter().zip(right.chunks_exact_mut(size)) {
+                for (node, force) in forces {
+                    scatter(&self.unknowns, *node, *force, column);
+                }
+            }
+            self.factor.solve_columns(&mut right, block.len());
+            all.extend(right.chunks_exact(size).map(|column| self.field(column)));
+        }
+        all
+    }
+
+    /// Displacements of all nodes.
+    fn field(&self, solution: &[f64]) -> Vec<Vec3> {
+        let nodes = 0..self.mass.len() as u32;
+        nodes.map(|node| gather(&self.unknowns, node, solution)).collect()
     }
 
     /// Outward forces on the bore's nodes as vectors in the world, N.
@@ -315,6 +339,14 @@ impl CondensedBore {
             (node.node, scale(in_world(&self.frame, node.normal), load))
         };
         self.nodes.iter().zip(loads).map(force)
+    }
+
+    /// Natural modes of the solid, `model`, by the factors that are there.
+    ///
+    /// # Errors
+    /// As [`modes_of_held`].
+    pub fn modes(&self, model: &SolidModel, options: &ModeOptions) -> Result<Modes, ModeError> {
+        modes_of_held(model, &self.unknowns, &self.factor, options)
     }
 
     /// The unknowns of the solid.

@@ -12,11 +12,13 @@
 //!   on, so that the course has a kink there.
 //!
 //! Ringings add at most as their sizes, and like their squares if their phases fall at random. Each is counted
-//! with the size that it has where it arises. Left out: the balls' mass, modes of the housing that its
-//! static shapes do not hold, what loads do that jump themselves, and how balls without a cage stray.
+//! with the size that it has where it arises. Left out: the balls' mass, motions of the housing beyond the natural shapes that take part,
+//! what loads do that jump themselves, and how balls without a cage stray.
 
 use super::course_search::CourseSearch;
-use super::inertia::{Coordinates, HousingMass, Mode, MovingBody, housing_mass, modes};
+use super::held_motions::swinging_housing;
+use super::inertia::{Coordinates, HousingMass, Mode, MovingBody, modes};
+use crate::solver::solid::modes::Mode as NaturalShape;
 use crate::solver::statics::AssemblySolution;
 use std::f64::consts::TAU;
 
@@ -36,10 +38,12 @@ pub struct CourseLooks {
 }
 
 /// A race in a housing.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SeatLooks {
     /// Place of its body in the list of those that take part.
     pub race: usize,
+    /// Natural shapes of the housing that take part beside those which follow the race.
+    pub natural: Vec<NaturalShape>,
     /// Damping of the housing per mass and velocity, 1/s. No other is counted.
     pub damping: f64,
 }
@@ -75,6 +79,11 @@ impl CourseInertia {
         self.steady + self.ringing
     }
 
+    /// What is expected, as a part of the displacement.
+    pub fn of_displacement(&self) -> f64 {
+        self.expected() / self.displacement.max(self.swing)
+    }
+
     /// A length as a part of the swing; 0 of a course that does not move.
     pub fn part(&self, length: f64) -> f64 {
         if length == 0.0 { 0.0 } else { length / self.swing }
@@ -89,6 +98,8 @@ const SAME_MASS: usize = 30;
 
 /// An equilibrium of the course, and how it moves on.
 struct Look {
+    /// Of the bodies, and amplitudes of what bends behind them. What housings do beside following their races stands still along a
+    /// course.
     place: Coordinates,
     velocity: Coordinates,
     /// In each bore.
@@ -116,15 +127,18 @@ pub fn course_inertia<'b, E>(
     let mut found = Vec::with_capacity(looks.count + 1);
     let mut housings: Vec<HousingMass> = Vec::new();
     let places = |found: &AssemblySolution| {
-        let places = looks.bodies.iter().flat_map(|of| found.coordinates[of.body].iter().copied());
-        Coordinates::from_iterator(5 * looks.bodies.len(), places)
+        let bodies = looks.bodies.iter().flat_map(|of| found.coordinates[of.body].iter());
+        Coordinates::from_vec(bodies.chain(found.amplitudes.iter().flatten()).copied().collect())
     };
     for i in 0..=looks.count {
         let time = looks.start + interval * i as f64;
         let now = at(search, time)?;
         if i % SAME_MASS == 0 {
             let seats = search.bores().iter().zip(&looks.seats);
-            housings = seats.map(|(bore, seat)| housing_mass(bore, seat.race)).collect();
+            let swinging = |(bore, of): (_, &SeatLooks)| {
+                swinging_housing(bore, of.race, &of.natural, of.damping)
+            };
+            housings = seats.map(swinging).collect();
         }
         let later = at(search, time + AHEAD * interval)?;
         let place = places(&now);
@@ -133,7 +147,7 @@ pub fn course_inertia<'b, E>(
             velocity: (places(&later) - &place) / (AHEAD * interval),
             place,
             touching: now.seats.iter().map(|seat| touching(&seat.loads)).collect(),
-            modes: modes(&now.stiffness, &looks.bodies, &housings),
+            modes: modes(&now.with_shapes, &looks.bodies, &housings),
             corners: looks.corners.iter().filter(|corner| **corner <= time).count(),
         });
     }
@@ -214,7 +228,7 @@ fn ring(look: &Look, jump: &Coordinates, of: &Of) -> Ring {
     let (mut size, mut most) = (0.0, -1.0);
     let (mut square, mut decay) = (f64::NAN, 0.0);
     for mode in &look.modes {
-        let part = length(of.across(&mode.shape)) * mode.momentum.dot(jump).abs();
+        let part = length(of.across(&mode.shape)) * along(mode, jump).abs();
         // Nothing holds it: what moves does not come back.
         let amplitude = if part == 0.0 { 0.0 } else { part / mode.square.max(0.0).sqrt() };
         size += amplitude;
@@ -235,12 +249,17 @@ fn steady(looks: &[Look], interval: f64, square: f64, of: &Of) -> f64 {
         let acceleration = (&looks[i + apart].velocity - &looks[i].velocity) / time;
         let modes = &looks[i + apart / 2].modes;
         let moved = modes.iter().fold([0.0; 2], |[y, z], mode| {
-            let part = mode.momentum.dot(&acceleration) / mode.square;
+            let part = along(mode, &acceleration) / mode.square;
             let [shape_y, shape_z] = of.across(&mode.shape);
             [y + part * shape_y, z + part * shape_z]
         });
         largest.max(length(moved))
     })
+}
+
+/// Part of a mode in rates of all that a course moves.
+fn along(mode: &Mode, rates: &Coordinates) -> f64 {
+    mode.momentum.rows(0, rates.len()).dot(rates)
 }
 
 fn length([y, z]: [f64; 2]) -> f64 {

@@ -7,6 +7,7 @@
 //! in contact where they are, so that nothing has to be factorised again.
 
 use super::bore_equilibrium::BoreSearch;
+use super::condensed::CondensedBore;
 use super::inertia::{HeldMotion, HousingMass, housing_mass};
 use super::reduce::{ReduceError, lowest_shapes, natural_shapes};
 use crate::kinematics::vec3::{Vec3, add, dot};
@@ -24,34 +25,31 @@ pub enum Natural {
     UpTo(f64),
 }
 
-/// A housing that takes part with all of its motions up to a frequency.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SwingingHousing {
-    pub mass: HousingMass,
-    /// Of the first natural shape that is left out, Hz: what swings nearly as fast is told too fast.
-    pub first_left_out: f64,
-}
-
-/// The housing `model` of a search about the last equilibrium of its bore, the race being the body of number `race` among those that
-/// take part.
+/// Natural shapes of `model`, condensed as `bore`, and the frequency of the first one that is left out, Hz: what swings nearly as fast
+/// as that is told too fast.
 ///
 /// # Errors
 /// Natural shapes that are not found.
-pub fn swinging_housing(
+pub fn natural_shapes_of(
     model: &SolidModel,
+    bore: &CondensedBore,
+    natural: Natural,
+) -> Result<(Vec<Mode>, f64), ReduceError> {
+    match natural {
+        Natural::UpTo(frequency) => natural_shapes(model, bore, frequency),
+        Natural::Lowest(count) => lowest_shapes(model, bore, count),
+    }
+}
+
+/// The housing of a search about the last equilibrium of its bore, with its shapes that follow the race, the body of number `race` among
+/// those that take part, and what its `natural` shapes do besides; `damping` of its elements in 1/s.
+pub fn swinging_housing(
     search: &BoreSearch,
     race: usize,
-    natural: Natural,
-) -> Result<SwingingHousing, ReduceError> {
-    let bore = search.bore();
-    let (shapes, first_left_out) = match natural {
-        Natural::UpTo(frequency) => natural_shapes(model, bore, frequency)?,
-        Natural::Lowest(count) => lowest_shapes(model, bore, count)?,
-    };
-    let mut mass = housing_mass(search, race);
-    mass.held = held_motions(search, &shapes);
-    mass.damping = model.problem.damping;
-    Ok(SwingingHousing { mass, first_left_out })
+    natural: &[Mode],
+    damping: f64,
+) -> HousingMass {
+    HousingMass { held: held_motions(search, natural), damping, ..housing_mass(search, race) }
 }
 
 /// Motions with the race at rest, combined of what natural shapes (lumped masses) become under a unit of their own inertia.

@@ -46,7 +46,7 @@ pub struct HousingMass {
     /// Place of the race's body in the list of those that take part.
     pub race: usize,
     pub mass: Matrix4<f64>,
-    /// What it does beside following its race: none for an estimate.
+    /// What it does beside following its race.
     pub held: Vec<HeldMotion>,
     /// α of a damping α M of its elements, 1/s.
     pub damping: f64,
@@ -170,9 +170,8 @@ pub fn modes(
     found
 }
 
-/// Natural frequency about an equilibrium with this stiffness over the coordinates of the bodies. A housing takes part
-/// with the mass that its static shape under the race's motion carries (Rayleigh), for each of the race's coordinates;
-/// that is an upper bound of the frequency, near the truth while the housing's own modes are higher.
+/// Lowest natural frequency about an equilibrium with this stiffness over the coordinates of the bodies, and amplitudes of shapes behind
+/// them.
 pub fn estimate(
     stiffness: &DMatrix<f64>,
     bodies: &[MovingBody],

@@ -24,7 +24,7 @@ use crate::solver::mount::Mount;
 use crate::solver::plan::tally::Tally;
 use crate::solver::profile::Profile;
 use crate::solver::solid::model::SolidModel;
-use crate::solver::solid::modes::{Mode, ModeError, ModeOptions, Wanted, modes_over};
+use crate::solver::solid::modes::{Mode, ModeError, ModeOptions, Wanted};
 use crate::solver::solid::tangent::MassMatrix;
 use crate::solver::sparse::FactorError;
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
@@ -196,11 +196,13 @@ fn own_forces(solid: &ReducedSolid, t: f64) -> Vec<f64> {
 const MOST: usize = 400;
 /// Residual of natural shapes: their frequencies are known to its square, and shapes stay as orthogonal.
 const RESIDUAL: f64 = 1e-7;
+/// Of shapes that are combined once more.
+const ROUGH_RESIDUAL: f64 = 1e-4;
 
 /// Natural shapes (lumped masses) up to a frequency, and the frequency of the first one beyond, Hz.
 ///
 /// # Errors
-/// More than some hundred shapes; what [`modes_over`] finds wrong.
+/// More than some hundred shapes; what [`CondensedBore::modes`] finds wrong.
 pub fn natural_shapes(
     model: &SolidModel,
     bore: &CondensedBore,
@@ -209,23 +211,24 @@ pub fn natural_shapes(
     if !(frequency > 0.0 && frequency.is_finite()) {
         return Err(ReduceError::Frequency { frequency });
     }
-    natural(model, bore, Wanted::UpTo { frequency, most: MOST }).map_err(|error| match error {
+    let wanted = Wanted::UpTo { frequency, most: MOST };
+    natural(model, bore, wanted, RESIDUAL).map_err(|error| match error {
         ModeError::MoreThan { most, frequency } => ReduceError::TooMany { most, frequency },
         other => other.into(),
     })
 }
 
-/// The lowest natural shapes (lumped masses), so many, and the frequency of the first one beyond, Hz.
+/// The lowest natural shapes (lumped masses), so many, and the frequency of the first one beyond, Hz; their frequencies to 1e-8.
 ///
 /// # Errors
-/// What [`modes_over`] finds wrong.
+/// What [`CondensedBore::modes`] finds wrong.
 pub fn lowest_shapes(
     model: &SolidModel,
     bore: &CondensedBore,
     count: usize,
 ) -> Result<(Vec<Mode>, f64), ReduceError> {
     let wanted = Wanted::Lowest((count + 1).min(bore.unknowns().count));
-    Ok(natural(model, bore, wanted)?)
+    Ok(natural(model, bore, wanted, ROUGH_RESIDUAL)?)
 }
 
 /// All but the last one of what is wanted, and the frequency of that, Hz; infinite where there is nothing beyond.
@@ -233,9 +236,10 @@ fn natural(
     model: &SolidModel,
     bore: &CondensedBore,
     wanted: Wanted,
+    tolerance: f64,
 ) -> Result<(Vec<Mode>, f64), ModeError> {
-    let options = ModeOptions { wanted, mass: MassMatrix::Lumped, tolerance: RESIDUAL };
-    let mut modes = modes_over(model, bore.unknowns(), &options)?.modes;
+    let options = ModeOptions { wanted, mass: MassMatrix::Lumped, tolerance };
+    let mut modes = bore.modes(model, &options)?.modes;
     let is_last = match wanted {
         Wanted::Lowest(count) => count == modes.len() && count < bore.unknowns().count,
         Wanted::UpTo { frequency, .. } => {
@@ -280,20 +284,20 @@ pub fn reduce(
 
     let kept = patterns(bore, penalty, &natural, loads, options.left_out, at_bore)?;
     let own = own_loads(model);
-    let mut answers: Vec<Answer> = Vec::new();
     let all = own.iter().map(|(forces, _)| forces.clone());
     let on_bore = kept.vectors.iter().map(|pattern| bore.nodal_forces(pattern).collect());
-    for forces in all.chain(on_bore) {
-        let forces: Vec<(u32, Vec3)> = forces;
-        let mut shape = bore.response_to(forces.iter().copied());
+    let loads: Vec<Vec<(u32, Vec3)>> = all.chain(on_bore).collect();
+    let responses = bore.responses_to(&loads);
+    let beyond_natural = |(forces, mut shape): (Vec<(u32, Vec3)>, Vec<Vec3>)| {
         for (frequency, known) in &natural {
             let share = work(&forces, known) / (frequency * frequency);
             for (s, k) in shape.iter_mut().zip(known) {
                 *s = add_scaled(*s, -share, *k);
             }
         }
-        answers.push(Answer { forces, shape });
-    }
+        Answer { forces, shape }
+    };
+    let answers: Vec<Answer> = loads.into_iter().zip(responses).map(beyond_natural).collect();
     let (count, first_pattern) = (natural.len(), own.len());
     let mut all = natural;
     all.extend(combine(&answers, &model.mass));
@@ -375,10 +379,14 @@ fn combine(answers: &[Answer], mass: &[f64]) -> Vec<(f64, Vec<Vec3>)> {
         let of = |i: usize, j: usize| work(&answers[i].forces, &answers[j].shape);
         0.5 * (of(i, j) + of(j, i))
     });
-    let inertia = DMatrix::from_fn(size, size, |i, j| {
-        let pairs = answers[i].shape.iter().zip(&answers[j].shape).zip(mass);
-        pairs.map(|((a, b), m)| m * dot(*a, *b)).sum::<f64>()
-    });
+    let mut inertia = DMatrix::zeros(size, size);
+    for (i, one) in answers.iter().enumerate() {
+        for (j, other) in answers[..=i].iter().enumerate() {
+            let pairs = one.shape.iter().zip(&other.shape).zip(mass);
+            inertia[(i, j)] = pairs.map(|((a, b), m)| m * dot(*a, *b)).sum::<f64>();
+            inertia[(j, i)] = inertia[(i, j)];
+        }
+    }
     let unit: Vec<f64> = (0..size)
         .map(|i| if energy[(i, i)] > 0.0 { 1.0 / energy[(i, i)].sqrt() } else { 0.0 })
         .collect();

@@ -88,6 +88,15 @@ pub fn modes(model: &SolidModel, unknowns: &Unknowns, count: usize) -> Cost {
     Cost::new(&unknowns.elimination, task)
 }
 
+/// The lowest `count` modes of a solid that is held and has been factorised.
+pub fn modes_of_held(model: &SolidModel, unknowns: &Unknowns, count: usize) -> Cost {
+    let mut cost = modes(model, unknowns, count);
+    cost.task.name = "natural shapes of the housing";
+    cost.task.factorisations = 0;
+    cost.factor_bytes = 0.0;
+    cost
+}
+
 /// A solid condensed onto `kept` nodes of its bore, with `columns` solved at once.
 pub fn condensed(model: &SolidModel, unknowns: &Unknowns, kept: usize, columns: usize) -> Cost {
     let task = Task {

@@ -8,6 +8,7 @@ use crate::solver::plan::{Stage, tally::Tally};
 use crate::solver::sparse::{Factor, FactorError, SymmetricMatrix};
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::TAU;
+use std::iter::zip;
 use thiserror::Error;
 
 /// Which modes are looked for.
@@ -109,21 +110,72 @@ pub fn modes_over(
     unknowns: &Unknowns,
     options: &ModeOptions,
 ) -> Result<Modes, ModeError> {
+    let shift = shift(model);
+    let [mut shifted, masses] = matrices(model, unknowns, options);
+    shifted.add_scaled(-shift, &masses);
+    let factor = unknowns.factor(&shifted)?;
+    search(
+        model,
+        unknowns,
+        &Shifted { matrix: &shifted, masses: &masses, factor: &factor, shift },
+        options,
+    )
+}
+
+/// The same of a solid that is held, by the factors that its undeformed stiffness has already.
+///
+/// # Errors
+/// As [`modes`].
+pub fn modes_of_held(
+    model: &SolidModel,
+    unknowns: &Unknowns,
+    factor: &Factor,
+    options: &ModeOptions,
+) -> Result<Modes, ModeError> {
+    let [stiffness, masses] = matrices(model, unknowns, options);
+    search(
+        model,
+        unknowns,
+        &Shifted { matrix: &stiffness, masses: &masses, factor, shift: 0.0 },
+        options,
+    )
+}
+
+/// Stiffness about the undeformed state, and mass.
+fn matrices(
+    model: &SolidModel,
+    unknowns: &Unknowns,
+    options: &ModeOptions,
+) -> [SymmetricMatrix; 2] {
+    let mut masses = mass_pattern(&model.problem, unknowns);
+    mass(model, unknowns, options.mass, &mut masses);
+    let mut undeformed = pattern(&model.problem, unknowns);
+    stiffness(model, unknowns, &vec![[0.0; 3]; model.mass.len()], &mut undeformed);
+    [undeformed, masses]
+}
+
+/// K − shift M, its factors, and M.
+struct Shifted<'a> {
+    matrix: &'a SymmetricMatrix,
+    masses: &'a SymmetricMatrix,
+    factor: &'a Factor,
+    shift: f64,
+}
+
+fn search(
+    model: &SolidModel,
+    unknowns: &Unknowns,
+    of: &Shifted,
+    options: &ModeOptions,
+) -> Result<Modes, ModeError> {
     let size = unknowns.count;
     if let Wanted::Lowest(wanted) = options.wanted
         && wanted > size
     {
         return Err(ModeError::TooMany { wanted, unknowns: size });
     }
-    let mut masses = mass_pattern(&model.problem, unknowns);
-    mass(model, unknowns, options.mass, &mut masses);
-    let shift = shift(model);
-    let mut shifted = pattern(&model.problem, unknowns);
-    stiffness(model, unknowns, &vec![[0.0; 3]; model.mass.len()], &mut shifted);
-    shifted.add_scaled(-shift, &masses);
-    let factor = unknowns.factor(&shifted)?;
-
-    let mut krylov = Krylov::new(&masses, &factor);
+    let shift = of.shift;
+    let mut krylov = Krylov::new(of.masses, of.factor);
     krylov.start(size.min(BLOCK));
     let (mut before, mut looked, mut count) = (Vec::new(), 0, 1);
     loop {
@@ -163,7 +215,7 @@ pub fn modes_over(
             .into_iter()
             .map(|(vector, inverse)| {
                 let value = shift + 1.0 / inverse;
-                let residual = residual(&shifted, &masses, &vector, value, shift);
+                let residual = of.residual(&vector, value);
                 (value, vector, residual)
             })
             .collect();
@@ -214,24 +266,21 @@ fn spread(unknowns: &Unknowns, vector: &[f64]) -> Vec<Vec3> {
     unknowns.of.iter().map(|of| of.map(at)).collect()
 }
 
-/// With the shifted stiffness K − shift M, of which (K − λ M) x is all but (λ − shift) M x.
-fn residual(
-    shifted: &SymmetricMatrix,
-    masses: &SymmetricMatrix,
-    vector: &[f64],
-    value: f64,
-    shift: f64,
-) -> f64 {
-    let mut force = vec![0.0; vector.len()];
-    let mut momentum = vec![0.0; vector.len()];
-    shifted.multiply(vector, &mut force);
-    masses.multiply(vector, &mut momentum);
-    let (mut gap, mut scale) = (0.0, 0.0);
-    for (force, momentum) in force.iter().zip(&momentum) {
-        gap += (force - (value - shift) * momentum).powi(2);
-        scale += ((value - shift) * momentum).powi(2);
+impl Shifted<'_> {
+    /// With K − shift M, of which (K − λ M) x is all but (λ − shift) M x.
+    fn residual(&self, vector: &[f64], value: f64) -> f64 {
+        let beyond = value - self.shift;
+        let mut force = vec![0.0; vector.len()];
+        let mut momentum = vec![0.0; vector.len()];
+        self.matrix.multiply(vector, &mut force);
+        self.masses.multiply(vector, &mut momentum);
+        let (mut gap, mut scale) = (0.0, 0.0);
+        for (force, momentum) in force.iter().zip(&momentum) {
+            gap += (force - beyond * momentum).powi(2);
+            scale += (beyond * momentum).powi(2);
+        }
+        (gap / scale).sqrt()
     }
-    (gap / scale).sqrt()
 }
 
 /// The space that the powers of the inverse span, orthonormal under the mass.
@@ -257,6 +306,40 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
         }
     }
     sums.iter().sum::<f64>() + rest
+}
+
+/// Entries of vectors that are worked on before the next ones: those of a block and of one vector of the basis fit into the nearest
+/// cache.
+const PART: usize = 512;
+
+/// Each of `basis` times each of `others`.
+fn products(basis: &[Vec<f64>], others: &[Vec<f64>]) -> DMatrix<f64> {
+    let mut sums = DMatrix::zeros(basis.len(), others.len());
+    let size = others.first().map_or(0, Vec::len);
+    for part in (0..size).step_by(PART).map(|first| first..(first + PART).min(size)) {
+        for (row, known) in basis.iter().enumerate() {
+            for (column, other) in others.iter().enumerate() {
+                sums[(row, column)] += dot(&known[part.clone()], &other[part.clone()]);
+            }
+        }
+    }
+    sums
+}
+
+/// Takes away from each of `others` its shares of `basis`.
+fn take_away(basis: &[Vec<f64>], shares: &DMatrix<f64>, others: &mut [Vec<f64>]) {
+    let size = others.first().map_or(0, Vec::len);
+    for part in (0..size).step_by(PART).map(|first| first..(first + PART).min(size)) {
+        for (row, known) in basis.iter().enumerate() {
+            for (column, other) in others.iter_mut().enumerate() {
+                add_times(&mut other[part.clone()], -shares[(row, column)], &known[part.clone()]);
+            }
+        }
+    }
+}
+
+fn add_times(to: &mut [f64], factor: f64, of: &[f64]) {
+    to.iter_mut().zip(of).for_each(|(to, of)| *to += factor * of);
 }
 
 impl<'a> Krylov<'a> {
@@ -285,63 +368,69 @@ impl<'a> Krylov<'a> {
         self.take(vectors);
     }
 
-    /// Adds what is new in some vectors; whether there was anything new. One pass through the factors
-    /// serves them all.
+    /// Adds what is new in some vectors; whether there was anything new. One pass through the factors, and one through the basis
+    /// for each thing that is asked of it, serve them all.
     fn take(&mut self, vectors: Vec<Vec<f64>>) -> bool {
         let (size, known) = (self.masses.size(), self.basis.len());
-        let mut right = Vec::with_capacity(vectors.len() * size);
-        for vector in vectors {
-            if let Some((vector, momentum)) = self.orthonormal(vector) {
-                self.basis.push(vector);
-                right.extend(momentum);
-            }
-        }
-        let count = self.basis.len();
-        if count == known {
+        let (vectors, momenta) = self.orthonormal(vectors);
+        if vectors.is_empty() {
             return false;
         }
+        let mut right = momenta.concat();
+        drop(momenta);
+        self.basis.extend(vectors);
+        let count = self.basis.len();
         self.factor.solve_columns(&mut right, count - known);
         self.solves += count - known;
         self.images = right.chunks_exact(size).map(<[f64]>::to_vec).collect();
         drop(right);
         let old = std::mem::replace(&mut self.projected, DMatrix::zeros(count, count));
         self.projected.view_mut((0, 0), (known, known)).copy_from(&old);
-        let mut momentum = vec![0.0; size];
-        for (column, image) in (known..count).zip(&self.images) {
-            self.masses.multiply(image, &mut momentum);
-            for row in 0..=column {
-                let value = dot(&self.basis[row], &momentum);
-                self.projected[(row, column)] = value;
-                self.projected[(column, row)] = value;
+        let new = products(&self.basis, &self.momenta(&self.images));
+        for (column, of) in (known..count).zip(new.column_iter()) {
+            for (row, value) in of.iter().take(column + 1).enumerate() {
+                self.projected[(row, column)] = *value;
+                self.projected[(column, row)] = *value;
             }
         }
         true
     }
 
-    /// What is new in a vector, of unit length under the mass, and its momentum.
-    fn orthonormal(&self, mut vector: Vec<f64>) -> Option<(Vec<f64>, Vec<f64>)> {
-        let mut momentum = vec![0.0; vector.len()];
-        self.masses.multiply(&vector, &mut momentum);
-        let first = dot(&vector, &momentum).sqrt();
+    fn momenta(&self, vectors: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let of = |vector: &Vec<f64>| {
+            let mut momentum = vec![0.0; vector.len()];
+            self.masses.multiply(vector, &mut momentum);
+            momentum
+        };
+        vectors.iter().map(of).collect()
+    }
+
+    /// What is new in some vectors, orthonormal under the mass, and its momenta.
+    fn orthonormal(&self, mut vectors: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+        let mut momenta = self.momenta(&vectors);
         // Twice is enough (Kahan, Parlett).
         for _ in 0..2 {
-            let shares: Vec<f64> = self.basis.iter().map(|known| dot(known, &momentum)).collect();
-            for (known, share) in self.basis.iter().zip(shares) {
-                for (v, k) in vector.iter_mut().zip(known) {
-                    *v -= share * k;
+            let whole = zip(&vectors, &momenta).map(|(v, m)| dot(v, m).sqrt()).collect::<Vec<_>>();
+            take_away(&self.basis, &products(&self.basis, &momenta), &mut vectors);
+            momenta = self.momenta(&vectors);
+            let rest = zip(zip(vectors, momenta), whole);
+            (vectors, momenta) = (Vec::new(), Vec::new());
+            for ((mut vector, mut momentum), whole) in rest {
+                for (known, its_momentum) in zip(&vectors, &momenta) {
+                    let share = dot(known, &momentum);
+                    add_times(&mut vector, -share, known);
+                    add_times(&mut momentum, -share, its_momentum);
                 }
+                let length = dot(&vector, &momentum).sqrt();
+                if length.is_nan() || length <= 1e-12 * whole {
+                    continue;
+                }
+                vector.iter_mut().chain(&mut momentum).for_each(|x| *x /= length);
+                vectors.push(vector);
+                momenta.push(momentum);
             }
-            self.masses.multiply(&vector, &mut momentum);
         }
-        let length = dot(&vector, &momentum).sqrt();
-        if length.is_nan() || length <= 1e-12 * first {
-            return None;
-        }
-        for (v, m) in vector.iter_mut().zip(&mut momentum) {
-            *v /= length;
-            *m /= length;
-        }
-        Some((vector, momentum))
+        (vectors, momenta)
     }
 
     /// One more block; whether the space grew.

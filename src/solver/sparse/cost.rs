@@ -62,19 +62,26 @@ pub struct Cost {
     pub other_bytes: f64,
 }
 
+fn for_factors(bytes: f64) -> String {
+    match bytes {
+        0.0 => String::new(),
+        _ => format!(", {:.3} GB of it for the factors of the stiffness", 1e-9 * bytes),
+    }
+}
+
 /// A solution that does not fit into memory.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
-    "{what} of {unknowns} unknowns needs {:.3} GB of memory, {:.3} GB of it for the factors of the \
-     stiffness, and may take {:.3} GB ({limit_from}); take a coarser mesh (edges twice as long need \
-     about a tenth){fewer_nodes}{other}, or allow more with --memory GB",
-    1e-9 * bytes, 1e-9 * factor_bytes, 1e-9 * limit
+    "{what} of {unknowns} unknowns needs {:.3} GB of memory{}, and may take {:.3} GB ({limit_from}); take a \
+     coarser mesh (edges twice as long need about a tenth){fewer_nodes}{other}, or allow more with --memory GB",
+    1e-9 * bytes, for_factors(*factor_bytes), 1e-9 * limit
 )]
 pub struct TooLarge {
     /// Such as "statics".
     pub what: &'static str,
     pub unknowns: usize,
     pub bytes: f64,
+    /// None of factors that are there already.
     pub factor_bytes: f64,
     /// Bytes that may be used.
     pub limit: f64,
