@@ -25,6 +25,15 @@ const WITHOUT_BEARING: f64 = 1e-4;
 /// nodes, stays where it is in directions in which nothing holds it. Its force is nothing in equilibrium.
 const HINT: f64 = 1e-8;
 
+/// Unbalanced loads of so many times what is allowed may be what rounding leaves.
+const ROUNDED: f64 = 1e2;
+
+/// Part of the first trust radius within which another node that touches is looked beyond.
+const NEAR: f64 = 1e-2;
+
+/// Part of the first trust radius below which no step goes anywhere.
+const LEAST: f64 = 1e-6;
+
 /// Gradient and stiffness over metres, as [`Search::scaled`] gives them.
 pub(super) struct Scaled {
     gradient: DVector<f64>,
@@ -357,7 +366,12 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             noise += here.without_energy * step.norm();
             let quieter = self.residual(&there) < residual;
-            let accepted = change < (1e-4 * predicted).min(-noise) || (change <= noise && quieter);
+            let rounded = residual <= ROUNDED * allowed;
+            // A load that grows on the way down, by less than energies are known to: what changes as foretold is no rounding.
+            let falls =
+                !rounded && change < 0.0 && (change - predicted).abs() <= 0.5 * predicted.abs();
+            let accepted =
+                change < (1e-4 * predicted).min(-noise) || (change <= noise && quieter) || falls;
             if accepted {
                 if change < 0.75 * predicted && step.norm() > 0.9 * radius {
                     radius *= 3.0;
@@ -365,14 +379,43 @@ impl<'a, 'b> Search<'a, 'b> {
                 self.spare = Some(std::mem::replace(here, there));
                 self.check_travel(here)?;
             } else {
+                if !assembly.seats.is_empty() && step.norm() <= NEAR * self.step_scale() {
+                    // Where a node comes to touch the slope has a bend: beyond it Newton's next step comes back to the bottom.
+                    let next = self.newton_step(&self.scaled(&there), step.norm());
+                    let beyond = self.evaluate(&self.stepped(&there.at, &next))?;
+                    if beyond.energy - here.energy <= noise
+                        && self.residual(&beyond) < 0.5 * residual
+                    {
+                        self.spare = Some(std::mem::replace(here, beyond));
+                        continue;
+                    }
+                    self.spare = Some(beyond);
+                }
                 self.spare = Some(there);
-                if residual <= 1e2 * allowed && change.abs() <= noise {
+                if rounded && change.abs() <= noise {
                     // Rounding, not the position, is what is left.
                     return Ok(());
                 }
                 radius = 0.25 * radius.min(step.norm());
+                if change.abs() <= noise
+                    && radius <= LEAST * self.step_scale()
+                    && self.is_falling(here)
+                {
+                    // On a saddle, which is left along its slope: energy cannot tell, and the load grows on the way down.
+                    return Ok(());
+                }
             }
         }
+    }
+
+    /// # Errors
+    /// What was left of saddles and came to none but another one.
+    pub(super) fn check_balance(&self, here: &Evaluation) -> Result<(), StaticsError> {
+        let (residual, allowed) = (self.residual(here), self.allowed(here));
+        if !self.model.steps.search || residual <= ROUNDED * allowed {
+            return Ok(());
+        }
+        self.give_up(here, residual, allowed)
     }
 
     /// One more step of Newton's where more than one bearing holds the bodies: a balance that rounding may already have

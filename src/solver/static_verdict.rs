@@ -285,6 +285,11 @@ impl Search<'_, '_> {
         Some((vector * length).component_div(&self.model.scale))
     }
 
+    /// Whether it stands where the stiffness against something is negative.
+    pub(super) fn is_falling(&self, here: &Evaluation) -> bool {
+        self.falling_direction(&self.modes(here)).is_some()
+    }
+
     /// Whether loads determine where everything is; `modes` are those of `here`.
     pub(super) fn determinacy(&self, here: &Evaluation, mut modes: Modes) -> Determinacy {
         if !self.model.assembly.seats.is_empty() {

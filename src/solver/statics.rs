@@ -364,6 +364,7 @@ fn solve_directly<'b>(
         search.descend(&mut here)?;
         modes = search.modes(&here);
     }
+    search.check_balance(&here)?;
     search.check_seats(&here, FAR)?;
     search.check_balls(&here)?;
     solution(&mut search, here, modes)
