@@ -35,8 +35,6 @@ pub enum Penalty {
 
 /// K of 2.2.4 between outer race and steel, N/m.
 pub const STEEL_NODE_STIFFNESS: f64 = 2.5e8;
-/// K of 2.2.4 between outer race and rubber, N/m.
-pub const RUBBER_NODE_STIFFNESS: f64 = 5e6;
 /// Share of a node at which an area-weighted stiffness equals the printed one, m². The source states
 /// no mesh; 1 mm² stands for bores meshed at about a millimetre.
 pub const REFERENCE_AREA: f64 = 1e-6;

@@ -7,7 +7,7 @@ use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, HertzModel};
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::resolved::RaceDimensions;
 use bearing_dynamics::scene::statics::kinematic_ratios;
-use bearing_dynamics::scene::{Cage, CageGuidance, Scene};
+use bearing_dynamics::scene::{Cage, Scene};
 use bearing_dynamics::solver::statics::{COORDINATE_NAMES, Condition, StaticProblem};
 use serde_json::{Map, Value, json};
 
@@ -133,12 +133,7 @@ fn cage(cage: &Cage) -> Echo {
         echo.insert("mass".into(), quantity("mass", mass, "kg")?);
     }
     if let Some(guidance) = cage.guidance {
-        let name = match guidance {
-            CageGuidance::OuterRace => "outer-race",
-            CageGuidance::InnerRace => "inner-race",
-            CageGuidance::Balls => "balls",
-        };
-        echo.insert("guidance".into(), json!(name));
+        echo.insert("guidance".into(), json!(guidance.name()));
     }
     Ok(Value::Object(echo))
 }

@@ -1,6 +1,6 @@
 //! What was understood of the bearing in motion, as JSON with units.
 
-use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Guidance, Pocket};
+use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
@@ -200,11 +200,7 @@ fn cage(body: &CageBody) -> Echo {
             Pocket::Cylindrical => "cylindrical",
             Pocket::Spherical => "spherical",
         },
-        "guidance": match contacts.guidance {
-            Guidance::OuterRace => "outer-race",
-            Guidance::InnerRace => "inner-race",
-            Guidance::Balls => "balls",
-        },
+        "guidance": contacts.guidance.name(),
         "pocket_radius": quantity("pocket_radius", contacts.pocket_radius, "m")?,
         "pocket_pitch_radius":
             quantity("pocket_pitch_radius", contacts.pocket_pitch_radius, "m")?,

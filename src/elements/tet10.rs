@@ -14,11 +14,6 @@ use crate::kinematics::vec3::{Vec3, add_scaled, cross, scale};
 /// Corners that each mid-edge node lies between, from node 5 on.
 pub const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 
-/// Nodes of the faces: three corners as in [`super::tet4::FACES`], then the middles of the edges
-/// between the first and second, second and third, third and first.
-pub const FACES: [[usize; 6]; 4] =
-    [[1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6], [0, 1, 3, 4, 8, 7], [0, 2, 1, 6, 5, 4]];
-
 /// Quadrature points of the stiffness.
 pub const POINTS: usize = 4;
 

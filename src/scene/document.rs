@@ -385,6 +385,16 @@ impl Document {
         SceneError::new(self.place_of_key(path), &self.shown(path, self.is_named(path)), problem)
     }
 
+    /// The same of a key that has no place here.
+    pub(crate) fn refused(
+        &self,
+        path: &str,
+        reason: impl Into<String>,
+        advice: impl Into<String>,
+    ) -> SceneError {
+        self.error(path, Problem::refused(reason, advice))
+    }
+
     pub(super) fn error_at(&self, offset: usize, path: &str, problem: Problem) -> SceneError {
         self.source.error(offset, path, problem)
     }

@@ -41,6 +41,12 @@ fn prefix(key: &str) -> String {
     if key.is_empty() { String::new() } else { format!("{}: ", shortened(key)) }
 }
 
+impl Problem {
+    pub(crate) fn refused(reason: impl Into<String>, advice: impl Into<String>) -> Problem {
+        Problem::Refused { reason: reason.into(), advice: advice.into() }
+    }
+}
+
 impl SceneError {
     pub(crate) fn new(place: Place, key: &str, problem: Problem) -> SceneError {
         SceneError { place, key: key.to_string(), problem: Box::new(problem) }
@@ -181,8 +187,6 @@ pub enum Problem {
     #[error("given together with `{rival}`. Allowed: exactly one of the two. Hint: {advice}")]
     Exclusive { rival: String, advice: String },
     #[error("refused: {reason}. Hint: {advice}")]
-    NotApplicable { reason: &'static str, advice: String },
-    #[error("refused: {reason}. Hint: {advice}")]
     Refused { reason: String, advice: String },
 
     #[error(
@@ -226,7 +230,7 @@ pub enum Problem {
     GrooveReachesAxis { groove: f64, race: f64 },
     #[error(
         "{count} balls of radius {} do not fit on a pitch radius of {}. Allowed: up to {largest} balls. \
-         Hint: fewer or smaller balls",
+         Hint: fewer or smaller balls, or check the races' radii",
         mm(*.ball), mm(*.pitch)
     )]
     BallsDoNotFit { count: usize, largest: usize, ball: f64, pitch: f64 },

@@ -129,9 +129,9 @@ pub(super) const KEYS: &[Key] = &[
     quantity("bearing.outer_race.material.density", DENSITY, STEEL_DENSITY, "Density.").hint(DENSITY_HINT),
 
     quantity("bearing.ball.radius", RADIUS, BALL_NEED, "Ball radius.").group("size")
-        .hint("give a positive radius"),
+        .hint("was a diameter given, or a wrong unit?"),
     quantity("bearing.ball.diameter", RADIUS, BALL_NEED, "Ball diameter.").group("size")
-        .hint("give a positive diameter"),
+        .hint("is its unit right?"),
     quantity("bearing.ball.material.youngs_modulus", MODULUS, STEEL_MODULUS, "Modulus of elasticity.").hint(MODULUS_HINT),
     Key::new("bearing.ball.material.poisson_ratio", POISSON, STEEL_POISSON, "Poisson's ratio.").hint(POISSON_HINT),
     quantity("bearing.ball.material.density", DENSITY, STEEL_DENSITY, "Density.").hint(DENSITY_HINT),

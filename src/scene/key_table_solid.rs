@@ -202,7 +202,7 @@ pub(super) const TABLES: &[Table] = &[
         "[solid.material]\nyoungs_modulus = \"210 GPa\"\npoisson_ratio = 0.3\ndensity = \"7850 kg/m^3\""),
     list_table("solid.material.maxwell", "Maxwell elements of a rubber; without them, and without `table`, it is the network alone. As many as wanted.",
         "[[solid.material.maxwell]]\ngamma = 0.492\nrelaxation_time = \"10 s\""),
-    table("solid.harmonic", "Small vibrations about rest of a solid of rubber, without inertia: complex stiffness against the motion of a set, K_d (3.13) and η_d (3.14) over frequency.",
+    table("solid.harmonic", "Small vibrations about rest of a solid of rubber, without inertia: complex stiffness K′ + i K″ against the motion of a set, K_d = √(K′² + K″²) (3.13) and η_d = K″/K_d (3.14), the sine of the loss angle, over frequency.",
         "[solid.harmonic]\nset = \"inner\"\naxis = \"z\"\nfrequencies = [\"0.1 Hz\", \"10 Hz\"]"),
     table("solid.mesh", "Tetrahedra from a file or from a generator. Faults are refused, not repaired, unless `repair` says so.",
         "[solid.mesh]\nfile = \"part.msh\"\nunit = \"mm\""),

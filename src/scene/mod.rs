@@ -76,8 +76,8 @@ pub use housing::HousedScene;
 pub use resolve::resolve;
 pub use resolve_solid::resolve_subject;
 pub use resolved::{
-    Assumption, Cage, CageGuidance, CageInRun, DefaultUsed, Dimensions, Dynamics, Plot,
-    RaceDimensions, RunPlot, RunSettings, Scene,
+    Assumption, Cage, CageInRun, DefaultUsed, Dimensions, Dynamics, Plot, RaceDimensions, RunPlot,
+    RunSettings, Scene,
 };
 pub use schema::json_schema;
 pub use solid::{SolidScene, Subject};

@@ -202,7 +202,7 @@ X of races, balls and cage counts from where the bearing sits (`inner_at`) in al
 dents.
 
 Several bearings run in `quasi-static` housings too, one equilibrium after the other; an outer race with `axial = \"free\"` has one only where nothing pushes it
-along its axis, though a `reduced` run slides it.
+along its axis, though a `reduced` run that starts in nominal positions slides it.
 
 ";
 

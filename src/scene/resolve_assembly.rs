@@ -106,8 +106,8 @@ fn refuse_inertia(document: &Document, scene: &AssemblyScene) -> Result<(), Scen
         ("body.unbalance", UNBALANCE),
     ];
     let refused = |reason: &str| {
-        let advice = "leave it out, or write method = \"explicit\" in [housing]".into();
-        Problem::Refused { reason: reason.into(), advice }
+        let advice = "leave it out, or write method = \"explicit\" in [housing]";
+        Problem::refused(reason, advice)
     };
     for body in &scene.bodies {
         let scoped = document.scoped(&body.name);
@@ -127,7 +127,7 @@ fn refuse_strange_names(document: &Document) -> Result<(), SceneError> {
         if document.names(table).next().is_none() && document.first_below(table).is_some() {
             let reason = format!("a {table} has a name");
             let advice = format!("write [{table}.NAME]");
-            return Err(document.error(table, Problem::Refused { reason, advice }));
+            return Err(document.refused(table, reason, advice));
         }
     }
     for table in ["inner_race", "outer_race", "housing", "solid"] {
@@ -144,12 +144,8 @@ fn refuse_strange_names(document: &Document) -> Result<(), SceneError> {
                 document.names(table).find(|n| document.names(other).any(|o| o == *n))
             {
                 let reason = format!("a {other} has this name as well");
-                let advice = "names stand before columns: give each thing its own".into();
-                return Err(document.error_of_name(
-                    table,
-                    twice,
-                    Problem::Refused { reason, advice },
-                ));
+                let advice = "names stand before columns: give each thing its own";
+                return Err(document.error_of_name(table, twice, Problem::refused(reason, advice)));
             }
         }
     }
@@ -191,9 +187,9 @@ fn bearing(
     };
     let (carriers, on) = carriers;
     if on[0].is_some() && on[0] == on[1] {
-        let reason = "both races would sit on this body".into();
-        let advice = "write outer_on = \"outer_race\", or another body".into();
-        return Err(scoped.error("bearing.outer_on", Problem::Refused { reason, advice }));
+        let reason = "both races would sit on this body";
+        let advice = "write outer_on = \"outer_race\", or another body";
+        return Err(scoped.refused("bearing.outer_on", reason, advice));
     }
     for (race, body) in OWN_RACES.iter().zip(on) {
         let Some(body) = body else { continue };
@@ -202,7 +198,7 @@ fn bearing(
         if let Some(key) = scoped.given_keys().map(|key| key.path).find(|path| of_race(path)) {
             let reason = format!("this race sits on body.{}", bodies[body]);
             let advice = format!("write loads and motions in [body.{}]", bodies[body]);
-            return Err(scoped.error(key, Problem::Refused { reason, advice }));
+            return Err(scoped.refused(key, reason, advice));
         }
         if *race == OWN_RACES[0] {
             scoped.take_over(&document.scoped(bodies[body]), "body.speed", "inner_race.speed");
@@ -217,8 +213,8 @@ fn bearing(
     };
     if let (Some(body), Some(_)) = (on[1], &housing) {
         let reason = format!("the outer race sits on body.{}, not in a bore", bodies[body]);
-        let advice = "leave out outer_on, or the housing".into();
-        return Err(scoped.error("bearing.outer_on", Problem::Refused { reason, advice }));
+        let advice = "leave out outer_on, or the housing";
+        return Err(scoped.refused("bearing.outer_on", reason, advice));
     }
     if let Some(PlacedHousing { settings, solid }) = housing.as_mut().filter(|_| name.is_some()) {
         for used in settings.defaults_used.iter_mut().chain(&mut solid.defaults_used) {
@@ -252,8 +248,8 @@ fn carrier(
             (0, 0 | 1) | (1, _) => Ok(None),
             _ => {
                 let reason = format!("there are several bodies: {}", bodies.join(", "));
-                let advice = "say which one carries the inner race, or \"inner_race\"".into();
-                Err(document.error(key, Problem::Refused { reason, advice }))
+                let advice = "say which one carries the inner race, or \"inner_race\"";
+                Err(document.refused(key, reason, advice))
             }
         };
     };
@@ -303,9 +299,9 @@ fn refuse_mixed_methods(document: &Document, bearings: &[PlacedBearing]) -> Resu
     let first = bearings.iter().find_map(method);
     let other = bearings.iter().find(|placed| method(placed).is_some_and(|m| Some(m) != first));
     let Some(PlacedBearing { name: Some(name), .. }) = other else { return Ok(()) };
-    let reason = "this housing and another are solved in different ways".into();
-    let advice = "give all the same method, in [housing]".into();
-    Err(document.scoped(name).error("housing.method", Problem::Refused { reason, advice }))
+    let reason = "this housing and another are solved in different ways";
+    let advice = "give all the same method, in [housing]";
+    Err(document.scoped(name).error("housing.method", Problem::refused(reason, advice)))
 }
 
 /// Bodies whose columns would be called as those of a race or a cage.
@@ -319,8 +315,8 @@ fn refuse_shared_columns(document: &Document, scene: &AssemblyScene) -> Result<(
             let of =
                 placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
             let reason = format!("columns of the {part}{of} begin with this name");
-            let advice = "choose another name, such as hub".into();
-            let problem = Problem::Refused { reason, advice };
+            let advice = "choose another name, such as hub";
+            let problem = Problem::refused(reason, advice);
             return Err(document.error_of_name("body", &body.name, problem));
         }
     }
@@ -340,7 +336,7 @@ fn refuse_free_bodies(document: &Document, scene: &AssemblyScene) -> Result<(), 
             .iter()
             .any(|spring| spring.ends.iter().any(|end| end.at == SpringAt::Body(index)));
         if !carries && !joined {
-            let reason = "nothing is joined to this body".into();
+            let reason = "nothing is joined to this body";
             let advice = format!(
                 "name it in a bearing (inner_on = {0:?}) or a spring (from = {0:?}), or leave it out",
                 body.name
@@ -348,7 +344,7 @@ fn refuse_free_bodies(document: &Document, scene: &AssemblyScene) -> Result<(), 
             return Err(document.error_of_name(
                 "body",
                 &body.name,
-                Problem::Refused { reason, advice },
+                Problem::refused(reason, advice),
             ));
         }
     }

@@ -3,7 +3,7 @@
 use crate::ch2_housing::elastomer::eight_chain::ChainPull;
 use crate::mesh::generate::{Bushing, BushingMesh, Part, bushing as mesh_of};
 use crate::scene::assembly::{BushingInElements, BushingOfSpring, BushingStepping};
-use crate::scene::error::{Problem, SceneError};
+use crate::scene::error::SceneError;
 use crate::scene::resolve::Reader;
 use crate::scene::resolve_contact::refuse_strangers;
 use crate::scene::resolve_rubber::rubber;
@@ -26,13 +26,10 @@ pub(super) fn bushing(
     if document.first_below(TABLE).is_none() {
         return Ok(None);
     }
-    let refused = |key: &str, reason: String, advice: &str| {
-        document.error(key, Problem::Refused { reason, advice: advice.into() })
-    };
     for part in ["spring.stiffness", "spring.maxwell"] {
         if let Some(given) = document.first_below(part) {
-            let reason = "the spring is a bushing, which says how stiff it is".into();
-            return Err(refused(given, reason, "leave this or [spring.NAME.bushing] out"));
+            let reason = "the spring is a bushing, which says how stiff it is";
+            return Err(document.refused(given, reason, "leave this or [spring.NAME.bushing] out"));
         }
     }
     let size = |key: &str| reader.required_number(&format!("{TABLE}.{key}"), " of a bushing");
@@ -41,9 +38,9 @@ pub(super) fn bushing(
     let thickness = 0.5 * (outer_diameter - inner_diameter);
     let thick = thickness > 0.0;
     if !thick {
-        let reason = "it is no larger than the inner diameter".into();
+        let reason = "it is no larger than the inner diameter";
         let advice = "give a larger one; both are those of the rubber";
-        return Err(refused("spring.bushing.outer_diameter", reason, advice));
+        return Err(document.refused("spring.bushing.outer_diameter", reason, advice));
     }
     let [usual_radial, usual_axial] = usual_cells(thickness, length);
     let around = reader.number("spring.bushing.cells.around").map_or(0, |count| count as usize);
@@ -63,7 +60,7 @@ pub(super) fn bushing(
         let reason = format!("{around} × {radial} × {axial} are {all} cells");
         let advice = "take at most 1500, each is five elements of ten nodes; finer ones are for [solid.mesh] with \
                       `generate = \"bushing\"`";
-        return Err(refused("spring.bushing.cells", reason, advice));
+        return Err(document.refused("spring.bushing.cells", reason, advice));
     }
     let mesh = BushingMesh { around, radial, axial, grading: GRADING, part: Part::Quarter };
     let body = Bushing { inner_diameter, thickness, length };
@@ -73,8 +70,9 @@ pub(super) fn bushing(
     let material = rubber(reader, TABLE, table, ChainPull::FiveTerms, because)?;
     let (misses, elements) = ([0.0; 4], None);
     let mut of = BushingOfSpring { body, mesh, material, table, fastest, misses, elements };
-    let spring = fitted(&of)
-        .map_err(|(key, error)| refused(key, error, "check its dimensions, cells and rubber"))?;
+    let spring = fitted(&of).map_err(|(key, error)| {
+        document.refused(key, error, "check its dimensions, cells and rubber")
+    })?;
     of.misses = spring.misses;
     let method = reader.choice("spring.bushing.method").unwrap_or("reduced");
     refuse_strangers(reader, ("method", method), OF_METHODS)?;

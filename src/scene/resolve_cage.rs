@@ -6,7 +6,7 @@ use crate::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::Reader;
 use crate::scene::resolve_dynamics::{check_inertia, millimetres};
-use crate::scene::resolved::{Cage, CageGuidance, CageInRun, Dimensions};
+use crate::scene::resolved::{Cage, CageInRun, Dimensions};
 use crate::scene::value::Checked;
 use crate::solver::dynamics::model::CageBody;
 use std::f64::consts::PI;
@@ -18,9 +18,9 @@ pub(crate) fn cage(
     sizes: &Dimensions,
 ) -> Result<Option<Cage>, SceneError> {
     let guidance = reader.choice_if_given("bearing.cage.guidance").map(|word| match word {
-        "outer-race" => CageGuidance::OuterRace,
-        "inner-race" => CageGuidance::InnerRace,
-        _ => CageGuidance::Balls,
+        "outer-race" => Guidance::OuterRace,
+        "inner-race" => Guidance::InnerRace,
+        _ => Guidance::Balls,
     });
     let cage = Cage {
         pocket_radius: reader.given_number("bearing.cage.pocket_radius"),
@@ -88,7 +88,7 @@ fn hold_against_races(
             1.0,
             shoulder("outer_race"),
             sizes.outer_race.radius,
-            CageGuidance::OuterRace,
+            Guidance::OuterRace,
             ["less than", "the outer race's shoulder radius", "the outer race's groove radius"],
         ),
         (
@@ -97,7 +97,7 @@ fn hold_against_races(
             -1.0,
             shoulder("inner_race"),
             sizes.inner_race.radius,
-            CageGuidance::InnerRace,
+            Guidance::InnerRace,
             ["more than", "the inner race's shoulder radius", "the inner race's groove radius"],
         ),
     ];
@@ -148,7 +148,7 @@ pub(crate) fn in_run(
     let Some(cage) = cage else {
         return Ok(CageInRun::LeftOut("the scene has no cage".to_string()));
     };
-    let needs_clearance = cage.guidance.is_some_and(|guidance| guidance != CageGuidance::Balls);
+    let needs_clearance = cage.guidance.is_some_and(|guidance| guidance != Guidance::Balls);
     let missing: Vec<&str> = [
         ("pocket_radius", cage.pocket_radius.is_none()),
         ("inner_radius", cage.inner_radius.is_none()),
@@ -195,11 +195,6 @@ pub(crate) fn in_run(
     let pocket = match reader.choice("bearing.cage.pocket") {
         Some("spherical") => Pocket::Spherical,
         _ => Pocket::Cylindrical,
-    };
-    let guidance = match guidance {
-        CageGuidance::OuterRace => Guidance::OuterRace,
-        CageGuidance::InnerRace => Guidance::InnerRace,
-        CageGuidance::Balls => Guidance::Balls,
     };
     let contacts = CageContacts {
         pocket,
@@ -280,7 +275,7 @@ fn force(reader: &mut Reader) -> Result<Option<CageForce>, SceneError> {
                 ("`penalty` takes a stiffness in N/m", "2e8 N/m")
             };
             let advice = format!("write stiffness = \"{example}\", or choose the other law");
-            Err(reader.document.error(path, Problem::NotApplicable { reason, advice }))
+            Err(reader.document.refused(path, reason, advice))
         }
     }
 }

@@ -42,7 +42,7 @@ pub(super) fn refuse_strangers(
                 "law" => "the chosen law does not use it",
                 _ => "the chosen method does not use it",
             };
-            return Err(reader.document.error(key, Problem::NotApplicable { reason, advice }));
+            return Err(reader.document.refused(key, reason, advice));
         }
     }
     Ok(())
@@ -91,8 +91,7 @@ fn curve(
             Some(_) => {
                 let name = path.rsplit('.').next().unwrap_or(path);
                 let advice = format!("write {name} = {example}");
-                let problem = Problem::NotApplicable { reason: unit, advice };
-                return Err(reader.document.error(path, problem));
+                return Err(reader.document.refused(path, unit, advice));
             }
             None if kind == 1 => {
                 return Err(
@@ -123,8 +122,8 @@ fn points(reader: &Reader, because: &str) -> Result<Vec<[f64; 2]>, SceneError> {
     };
     if points.first().is_some_and(|first| first[0] == 0.0 && first[1] != 0.0) {
         let reason = "friction at rest has no direction";
-        let advice = "begin with [\"0 m/s\", 0.0] or with a sliding speed above 0".to_string();
-        return Err(reader.document.error(path, Problem::NotApplicable { reason, advice }));
+        let advice = "begin with [\"0 m/s\", 0.0] or with a sliding speed above 0";
+        return Err(reader.document.refused(path, reason, advice));
     }
     Ok(points.clone())
 }
@@ -204,9 +203,8 @@ fn dent(
             plain(1e3 * widest)
         );
         let advice =
-            "its law is that of a surface that is flat but for the dent; give a smaller diameter"
-                .into();
-        return Err(item.error("diameter", Problem::Refused { reason, advice }));
+            "its law is that of a surface that is flat but for the dent; give a smaller diameter";
+        return Err(item.error("diameter", Problem::refused(reason, advice)));
     }
     let depth = item_number(item, "depth").unwrap_or_else(|| {
         let depth = USUAL_DEPTH * diameter;

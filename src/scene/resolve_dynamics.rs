@@ -153,7 +153,7 @@ fn outer_rotation(reader: &Reader, motion: &str) -> Result<Rotation, SceneError>
         let reason = "6-dof is turned by a torque, 5-dof at a speed";
         let advice =
             format!("write {} instead, or the other motion", own.replace("outer_race.", ""));
-        return Err(reader.document.error(other, Problem::NotApplicable { reason, advice }));
+        return Err(reader.document.refused(other, reason, advice));
     }
     let profile = reader.profile(own).unwrap_or(Profile::ZERO);
     Ok(if motion == "5-dof" { Rotation::Speed(profile) } else { Rotation::Torque(profile) })
@@ -180,8 +180,8 @@ fn refuse_motion(reader: &Reader) -> Result<(), SceneError> {
         None => Ok(()),
         Some(key) => {
             let reason = "the outer race is fixed";
-            let advice = "write motion = \"5-dof\" in [outer_race], or leave this out".to_string();
-            Err(reader.document.error(key, Problem::NotApplicable { reason, advice }))
+            let advice = "write motion = \"5-dof\" in [outer_race], or leave this out";
+            Err(reader.document.refused(key, reason, advice))
         }
     }
 }
@@ -428,10 +428,8 @@ fn steps(reader: &mut Reader) -> Result<Steps, SceneError> {
         None => Integrator::Rosenbrock,
     };
     let estimates = integrator != Integrator::RungeKutta;
-    let refuse = |key: &str, reason, advice: &str| {
-        let problem = Problem::NotApplicable { reason, advice: advice.to_string() };
-        Err(reader.document.error(key, problem))
-    };
+    let refuse =
+        |key: &str, reason, advice: &str| Err(reader.document.refused(key, reason, advice));
     if accuracy.is_some() && !estimates {
         let reason = "the integrator rk4 has no estimate of its error";
         let advice =

@@ -145,11 +145,11 @@ fn groove_key(reader: &Reader, race: &str) -> String {
 
 fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
     if reader.is_given("bearing.contact_angle") {
-        let problem = Problem::NotApplicable {
-            reason: "in a deep-groove bearing the contact angle emerges from the loads",
-            advice: "leave it out, or set kind = \"angular-contact\"".to_string(),
-        };
-        return Err(reader.document.error("bearing.contact_angle", problem));
+        return Err(reader.document.refused(
+            "bearing.contact_angle",
+            "in a deep-groove bearing the contact angle emerges from the loads",
+            "leave it out, or set kind = \"angular-contact\"",
+        ));
     }
     let through = deep_groove_through(reader)?;
     let (ball_given, clearance_given) = (given_ball(reader), given_clearance(reader));
@@ -289,11 +289,10 @@ fn deep_groove_through(reader: &mut Reader) -> Result<ClearanceThrough, SceneErr
 fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
     for path in [INNER, OUTER] {
         if reader.is_given(path) {
-            let problem = Problem::NotApplicable {
-                reason: "in an angular-contact bearing it follows from pitch radius, ball, groove and angle",
-                advice: "leave it out, or set kind = \"deep-groove\"".to_string(),
-            };
-            return Err(reader.document.error(path, problem));
+            return Err(reader.document.refused(path,
+                "in an angular-contact bearing it follows from pitch radius, ball, groove and angle",
+                "leave it out, or set kind = \"deep-groove\"",
+            ));
         }
     }
     let because = " (an angular-contact bearing needs it)";

@@ -79,8 +79,7 @@ fn not_applicable<T>(
     reason: &'static str,
     advice: &str,
 ) -> Result<T, SceneError> {
-    let problem = Problem::NotApplicable { reason, advice: advice.to_string() };
-    Err(document.error(key, problem))
+    Err(document.refused(key, reason, advice))
 }
 
 /// What the bore's friction is; `None` where there is none, or none that could push.
@@ -289,7 +288,7 @@ fn fit(reader: &mut Reader, bearing: &Scene) -> Result<FitSize, SceneError> {
     let radius = reader.given_number("housing.outer_radius");
     match (radial.or(diametral), radius) {
         (Some((key, _)), Some(_)) => {
-            let advice = "keep the fit or the radius; each follows from the other".to_string();
+            let advice = "keep the fit or the radius; each follows from the other".into();
             Err(document
                 .error(key, Problem::Exclusive { rival: "housing.outer_radius".into(), advice }))
         }

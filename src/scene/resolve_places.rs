@@ -32,7 +32,7 @@ pub(super) fn refuse_shared_places(
                     return Err(document.error_of_name(
                         "bearing",
                         name,
-                        Problem::Refused { reason, advice },
+                        Problem::refused(reason, advice),
                     ));
                 }
             }
@@ -69,9 +69,8 @@ pub(super) fn refuse_races_apart(
             1e3 * allowed
         );
         let advice = "places count from the centre of the body that carries a race: give both the same `inner_at` and \
-                      `outer_at`, or leave `outer_at` out"
-            .into();
-        let problem = Problem::Refused { reason, advice };
+                      `outer_at`, or leave `outer_at` out";
+        let problem = Problem::refused(reason, advice);
         return Err(match &placed.name {
             Some(name) => document.error_of_name("bearing", name, problem),
             None => document.error("bearing.outer_at", problem),

@@ -4,7 +4,7 @@ use crate::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
 use crate::ch2_housing::elastomer::maxwell::Maxwell;
 use crate::ch2_housing::elastomer::{Elastomer, ElastomerError, named};
 use crate::scene::document::Document;
-use crate::scene::error::{Problem, SceneError};
+use crate::scene::error::SceneError;
 use crate::scene::keys;
 use crate::scene::resolve::Reader;
 use crate::scene::resolve_solid::{item_number, missing};
@@ -65,7 +65,7 @@ pub(super) fn refuse_rubber(document: &Document) -> Result<(), SceneError> {
     }
     let reason = "a housing of rubber is not built";
     let advice = "leave `law` out, or take the solid by itself: without [bearing] and [housing]";
-    Err(document.error(LAW, Problem::NotApplicable { reason, advice: advice.to_string() }))
+    Err(document.refused(LAW, reason, advice))
 }
 
 /// The law of the material, and its density (kg/m³).
@@ -75,8 +75,7 @@ pub(super) fn material(reader: &mut Reader) -> Result<(Law, f64), SceneError> {
         if let Some(key) = OF_RUBBER.iter().find_map(|part| document.first_below(part)) {
             let reason = "it belongs to the law \"elastomer\"";
             let advice = "write `law = \"elastomer\"` in [solid.material], or leave it out";
-            let problem = Problem::NotApplicable { reason, advice: advice.to_string() };
-            return Err(document.error(key, problem));
+            return Err(document.refused(key, reason, advice));
         }
         let mut number = |key: &str, usual: f64| {
             reader.number(&format!("solid.material.{key}")).unwrap_or(usual)
@@ -89,8 +88,7 @@ pub(super) fn material(reader: &mut Reader) -> Result<(Law, f64), SceneError> {
     }
     for (key, reason) in NOT_OF_RUBBER {
         if let Some(given) = document.first_below(key) {
-            let problem = Problem::NotApplicable { reason, advice: "leave it out".to_string() };
-            return Err(document.error(given, problem));
+            return Err(document.refused(given, reason, "leave it out"));
         }
     }
     let table = reader.choice_if_given("solid.material.table");
@@ -152,16 +150,13 @@ pub(super) fn rubber(
         (Some(bulk), _) if bulk < modulus => {
             let reason =
                 "rubber hardly changes its volume, and this is less than C_R of its network";
-            let advice = "give at least C_R, usually 100 times that and more".to_string();
-            let problem = Problem::NotApplicable { reason, advice };
-            return Err(document.error("solid.material.bulk_modulus", problem));
+            let advice = "give at least C_R, usually 100 times that and more";
+            return Err(document.refused("solid.material.bulk_modulus", reason, advice));
         }
         (Some(bulk), _) if bulk > MOST_BULK_RATIO * modulus => {
             let reason = "no rubber resists a change of volume as much, and rounding takes the digits of what is left";
-            let advice =
-                "give at most a million times C_R; many rubbers have 2000 MPa, a thousand times that".into();
-            let problem = Problem::NotApplicable { reason, advice };
-            return Err(document.error("solid.material.bulk_modulus", problem));
+            let advice = "give at most a million times C_R; many rubbers have 2000 MPa, a thousand times that";
+            return Err(document.refused("solid.material.bulk_modulus", reason, advice));
         }
         (Some(bulk), _) => bulk,
         (None, Some(ratio)) => ratio * modulus,
@@ -181,8 +176,8 @@ pub(super) fn rubber(
         };
         let reason = "with the inverse Langevin function the chains are straight in the undeformed rubber where it \
                       is 1 or less";
-        let advice = "take more than 1; the source has 8".to_string();
-        document.error(&path(key), Problem::NotApplicable { reason, advice })
+        let advice = "take more than 1; the source has 8";
+        document.refused(&path(key), reason, advice)
     })?;
     let (mut maxwell, list) = (Vec::new(), path("maxwell"));
     for item in document.items(&list) {
@@ -242,8 +237,8 @@ pub(super) fn check_order(
         return Ok(());
     }
     let reason = FOUR_NODES_LOCK;
-    let advice = "write `order = 2` in [solid.mesh]".to_string();
-    Err(document.error("solid.mesh.order", Problem::NotApplicable { reason, advice }))
+    let advice = "write `order = 2` in [solid.mesh]";
+    Err(document.refused("solid.mesh.order", reason, advice))
 }
 
 pub(super) const FOUR_NODES_LOCK: &str = "four-node elements of rubber lock: it hardly changes its volume, and they can hardly do anything else";

@@ -24,10 +24,8 @@ const TABLE: &str = "body.beam";
 pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError> {
     let document = reader.document;
     let Some(first) = document.first_below(TABLE) else { return Ok(None) };
-    let refused = |key: &str, reason: &str, advice: &str| {
-        let (reason, advice) = (reason.into(), advice.into());
-        Err(document.error(key, Problem::Refused { reason, advice }))
-    };
+    let refused =
+        |key: &str, reason: &str, advice: &str| Err(document.refused(key, reason, advice));
     for (part, advice) in [
         ("body.inertia", "leave it out: mass and inertia follow from segments and discs"),
         ("body.unbalance", "write [[body.NAME.beam.unbalance]] with its place"),
@@ -48,9 +46,9 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
         let inner_diameter = item_number(item, "inner_diameter").unwrap_or(0.0);
         let outer_diameter = size("outer_diameter", "outer_diameter = \"30 mm\"")?;
         if inner_diameter >= outer_diameter {
-            let reason = "it is no smaller than the outer diameter".into();
-            let advice = "give a smaller one, or leave it out".into();
-            return Err(item.error("inner_diameter", Problem::Refused { reason, advice }));
+            let reason = "it is no smaller than the outer diameter";
+            let advice = "give a smaller one, or leave it out";
+            return Err(item.error("inner_diameter", Problem::refused(reason, advice)));
         }
         let length = size("length", "length = \"400 mm\"")?;
         let (youngs_modulus, density) = (youngs_modulus, density);
@@ -108,10 +106,8 @@ pub(super) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
             _ if twice => Some("another section has this name"),
             _ => None,
         };
-        let problem = reason.map(|reason| {
-            let (reason, advice) = (reason.into(), "choose another name, such as mid".into());
-            Problem::Refused { reason, advice }
-        });
+        let problem =
+            reason.map(|reason| Problem::refused(reason, "choose another name, such as mid"));
         if let Some(problem) = unfit(&name).or(problem) {
             return Err(item.error("name", problem));
         }
@@ -147,7 +143,7 @@ fn beside(at: f64, [start, end]: [f64; 2], of: &str) -> Option<Problem> {
     }
     let [at, start, end] = [at, start, end].map(|x| 1e3 * x);
     let reason = format!("{at:.4} mm is not on {of}, which goes from {start:.4} to {end:.4} mm");
-    Some(Problem::Refused { reason, advice: "places count from the body's centre".into() })
+    Some(Problem::refused(reason, "places count from the body's centre"))
 }
 
 /// Races sit on the shafts that carry them, springs end at them.
@@ -190,10 +186,7 @@ pub(super) fn refuse_places_off_shafts(
 fn mesh(reader: &mut Reader) -> Result<Option<ShaftMesh>, SceneError> {
     let document = reader.document;
     let Some(first) = document.first_below("body.beam.mesh") else { return Ok(None) };
-    let refused = |key: &str, reason: &str, advice: &str| {
-        let (reason, advice) = (reason.into(), advice.into());
-        document.error(key, Problem::Refused { reason, advice })
-    };
+    let refused = |key: &str, reason: &str, advice: &str| document.refused(key, reason, advice);
     let order = reader.given_number("body.beam.mesh.order").ok_or_else(|| {
         let advice =
             "add order = 2 to [body.NAME.beam.mesh], or 1 for elements as the source has them";
@@ -218,10 +211,8 @@ fn mesh(reader: &mut Reader) -> Result<Option<ShaftMesh>, SceneError> {
 fn in_elements(reader: &mut Reader) -> Result<Option<RaceJoint>, SceneError> {
     const JOINT: [&str; 2] = ["body.beam.mesh.race_stiffness", "body.beam.mesh.race_damping"];
     let document = reader.document;
-    let refused = |key: &str, reason: &str, advice: &str| {
-        let (reason, advice) = (reason.into(), advice.into());
-        Err(document.error(key, Problem::Refused { reason, advice }))
-    };
+    let refused =
+        |key: &str, reason: &str, advice: &str| Err(document.refused(key, reason, advice));
     let is_meshed = document.first_below("body.beam.mesh").is_some();
     if !is_meshed || reader.choice("body.beam.mesh.method") != Some("explicit") {
         return match JOINT.into_iter().find(|key| reader.is_given(key)) {
@@ -280,9 +271,9 @@ fn in_elements(reader: &mut Reader) -> Result<Option<RaceJoint>, SceneError> {
     {
         let missing = |name: &&str| item_number(item, name).is_none_or(|value| value <= 0.0);
         if let Some(name) = inertia.into_iter().find(missing) {
-            let reason = "a disc on elements in explicit steps is a body of its own".to_string();
+            let reason = "a disc on elements in explicit steps is a body of its own";
             let advice = format!("give its `{name}`, above 0; or its outer_diameter and width");
-            return Err(item.error("mass", Problem::Refused { reason, advice }));
+            return Err(item.error("mass", Problem::refused(reason, advice)));
         }
     }
     let [stiffness, damping] = JOINT.map(|key| reader.number(key).unwrap_or(0.0));
@@ -303,9 +294,9 @@ pub(super) fn refuse_springs_on_elements(
     for placed in &scene.bearings {
         let Carrier::Body { index, .. } = placed.carriers[1] else { continue };
         if is_elements(index) {
-            let reason = "an outer race does not sit on elements in explicit steps".into();
-            let advice = "write method = \"reduced\" in [body.NAME.beam.mesh]".into();
-            let problem = Problem::Refused { reason, advice };
+            let reason = "an outer race does not sit on elements in explicit steps";
+            let advice = "write method = \"reduced\" in [body.NAME.beam.mesh]";
+            let problem = Problem::refused(reason, advice);
             return Err(match &placed.name {
                 Some(name) => document.scoped(name).error("bearing.outer_on", problem),
                 None => document.error("bearing.outer_on", problem),
@@ -323,8 +314,8 @@ pub(super) fn refuse_springs_on_elements(
                 "body {} is elements in explicit steps, which bearings alone take hold of",
                 of.name
             );
-            let advice = "write method = \"reduced\" in [body.NAME.beam.mesh]".into();
-            let problem = Problem::Refused { reason, advice };
+            let advice = "write method = \"reduced\" in [body.NAME.beam.mesh]";
+            let problem = Problem::refused(reason, advice);
             return Err(document.scoped(&spring.name).error(key, problem));
         }
     }
@@ -356,9 +347,9 @@ fn disc(item: ItemRef, at: f64, density: f64) -> Result<BeamDisc, SceneError> {
     let width = required(item, "width", "width = \"20 mm\"")?;
     let inner = given("inner_diameter").unwrap_or(0.0);
     if inner >= outer {
-        let reason = "it is no smaller than the outer diameter".into();
-        let advice = "give a smaller one, or leave it out".into();
-        return Err(item.error("inner_diameter", Problem::Refused { reason, advice }));
+        let reason = "it is no smaller than the outer diameter";
+        let advice = "give a smaller one, or leave it out";
+        return Err(item.error("inner_diameter", Problem::refused(reason, advice)));
     }
     let DiscInertia { mass, axial, transverse } =
         DiscInertia::of_ring(outer, inner, width, density);

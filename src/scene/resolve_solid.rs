@@ -55,7 +55,7 @@ pub fn resolve_subject(document: &Document) -> Result<Subject, SceneError> {
     if let Some(other) = OF_A_BEARING.iter().find_map(|part| document.first_below(part)) {
         let reason = "a bearing and a solid in one scene are coupled by a [housing] table";
         let advice = format!("add it, or leave out `{other}`, or `{solid}` and all beside it");
-        return Err(document.error(other, Problem::NotApplicable { reason, advice }));
+        return Err(document.refused(other, reason, advice));
     }
     Ok(Subject::Solid(Box::new(solid_scene(document)?)))
 }
@@ -75,7 +75,7 @@ pub(crate) fn refuse_solid(document: &Document) -> Result<(), SceneError> {
     } else {
         ("only a solid has it, and the scene holds none", "leave it out".to_string())
     };
-    Err(document.error(key, Problem::NotApplicable { reason, advice }))
+    Err(document.refused(key, reason, advice))
 }
 
 /// Where nothing has elements there are no fields.
@@ -85,7 +85,7 @@ pub(crate) fn refuse_fields(document: &Document) -> Result<(), SceneError> {
         return Ok(());
     }
     let reason = "only solids and shafts in elements have fields, and the scene holds none";
-    Err(document.error(key, Problem::NotApplicable { reason, advice: "leave it out".to_string() }))
+    Err(document.refused(key, reason, "leave it out"))
 }
 
 fn solid_scene(document: &Document) -> Result<SolidScene, SceneError> {
@@ -132,8 +132,7 @@ pub(crate) fn housing_solid(document: &Document) -> Result<SolidScene, SceneErro
             }
             false => "leave it out",
         };
-        let problem = Problem::NotApplicable { reason, advice: advice.to_string() };
-        return Err(document.error(key, problem));
+        return Err(document.refused(key, reason, advice));
     }
     refuse_rubber(document)?;
     let mut reader = Reader::new(document);
@@ -206,7 +205,7 @@ fn check_symmetry(document: &Document, held: &[Held]) -> Result<(), SceneError> 
         let advice = format!(
             "add [[solid.held]] with set = {set:?}, {axis} = true, or write part = \"whole\""
         );
-        return Err(document.error("solid.mesh.part", Problem::Refused { reason, advice }));
+        return Err(document.refused("solid.mesh.part", reason, advice));
     }
     Ok(())
 }
@@ -229,20 +228,18 @@ fn refuse_bearing_keys(document: &Document) -> Result<(), SceneError> {
         let own = OWN.iter().any(|own| key.path.starts_with(own))
             || (is_rubber(document) && key.path == "numerics.accuracy");
         if !own && !SHARED.contains(&key.path) {
-            let problem = Problem::NotApplicable { reason, advice: "leave it out".to_string() };
-            return Err(document.error(key.path, problem));
+            return Err(document.refused(key.path, reason, "leave it out"));
         }
     }
     if let Some(Checked::Choices(names)) = document.value("output.plots")
         && !names.iter().all(|name| ["series", "spectrum"].contains(name))
     {
-        let advice = "a solid has `series` and `spectrum`".to_string();
+        let advice = "a solid has `series` and `spectrum`";
         let reason = "one of these plots is a bearing's";
-        return Err(document.error("output.plots", Problem::NotApplicable { reason, advice }));
+        return Err(document.refused("output.plots", reason, advice));
     }
     if !document.sweep().is_empty() {
-        let problem = Problem::NotApplicable { reason, advice: "leave out [sweep]".to_string() };
-        return Err(document.error("sweep", problem));
+        return Err(document.refused("sweep", reason, "leave out [sweep]"));
     }
     Ok(())
 }
@@ -320,10 +317,10 @@ fn set(item: ItemRef) -> Result<SetRequest, SceneError> {
     };
     for (key, owner) in [("at", "plane"), ("high", "low")] {
         if given(key) && way != owner {
-            let problem = Problem::NotApplicable {
-                reason: "it belongs to another kind of set",
-                advice: format!("leave it out, or give `{owner}`"),
-            };
+            let problem = Problem::refused(
+                "it belongs to another kind of set",
+                format!("leave it out, or give `{owner}`"),
+            );
             return Err(item.error(key, problem));
         }
     }

@@ -175,9 +175,8 @@ pub(crate) fn source(reader: &mut Reader) -> Result<MeshSource, SceneError> {
             };
             if !["msh", "inp"].contains(&extension(&file).as_str()) {
                 let reason = "the name's ending tells the format, and this one is not known";
-                let advice = "name a Gmsh file .msh, an Abaqus or CalculiX input file .inp".into();
-                let problem = Problem::NotApplicable { reason, advice };
-                return Err(reader.document.error("solid.mesh.file", problem));
+                let advice = "name a Gmsh file .msh, an Abaqus or CalculiX input file .inp";
+                return Err(reader.document.refused("solid.mesh.file", reason, advice));
             }
             let scene = Path::new(reader.document.name());
             let folder = scene.parent().unwrap_or(Path::new(""));
@@ -224,8 +223,7 @@ fn refuse_strangers(reader: &Reader, generator: Option<&str>) -> Result<(), Scen
                 Some(keys) => format!("it takes {}", keys.join(", ").replace('?', "")),
                 None => "leave it out".to_string(),
             };
-            let problem = Problem::NotApplicable { reason, advice };
-            return Err(reader.document.error(key.path, problem));
+            return Err(reader.document.refused(key.path, reason, advice));
         }
     }
     Ok(())
@@ -316,9 +314,8 @@ fn generated(reader: &mut Reader, generator: &str) -> Result<MeshSource, SceneEr
             let thick = thickness > 0.0;
             if !thick {
                 let reason = "it is no larger than the inner diameter";
-                let advice = "give a larger one; both are those of the rubber".to_string();
-                let problem = Problem::NotApplicable { reason, advice };
-                return Err(reader.document.error("solid.mesh.outer_diameter", problem));
+                let advice = "give a larger one; both are those of the rubber";
+                return Err(reader.document.refused("solid.mesh.outer_diameter", reason, advice));
             }
             let part = match reader.choice_if_given("solid.mesh.part") {
                 Some("quarter") => Part::Quarter,

@@ -37,9 +37,9 @@ pub(super) fn spring(
         reader.note_default("spring.to");
     }
     if from == to {
-        let reason = "both ends are at the same body".into();
-        let advice = "a spring joins two bodies, or a body and the ground".into();
-        return Err(scoped.error("spring.to", Problem::Refused { reason, advice }));
+        let reason = "both ends are at the same body";
+        let advice = "a spring joins two bodies, or a body and the ground";
+        return Err(scoped.refused("spring.to", reason, advice));
     }
     // Both ends at one place; that of a race, where one end is at a race.
     let [from_x, to_x] = [from, to].map(|at| race_at(bearings, at));
@@ -78,9 +78,7 @@ fn race(
     bodies: &[&str],
     bearings: &[PlacedBearing],
 ) -> Result<SpringAt, SceneError> {
-    let refused = |reason: String, advice: String| {
-        reader.document.error(key, Problem::Refused { reason, advice })
-    };
+    let refused = |reason: &str, advice: &str| reader.document.refused(key, reason, advice);
     let (of, race) = name.split_once('.').map_or((None, name), |(of, race)| (Some(of), race));
     let side = OWN_RACES.iter().position(|own| *own == race);
     let bearing = match of {
@@ -92,25 +90,23 @@ fn race(
         if side.is_some() && of.is_none() {
             let each = bearings.iter().filter_map(|placed| placed.name.as_ref());
             let each: Vec<String> = each.map(|name| format!("{name}.{race}")).collect();
-            return Err(refused(
-                "there are several bearings".into(),
-                format!("write one of {}", each.join(", ")),
-            ));
+            let advice = format!("write one of {}", each.join(", "));
+            return Err(refused("there are several bearings", &advice));
         }
         return Err(reader.document.error(key, no_such_end(name, bodies, bearings)));
     };
     let placed = &bearings[bearing];
     if let Carrier::Body { index, .. } = placed.carriers[side] {
         let advice = format!("write {:?}", bodies[index]);
-        return Err(refused(format!("this race sits on body.{}", bodies[index]), advice));
+        return Err(refused(&format!("this race sits on body.{}", bodies[index]), &advice));
     }
     if side == 1 && placed.housing.is_some() {
-        let advice = "join the spring to a body, or leave the housing out".into();
-        return Err(refused("the outer race sits in the bore of its housing".into(), advice));
+        let advice = "join the spring to a body, or leave the housing out";
+        return Err(refused("the outer race sits in the bore of its housing", advice));
     }
     if side == 1 && placed.scene.dynamics.outer.is_none() {
-        let advice = "write `motion = \"5-dof\"` in [outer_race]".into();
-        return Err(refused("the outer race is fixed".into(), advice));
+        let advice = "write `motion = \"5-dof\"` in [outer_race]";
+        return Err(refused("the outer race is fixed", advice));
     }
     Ok(SpringAt::Race { bearing, side })
 }
@@ -133,7 +129,7 @@ fn no_such_end(name: &str, bodies: &[&str], bearings: &[PlacedBearing]) -> Probl
         None => "write one of them; a race is named where it moves by itself".into(),
     };
     let reason = format!("a spring does not end at {name:?}, it may at: {}", known.join(", "));
-    Problem::Refused { reason, advice }
+    Problem::refused(reason, advice)
 }
 
 fn maxwell(item: ItemRef) -> Result<MaxwellElement, SceneError> {

@@ -1,5 +1,6 @@
 //! A scene as the program uses it: SI units, validated, every default named.
 
+use crate::ch2_housing::bearing::cage::Guidance;
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough, Material};
 use crate::ch2_housing::bearing::hertz::HertzModel;
@@ -60,13 +61,6 @@ pub struct Dimensions {
     pub length: Option<f64>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CageGuidance {
-    OuterRace,
-    InnerRace,
-    Balls,
-}
-
 /// Cage, SI units; what was not given is `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cage {
@@ -76,7 +70,7 @@ pub struct Cage {
     /// Radial gap to the guiding race.
     pub race_clearance: Option<f64>,
     pub mass: Option<f64>,
-    pub guidance: Option<CageGuidance>,
+    pub guidance: Option<Guidance>,
 }
 
 /// Plots of a static solution.

@@ -34,8 +34,8 @@ impl Document {
         }
         if self.named.len() == MOST {
             let reason = format!("more than {MOST} tables with names");
-            let advice = "all bodies are solved in one dense matrix; split the scene".into();
-            let problem = Problem::Refused { reason, advice };
+            let advice = "all bodies are solved in one dense matrix; split the scene";
+            let problem = Problem::refused(reason, advice);
             return Err(self.error_at(offset, &format!("{table}.{name}"), problem));
         }
         let Value::Table(entries) = node.value else { return Ok(()) };
@@ -102,7 +102,7 @@ impl Document {
         let Some(named) = self.named.first() else { return Ok(()) };
         let reason = format!("no bearing has the name {:?}", named.name);
         let advice = format!("write [{}], or [bearing.{}] as well", named.table, named.name);
-        Err(self.error_of_name(named.table, &named.name, Problem::Refused { reason, advice }))
+        Err(self.error_of_name(named.table, &named.name, Problem::refused(reason, advice)))
     }
 
     /// The same without names: what only tables without one say.
@@ -178,7 +178,7 @@ pub(super) fn no_such<'n>(name: &str, kind: &str, known: impl Iterator<Item = &'
         Some(nearest) => format!("did you mean {nearest}?"),
         None => format!("add [{kind}.{name}]"),
     };
-    Problem::Refused { reason, advice }
+    Problem::refused(reason, advice)
 }
 
 impl Layer {
@@ -210,6 +210,6 @@ pub(super) fn unfit(name: &str) -> Option<Problem> {
     } else {
         return None;
     };
-    let advice = "choose another name, such as left".to_string();
-    Some(Problem::NotApplicable { reason, advice })
+    let advice = "choose another name, such as left";
+    Some(Problem::refused(reason, advice))
 }

@@ -288,6 +288,13 @@ fn what_several_housings_cannot_do_is_refused_before_anything_is_solved() {
     let bends = changed(&bends, "method = \"reduced\"", "method = \"quasi-static\"");
     let said = refused(&["check", &write(folder.path(), "bends.toml", &bends)]);
     assert!(said.contains("body.shaft.beam.unbalance.1.size: refused: an unbalance is"), "{said}");
+    let slides = [
+        ("width = \"20 mm\"", "width = \"20 mm\"\naxial = \"free\""),
+        ("x = { displacement = \"0 um\" }", "x = { load = \"1 N\" }"),
+    ];
+    let slides = variant(folder.path(), "slides", &slides);
+    let said = refused(&["run", &slides, "--out", &text(&folder.path().join("slides"))]);
+    assert!(said.contains("to let them slide write start = \"nominal\" in [numerics]"), "{said}");
     let mixed = variant(
         folder.path(),
         "mixed",

@@ -90,4 +90,15 @@ fn statics_and_plans_know_how_housings_swing() {
     assert!(off(after(&plan, lowest), rocks) <= 5e-3, "{plan}");
     // Of the motions across that a course sets off, the slowest rings most: 3100 Hz if the housing followed.
     assert!(off(after(&plan, "which rings at "), mode("outer_race_y")) <= 5e-3, "{plan}");
+
+    // And how a shaft bends between them; Hz, mode 2 of all, since nothing drives the shaft along its axis.
+    let scene = shipped("rotor_in_pillow_blocks.toml");
+    let scene = scene.to_str().unwrap();
+    let quasi_static = ["--set", "housing.method=quasi-static"];
+    let bends =
+        |command: &str| said(&bearing(&[&[command, scene, "--dry"], &quasi_static[..]].concat()));
+    let (statics, motions) = (bends("statics"), bends("modes"));
+    let line = motions.lines().find(|line| line.ends_with("shaft_y")).unwrap();
+    let swings = line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap();
+    assert!(off(after(&statics, lowest), swings) <= 5e-4, "{statics} {motions}");
 }

@@ -128,7 +128,7 @@ unbalance = "9000 g mm""#, 29, &["inner_race.unbalance", "more than a body of 0.
     ("slope as a length", "b = 22.28", "b = \"22.28 mm\"", 36, &["expected a plain number", "or an inverse speed"]),
     ("curve that rises too far", "b = 22.28", "b = 22280", 36, &["rises to", "up to 2"]),
     ("no slice", "slices = 15", "slices = 0", 37, &["from 1 to 201"]),
-    ("202 slices", "slices = 15", "slices = 202", 37, &["from 1 to 201", "45 to 0.06 %"]),
+    ("202 slices", "slices = 15", "slices = 202", 37, &["from 1 to 201", "45 within 0.06 %"]),
     ("points of another law", "slices = 15", "points = [[\"1 m/s\", 0.1]]", 37, &["traction.points: refused", "law = \"table\""]),
     ("friction at rest", "law = \"slide-to-roll\"\nb = 22.28", "law = \"table\"\npoints = [[\"0 m/s\", 0.1]]", 36, &["friction at rest has no direction"]),
     ("speeds that go back", "law = \"slide-to-roll\"\nb = 22.28", "law = \"table\"\npoints = [[\"1 m/s\", 0.1], [\"1 m/s\", 0.1]]", 36, &["strictly increasing"]),

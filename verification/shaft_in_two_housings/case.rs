@@ -11,6 +11,7 @@ use bearing_dynamics::solver::housing::course_inertia::{
     CourseInertia, CourseLooks, SeatLooks, course_inertia,
 };
 use bearing_dynamics::solver::housing::course_search::CourseSearch;
+use bearing_dynamics::solver::housing::reduce::lowest_shapes;
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
@@ -246,13 +247,18 @@ fn estimates(
         course.seats.iter().map(|seat| place(seat.body(&course.assembly))).collect();
     let named = course.assembly.bodies.iter().position(|body| body.label.is_some()).unwrap_or(0);
     let order = [place(named), races[0], races[1]];
-    let seats = races.iter().zip(&course.seats);
+    let seats = races.iter().zip(&course.seats).zip(&shaft.housings);
+    let seats = seats.map(|((race, seat), housing)| {
+        // As many natural shapes as the command takes.
+        let (natural, _) = lowest_shapes(&housing.setup.model, seat.bore, 4)?;
+        Ok(SeatLooks { race: *race, natural, damping: seat.damping })
+    });
     let looks = CourseLooks {
         start: 0.0,
         end: PERIOD,
         count: LOOKS,
         corners: course.assembly.corners(),
-        seats: seats.map(|(race, s)| SeatLooks { race: *race, damping: s.damping }).collect(),
+        seats: seats.collect::<Result<_, CaseError>>()?,
         bodies,
     };
     let mut search = CourseSearch::of(&course.seats);

@@ -63,6 +63,17 @@ pub enum Guidance {
     Balls,
 }
 
+impl Guidance {
+    /// As scenes have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Guidance::OuterRace => "outer-race",
+            Guidance::InnerRace => "inner-race",
+            Guidance::Balls => "balls",
+        }
+    }
+}
+
 /// Geometry and laws of the cage's contacts, SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CageContacts {

@@ -69,11 +69,4 @@ impl Elastomer {
         let sum: f64 = self.maxwell.iter().map(|element| element.gamma).sum();
         (1.0 + sum) * self.network.shear_modulus()
     }
-
-    /// Speed of a plane pressure wave at rest, faster than every Maxwell element, in a body of density ρ
-    /// (kg/m³), m/s.
-    pub fn pressure_wave_speed(&self, density: f64) -> f64 {
-        let stiffness = self.network.bulk + 4.0 / 3.0 * self.instantaneous_shear_modulus();
-        (stiffness / density).sqrt()
-    }
 }

@@ -14,7 +14,7 @@ use bearing_dynamics::scene::excitations::{Excitation, excitations};
 use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Bearing};
 use bearing_dynamics::solver::dynamics::run::Start;
-use bearing_dynamics::solver::housing::bore_equilibrium::{BoreState, Fit};
+use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreState, Fit};
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::presses::{Hardest, pressed};
 use bearing_dynamics::solver::housing::reduce::{
@@ -25,6 +25,7 @@ use bearing_dynamics::solver::housing::reduced_start::{
 };
 use bearing_dynamics::solver::plan::tally::Tally;
 use bearing_dynamics::solver::solid::foretold;
+use std::error::Error;
 use std::time::Instant;
 
 /// Housings as shapes, and the assembly with them.
@@ -86,7 +87,13 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     let condensing = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let settles = scene.run().is_none_or(|run| run.options.start != Start::Nominal);
-    let settled = settles.then(|| at_start(&assembly, &seats(housings, &bores))).transpose()?;
+    let settled = match settles {
+        true => {
+            let found = at_start(&assembly, &seats(housings, &bores));
+            Some(found.map_err(|error| slides(housings, error.into()))?)
+        }
+        false => None,
+    };
     let (mut reductions, mut presses) = (Vec::new(), Vec::new());
     for (index, (housing, bore)) in housings.iter().zip(&bores).enumerate() {
         let bearing = &assembly.bearings[housing.bearing];
@@ -115,11 +122,24 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
         };
         let mut parts: Vec<_> =
             housings.iter().zip(&reductions).zip(bores.iter_mut()).map(of).collect();
-        put_in_equilibrium(&mut assembly, &mut parts)?;
+        let placed = put_in_equilibrium(&mut assembly, &mut parts);
+        placed.map_err(|error| slides(housings, error.into()))?;
     }
     let seconds = [condensing, start.elapsed().as_secs_f64()];
     let ran = bores.iter().map(|bore| bore.ran).collect();
     Ok(Shapes { presses, assembly, reductions, seconds, ran })
+}
+
+/// What keeps a run from starting in equilibrium, where an outer race can slide.
+fn slides(housings: &[Housing], error: Box<dyn Error>) -> Box<dyn Error> {
+    match housings.iter().any(|housing| housing.scene.housing.axial == Axial::Free) {
+        false => error,
+        true => format!(
+            "{error}. Hint: nothing takes a force along the axis on outer races with axial = \"free\", and balls at an angle push them: to let them \
+             slide write start = \"nominal\" in [numerics], or hold one (axial = \"held\" in [housing.NAME])"
+        )
+        .into(),
+    }
 }
 
 impl Shapes {
