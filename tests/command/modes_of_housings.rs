@@ -76,7 +76,7 @@ fn statics_and_plans_know_how_housings_swing() {
     let out = place.path("out");
     let statics = said(&bearing(&["statics", scene, "--out", out.to_str().unwrap()]));
     let plan = said(&bearing(&["plan", scene]));
-    let motions = said(&bearing(&["modes", scene]));
+    let motions = said(&bearing(&["modes", scene, "--dry"]));
     let mode = |name: &str| {
         let line = motions.lines().find(|line| line.ends_with(name)).unwrap();
         line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap()

@@ -310,7 +310,7 @@ impl CondensedBore {
         self.field(&right)
     }
 
-    /// The same under many loads: the factors are read once for each dozen of them.
+    /// The same under many loads, a block of them at a time.
     pub fn responses_to(&self, loads: &[Vec<(u32, Vec3)>]) -> Vec<Vec<Vec3>> {
         let size = self.unknowns.count;
         let mut all = Vec::with_capacity(loads.len());
