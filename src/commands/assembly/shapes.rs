@@ -90,7 +90,7 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     let settled = match settles {
         true => {
             let found = at_start(&assembly, &seats(housings, &bores));
-            Some(found.map_err(|error| slides(housings, error.into()))?)
+            Some(found.map_err(|error| slides(housings, error))?)
         }
         false => None,
     };
