@@ -20,7 +20,7 @@ pub const GENERATORS: &[&str] = &[
     "bushing",
 ];
 const AXES: &[&str] = &["x", "y", "z"];
-const LENGTH_UNITS: &[&str] = &["m", "mm"];
+const LENGTH_UNITS: &[&str] = &["mm", "m"];
 const REPAIRS: &[&str] = &["orient", "merge-duplicates", "drop-unreferenced"];
 pub(super) const DAMPED_MOTIONS: &[&str] = &["absolute", "relative-to-rigid"];
 const METHODS: &[&str] = &["central-differences", "runge-kutta"];

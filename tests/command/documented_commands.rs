@@ -8,6 +8,8 @@
 //! stands for any number of lines. Numbers hold to the last digit but one, counts exactly; seconds of wall time and
 //! megabytes are the machine's.
 
+use crate::command_line_common::{done, json, scene, text};
+use crate::outside_common::python_with_vtk;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -26,6 +28,31 @@ fn documented_commands_run() {
         "README.md",
         &["check", "plan", "statics", "modes", "run", "sweep", "pack", "compare", "schema"],
     );
+}
+
+/// What docs/results.md shows of Python reads what a run wrote.
+#[test]
+fn documented_python_reads_a_run() {
+    // VTK brings NumPy.
+    let Some(python) = python_with_vtk("documented_python_reads_a_run") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("results/settling");
+    done(&["run", &scene("settling.toml"), "--out", &text(&out)]);
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/results.md");
+    let page = fs::read_to_string(page).unwrap();
+    let (_, block) = page.split_once("```python\n").expect("a block of Python");
+    let (block, _) = block.split_once("```").unwrap();
+    let ran = Command::new(python).args(["-c", block]).current_dir(folder.path()).output().unwrap();
+    let said = String::from_utf8_lossy(&ran.stdout);
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let words: Vec<&str> = said.split_whitespace().collect();
+    let csv = fs::read_to_string(out.join("series.csv")).unwrap();
+    let rows: Vec<&str> = csv.lines().collect();
+    let at = rows[0].split(',').position(|name| name.starts_with("inner_z ")).unwrap();
+    let last: f64 = rows[rows.len() - 1].split(',').nth(at).unwrap().parse().unwrap();
+    assert_eq!(words[..2], ["True", &(rows.len() - 1).to_string()[..]], "{said}");
+    assert_eq!(words[2].parse::<f64>().unwrap(), last, "{said}");
+    assert_eq!(json(&out.join("summary.json"))["complete"], true);
 }
 
 #[test]

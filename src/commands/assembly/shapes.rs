@@ -228,10 +228,15 @@ fn cut_off(scene: &AssemblyScene, made_for: &str, cut: &CutOff) -> String {
         let error = cut.dynamic_error(of.frequency);
         format!("{} of what goes with {}", percent(error), of.what)
     };
+    // Below that rounding is told.
+    let left_out = match cut.static_left_out {
+        part if part < 1e-9 => "nothing".into(),
+        part => percent(part),
+    };
     let mut said = format!(
         "of the compliance under {}, looked at all round, {} has no shape; the lowest natural shape left out swings at {} Hz",
         made_for,
-        percent(cut.static_left_out),
+        left_out,
         to_digits(cut.first_left_out, 4)
     );
     let errors: Vec<String> = excitations(scene).iter().map(driven).collect();
