@@ -389,7 +389,6 @@ impl<'a, 'b> Search<'a, 'b> {
                         self.spare = Some(std::mem::replace(here, beyond));
                         continue;
                     }
-                    self.spare = Some(beyond);
                 }
                 self.spare = Some(there);
                 if rounded && change.abs() <= noise {
