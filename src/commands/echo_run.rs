@@ -243,7 +243,12 @@ fn traction(problem: &DynamicProblem) -> Echo {
             json!({ "law": "table", "points": pairs(points, "m/s", "1")? })
         }
     };
-    Ok(json!({ "law": law, "slices": problem.slices, "heathcote": problem.heathcote }))
+    Ok(json!({
+        "law": law,
+        "slices": problem.slices,
+        "points_across": problem.points_across,
+        "heathcote": problem.heathcote,
+    }))
 }
 
 fn damping(damping: &ContactDamping) -> Echo {

@@ -40,7 +40,7 @@ pub fn of_bearing(scene: &Scene) -> Vec<String> {
     }
     if dynamics.slices == 1 && dynamics.traction != TractionLaw::None {
         said.push(
-            "traction.slices = 1: slip is that of the middle of each contact, friction from spin is left out"
+            "traction.slices = 1: slip does not vary along contacts, most friction from spin is left out"
                 .into(),
         );
     }

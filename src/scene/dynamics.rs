@@ -65,6 +65,7 @@ pub fn dynamic_problem(scene: &Scene) -> Result<DynamicProblem, DynamicsError> {
         ball_phase: scene.ball_phase,
         traction: dynamics.traction.clone(),
         slices: dynamics.slices,
+        points_across: dynamics.points_across,
         heathcote: dynamics.heathcote,
         damping: dynamics.damping,
         ball_contact: dynamics.ball_friction.map(|[friction, regularisation_speed]| {

@@ -61,6 +61,8 @@ pub(crate) fn dynamics(
         traction: resolve_contact::traction(reader)?,
         // Checked by the key table: 1 to 201.
         slices: reader.number("traction.slices").unwrap_or(15.0) as usize,
+        // 1 to 9.
+        points_across: reader.number("traction.points_across").unwrap_or(1.0) as usize,
         heathcote: heathcote(reader),
         damping: resolve_contact::damping(reader)?,
         ball_friction: resolve_contact::ball_friction(reader, balls_meet)?,

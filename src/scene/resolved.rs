@@ -129,6 +129,7 @@ pub struct Dynamics {
     pub unbalance: f64,
     pub traction: TractionLaw,
     pub slices: usize,
+    pub points_across: usize,
     pub heathcote: bool,
     pub damping: ContactDamping,
     /// Friction coefficient and regularisation speed (m/s) of the contact between balls.

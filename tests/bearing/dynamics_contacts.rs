@@ -156,6 +156,7 @@ proptest! {
         problem.gravity = GRAVITY;
         problem.outer_start = [1e-6, -2e-6, 1e-6, 1e-4, -2e-4];
         drives.apply(&mut problem);
+        problem.points_across = 1 + (seed % 3) as usize;
         let t = 0.013;
         let mut system = System::new(problem.clone(), Driver::Lanes);
         let mut state = random_state(&problem, seed);

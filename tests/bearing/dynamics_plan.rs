@@ -244,6 +244,7 @@ fn both_drivers_run_with_the_same_bits() {
             // Sixteen balls of this size need a wider pitch.
             let mut problem = at_work(balls, law);
             problem.heathcote = law == 3;
+            problem.points_across = 1 + law % 3;
             problem.cage = Some(cage(&problem.geometry, Pocket::Cylindrical, Guidance::OuterRace));
             problem.gravity = GRAVITY;
             let ends = [Driver::Plain, Driver::Lanes].map(|driver| {

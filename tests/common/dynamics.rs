@@ -59,6 +59,7 @@ pub fn bearing(geometry: BearingGeometry, loads: [f64; 5], speed: f64) -> Dynami
         ball_phase: 0.1,
         traction: TractionLaw::None,
         slices: 15,
+        points_across: 1,
         heathcote: false,
         damping: ContactDamping::None,
         dents: Vec::new(),

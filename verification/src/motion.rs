@@ -77,6 +77,7 @@ pub fn moving(
         ball_phase,
         traction: TractionLaw::None,
         slices: 15,
+        points_across: 1,
         heathcote: false,
         damping: ContactDamping::None,
         dents: Vec::new(),

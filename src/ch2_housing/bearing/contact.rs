@@ -133,6 +133,8 @@ pub struct RaceLaw {
     pub stiffness: f64,
     /// Semi-major axis of the contact ellipse over √δ, m^0.5.
     pub semi_major_factor: f64,
+    /// Semi-major axis over the semi-minor one.
+    pub ellipticity: f64,
     /// On which side of its circle the groove has material: +1 outside (outer race), −1 inside.
     pub outward: f64,
 }

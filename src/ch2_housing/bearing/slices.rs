@@ -3,33 +3,61 @@
 //! The source varies the sliding speed along the major axis only (2.2.1): the ellipse is cut into
 //! slices across it, each with the share of the normal load that Hertz's pressure gives it,
 //! q(y) = (3W/4a)(1 − y²/a²), and with the slip at its own y. What a slice then resists with, its law of
-//! [`traction`](super::traction) says.
+//! [`traction`](super::traction) says. With more than one point across a slice, which the source does not have, the slip that spin
+//! adds along the minor axis counts too.
 //!
 //! The pieces are scalar functions without branches, as those laws are.
+
+use core::f64::consts::PI;
 
 use super::traction::{Resistance, Steepness, TractionLaw, resistance_of, steepness_of};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 
-/// Slices across the major axis: middle of each (y/a) and its share of the normal load.
+/// Points of the contact ellipse at which slip is looked at: along the major axis the middle of its slice (y/a), along the minor
+/// axis its offset from there (x/b), and its share of the normal load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slices {
     pub middle: Vec<f64>,
+    pub offset: Vec<f64>,
     pub share: Vec<f64>,
 }
 
 impl Slices {
     /// `count` slices of equal width; each share is the exact integral of Hertz's pressure over
     /// the slice, so that the shares add up to one.
-    pub fn new(count: usize) -> Slices {
+    ///
+    /// `across` points divide a slice: Hertz's pressure is a half ellipse along it, q(x) ∝ √(1 − (x/w)²) with the slice's half
+    /// width w = b√(1 − (y/a)²), the weight of Gauss and Chebyshev's second rule: xⱼ = w cos(jπ/(n + 1)), shares
+    /// 2 sin²(jπ/(n + 1))/(n + 1). One point lies in the middle.
+    pub fn new(count: usize, across: usize) -> Slices {
         let width = 2.0 / count as f64;
         // ∫ (3/4)(1 − η²) dη.
         let integral = |eta: f64| 0.75 * (eta - eta * eta * eta / 3.0);
         let edge = |i: usize| -1.0 + width * i as f64;
-        Slices {
-            middle: (0..count).map(|i| -1.0 + width * (i as f64 + 0.5)).collect(),
-            share: (0..count).map(|i| integral(edge(i + 1)) - integral(edge(i))).collect(),
+        let mut slices = Slices { middle: Vec::new(), offset: Vec::new(), share: Vec::new() };
+        for i in 0..count {
+            let middle = -1.0 + width * (i as f64 + 0.5);
+            let share = integral(edge(i + 1)) - integral(edge(i));
+            for j in 1..=across {
+                let (part, offset) = across_slice(j, across);
+                slices.middle.push(middle);
+                slices.offset.push(offset * (1.0 - middle * middle).sqrt());
+                slices.share.push(share * part);
+            }
         }
+        slices
     }
+}
+
+/// Share and place (over the half width) of point `j` (1 to `points`) across a slice.
+fn across_slice(j: usize, points: usize) -> (f64, f64) {
+    if 2 * j == points + 1 {
+        // The cosine of a right angle is not quite nothing.
+        return (2.0 / (points + 1) as f64, 0.0);
+    }
+    let angle = j as f64 * PI / (points + 1) as f64;
+    let (sine, cosine) = angle.sin_cos();
+    (2.0 * sine * sine / (points + 1) as f64, cosine)
 }
 
 /// Motion of a rigid body, inertial axes: m, m/s, rad/s.
@@ -115,30 +143,44 @@ pub struct SliceSum {
 /// symmetric matrix that has no negative eigenvalue: tt, ts, tn, ss, sn, nn.
 pub type TractionSlope = [f64; 6];
 
-/// Adds one slice at `y` (m from the middle) with a `share` of the load. `sagitta` is how far the
-/// curved contact surface lies towards the ball there (Heathcote), zero for a plane one. `friction` gives the slice's
+/// Where in a contact slip is looked at, m from its middle: along the rolling direction and across it (s).
+/// `sagitta` is how far the curved contact surface lies towards the ball there (Heathcote), zero for a plane one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactPoint {
+    pub x: f64,
+    pub y: f64,
+    pub sagitta: f64,
+}
+
+/// Slip at a point of a contact, from that of its middle: t and s part, m/s.
+#[inline(always)]
+fn slip_at(slip: [f64; 2], relative_spin: Vec3, point: ContactPoint) -> [f64; 2] {
+    let ContactPoint { x, y, sagitta } = point;
+    let [spin_t, spin_s, spin_n] = relative_spin;
+    [slip[0] - spin_n * y - spin_s * sagitta, slip[1] + spin_t * sagitta + spin_n * x]
+}
+
+/// Adds what a point with a `share` of the load resists with. `friction` gives its
 /// [`Resistance`] from the square of the sliding speed and the share.
 #[inline(always)]
 pub fn add_slice(
     sum: &SliceSum,
     slip: [f64; 2],
     relative_spin: Vec3,
-    y: f64,
-    sagitta: f64,
+    point: ContactPoint,
     share: f64,
     friction: impl Fn(f64, f64) -> Resistance,
 ) -> SliceSum {
-    let [spin_t, spin_s, spin_n] = relative_spin;
-    let slip_t = slip[0] - spin_n * y - spin_s * sagitta;
-    let slip_s = slip[1] + spin_t * sagitta;
+    let ContactPoint { x, y, sagitta } = point;
+    let [slip_t, slip_s] = slip_at(slip, relative_spin, point);
     let [per_speed, power] = friction(slip_t * slip_t + slip_s * slip_s, share);
     let along = -per_speed * slip_t;
     let across = -per_speed * slip_s;
     SliceSum {
         rolling: sum.rolling + along,
         transverse: sum.transverse + across,
-        // y s × (along t + across s) = −y along n.
-        moment: sum.moment - y * along,
+        // (x t + y s) × (along t + across s) = (x across − y along) n.
+        moment: sum.moment - y * along + x * across,
         // −sagitta n × (along t + across s), the moment that brakes the ball (Heathcote).
         curvature_moment: [
             sum.curvature_moment[0] + sagitta * across,
@@ -148,27 +190,26 @@ pub fn add_slice(
     }
 }
 
-/// Adds the slope of one slice, whose force [`add_slice`] adds. `friction` gives the slice's [`Steepness`] from the square of the
+/// Adds the slope of a point, whose force [`add_slice`] adds. `friction` gives its [`Steepness`] from the square of the
 /// sliding speed and the share.
 #[inline(always)]
 pub fn add_slope(
     sum: &TractionSlope,
     slip: [f64; 2],
     relative_spin: Vec3,
-    y: f64,
-    sagitta: f64,
+    point: ContactPoint,
     share: f64,
     friction: impl Fn(f64, f64) -> Steepness,
 ) -> TractionSlope {
-    let [spin_t, spin_s, spin_n] = relative_spin;
-    let slip_t = slip[0] - spin_n * y - spin_s * sagitta;
-    let slip_s = slip[1] + spin_t * sagitta;
+    let ContactPoint { x, y, .. } = point;
+    let [slip_t, slip_s] = slip_at(slip, relative_spin, point);
     let [secant, steep] = friction(slip_t * slip_t + slip_s * slip_s, share);
     let tt = secant + steep * slip_t * slip_t;
     let ts = steep * slip_t * slip_s;
     let ss = secant + steep * slip_s * slip_s;
     let [a, b, c, d, e, k] = *sum;
-    [a + tt, b + ts, c - y * tt, d + ss, e - y * ts, k + y * y * tt]
+    let nn = y * y * tt + x * (x * ss - 2.0 * y * ts);
+    [a + tt, b + ts, c - y * tt + x * ts, d + ss, e - y * ts + x * ss, k + nn]
 }
 
 /// Force and moment of the traction on the ball, in inertial axes; the race feels the opposite
@@ -200,21 +241,42 @@ pub fn traction_force(
     }
 }
 
-/// All slices of one contact, in order. `semi_major` in m; `curvature` is 1/(2R) of the deformed
-/// surface across the groove (1/m), zero leaves the Heathcote term out.
-pub fn integrate(
-    law: &TractionLaw,
-    slices: &Slices,
-    sliding: &Sliding,
-    semi_major: f64,
-    curvature: f64,
-) -> SliceSum {
+/// Contact ellipse of a pair and its surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patch {
+    /// m.
+    pub semi_major: f64,
+    /// Along the rolling direction, m.
+    pub semi_minor: f64,
+    /// 1/(2R) of the deformed surface across the groove (1/m), zero leaves the Heathcote term out.
+    pub curvature: f64,
+}
+
+impl Patch {
+    /// Place of a point given by parts of the half axes.
+    #[inline(always)]
+    pub fn point(&self, middle: f64, offset: f64) -> ContactPoint {
+        let y = middle * self.semi_major;
+        ContactPoint { x: offset * self.semi_minor, y, sagitta: y * y * self.curvature }
+    }
+}
+
+impl Slices {
+    /// Middle, offset and share of each point, in order.
+    #[inline(always)]
+    pub fn points(&self) -> impl Iterator<Item = (f64, f64, f64)> {
+        let places = self.middle.iter().zip(&self.offset);
+        places.zip(&self.share).map(|((middle, offset), share)| (*middle, *offset, *share))
+    }
+}
+
+/// All slices of one contact, in order.
+pub fn integrate(law: &TractionLaw, slices: &Slices, sliding: &Sliding, patch: &Patch) -> SliceSum {
     let mut sum = SliceSum::default();
-    for (middle, share) in slices.middle.iter().zip(&slices.share) {
-        let y = middle * semi_major;
-        let sagitta = y * y * curvature;
+    for (middle, offset, share) in slices.points() {
+        let point = patch.point(middle, offset);
         let friction = |square, share| resistance_of(law, square, share, sliding.entrainment);
-        sum = add_slice(&sum, sliding.slip, sliding.relative_spin, y, sagitta, *share, friction);
+        sum = add_slice(&sum, sliding.slip, sliding.relative_spin, point, share, friction);
     }
     sum
 }
@@ -224,15 +286,13 @@ pub fn integrate_slope(
     law: &TractionLaw,
     slices: &Slices,
     sliding: &Sliding,
-    semi_major: f64,
-    curvature: f64,
+    patch: &Patch,
 ) -> TractionSlope {
     let mut sum = TractionSlope::default();
-    for (middle, share) in slices.middle.iter().zip(&slices.share) {
-        let y = middle * semi_major;
-        let sagitta = y * y * curvature;
+    for (middle, offset, share) in slices.points() {
+        let point = patch.point(middle, offset);
         let friction = |square, share| steepness_of(law, square, share, sliding.entrainment);
-        sum = add_slope(&sum, sliding.slip, sliding.relative_spin, y, sagitta, *share, friction);
+        sum = add_slope(&sum, sliding.slip, sliding.relative_spin, point, share, friction);
     }
     sum
 }
@@ -240,6 +300,11 @@ pub fn integrate_slope(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// An ellipse without width.
+    fn line(semi_major: f64) -> Patch {
+        Patch { semi_major, semi_minor: 0.0, curvature: 0.0 }
+    }
 
     #[test]
     fn pure_spin_gives_three_eighths_of_the_moment() {
@@ -249,7 +314,7 @@ mod tests {
         let semi_major = 1.5e-3;
         let mut errors = Vec::new();
         for count in [15, 45, 135] {
-            let sum = integrate(&law, &Slices::new(count), &sliding, semi_major, 0.0);
+            let sum = integrate(&law, &Slices::new(count, 1), &sliding, &line(semi_major));
             let exact = -3.0 * 0.07 * semi_major / 8.0;
             errors.push((sum.moment / exact - 1.0).abs());
             assert!(sum.rolling.abs() <= 1e-15 && sum.transverse.abs() <= 1e-15);
@@ -263,10 +328,48 @@ mod tests {
     }
 
     #[test]
+    fn spin_on_a_whole_ellipse_has_its_elliptic_integral() {
+        // ∫ κ q r dA = 3κWa E(e)/8: Hertz's pressure is the same on every ray of the ellipse.
+        let law = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 1e-12 };
+        let sliding = Sliding { relative_spin: [0.0, 0.0, 30.0], ..Sliding::default() };
+        for ratio in [0.2, 0.5, 1.0] {
+            let patch = Patch { semi_major: 1.5e-3, semi_minor: 1.5e-3 * ratio, curvature: 0.0 };
+            let steps = 1000;
+            let angles = (0..steps).map(|i| (PI * i as f64 / steps as f64).sin_cos());
+            let integral =
+                angles.map(|(s, c)| s.hypot(ratio * c)).sum::<f64>() * PI / (2 * steps) as f64;
+            let exact = -3.0 * 0.07 * patch.semi_major * integral / 8.0;
+            let errors = [10, 20, 40].map(|count| {
+                let sum = integrate(&law, &Slices::new(count, count), &sliding, &patch);
+                (sum.moment / exact - 1.0).abs()
+            });
+            // Even numbers: no point lies in the middle, where the slip turns round.
+            assert!(errors[0] <= 1e-2 && errors[2] <= 8e-4, "{ratio}: {errors:?}");
+            for pair in errors.windows(2) {
+                assert!((pair[0] / pair[1]).log2() >= 1.8, "{ratio}: {errors:?}");
+            }
+            // Along and across are alike on a circle.
+            if ratio == 1.0 {
+                let slip = [6e-2, 2e-2];
+                let turned = [-slip[1], slip[0]];
+                let [one, other] = [slip, turned].map(|slip| {
+                    let sliding = Sliding { slip, ..sliding };
+                    integrate(&law, &Slices::new(400, 60), &sliding, &patch)
+                });
+                let off =
+                    (one.rolling - other.transverse).abs() + (one.transverse + other.rolling).abs();
+                assert!(off <= 1e-5 * one.rolling.hypot(one.transverse), "{one:?} {other:?}");
+            }
+        }
+    }
+
+    #[test]
     fn shares_add_up_to_the_load() {
         for count in [1, 2, 15, 101] {
-            let sum: f64 = Slices::new(count).share.iter().sum();
-            assert!((sum - 1.0).abs() <= 1e-14);
+            for across in 1..=9 {
+                let sum: f64 = Slices::new(count, across).share.iter().sum();
+                assert!((sum - 1.0).abs() <= 1e-14);
+            }
         }
     }
 }

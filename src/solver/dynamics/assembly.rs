@@ -127,6 +127,8 @@ pub struct Bearing {
     pub traction: TractionLaw,
     /// Slices across the contact ellipse.
     pub slices: usize,
+    /// Points across each slice.
+    pub points_across: usize,
     /// Whether the curvature of the contact surface across the groove makes its edges slide.
     pub heathcote: bool,
     pub damping: ContactDamping,
@@ -387,6 +389,7 @@ impl From<&DynamicProblem> for Assembly {
             ball_phase: problem.ball_phase,
             traction: problem.traction.clone(),
             slices: problem.slices,
+            points_across: problem.points_across,
             heathcote: problem.heathcote,
             damping: problem.damping,
             ball_contact: problem.ball_contact,

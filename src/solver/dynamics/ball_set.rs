@@ -59,6 +59,7 @@ fn race_law(raceway: &Raceway, hertz: &HertzContact, ball_radius: f64, outward: 
         room: raceway.groove_radius - ball_radius,
         stiffness: hertz.stiffness,
         semi_major_factor: contact_ellipse(hertz, hertz.stiffness).semi_major,
+        ellipticity: hertz.ellipticity,
         outward,
     }
 }
@@ -80,7 +81,8 @@ impl BallSet {
             Ok(dents) => (dents, None),
             Err(error) => (Vec::new(), Some(error)),
         };
-        let slices = if steps.traction { bearing.slices } else { 1 };
+        let [slices, across] =
+            if steps.traction { [bearing.slices, bearing.points_across] } else { [1, 1] };
         let laws = ContactLaws {
             races: [
                 race_law(&geometry.inner, &bearing.inner_contact, radius, -1.0),
@@ -88,7 +90,7 @@ impl BallSet {
             ],
             ball_radius: radius,
             traction: bearing.traction.clone(),
-            slices: Slices::new(slices),
+            slices: Slices::new(slices, across),
             curvature: [
                 curvature(geometry.inner.groove_radius),
                 curvature(geometry.outer.groove_radius),

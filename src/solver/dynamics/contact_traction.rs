@@ -6,8 +6,8 @@ use super::race::RaceNow;
 use super::state::{LANES, Layout, POSITION, SPIN, VELOCITY};
 use crate::ch2_housing::bearing::contact::RaceContact;
 use crate::ch2_housing::bearing::slices::{
-    Motion, SliceSum, Sliding, TractionSlope, add_slice, add_slope, integrate, integrate_slope,
-    sliding, traction_force,
+    Motion, Patch, SliceSum, Sliding, TractionSlope, add_slice, add_slope, integrate,
+    integrate_slope, sliding, traction_force,
 };
 use crate::ch2_housing::bearing::traction::{
     Resistance, Steepness, TractionLaw, coefficient, coefficient_and_slope, per_entrainment,
@@ -36,8 +36,10 @@ fn reach(laws: &ContactLaws, overlap: f64) -> f64 {
 }
 
 #[inline(always)]
-fn semi_major(laws: &ContactLaws, race: usize, overlap: f64) -> f64 {
-    laws.races[race].semi_major_factor * overlap.sqrt()
+fn patch(laws: &ContactLaws, race: usize, overlap: f64) -> Patch {
+    let semi_major = laws.races[race].semi_major_factor * overlap.sqrt();
+    let semi_minor = semi_major / laws.races[race].ellipticity;
+    Patch { semi_major, semi_minor, curvature: laws.curvature[race] }
 }
 
 fn sliding_of(
@@ -75,11 +77,11 @@ pub(super) fn traction_plain(
         let (race, _) = layout.race_and_ball(pair);
         let contact = &table.contact[pair];
         let sliding = sliding_of(laws, layout, state, &motions, &axes, pair, contact);
-        let width = semi_major(laws, race, contact.overlap);
-        let (law, slices, curvature) = (&laws.traction, &laws.slices, laws.curvature[race]);
-        let sum = integrate(law, slices, &sliding, width, curvature);
+        let patch = patch(laws, race, contact.overlap);
+        let (law, slices) = (&laws.traction, &laws.slices);
+        let sum = integrate(law, slices, &sliding, &patch);
         if want == Want::ForcesAndSlopes {
-            table.slope[pair] = integrate_slope(law, slices, &sliding, width, curvature);
+            table.slope[pair] = integrate_slope(law, slices, &sliding, &patch);
         }
         table.traction[pair] = traction_force(&sum, &sliding, contact.normal, table.load[pair]);
         table.sliding[pair] = sliding;
@@ -161,8 +163,7 @@ fn lanes_of<const SLOPES: bool>(
     for block in active.chunks(LANES) {
         let mut slip = [[0.0; LANES]; 2];
         let mut spin = [[0.0; LANES]; 3];
-        let mut width = [0.0; LANES];
-        let mut curvature = [0.0; LANES];
+        let mut patches = Patches::default();
         // What the law needs of the entrainment speed; lanes without a pair slide nowhere.
         let mut rolling = [1.0; LANES];
         for (l, &pair) in block.iter().enumerate() {
@@ -174,19 +175,11 @@ fn lanes_of<const SLOPES: bool>(
                 spin[i][l] = here.relative_spin[i];
             }
             rolling[l] = prepare(here.entrainment);
-            width[l] = semi_major(laws, race, contact[pair].overlap);
-            curvature[l] = laws.curvature[race];
+            patches.put(l, patch(laws, race, contact[pair].overlap));
             sliding[pair] = here;
         }
-        let (sums, steep) = slice_lanes::<SLOPES>(
-            laws,
-            &slip,
-            &spin,
-            &width,
-            &curvature,
-            &rolling,
-            (friction, slopes),
-        );
+        let (sums, steep) =
+            slice_lanes::<SLOPES>(laws, &slip, &spin, &patches, &rolling, (friction, slopes));
         for (l, &pair) in block.iter().enumerate() {
             if SLOPES {
                 slope[pair] = steep[l];
@@ -197,14 +190,39 @@ fn lanes_of<const SLOPES: bool>(
     }
 }
 
+/// [`Patch`] of each contact of a block, an array for each number.
+#[derive(Default)]
+struct Patches {
+    semi_major: [f64; LANES],
+    semi_minor: [f64; LANES],
+    curvature: [f64; LANES],
+}
+
+impl Patches {
+    #[inline(always)]
+    fn put(&mut self, lane: usize, patch: Patch) {
+        self.semi_major[lane] = patch.semi_major;
+        self.semi_minor[lane] = patch.semi_minor;
+        self.curvature[lane] = patch.curvature;
+    }
+
+    #[inline(always)]
+    fn at(&self, lane: usize) -> Patch {
+        Patch {
+            semi_major: self.semi_major[lane],
+            semi_minor: self.semi_minor[lane],
+            curvature: self.curvature[lane],
+        }
+    }
+}
+
 /// All slices of a block of contacts.
 #[inline(always)]
 fn slice_lanes<const SLOPES: bool>(
     laws: &ContactLaws,
     slip: &[[f64; LANES]; 2],
     spin: &[[f64; LANES]; 3],
-    width: &[f64; LANES],
-    curvature: &[f64; LANES],
+    patches: &Patches,
     prepared: &[f64; LANES],
     (friction, slopes): (
         impl Fn(f64, f64, f64) -> Resistance + Copy,
@@ -224,10 +242,9 @@ fn slice_lanes<const SLOPES: bool>(
     let mut ss = [0.0; LANES];
     let mut sn = [0.0; LANES];
     let mut nn = [0.0; LANES];
-    for (middle, share) in laws.slices.middle.iter().zip(&laws.slices.share) {
+    for (middle, offset, share) in laws.slices.points() {
         for l in 0..LANES {
-            let y = middle * width[l];
-            let sagitta = y * y * curvature[l];
+            let point = patches.at(l).point(middle, offset);
             let before = SliceSum {
                 rolling: rolling[l],
                 transverse: transverse[l],
@@ -238,7 +255,7 @@ fn slice_lanes<const SLOPES: bool>(
             let here = [slip[0][l], slip[1][l]];
             let turning = [spin[0][l], spin[1][l], spin[2][l]];
             let friction = |square, share| friction(square, share, prepared[l]);
-            let after = add_slice(&before, here, turning, y, sagitta, *share, friction);
+            let after = add_slice(&before, here, turning, point, share, friction);
             rolling[l] = after.rolling;
             transverse[l] = after.transverse;
             moment[l] = after.moment;
@@ -248,7 +265,7 @@ fn slice_lanes<const SLOPES: bool>(
                 let before = [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]];
                 let slopes = |square, share| slopes(square, share, prepared[l]);
                 [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]] =
-                    add_slope(&before, here, turning, y, sagitta, *share, slopes);
+                    add_slope(&before, here, turning, point, share, slopes);
             }
         }
     }

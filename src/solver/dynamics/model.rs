@@ -97,6 +97,8 @@ pub struct DynamicProblem {
     pub traction: TractionLaw,
     /// Slices across the contact ellipse.
     pub slices: usize,
+    /// Points across each slice.
+    pub points_across: usize,
     /// Whether the curvature of the contact surface across the groove makes its edges slide.
     pub heathcote: bool,
     pub damping: ContactDamping,

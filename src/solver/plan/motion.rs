@@ -249,7 +249,12 @@ fn traction(bearing: &Bearing, subject: Subject) -> Item {
         TractionLaw::Table { .. } => "tabulated over the sliding speed",
     };
     let slices = bearing.slices;
-    Item::does(Stage::Traction, subject, format!("{law}; {slices} slices on each loaded contact"))
+    let across = match bearing.points_across {
+        1 => String::new(),
+        points => format!(", {points} points across each"),
+    };
+    let why = format!("{law}; {slices} slices on each loaded contact{across}");
+    Item::does(Stage::Traction, subject, why)
 }
 
 fn heathcote(bearing: &Bearing, subject: Subject) -> Item {

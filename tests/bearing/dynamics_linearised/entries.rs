@@ -8,7 +8,9 @@ use crate::common::table_4_1;
 use bearing_dynamics::ch2_housing::bearing::cage::{
     CageContact, CageForce, cage_energy, cage_load, cage_stiffness,
 };
-use bearing_dynamics::ch2_housing::bearing::slices::{Slices, Sliding, integrate, integrate_slope};
+use bearing_dynamics::ch2_housing::bearing::slices::{
+    Patch, Slices, Sliding, integrate, integrate_slope,
+};
 use bearing_dynamics::ch2_housing::bearing::traction::ExponentialCurve;
 use bearing_dynamics::solver::dynamics::assembly::CAGE;
 use bearing_dynamics::solver::dynamics::state::LANES;
@@ -421,24 +423,25 @@ fn slopes_of_all_slices_are_those_of_their_sum() {
         ..Sliding::default()
     };
     for (index, law) in traction_laws().into_iter().enumerate().skip(1) {
-        for count in [1, 5, 15] {
-            let slices = Slices::new(count);
+        for (count, across) in [(1, 1), (5, 1), (15, 1), (1, 2), (5, 3), (15, 4)] {
+            let slices = Slices::new(count, across);
             for _ in 0..20 {
                 // Before the peak of every law; beyond it a falling slope counts as none.
                 let size = [0.0, 0.03, 3e-3, 0.03, 0.03][index];
                 let mut sliding = directions;
                 sliding.slip = [size * noise.next(), size * noise.next()];
                 let width = 1e-3;
+                let patch = Patch { semi_major: width, semi_minor: 0.4 * width, curvature: 0.0 };
                 sliding.relative_spin = [0.0, 0.0, 0.3 * size / width * noise.next()];
                 let at = |shift: [f64; 3]| {
                     let mut moved = sliding;
                     moved.slip[0] += shift[0];
                     moved.slip[1] += shift[1];
                     moved.relative_spin[2] += shift[2];
-                    let sum = integrate(&law, &slices, &moved, width, 0.0);
+                    let sum = integrate(&law, &slices, &moved, &patch);
                     [sum.rolling, sum.transverse, sum.moment]
                 };
-                let [tt, ts, tn, ss, sn, nn] = integrate_slope(&law, &slices, &sliding, width, 0.0);
+                let [tt, ts, tn, ss, sn, nn] = integrate_slope(&law, &slices, &sliding, &patch);
                 let expected = [[tt, ts, tn], [ts, ss, sn], [tn, sn, nn]];
                 for row in 0..3 {
                     let arm = |i: usize| if i == 2 { width } else { 1.0 };
@@ -453,7 +456,7 @@ fn slopes_of_all_slices_are_those_of_their_sum() {
                         // Steps of 1e-5 of the slip; the table's own slope is a forward difference.
                         assert!(
                             error <= 1e-4 * scale,
-                            "law {index}, {count} slices, {row} {column}: {found:e} for {:e}",
+                            "law {index}, {count} slices of {across}, {row} {column}: {found:e} for {:e}",
                             expected[row][column]
                         );
                     }
