@@ -11,6 +11,7 @@
 pub mod ch2_housing;
 pub mod ch3_bushing;
 pub mod ch4_rotor;
+pub mod ch5_cage;
 pub mod elements;
 pub mod kinematics;
 pub mod mesh;

@@ -19,6 +19,8 @@ pub struct RunTable {
     pub bearings: Vec<String>,
     /// Races, cages, other bodies and sections of those that bend, as far as they may have columns.
     pub bodies: Vec<Moving>,
+    /// Name and column of each sensor.
+    pub sensors: Vec<(String, String)>,
 }
 
 /// A body as its columns and pictures name it.
@@ -87,7 +89,9 @@ impl RunTable {
             None => vec![String::new()],
         };
         let bodies = moving(&bearings, assembly);
-        Ok(RunTable { series, interval, window: start..end, bearings, bodies })
+        let sensors = assembly.map_or(&[][..], |assembly| &assembly.sensors).iter();
+        let sensors = sensors.map(|of| (of.name.clone(), of.column().0)).collect();
+        Ok(RunTable { series, interval, window: start..end, bearings, bodies, sensors })
     }
 
     /// Time of a row as people write it, s: of rows on the grid by their number, so that the rounding
@@ -112,7 +116,7 @@ impl RunTable {
         found.map_or("", |column| column.unit.as_str())
     }
 
-    /// Spectra of the displacements of all bodies over the window, as far as they are recorded.
+    /// Spectra of the displacements of all bodies and of what sensors read over the window, as far as they are recorded.
     pub fn spectra(&self) -> Vec<(String, Spectrum)> {
         let of = |channel: String| {
             let values = self.windowed(&channel)?;
@@ -122,6 +126,7 @@ impl RunTable {
             .bodies
             .iter()
             .flat_map(|body| ["x", "y", "z"].map(|axis| format!("{}_{axis}", body.column)));
-        channels.filter_map(of).collect()
+        let sensors = self.sensors.iter().map(|(_, column)| column.clone());
+        channels.chain(sensors).filter_map(of).collect()
     }
 }

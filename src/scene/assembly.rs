@@ -7,6 +7,7 @@ use crate::scene::dynamics::{DynamicsError, dynamic_problem};
 use crate::scene::housing::{HousedScene, HousingMethod, HousingSettings};
 use crate::scene::key_table_assembly::OWN_RACES;
 use crate::scene::resolved::{DefaultUsed, RunSettings, Scene};
+use crate::scene::sensors::{SceneSensor, SensorAt};
 use crate::scene::solid::SolidScene;
 use crate::scene::statics::still_lists;
 use crate::solver::dynamics::assembly::{Assembly, Body, CAGE, GROUND, INNER, Mobility, OUTER};
@@ -39,7 +40,8 @@ pub struct AssemblyScene {
     pub bearings: Vec<PlacedBearing>,
     pub bodies: Vec<SceneBody>,
     pub springs: Vec<Spring>,
-    /// Of bodies, springs and places.
+    pub sensors: Vec<SceneSensor>,
+    /// Of bodies, springs, sensors and places.
     pub defaults_used: Vec<DefaultUsed>,
 }
 
@@ -223,6 +225,7 @@ impl AssemblyScene {
             bearings: vec![bearing],
             bodies: Vec::new(),
             springs: Vec::new(),
+            sensors: Vec::new(),
             defaults_used: Vec::new(),
         }
     }
@@ -300,12 +303,22 @@ impl AssemblyScene {
         self.common().dynamics.run.as_ref()
     }
 
+    /// The lists of the solver, with the scene's sensors.
+    ///
+    /// # Errors
+    /// Radii from which no contact, mass or cage can be built.
+    pub fn assembly(&self) -> Result<Assembly, DynamicsError> {
+        let mut all = self.bodies_and_bearings()?;
+        all.sensors = self.sensors.iter().map(|sensor| sensor.of(&all)).collect();
+        Ok(all)
+    }
+
     /// Bodies, bearings and connections in the order of the scene: its bodies, then of each bearing the races
     /// that are bodies of their own and its cage, then the ground where a spring ends at it.
     ///
     /// # Errors
     /// Radii from which no contact, mass or cage can be built.
-    pub fn assembly(&self) -> Result<Assembly, DynamicsError> {
+    fn bodies_and_bearings(&self) -> Result<Assembly, DynamicsError> {
         if let Some(scene) = self.only() {
             return Ok(dynamic_problem(scene)?.assembly());
         }
@@ -376,6 +389,19 @@ impl AssemblyScene {
                     None => race.into(),
                 }
             }
+        }
+    }
+
+    /// What a sensor sits on, as scenes name it.
+    pub fn name_of_place(&self, at: SensorAt) -> String {
+        let of = |bearing: usize| {
+            let name = self.bearings[bearing].name.as_ref();
+            name.map_or(String::new(), |name| format!("{name}."))
+        };
+        match at {
+            SensorAt::Body(body) => self.bodies[body].name.clone(),
+            SensorAt::Race { bearing, side } => format!("{}{}", of(bearing), OWN_RACES[side]),
+            SensorAt::Cage(bearing) => format!("{}cage", of(bearing)),
         }
     }
 

@@ -301,8 +301,8 @@ impl Document {
             named.table == table && (says || lists)
         };
         let own: Vec<String> = self.named.iter().filter(own).map(|n| n.name.clone()).collect();
-        // Bodies and springs go by their own names, all else by those of bearings.
-        let by = if matches!(table, "body" | "spring") { table } else { "bearing" };
+        // Bodies, springs and sensors go by their own names, all else by those of bearings.
+        let by = if keys::OWN_NAMES.contains(&table) { table } else { "bearing" };
         let mut names: Vec<&str> = self.names(by).chain(self.names(table)).collect();
         names.sort_unstable();
         names.dedup();

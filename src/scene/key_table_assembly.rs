@@ -16,8 +16,9 @@ use Need::{Default, Depends, Optional, Required};
 pub const OWN_RACES: [&str; 2] = ["inner_race", "outer_race"];
 pub const GROUND: &str = "ground";
 
-const PLACE: Kind = Kind::Quantity(Length, closed(-1e5, 1e5, "mm"));
-const PLACE_HINT: &str = "a distance along the body's axis from its centre; check the unit";
+pub(super) const PLACE: Kind = Kind::Quantity(Length, closed(-1e5, 1e5, "mm"));
+pub(super) const PLACE_HINT: &str =
+    "a distance along the body's axis from its centre; check the unit";
 const SIZE: Kind = Kind::Quantity(Length, open(0.0, 10.0, "m"));
 const SIZE_HINT: &str = "a positive length; check the unit";
 const CELLS: Kind = Kind::Integer { low: 2, high: 100 };

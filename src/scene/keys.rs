@@ -5,8 +5,8 @@
 use crate::scene::units::Dimension::{self, *};
 use crate::scene::units::parse_quantity;
 use crate::scene::{
-    key_table, key_table_assembly, key_table_dynamics, key_table_housing, key_table_shaft,
-    key_table_solid,
+    key_table, key_table_assembly, key_table_dynamics, key_table_housing, key_table_sensor,
+    key_table_shaft, key_table_solid,
 };
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -218,6 +218,8 @@ fn usual(dimension: Dimension, range: Range) -> &'static str {
         Inertia => "1e-4 kg m^2",
         Unbalance => "9.12e-3 kg m",
         Rate => "77 1/s",
+        Capacitance => "100 pF",
+        Resistance => "0.3 ohm",
     }
 }
 
@@ -263,21 +265,23 @@ pub static KEYS: &[Key] = &ALL_KEYS;
 /// Every table, in the order of the reference. `assumptions` and `sweep` have keys of the user's.
 pub static TABLES: &[Table] = &ALL_TABLES;
 
-const PARTS: [&[Key]; 6] = [
+const PARTS: [&[Key]; 7] = [
     key_table::KEYS,
     key_table_dynamics::KEYS,
     key_table_assembly::KEYS,
     key_table_shaft::KEYS,
     key_table_solid::KEYS,
     key_table_housing::KEYS,
+    key_table_sensor::KEYS,
 ];
-const TABLE_PARTS: [&[Table]; 6] = [
+const TABLE_PARTS: [&[Table]; 7] = [
     key_table::TABLES,
     key_table_dynamics::TABLES,
     key_table_assembly::TABLES,
     key_table_shaft::TABLES,
     key_table_solid::TABLES,
     key_table_housing::TABLES,
+    key_table_sensor::TABLES,
 ];
 
 static ALL_KEYS: [Key; count(&PARTS)] = joined(&PARTS, key_table::KEYS[0]);
@@ -319,8 +323,11 @@ pub fn find(path: &str) -> Option<(usize, &'static Key)> {
 
 /// Tables that may stand several times, each with a name: `[bearing.left]`. What stands in the table
 /// without a name is what all of them inherit.
-pub const NAMED: [&str; 7] =
-    ["bearing", "inner_race", "outer_race", "body", "spring", "housing", "solid"];
+pub const NAMED: [&str; 8] =
+    ["bearing", "inner_race", "outer_race", "body", "spring", "housing", "solid", "sensor"];
+
+/// Those of them that go by names of their own; all others by those of bearings.
+pub const OWN_NAMES: [&str; 3] = ["body", "spring", "sensor"];
 
 /// Where a dotted path leads.
 #[derive(Clone, Copy, Debug)]

@@ -19,6 +19,7 @@ pub fn reference_markdown() -> String {
         "outer_race",
         "body",
         "spring",
+        "sensor",
         "ball_forces",
         "traction",
         "contact_damping",

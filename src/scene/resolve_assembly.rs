@@ -69,7 +69,8 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
     refuse_places_off_shafts(document, (&bearings, &springs), &resolved)?;
     refuse_races_apart(document, &bearings, &resolved)?;
     name_what_holds(&mut bearings, &springs);
-    let scene = AssemblyScene { bearings, bodies: resolved, springs, defaults_used };
+    let sensors = Vec::new();
+    let scene = AssemblyScene { bearings, bodies: resolved, springs, sensors, defaults_used };
     refuse_shared_columns(document, &scene)?;
     refuse_free_bodies(document, &scene)?;
     refuse_springs_on_elements(document, &scene)?;
@@ -137,7 +138,7 @@ fn refuse_strange_names(document: &Document) -> Result<(), SceneError> {
             return Err(unknown(document, table, name, "bearing", document.names("bearing")));
         }
     }
-    let kinds = ["bearing", "body", "spring"];
+    let kinds = ["bearing", "body", "spring", "sensor"];
     for (index, table) in kinds.iter().enumerate() {
         for other in &kinds[..index] {
             if let Some(twice) =

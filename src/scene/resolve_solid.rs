@@ -10,6 +10,7 @@ use crate::scene::resolve::{Reader, resolve, text};
 use crate::scene::resolve_assembly::{assembly, is_assembly};
 use crate::scene::resolve_housing::in_housing;
 use crate::scene::resolve_rubber::{self, check_order, is_rubber, refuse_rubber};
+use crate::scene::resolve_sensor::{add_sensors, refuse_sensors};
 use crate::scene::resolve_solid_mesh::source;
 use crate::scene::solid::{
     Held, LoadKind, MeshPlace, MeshRequest, MeshSource, Probe, ProbeOf, RunSteps, SetLoad,
@@ -32,17 +33,31 @@ const STEP_FRACTION: f64 = 0.8;
 /// The first key, in a fixed order, that is missing or contradicts others; a bearing and a solid
 /// without `[housing]`.
 pub fn resolve_subject(document: &Document) -> Result<Subject, SceneError> {
+    if let Some(mut scene) = of_bearings(document)? {
+        add_sensors(document, &mut scene)?;
+        return Ok(Subject::Assembly(Box::new(scene)));
+    }
+    Ok(Subject::Solid(Box::new(of_solid(document)?)))
+}
+
+/// A scene about bearings; `None` for one about a solid.
+fn of_bearings(document: &Document) -> Result<Option<AssemblyScene>, SceneError> {
     if is_assembly(document) {
-        return Ok(Subject::Assembly(Box::new(assembly(document)?)));
+        return Ok(Some(assembly(document)?));
     }
     document.refuse_names()?;
     if document.first_below("housing").is_some() {
         let (bearing, housing) = in_housing(document)?;
-        return Ok(Subject::Assembly(Box::new(AssemblyScene::of_one(bearing, housing))));
+        return Ok(Some(AssemblyScene::of_one(bearing, housing)));
     }
-    let Some(solid) = document.first_below("solid") else {
-        return Ok(Subject::Assembly(Box::new(AssemblyScene::alone(resolve(document)?))));
-    };
+    Ok(match document.first_below("solid") {
+        None => Some(AssemblyScene::alone(resolve(document)?)),
+        Some(_) => None,
+    })
+}
+
+/// A solid alone.
+fn of_solid(document: &Document) -> Result<SolidScene, SceneError> {
     const OF_A_BEARING: [&str; 7] = [
         "bearing",
         "inner_race",
@@ -54,10 +69,12 @@ pub fn resolve_subject(document: &Document) -> Result<Subject, SceneError> {
     ];
     if let Some(other) = OF_A_BEARING.iter().find_map(|part| document.first_below(part)) {
         let reason = "a bearing and a solid in one scene are coupled by a [housing] table";
+        let solid = document.first_below("solid").unwrap_or("solid");
         let advice = format!("add it, or leave out `{other}`, or `{solid}` and all beside it");
         return Err(document.refused(other, reason, advice));
     }
-    Ok(Subject::Solid(Box::new(solid_scene(document)?)))
+    refuse_sensors(document)?;
+    solid_scene(document)
 }
 
 /// What takes a bearing has no use for a solid, and for what belongs to one.

@@ -133,7 +133,7 @@ fn named_schema(path: &str) -> Value {
             property.as_object_mut().and_then(|property| property.remove(part));
         }
     }
-    let only_named = ["body", "spring"].contains(&path);
+    let only_named = keys::OWN_NAMES.contains(&path);
     let mut named = if only_named { plain.clone() } else { inherited.clone() };
     // What one needs may stand beside the names.
     named.remove("required");

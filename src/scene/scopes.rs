@@ -99,7 +99,8 @@ impl Document {
 
     /// Refuses tables with names where nothing goes by them.
     pub(crate) fn refuse_names(&self) -> Result<(), SceneError> {
-        let Some(named) = self.named.first() else { return Ok(()) };
+        let nobody = |named: &&Named| named.table != "sensor";
+        let Some(named) = self.named.iter().find(nobody) else { return Ok(()) };
         let reason = format!("no bearing has the name {:?}", named.name);
         let advice = format!("write [{}], or [bearing.{}] as well", named.table, named.name);
         Err(self.error_of_name(named.table, &named.name, Problem::refused(reason, advice)))
@@ -158,12 +159,10 @@ fn table_of(key: &Key) -> &'static str {
     keys::NAMED.into_iter().find(|named| Some(*named) == table).unwrap_or("bearing")
 }
 
-/// What has the names of that table: bodies and springs their own, all others those of bearings.
+/// What has the names of that table: bodies, springs and sensors their own, all others those of bearings.
 fn kind_of(key: &Key) -> &'static str {
-    match table_of(key) {
-        own @ ("body" | "spring") => own,
-        _ => "bearing",
-    }
+    let table = table_of(key);
+    if keys::OWN_NAMES.contains(&table) { table } else { "bearing" }
 }
 
 /// A name that nothing goes by, and what it may have been meant for.

@@ -28,6 +28,8 @@ pub enum Dimension {
     Inertia,
     Unbalance,
     Rate,
+    Capacitance,
+    Resistance,
 }
 
 /// How a unit converts to SI.
@@ -117,7 +119,7 @@ const TIME: &[Unit] = &[
     decimal(&["ns"], -9),
     factor(&["min"], 60.0),
 ];
-const FREQUENCY: &[Unit] = &[decimal(&["Hz"], 0), decimal(&["kHz"], 3)];
+const FREQUENCY: &[Unit] = &[decimal(&["Hz"], 0), decimal(&["kHz"], 3), decimal(&["MHz"], 6)];
 const SPEED: &[Unit] = &[decimal(&["m/s"], 0), decimal(&["mm/s"], -3), decimal(&["um/s"], -6)];
 const INVERSE_SPEED: &[Unit] = &[decimal(&["s/m"], 0), decimal(&["s/mm"], 3)];
 const STIFFNESS: &[Unit] = &[
@@ -155,9 +157,16 @@ const UNBALANCE: &[Unit] = &[
 ];
 
 const RATE: &[Unit] = &[decimal(&["1/s", "/s", "s^-1"], 0)];
+const CAPACITANCE: &[Unit] = &[
+    decimal(&["pF"], -12),
+    decimal(&["nF"], -9),
+    decimal(&["uF", "\u{b5}F", "\u{3bc}F"], -6),
+    decimal(&["F"], 0),
+];
+const RESISTANCE: &[Unit] = &[decimal(&["ohm", "\u{3a9}", "\u{2126}"], 0), decimal(&["mohm"], -3)];
 
 impl Dimension {
-    pub const ALL: [Dimension; 22] = [
+    pub const ALL: [Dimension; 24] = [
         Dimension::Length,
         Dimension::Mass,
         Dimension::Force,
@@ -180,6 +189,8 @@ impl Dimension {
         Dimension::Inertia,
         Dimension::Unbalance,
         Dimension::Rate,
+        Dimension::Capacitance,
+        Dimension::Resistance,
     ];
 
     /// Name with its article, as used in a sentence: "a length".
@@ -207,6 +218,8 @@ impl Dimension {
             Dimension::Inertia => "a moment of inertia",
             Dimension::Unbalance => "an unbalance",
             Dimension::Rate => "a rate",
+            Dimension::Capacitance => "a capacitance",
+            Dimension::Resistance => "a resistance",
         }
     }
 
@@ -235,6 +248,8 @@ impl Dimension {
             Dimension::Inertia => "kg m^2",
             Dimension::Unbalance => "kg m",
             Dimension::Rate => "1/s",
+            Dimension::Capacitance => "F",
+            Dimension::Resistance => "ohm",
         }
     }
 
@@ -262,6 +277,8 @@ impl Dimension {
             Dimension::Inertia => INERTIA,
             Dimension::Unbalance => UNBALANCE,
             Dimension::Rate => RATE,
+            Dimension::Capacitance => CAPACITANCE,
+            Dimension::Resistance => RESISTANCE,
         }
     }
 

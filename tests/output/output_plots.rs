@@ -305,6 +305,7 @@ fn loads_over_azimuth_are_drawn_where_the_ball_is() {
         window: 0..3,
         bearings: vec![String::new()],
         bodies: Vec::new(),
+        sensors: Vec::new(),
     };
     let drawn = draw(Picture::Polar, "A ball", &table).unwrap();
     let [(file, found)] = &drawn[..] else { panic!("{drawn:?}") };

@@ -16,6 +16,7 @@ mod scene_fuzz;
 mod scene_lists;
 mod scene_places;
 mod scene_read;
+mod scene_sensors;
 mod scene_shaft;
 mod scene_to_problem;
 mod scene_units;

@@ -3,33 +3,35 @@
 use bearing_dynamics::scene::units::{Dimension, parse_quantity};
 use std::f64::consts::TAU;
 
-/// Powers of kilogram, metre, second and radian.
-type Powers = [f64; 4];
+/// Powers of kilogram, metre, second, radian and ampere.
+type Powers = [f64; 5];
 
 /// What a dimension is made of.
 fn powers(dimension: Dimension) -> Powers {
     match dimension {
-        Dimension::Length => [0.0, 1.0, 0.0, 0.0],
-        Dimension::Mass => [1.0, 0.0, 0.0, 0.0],
-        Dimension::Force => [1.0, 1.0, -2.0, 0.0],
-        Dimension::Moment => [1.0, 2.0, -2.0, 0.0],
-        Dimension::Angle => [0.0, 0.0, 0.0, 1.0],
-        Dimension::RotationSpeed => [0.0, 0.0, -1.0, 1.0],
-        Dimension::Stress => [1.0, -1.0, -2.0, 0.0],
-        Dimension::Density => [1.0, -3.0, 0.0, 0.0],
-        Dimension::Acceleration => [0.0, 1.0, -2.0, 0.0],
-        Dimension::Time => [0.0, 0.0, 1.0, 0.0],
-        Dimension::Frequency | Dimension::Rate => [0.0, 0.0, -1.0, 0.0],
-        Dimension::Speed => [0.0, 1.0, -1.0, 0.0],
-        Dimension::InverseSpeed => [0.0, -1.0, 1.0, 0.0],
-        Dimension::Stiffness => [1.0, 0.0, -2.0, 0.0],
-        Dimension::StiffnessPerArea => [1.0, -2.0, -2.0, 0.0],
-        Dimension::HertzStiffness => [1.0, -0.5, -2.0, 0.0],
-        Dimension::TiltStiffness => [1.0, 2.0, -2.0, -1.0],
-        Dimension::Damping => [1.0, 0.0, -1.0, 0.0],
-        Dimension::TiltDamping => [1.0, 2.0, -1.0, -1.0],
-        Dimension::Inertia => [1.0, 2.0, 0.0, 0.0],
-        Dimension::Unbalance => [1.0, 1.0, 0.0, 0.0],
+        Dimension::Length => [0.0, 1.0, 0.0, 0.0, 0.0],
+        Dimension::Mass => [1.0, 0.0, 0.0, 0.0, 0.0],
+        Dimension::Force => [1.0, 1.0, -2.0, 0.0, 0.0],
+        Dimension::Moment => [1.0, 2.0, -2.0, 0.0, 0.0],
+        Dimension::Angle => [0.0, 0.0, 0.0, 1.0, 0.0],
+        Dimension::RotationSpeed => [0.0, 0.0, -1.0, 1.0, 0.0],
+        Dimension::Stress => [1.0, -1.0, -2.0, 0.0, 0.0],
+        Dimension::Density => [1.0, -3.0, 0.0, 0.0, 0.0],
+        Dimension::Acceleration => [0.0, 1.0, -2.0, 0.0, 0.0],
+        Dimension::Time => [0.0, 0.0, 1.0, 0.0, 0.0],
+        Dimension::Frequency | Dimension::Rate => [0.0, 0.0, -1.0, 0.0, 0.0],
+        Dimension::Speed => [0.0, 1.0, -1.0, 0.0, 0.0],
+        Dimension::InverseSpeed => [0.0, -1.0, 1.0, 0.0, 0.0],
+        Dimension::Stiffness => [1.0, 0.0, -2.0, 0.0, 0.0],
+        Dimension::StiffnessPerArea => [1.0, -2.0, -2.0, 0.0, 0.0],
+        Dimension::HertzStiffness => [1.0, -0.5, -2.0, 0.0, 0.0],
+        Dimension::TiltStiffness => [1.0, 2.0, -2.0, -1.0, 0.0],
+        Dimension::Damping => [1.0, 0.0, -1.0, 0.0, 0.0],
+        Dimension::TiltDamping => [1.0, 2.0, -1.0, -1.0, 0.0],
+        Dimension::Inertia => [1.0, 2.0, 0.0, 0.0, 0.0],
+        Dimension::Unbalance => [1.0, 1.0, 0.0, 0.0, 0.0],
+        Dimension::Capacitance => [-1.0, -2.0, 4.0, 0.0, 2.0],
+        Dimension::Resistance => [1.0, 2.0, -3.0, 0.0, -2.0],
     }
 }
 
@@ -37,23 +39,26 @@ fn powers(dimension: Dimension) -> Powers {
 fn symbol(text: &str, dimension: Dimension) -> Option<(f64, Powers)> {
     let whole = match (text, dimension) {
         // A turn a second; the standard acceleration of free fall.
-        ("Hz", Dimension::RotationSpeed) => (TAU, [0.0, 0.0, -1.0, 1.0]),
-        ("g", Dimension::Acceleration) => (9.80665, [0.0, 1.0, -2.0, 0.0]),
-        ("1", _) => (1.0, [0.0; 4]),
-        ("in", _) => (25.4e-3, [0.0, 1.0, 0.0, 0.0]),
+        ("Hz", Dimension::RotationSpeed) => (TAU, [0.0, 0.0, -1.0, 1.0, 0.0]),
+        ("g", Dimension::Acceleration) => (9.80665, [0.0, 1.0, -2.0, 0.0, 0.0]),
+        ("1", _) => (1.0, [0.0; 5]),
+        ("in", _) => (25.4e-3, [0.0, 1.0, 0.0, 0.0, 0.0]),
         // The pound under the standard acceleration.
-        ("lbf", _) => (0.453_592_37 * 9.80665, [1.0, 1.0, -2.0, 0.0]),
-        ("deg" | "\u{b0}", _) => (TAU / 360.0, [0.0, 0.0, 0.0, 1.0]),
-        ("arcmin", _) => (TAU / 360.0 / 60.0, [0.0, 0.0, 0.0, 1.0]),
-        ("rpm", _) => (TAU / 60.0, [0.0, 0.0, -1.0, 1.0]),
-        ("min", _) => (60.0, [0.0, 0.0, 1.0, 0.0]),
-        ("m", _) => (1.0, [0.0, 1.0, 0.0, 0.0]),
-        ("g", _) => (1e-3, [1.0, 0.0, 0.0, 0.0]),
-        ("s", _) => (1.0, [0.0, 0.0, 1.0, 0.0]),
-        ("rad", _) => (1.0, [0.0, 0.0, 0.0, 1.0]),
-        ("N", _) => (1.0, [1.0, 1.0, -2.0, 0.0]),
-        ("Pa", _) => (1.0, [1.0, -1.0, -2.0, 0.0]),
-        ("Hz", _) => (1.0, [0.0, 0.0, -1.0, 0.0]),
+        ("lbf", _) => (0.453_592_37 * 9.80665, [1.0, 1.0, -2.0, 0.0, 0.0]),
+        ("deg" | "\u{b0}", _) => (TAU / 360.0, [0.0, 0.0, 0.0, 1.0, 0.0]),
+        ("arcmin", _) => (TAU / 360.0 / 60.0, [0.0, 0.0, 0.0, 1.0, 0.0]),
+        ("rpm", _) => (TAU / 60.0, [0.0, 0.0, -1.0, 1.0, 0.0]),
+        ("min", _) => (60.0, [0.0, 0.0, 1.0, 0.0, 0.0]),
+        ("m", _) => (1.0, [0.0, 1.0, 0.0, 0.0, 0.0]),
+        ("g", _) => (1e-3, [1.0, 0.0, 0.0, 0.0, 0.0]),
+        ("s", _) => (1.0, [0.0, 0.0, 1.0, 0.0, 0.0]),
+        ("rad", _) => (1.0, [0.0, 0.0, 0.0, 1.0, 0.0]),
+        ("N", _) => (1.0, [1.0, 1.0, -2.0, 0.0, 0.0]),
+        ("Pa", _) => (1.0, [1.0, -1.0, -2.0, 0.0, 0.0]),
+        ("Hz", _) => (1.0, [0.0, 0.0, -1.0, 0.0, 0.0]),
+        // An ampere second over a volt, and a volt over an ampere.
+        ("F", _) => (1.0, [-1.0, -2.0, 4.0, 0.0, 2.0]),
+        ("ohm" | "\u{3a9}" | "\u{2126}", _) => (1.0, [1.0, 2.0, -3.0, 0.0, -2.0]),
         _ => {
             let (first, rest) = text.split_at(text.chars().next()?.len_utf8());
             let ten = match first {
@@ -64,9 +69,10 @@ fn symbol(text: &str, dimension: Dimension) -> Option<(f64, Powers)> {
                 "m" => 1e-3,
                 "u" | "\u{b5}" | "\u{3bc}" => 1e-6,
                 "n" => 1e-9,
+                "p" => 1e-12,
                 _ => return None,
             };
-            if !["m", "g", "s", "rad", "N", "Pa", "Hz"].contains(&rest) {
+            if !["m", "g", "s", "rad", "N", "Pa", "Hz", "F", "ohm"].contains(&rest) {
                 return None;
             }
             let (factor, powers) = symbol(rest, dimension)?;
@@ -80,7 +86,7 @@ fn symbol(text: &str, dimension: Dimension) -> Option<(f64, Powers)> {
 fn products(text: &str, dimension: Dimension) -> Vec<(f64, Powers)> {
     let text = text.trim_start_matches([' ', '*', '\u{b7}', '\u{22c5}']);
     if text.is_empty() {
-        return vec![(1.0, [0.0; 4])];
+        return vec![(1.0, [0.0; 5])];
     }
     let mut found = Vec::new();
     for end in (1..=text.len()).filter(|&end| text.is_char_boundary(end)) {
@@ -113,7 +119,7 @@ fn by_definition(unit: &str, dimension: Dimension) -> f64 {
     let mut readings: Vec<f64> = Vec::new();
     for (factor, powers_above) in products(above, dimension) {
         for (divisor, powers_below) in products(below, dimension) {
-            if (0..4).all(|i| powers_above[i] - powers_below[i] == powers(dimension)[i]) {
+            if (0..5).all(|i| powers_above[i] - powers_below[i] == powers(dimension)[i]) {
                 readings.push(factor / divisor);
             }
         }

@@ -114,6 +114,8 @@ pub mod statics_independent;
 mod steel_impact_2_4_3;
 #[path = "../steel_load_rates_2_4_3/case.rs"]
 mod steel_load_rates_2_4_3;
+#[path = "../telemeter_5_2/case.rs"]
+mod telemeter_5_2;
 #[path = "../thick_ring_lame/case.rs"]
 mod thick_ring_lame;
 #[path = "../varying_compliance_dynamics/case.rs"]
@@ -155,6 +157,7 @@ pub const CASES: &[Case] = &[
     cantilever_timoshenko::CASE,
     free_ring_modes::CASE,
     cage_modes_table_5_3::CASE,
+    telemeter_5_2::CASE,
     calculix_comparison::CASE,
     line_contact_plane_strain::CASE,
     cylinder_on_block_table_2_1::CASE,

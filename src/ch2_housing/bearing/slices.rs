@@ -56,7 +56,7 @@ fn across_slice(j: usize, points: usize) -> (f64, f64) {
         return (2.0 / (points + 1) as f64, 0.0);
     }
     let angle = j as f64 * PI / (points + 1) as f64;
-    let (sine, cosine) = angle.sin_cos();
+    let (sine, cosine) = libm::sincos(angle);
     (2.0 * sine * sine / (points + 1) as f64, cosine)
 }
 

@@ -19,6 +19,7 @@ use bearing_dynamics::output::summary::solid::mesh_section;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::HousingMethod;
+use bearing_dynamics::scene::sensors::{SceneSensor, SceneSensorKind};
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{CageInRun, Document, RunSettings, Scene};
 use bearing_dynamics::solver::dynamics::run::Stepping;
@@ -99,10 +100,35 @@ fn of_scene(
         of_shafts(scene).into_iter().for_each(|said| line("note", said));
         of_springs(scene).into_iter().for_each(|said| line("note", said));
     }
+    sensors(scene).into_iter().for_each(|(label, said)| line(&label, said));
     of_sizes(scene).into_iter().for_each(|said| line("note", said));
     for (label, value) in of_run(scene, housings) {
         line(label, value);
     }
+}
+
+/// What watches a run, a line each.
+fn sensors(scene: &AssemblyScene) -> Vec<(String, String)> {
+    let of = |sensor: &SceneSensor| {
+        let said = match &sensor.kind {
+            SceneSensorKind::Accelerometer { at, along, radius, angle, direction } => format!(
+                "accelerometer on {}, {:.4} mm along its axis, {:.4} mm from it at {:.2} deg, {}",
+                scene.name_of_place(*at),
+                1e3 * along,
+                1e3 * radius,
+                angle.to_degrees(),
+                direction.name()
+            ),
+            SceneSensorKind::Telemeter { circuit, distance, .. } => format!(
+                "telemeter, {:.4} mm from its transceiver, watched at {:.4} MHz, natural frequency {:.4} MHz",
+                1e3 * distance,
+                1e-6 * circuit.frequency,
+                1e-6 * circuit.natural_frequency()
+            ),
+        };
+        (format!("sensor {}", sensor.name), said)
+    };
+    scene.sensors.iter().map(of).collect()
 }
 
 /// Kind and geometry, a line each.

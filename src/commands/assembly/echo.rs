@@ -14,6 +14,7 @@ use bearing_dynamics::scene::assembly::{
 };
 use bearing_dynamics::scene::dynamics::dynamic_problem;
 use bearing_dynamics::scene::housing::{FitSize, HousingMethod, HousingSettings};
+use bearing_dynamics::scene::sensors::{SceneSensor, SceneSensorKind};
 use bearing_dynamics::solver::dynamics::connection::MaxwellElement;
 use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
 use bearing_dynamics::solver::rotor::beam::{BeamDisc, BeamSegment};
@@ -22,10 +23,19 @@ use serde_json::{Map, Value, json};
 
 /// The scene as understood, every dimensional value with its unit.
 pub fn echo(lists: &Lists) -> Fallible<Value> {
-    let scene = lists.scene;
-    if let Some(one) = scene.one() {
-        return of_one(one);
+    let mut echo = match lists.scene.one() {
+        Some(one) => of_one(one)?,
+        None => of_several(lists)?,
+    };
+    if !lists.scene.sensors.is_empty() {
+        echo["sensors"] = sensors(lists.scene)?;
     }
+    Ok(echo)
+}
+
+/// Of bearings and bodies with names.
+fn of_several(lists: &Lists) -> Fallible<Value> {
+    let scene = lists.scene;
     let common = scene.common();
     let mut echo = bearing_echo::head(&common.title, &common.source);
     let mut bearings = Map::new();
@@ -186,6 +196,46 @@ fn bushing(of: &BushingOfSpring) -> Result<Value, ResultsError> {
         echo["largest_error_of_springs"][name] = quantity("error", 100.0 * miss, "%")?;
     }
     Ok(echo)
+}
+
+/// What a run is watched with.
+fn sensors(scene: &AssemblyScene) -> Result<Value, ResultsError> {
+    let mut all = Map::new();
+    for SceneSensor { name, kind } in &scene.sensors {
+        let mut echo = match kind {
+            SceneSensorKind::Accelerometer { at, along, radius, angle, direction } => json!({
+                "kind": "accelerometer",
+                "on": scene.name_of_place(*at),
+                "at": quantity("place", 1e3 * along, "mm")?,
+                "radius": quantity("radius", 1e3 * radius, "mm")?,
+                "angle": quantity("angle", angle.to_degrees(), "deg")?,
+                "direction": direction.name(),
+            }),
+            SceneSensorKind::Telemeter { circuit, distance, offset, runout, .. } => json!({
+                "kind": "telemeter",
+                "distance": quantity("distance", 1e3 * distance, "mm")?,
+                "offset": quantity("offset", 1e3 * offset[0], "mm")?,
+                "offset_angle": quantity("angle", offset[1].to_degrees(), "deg")?,
+                "runout": quantity("runout", 1e3 * runout[0], "mm")?,
+                "runout_angle": quantity("angle", runout[1].to_degrees(), "deg")?,
+                "loop_radius": quantity("radius", 1e3 * circuit.radius, "mm")?,
+                "transceiver_radius": quantity("radius", 1e3 * circuit.transceiver_radius, "mm")?,
+                "wire_radius": quantity("radius", 1e3 * circuit.wire_radius, "mm")?,
+                "capacitance": quantity("capacitance", 1e12 * circuit.capacitance, "pF")?,
+                "resistance": quantity("resistance", circuit.resistance[0], "ohm")?,
+                "transceiver_resistance": quantity("resistance", circuit.resistance[1], "ohm")?,
+                "natural_frequency": quantity("frequency", circuit.natural_frequency(), "Hz")?,
+                "frequency": quantity("frequency", circuit.frequency, "Hz")?,
+            }),
+        };
+        if let SceneSensorKind::Telemeter { bearing, .. } = kind
+            && let Some(of) = &scene.bearings[*bearing].name
+        {
+            echo["bearing"] = json!(of);
+        }
+        all.insert(name.clone(), echo);
+    }
+    Ok(Value::Object(all))
 }
 
 /// Of one bearing and what it sits in; with the housing how a run is computed.

@@ -3,7 +3,7 @@
 use crate::output::plots::{
     Axis, Curve, OrbitPlot, PlotError, PolarPlot, Style, XyPlot, orbit, polar, xy,
 };
-use crate::output::spectrum::WINDOW;
+use crate::output::spectrum::{Spectrum, WINDOW};
 use crate::output::table::{Moving, RunTable};
 use crate::solver::clock::to_digits;
 
@@ -96,6 +96,12 @@ fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
         let heading = format!("{title}: {}loads", prefix.replace('_', " "));
         let file = format!("series_{prefix}loads.svg");
         add_series(&mut drawn, file, heading, "normal load", "N", curves)?;
+    }
+    for (name, column) in &table.sensors {
+        let quantity = column.strip_prefix(name.as_str()).map_or("", |of| &of[1..]);
+        let curves = over_time(table, &[(column, name)], 1.0);
+        let (file, heading) = (format!("series_{name}.svg"), format!("{title}: {name}"));
+        add_series(&mut drawn, file, heading, quantity, table.unit(column), curves)?;
     }
     let curves = over_time(table, &[("energy_residual", "unaccounted for")], 1.0);
     let heading = format!("{title}: energy ledger");
@@ -198,33 +204,55 @@ fn spectra(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotE
         let mut curves = Vec::new();
         for (channel, spectrum) in &spectra {
             let own = channel.strip_prefix(body.as_str()).and_then(|c| c.strip_prefix('_'));
-            let Some(axis) = own.filter(|axis| axis.len() == 1) else { continue };
-            let highest = spectrum.amplitude.iter().copied().fold(0.0, f64::max);
-            let points: Vec<[f64; 2]> = spectrum
-                .amplitude
-                .iter()
-                .enumerate()
-                .skip(1)
-                .filter(|(_, amplitude)| **amplitude > SPECTRUM_FLOOR * highest)
-                .map(|(bin, amplitude)| [bin as f64 * spectrum.bin_width, 1e6 * amplitude])
-                .collect();
-            if !points.is_empty() {
-                curves.push(Curve::new(axis, thin(points, 4 * POINTS)));
-            }
+            let Some(coordinate) = own.filter(|axis| axis.len() == 1) else { continue };
+            curves.extend(lines_of(coordinate, spectrum, 1e6));
         }
-        if curves.is_empty() {
+        let what = format!("the {name}");
+        add_spectrum(&mut drawn, (title, &what, name), &axis, ("amplitude", "um"), curves)?;
+    }
+    for (name, column) in &table.sensors {
+        let Some((_, spectrum)) = spectra.iter().find(|(channel, _)| channel == column) else {
             continue;
-        }
-        let svg = xy(&XyPlot {
-            title: format!("{title}: spectrum of the {name}"),
-            x: Axis::log(axis.clone(), "Hz"),
-            y: Axis::log("amplitude", "um"),
-            style: Style::Lines,
-            curves,
-        })?;
-        drawn.push((format!("spectrum_{}.svg", name.replace(' ', "_")), svg));
+        };
+        let quantity = column.strip_prefix(name.as_str()).map_or("", |of| &of[1..]);
+        let of = (quantity, table.unit(column));
+        let curves = lines_of(name, spectrum, 1.0).into_iter().collect();
+        add_spectrum(&mut drawn, (title, name, name), &axis, of, curves)?;
     }
     Ok(drawn)
+}
+
+/// Amplitudes times `scale` over frequency, without what is rounding.
+fn lines_of(name: &str, spectrum: &Spectrum, scale: f64) -> Option<Curve> {
+    let highest = spectrum.amplitude.iter().copied().fold(0.0, f64::max);
+    let bins = spectrum.amplitude.iter().enumerate().skip(1);
+    let points: Vec<[f64; 2]> = bins
+        .filter(|(_, amplitude)| **amplitude > SPECTRUM_FLOOR * highest)
+        .map(|(bin, amplitude)| [bin as f64 * spectrum.bin_width, scale * amplitude])
+        .collect();
+    (!points.is_empty()).then(|| Curve::new(name, thin(points, 4 * POINTS)))
+}
+
+/// `title`, what is shown and the name in the file's; quantity and unit of the amplitudes.
+fn add_spectrum(
+    drawn: &mut Vec<(String, String)>,
+    (title, what, name): (&str, &str, &str),
+    frequency: &str,
+    (quantity, unit): (&str, &str),
+    curves: Vec<Curve>,
+) -> Result<(), PlotError> {
+    if curves.is_empty() {
+        return Ok(());
+    }
+    let svg = xy(&XyPlot {
+        title: format!("{title}: spectrum of {what}"),
+        x: Axis::log(frequency, "Hz"),
+        y: Axis::log(quantity, unit),
+        style: Style::Lines,
+        curves,
+    })?;
+    drawn.push((format!("spectrum_{}.svg", name.replace(' ', "_")), svg));
+    Ok(())
 }
 
 /// Azimuth in degrees from 0 to 360 of ball `ball` at every row of the window.

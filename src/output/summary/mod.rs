@@ -173,7 +173,7 @@ pub fn run_summary(
     if !spectra.is_empty() {
         let section = match motion {
             Motion::Solid(_) | Motion::Rubber(_) => solid::spectra_section(spectra)?,
-            _ => spectra_section(table, spectra, spectral_floor(session, spectra, report))?,
+            _ => spectra_section(table, spectra, spectral_floor(session, table, spectra, report))?,
         };
         summary.insert("spectra".into(), section);
     }
@@ -288,10 +288,19 @@ fn window(table: &RunTable) -> Result<Value, ResultsError> {
     }))
 }
 
-/// Peaks below this, m, say nothing: 1e-4 of the highest of all channels; what error control lets pass in
+/// Peaks of a sensor below this part of its largest reading are rounding.
+const SENSOR_ROUNDING: f64 = 1e-9;
+
+/// Peaks of displacements below this, m, say nothing: 1e-4 of the highest of all of them; what error control lets pass in
 /// a single step.
-fn spectral_floor(session: &Session, spectra: &[(String, Spectrum)], report: &RunReport) -> f64 {
-    let bins = spectra.iter().flat_map(|(_, spectrum)| spectrum.amplitude.iter().skip(1));
+fn spectral_floor(
+    session: &Session,
+    table: &RunTable,
+    spectra: &[(String, Spectrum)],
+    report: &RunReport,
+) -> f64 {
+    let displacements = spectra.iter().filter(|(name, _)| table.unit(name) == "m");
+    let bins = displacements.flat_map(|(_, spectrum)| spectrum.amplitude.iter().skip(1));
     let highest = bins.fold(0.0f64, |highest, bin| highest.max(*bin));
     let allowed = match (session.motion.bearing().and_then(|s| s.control.as_ref()), report.stepping)
     {
@@ -312,6 +321,10 @@ fn spectra_section(
     let bin_width = spectra.first().map_or(0.0, |(_, spectrum)| spectrum.bin_width);
     for (name, spectrum) in spectra {
         let unit = table.unit(name);
+        // What a sensor reads is rounded by a part of what it reads on the mean.
+        let magnitude =
+            || table.windowed(name).into_iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let floor = if unit == "m" { floor } else { SENSOR_ROUNDING * magnitude() };
         let found: Result<Vec<Value>, ResultsError> = peaks(spectrum, PEAKS, floor)
             .into_iter()
             .map(|peak| {

@@ -10,6 +10,7 @@ use super::equilibrium::given_speed;
 use super::model::{CageBody, Drive, DynamicProblem, RaceBody, RotatingLoad, Rotation};
 use super::reduced_solid::ReducedSolid;
 use super::seat::Seat;
+use super::sensor::Sensor;
 use super::shaft::ElasticShaft;
 use crate::ch2_housing::bearing::ball_contact::BallContactLaw;
 use crate::ch2_housing::bearing::cage::CageContacts;
@@ -36,6 +37,8 @@ pub struct Assembly {
     pub seats: Vec<Seat>,
     /// Bodies that bend, at most one entry each.
     pub shafts: Vec<ElasticShaft>,
+    /// They watch a motion and change nothing of it.
+    pub sensors: Vec<Sensor>,
     /// m/s².
     pub gravity: [f64; 3],
 }
@@ -402,6 +405,7 @@ impl From<&DynamicProblem> for Assembly {
             solids: Vec::new(),
             seats: Vec::new(),
             shafts: Vec::new(),
+            sensors: Vec::new(),
             gravity: problem.gravity,
         }
     }

@@ -43,6 +43,7 @@ pub mod rk4;
 pub mod rosenbrock;
 pub mod run;
 pub mod seat;
+pub mod sensor;
 pub mod shaft;
 pub mod shaft_holds;
 pub mod stability;

@@ -421,6 +421,11 @@ impl Simulation {
         self.balance.snapshot(&self.system, &self.state, self.time)
     }
 
+    /// Rates of the state at the last snapshot.
+    pub fn rates(&self) -> &[f64] {
+        &self.rates
+    }
+
     /// Largest energy unaccounted for at any look, J.
     pub fn largest_residual(&self) -> f64 {
         self.balance.watch.largest_residual

@@ -11,9 +11,10 @@ use super::reduced_solid::ModalEnergy;
 use super::seat::SeatNow;
 use super::shaft::Section;
 use super::shaft_holds::{Hold, Holds, handed_on, sitting};
-use super::state::{BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, Places};
+use super::state::{BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, Places, SPIN, VELOCITY};
 use super::unbalance::Swing;
 use crate::ch2_housing::bearing::cage::AxisMotion;
+use crate::kinematics::vec3::Vec3;
 use crate::solver::mount::Mount;
 use crate::solver::plan::steps::Steps;
 use crate::solver::plan::tally::Ran;
@@ -324,6 +325,12 @@ impl System {
         let (of, at) = (&self.assembly.shafts[shaft], self.shafts[shaft]);
         let now = RaceNow::new(self.body_state(state, of.body));
         section.place(&now, &Mount::at_centre(of.body), &of.bend(at, state)).race
+    }
+
+    /// Acceleration of a body's centre (m/s²) and of its angular velocity (rad/s²), inertial axes, out of the rates.
+    pub fn acceleration_of(&self, rates: &[f64], body: usize) -> [Vec3; 2] {
+        let at = self.places.body(body);
+        [VELOCITY, SPIN].map(|part| [0, 1, 2].map(|i| rates[at + part + i]))
     }
 
     /// Energy of a reduced solid in a state.

@@ -75,10 +75,11 @@ pub enum Stage {
     ForcesChannels,
     MomentsChannels,
     EnergyChannels,
+    Sensors,
 }
 
 impl Stage {
-    pub const COUNT: usize = Stage::EnergyChannels as usize + 1;
+    pub const COUNT: usize = Stage::Sensors as usize + 1;
 
     /// In the order of their numbers.
     pub const ALL: [Stage; Stage::COUNT] = [
@@ -133,6 +134,7 @@ impl Stage {
         Stage::ForcesChannels,
         Stage::MomentsChannels,
         Stage::EnergyChannels,
+        Stage::Sensors,
     ];
 
     /// As a person reads it.
@@ -189,6 +191,7 @@ impl Stage {
             Stage::ForcesChannels => "channels: forces",
             Stage::MomentsChannels => "channels: moments",
             Stage::EnergyChannels => "channels: energy",
+            Stage::Sensors => "sensors",
         }
     }
 

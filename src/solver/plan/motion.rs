@@ -36,6 +36,11 @@ pub fn items(run: Planned) -> Vec<Item> {
     }
     items.extend(solids);
     items.extend(ChannelGroup::ALL.map(|group| channel_group(assembly, channels, group)));
+    if !assembly.sensors.is_empty() {
+        let names: Vec<&str> = assembly.sensors.iter().map(|of| of.name.as_str()).collect();
+        let why = format!("{}: read at every output", names.join(", "));
+        items.push(Item::does(Stage::Sensors, Subject::Whole, why));
+    }
     items
 }
 

@@ -15,6 +15,7 @@ pub mod flexible_shaft;
 pub mod hertz;
 pub mod hyperdual;
 pub mod lame;
+pub mod loops;
 pub mod misalignment;
 pub mod ring;
 pub mod rolling;

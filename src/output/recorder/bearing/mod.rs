@@ -13,6 +13,7 @@ use crate::solver::dynamics::assembly::{Assembly, Bearing};
 use crate::solver::dynamics::ball_set::BallSet;
 use crate::solver::dynamics::race::{RaceLoads, RaceNow, tilts_of};
 use crate::solver::dynamics::run::{Simulation, Snapshot};
+use crate::solver::dynamics::sensor::Sensor;
 use crate::solver::dynamics::shaft::ElasticShaft;
 use crate::solver::dynamics::state::{POSITION, SPIN, VELOCITY};
 use crate::solver::mount::Mount;
@@ -46,6 +47,8 @@ impl BearingColumns {
         for seat in &assembly.seats {
             columns.extend(seat_columns(&prefix(&seat.label)));
         }
+        let sensors = assembly.sensors.iter().map(Sensor::column);
+        columns.extend(sensors.map(|(name, unit)| Column::new(name, unit)));
         BearingColumns { groups, terms }
     }
 }
@@ -94,6 +97,11 @@ impl Recorder {
         }
         for seat in &system.seats {
             self.values.extend(SeatRow::of_contact(&seat.contact).values());
+        }
+        let sensors = &system.assembly.sensors;
+        if !sensors.is_empty() {
+            self.ran.add(Stage::Sensors, 1);
+            self.values.extend(sensors.iter().map(|of| of.read(system, simulation.rates())));
         }
         self.bearing = Some(BearingColumns { groups, terms });
     }

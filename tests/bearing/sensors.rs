@@ -1,0 +1,92 @@
+//! Accelerometers on bodies, against differences of where they are.
+
+use crate::common;
+use crate::dynamics;
+
+use bearing_dynamics::solver::dynamics::race::RaceNow;
+use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
+use bearing_dynamics::solver::dynamics::sensor::{Accelerometer, Sensor, SensorKind};
+use bearing_dynamics::solver::dynamics::state::BodyState;
+use common::table_4_1;
+use dynamics::*;
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// A body that swings and turns about a direction that stays, at a time.
+fn body(t: f64) -> BodyState {
+    let about = Vector3::new(0.6, 0.0, 0.8);
+    let turned = 0.4 + 9.0 * t + 25.0 * t * t;
+    BodyState {
+        position: [1e-3 * (30.0 * t).sin(), 2e-3 * t * t, 5e-4 * (50.0 * t).cos()],
+        orientation: UnitQuaternion::from_scaled_axis(turned * about),
+        velocity: [0.03 * (30.0 * t).cos(), 4e-3 * t, -0.025 * (50.0 * t).sin()],
+        spin: ((9.0 + 50.0 * t) * about).into(),
+    }
+}
+
+#[test]
+fn an_accelerometer_feels_how_its_place_is_accelerated() {
+    let sensor = Accelerometer { body: 0, place: [0.02, 0.03, -0.01], direction: [0.0, 0.8, 0.6] };
+    let place = |t: f64| {
+        let now = body(t);
+        Vector3::from(now.position) + now.orientation * Vector3::from(sensor.place)
+    };
+    for t in [0.0, 0.07, 0.2] {
+        let step = 1e-4;
+        let acceleration = (place(t + step) - 2.0 * place(t) + place(t - step)) / (step * step);
+        let direction = body(t).orientation * Vector3::from(sensor.direction);
+        let linear = [-0.9 * (30.0 * t).sin(), 4e-3, -1.25 * (50.0 * t).cos()];
+        let turning: Vector3<f64> = 50.0 * Vector3::new(0.6, 0.0, 0.8);
+        let felt = sensor.read(&RaceNow::new(body(t)), linear, turning.into());
+        // Differences over 1e-4 s of motions of 50 1/s, and rounding of 0.04 m over 1e-8 s².
+        let error = (felt - acceleration.dot(&direction)).abs();
+        assert!(error <= 1e-4, "{felt} for {}, {error:e}", acceleration.dot(&direction));
+    }
+}
+
+/// Body `body` of a bearing's races in a state.
+fn race_of(simulation: &Simulation, body: usize) -> BodyState {
+    let layout = &simulation.system.sets[0].layout;
+    BodyState::from_slice(&simulation.state[[layout.inner(), layout.outer()][body]..])
+}
+
+#[test]
+fn what_a_sensor_reads_is_how_the_run_goes_on() {
+    // Mean acceleration over two steps, from the velocities at their ends.
+    let mut problem = bearing(table_4_1(-5e-6), [50.0, 0.0, -800.0, 0.0, 0.0], 1000.0 * RPM);
+    problem.unbalance = 1e-4;
+    let mut outer = free_race();
+    outer.foundation_stiffness = [1e8, 1e8, 1e8, 1e4, 1e4];
+    problem.outer = Some(outer);
+    let places = [[0.01, 0.0, 0.03], [0.0, 0.04, 0.0]];
+    let step = 1e-7;
+    let mut simulation = simulation(&problem, step, Start::Nominal);
+    run(&mut simulation, 500);
+    let velocities = |simulation: &Simulation| {
+        [0, 1].map(|body: usize| {
+            let state = race_of(simulation, body);
+            let arm = state.orientation * Vector3::from(places[body]);
+            Vector3::from(state.velocity) + Vector3::from(state.spin).cross(&arm)
+        })
+    };
+    let before = velocities(&simulation);
+    run(&mut simulation, 1);
+    simulation.snapshot();
+    let felt = [0, 1].map(|body: usize| {
+        Vector3::from([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|direction| {
+            let of = Accelerometer { body, place: places[body], direction };
+            let sensor = Sensor { name: "a".into(), kind: SensorKind::Accelerometer(of) };
+            sensor.read(&simulation.system, simulation.rates())
+        }))
+    });
+    let orientations = [0, 1].map(|body| race_of(&simulation, body).orientation);
+    run(&mut simulation, 1);
+    let behind = velocities(&simulation);
+    for body in 0..2 {
+        let mean = (behind[body] - before[body]) / (2.0 * step);
+        let mean = orientations[body].inverse() * mean;
+        assert!(mean.norm() > 1.0, "nothing is accelerated: {mean}");
+        // Contacts swing at some 1e4 1/s: (1e-7 · 1e4)² over the two steps; velocities are rounded.
+        let error = (felt[body] - mean).norm();
+        assert!(error <= 1e-4 * mean.norm(), "body {body}: {} for {mean}", felt[body]);
+    }
+}

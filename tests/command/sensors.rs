@@ -1,0 +1,77 @@
+//! Sensors of a run: columns, spectra, pictures, and what is said of them.
+
+use crate::command_line_common::{changed, done, files, json, read, scene, text, write};
+use std::path::Path;
+use tempfile::tempdir;
+
+/// The shipped scene with a soon end.
+fn short(end: &str) -> String {
+    let mut content = read(Path::new(&scene("cage_telemeter.toml")));
+    for (from, to) in [
+        ("end = \"1.5 s\"", format!("end = \"{end}\"")),
+        ("window_start = \"0.3 s\"", "window_start = \"1 ms\"".to_string()),
+        ("[\"0 rpm\", \"600 rpm\"]", "[\"600 rpm\", \"610 rpm\"]".to_string()),
+        ("output_interval = \"0.15 ms\"", "output_interval = \"0.1 ms\"".to_string()),
+    ] {
+        content = changed(&content, from, &to);
+    }
+    content
+}
+
+#[test]
+fn sensors_have_columns_spectra_and_pictures() {
+    let root = tempdir().unwrap();
+    let path = write(root.path(), "a.toml", &short("6 ms"));
+    let out = root.path().join("out");
+    let planned = done(&["plan", &path]);
+    assert!(
+        planned.contains("sensors") && planned.contains("telemeter, top: read at every output")
+    );
+    let checked = done(&["check", &path]);
+    assert!(
+        checked.contains("sensor telemeter") && checked.contains("natural frequency 34.50"),
+        "{checked}"
+    );
+    let understood: serde_json::Value =
+        serde_json::from_str(&done(&["check", &path, "--json"])).unwrap();
+    let of = &understood["sensors"]["telemeter"];
+    assert_eq!(of["loop_radius"]["value"], 31.25, "{understood}");
+    done(&["run", &path, "--out", &text(&out)]);
+    let columns = read(&out.join("series.columns.json"));
+    for column in ["telemeter_reflection", "top_acceleration"] {
+        assert!(columns.contains(column), "{columns}");
+    }
+    let written = files(&out);
+    for file in
+        ["series_telemeter.svg", "series_top.svg", "spectrum_telemeter.svg", "spectrum_top.svg"]
+    {
+        assert!(written.iter().any(|other| other == file), "{written:?}");
+    }
+    let summary = json(&out.join("summary.json"));
+    let last = &summary["final"]["telemeter_reflection"];
+    assert!(last["unit"] == "1" && last["value"].as_f64().unwrap() < 1.0, "{last}");
+    assert_eq!(summary["final"]["top_acceleration"]["unit"], "m/s^2");
+    // Once a row, as the plan says.
+    let stages = summary["stages"].as_array().unwrap();
+    let sensors = stages.iter().find(|stage| stage["stage"] == "sensors").expect("sensors");
+    assert_eq!(sensors["ran"], summary["output"]["rows"], "{sensors}");
+
+    // The way there does not show.
+    let half = write(root.path(), "b.toml", &short("3 ms"));
+    let halves = root.path().join("halves");
+    done(&["run", &half, "--out", &text(&halves)]);
+    done(&["run", &path, "--out", &text(&halves), "--resume"]);
+    assert_eq!(read(&out.join("series.csv")), read(&halves.join("series.csv")));
+
+    // Sensors change nothing of the motion.
+    let content = short("6 ms");
+    let (first, end) = (content.find("[sensor.").unwrap(), content.find("[numerics]").unwrap());
+    let without = format!("{}{}", &content[..first], &content[end..]);
+    let without = write(root.path(), "c.toml", &without);
+    let alone = root.path().join("alone");
+    done(&["run", &without, "--out", &text(&alone)]);
+    let (with, alone) = (read(&out.join("series.csv")), read(&alone.join("series.csv")));
+    for (with, alone) in with.lines().zip(alone.lines()) {
+        assert!(with.starts_with(alone), "{with}\n{alone}");
+    }
+}

@@ -1,0 +1,110 @@
+//! Sensors: what they sit on, what they need, and what is refused.
+
+use bearing_dynamics::ch5_cage::telemeter::{copper_resistance, natural_frequency};
+use bearing_dynamics::scene::sensors::{Direction, SceneSensorKind, SensorAt};
+use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
+use bearing_dynamics::solver::dynamics::sensor::SensorKind;
+
+const CAGED: &str = include_str!("../../scenes/cage_telemeter.toml");
+const SHAFT: &str = include_str!("../../scenes/shaft_in_two_housings.toml");
+const STEPPED: &str = include_str!("../../scenes/stepped_rotor.toml");
+const QUASI_STATIC: &str = include_str!("../../scenes/housing_c_tet10.toml");
+const SOLID: &str = include_str!("../../scenes/cantilever.toml");
+
+fn understood(text: &str) -> Result<Subject, String> {
+    let document = Document::read_str(text, Format::Toml, "scene.toml");
+    document.and_then(|document| resolve_subject(&document)).map_err(|error| error.to_string())
+}
+
+/// The scene without its sensors, and with these.
+fn with(scene: &str, sensors: &str) -> Result<Subject, String> {
+    let mut text = scene.to_string();
+    if let (Some(first), Some(end)) = (text.find("[sensor."), text.find("[numerics]")) {
+        text.replace_range(first..end, "");
+    }
+    understood(&format!("{text}\n{sensors}\n"))
+}
+
+#[test]
+fn a_telemeter_fills_what_it_is_not_told() {
+    let Ok(Subject::Assembly(scene)) = understood(CAGED) else { panic!("no bearing") };
+    let [telemeter, top] = &scene.sensors[..] else { panic!("{:?}", scene.sensors) };
+    let SceneSensorKind::Telemeter { bearing, circuit, distance, offset, runout } = telemeter.kind
+    else {
+        panic!("{telemeter:?}")
+    };
+    assert_eq!((bearing, distance, offset, runout), (0, 3e-3, [1.27e-3, 0.0], [1e-4, 0.0]));
+    // Half way between 29.125 and 33.375 mm.
+    assert!(
+        (circuit.radius - 31.25e-3).abs() <= 1e-12 && circuit.transceiver_radius == circuit.radius
+    );
+    assert_eq!((circuit.wire_radius, circuit.capacitance), (0.15e-3, 100e-12));
+    let natural = natural_frequency(circuit.radius, 0.15e-3, 100e-12);
+    assert_eq!(circuit.frequency, natural);
+    assert_eq!(circuit.resistance, [copper_resistance(circuit.radius, 0.15e-3, natural); 2]);
+    let SceneSensorKind::Accelerometer { at, radius, direction, .. } = top.kind else {
+        panic!("{top:?}")
+    };
+    assert_eq!((at, radius), (SensorAt::Race { bearing: 0, side: 1 }, 39.6e-3));
+    assert_eq!(direction, Direction::Radial);
+    // At the top, upwards.
+    let assembly = scene.assembly().unwrap();
+    let SensorKind::Accelerometer(of) = &assembly.sensors[1].kind else { panic!("{assembly:?}") };
+    assert_eq!(of.body, assembly.bearings[0].mounts[1].body);
+    let [x, y, z] = of.place;
+    assert!(x == 0.0 && y.abs() <= 1e-17 && z == 39.6e-3, "{:?}", of.place);
+    assert!(of.direction[2] == 1.0 && of.direction[1].abs() <= 1e-15);
+    assert_eq!(assembly.sensors[1].column(), ("top_acceleration".to_string(), "m/s^2"));
+}
+
+#[test]
+fn a_sensor_that_cannot_be_is_refused() {
+    let on = |place: &str| format!("[sensor.a]\nkind = \"accelerometer\"\non = \"{place}\"");
+    let telemeter = "[sensor.t]\nkind = \"telemeter\"";
+    let fixed = CAGED
+        .replace("motion = \"5-dof\"\nx = { load = \"-445 N\" }", "")
+        .replace("[outer_race.foundation.stiffness]\nx = \"1e8 N/m\"\ny = \"1e8 N/m\"\nz = \"1e8 N/m\"\ntilt_y = \"1e5 N m/rad\"\ntilt_z = \"1e5 N m/rad\"", "")
+        .replace("[outer_race.foundation.damping]\nx = \"1200 N s/m\"\ny = \"1200 N s/m\"\nz = \"1200 N s/m\"\ntilt_y = \"1 N m s/rad\"\ntilt_z = \"1 N m s/rad\"", "");
+    for (scene, sensors, words) in [
+        (CAGED, "[sensor]\nkind = \"telemeter\"", &["sensor", "write [sensor.NAME]"][..]),
+        (CAGED, "[sensor.a]\non = \"cage\"", &["sensor.a.kind", "missing"]),
+        (CAGED, "[sensor.a]\nkind = \"accelerometer\"", &["sensor.a.on", "missing"]),
+        (CAGED, &on("outer_rase"), &["inner_race, outer_race, cage", "did you mean outer_race?"]),
+        (&fixed, &on("outer_race"), &["it may on: inner_race, cage"]),
+        (
+            CAGED,
+            &format!("{}\noffset = \"1 mm\"", on("cage")),
+            &["sensor.a.offset", "not of kind = \"accelerometer\""],
+        ),
+        (
+            CAGED,
+            &format!("{telemeter}\nangle = \"3 deg\""),
+            &["sensor.t.angle", "not of kind = \"telemeter\""],
+        ),
+        (
+            CAGED,
+            &format!("{telemeter}\nbearing = \"left\""),
+            &["sensor.t.bearing", "there is no bearing \"left\""],
+        ),
+        (
+            CAGED,
+            &format!("{telemeter}\ndistance = \"0 mm\""),
+            &["sensor.t.distance", "more than 0 mm"],
+        ),
+        (CAGED, &format!("{telemeter}\ncapacitance = \"100 uH\""), &["sensor.t.capacitance", "pF"]),
+        (STEPPED, &on("rotor"), &["sensor.a.on", "bends", "watch"]),
+        (SOLID, &on("a"), &["sensor.a", "[[solid.probe]]"]),
+    ] {
+        let said = with(scene, sensors).expect_err(sensors);
+        assert!(words.iter().all(|word| said.contains(word)), "{sensors}: {said}");
+    }
+    // Equilibria have no accelerations.
+    let said = with(QUASI_STATIC, &on("inner_race")).expect_err("quasi-static");
+    assert!(said.contains("no accelerations"), "{said}");
+    // A race in a bore moves.
+    let Ok(Subject::Assembly(scene)) = with(SHAFT, &on("left.outer_race")) else {
+        panic!("refused")
+    };
+    let SceneSensorKind::Accelerometer { at, .. } = scene.sensors[0].kind else { panic!() };
+    assert_eq!(scene.name_of_place(at), "left.outer_race");
+}
