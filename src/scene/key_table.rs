@@ -154,7 +154,7 @@ pub(super) const KEYS: &[Key] = &[
         "Depth of the pit below the surface, half a wave of a cosine; 0 leaves none.").hint(DENT_HINT).example_of("25 um"),
     quantity("bearing.dent.shoulder_height", Kind::Quantity(Length, closed(0.0, 1.0, "mm")),
         Default { value: "0 um", reason: "the source's dent has no shoulder" },
-        "Height of the shoulder around the pit, a wave of a cosine.").hint(DENT_HINT).example_of("1 um"),
+        "Height of the shoulder around the pit, a wave of a cosine. Under light load the contact beside the middle of a dent with a wide shoulder is good to a third of its load only.").hint(DENT_HINT).example_of("1 um"),
     quantity("bearing.dent.shoulder_width", Kind::Quantity(Length, open(0.0, 100.0, "mm")),
         Depends("a quarter of the diameter"),
         "Width of the shoulder beyond the pit.").hint(DENT_HINT).example_of("125 um"),

@@ -293,16 +293,19 @@ fn dents(bearing: &Bearing, subject: Subject) -> Option<Item> {
     if bearing.dents.is_empty() {
         return None;
     }
-    let count = bearing.dents.iter().filter(|dent| !dent.shape.vanishes()).count();
+    let shapes = || bearing.dents.iter().map(|dent| &dent.shape).filter(|shape| !shape.vanishes());
+    let count = shapes().count();
     if count == 0 {
         let why = "of no depth: Hertz's law is left as it is";
         return Some(Item::skips(Stage::Dents, subject, why));
     }
     let balls = bearing.geometry.ball_count;
+    let solves = shapes().map(|shape| Fineness::of(shape).solves()).max().unwrap_or(0);
+    let raised = shapes().any(|shape| shape.shoulder_height > 0.0);
+    let takes = if raised { "some ten seconds, with a shoulder" } else { "some seconds" };
     let why = format!(
-        "{count}, {balls} balls each; a table for each shape first, of at most {} solves of a half-space (some \
-         seconds); the equilibrium at the start knows of none",
-        Fineness::USUAL.solves()
+        "{count}, {balls} balls each; a table for each shape first, of at most {solves} solves of a half-space \
+         ({takes}); the equilibrium at the start knows of none"
     );
     Some(Item::does(Stage::Dents, subject, why).costing((count * balls) as u64))
 }
