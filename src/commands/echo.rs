@@ -207,14 +207,26 @@ pub fn frequencies(scene: &Scene) -> Echo {
         ("ball_pass_inner", ratios.ball_pass_inner, 0.0),
         ("ball_spin", ratios.ball_spin, 0.0),
     ] {
-        let mut entry = json!({ "over_shaft": quantity(name, ratio, "1")? });
-        if inner.is_some() || outer != 0.0 {
-            let relative = inner.unwrap_or(0.0) - outer;
-            // How often something passes has no sign once both races turn.
-            let relative = if outer != 0.0 && name != "cage" { relative.abs() } else { relative };
-            entry["frequency"] = quantity(name, carried + ratio * relative, "Hz")?;
+        let mut entry = Map::new();
+        let turns = inner.unwrap_or(0.0);
+        let relative = turns - outer;
+        // How often something passes has no sign once both races turn.
+        let relative = if outer != 0.0 && name != "cage" { relative.abs() } else { relative };
+        let frequency = carried + ratio * relative;
+        let against =
+            |shaft: f64| if name == "cage" { frequency / shaft } else { frequency / shaft.abs() };
+        // A ratio to the shaft that stands still says nothing: then it is to the outer race.
+        if outer == 0.0 {
+            entry.insert("over_shaft".into(), quantity(name, ratio, "1")?);
+        } else if turns != 0.0 {
+            entry.insert("over_shaft".into(), quantity(name, against(turns), "1")?);
+        } else {
+            entry.insert("over_outer_race".into(), quantity(name, against(outer), "1")?);
         }
-        echo.insert(name.into(), entry);
+        if inner.is_some() || outer != 0.0 {
+            entry.insert("frequency".into(), quantity(name, frequency, "Hz")?);
+        }
+        echo.insert(name.into(), Value::Object(entry));
     }
     Ok(Value::Object(echo))
 }

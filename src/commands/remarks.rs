@@ -362,34 +362,37 @@ fn far_apart(scene: &Scene, seen: &Seen) -> Option<String> {
 /// Balls that go round a bearing with a contact angle resist the turning of their own axes; equilibrium
 /// has no such moment, nor the traction that holds it.
 ///
-/// A ball that rolls on the outer race without spin there turns at Ω R/r about the line across its contact;
-/// the part of that across the bearing's axis, Ω (R/r) sin α, is what Ω turns round: J Ω² (R/r) sin α.
+/// A ball that rolls on the outer race (speed ω_o) without spin there turns against the cage: the part of that across the
+/// bearing's axis, (Ω − ω_o)(R/r) sin α_o, is what the balls' own course turns round at Ω: J |Ω (Ω − ω_o)| (R/r) sin α_o.
 fn gyroscopic(scene: &Scene, balls: &[BallState]) -> Option<String> {
-    let speed = if scene.centrifugal { orbital_speed(scene).abs() } else { 0.0 };
+    let speed = if scene.centrifugal { orbital_speed(scene) } else { 0.0 };
     let mass = ball_mass(scene);
     if speed == 0.0 || mass == 0.0 {
         return None;
     }
     let g = &scene.geometry;
     let inertia = 0.4 * mass * g.ball_radius * g.ball_radius;
-    let share = |ball: &BallState| {
+    let past_outer = (speed - scene.outer_speed.unwrap_or(0.0)).abs();
+    let (mut largest, mut worst) = (0.0f64, Extreme::default());
+    for (number, ball) in balls.iter().enumerate() {
         let outer = &ball.outer;
-        let across = speed * g.pitch_radius / g.ball_radius * libm::sin(outer.contact_angle);
-        let moment = inertia * speed * across.abs();
+        let across = past_outer * g.pitch_radius / g.ball_radius * libm::sin(outer.contact_angle);
+        let moment = inertia * speed.abs() * across.abs();
         // Both contacts hold it, each as far as its load lets it.
         let loads = ball.inner.normal_load + outer.normal_load;
-        if loads > 0.0 { [moment / (g.ball_radius * loads), moment] } else { [0.0; 2] }
-    };
-    let most = balls
-        .iter()
-        .map(share)
-        .fold([0.0; 2], |most, one| if one[0] > most[0] { one } else { most });
-    (most[0] > GYROSCOPIC).then(|| {
+        if loads > 0.0 {
+            largest = largest.max(moment);
+            take(&mut worst, moment / (g.ball_radius * loads), number);
+        }
+    }
+    (worst.value > GYROSCOPIC).then(|| {
         format!(
-            "equilibrium has no gyroscopic moment of the balls: up to {:.4} N mm here, which takes traction \
-             of {:.1} % of the loads of both contacts of a ball and moves contact angles and the race; `run` has it",
-            1e3 * most[1],
-            100.0 * most[0]
+            "equilibrium has no gyroscopic moment of the balls: up to {:.4} N mm here; to hold it takes traction \
+             of {:.1} % of the loads of both contacts of ball {}, where that is most, and it moves contact angles and the \
+             race; `run` has it",
+            1e3 * largest,
+            100.0 * worst.value,
+            worst.ball + 1
         )
     })
 }

@@ -79,14 +79,19 @@ fn of_bearing(
         Carrier::Body { index, .. } => &scene.bodies[index].rotating_load,
     };
     let cage = kinematic_ratios(&placed.scene).cage;
+    let outer = match placed.carriers[1] {
+        Carrier::Own { .. } => dynamics.outer.as_ref().map(|outer| &outer.rotation),
+        Carrier::Body { index, .. } => Some(&scene.bodies[index].race.rotation),
+    };
+    let turns = |rotation: &Rotation, t: f64| match rotation {
+        Rotation::Speed(speed) => speed.value(t),
+        Rotation::Torque(_) => 0.0,
+    };
     // The load turns past balls that turn too, one way or the other.
     let against_balls = most(end, |t| {
         let load = load.as_ref().map_or(0.0, |load| load.speed.value(t));
-        let balls = match &dynamics.inner.rotation {
-            Rotation::Speed(speed) => cage * speed.value(t),
-            Rotation::Torque(_) => 0.0,
-        };
-        load - balls
+        let outer = outer.map_or(0.0, |outer| turns(outer, t));
+        load - (outer + cage * (turns(&dynamics.inner.rotation, t) - outer))
     }) / TAU;
     let balls = placed.scene.geometry.ball_count as f64;
     let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of {name}"));

@@ -234,6 +234,14 @@ fn number_after(text: &str, words: &str) -> f64 {
     rest[..end].parse().unwrap_or_else(|_| panic!("no number behind {words:?} in {text}"))
 }
 
+/// An outer race whose places are given.
+pub const HELD: &str = r#"x = { displacement = "0 um" }
+y = { displacement = "0 um" }
+z = { displacement = "0 um" }
+tilt_y = { tilt = "0 deg" }
+tilt_z = { tilt = "0 deg" }
+"#;
+
 /// The numbers in remarks are those of the balls that they name.
 #[test]
 fn remarks_tell_numbers_of_the_results() {
@@ -270,27 +278,43 @@ fn remarks_tell_numbers_of_the_results() {
         let told = number_after(&said, "(contact angle ");
         assert!((told - exact).abs() <= 0.0501, "{said} {exact}");
     }
-    // All balls alike under an axial load: J Ω² (R/r) sin α against μ r (Q_i + Q_o).
+    // All balls alike under an axial load: J Ω (Ω − ω_o)(R/r) sin α against μ r (Q_i + Q_o).
     let fast = one_angular_contact("200 N", "15000 rpm", "[ball_forces]\ncentrifugal = true\n");
     let (radius, pitch, rpm) = (5.953e-3f64, 30e-3, std::f64::consts::PI / 30.0);
     let mass = 7850.0 * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
     let orbit = |speed: f64| 0.5 * (1.0 - radius / pitch * 35f64.to_radians().cos()) * speed * rpm;
-    for (load, speed) in [("200 N", 15e3), ("800 N", 12e3)] {
+    let cases = [
+        ("200 N", 15e3, 0.0),
+        ("800 N", 12e3, 0.0),
+        ("3000 N", 20e3, -5e3),
+        ("3000 N", 20e3, 0.0),
+        ("3000 N", 20e3, 10e3),
+    ];
+    for (load, speed, outer_speed) in cases {
         let text = fast.replace("200 N", load).replace("15000 rpm", &format!("{speed} rpm"));
-        let summary = results(&text);
+        let turning = format!(
+            "{text}[outer_race]\nmotion = \"5-dof\"\nspeed = \"{outer_speed} rpm\"\n{HELD}"
+        );
+        let turning = if outer_speed == 0.0 { text } else { turning };
+        let mut summary = results(&turning);
+        if outer_speed != 0.0 {
+            summary["balls"] = summary["bearings"]["bearing"]["balls"].clone();
+        }
         let said = remark(&summary, "no gyroscopic moment");
         let [inner, outer] = ["inner", "outer"].map(|side| &summary["balls"][0][side]);
         let angle = of(&outer["contact_angle"]).to_radians();
         // The axis of a ball that rolls on the outer race without spin there lies at Harris's angle β,
-        // tan β = r sin α/(R + r cos α) against the line to the bearing's axis; ω of the ball itself in the orbit's frame.
+        // tan β = r sin α/(R + r cos α) against the line to the bearing's axis; ω of the ball itself in the orbit's frame,
+        // where the outer race turns back.
         let (arm, up) = (pitch + radius * angle.cos(), radius * angle.sin());
         let beta = (pitch * angle.sin()).atan2(pitch * angle.cos() + radius);
-        let own = orbit(speed) * arm / (radius * (angle - beta).cos());
-        let moment = 0.4 * mass * radius * radius * own * orbit(speed) * beta.sin();
+        let past = orbit(speed - outer_speed);
+        let own = past * arm / (radius * (angle - beta).cos());
+        let moment = 0.4 * mass * radius * radius * own * (past + outer_speed * rpm) * beta.sin();
         assert!(up > 0.0 && moment > 0.0);
         let traction = 100.0 * moment / (radius * (of(&inner["load"]) + of(&outer["load"])));
         // Told to a tenth of a per cent, and to 1e-4 N mm.
-        let told = number_after(&said, "which takes traction of ");
+        let told = number_after(&said, "traction of ");
         assert!((told - traction).abs() <= 0.0501, "{said} {traction}");
         let told = number_after(&said, "up to ");
         assert!((told - 1e3 * moment).abs() <= 0.501e-4, "{said} {moment}");
@@ -312,6 +336,27 @@ fn remarks_tell_numbers_of_the_results() {
     let summary = results(&slow);
     let remarks = summary["remarks"].as_array().unwrap();
     assert!(remarks.iter().all(|r| !r.as_str().unwrap().contains("is left out")), "{remarks:?}");
+    // Balls that are not alike: the ball with the largest moment need not be the one that needs most traction.
+    let uneven = fast.replace("z = { displacement = \"0 um\" }", "z = { load = \"-300 N\" }");
+    let summary = results(&uneven.replace("15000 rpm", "25000 rpm"));
+    let said = remark(&summary, "no gyroscopic moment");
+    let balls = summary["balls"].as_array().unwrap();
+    let moment = |ball: &Value| {
+        let sine = of(&ball["outer"]["contact_angle"]).to_radians().sin();
+        0.4 * mass * radius * pitch * orbit(25e3).powi(2) * sine
+    };
+    let share = |ball: &Value| {
+        moment(ball) / (radius * (of(&ball["inner"]["load"]) + of(&ball["outer"]["load"])))
+    };
+    let most = |of: &dyn Fn(&Value) -> f64| {
+        let all = balls.iter().map(of).enumerate();
+        all.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap()
+    };
+    let (highest, worst) = (most(&moment), most(&share));
+    assert_ne!(highest.0, worst.0);
+    assert!((number_after(&said, "up to ") - 1e3 * highest.1).abs() <= 0.501e-4, "{said}");
+    assert!((number_after(&said, "traction of ") - 100.0 * worst.1).abs() <= 0.0501, "{said}");
+    assert!(said.contains(&format!("of ball {}", worst.0 + 1)), "{said} {worst:?}");
 }
 
 /// Equilibria have races without dents: `statics` says so, a course of them is refused.

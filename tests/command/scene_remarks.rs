@@ -1,6 +1,7 @@
 //! What commands say of what a scene asks for: dents at the start, rows beside what turns, what statics have and have not.
 
 use super::run_command::{bearing, code, run, said, scene};
+use super::run_remarks::HELD;
 use crate::solid_command_common::{Place, json, stderr};
 
 use std::fs;
@@ -60,6 +61,16 @@ fn rows_that_are_too_far_apart_are_told() {
     let output = run(&place.scene("scene.toml", &text), &place.path("out"), &[]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     assert!(said(&output).contains("half a period of outer_race.z (1000 Hz)"), "{}", said(&output));
+    // An outer race that turns takes the balls along, past a load that stands still.
+    let turning = "[outer_race]\nmotion = \"5-dof\"\nspeed = \"600 rpm\"\nx = { displacement = \"0 um\" }\ny = { displacement = \"0 um\" }\n\
+                   z = { displacement = \"0 um\" }\ntilt_y = { tilt = \"0 deg\" }\ntilt_z = { tilt = \"0 deg\" }\n[ball_forces]";
+    let numerics = "end = \"40 ms\"\nstep = \"2 us\"\noutput_interval = \"20 ms\"";
+    let text = scene(numerics, "plots = [\"spectrum\"]").replace("1000 rpm", "0 rpm");
+    let text = text.replace("[ball_forces]", turning);
+    let output = run(&place.scene("scene.toml", &text), &place.path("out"), &[]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let told = said(&output);
+    assert!(told.contains("half a period of balls passing the load (49.1"), "{told}");
     // What comes once has no period, however fast it comes.
     let once =
         "{ load = { ramp = [\"-250 N\", \"-300 N\"], start = \"1 ms\", duration = \"0.1 ms\" } }";
@@ -181,4 +192,36 @@ fn modes_of_a_loose_race_that_spins_are_none() {
     let output = bearing(&["modes", scene.to_str().unwrap(), "--dry"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     assert!(said(&output).contains("nothing holds what spins in this equilibrium"));
+}
+
+/// Ratios to the shaft are those of the frequencies beside them, where the outer race turns too.
+#[test]
+fn frequencies_over_the_shaft_are_that() {
+    let place = Place::new();
+    let frequencies = |inner: f64, outer: f64| {
+        let turning =
+            format!("[outer_race]\nmotion = \"5-dof\"\nspeed = \"{outer} rpm\"\n{HELD}[traction]");
+        let text = scene("end = \"1 ms\"", "plots = []")
+            .replace("1000 rpm", &format!("{inner} rpm"))
+            .replace("[traction]", &turning);
+        let out = place.path("out");
+        let path = place.scene("scene.toml", &text);
+        let arguments = ["statics", path.to_str().unwrap(), "--out", out.to_str().unwrap()];
+        let output = bearing(&arguments);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let summary = json(out.join("summary.json"));
+        let all = &summary["bearings"]["bearing"]["frequencies"];
+        if all.is_null() { summary["frequencies"].clone() } else { all.clone() }
+    };
+    for (inner, outer) in [(1000.0, 0.0), (1000.0, 400.0), (1000.0, -400.0), (0.0, 400.0)] {
+        let all = frequencies(inner, outer);
+        let (name, turns) =
+            if inner == 0.0 { ("over_outer_race", outer) } else { ("over_shaft", inner) };
+        for of in ["cage", "ball_pass_outer", "ball_pass_inner", "ball_spin"] {
+            let value = |name: &str| all[of][name]["value"].as_f64();
+            let expected = value("frequency").unwrap() / (turns / 60.0);
+            let found = value(name).unwrap_or_else(|| panic!("{name}: {all}"));
+            assert!((found / expected - 1.0).abs() <= 1e-12, "{inner} {outer} {of}: {all}");
+        }
+    }
 }

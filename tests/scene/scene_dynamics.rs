@@ -5,7 +5,7 @@ use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::dynamics::{DynamicsError, dynamic_problem, run_options};
-use bearing_dynamics::scene::excitations::excitations;
+use bearing_dynamics::scene::excitations::{Excitation, excitations};
 use bearing_dynamics::scene::keys::{self, Need};
 use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{self, CageInRun, Document, Format, RunPlot, Scene, Subject};
@@ -473,4 +473,30 @@ fn a_table_drives_as_fast_as_the_ramp_that_it_draws() {
     assert!((ramp[0].frequency - 5.0).abs() <= 1e-14, "{ramp:?}");
     assert_eq!((table.len(), &table[0].what), (1, &ramp[0].what));
     assert!((table[0].frequency / ramp[0].frequency - 1.0).abs() <= 1e-14, "{table:?}");
+}
+
+/// Balls roll between both races: an outer race that turns takes them along, past a load that stands still.
+#[test]
+fn balls_pass_the_load_as_both_races_turn() {
+    let passing = |inner: &str, outer: &str| {
+        let lines = format!(
+            "inner_race.speed = \"{inner}\"\n[outer_race]\nmotion = \"5-dof\"\nspeed = \"{outer}\"\n"
+        );
+        let all = excitations(&AssemblyScene::alone(resolved(&document(&lines))));
+        let of_balls =
+            |all: &[Excitation]| all.iter().find(|one| one.is_ripple).map(|of| of.frequency);
+        of_balls(&all).unwrap_or(0.0)
+    };
+    // Balls of 12 mm in diameter less 5 um on a pitch radius of 26 mm.
+    let cage = 0.5 * (1.0 - 6.005 / 26.0);
+    for (inner, outer, turns) in [
+        (0.0, 600.0, (1.0 - cage) * 600.0),
+        (600.0, 1000.0, cage * 600.0 + (1.0 - cage) * 1000.0),
+        (600.0, -1000.0, (1.0 - cage) * 1000.0 - cage * 600.0),
+        (600.0, 0.0, cage * 600.0),
+    ] {
+        let found = passing(&format!("{inner} rpm"), &format!("{outer} rpm"));
+        let expected: f64 = 8.0 * turns / 60.0;
+        assert!((found / expected - 1.0).abs() <= 1e-3, "{inner} {outer}: {found} {expected}");
+    }
 }
