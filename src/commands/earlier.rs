@@ -7,7 +7,7 @@ use bearing_dynamics::output::json;
 use bearing_dynamics::output::state::arrays::remove_arrays;
 use bearing_dynamics::solver::clock::rounded;
 use std::error::Error;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What a command is about to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,8 +81,8 @@ pub fn refuse_half_way(folder: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 /// Removes what an earlier command left in the folder and this one may not write again; nothing that
-/// this program does not name so. The summary goes first: its presence says that a folder is complete.
-pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
+/// this program does not name so. The summary goes first: its presence says that a folder is complete. Whether it was.
+pub fn remove_earlier(folder: &Path) -> Result<bool, Box<dyn Error>> {
     const NAMES: [&str; 14] = [
         "summary.json",
         "state.json",
@@ -99,6 +99,9 @@ pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
         "energies.svg",
         "spectrum.svg",
     ];
+    let was_complete = folder.join("summary.json").exists();
+    // What was drawn is known by the records, which go after it.
+    let drawn = pictures_by_name(folder);
     let named = NAMES.into_iter().chain(pictures::NAMES).map(|name| folder.join(name));
     let mut doomed: Vec<_> = named.collect();
     let inside = |folder: &Path, start: &str, end: &str| {
@@ -111,6 +114,7 @@ pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
         named.collect::<Vec<_>>()
     };
     doomed.extend(inside(folder, "probe_", ".svg"));
+    doomed.extend(drawn);
     let files = folder.join(fields::FOLDER);
     for kind in ["fields_", "mode_"] {
         doomed.extend(inside(&files, kind, ".vtu"));
@@ -124,5 +128,42 @@ pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
         }
     }
     remove_arrays(folder, "");
-    Ok(())
+    Ok(was_complete)
+}
+
+/// Pictures of what goes by a name in the earlier results, as `series_front_loads.svg`: of the bodies and bearings that the
+/// columns beside them are of. Pictures of anything else stay, whatever they are called.
+fn pictures_by_name(folder: &Path) -> Vec<PathBuf> {
+    const OF_BODIES: [&str; 4] = ["series_", "orbit_", "run_up_", "spectrum_"];
+    const OF_BEARINGS: [&str; 4] = ["load_zone_", "slip_", "spin_", "polar_"];
+    let columns = json::read(&folder.join("series.columns.json")).unwrap_or_default();
+    let summary = json::read(&folder.join("summary.json")).unwrap_or_default();
+    let columns: Vec<&str> =
+        columns.as_array().into_iter().flatten().filter_map(|of| of["name"].as_str()).collect();
+    let has = |name: String| columns.contains(&name.as_str());
+    let begins = |name: String| columns.iter().any(|column| column.starts_with(&name));
+    // `front_inner_race` has the columns `front_inner_x`, `spindle_at_nose` those of `spindle_nose_y`.
+    let of_body = |name: &str| {
+        let column = name.strip_suffix("_race").unwrap_or(name).replace("_at_", "_");
+        has(format!("{name}_y")) || has(format!("{column}_y"))
+    };
+    let of_balls =
+        |prefix: &str| ["ball_", "cage_"].iter().any(|of| begins(format!("{prefix}{of}")));
+    let of_bearing =
+        |name: &str| summary["bearings"][name].is_object() || of_balls(&format!("{name}_"));
+    let is_drawn = |file: &str| {
+        let Some(stem) = file.strip_suffix(".svg") else { return false };
+        let loads = stem.strip_prefix("series_").and_then(|of| of.strip_suffix("loads"));
+        let of_loads = loads.is_some_and(of_balls);
+        let any = |kinds: [&str; 4], of: &dyn Fn(&str) -> bool| {
+            kinds.iter().any(|kind| stem.strip_prefix(kind).is_some_and(of))
+        };
+        let of_one = ["slip", "spin", "series_energy"].contains(&stem) && has("time".into());
+        of_one || of_loads || any(OF_BODIES, &of_body) || any(OF_BEARINGS, &of_bearing)
+    };
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let paths = entries.map(|entry| entry.path());
+    let drawn =
+        |path: &PathBuf| path.file_name().is_some_and(|name| is_drawn(&name.to_string_lossy()));
+    paths.filter(drawn).collect()
 }

@@ -409,3 +409,52 @@ fn the_journal_of_a_sweep_keeps_its_folder() {
     }
     assert_eq!(files(&folder), ["sweep.journal"]);
 }
+
+/// Pictures that earlier results left and later ones do not draw would be taken for theirs; those of others stay.
+#[test]
+fn pictures_of_results_that_are_replaced_go() {
+    let root = tempdir().unwrap();
+    let out = root.path().join("out");
+    let pictures = || {
+        let all = files(&out);
+        all.into_iter().filter(|name| name.ends_with(".svg")).collect::<Vec<_>>()
+    };
+    let others = ["load_zone_mine.svg", "picture.svg", "series_mine.svg", "spectrum_2024.svg"];
+    let moving = |plots: &str| {
+        let numerics = "end = \"2 ms\"\nstep = \"2 us\"\noutput_interval = \"10 us\"";
+        let text = super::run_command::scene(numerics, &format!("plots = [{plots}]"));
+        write(root.path(), "scene.toml", &text)
+    };
+    let all = "\"orbit\", \"spectrum\", \"series\", \"slip-spin\", \"polar\"";
+    let said = done(&["run", &moving(all), "--out", &text(&out)]);
+    assert!(!said.contains("replaced") && pictures().len() >= 9, "{said} {:?}", pictures());
+    for name in others {
+        write(&out, name, "<svg/>");
+    }
+    let said = done(&["run", &moving(""), "--out", &text(&out)]);
+    assert!(said.contains("the earlier results in"), "{said}");
+    assert_eq!(pictures(), others);
+    // Of several bearings each has its own, in a run and in an equilibrium.
+    let several = read(Path::new(&scene("shaft_back_to_back.toml")));
+    let start = several.find("plots = [").expect("plots");
+    let end = start + several[start..].find(']').expect("a list") + 1;
+    for (command, plots) in [("statics", "\"load-zone\""), ("run", all)] {
+        fs::remove_dir_all(&out).unwrap();
+        let drawn = |plots: &str| {
+            let text = several.replace(&several[start..end], &format!("plots = [{plots}]"));
+            write(root.path(), "several.toml", &text)
+        };
+        let path = drawn(plots);
+        let short = ["--set", "numerics.end=2 ms"];
+        let folder = text(&out);
+        let arguments = [&[command, &path, "--out", &folder][..], &short].concat();
+        done(&arguments);
+        assert!(pictures().len() >= 2, "{:?}", pictures());
+        for name in others {
+            write(&out, name, "<svg/>");
+        }
+        drawn("");
+        done(&arguments);
+        assert_eq!(pictures(), others, "{command}");
+    }
+}

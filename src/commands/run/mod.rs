@@ -100,7 +100,9 @@ pub fn run(arguments: &Arguments) -> CommandResult {
             other => other?,
         },
         None => {
-            remove_earlier(&folder)?;
+            if remove_earlier(&folder)? {
+                say(&format!("the earlier results in {} are replaced\n", folder.display()))?;
+            }
             Session::start(parts, &request)?
         }
     };
