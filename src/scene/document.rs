@@ -147,7 +147,11 @@ impl Document {
             let Value::Table(inner) = entry.node.value else {
                 return Err(self.not_a_table(table, &full, &entry.node));
             };
-            self.layer.tables.push((table.path, entry.offset));
+            // `[housing.left]` alone makes no [housing] for the others.
+            let of_names = |entry: &Entry| self.as_name(&full, entry).is_some();
+            if inner.is_empty() || !inner.iter().all(of_names) {
+                self.layer.tables.push((table.path, entry.offset));
+            }
             match table.path {
                 "assumptions" => self.fill_assumptions(inner)?,
                 "sweep" => self.fill_sweep("", inner)?,
@@ -395,6 +399,11 @@ impl Document {
         self.error(path, Problem::refused(reason, advice))
     }
 
+    /// The same under the name that is being read, whether the key stands in its table or is missing there.
+    pub(crate) fn error_here(&self, path: &str, problem: Problem) -> SceneError {
+        SceneError::new(self.place_of_key(path), &self.shown(path, true), problem)
+    }
+
     pub(super) fn error_at(&self, offset: usize, path: &str, problem: Problem) -> SceneError {
         self.source.error(offset, path, problem)
     }
@@ -420,9 +429,17 @@ impl Document {
                         .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
                 };
                 let tables = self.layer.tables.iter().filter(|(table, _)| holds(table));
-                tables.max_by_key(|(table, _)| table.len()).map(|&(_, at)| self.source.place(at))
+                let innermost = tables.max_by_key(|(table, _)| table.len());
+                innermost.or_else(|| self.own_table(path)).map(|&(_, at)| self.source.place(at))
             }
         };
         place.unwrap_or_else(|| Place::file(&self.source.name))
+    }
+
+    /// Where the bearing, body or spring stands that is being read, for a key that goes by its name.
+    fn own_table(&self, path: &str) -> Option<&(&'static str, usize)> {
+        let named = path.split('.').next().is_some_and(|top| keys::NAMED.contains(&top));
+        let own = |(table, _): &&(&str, usize)| ["bearing", "body", "spring"].contains(table);
+        self.layer.tables.iter().rev().find(own).filter(|_| named && self.scope.is_some())
     }
 }

@@ -202,13 +202,15 @@ fn bearing(
             return Err(scoped.refused(key, reason, advice));
         }
         if *race == OWN_RACES[0] {
-            scoped.take_over(&document.scoped(bodies[body]), "body.speed", "inner_race.speed");
+            let of_body = document.scoped(bodies[body]);
+            scoped.take_over(&of_body, "body.speed", "inner_race.speed");
+            require_speed(&scoped, &of_body)?;
         }
     }
     let (mut scene, mut housing) = match scoped.first_below("housing") {
         Some(_) => in_housing(&scoped)?,
         None => {
-            refuse_solid(&scoped)?;
+            refuse_no_housing(document, &scoped, name)?;
             (resolve_bearing(&scoped)?, None)
         }
     };
@@ -231,6 +233,34 @@ fn bearing(
     }
     name_defaults(&mut scene, &scoped, name, told);
     Ok(PlacedBearing { name: name.map(str::to_string), carriers, reversed, scene, housing })
+}
+
+/// A solid has no use where there is no housing; a common one may be those of the other bearings.
+fn refuse_no_housing(
+    document: &Document,
+    scoped: &Document,
+    name: Option<&str>,
+) -> Result<(), SceneError> {
+    if document.names("housing").next().is_none() {
+        return refuse_solid(scoped);
+    }
+    let Some(own) = name.filter(|name| document.names("solid").any(|solid| solid == *name)) else {
+        return Ok(());
+    };
+    let reason = "this bearing has no housing whose solid it could be";
+    let advice = format!("add [housing.{own}], or leave it out");
+    Err(document.error_of_name("solid", own, Problem::refused(reason, advice)))
+}
+
+/// Balls go round as the body turns that carries the inner race: it must say how fast where their centrifugal force counts.
+fn require_speed(bearing: &Document, body: &Document) -> Result<(), SceneError> {
+    let counts = bearing.value("ball_forces.centrifugal");
+    if !matches!(counts, Some(Checked::Boolean(true))) || bearing.is_given("inner_race.speed") {
+        return Ok(());
+    }
+    let because = " with `ball_forces.centrifugal = true`".to_string();
+    let example = format!("`speed = \"1000 rpm\"` to [{}]", body.shown("body", true));
+    Err(body.error_here("body.speed", Problem::Missing { because, example }))
 }
 
 /// The body that carries a race; `None` for a race that is one itself.

@@ -53,8 +53,9 @@ pub(crate) fn in_housing(
     };
     if document.first_below("solid").is_none() {
         let because = ", a housing is a solid".to_string();
-        let example = "a [solid.mesh] table, or method = \"rigid\" to [housing]".to_string();
-        return Err(document.error("solid", Problem::Missing { because, example }));
+        let [solid, housing] = ["solid", "housing"].map(|table| document.shown(table, true));
+        let example = format!("a [{solid}.mesh] table, or method = \"rigid\" to [{housing}]");
+        return Err(document.error_here("solid", Problem::Missing { because, example }));
     }
     let friction = friction(&mut reader, method)?;
     refuse_motion(document, &reader, friction.is_some())?;
@@ -120,9 +121,12 @@ fn refuse_motion(document: &Document, reader: &Reader, rough: bool) -> Result<()
         }
         _ => {
             let reason = "a fixed outer race does not move in its housing";
-            let advice =
-                "write motion = \"5-dof\" in [outer_race], or method = \"rigid\" in [housing]";
-            return not_applicable(document, key, reason, advice);
+            let [race, housing] =
+                ["outer_race", "housing"].map(|table| document.shown(table, true));
+            let advice = format!(
+                "write motion = \"5-dof\" in [{race}], or method = \"rigid\" in [{housing}]"
+            );
+            return Err(document.error_here(key, Problem::refused(reason, advice)));
         }
     }
     if let Some(key) = document.first_below("outer_race.foundation") {

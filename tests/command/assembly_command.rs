@@ -249,6 +249,11 @@ fn check_and_plan_tell_what_sits_where() {
     }
 }
 
+/// The scene without lines of speeds.
+fn without_speed(text: &str) -> String {
+    text.lines().filter(|line| !line.starts_with("speed")).map(|line| format!("{line}\n")).collect()
+}
+
 /// Each wrong scene has one message that says what, where and what to do.
 #[test]
 fn bad_assemblies_are_refused() {
@@ -290,6 +295,11 @@ fn bad_assemblies_are_refused() {
                 whole.replace("inner_at", "inner_on = \"shaft\"\ninner_at")
             ),
             vec!["body.loose", "nothing is joined to this body"],
+        ),
+        (
+            "no speed of what carries the inner races",
+            format!("{}[ball_forces]\ncentrifugal = true\n", without_speed(&whole)),
+            vec!["body.shaft.speed", "missing with `ball_forces.centrifugal", "to [body.shaft]"],
         ),
         (
             "a body named as a race's columns",

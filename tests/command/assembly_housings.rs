@@ -362,3 +362,43 @@ fn loose_races_of_any_fit_find_their_equilibrium() {
     let said = done(&["sweep", &path, "--vary", fits, "--vary", clearances, "--out", &out]);
     assert!(said.contains("35 points in"), "{said}");
 }
+
+/// A bearing without a housing of its own and without a common one has none, whatever others have; what is wrong is said of the
+/// bearing that it is about.
+#[test]
+fn one_bearing_in_a_housing_and_one_without() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let own =
+        [("[housing]", "[housing.left]"), ("[solid.right.mesh]\ngenerate = \"housing-d\"", "")];
+    let with = |name: &str, more: &[(&str, &str)]| {
+        variant(folder.path(), name, &[&own[..], more].concat())
+    };
+    let fixed = [("[outer_race]", "[outer_race.left]")];
+    // The right one stands fixed, or is called rigid.
+    let out = text(&folder.path().join("out"));
+    let none = with("none", &fixed);
+    done(&["statics", &none, "--out", &out]);
+    let summary = json(&Path::new(&out).join("summary.json"));
+    let housings = &summary["housings"];
+    assert!(housings["left"].is_object() && housings["right"].is_null(), "{housings}");
+    let rigid = ("[numerics]", "[housing.right]\nmethod = \"rigid\"\n[numerics]");
+    let rigid = with("rigid", &[fixed[0], rigid]);
+    for path in [&none, &rigid] {
+        done(&["check", path]);
+        done(&["plan", path]);
+    }
+    // A common housing is that of both.
+    let common = [own[1], fixed[0]];
+    let message = refused(&["check", &variant(folder.path(), "common", &common)]);
+    let place = "common.toml:24:";
+    for part in [
+        "outer_race.right.motion: refused",
+        place,
+        "[outer_race.right], or method = \"rigid\" in [housing.right]",
+    ] {
+        assert!(message.contains(part), "{part}: {message}");
+    }
+    // A solid of its own asks for a housing.
+    let message = refused(&["check", &variant(folder.path(), "solid", &[own[0], fixed[0]])]);
+    assert!(message.contains("solid.right") && message.contains("[housing.right]"), "{message}");
+}
