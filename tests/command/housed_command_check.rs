@@ -69,7 +69,11 @@ fn numerics_output_assumptions_and_defaults_are_echoed() {
             assert!(!expected.is_empty());
             assert_eq!(lines(&said, label), expected);
         }
-        assert_eq!(lines(&said, "fields"), ["every 0.0002 s"]);
+        let fields = lines(&said, "fields");
+        assert!(
+            fields[0].starts_with("every 0.0002 s: 6 files, about ") && fields.len() == 1,
+            "{fields:?}"
+        );
         let motion = if explicit { "inner race motion" } else { "motion" };
         assert_eq!(lines(&said, motion).len(), 1, "{said}");
         assert_eq!(lines(&said, "steps").len(), usize::from(explicit), "{said}");
@@ -168,4 +172,48 @@ fn a_given_speed_of_the_outer_race_is_noted() {
             assert_eq!(said.contains("at the speed that is given"), noted, "{said}");
         }
     }
+}
+
+/// Fields come with rows: what interval that makes, how many files and how large they are is known before the run.
+#[test]
+fn files_of_fields_are_foretold() {
+    let place = Place::new();
+    let of = |interval: &str| {
+        let numerics = format!(
+            "[numerics]\nend = \"0.1 ms\"\noutput_interval = \"0.02 ms\"\nfields_interval = \"{interval}\"\n"
+        );
+        let text = scene_text("method = \"quasi-static\"\nfit.radial = \"2 um\"", &numerics);
+        let (said, _) = checked(&place, &text);
+        let scene = place.path("scene.toml");
+        let plan = succeed(command("plan", &scene, &[]));
+        let told = lines(&said, "fields").remove(0);
+        assert!(plan.contains(&told), "{told}: {plan}");
+        let out = place.path("out");
+        succeed(into_folder("run", &scene, &out, &["--fresh"]));
+        let files: Vec<u64> = std::fs::read_dir(out.join("fields"))
+            .unwrap()
+            .map(|file| file.unwrap().metadata().unwrap().len())
+            .collect();
+        let number = |before: &str| {
+            let rest = told.split(before).nth(1).unwrap_or_else(|| panic!("{before}: {told}"));
+            rest.split(' ').next().unwrap().parse::<f64>().unwrap()
+        };
+        assert_eq!(number("s: "), files.len() as f64, "{told}");
+        let megabytes = 1e-6 * files.iter().sum::<u64>() as f64;
+        assert!((number("about ") / megabytes - 1.0).abs() <= 0.1, "{told}: {megabytes}");
+        told
+    };
+    let short = of("1 us");
+    assert!(short.starts_with("every 0.00002 s: 6 files"), "{short}");
+    assert!(short.contains("shorter than the time between rows"), "{short}");
+    for (interval, files) in [("0.04 ms", 4), ("0.05 ms", 3), ("0.02 ms", 6)] {
+        let told = of(interval);
+        assert!(told.contains(&format!(": {files} files")) && !told.contains("shorter"), "{told}");
+    }
+    // Many are worth a warning.
+    let numerics =
+        "[numerics]\nend = \"1 s\"\noutput_interval = \"0.02 ms\"\nfields_interval = \"1 us\"\n";
+    let text = scene_text("method = \"quasi-static\"\nfit.radial = \"2 um\"", numerics);
+    let told = lines(&checked(&place, &text).0, "fields").remove(0);
+    assert!(told.contains("50001 files") && told.contains("WARNING: that is much"), "{told}");
 }

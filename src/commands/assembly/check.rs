@@ -3,6 +3,7 @@
 use super::echo::{echo, motion, numerics};
 use super::housing::Housing;
 use super::lists::Lists;
+use super::plan::of_housings;
 use super::{defaults, housings, lines};
 use crate::commands::check::{Line, say_json, say_lines};
 use crate::commands::echo::through;
@@ -13,6 +14,7 @@ use crate::commands::scene_remarks::{
 use crate::commands::size_remarks::of_sizes;
 use crate::commands::{CommandResult, echo_run};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
+use bearing_dynamics::output::fields::size::fields_size;
 use bearing_dynamics::output::session::table_size;
 use bearing_dynamics::output::summary::housing::seat_section;
 use bearing_dynamics::output::summary::solid::mesh_section;
@@ -223,11 +225,15 @@ fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, Str
     said.extend(sudden_fits(scene).map(|said| ("note", said)));
     said.extend(moving_starts(scene).map(|said| ("note", said)));
     if !housings.is_empty() || scene.has_shafts_in_elements() {
-        let fields = match run.fields_interval {
-            Some(interval) => format!("every {interval} s"),
-            None => "at the end".into(),
-        };
-        said.push(("fields", fields));
+        let mut solids = of_housings(housings);
+        // Shafts are not meshed for this.
+        let beams = scene.bodies.iter().filter_map(|body| body.beam.as_deref());
+        let shafts = beams.filter(|beam| beam.in_elements.is_some()).count();
+        if shafts > 0 {
+            solids = vec![0.0; solids.len() + shafts];
+        }
+        let fields = fields_size(end, interval, run.fields_interval, &solids);
+        said.push(("fields", fields.to_string()));
     }
     said
 }

@@ -16,6 +16,7 @@ use crate::commands::scene_remarks::{
 };
 use crate::commands::size_remarks::of_sizes;
 use crate::commands::{CommandResult, Outcome, memory};
+use bearing_dynamics::output::fields::size::{fields_size, file_bytes};
 use bearing_dynamics::output::session::{RunRequest, table_size};
 use bearing_dynamics::scene::assembly::{AssemblyScene, PlacedBearing};
 use bearing_dynamics::scene::bushing_problem::{BushingElements, take_bushings};
@@ -56,7 +57,8 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
             (of_statics(lists, &housings)?, Vec::new())
         }
         (Some(settings), Some(HousingMethod::QuasiStatic)) => {
-            (of_course(lists, &housings, settings)?, Vec::new())
+            let fields = fields_line(settings, &of_housings(&housings));
+            (of_course(lists, &housings, settings)?, fields.into_iter().collect())
         }
         (Some(settings), _) => of_steps(lists, &housings, reduced.as_ref(), settings)?,
     };
@@ -134,7 +136,21 @@ fn of_steps(
         notes.extend(imbalance_text(scene, shaft).map(|said| note("shaft", &said)));
     }
     notes.push(size_line(&assembly, &request));
+    let of_shafts = shafts.iter().map(|shaft| file_bytes(&shaft.mesh, false));
+    let solids: Vec<f64> = of_housings(housings).into_iter().chain(of_shafts).collect();
+    notes.extend(fields_line(settings, &solids));
     Ok((items, notes))
+}
+
+/// Bytes of one file of the fields of each housing.
+pub fn of_housings(housings: &[Housing]) -> Vec<f64> {
+    housings.iter().map(|housing| file_bytes(&housing.built.mesh, true)).collect()
+}
+
+/// How many files of fields there will be and how large they are, where there are some on the way.
+fn fields_line(run: &RunSettings, solids: &[f64]) -> Option<String> {
+    let size = fields_size(run.end, run.output_interval, run.fields_interval, solids);
+    size.interval.map(|_| note("fields", &size.to_string()))
 }
 
 /// Of the mass times length of a shaft (couples: its square): what is less out of balance is so by rounding.

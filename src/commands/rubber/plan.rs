@@ -4,7 +4,7 @@ use super::{Prepared, prepare};
 use crate::commands::plan::say_plan;
 use crate::commands::plan_step::note;
 use crate::commands::solid::mesh_notes;
-use crate::commands::solid::plan::from;
+use crate::commands::solid::plan::{fields_line, from};
 use crate::commands::{CommandResult, Outcome, memory};
 use bearing_dynamics::scene::solid::{RubberScene, RunSteps, SolidRun};
 use bearing_dynamics::scene::{Document, SolidScene};
@@ -44,6 +44,7 @@ pub fn run(document: &Document, scene: &SolidScene, rubber: &RubberScene) -> Com
             lines.push(note("factorisations", &said));
         }
     }
+    lines.extend(scene.run.as_ref().map(|run| fields_line(run, &prepared.built.mesh)));
     say_plan(&all_items(scene, rubber, &prepared), &lines)?;
     Ok(Outcome::Done)
 }

@@ -4,8 +4,9 @@ use super::{Prepared, mesh_notes, prepare};
 use crate::commands::plan::say_plan;
 use crate::commands::plan_step::note;
 use crate::commands::{CommandResult, Outcome, memory, rubber};
-use bearing_dynamics::mesh::Order;
-use bearing_dynamics::scene::solid::{Law, MeshSource, RunSteps};
+use bearing_dynamics::mesh::{Order, TetMesh};
+use bearing_dynamics::output::fields::size::{fields_size, file_bytes};
+use bearing_dynamics::scene::solid::{Law, MeshSource, RunSteps, SolidRun};
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::clock::whole_number;
 use bearing_dynamics::solver::plan::solid::{self, Method};
@@ -32,8 +33,16 @@ pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
     {
         lines.push(step_line(&model, (method, stepping), run.output_interval, run.end));
     }
+    lines.extend(scene.run.as_ref().map(|run| fields_line(run, &prepared.built.mesh)));
     say_plan(&all_items(scene, &prepared), &lines)?;
     Ok(Outcome::Done)
+}
+
+/// How many files of fields there will be, and how large they are.
+pub fn fields_line(run: &SolidRun, mesh: &TetMesh) -> String {
+    let bytes = file_bytes(mesh, false);
+    let size = fields_size(run.end, run.output_interval, Some(run.fields_interval), &[bytes]);
+    note("fields", &size.to_string())
 }
 
 /// The step of a run, what limits it, and how many there are; as the run finds them.

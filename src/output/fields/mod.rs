@@ -1,6 +1,7 @@
 //! Fields of a solid as ParaView opens them: displacement, velocity, stress, and what a race does to its bore.
 
 pub mod bore;
+pub mod size;
 
 use crate::kinematics::strain::{Sym3, von_mises};
 use crate::kinematics::vec3::Vec3;
