@@ -6,19 +6,26 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 #[derive(Debug, Error)]
-#[error("cannot write {}: {source}{}", path.display(), room_text(source))]
+#[error("cannot write {}: {source}{}", path.display(), room_text(path, source))]
 pub struct WriteError {
     pub path: PathBuf,
     pub source: io::Error,
 }
 
-fn room_text(source: &io::Error) -> &'static str {
-    match source.kind() {
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            "; what was written before is whole. Make room and run again: a run goes on with --resume from the last \
-             state that it could keep (--save-every)"
-        }
-        _ => "",
+/// What to do about a file that could not be written for want of room; empty for other reasons. What a command can go on from lies
+/// beside the file or, of fields, a folder above it.
+pub fn room_text(path: &Path, source: &io::Error) -> &'static str {
+    if !matches!(source.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded) {
+        return "";
+    }
+    let is_kept = |name: &str| path.ancestors().skip(1).take(2).any(|at| at.join(name).exists());
+    if is_kept("state.json") {
+        "; what was written before is whole. Make room and go on with --resume, from the last state that could be kept \
+         (--save-every)"
+    } else if is_kept("sweep.journal") {
+        "; what was written before is whole. Make room and sweep again: it goes on from the points that are done"
+    } else {
+        "; what was written before is whole, but nothing to go on from was kept. Make room and run again"
     }
 }
 

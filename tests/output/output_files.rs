@@ -4,7 +4,7 @@
 #[allow(dead_code)]
 use crate::output_common;
 
-use bearing_dynamics::output::atomic::remove_partials;
+use bearing_dynamics::output::atomic::{WriteError, remove_partials};
 use bearing_dynamics::output::compare::tolerance::ToleranceClass;
 use bearing_dynamics::output::compare::{Options, compare, report};
 use bearing_dynamics::output::pack::{PackError, PackInput, verify_pack, write_pack};
@@ -339,4 +339,35 @@ fn no_character_that_turns_the_writing_is_passed_on() {
         let shown = format!("a\\u{code:04x}b");
         assert_eq!([visible(&text), visible_line(&text)], [shown.as_str(), shown.as_str()]);
     }
+}
+
+/// What a full disk leaves to go on from depends on what could be kept.
+#[test]
+fn advice_on_a_full_disk_is_about_what_was_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = |file: &str| {
+        let error = WriteError {
+            path: folder.path().join(file),
+            source: std::io::ErrorKind::StorageFull.into(),
+        };
+        error.to_string()
+    };
+    let files = ["series.csv", "fields/fields_000001.vtu"];
+    for file in files {
+        assert!(said(file).contains("nothing to go on from was kept"), "{}", said(file));
+        assert!(!said(file).contains("--resume"), "{}", said(file));
+    }
+    fs::write(folder.path().join("sweep.journal"), "").unwrap();
+    assert!(
+        said("sweep.journal").contains("sweep again: it goes on from the points that are done")
+    );
+    fs::write(folder.path().join("state.json"), "{}").unwrap();
+    for file in files {
+        assert!(said(file).contains("go on with --resume"), "{}", said(file));
+    }
+    let other = WriteError {
+        path: folder.path().join("series.csv"),
+        source: std::io::ErrorKind::PermissionDenied.into(),
+    };
+    assert!(!other.to_string().contains("Make room"), "{other}");
 }

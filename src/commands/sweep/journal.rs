@@ -1,5 +1,6 @@
 //! The journal of an unfinished sweep: a header line, then one line a finished chunk.
 
+use bearing_dynamics::output::WriteError;
 use bearing_dynamics::scene::input_file::{self, InputError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -101,7 +102,7 @@ impl Journal {
         let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
         open.file
             .write_all(line.as_bytes())
-            .map_err(|error| format!("cannot write {}: {error}", self.path.display()))?;
+            .map_err(|source| WriteError { path: self.path.clone(), source })?;
         open.chunks.insert(chunk.index, chunk);
         Ok(())
     }
